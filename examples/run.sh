@@ -1,0 +1,23 @@
+#!/bin/sh
+# Draws a scene: `sh examples/run.sh [SCENE.glb] [options]` on Debian 12, as root or with sudo. Installs the
+# packages that are missing, builds the example programs in build/examples, hands everything to tiled_forward
+# (--help lists its options), which writes a picture and names it.
+set -eu
+me=examples/run.sh
+here=$(pwd)
+cd "$(dirname "$0")/.."
+. tests/packages.sh
+
+build="g++ cmake ninja-build"
+libraries="libglm-dev libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libglfw3-dev libegl-dev libgl-dev"
+opengl="libegl1 libegl-mesa0 libgl1-mesa-dri"
+# shellcheck disable=SC2086  # one word a package
+install_packages $build $libraries $opengl
+
+mkdir -p build
+echo "$me: building in build/examples"
+{ cmake --preset examples && cmake --build --preset examples -j "$(nproc)"; } >build/examples.log 2>&1 ||
+    { cat build/examples.log; fail "the build failed"; }
+program=$(pwd)/build/examples/examples/tiled_forward
+cd "$here"
+exec "$program" "$@"

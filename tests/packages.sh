@@ -1,0 +1,41 @@
+# Read by tests/run.sh and examples/run.sh, not run by itself.
+
+fail() {
+    echo "$me: $*" >&2
+    exit 1
+}
+
+# Installs those of the named Debian packages that are not there yet, and says so first. Where all are there,
+# apt-get is not called, so that no network is needed.
+install_packages() {
+    for tool in apt-get dpkg-query; do
+        command -v $tool >/dev/null || fail "there is no $tool here: this script sets up Debian 12." \
+            "Elsewhere, install what matches these packages and use the CMake presets: $*"
+    done
+
+    missing=
+    for package in "$@"; do
+        [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
+            missing="$missing $package"
+    done
+    [ -n "$missing" ] || return 0
+
+    root=
+    if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null || fail "needs root, or sudo, to install these packages:$missing"
+        root=sudo
+    fi
+    echo "$me: installing these Debian packages${root:+ (with sudo)}:$missing"
+
+    log=$(mktemp)
+    # A package list that cannot be fetched is no matter as long as the packages can be.
+    apt_get update >"$log" 2>&1 || true
+    # shellcheck disable=SC2086  # one word a package
+    apt_get install -y --no-install-recommends $missing >>"$log" 2>&1 ||
+        fail "the packages could not be installed; apt-get says: $(grep '^E:' "$log" | tail -n 1) (all of it: $log)"
+    rm -f "$log"
+}
+
+apt_get() {
+    $root env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"
+}

@@ -1,0 +1,27 @@
+#!/bin/sh
+# Runs every test: `sh tests/run.sh` on Debian 12, as root or with sudo. Installs the packages that are missing,
+# configures and builds in build/dev, runs the tests.
+set -eu
+me=tests/run.sh
+cd "$(dirname "$0")/.."
+. tests/packages.sh
+
+compilers="g++ clang-14 clang-19" # the last two to see that they have no warning to give either
+tools="cmake ninja-build binutils"
+libraries="doctest-dev libglm-dev"
+oracle="libboost-dev libgmp-dev"
+examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libglfw3-dev libegl-dev libgl-dev"
+opengl="libegl1 libegl-mesa0 libgl1-mesa-dri"
+shaders="glslang-tools"
+# shellcheck disable=SC2086  # one word a package
+install_packages $compilers $tools $libraries $oracle $examples $opengl $shaders
+
+echo "$me: configuring and building in build/dev"
+jobs=$(nproc)
+mkdir -p build
+cmake --preset dev >build/dev.log 2>&1 || { cat build/dev.log; fail "the configuration failed"; }
+cmake --build --preset dev -j "$jobs" -- --quiet || fail "the build failed"
+
+echo "$me: running the tests"
+ctest --preset dev -j "$jobs" || fail "there are failed tests; their output is above"
+echo "$me: every test passed"
