@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 . tests/packages.sh
 
 compilers="g++ clang-14 clang-19" # the last two to see that they have no warning to give either
-tools="cmake ninja-build binutils"
+tools="cmake ninja-build"
 libraries="doctest-dev libglm-dev"
 oracle="libboost-dev libgmp-dev"
 examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libglfw3-dev libegl-dev libgl-dev"

@@ -1,0 +1,144 @@
+// Once warm, nothing allocates. Counts calls of the global operator new.
+#include <lightbin/lightbin.hpp>
+
+#include <doctest/doctest.h>
+#include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <random>
+#include <vector>
+
+namespace {
+
+std::size_t allocations = 0;
+
+void* counted(std::size_t size) {
+    ++allocations;
+    if (void* memory = std::malloc(size)) return memory;
+    std::abort();
+}
+
+void* counted(std::size_t size, std::align_val_t alignment) {
+    ++allocations;
+    const auto unit = static_cast<std::size_t>(alignment);
+    if (void* memory = std::aligned_alloc(unit, (size + unit - 1) / unit * unit)) return memory;
+    std::abort();
+}
+
+}  // namespace
+
+// The array and nothrow forms call these.
+void* operator new(std::size_t size) { return counted(size); }
+void* operator new(std::size_t size, std::align_val_t alignment) { return counted(size, alignment); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+
+namespace {
+
+using namespace lightbin;
+
+std::vector<glm::vec4> random_lights(std::size_t count) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> side(-40, 40), depth(-90, 10), radius(0.5f, 12);
+    std::vector<glm::vec4> lights(count);
+    for (glm::vec4& light : lights) light = {side(random), side(random), depth(random), radius(random)};
+    return lights;
+}
+
+View make_view(int width, int height, int tile_size) {
+    const auto projection = glm::perspective(1.0f, static_cast<float>(width) / static_cast<float>(height), 0.1f, 100.0f);
+    const auto view = View::from_projection(projection, {width, height}, {.tile_size = tile_size});
+    if (!view) std::abort();
+    return *view;
+}
+
+// The number of allocations in one call of work.
+std::size_t allocations_in(auto&& work) {
+    const std::size_t before = allocations;
+    work();
+    return allocations - before;
+}
+
+// A scene, and a smaller one: fewer lights, fewer tiles.
+struct Scene {
+    View view;
+    std::vector<glm::vec4> lights;
+    std::vector<float> depth, min, max;
+
+    Scene(int width, int height, std::size_t light_count)
+        : view(make_view(width, height, 32)), lights(random_lights(light_count)),
+          depth(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)), min(view.tile_count()),
+          max(view.tile_count()) {
+        for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = 0.9f + 0.1f * static_cast<float>(i % 97) / 97.0f;
+    }
+
+    ZBounds reduce() {
+        const auto bounds = reduce_depth(view, {.depth = depth}, min, max);
+        if (!bounds) std::abort();
+        return *bounds;
+    }
+};
+
+// Everything a frame does with one Binner; the entries it got.
+template <Options options>
+std::size_t frame(Binner<options>& binner, Scene& scene, std::vector<Tile>& tiles,
+                  std::vector<typename Binner<options>::Id>& indices) {
+    std::size_t entries = 0;
+    const glm::mat4 camera(1.0f);
+    const auto use = [&](const auto& lights, const auto&... bounds) {
+        const auto grid = binner.bin(scene.view, lights, bounds...);
+        if (grid) entries += grid->indices().size();
+        const auto size = binner.count(scene.view, lights, bounds...);
+        if (size && binner.emit(tiles, indices)) entries += size->indices;
+    };
+    if constexpr (options.depth_test == DepthTest::none) {
+        use(scene.lights);
+        use(world_space(scene.lights, camera));
+    } else {
+        const ZBounds bounds = scene.reduce();
+        use(scene.lights, bounds);
+        use(world_space(scene.lights, camera), bounds);
+        if (const auto grids = binner.bin_transparency(scene.view, scene.lights, bounds))
+            entries += grids->opaque.indices().size() + grids->transparent.indices().size();
+    }
+    return entries;
+}
+
+template <Options options>
+void check_options() {
+    Scene scene(640, 360, 500), smaller(320, 200, 300);
+    std::vector<Tile> tiles(scene.view.tile_count());
+    std::vector<typename Binner<options>::Id> indices(500 * tiles.size());
+    Binner<options> binner;
+
+    // The first frame must be seen to allocate, or the counter counts nothing.
+    std::size_t entries = 0;
+    CHECK(allocations_in([&] { entries += frame(binner, scene, tiles, indices); }) > 0);
+    entries += frame(binner, scene, tiles, indices);
+    CHECK(entries > 0);
+
+    CHECK(allocations_in([&] { entries += frame(binner, scene, tiles, indices); }) == 0);
+    CHECK(allocations_in([&] { entries += frame(binner, smaller, tiles, indices); }) == 0);
+    CHECK(allocations_in([&] { entries += frame(binner, scene, tiles, indices); }) == 0);
+}
+
+}  // namespace
+
+TEST_CASE("a warm Binner does not allocate") {
+    check_options<Options{.index = Index::u16, .depth_test = DepthTest::none}>();
+    check_options<Options{.index = Index::u32, .depth_test = DepthTest::none, .statistics = true}>();
+    check_options<Options{.index = Index::u16, .depth_test = DepthTest::interval, .statistics = true}>();
+    check_options<Options{.index = Index::u32, .depth_test = DepthTest::interval}>();
+}
+
+TEST_CASE("making a view and reducing a depth buffer never allocate") {
+    Scene scene(640, 360, 1);
+    CHECK(allocations_in([&] { scene.view = make_view(500, 300, 16); }) == 0);
+    scene = Scene(640, 360, 1);
+    CHECK(allocations_in([&] { scene.reduce(); }) == 0);
+}

@@ -1,0 +1,163 @@
+// Every public template instantiated with every kind of argument, in a function named by the macro UNIT: compiled by
+// several compilers with several flags for its warnings, and twice into one program.
+#include <lightbin/lightbin.hpp>
+
+#include <glm/glm.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+std::uint64_t UNIT();
+
+namespace {
+
+using namespace lightbin;
+
+struct Lamp {
+    double position[3];
+    double reach;
+};
+
+// FNV-1a: equal hashes stand for equal bytes.
+struct Hash {
+    std::uint64_t value = 14695981039346656037u;
+
+    void add(std::uint64_t word) {
+        for (int byte = 0; byte < 8; ++byte) value = (value ^ ((word >> (8 * byte)) & 255)) * 1099511628211u;
+    }
+
+    template <class Id>
+    void add(const LightGrid<Id>& grid) {
+        add(static_cast<std::uint64_t>(grid.tiles_x()));
+        add(static_cast<std::uint64_t>(grid.tiles_y()));
+        add(grid.rejected());
+        for (const Tile& tile : grid.tiles()) {
+            add(tile.offset);
+            add(tile.count);
+        }
+        for (const Id id : grid.indices()) add(id);
+        for (const Id id : grid.lights_in(0, 0)) add(id);
+    }
+
+    template <class T>
+    void add(const Result<T>& result) {
+        if (result)
+            add(*result);
+        else
+            for (const char letter : result.error().message()) add(static_cast<unsigned char>(letter));
+    }
+};
+
+template <Options options>
+void use_binner(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
+    Binner<options> binner;
+    using Id = typename Binner<options>::Id;
+    const auto emit = [&](const Result<GridSize>& size) {
+        if (!size) return hash.add(0);
+        std::vector<Tile> tiles(size->tiles);
+        std::vector<Id> indices(size->indices);
+        hash.add(binner.emit(std::span<Tile>(tiles), std::span<Id>(indices)));
+    };
+
+    if constexpr (options.depth_test == DepthTest::none) {
+        hash.add(binner.bin(view, lights));
+        emit(binner.count(view, lights));
+    } else {
+        hash.add(binner.bin(view, lights, bounds));
+        emit(binner.count(view, lights, bounds));
+        if (const auto grids = binner.bin_transparency(view, lights, bounds)) {
+            hash.add(grids->opaque);
+            hash.add(grids->transparent);
+        }
+    }
+    if constexpr (options.statistics) {
+        const Statistics& statistics = binner.statistics();
+        hash.add(statistics.lights);
+        hash.add(statistics.rejected);
+        hash.add(statistics.culled);
+        hash.add(statistics.entries);
+        hash.add(statistics.longest_list);
+        for (const std::uint64_t tiles : statistics.histogram) hash.add(tiles);
+    }
+}
+
+template <Index index, DepthTest depth_test>
+void use_binners(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
+    use_binner<Options{.index = index, .depth_test = depth_test, .statistics = false}>(hash, view, lights, bounds);
+    use_binner<Options{.index = index, .depth_test = depth_test, .statistics = true}>(hash, view, lights, bounds);
+}
+
+void use_lights(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
+    use_binners<Index::u16, DepthTest::none>(hash, view, lights, bounds);
+    use_binners<Index::u16, DepthTest::interval>(hash, view, lights, bounds);
+    use_binners<Index::u32, DepthTest::none>(hash, view, lights, bounds);
+    use_binners<Index::u32, DepthTest::interval>(hash, view, lights, bounds);
+}
+
+void use_view(Hash& hash, const View& view) {
+    hash.add(static_cast<std::uint64_t>(view.tile_size()));
+    hash.add(static_cast<std::uint64_t>(view.viewport().width));
+    hash.add(static_cast<std::uint64_t>(view.origin()) + (view.orthographic() ? 8u : 0u) + (view.reversed_z() ? 16u : 0u));
+    for (const std::uint32_t word : shader_grid(view)) hash.add(word);
+
+    const std::size_t pixels = static_cast<std::size_t>(view.viewport().width) *
+                               static_cast<std::size_t>(view.viewport().height);
+    std::vector<float> depth(2 * pixels), min(view.tile_count()), max(view.tile_count());
+    for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = static_cast<float>(i % 1000) / 1000.0f;
+    DepthBuffer buffer{.depth = depth, .samples = 2};
+    buffer.format = DepthFormat::unorm24;
+    const auto bounds = reduce_depth(view, buffer, min, max);
+    if (!bounds) return hash.add(1);
+
+    std::vector<Sphere> spheres;
+    std::vector<glm::vec4> vectors;
+    std::vector<Lamp> lamps;
+    for (int i = 0; i < 200; ++i) {
+        const int x = i * 37 % 101 - 50, y = i * 53 % 61 - 30, z = -(i * 29 % 83);
+        const float radius = light_range(static_cast<float>(1 + i % 40), 0.25f);
+        spheres.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), radius});
+        vectors.emplace_back(x, y, z, radius);
+        lamps.push_back({{1.0 * x, 1.0 * y, 1.0 * z}, radius});
+    }
+    const auto to_sphere = [](const Lamp& lamp) {
+        return Sphere{static_cast<float>(lamp.position[0]), static_cast<float>(lamp.position[1]),
+                      static_cast<float>(lamp.position[2]), static_cast<float>(lamp.reach)};
+    };
+    const glm::mat4 camera(0.8f, 0, 0.6f, 0, 0, 1, 0, 0, -0.6f, 0, 0.8f, 0, 1, 2, -3, 1);
+    const double identity[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+
+    use_lights(hash, view, spheres, *bounds);
+    use_lights(hash, view, std::span<const glm::vec4>(vectors), *bounds);
+    use_lights(hash, view, view_space(lamps, to_sphere), *bounds);
+    use_lights(hash, view, world_space(vectors, camera), *bounds);
+    use_lights(hash, view, world_space(lamps, identity, to_sphere), *bounds);
+}
+
+}  // namespace
+
+std::uint64_t UNIT() {
+    Hash hash;
+    const Extent viewport{200, 120};
+    // Written out, because what glm computes may differ with the flags.
+    const glm::mat4 opengl(1.2f, 0, 0, 0, 0, 1.8f, 0, 0, 0, 0, -1.01f, -1, 0, 0, -0.2f, 0);
+    const glm::dmat4 reversed(1.2, 0, 0, 0, 0, 1.8, 0, 0, 0.1, 0.2, 0, -1, 0, 0, 0.1, 0);
+    const float infinite[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, -1}, {0, 0, -0.2f, 0}};
+    const double orthographic[4][4] = {{0.02, 0, 0, 0}, {0, 0.03, 0, 0}, {0, 0, -0.02, 0}, {0, 0, -1, 1}};
+    const ViewOptions upper{.tile_size = 16, .clip_depth = ClipDepth::zero_to_one, .origin = WindowOrigin::upper_left};
+    for (const auto& view :
+         {View::from_projection(opengl, viewport), View::from_projection(reversed, viewport, upper),
+          View::from_projection(infinite, viewport), View::from_projection(orthographic, viewport)}) {
+        if (view)
+            use_view(hash, *view);
+        else
+            hash.add(2);
+    }
+    for (const ShaderLanguage language : {ShaderLanguage::glsl_330, ShaderLanguage::glsl_430})
+        for (const Index index : {Index::u16, Index::u32})
+            for (const char letter : shader_snippet({.language = language, .index = index}))
+                hash.add(static_cast<unsigned char>(letter));
+    return hash.value;
+}
