@@ -14,7 +14,7 @@ opengl="libegl1 libegl-mesa0 libgl1-mesa-dri"
 # shellcheck disable=SC2086  # one word a package
 install_packages $build $libraries $opengl
 
-mkdir -p build
+make_build_folder
 echo "$me: building in build/examples"
 { cmake --preset examples && cmake --build --preset examples -j "$(nproc)"; } >build/examples.log 2>&1 ||
     { cat build/examples.log; fail "the build failed"; }

@@ -32,10 +32,20 @@ install_packages() {
     apt_get update >"$log" 2>&1 || true
     # shellcheck disable=SC2086  # one word a package
     apt_get install -y --no-install-recommends $missing >>"$log" 2>&1 ||
-        fail "the packages could not be installed; apt-get says: $(grep '^E:' "$log" | tail -n 1) (all of it: $log)"
+        fail "the packages could not be installed (is there a network?): $(last_error) (all of it: $log)"
     rm -f "$log"
 }
 
 apt_get() {
     $root env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"
+}
+
+# What apt-get says, or where it did not even start, sudo.
+last_error() {
+    { grep '^E:' "$log" || cat "$log"; } | tail -n 1
+}
+
+# Both scripts build below build/; a run as root may have left it to root.
+make_build_folder() {
+    mkdir -p build && [ -w build ] || fail "cannot write to $(pwd)/build"
 }

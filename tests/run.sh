@@ -18,7 +18,7 @@ install_packages $compilers $tools $libraries $oracle $examples $opengl $shaders
 
 echo "$me: configuring and building in build/dev"
 jobs=$(nproc)
-mkdir -p build
+make_build_folder
 cmake --preset dev >build/dev.log 2>&1 || { cat build/dev.log; fail "the configuration failed"; }
 cmake --build --preset dev -j "$jobs" -- --quiet || fail "the build failed"
 
