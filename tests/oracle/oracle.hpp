@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: MIT
+// The truth the light lists are held against: does a closed ball meet a closed cell? Decided in rational arithmetic,
+// without rounding anywhere.
+//
+// What exactness rests on:
+// - A float or double is a rational number, and mpq (GMP) computes with rationals exactly. The one entry is exact().
+// - Everything is read from the projection matrix itself, the viewport, the tile size and the API's settings. Nothing is
+//   taken from the library: not its View, not a constant, not a margin.
+// - A cell is what clip space says: the points with  W clip_x >= (2a - W) clip_w  right of pixel edge a, and so on for
+//   each side, between the clip planes of depth and, where asked, between two view depths. Clip coordinates are linear in
+//   the point, so a cell is a convex polyhedron with rational planes, and the squared distance from a rational point to it
+//   is rational: no square root is ever needed.
+// - Two deciders that share no formula must agree. meets() works in the camera's own axes on a convex function of depth
+//   alone; nearest_point() knows only half-spaces and finds the point that satisfies the Karush-Kuhn-Tucker conditions,
+//   which is a proof by itself. deciders.cpp compares them.
+// - The word "pixel edge" means the real number a in window coordinates; how a GPU rounds its own vertices is not ours.
+#pragma once
+
+#include "cameras.hpp"
+
+#include <boost/multiprecision/gmp.hpp>
+
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace oracle {
+
+// Expression templates off: auto and ?: then mean what they say.
+using Rational = boost::multiprecision::number<boost::multiprecision::gmp_rational, boost::multiprecision::et_off>;
+
+inline Rational exact(double value) {
+    assert(std::isfinite(value));
+    return Rational(value);
+}
+
+inline Rational square(const Rational& v) { return v * v; }
+
+struct Vector {
+    Rational x, y, z;
+};
+
+inline Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vector operator*(const Rational& k, const Vector& v) { return {k * v.x, k * v.y, k * v.z}; }
+inline Rational dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+/// A closed ball; `all` is the ball of infinite radius.
+struct Ball {
+    Vector centre;
+    Rational radius;
+    bool all = false;
+};
+
+inline Ball exact_ball(float x, float y, float z, float radius) {
+    const bool all = std::isinf(radius);
+    return {{exact(x), exact(y), exact(z)}, all ? Rational(0) : exact(radius), all};
+}
+
+/// Pixel edges of a block, window coordinates. Real numbers, not only integers: excess is tested with grown blocks.
+struct Edges {
+    Rational low, high;
+};
+
+/// View depths, closed; nothing given is no bound.
+struct Depths {
+    std::optional<Rational> min, max;
+    bool empty = false;
+
+    void at_least(const Rational& depth) {
+        if (!min || *min < depth) min = depth;
+    }
+    void at_most(const Rational& depth) {
+        if (!max || *max > depth) max = depth;
+    }
+    bool contains_none() const { return empty || (min && max && *min > *max); }
+};
+
+/// a . p + b >= 0
+struct HalfSpace {
+    Vector a;
+    Rational b;
+    Rational at(const Vector& p) const { return dot(a, p) + b; }
+};
+
+//----------------------------------------------------------------------------------------------------------------------
+// Decider 2 first, as it needs least: half-spaces and nothing else.
+
+/// Returns the point of the intersection of `cell` that is nearest to `p`, or nothing when the intersection is empty.
+///
+/// q is nearest iff it lies in the cell and p - q = -sum l_i a_i over planes through q with all l_i >= 0. By Caratheodory
+/// linearly independent planes are enough, and in space there are at most three of those: so trying every subset of up to
+/// three planes, with its Gram system solved exactly, finds q or proves there is none.
+inline std::optional<Vector> nearest_point(const std::vector<HalfSpace>& cell, const Vector& p) {
+    std::vector<const HalfSpace*> planes;
+    for (const HalfSpace& h : cell) {
+        if (h.a.x.is_zero() && h.a.y.is_zero() && h.a.z.is_zero()) {
+            if (h.b < 0) return std::nullopt;
+        } else {
+            planes.push_back(&h);
+        }
+    }
+    const auto inside = [&](const Vector& q) {
+        for (const HalfSpace* h : planes)
+            if (h->at(q) < 0) return false;
+        return true;
+    };
+    if (inside(p)) return p;
+
+    const std::size_t n = planes.size();
+    std::vector<Rational> value(n);
+    std::vector<std::vector<Rational>> gram(n, std::vector<Rational>(n));
+    for (std::size_t i = 0; i < n; ++i) {
+        value[i] = planes[i]->at(p);
+        for (std::size_t j = 0; j <= i; ++j) gram[i][j] = gram[j][i] = dot(planes[i]->a, planes[j]->a);
+    }
+    // q = p + sum l_i a_i with a_i . q + b_i = 0 for the chosen planes:  gram l = -value
+    for (std::size_t i = 0; i < n; ++i) {
+        if (value[i] > 0) continue; // l would be negative
+        const Vector q = p + (-value[i] / gram[i][i]) * planes[i]->a;
+        if (inside(q)) return q;
+    }
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = i + 1; j < n; ++j) {
+            const Rational det = gram[i][i] * gram[j][j] - square(gram[i][j]);
+            if (det.is_zero()) continue;
+            const Rational li = gram[i][j] * value[j] - gram[j][j] * value[i];
+            const Rational lj = gram[i][j] * value[i] - gram[i][i] * value[j];
+            if (li < 0 || lj < 0) continue; // det > 0 (Cauchy-Schwarz), so the signs are those of l
+            const Vector q = p + (li / det) * planes[i]->a + (lj / det) * planes[j]->a;
+            if (inside(q)) return q;
+        }
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = i + 1; j < n; ++j)
+            for (std::size_t k = j + 1; k < n; ++k) {
+                const std::size_t s[3] = {i, j, k};
+                const auto g = [&](int r, int c) -> const Rational& { return gram[s[r]][s[c]]; };
+                const auto minor = [&](int r, int c) { // of the symmetric 3x3 Gram matrix, signs by cyclic indices
+                    const int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
+                    return g(r1, c1) * g(r2, c2) - g(r1, c2) * g(r2, c1);
+                };
+                Rational cofactor[3][3];
+                for (int r = 0; r < 3; ++r)
+                    for (int c = 0; c < 3; ++c) cofactor[r][c] = minor(r, c);
+                const Rational det = g(0, 0) * cofactor[0][0] + g(0, 1) * cofactor[0][1] + g(0, 2) * cofactor[0][2];
+                if (det.is_zero()) continue;
+                Rational l[3];
+                bool positive = true;
+                for (int r = 0; r < 3 && positive; ++r) {
+                    l[r] = Rational(0);
+                    for (int c = 0; c < 3; ++c) l[r] -= cofactor[r][c] * value[s[c]];
+                    positive = l[r] >= 0;
+                }
+                if (!positive) continue;
+                Vector q = p;
+                for (int r = 0; r < 3; ++r) q = q + (l[r] / det) * planes[s[r]]->a;
+                if (inside(q)) return q;
+            }
+    return std::nullopt;
+}
+
+inline bool meets(const std::vector<HalfSpace>& cell, const Ball& ball) {
+    const auto q = nearest_point(cell, ball.all ? Vector{} : ball.centre);
+    if (!q) return false;
+    const Vector away = *q - ball.centre;
+    return ball.all || dot(away, away) <= square(ball.radius);
+}
+
+//----------------------------------------------------------------------------------------------------------------------
+// Decider 1: in the camera's own axes a block of tiles is  low(d) <= c <= high(d)  in each image axis, linear in depth d.
+
+/// offset + slope * d; one of the two is 0 (perspective: offset, orthographic: slope).
+struct Line {
+    Rational offset, slope;
+    Rational at(const Rational& d) const { return offset + slope * d; }
+};
+
+struct Slab {
+    Line low, high;
+};
+
+/// The image axis the slab is in decides which coordinate of the ball counts.
+struct Slabs {
+    std::optional<Slab> x, y; ///< nothing: this axis is not bounded
+};
+
+/// A ball in the camera's axes: image coordinates growing with pixels, depth growing away from the eye.
+struct CameraBall {
+    Rational x, y, depth, radius;
+    bool all = false;
+};
+
+namespace detail {
+
+inline Rational outside(const Slab& slab, const Rational& c, const Rational& d) {
+    const Rational low = slab.low.at(d);
+    if (c < low) return low - c;
+    const Rational high = slab.high.at(d);
+    return c > high ? c - high : Rational(0);
+}
+
+/// True: the ball lies strictly beyond one side of the slab, whatever the depth.
+inline bool beyond_a_side(const Slab& slab, const Rational& c, const CameraBall& ball) {
+    for (const bool low : {true, false}) {
+        const Line& line = low ? slab.low : slab.high;
+        const Rational at = line.at(ball.depth);
+        const Rational gap = low ? at - c : c - at;
+        if (gap > 0 && square(gap) > square(ball.radius) * (1 + square(line.slope))) return true;
+    }
+    return false;
+}
+
+} // namespace detail
+
+/// Does the ball meet the cell with these slabs and depths?
+///
+/// f(d) = squared distance from the centre to the cell's slice at depth d, measured in three dimensions, is convex and
+/// piecewise quadratic with a continuous derivative. Its least value over the depths is therefore taken at an end or where
+/// the derivative of one of the nine pieces is 0; each of those (moved into the depths) is a point of the cell anyway, so
+/// the smallest f among them is the squared distance.
+inline bool meets(const Slabs& slabs, const Depths& depths, const CameraBall& ball) {
+    if (depths.contains_none()) return false;
+    if (ball.all) return true;
+    if (depths.min && ball.depth + ball.radius < *depths.min) return false;
+    if (depths.max && ball.depth - ball.radius > *depths.max) return false;
+    if (slabs.x && detail::beyond_a_side(*slabs.x, ball.x, ball)) return false;
+    if (slabs.y && detail::beyond_a_side(*slabs.y, ball.y, ball)) return false;
+
+    const Rational reach = square(ball.radius);
+    const auto clamped = [&](const Rational& d) {
+        if (depths.min && d < *depths.min) return *depths.min;
+        if (depths.max && d > *depths.max) return *depths.max;
+        return d;
+    };
+    const auto within = [&](const Rational& d) {
+        Rational f = square(d - ball.depth);
+        if (f > reach) return false;
+        if (slabs.x) f += square(detail::outside(*slabs.x, ball.x, d));
+        if (f > reach) return false;
+        if (slabs.y) f += square(detail::outside(*slabs.y, ball.y, d));
+        return f <= reach;
+    };
+    if (within(clamped(ball.depth))) return true; // the piece inside both slabs
+    if (depths.min && within(*depths.min)) return true;
+    if (depths.max && within(*depths.max)) return true;
+
+    std::array<const Line*, 3> x_lines{}, y_lines{};
+    if (slabs.x) x_lines = {nullptr, &slabs.x->low, &slabs.x->high};
+    if (slabs.y) y_lines = {nullptr, &slabs.y->low, &slabs.y->high};
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) {
+            const Line *u = x_lines[i], *v = y_lines[j];
+            if ((i > 0 && !u) || (j > 0 && !v)) continue;
+            Rational top = ball.depth, bottom = 1;
+            if (u) top += u->slope * (ball.x - u->offset), bottom += square(u->slope);
+            if (v) top += v->slope * (ball.y - v->offset), bottom += square(v->slope);
+            if (within(clamped(top / bottom))) return true;
+        }
+    return false;
+}
+
+//----------------------------------------------------------------------------------------------------------------------
+
+/// A camera in rationals, and the cells of its tiles in both forms.
+class Oracle {
+public:
+    explicit Oracle(const Camera& camera) : camera_(camera), width_(camera.width), height_(camera.height) {
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row) m_[column][row] = exact(camera.m[column][row]);
+        const auto zero = [&](int column, int row) { return m_[column][row].is_zero(); };
+        // What meets() on slabs takes for granted; the other decider does not.
+        const bool axes = zero(1, 0) && zero(0, 1) && zero(0, 2) && zero(1, 2) && zero(0, 3) && zero(1, 3);
+        const bool eye = orthographic() ? m_[3][3] > 0 && zero(2, 0) && zero(2, 1) : zero(3, 3) && zero(3, 0) && zero(3, 1);
+        if (!axes || !eye) std::abort();
+
+        // A perspective w = (direction) z; an orthographic one says nothing, but NDC depth does, given reversed or not.
+        const Rational& along = orthographic() ? m_[2][2] : m_[2][3];
+        depth_sign_ = (along > 0) != (orthographic() && camera.reversed) ? 1 : -1;
+        for (const HalfSpace& plane : depth_planes()) { // a.z z + b >= 0, z = sign * depth
+            const Rational slope = depth_sign_ * plane.a.z;
+            if (slope > 0) range_.at_least(-plane.b / slope);
+            else if (slope < 0) range_.at_most(plane.b / -slope);
+            else if (plane.b < 0) range_.empty = true;
+        }
+    }
+
+    const Camera& camera() const { return camera_; }
+    bool orthographic() const { return m_[2][3].is_zero(); }
+    int tiles_x() const { return (camera_.width + camera_.tile - 1) / camera_.tile; }
+    int tiles_y() const { return (camera_.height + camera_.tile - 1) / camera_.tile; }
+    int depth_sign() const { return depth_sign_; }
+
+    /// Near and far plane as view depths; no max where the far plane is at infinity.
+    const Depths& range() const { return range_; }
+
+    /// The depths of a cell: near to far, and between two floats where given. -inf, +inf bound nothing from below, above.
+    Depths depths(std::optional<float> min = {}, std::optional<float> max = {}) const {
+        Depths depths = range_;
+        if (min && std::isinf(*min)) depths.empty |= *min > 0;
+        else if (min) depths.at_least(exact(*min));
+        if (max && std::isinf(*max)) depths.empty |= *max < 0;
+        else if (max) depths.at_most(exact(*max));
+        return depths;
+    }
+
+    /// Pixel edges of the tiles [first, last), whole tiles cut at the viewport.
+    Edges columns(int first, int last) const { return edges(first, last, camera_.width); }
+    Edges rows(int first, int last) const { return edges(first, last, camera_.height); }
+
+    /// The image-plane offset in tiles, O in  tile = K c / d + O: how far the depth axis is from pixel 0.
+    Rational offset_x() const { return offset(0, width_); }
+    Rational offset_y() const { return offset(1, height_); }
+
+    CameraBall in_camera(const Ball& ball) const {
+        return {x_sign() * ball.centre.x, y_sign() * ball.centre.y, depth_sign_ * ball.centre.z, ball.radius, ball.all};
+    }
+
+    Slab column_slab(const Edges& e) const { return {line(0, width_, e.low), line(0, width_, e.high)}; }
+    Slab row_slab(const Edges& e) const { return {line(1, height_, e.low), line(1, height_, e.high)}; }
+
+    /// The cell as half-spaces of view space, straight from the clip-space inequalities (w > 0 follows from the depths).
+    std::vector<HalfSpace> half_spaces(const Edges& columns, const Edges& rows, const Depths& depths) const {
+        std::vector<HalfSpace> cell = depth_planes();
+        const auto add = [&](int row, const Rational& clip, const Rational& w) { // clip * clip_row + w * clip_w >= 0
+            const auto mix = [&](int column) { return clip * m_[column][row] + w * m_[column][3]; };
+            cell.push_back({{mix(0), mix(1), mix(2)}, mix(3)});
+        };
+        // Window x = (ndc_x + 1) / 2 * W; window y the same, or (1 - ndc_y) / 2 * H from the upper side.
+        add(0, width_, width_ - 2 * columns.low);
+        add(0, -width_, 2 * columns.high - width_);
+        const int up = camera_.upper_left ? -1 : 1;
+        add(1, up * height_, height_ - 2 * rows.low);
+        add(1, -up * height_, 2 * rows.high - height_);
+        const Rational sign = depth_sign_;
+        if (depths.empty) cell.push_back({{}, -1});
+        if (depths.min) cell.push_back({{0, 0, sign}, -*depths.min});
+        if (depths.max) cell.push_back({{0, 0, -sign}, *depths.max});
+        return cell;
+    }
+
+    /// View depth of a window depth in 0..1; nothing: at infinity or behind it.
+    std::optional<Rational> view_depth(const Rational& window_depth) const {
+        const Rational ndc = camera_.zero_to_one ? window_depth : 2 * window_depth - 1;
+        const Rational bottom = m_[2][2] - ndc * m_[2][3], top = ndc * m_[3][3] - m_[3][2];
+        if (bottom.is_zero()) return std::nullopt;
+        const Rational depth = depth_sign_ * top / bottom;
+        if (!orthographic() && depth < 0) return std::nullopt;
+        return depth;
+    }
+
+private:
+    /// -w <= z <= w, or 0 <= z <= w, in view space.
+    std::vector<HalfSpace> depth_planes() const {
+        const auto row = [&](const Rational& z, const Rational& w) {
+            const auto mix = [&](int column) { return z * m_[column][2] + w * m_[column][3]; };
+            return HalfSpace{{mix(0), mix(1), mix(2)}, mix(3)};
+        };
+        return {row(1, camera_.zero_to_one ? 0 : 1), row(-1, 1)};
+    }
+
+    Edges edges(int first, int last, int side) const {
+        return {Rational(std::min(first * camera_.tile, side)), Rational(std::min(last * camera_.tile, side))};
+    }
+
+    int up(int row) const { return row == 1 && camera_.upper_left ? -1 : 1; }
+    int x_sign() const { return m_[0][0] > 0 ? 1 : -1; }
+    int y_sign() const { return (m_[1][1] > 0 ? 1 : -1) * up(1); }
+
+    /// Pixel edge a:  side * up * clip = (2a - side) w,  clip = m_cc * coordinate + m_2c * z + m_3c.
+    Line line(int axis, const Rational& side, const Rational& a) const {
+        const Rational scale = side * abs(m_[axis][axis]), ndc = 2 * a - side, flip = up(axis) * side;
+        return {(ndc * m_[3][3] - flip * m_[3][axis]) / scale,
+                depth_sign_ * (ndc * m_[2][3] - flip * m_[2][axis]) / scale};
+    }
+
+    Rational offset(int axis, const Rational& side) const {
+        const Rational ndc = up(axis) * (orthographic() ? Rational(m_[3][axis] / m_[3][3]) : Rational(m_[2][axis] / m_[2][3]));
+        return (ndc + 1) * side / (2 * camera_.tile);
+    }
+
+    Camera camera_;
+    Rational m_[4][4];
+    Rational width_, height_;
+    int depth_sign_ = 1;
+    Depths range_;
+};
+
+} // namespace oracle
