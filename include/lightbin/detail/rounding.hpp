@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Outward rounding from double to float. No miss (promise 1) rests on it and on IEEE comparisons with NaN.
+#pragma once
+
+#include <cfloat>
+#include <cmath>
+#include <limits>
+
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)
+#error "lightbin: -ffast-math, -ffinite-math-only and /fp:fast let the compiler drop the NaN tests and reorder the sums \
+that keep lights from being missed. Compile the files that include lightbin without them."
+#endif
+
+namespace lightbin::detail {
+
+static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<double>::is_iec559);
+
+inline constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// Returns the largest float that is not above `value`; -inf below the float range.
+inline float float_below(double value) {
+    if (value > static_cast<double>(FLT_MAX)) return value > DBL_MAX ? infinity : FLT_MAX;
+    if (value < -static_cast<double>(FLT_MAX)) return -infinity;
+    const float nearest = static_cast<float>(value);
+    return static_cast<double>(nearest) > value ? std::nextafter(nearest, -infinity) : nearest;
+}
+
+/// Returns the smallest float that is not below `value`; +inf above the float range.
+inline float float_above(double value) { return -float_below(-value); }
+
+} // namespace lightbin::detail

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// Errors a program can meet come back as values with a text; programmer errors assert.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+
+/// Called with a condition that only a bug in the calling program can make false. Define it before including lightbin
+/// to replace it; the default is the standard assert.
+#ifndef LIGHTBIN_ASSERT
+#include <cassert>
+#define LIGHTBIN_ASSERT(condition) assert(condition)
+#endif
+
+namespace lightbin {
+
+enum class ErrorCode : std::uint8_t {
+    // View::from_projection
+    matrix_not_finite,
+    not_a_projection,
+    eye_not_at_origin,
+    image_axes_rotated,
+    oblique_depth,
+    no_near_plane,
+    degenerate_scale,
+    viewport_out_of_range,
+    tile_size_out_of_range,
+    // lights
+    view_matrix_not_affine,
+    too_many_lights,
+    // light grid
+    too_many_entries,
+    tile_buffer_too_small,
+    index_buffer_too_small,
+    // Z bounds
+    z_bounds_too_small,
+    depth_buffer_too_small,
+    samples_out_of_range,
+    row_pitch_too_small,
+};
+
+/// What went wrong, and where a size was the trouble: how much is needed and how much there was.
+struct Error {
+    ErrorCode code;
+    std::uint64_t needed = 0;
+    std::uint64_t available = 0;
+
+    /// Returns one sentence for a log or a person, with the numbers in it. Allocates; meant for the error path only.
+    std::string message() const {
+        const std::string need = std::to_string(needed), have = std::to_string(available);
+        switch (code) {
+        case ErrorCode::matrix_not_finite: return "the projection matrix has a NaN or infinite entry";
+        case ErrorCode::not_a_projection:
+            return "the matrix is neither a perspective nor an orthographic projection: its w row must read z alone, "
+                   "or be a positive constant alone";
+        case ErrorCode::eye_not_at_origin:
+            return "the perspective matrix does not have its eye at the origin of view space: pass the projection alone, "
+                   "not projection times view (lights in world space go through world_space())";
+        case ErrorCode::image_axes_rotated:
+            return "the projection rotates or shears the image (its x row reads y, its y row reads x, or an orthographic "
+                   "row reads z): pass the projection without that rotation and apply it to the pixels";
+        case ErrorCode::oblique_depth:
+            return "the projection has an oblique near plane (its z row reads x or y): pass the projection without it; "
+                   "its tiles are the same and its near plane misses no light";
+        case ErrorCode::no_near_plane:
+            return "the projection has no near and far plane in front of the eye: check ViewOptions::clip_depth and the "
+                   "matrix's z row";
+        case ErrorCode::degenerate_scale:
+            return "the projection scales x or y by zero, or by more than 2^80 or less than 2^-80 tiles a unit";
+        case ErrorCode::viewport_out_of_range:
+            return "the viewport's sides must be 0 to " + have + " pixels, and one is " + signed_text(needed);
+        case ErrorCode::tile_size_out_of_range:
+            return "the tile size must be at least 1 pixel, and is " + signed_text(needed);
+        case ErrorCode::view_matrix_not_affine:
+            return "the world-to-view matrix is not affine: its entries must be finite and its last row 0 0 0 1";
+        case ErrorCode::too_many_lights:
+            return need + " lights are too many for the id type, which counts to " + have +
+                   ": use a wider Options::index or fewer lights";
+        case ErrorCode::too_many_entries:
+            return "the light index list would need " + need + " entries, and 32-bit offsets reach " + have +
+                   ": use larger tiles, or Z bounds";
+        case ErrorCode::tile_buffer_too_small:
+            return "the tile buffer holds " + have + " tiles and " + need + " are needed";
+        case ErrorCode::index_buffer_too_small:
+            return "the index buffer holds " + have + " light ids and " + need + " are needed";
+        case ErrorCode::z_bounds_too_small:
+            return "a Z bounds buffer holds " + have + " tiles and " + need + " are needed";
+        case ErrorCode::depth_buffer_too_small:
+            return "the depth buffer holds " + have + " samples and " + need + " are needed";
+        case ErrorCode::samples_out_of_range: return "a depth buffer has 1 to 8 samples a pixel, not " + signed_text(needed);
+        case ErrorCode::row_pitch_too_small:
+            return "the depth buffer's row pitch is " + have + " samples and a row of pixels has " + need;
+        }
+        return "unknown error";
+    }
+
+private:
+    static std::string signed_text(std::uint64_t value) { return std::to_string(static_cast<std::int64_t>(value)); }
+};
+
+/// A T, or the Error that kept it from being made. Test it before use; reading the side that is not there asserts.
+template <class T>
+class [[nodiscard]] Result {
+public:
+    Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
+    Result(Error error) : state_(std::in_place_index<1>, error) {}
+
+    bool has_value() const { return state_.index() == 0; }
+    explicit operator bool() const { return has_value(); }
+
+    T& operator*() { return *value(state_); }
+    const T& operator*() const { return *value(state_); }
+    T* operator->() { return value(state_); }
+    const T* operator->() const { return value(state_); }
+
+    const Error& error() const {
+        LIGHTBIN_ASSERT(!has_value());
+        return *std::get_if<1>(&state_);
+    }
+
+private:
+    template <class State>
+    static auto* value(State& state) {
+        LIGHTBIN_ASSERT(state.index() == 0);
+        return std::get_if<0>(&state);
+    }
+
+    std::variant<T, Error> state_;
+};
+
+} // namespace lightbin

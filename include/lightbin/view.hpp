@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+// Stage 1: projection matrix + viewport + tile size -> the few constants that all other stages use.
+#pragma once
+
+#include <lightbin/detail/rounding.hpp>
+#include <lightbin/result.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace lightbin {
+
+/// Range of clip-space depth. It is a setting of the graphics API and cannot be read from the matrix.
+/// Given wrongly, minus_one_to_one puts the near plane too near (safe); zero_to_one puts it too far (not safe).
+enum class ClipDepth : std::uint8_t {
+    minus_one_to_one, ///< OpenGL
+    zero_to_one,      ///< Direct3D, Vulkan, Metal, WebGPU, OpenGL with glClipControl
+};
+
+/// The corner of the window that holds pixel (0, 0) and tile (0, 0), NDC y = -1 being the lower side.
+/// Vulkan calls its NDC y = -1 the upper side: what is upper left there is lower_left here.
+enum class WindowOrigin : std::uint8_t {
+    lower_left, ///< OpenGL, Vulkan
+    upper_left, ///< Direct3D, Metal, WebGPU
+};
+
+/// Width and height in pixels.
+struct Extent {
+    int width = 0;
+    int height = 0;
+};
+
+struct ViewOptions {
+    int tile_size = 32; ///< side of a tile in pixels, 1 or more
+    ClipDepth clip_depth = ClipDepth::minus_one_to_one;
+    WindowOrigin origin = WindowOrigin::lower_left;
+    bool reversed_z = false; ///< near has the larger depth. Read for orthographic matrices only: a perspective one tells
+};
+
+/// View depths from min to max, both included.
+struct DepthInterval {
+    float min, max;
+};
+
+namespace detail {
+
+/// One image axis of a camera, oriented so that the tile index grows with the coordinate. A point with coordinate c
+/// (after the sign) and view depth d lands at  scale * (c / d) + offset  tiles (perspective)  or  scale * c + offset
+/// (orthographic). Off-centre, jittered, reversed, flipped cameras differ in these numbers only.
+struct ImageAxis {
+    double scale = 0; ///< > 0
+    double offset = 0;
+    float sign = 1;      ///< of the view-space coordinate
+    float scale_f = 0;   ///< scale, offset rounded to nearest
+    float offset_f = 0;
+    float margin = 0;    ///< bound on the rounding error of a float tile coordinate inside the viewport, in tiles
+    float limit = 0;     ///< the viewport's far edge in tiles, rounded up
+    int tiles = 0;
+};
+
+/// Everything the projection stage needs to know of a view.
+struct Camera {
+    ImageAxis x, y;
+    float z_sign = 1;        ///< view depth = z_sign * z
+    float near_depth = 0;    ///< rounded down
+    float far_depth = 0;     ///< rounded up, may be +inf
+    bool orthographic = false;
+};
+
+} // namespace detail
+
+/// A projection, a viewport and a tile size: what fixes the tile grid.
+///
+/// Tile (tx, ty) has index ty * tiles_x() + tx and covers the pixels [tx * t, (tx + 1) * t) x [ty * t, (ty + 1) * t), cut
+/// off at the viewport's edge. View depth is the distance from the eye (orthographic: from the plane z = 0) along the
+/// viewing direction, in the units of view space.
+class View {
+public:
+    static constexpr int max_side = 32768;
+
+    /// Returns the view of a projection matrix, or an Error that names why the matrix or a size is refused.
+    ///
+    /// projection  maps view space to clip space, columns first: projection[column][row] in float or double (a glm::mat4
+    ///             as it is). Perspective: symmetric or not, jittered, finite or infinite far, standard or reversed Z,
+    ///             looking down -z or +z, x or y flipped. Orthographic: centred or not.
+    /// viewport    0 to max_side pixels a side. An empty one has no tiles.
+    template <class Matrix>
+    static Result<View> from_projection(const Matrix& projection, Extent viewport, const ViewOptions& options = {}) {
+        double m[4][4];
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row)
+                m[column][row] = static_cast<double>(projection[column][row]);
+        return from_rows(m, viewport, options);
+    }
+
+    Extent viewport() const { return viewport_; }
+    int tile_size() const { return tile_size_; }
+    int tiles_x() const { return camera_.x.tiles; }
+    int tiles_y() const { return camera_.y.tiles; }
+    std::size_t tile_count() const { return static_cast<std::size_t>(tiles_x()) * static_cast<std::size_t>(tiles_y()); }
+    WindowOrigin origin() const { return origin_; }
+    bool orthographic() const { return camera_.orthographic; }
+    bool reversed_z() const { return reversed_; }
+
+    /// View depth of the near plane, rounded down, and of the far plane, rounded up (+inf where there is none).
+    float near_depth() const { return camera_.near_depth; }
+    float far_depth() const { return camera_.far_depth; }
+
+    /// Smallest and largest view depth of any point whose window depth lies in [lower, upper], both in 0..1, rounded
+    /// outward. Window depth is what a depth buffer holds: 0 and 1 are the two ends of the clip-depth range.
+    DepthInterval view_depths(double lower, double upper) const {
+        const double nearer = reversed_ ? upper : lower, farther = reversed_ ? lower : upper;
+        return {detail::float_below(depth_at(ndc(nearer), -1)), detail::float_above(depth_at(ndc(farther), +1))};
+    }
+
+    /// The constants in the form the projection stage reads.
+    const detail::Camera& camera() const { return camera_; }
+
+private:
+    static bool finite(const double (&m)[4][4]) {
+        for (const auto& column : m)
+            for (const double entry : column)
+                if (!std::isfinite(entry)) return false;
+        return true;
+    }
+
+    static Result<View> from_rows(const double (&m)[4][4], Extent viewport, const ViewOptions& options) {
+        const auto error = [](ErrorCode code, int value = 0, int available = 0) {
+            return Error{code, static_cast<std::uint64_t>(value), static_cast<std::uint64_t>(available)};
+        };
+        for (const int side : {viewport.width, viewport.height})
+            if (side < 0 || side > max_side) return error(ErrorCode::viewport_out_of_range, side, max_side);
+        if (options.tile_size < 1) return error(ErrorCode::tile_size_out_of_range, options.tile_size);
+        if (!finite(m)) return error(ErrorCode::matrix_not_finite);
+
+        const double w_x = m[0][3], w_y = m[1][3], w_z = m[2][3], w_1 = m[3][3];
+        const bool perspective = w_x == 0 && w_y == 0 && w_z != 0 && w_1 == 0;
+        const bool orthographic = w_x == 0 && w_y == 0 && w_z == 0 && w_1 > 0;
+        if (w_x == 0 && w_y == 0 && w_z != 0 && w_1 != 0) return error(ErrorCode::eye_not_at_origin);
+        if (!perspective && !orthographic) return error(ErrorCode::not_a_projection);
+        if (perspective && (m[3][0] != 0 || m[3][1] != 0)) return error(ErrorCode::eye_not_at_origin);
+        if (m[1][0] != 0 || m[0][1] != 0) return error(ErrorCode::image_axes_rotated);
+        if (orthographic && (m[2][0] != 0 || m[2][1] != 0)) return error(ErrorCode::image_axes_rotated);
+        if (m[0][2] != 0 || m[1][2] != 0) return error(ErrorCode::oblique_depth);
+
+        View view;
+        view.viewport_ = viewport;
+        view.tile_size_ = options.tile_size;
+        view.origin_ = options.origin;
+        view.clip_depth_ = options.clip_depth;
+        view.camera_.orthographic = orthographic;
+
+        // Visible points have w > 0, so the sign of w_z is the viewing direction. An orthographic w has no direction:
+        // there depth grows with NDC depth, or against it when Z is reversed.
+        const double w = orthographic ? w_1 : std::fabs(w_z);
+        const bool forward = orthographic ? (m[2][2] > 0) != options.reversed_z : w_z > 0;
+        view.camera_.z_sign = forward ? 1.0f : -1.0f;
+        const double flip_z = forward ? 1.0 : -1.0;
+        const double offset_x = orthographic ? m[3][0] : flip_z * m[2][0];
+        const double offset_y = orthographic ? m[3][1] : flip_z * m[2][1];
+        const double up = options.origin == WindowOrigin::lower_left ? 1.0 : -1.0;
+        if (!view.set_axis(view.camera_.x, m[0][0], offset_x, w, viewport.width) ||
+            !view.set_axis(view.camera_.y, up * m[1][1], up * offset_y, w, viewport.height))
+            return error(ErrorCode::degenerate_scale);
+
+        view.z_scale_ = flip_z * m[2][2];
+        view.z_offset_ = m[3][2];
+        view.w_scale_ = orthographic ? 0 : w;
+        view.w_offset_ = orthographic ? w : 0;
+        view.reversed_ = orthographic ? options.reversed_z : view.z_offset_ > 0;
+        if (!view.set_depth_range()) return error(ErrorCode::no_near_plane);
+        return view;
+    }
+
+    /// ndc = (p / w) * c + q / w; pixels 0..side are ndc -1..1.
+    bool set_axis(detail::ImageAxis& axis, double p, double q, double w, int side) const {
+        const double tiles_per_ndc = static_cast<double>(side) / (2.0 * tile_size_);
+        axis.tiles = side / tile_size_ + (side % tile_size_ != 0 ? 1 : 0);
+        axis.sign = p < 0 ? -1.0f : 1.0f;
+        axis.scale = std::fabs(p) / w * tiles_per_ndc;
+        axis.offset = (q / w + 1.0) * tiles_per_ndc;
+        axis.scale_f = static_cast<float>(axis.scale);
+        axis.offset_f = static_cast<float>(axis.offset);
+        axis.limit = detail::float_above(static_cast<double>(side) / tile_size_);
+        // A float slope is within 9u of the truth (u = 2^-24, see project.hpp), times scale_f 11u, plus u of offset_f and u
+        // of the sum; inside the viewport |scale * slope| <= |offset| + tiles. 16u leaves room for the double steps
+        // above and for adding the margin itself; 2^-80 a scale is for a caller who flushes denormal numbers to zero.
+        axis.margin = detail::float_above(0x1p-20 * (std::fabs(axis.offset) + axis.tiles) + 0x1p-80 * axis.scale);
+        if (side == 0) {
+            axis.limit = -1; // nothing is inside
+            return p != 0;
+        }
+        return axis.scale >= 0x1p-80 && axis.scale <= 0x1p80 && std::fabs(axis.offset) <= 0x1p80;
+    }
+
+    bool set_depth_range() {
+        const DepthInterval range = view_depths(0, 1);
+        camera_.near_depth = range.min;
+        camera_.far_depth = range.max;
+        if (!(range.min < range.max)) return false;
+        if (camera_.orthographic) return std::isfinite(range.min) && std::isfinite(range.max);
+        return z_offset_ != 0 && range.min >= FLT_MIN;
+    }
+
+    double ndc(double window_depth) const {
+        return clip_depth_ == ClipDepth::zero_to_one ? window_depth : 2 * window_depth - 1;
+    }
+
+    /// View depth d at which (z_scale d + z_offset) / (w_scale d + w_offset) = v, moved outward (-1 down, +1 up) by the
+    /// rounding of its own few steps. +inf where a perspective plane v is never reached.
+    double depth_at(double v, int direction) const {
+        double top = v * w_offset_ - z_offset_;
+        double bottom = z_scale_ - v * w_scale_;
+        const double top_error = 0x1p-51 * (std::fabs(v * w_offset_) + std::fabs(z_offset_));
+        const double bottom_error = 0x1p-51 * (std::fabs(z_scale_) + std::fabs(v * w_scale_));
+        if (reversed_) {
+            top = -top;
+            bottom = -bottom;
+        }
+        const double outward = direction;
+        top += outward * top_error;
+        bottom -= (top < 0 ? -outward : outward) * bottom_error;
+        if (!(bottom > 0)) return static_cast<double>(detail::infinity);
+        return top / bottom * (1.0 + (top < 0 ? -outward : outward) * 0x1p-51);
+    }
+
+    detail::Camera camera_;
+    Extent viewport_;
+    int tile_size_ = 1;
+    WindowOrigin origin_ = WindowOrigin::lower_left;
+    ClipDepth clip_depth_ = ClipDepth::minus_one_to_one;
+    bool reversed_ = false;
+    double z_scale_ = 0, z_offset_ = 0, w_scale_ = 0, w_offset_ = 0;
+};
+
+} // namespace lightbin
