@@ -24,15 +24,15 @@ namespace lightbin {
 
 /// What keeps a light out of a tile beside its rectangle.
 enum class DepthTest : std::uint8_t {
-    none,     ///< nothing: no Z bounds are needed
-    interval, ///< its depths z - r to z + r must meet the tile's Z bounds (Tiled Shading, section 3)
+    none,      ///< nothing: no Z bounds are needed
+    interval,  ///< its depths z - r to z + r must meet the tile's Z bounds (Tiled Shading, section 3)
 };
 
 /// What a Binner does, fixed at compile time: what is off leaves no code.
 struct Options {
     Index index = Index::u32;
     DepthTest depth_test = DepthTest::none;
-    bool statistics = false; ///< keep Statistics; costs a pass over the tiles
+    bool statistics = false;  ///< keep Statistics; costs a pass over the tiles
 };
 
 /// Number of elements that Binner::emit writes.
@@ -40,27 +40,25 @@ struct GridSize {
     std::size_t tiles, indices;
 };
 
-/// The two grids of Tiled Forward Shading, Listing 4.2: `opaque` is pruned by minimum and maximum depth; `transparent` by the
-/// maximum alone, as transparent geometry may lie anywhere in front of the opaque.
-template <class Id>
-struct TransparencyGrids {
-    LightGrid<Id> opaque, transparent;
-};
+/// The two grids of Tiled Forward Shading, Listing 4.2: `opaque` is pruned by minimum and maximum depth;
+/// `transparent` by the maximum alone, as transparent geometry may lie anywhere in front of the opaque.
+template <class Id> struct TransparencyGrids { LightGrid<Id> opaque, transparent; };
 
-/// What the last grid came from and looks like. lights = rejected + culled + those in at least one tile's rectangle.
+/// What the last grid came from and looks like. lights = rejected + culled + those in at least one tile's
+/// rectangle.
 struct Statistics {
     std::uint64_t lights = 0;
-    std::uint64_t rejected = 0; ///< bad input, see Sphere
-    std::uint64_t culled = 0;   ///< out of the view
-    std::uint64_t entries = 0;  ///< length of the light index list
+    std::uint64_t rejected = 0;  ///< bad input, see Sphere
+    std::uint64_t culled = 0;    ///< out of the view
+    std::uint64_t entries = 0;   ///< length of the light index list
     std::uint32_t longest_list = 0;
     /// [0]: tiles without lights; [k]: tiles with 2^(k-1) to 2^k - 1 lights.
     std::array<std::uint64_t, 33> histogram = {};
 };
 
-/// Bins lights into screen tiles. Allocates only when the input outgrows every earlier one. Not thread-safe: one Binner a thread.
-template <Options options = Options{}>
-class Binner {
+/// Bins lights into screen tiles. Allocates only when the input outgrows every earlier one. Not thread-safe:
+/// one Binner a thread.
+template <Options options = Options{}> class Binner {
     static constexpr bool with_depth = options.depth_test != DepthTest::none;
 
 public:
@@ -68,40 +66,41 @@ public:
 
     /// Returns the light grid of `lights` in `view`, in the Binner's memory: valid until its next call.
     ///
-    /// lights  a contiguous range of vec4 (x, y, z, radius) or Sphere in view space, or view_space(...) or world_space(...)
+    /// lights  a contiguous range of vec4 (x, y, z, radius) or Sphere in view space, or view_space(...) or
+    /// world_space(...)
     ///
-    /// After it, every tile lists every light whose sphere meets the tile's cell (no miss), in ascending order. Errors: more
-    /// lights than Id can number; more than 2^32 - 1 entries; a world_space() matrix that is not affine.
+    /// After it, every tile lists every light whose sphere meets the tile's cell (no miss), in ascending
+    /// order. Errors: more lights than Id can number; more than 2^32 - 1 entries; a world_space() matrix that
+    /// is not affine.
     template <class LightRange>
-        requires(!with_depth)
-    Result<LightGrid<Id>> bin(const View& view, const LightRange& lights) {
+    requires(!with_depth) Result<LightGrid<Id>> bin(const View& view, const LightRange& lights) {
         return bin_owned(view, lights, {});
     }
 
-    /// The same with Z bounds, minimum, maximum or both; also an error: a side is shorter than view.tile_count().
+    /// The same with Z bounds, minimum, maximum or both; also an error: a side is shorter than
+    /// view.tile_count().
     template <class LightRange>
-        requires(with_depth)
-    Result<LightGrid<Id>> bin(const View& view, const LightRange& lights, const ZBounds& bounds) {
+    requires(with_depth) Result<LightGrid<Id>> bin(const View& view, const LightRange& lights,
+                                                   const ZBounds& bounds) {
         return bin_owned(view, lights, bounds);
     }
 
     /// Returns the sizes of the light grid, ready for emit(). Errors as bin().
     template <class LightRange>
-        requires(!with_depth)
-    Result<GridSize> count(const View& view, const LightRange& lights) {
+    requires(!with_depth) Result<GridSize> count(const View& view, const LightRange& lights) {
         return count_all(view, lights, {});
     }
 
     /// The same with Z bounds, which must live until emit().
     template <class LightRange>
-        requires(with_depth)
-    Result<GridSize> count(const View& view, const LightRange& lights, const ZBounds& bounds) {
+    requires(with_depth) Result<GridSize> count(const View& view, const LightRange& lights,
+                                                const ZBounds& bounds) {
         return count_all(view, lights, bounds);
     }
 
-    /// Writes the grid that count() sized to the caller's memory, once after each count(). Only writes there, so it may be a
-    /// mapped GPU buffer. Error: a buffer is smaller than GridSize says; then nothing is written, and emit() may be
-    /// called again.
+    /// Writes the grid that count() sized to the caller's memory, once after each count(). Only writes there,
+    /// so it may be a mapped GPU buffer. Error: a buffer is smaller than GridSize says; then nothing is
+    /// written, and emit() may be called again.
     Result<LightGrid<Id>> emit(std::span<Tile> tiles, std::span<Id> indices) {
         LIGHTBIN_ASSERT(counted_);
         auto grid = buckets_.emit(footprints_, tiles, indices);
@@ -109,11 +108,12 @@ public:
         return grid;
     }
 
-    /// Returns both grids of a scene with transparent geometry from one projection, valid until the Binner's next call.
-    /// bounds  of the opaque geometry. Errors as bin(). Statistics are those of the opaque grid.
+    /// Returns both grids of a scene with transparent geometry from one projection, valid until the Binner's
+    /// next call. bounds  of the opaque geometry. Errors as bin(). Statistics are those of the opaque grid.
     template <class LightRange>
-        requires(with_depth)
-    Result<TransparencyGrids<Id>> bin_transparency(const View& view, const LightRange& lights, const ZBounds& bounds) {
+    requires(with_depth) Result<TransparencyGrids<Id>> bin_transparency(const View& view,
+                                                                        const LightRange& lights,
+                                                                        const ZBounds& bounds) {
         if (const auto error = project(view, lights)) return *error;
         const auto transparent = emit_owned(view, {.min = {}, .max = bounds.max}, transparent_);
         if (!transparent) return transparent.error();
@@ -123,11 +123,7 @@ public:
     }
 
     /// Statistics of the last bin(), count() or bin_transparency() that succeeded.
-    const Statistics& statistics() const
-        requires(options.statistics)
-    {
-        return statistics_;
-    }
+    const Statistics& statistics() const requires(options.statistics) { return statistics_; }
 
 private:
     struct Lists {
@@ -148,12 +144,12 @@ private:
         return count_footprints(view, bounds);
     }
 
-    template <class LightRange>
-    std::optional<Error> project(const View& view, const LightRange& lights) {
+    template <class LightRange> std::optional<Error> project(const View& view, const LightRange& lights) {
         counted_ = false;
         const auto& source = detail::as_lights(lights);
         if (!source.valid) return Error{ErrorCode::view_matrix_not_affine};
-        const std::uint64_t count = source.array.size(), most = options.index == Index::u16 ? 0x10000 : 0xffffffff;
+        const std::uint64_t count = source.array.size(),
+                            most = options.index == Index::u16 ? 0x10000 : 0xffffffff;
         if (count > most) return Error{ErrorCode::too_many_lights, count, most};
         footprints_.project(detail::kernels<Id, with_depth>().project, view, source);
         return std::nullopt;
@@ -192,7 +188,7 @@ private:
     Lists lists_;
     std::conditional_t<with_depth, Lists, Nothing> transparent_;
     std::conditional_t<options.statistics, Statistics, Nothing> statistics_;
-    bool counted_ = false; ///< emit() has something to write
+    bool counted_ = false;  ///< emit() has something to write
 };
 
-} // namespace lightbin
+}  // namespace lightbin

@@ -12,7 +12,7 @@ namespace lightbin {
 
 /// Type of a light id.
 enum class Index : std::uint8_t {
-    u16, ///< up to 65,536 lights, half the memory
+    u16,  ///< up to 65,536 lights, half the memory
     u32,
 };
 
@@ -22,10 +22,10 @@ struct Tile {
 };
 
 /// A finished light grid. It does not own its memory: see the call that returned it for how long that lives.
-template <class Id>
-class LightGrid {
+template <class Id> class LightGrid {
 public:
-    LightGrid(int tiles_x, int tiles_y, std::span<const Tile> tiles, std::span<const Id> indices, std::uint32_t rejected)
+    LightGrid(int tiles_x, int tiles_y, std::span<const Tile> tiles, std::span<const Id> indices,
+              std::uint32_t rejected)
         : tiles_(tiles), indices_(indices), tiles_x_(tiles_x), tiles_y_(tiles_y), rejected_(rejected) {}
 
     int tiles_x() const { return tiles_x_; }
@@ -40,7 +40,8 @@ public:
     /// Returns the ids of the lights of tile (x, y), 0 <= x < tiles_x(), 0 <= y < tiles_y().
     std::span<const Id> lights_in(int x, int y) const {
         LIGHTBIN_ASSERT(x >= 0 && x < tiles_x_ && y >= 0 && y < tiles_y_);
-        const Tile tile = tiles_[static_cast<std::size_t>(y) * static_cast<std::size_t>(tiles_x_) + static_cast<std::size_t>(x)];
+        const Tile tile = tiles_[static_cast<std::size_t>(y) * static_cast<std::size_t>(tiles_x_) +
+                                 static_cast<std::size_t>(x)];
         return indices_.subspan(tile.offset, tile.count);
     }
 
@@ -54,4 +55,4 @@ private:
     std::uint32_t rejected_;
 };
 
-} // namespace lightbin
+}  // namespace lightbin

@@ -2,15 +2,18 @@
 //
 // lightbin: lights a scene with thousands of lights. Header-only C++20, standard library only.
 //
-// What it does. From a projection matrix and N light spheres it makes, for each screen tile, the list of lights that can touch what
-// the tile shows: {offset, count} a tile and one light index list, two flat buffers that a forward, deferred or compute pass
-// reads. It misses no light, whatever the camera or the numbers, and drops nothing in silence.
+// What it does. From a projection matrix and N light spheres it makes, for each screen tile, the list of
+// lights that can touch what the tile shows: {offset, count} a tile and one light index list, two flat
+// buffers that a forward, deferred or compute pass reads. It misses no light, whatever the camera or the
+// numbers, and drops nothing in silence.
 //
-// What it does not do. No lighting model, no shadows, no GPU calls, no threads, no file formats: it fills memory and makes text.
+// What it does not do. No lighting model, no shadows, no GPU calls, no threads, no file formats: it fills
+// memory and makes text.
 //
 // Step by step
 //   1. View::from_projection(projection, {width, height}, {.tile_size = 32, ...})              view.hpp
-//        Once a camera change. Any perspective or orthographic matrix; a Result, as a matrix may be refused by name.
+//        Once a camera change. Any perspective or orthographic matrix; a Result, as a matrix may be refused
+//        by name.
 //   2. Optionally reduce_depth(view, {.depth = pixels}, min, max), or Z bounds of your own     z_bounds.hpp
 //   3. Binner<Options{...}> binner; once. Then each frame  binner.bin(view, lights[, bounds])  binner.hpp
 //        lights: vec4 array or Sphere array in view space, or view_space(yours, to_sphere),
@@ -19,8 +22,8 @@
 //   4. Upload grid->tiles() and grid->indices().                                               light_grid.hpp
 //   5. Put shader_snippet({...}) in your shader and set its uniform to shader_grid(view).      shader.hpp
 //
-// Sources: Olsson and Assarsson, "Tiled Shading", JGT 15(4), 2011. Billeter, Olsson and Assarsson, "Tiled Forward Shading", GPU Pro 4,
-// 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.
+// Sources: Olsson and Assarsson, "Tiled Shading", JGT 15(4), 2011. Billeter, Olsson and Assarsson, "Tiled
+// Forward Shading", GPU Pro 4, 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.
 #pragma once
 
 #include <lightbin/binner.hpp>

@@ -19,22 +19,24 @@ namespace lightbin {
 
 /// A light's sphere of influence: centre and radius (the papers' range).
 ///
-/// Radius 0 is a point; radius +inf covers everything. A light with a NaN or infinite centre, or a NaN or negative radius, is
-/// bad input: it is skipped and counted, and the others are right.
+/// Radius 0 is a point; radius +inf covers everything. A light with a NaN or infinite centre, or a NaN or
+/// negative radius, is bad input: it is skipped and counted, and the others are right.
 struct Sphere {
     float x, y, z, radius;
 };
 
-/// Returns the distance at which a point light of `intensity` candela (lumen per steradian) has fallen to `cutoff` lux
-/// (lumen per square metre, on a surface that faces it), rounded up: sqrt(intensity / cutoff), in metres. What a light gives
-/// beyond its range is lost, so the cutoff is the largest error that one light's missing tail can make.
+/// Returns the distance at which a point light of `intensity` candela (lumen per steradian) has fallen to
+/// `cutoff` lux (lumen per square metre, on a surface that faces it), rounded up: sqrt(intensity / cutoff),
+/// in metres. What a light gives beyond its range is lost, so the cutoff is the largest error that one
+/// light's missing tail can make.
 ///
 /// intensity  0 or less gives range 0, NaN gives NaN
 /// cutoff     0 or less gives an infinite range
 inline float light_range(float intensity, float cutoff) {
     if (intensity <= 0) return 0;
     if (cutoff <= 0) return detail::infinity;
-    return detail::float_above(std::sqrt(static_cast<double>(intensity) / static_cast<double>(cutoff)) * (1 + 0x1p-50));
+    return detail::float_above(std::sqrt(static_cast<double>(intensity) / static_cast<double>(cutoff)) *
+                               (1 + 0x1p-50));
 }
 
 /// How a light becomes a Sphere by default: its x, y, z and w (a vec4), or x, y, z and radius.
@@ -42,22 +44,19 @@ struct AsSphere {
     constexpr Sphere operator()(const Sphere& light) const { return light; }
 
     template <class Vec4>
-        requires requires(const Vec4& v) {
-            { v.w } -> std::convertible_to<float>;
-        }
-    constexpr Sphere operator()(const Vec4& v) const {
-        return {v.x, v.y, v.z, v.w};
+    requires requires(const Vec4& v) {
+        { v.w } -> std::convertible_to<float>;
     }
+    constexpr Sphere operator()(const Vec4& v) const { return {v.x, v.y, v.z, v.w}; }
 };
 
 namespace detail {
 
-/// World to view space. The moved sphere holds the exact image of the given one: its radius takes in the matrix's largest
-/// stretch and the rounding of the moved centre.
+/// World to view space. The moved sphere holds the exact image of the given one: its radius takes in the
+/// matrix's largest stretch and the rounding of the moved centre.
 class WorldToView {
 public:
-    template <class Matrix>
-    explicit WorldToView(const Matrix& matrix) {
+    template <class Matrix> explicit WorldToView(const Matrix& matrix) {
         for (int column = 0; column < 4; ++column) {
             for (int row = 0; row < 3; ++row) {
                 m_[column][row] = static_cast<double>(matrix[column][row]);
@@ -79,8 +78,9 @@ public:
     bool affine() const { return affine_; }
 
     Sphere operator()(const Sphere& light) const {
-        if (!std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) || !(light.radius >= 0))
-            return light; // bad input stays bad
+        if (!std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) ||
+            !(light.radius >= 0))
+            return light;  // bad input stays bad
         const double x = light.x, y = light.y, z = light.z;
         double centre[3], error = 0;
         for (int row = 0; row < 3; ++row) {
@@ -88,9 +88,11 @@ public:
             centre[row] = a + b + c + d;
             if (std::fabs(centre[row]) > static_cast<double>(FLT_MAX)) return {0, 0, 0, infinity};
             // 2^-24 to round the centre to float, 2^-50 for the sum in double
-            error += 0x1p-24 * std::fabs(centre[row]) + 0x1p-50 * (std::fabs(a) + std::fabs(b) + std::fabs(c) + std::fabs(d));
+            error += 0x1p-24 * std::fabs(centre[row]) +
+                     0x1p-50 * (std::fabs(a) + std::fabs(b) + std::fabs(c) + std::fabs(d));
         }
-        const double radius = (static_cast<double>(light.radius) * stretch_ + error) * (1 + 0x1p-23) + static_cast<double>(FLT_MIN);
+        const double radius = (static_cast<double>(light.radius) * stretch_ + error) * (1 + 0x1p-23) +
+                              static_cast<double>(FLT_MIN);
         return {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2]),
                 radius > static_cast<double>(FLT_MAX) ? infinity : static_cast<float>(radius)};
     }
@@ -101,30 +103,35 @@ private:
     bool affine_ = true;
 };
 
-} // namespace detail
+}  // namespace detail
 
-/// Lights made by view_space() or world_space(): a view of the caller's array, and how an element becomes a view-space sphere.
-template <class Light, class ToViewSphere>
-struct Lights {
+/// Lights made by view_space() or world_space(): a view of the caller's array, and how an element becomes a
+/// view-space sphere.
+template <class Light, class ToViewSphere> struct Lights {
     std::span<const Light> array;
     ToViewSphere to_view_sphere;
-    bool valid = true; ///< false: the view matrix is not affine
+    bool valid = true;  ///< false: the view matrix is not affine
 };
 
 /// Returns lights in view space (the space that the projection matrix takes).
-/// to_sphere  any callable that makes a Sphere of an element. The array is read in place and must live through the call.
+/// to_sphere  any callable that makes a Sphere of an element. The array is read in place and must live
+/// through the call.
 template <std::ranges::contiguous_range Range, class ToSphere = AsSphere>
 auto view_space(const Range& lights, ToSphere to_sphere = {}) {
     using Light = std::ranges::range_value_t<const Range>;
-    return Lights<Light, ToSphere>{std::span<const Light>(std::ranges::data(lights), std::ranges::size(lights)), to_sphere};
+    return Lights<Light, ToSphere>{
+        std::span<const Light>(std::ranges::data(lights), std::ranges::size(lights)), to_sphere};
 }
 
-/// Returns lights in world space, moved by `view_matrix` (view_matrix[column][row], affine: rotation, translation, scale) as
-/// they are read. The rounding of the move is in the spheres: no light is missed by it.
+/// Returns lights in world space, moved by `view_matrix` (view_matrix[column][row], affine: rotation,
+/// translation, scale) as they are read. The rounding of the move is in the spheres: no light is missed by
+/// it.
 template <std::ranges::contiguous_range Range, class Matrix, class ToSphere = AsSphere>
 auto world_space(const Range& lights, const Matrix& view_matrix, ToSphere to_sphere = {}) {
     const detail::WorldToView to_view(view_matrix);
-    auto to_view_sphere = [to_view, to_sphere](const auto& light) { return to_view(std::invoke(to_sphere, light)); };
+    auto to_view_sphere = [to_view, to_sphere](const auto& light) {
+        return to_view(std::invoke(to_sphere, light));
+    };
     auto result = view_space(lights, to_view_sphere);
     result.valid = to_view.affine();
     return result;
@@ -133,8 +140,7 @@ auto world_space(const Range& lights, const Matrix& view_matrix, ToSphere to_sph
 namespace detail {
 
 /// Lights passed as a plain range are view-space vec4s or Spheres.
-template <class Range>
-auto as_lights(const Range& lights) {
+template <class Range> auto as_lights(const Range& lights) {
     return view_space(lights);
 }
 template <class Light, class ToViewSphere>
@@ -142,7 +148,8 @@ const Lights<Light, ToViewSphere>& as_lights(const Lights<Light, ToViewSphere>& 
     return lights;
 }
 
-/// Calls consume(spheres, count, first_id) for the lights in order, a block at a time, so that kernels can be plain functions.
+/// Calls consume(spheres, count, first_id) for the lights in order, a block at a time, so that kernels can be
+/// plain functions.
 template <class Light, class ToViewSphere, class Consume>
 void for_each_block(const Lights<Light, ToViewSphere>& lights, Consume consume) {
     std::array<Sphere, 64> block;
@@ -154,5 +161,5 @@ void for_each_block(const Lights<Light, ToViewSphere>& lights, Consume consume) 
     }
 }
 
-} // namespace detail
-} // namespace lightbin
+}  // namespace detail
+}  // namespace lightbin

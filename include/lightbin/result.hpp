@@ -7,8 +7,8 @@
 #include <utility>
 #include <variant>
 
-/// Called with a condition that only a bug in the calling program can make false. Define it before including lightbin
-/// to replace it; the default is the standard assert.
+/// Called with a condition that only a bug in the calling program can make false. Define it before including
+/// lightbin to replace it; the default is the standard assert.
 #ifndef LIGHTBIN_ASSERT
 #include <cassert>
 #define LIGHTBIN_ASSERT(condition) assert(condition)
@@ -47,34 +47,43 @@ struct Error {
     std::uint64_t needed = 0;
     std::uint64_t available = 0;
 
-    /// Returns one sentence for a log or a person, with the numbers in it. Allocates; meant for the error path only.
+    /// Returns one sentence for a log or a person, with the numbers in it. Allocates; meant for the error
+    /// path only.
     std::string message() const {
         const std::string need = std::to_string(needed), have = std::to_string(available);
         switch (code) {
-        case ErrorCode::matrix_not_finite: return "the projection matrix has a NaN or infinite entry";
+        case ErrorCode::matrix_not_finite:
+            return "the projection matrix has a NaN or infinite entry";
         case ErrorCode::not_a_projection:
-            return "the matrix is neither a perspective nor an orthographic projection: its w row must read z alone, "
+            return "the matrix is neither a perspective nor an orthographic projection: its w row must read "
+                   "z alone, "
                    "or be a positive constant alone";
         case ErrorCode::eye_not_at_origin:
-            return "the perspective matrix does not have its eye at the origin of view space: pass the projection alone, "
+            return "the perspective matrix does not have its eye at the origin of view space: pass the "
+                   "projection alone, "
                    "not projection times view (lights in world space go through world_space())";
         case ErrorCode::image_axes_rotated:
-            return "the projection rotates or shears the image (its x row reads y, its y row reads x, or an orthographic "
+            return "the projection rotates or shears the image (its x row reads y, its y row reads x, or an "
+                   "orthographic "
                    "row reads z): pass the projection without that rotation and apply it to the pixels";
         case ErrorCode::oblique_depth:
-            return "the projection has an oblique near plane (its z row reads x or y): pass the projection without it; "
+            return "the projection has an oblique near plane (its z row reads x or y): pass the projection "
+                   "without it; "
                    "its tiles are the same and its near plane misses no light";
         case ErrorCode::no_near_plane:
-            return "the projection has no near and far plane in front of the eye: check ViewOptions::clip_depth and the "
+            return "the projection has no near and far plane in front of the eye: check "
+                   "ViewOptions::clip_depth and the "
                    "matrix's z row";
         case ErrorCode::degenerate_scale:
-            return "the projection scales x or y by zero, or by more than 2^80 or less than 2^-80 tiles a unit";
+            return "the projection scales x or y by zero, or by more than 2^80 or less than 2^-80 tiles a "
+                   "unit";
         case ErrorCode::viewport_out_of_range:
             return "the viewport's sides must be 0 to " + have + " pixels, and one is " + signed_text(needed);
         case ErrorCode::tile_size_out_of_range:
             return "the tile size must be at least 1 pixel, and is " + signed_text(needed);
         case ErrorCode::view_matrix_not_affine:
-            return "the world-to-view matrix is not affine: its entries must be finite and its last row 0 0 0 1";
+            return "the world-to-view matrix is not affine: its entries must be finite and its last row 0 0 "
+                   "0 1";
         case ErrorCode::too_many_lights:
             return need + " lights are too many for the id type, which counts to " + have +
                    ": use a wider Options::index or fewer lights";
@@ -89,7 +98,8 @@ struct Error {
             return "a Z bounds buffer holds " + have + " tiles and " + need + " are needed";
         case ErrorCode::depth_buffer_too_small:
             return "the depth buffer holds " + have + " samples and " + need + " are needed";
-        case ErrorCode::samples_out_of_range: return "a depth buffer has 1 to 8 samples a pixel, not " + signed_text(needed);
+        case ErrorCode::samples_out_of_range:
+            return "a depth buffer has 1 to 8 samples a pixel, not " + signed_text(needed);
         case ErrorCode::row_pitch_too_small:
             return "the depth buffer's row pitch is " + have + " samples and a row of pixels has " + need;
         }
@@ -97,12 +107,14 @@ struct Error {
     }
 
 private:
-    static std::string signed_text(std::uint64_t value) { return std::to_string(static_cast<std::int64_t>(value)); }
+    static std::string signed_text(std::uint64_t value) {
+        return std::to_string(static_cast<std::int64_t>(value));
+    }
 };
 
-/// A T, or the Error that kept it from being made. Test it before use; reading the side that is not there asserts.
-template <class T>
-class [[nodiscard]] Result {
+/// A T, or the Error that kept it from being made. Test it before use; reading the side that is not there
+/// asserts.
+template <class T> class [[nodiscard]] Result {
 public:
     Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
     Result(Error error) : state_(std::in_place_index<1>, error) {}
@@ -121,8 +133,7 @@ public:
     }
 
 private:
-    template <class State>
-    static auto* value(State& state) {
+    template <class State> static auto* value(State& state) {
         LIGHTBIN_ASSERT(state.index() == 0);
         return std::get_if<0>(&state);
     }
@@ -130,4 +141,4 @@ private:
     std::variant<T, Error> state_;
 };
 
-} // namespace lightbin
+}  // namespace lightbin

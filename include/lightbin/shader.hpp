@@ -14,8 +14,9 @@ namespace lightbin {
 
 /// Dialect of the snippet and where it reads the lists.
 enum class ShaderLanguage : std::uint8_t {
-    glsl_330, ///< buffer textures: grid.tiles() as GL_RG32UI, grid.indices() as GL_R32UI (u16: GL_R16UI)
-    glsl_430, ///< shader storage buffers; u16 ids are read in pairs, so the buffer's size must be a multiple of 4 bytes
+    glsl_330,  ///< buffer textures: grid.tiles() as GL_RG32UI, grid.indices() as GL_R32UI (u16: GL_R16UI)
+    glsl_430,  ///< shader storage buffers; u16 ids are read in pairs, so the buffer's size must be a multiple
+               ///< of 4 bytes
 };
 
 struct ShaderOptions {
@@ -27,14 +28,15 @@ struct ShaderOptions {
     int indices_binding = 1;
 };
 
-/// Returns GLSL declarations to insert after `#version` and before their use; `lightbin_` stands for options.prefix.
+/// Returns GLSL declarations to insert after `#version` and before their use; `lightbin_` stands for
+/// options.prefix.
 ///
 ///     uniform uvec4 lightbin_grid;               // shader_grid(view)
 ///     uvec2 lightbin_list(vec2 position);        // offset and count of the list for a window position
 ///     uint  lightbin_light(uint i);              // the id at place i of the light index list
 ///
-/// `position` is gl_FragCoord.xy less the viewport's corner. glsl_330 also declares the samplers lightbin_tiles and
-/// lightbin_indices. Use:
+/// `position` is gl_FragCoord.xy less the viewport's corner. glsl_330 also declares the samplers
+/// lightbin_tiles and lightbin_indices. Use:
 ///
 ///     uvec2 list = lightbin_list(gl_FragCoord.xy);
 ///     for (uint i = 0u; i < list.y; ++i) { uint id = lightbin_light(list.x + i); ... }
@@ -45,11 +47,12 @@ inline std::string shader_snippet(const ShaderOptions& options = {}) {
     const std::string prefix(options.prefix);
     const auto name = [&](const char* suffix) { return prefix + suffix; };
     const auto storage_buffer = [&](int binding, const char* suffix, const char* type) {
-        return "layout(std430, binding = " + std::to_string(binding) + ") readonly buffer " + name(suffix) + "_buffer {\n    " + type + " " +
-               name(suffix) + "[];\n};\n";
+        return "layout(std430, binding = " + std::to_string(binding) + ") readonly buffer " + name(suffix) +
+               "_buffer {\n    " + type + " " + name(suffix) + "[];\n};\n";
     };
 
-    std::string text = "uniform uvec4 " + name("grid") + "; // tile size, tiles across, viewport width and height\n";
+    std::string text =
+        "uniform uvec4 " + name("grid") + "; // tile size, tiles across, viewport width and height\n";
     if (storage) {
         text += storage_buffer(options.tiles_binding, "tiles", "uvec2");
         text += storage_buffer(options.indices_binding, "indices", "uint");
@@ -59,9 +62,12 @@ inline std::string shader_snippet(const ShaderOptions& options = {}) {
     }
 
     text += "\nuvec2 " + name("list") + "(vec2 position) {\n    uvec2 pixel = uvec2(position);\n";
-    if (options.origin == WindowOrigin::upper_left) text += "    pixel.y = " + name("grid") + ".w - 1u - pixel.y;\n";
-    text += "    uvec2 tile = pixel / " + name("grid") + ".x;\n    uint index = tile.y * " + name("grid") + ".y + tile.x;\n";
-    text += storage ? "    return " + name("tiles") + "[index];\n}\n" : "    return texelFetch(" + name("tiles") + ", int(index)).xy;\n}\n";
+    if (options.origin == WindowOrigin::upper_left)
+        text += "    pixel.y = " + name("grid") + ".w - 1u - pixel.y;\n";
+    text += "    uvec2 tile = pixel / " + name("grid") + ".x;\n    uint index = tile.y * " + name("grid") +
+            ".y + tile.x;\n";
+    text += storage ? "    return " + name("tiles") + "[index];\n}\n"
+                    : "    return texelFetch(" + name("tiles") + ", int(index)).xy;\n}\n";
 
     text += "\nuint " + name("light") + "(uint i) {\n";
     if (!storage)
@@ -76,7 +82,8 @@ inline std::string shader_snippet(const ShaderOptions& options = {}) {
 /// Returns the value of the snippet's uniform `grid`: tile size, tiles across, viewport width and height.
 inline std::array<std::uint32_t, 4> shader_grid(const View& view) {
     return {static_cast<std::uint32_t>(view.tile_size()), static_cast<std::uint32_t>(view.tiles_x()),
-            static_cast<std::uint32_t>(view.viewport().width), static_cast<std::uint32_t>(view.viewport().height)};
+            static_cast<std::uint32_t>(view.viewport().width),
+            static_cast<std::uint32_t>(view.viewport().height)};
 }
 
-} // namespace lightbin
+}  // namespace lightbin

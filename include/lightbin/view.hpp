@@ -12,17 +12,18 @@
 namespace lightbin {
 
 /// Range of clip-space depth. It is a setting of the graphics API and cannot be read from the matrix.
-/// Given wrongly, minus_one_to_one puts the near plane too near (safe); zero_to_one puts it too far (not safe).
+/// Given wrongly, minus_one_to_one puts the near plane too near (safe); zero_to_one puts it too far (not
+/// safe).
 enum class ClipDepth : std::uint8_t {
-    minus_one_to_one, ///< OpenGL
-    zero_to_one,      ///< Direct3D, Vulkan, Metal, WebGPU, OpenGL with glClipControl
+    minus_one_to_one,  ///< OpenGL
+    zero_to_one,       ///< Direct3D, Vulkan, Metal, WebGPU, OpenGL with glClipControl
 };
 
 /// The corner of the window that holds pixel (0, 0) and tile (0, 0), NDC y = -1 being the lower side.
 /// Vulkan calls its NDC y = -1 the upper side: what is upper left there is lower_left here.
 enum class WindowOrigin : std::uint8_t {
-    lower_left, ///< OpenGL, Vulkan
-    upper_left, ///< Direct3D, Metal, WebGPU
+    lower_left,  ///< OpenGL, Vulkan
+    upper_left,  ///< Direct3D, Metal, WebGPU
 };
 
 /// Width and height in pixels.
@@ -32,10 +33,11 @@ struct Extent {
 };
 
 struct ViewOptions {
-    int tile_size = 32; ///< side of a tile in pixels, 1 or more
+    int tile_size = 32;  ///< side of a tile in pixels, 1 or more
     ClipDepth clip_depth = ClipDepth::minus_one_to_one;
     WindowOrigin origin = WindowOrigin::lower_left;
-    bool reversed_z = false; ///< near has the larger depth. Read for orthographic matrices only: a perspective one tells
+    bool reversed_z =
+        false;  ///< near has the larger depth. Read for orthographic matrices only: a perspective one tells
 };
 
 /// View depths from min to max, both included.
@@ -45,48 +47,52 @@ struct DepthInterval {
 
 namespace detail {
 
-/// One image axis of a camera, oriented so that the tile index grows with the coordinate. A point with coordinate c
-/// (after the sign) and view depth d lands at  scale * (c / d) + offset  tiles (perspective)  or  scale * c + offset
-/// (orthographic). Off-centre, jittered, reversed, flipped cameras differ in these numbers only.
+/// One image axis of a camera, oriented so that the tile index grows with the coordinate. A point with
+/// coordinate c (after the sign) and view depth d lands at  scale * (c / d) + offset  tiles (perspective)  or
+/// scale * c + offset (orthographic). Off-centre, jittered, reversed, flipped cameras differ in these numbers
+/// only.
 struct ImageAxis {
-    double scale = 0; ///< > 0
+    double scale = 0;  ///< > 0
     double offset = 0;
-    float sign = 1;      ///< of the view-space coordinate
-    float scale_f = 0;   ///< scale, offset rounded to nearest
+    float sign = 1;     ///< of the view-space coordinate
+    float scale_f = 0;  ///< scale, offset rounded to nearest
     float offset_f = 0;
-    float margin = 0;    ///< bound on the rounding error of a float tile coordinate inside the viewport, in tiles
-    float limit = 0;     ///< the viewport's far edge in tiles, rounded up
+    float margin =
+        0;  ///< bound on the rounding error of a float tile coordinate inside the viewport, in tiles
+    float limit = 0;  ///< the viewport's far edge in tiles, rounded up
     int tiles = 0;
 };
 
 /// Everything the projection stage needs to know of a view.
 struct Camera {
     ImageAxis x, y;
-    float z_sign = 1;        ///< view depth = z_sign * z
-    float near_depth = 0;    ///< rounded down
-    float far_depth = 0;     ///< rounded up, may be +inf
+    float z_sign = 1;      ///< view depth = z_sign * z
+    float near_depth = 0;  ///< rounded down
+    float far_depth = 0;   ///< rounded up, may be +inf
     bool orthographic = false;
 };
 
-} // namespace detail
+}  // namespace detail
 
 /// A projection, a viewport and a tile size: what fixes the tile grid.
 ///
-/// Tile (tx, ty) has index ty * tiles_x() + tx and covers the pixels [tx * t, (tx + 1) * t) x [ty * t, (ty + 1) * t), cut
-/// off at the viewport's edge. View depth is the distance from the eye (orthographic: from the plane z = 0) along the
-/// viewing direction, in the units of view space.
+/// Tile (tx, ty) has index ty * tiles_x() + tx and covers the pixels [tx * t, (tx + 1) * t) x [ty * t, (ty +
+/// 1) * t), cut off at the viewport's edge. View depth is the distance from the eye (orthographic: from the
+/// plane z = 0) along the viewing direction, in the units of view space.
 class View {
 public:
     static constexpr int max_side = 32768;
 
     /// Returns the view of a projection matrix, or an Error that names why the matrix or a size is refused.
     ///
-    /// projection  maps view space to clip space, columns first: projection[column][row] in float or double (a glm::mat4
-    ///             as it is). Perspective: symmetric or not, jittered, finite or infinite far, standard or reversed Z,
-    ///             looking down -z or +z, x or y flipped. Orthographic: centred or not.
+    /// projection  maps view space to clip space, columns first: projection[column][row] in float or double
+    /// (a glm::mat4
+    ///             as it is). Perspective: symmetric or not, jittered, finite or infinite far, standard or
+    ///             reversed Z, looking down -z or +z, x or y flipped. Orthographic: centred or not.
     /// viewport    0 to max_side pixels a side. An empty one has no tiles.
     template <class Matrix>
-    static Result<View> from_projection(const Matrix& projection, Extent viewport, const ViewOptions& options = {}) {
+    static Result<View> from_projection(const Matrix& projection, Extent viewport,
+                                        const ViewOptions& options = {}) {
         double m[4][4];
         for (int column = 0; column < 4; ++column)
             for (int row = 0; row < 4; ++row)
@@ -98,20 +104,25 @@ public:
     int tile_size() const { return tile_size_; }
     int tiles_x() const { return camera_.x.tiles; }
     int tiles_y() const { return camera_.y.tiles; }
-    std::size_t tile_count() const { return static_cast<std::size_t>(tiles_x()) * static_cast<std::size_t>(tiles_y()); }
+    std::size_t tile_count() const {
+        return static_cast<std::size_t>(tiles_x()) * static_cast<std::size_t>(tiles_y());
+    }
     WindowOrigin origin() const { return origin_; }
     bool orthographic() const { return camera_.orthographic; }
     bool reversed_z() const { return reversed_; }
 
-    /// View depth of the near plane, rounded down, and of the far plane, rounded up (+inf where there is none).
+    /// View depth of the near plane, rounded down, and of the far plane, rounded up (+inf where there is
+    /// none).
     float near_depth() const { return camera_.near_depth; }
     float far_depth() const { return camera_.far_depth; }
 
-    /// Smallest and largest view depth of any point whose window depth lies in [lower, upper], both in 0..1, rounded
-    /// outward. Window depth is what a depth buffer holds: 0 and 1 are the two ends of the clip-depth range.
+    /// Smallest and largest view depth of any point whose window depth lies in [lower, upper], both in 0..1,
+    /// rounded outward. Window depth is what a depth buffer holds: 0 and 1 are the two ends of the clip-depth
+    /// range.
     DepthInterval view_depths(double lower, double upper) const {
         const double nearer = reversed_ ? upper : lower, farther = reversed_ ? lower : upper;
-        return {detail::float_below(depth_at(ndc(nearer), -1)), detail::float_above(depth_at(ndc(farther), +1))};
+        return {detail::float_below(depth_at(ndc(nearer), -1)),
+                detail::float_above(depth_at(ndc(farther), +1))};
     }
 
     /// The constants in the form the projection stage reads.
@@ -151,8 +162,8 @@ private:
         view.clip_depth_ = options.clip_depth;
         view.camera_.orthographic = orthographic;
 
-        // Visible points have w > 0, so the sign of w_z is the viewing direction. An orthographic w has no direction:
-        // there depth grows with NDC depth, or against it when Z is reversed.
+        // Visible points have w > 0, so the sign of w_z is the viewing direction. An orthographic w has no
+        // direction: there depth grows with NDC depth, or against it when Z is reversed.
         const double w = orthographic ? w_1 : std::fabs(w_z);
         const bool forward = orthographic ? (m[2][2] > 0) != options.reversed_z : w_z > 0;
         view.camera_.z_sign = forward ? 1.0f : -1.0f;
@@ -183,12 +194,14 @@ private:
         axis.scale_f = static_cast<float>(axis.scale);
         axis.offset_f = static_cast<float>(axis.offset);
         axis.limit = detail::float_above(static_cast<double>(side) / tile_size_);
-        // A float slope is within 9u of the truth (u = 2^-24, see project.hpp), times scale_f 11u, plus u of offset_f and u
-        // of the sum; inside the viewport |scale * slope| <= |offset| + tiles. 16u leaves room for the double steps
-        // above and for adding the margin itself; 2^-80 a scale is for a caller who flushes denormal numbers to zero.
-        axis.margin = detail::float_above(0x1p-20 * (std::fabs(axis.offset) + axis.tiles) + 0x1p-80 * axis.scale);
+        // A float slope is within 9u of the truth (u = 2^-24, see project.hpp), times scale_f 11u, plus u of
+        // offset_f and u of the sum; inside the viewport |scale * slope| <= |offset| + tiles. 16u leaves room
+        // for the double steps above and for adding the margin itself; 2^-80 a scale is for a caller who
+        // flushes denormal numbers to zero.
+        axis.margin =
+            detail::float_above(0x1p-20 * (std::fabs(axis.offset) + axis.tiles) + 0x1p-80 * axis.scale);
         if (side == 0) {
-            axis.limit = -1; // nothing is inside
+            axis.limit = -1;  // nothing is inside
             return p != 0;
         }
         return axis.scale >= 0x1p-80 && axis.scale <= 0x1p80 && std::fabs(axis.offset) <= 0x1p80;
@@ -207,8 +220,8 @@ private:
         return clip_depth_ == ClipDepth::zero_to_one ? window_depth : 2 * window_depth - 1;
     }
 
-    /// View depth d at which (z_scale d + z_offset) / (w_scale d + w_offset) = v, moved outward (-1 down, +1 up) by the
-    /// rounding of its own few steps. +inf where a perspective plane v is never reached.
+    /// View depth d at which (z_scale d + z_offset) / (w_scale d + w_offset) = v, moved outward (-1 down, +1
+    /// up) by the rounding of its own few steps. +inf where a perspective plane v is never reached.
     double depth_at(double v, int direction) const {
         double top = v * w_offset_ - z_offset_;
         double bottom = z_scale_ - v * w_scale_;
@@ -234,4 +247,4 @@ private:
     double z_scale_ = 0, z_offset_ = 0, w_scale_ = 0, w_offset_ = 0;
 };
 
-} // namespace lightbin
+}  // namespace lightbin

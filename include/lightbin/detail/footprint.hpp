@@ -29,7 +29,7 @@ struct ProjectCounts {
 struct TileDepths {
     const float* min;
     const float* max;
-    std::size_t min_mask, max_mask; ///< 0 for an absent side, all ones otherwise
+    std::size_t min_mask, max_mask;  ///< 0 for an absent side, all ones otherwise
 
     /// True unless the interval is surely out of the tile's bounds or the tile is empty. NaN tests nothing.
     bool meets(std::size_t tile, DepthInterval light) const {
@@ -38,4 +38,4 @@ struct TileDepths {
     }
 };
 
-} // namespace lightbin::detail
+}  // namespace lightbin::detail

@@ -7,7 +7,8 @@
 #include <limits>
 
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)
-#error "lightbin: -ffast-math, -ffinite-math-only and /fp:fast let the compiler drop the NaN tests and reorder the sums \
+#error                                                                                                       \
+    "lightbin: -ffast-math, -ffinite-math-only and /fp:fast let the compiler drop the NaN tests and reorder the sums \
 that keep lights from being missed. Compile the files that include lightbin without them."
 #endif
 
@@ -26,6 +27,8 @@ inline float float_below(double value) {
 }
 
 /// Returns the smallest float that is not below `value`; +inf above the float range.
-inline float float_above(double value) { return -float_below(-value); }
+inline float float_above(double value) {
+    return -float_below(-value);
+}
 
-} // namespace lightbin::detail
+}  // namespace lightbin::detail

@@ -1,0 +1,139 @@
+// Promise 4, line by line: bad input stays local, and the empty and the odd are fine.
+#include "scene.hpp"
+
+#include <cmath>
+#include <limits>
+
+using namespace lightbin;
+
+namespace {
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN(),
+                inf = std::numeric_limits<float>::infinity();
+}
+
+TEST_CASE("bad lights are skipped and counted, and the others are right") {
+    const std::vector<glm::vec4> bad = {
+        {not_a_number, 0, -5, 1},  {0, not_a_number, -5, 1}, {0, 0, not_a_number, 1},
+        {0, 0, -5, not_a_number},  {inf, 0, -5, 1},          {0, -inf, -5, 1},
+        {0, 0, -inf, 1},           {0, 0, inf, 1},           {0, 0, -5, -1},
+        {0, 0, -5, -inf},          {0, 0, -5, -1e-45f},      {0, 0, 5, -1},
+        {not_a_number, 0, 0, inf}, {inf, 0, 0, inf},         {0, 0, 1e9f, -1},
+        {1e20f, 0, -5, -1e20f},
+    };
+    auto lights = test::random_lights(600, 40);
+    const View view = test::view({960, 540}, 16);
+    const auto expected = test::lists(view, lights);
+    std::vector<std::uint32_t> id_of;  // where each good light went
+    std::vector<glm::vec4> mixed;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        if (i % 20 == 0 && i / 20 < bad.size()) mixed.push_back(bad[i / 20]);
+        id_of.push_back(static_cast<std::uint32_t>(mixed.size()));
+        mixed.push_back(lights[i]);
+    }
+    auto moved = expected;
+    for (auto& list : moved)
+        for (std::uint32_t& id : list)
+            id = id_of[id];
+
+    Binner<> binner;
+    const auto grid = binner.bin(view, mixed);
+    REQUIRE(grid);
+    CHECK(grid->rejected() == bad.size());
+    CHECK(test::to_lists(*grid) == moved);
+
+    const auto in_world = binner.bin(view, world_space(mixed, glm::mat4(1.0f)));
+    REQUIRE(in_world);
+    CHECK(in_world->rejected() == bad.size());
+
+    const glm::mat4 ortho = glm::ortho(-20.0f, 20.0f, -10.0f, 10.0f, 0.0f, 100.0f);
+    CHECK(binner.bin(*View::from_projection(ortho, {960, 540}), mixed)->rejected() == bad.size());
+}
+
+TEST_CASE("an infinite radius covers everything, for every camera") {
+    const std::vector<glm::vec4> lights = {{1, 2, 3, inf}, {1e38f, -1e38f, 1e38f, inf}, {0, 0, 0, inf}};
+    for (const glm::mat4& projection :
+         {glm::perspective(1.0f, 1.5f, 0.1f, 100.0f), glm::infinitePerspective(1.0f, 1.5f, 0.1f),
+          glm::ortho(-20.0f, 20.0f, -10.0f, 10.0f, 0.0f, 100.0f)}) {
+        const View view = *View::from_projection(projection, {333, 217}, {.tile_size = 16});
+        CHECK(test::entries(test::lists(view, lights)) == 3 * view.tile_count());
+        CHECK(test::entries(test::lists(view, world_space(lights, glm::mat4(1.0f)))) ==
+              3 * view.tile_count());
+    }
+}
+
+TEST_CASE("a radius of zero is a point, of whatever size the scene is") {
+    const View view = test::view({641, 361}, 1);
+    for (const float z : {-0.5f, -5.0f, -900.0f}) {
+        const auto lists = test::lists(view, std::vector<glm::vec4>{{0, 0, z, 0}, {0, 0, z, 1e-40f}});
+        // The centre of an odd viewport is inside the middle pixel.
+        CHECK(test::entries(lists) == 2);
+        CHECK(lists[180 * 641 + 320].size() == 2);
+    }
+    CHECK(test::entries(test::lists(view, std::vector<glm::vec4>{{0, 0, 5, 0}, {0, 0, -2000, 0}})) == 0);
+}
+
+TEST_CASE("no lights") {
+    Binner<> binner;
+    const View view = test::view({960, 540}, 16);
+    const auto grid = binner.bin(view, std::vector<glm::vec4>());
+    REQUIRE(grid);
+    CHECK(grid->indices().empty());
+    CHECK(grid->tiles().size() == view.tile_count());
+    for (const Tile& tile : grid->tiles())
+        CHECK((tile.offset == 0 && tile.count == 0));
+}
+
+TEST_CASE("an empty viewport") {
+    for (const Extent viewport : {Extent{0, 0}, Extent{0, 540}, Extent{960, 0}}) {
+        const View view = test::view(viewport, 16);
+        auto lights = test::random_lights(200, 41);
+        lights.emplace_back(0, 0, 0, inf);
+        lights.emplace_back(0, 0, not_a_number, 1);
+        Binner<Options{.statistics = true}> binner;
+        const auto grid = binner.bin(view, lights);
+        REQUIRE(grid);
+        CHECK(grid->tiles().empty());
+        CHECK(grid->indices().empty());
+        CHECK(grid->rejected() == 1);
+        CHECK(binner.statistics().culled == 201);
+
+        Binner<Options{.depth_test = DepthTest::interval}> pruned;
+        const auto bounds = reduce_depth(view, {}, {}, {});
+        REQUIRE(bounds);
+        CHECK(pruned.bin(view, lights, *bounds)->indices().empty());
+        const auto size = pruned.count(view, lights, *bounds);
+        CHECK(size->tiles == 0);
+        CHECK(size->indices == 0);
+        CHECK(pruned.emit({}, {}));
+    }
+}
+
+TEST_CASE("one pixel, and a tile larger than the screen") {
+    const auto lights = test::random_lights(300, 42);
+    Binner<Options{.statistics = true}> binner;
+    std::size_t before = 0;
+    for (const auto& [viewport, tile] :
+         {std::pair(Extent{1, 1}, 1), std::pair(Extent{1, 1}, 64), std::pair(Extent{640, 640}, 1000)}) {
+        const auto grid = binner.bin(test::view(viewport, tile), lights);
+        REQUIRE(grid);
+        CHECK(grid->tiles().size() == 1);
+        CHECK(grid->indices().size() == 300 - binner.statistics().culled);
+        if (before != 0) CHECK(grid->indices().size() == before);  // the same frustum each time
+        before = grid->indices().size();
+    }
+}
+
+TEST_CASE("the extremes of float") {
+    constexpr float huge = std::numeric_limits<float>::max(),
+                    denormal = std::numeric_limits<float>::denorm_min();
+    const View view = test::view({640, 360}, 16);
+    const auto listed = [&](const glm::vec4& light) {
+        return test::entries(test::lists(view, std::vector<glm::vec4>{light}));
+    };
+    CHECK(listed({0, 0, 0, huge}) == view.tile_count());
+    CHECK(listed({huge, 0, 0, huge}) > 0);  // its surface passes through the eye
+    CHECK(listed({0, 0, -huge, huge}) == view.tile_count());
+    CHECK(listed({0, 0, huge, denormal}) == 0);
+    CHECK(listed({denormal, -denormal, -1, denormal}) >= 1);
+    CHECK(listed({denormal, denormal, denormal, denormal}) == 0);  // before the near plane
+}

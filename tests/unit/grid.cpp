@@ -1,0 +1,194 @@
+// The light grid itself: order, determinism, both id types, Z bounds, transparency, statistics. That no light
+// is missed is proved in tests/oracle.
+#include "scene.hpp"
+
+#include <bit>
+#include <cstring>
+#include <limits>
+
+using namespace lightbin;
+
+namespace {
+
+constexpr Options interval = {.depth_test = DepthTest::interval};
+
+std::vector<float> random_floats(std::size_t count, float low, float high, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> value(low, high);
+    std::vector<float> values(count);
+    for (float& v : values)
+        v = value(random);
+    return values;
+}
+
+/// Lists without those ids that `keep(tile, id)` says no to.
+template <class Keep> test::Lists filter(test::Lists lists, Keep keep) {
+    for (std::size_t tile = 0; tile < lists.size(); ++tile)
+        std::erase_if(lists[tile], [&](std::uint32_t id) { return !keep(tile, id); });
+    return lists;
+}
+
+}  // namespace
+
+TEST_CASE("offsets leave no gap and ids ascend within a tile") {
+    const View view = test::view({1919, 1079}, 16);
+    const auto lights = test::random_lights(3000, 10);
+    Binner<> binner;
+    const auto grid = binner.bin(view, lights);
+    REQUIRE(grid);
+    std::uint32_t next = 0;
+    for (const Tile& tile : grid->tiles()) {
+        CHECK(tile.offset == next);
+        next += tile.count;
+        const auto ids = grid->indices().subspan(tile.offset, tile.count);
+        CHECK(std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<>()) == ids.end());
+    }
+    CHECK(next == grid->indices().size());
+    CHECK(next > 3000);
+}
+
+TEST_CASE("the same input gives the same bytes, whatever the Binner did before") {
+    const View view = test::view({800, 600}, 16), other = test::view({3840, 2160}, 8);
+    const auto lights = test::random_lights(1000, 11);
+    Binner<> used, fresh;
+    (void)used.bin(other, test::random_lights(5000, 12));
+    (void)used.bin(view, test::random_lights(10, 13));
+    const auto a = used.bin(view, lights), b = fresh.bin(view, lights);
+    REQUIRE(a->tiles().size_bytes() == b->tiles().size_bytes());
+    REQUIRE(a->indices().size_bytes() == b->indices().size_bytes());
+    CHECK(std::memcmp(a->tiles().data(), b->tiles().data(), a->tiles().size_bytes()) == 0);
+    CHECK(std::memcmp(a->indices().data(), b->indices().data(), a->indices().size_bytes()) == 0);
+}
+
+TEST_CASE("16-bit ids are the same ids") {
+    const View view = test::view({1280, 720}, 32);
+    const auto lights = test::random_lights(65536, 14);  // as many as there are ids
+    CHECK(test::lists<Options{.index = Index::u16}>(view, lights) == test::lists(view, lights));
+}
+
+TEST_CASE("coarser tiles hold the union of finer ones") {
+    const auto lights = test::random_lights(800, 15);
+    const auto fine = test::view({1024, 768}, 16), coarse = test::view({1024, 768}, 32);
+    const auto fine_lists = test::lists(fine, lights), coarse_lists = test::lists(coarse, lights);
+    test::Lists merged(coarse_lists.size());
+    for (int y = 0; y < fine.tiles_y(); ++y)
+        for (int x = 0; x < fine.tiles_x(); ++x) {
+            const auto& from = fine_lists[static_cast<std::size_t>(y * fine.tiles_x() + x)];
+            auto& to = merged[static_cast<std::size_t>(y / 2 * coarse.tiles_x() + x / 2)];
+            to.insert(to.end(), from.begin(), from.end());
+        }
+    for (auto& list : merged) {
+        std::sort(list.begin(), list.end());
+        list.erase(std::unique(list.begin(), list.end()), list.end());
+    }
+    CHECK(test::is_superset(coarse_lists, filter(merged, [](std::size_t, std::uint32_t) { return true; })));
+    CHECK(test::entries(coarse_lists) <= test::entries(merged) + test::entries(merged) / 1000);
+}
+
+TEST_CASE("both window origins show the same picture, one upside down") {
+    const glm::mat4 projection = glm::frustumRH_NO(-0.05f, 0.1f, -0.02f, 0.06f, 0.1f, 100.0f);
+    const auto lights = test::random_lights(500, 16);
+    const auto lower = *View::from_projection(projection, {640, 352}, {.tile_size = 16});
+    const auto upper =
+        *View::from_projection(projection, {640, 352}, {.tile_size = 16, .origin = WindowOrigin::upper_left});
+    const auto expected = test::lists(lower, lights);
+    const auto flipped = test::lists(upper, lights);
+    const std::size_t width = 640 / 16, height = 352 / 16;
+    for (std::size_t y = 0; y < height; ++y)
+        for (std::size_t x = 0; x < width; ++x)
+            CHECK(flipped[(height - 1 - y) * width + x] == expected[y * width + x]);
+}
+
+TEST_CASE("interval: minimum, maximum, both, each as [z - r, z + r] against the bounds") {
+    const View view = test::view({960, 540}, 16);
+    const auto lights = test::random_lights(1500, 17);
+    const auto everywhere = test::lists(view, lights);
+    const auto min = random_floats(view.tile_count(), 0.1f, 60.0f, 18);
+    auto max = random_floats(view.tile_count(), 10.0f, 80.0f, 19);  // some below their minimum: empty tiles
+    max[0] = min[0];
+    const auto z_min = [&](std::uint32_t id) { return -lights[id].z - lights[id].w; };
+    const auto z_max = [&](std::uint32_t id) { return -lights[id].z + lights[id].w; };
+
+    CHECK(test::lists<interval>(view, lights, ZBounds{}) == everywhere);
+    CHECK(test::lists<interval>(view, lights, ZBounds{.min = min, .max = {}}) ==
+          filter(everywhere, [&](std::size_t tile, std::uint32_t id) { return z_max(id) >= min[tile]; }));
+    CHECK(test::lists<interval>(view, lights, ZBounds{.min = {}, .max = max}) ==
+          filter(everywhere, [&](std::size_t tile, std::uint32_t id) { return z_min(id) <= max[tile]; }));
+    const auto both = test::lists<interval>(view, lights, ZBounds{.min = min, .max = max});
+    CHECK(both == filter(everywhere, [&](std::size_t tile, std::uint32_t id) {
+              return z_max(id) >= min[tile] && z_min(id) <= max[tile] && min[tile] <= max[tile];
+          }));
+    CHECK(test::entries(both) > 1000);
+    CHECK(test::entries(both) < test::entries(everywhere) / 2);
+}
+
+TEST_CASE("a NaN bound tests nothing; infinite bounds mean what they say") {
+    const View view = test::view({320, 200}, 32);
+    const std::size_t tiles = view.tile_count();
+    const std::vector<glm::vec4> lights = {{0, 0, -5, 1}, {0, 0, 0, HUGE_VALF}};
+    const auto everywhere = test::lists(view, lights);
+    const std::vector<float> nan(tiles, std::nanf("")), inf(tiles, HUGE_VALF), minus_inf(tiles, -HUGE_VALF);
+    CHECK(test::lists<interval>(view, lights, ZBounds{.min = nan, .max = nan}) == everywhere);
+    CHECK(test::lists<interval>(view, lights, ZBounds{.min = minus_inf, .max = inf}) == everywhere);
+    CHECK(test::entries(test::lists<interval>(view, lights, ZBounds{.min = inf, .max = minus_inf})) ==
+          0);  // empty tiles
+    CHECK(test::entries(test::lists<interval>(view, lights, ZBounds{.min = inf, .max = inf})) ==
+          tiles);  // the infinite one
+}
+
+TEST_CASE("transparency lists: one call gives what two Binners give") {
+    constexpr Options options = {.index = Index::u16, .depth_test = DepthTest::interval, .statistics = true};
+    const View view = test::view({960, 540}, 16);
+    const auto lights = test::random_lights(1500, 20);
+    const auto min = random_floats(view.tile_count(), 5.0f, 30.0f, 21),
+               max = random_floats(view.tile_count(), 30.0f, 60.0f, 22);
+    Binner<options> binner;
+    const auto grids = binner.bin_transparency(view, lights, {.min = min, .max = max});
+    REQUIRE(grids);
+    const auto opaque = test::to_lists(grids->opaque), transparent = test::to_lists(grids->transparent);
+    CHECK(opaque == test::lists<options>(view, lights, ZBounds{.min = min, .max = max}));
+    CHECK(transparent == test::lists<options>(view, lights, ZBounds{.min = {}, .max = max}));
+    CHECK(test::is_superset(transparent, opaque));
+    CHECK(test::entries(transparent) > test::entries(opaque));
+    CHECK(binner.statistics().entries == test::entries(opaque));
+}
+
+TEST_CASE("statistics") {
+    constexpr Options options = {.statistics = true};
+    const View view = test::view({960, 540}, 16);
+    auto lights = test::random_lights(150, 23);
+    std::erase_if(lights, [](const glm::vec4& light) { return light.z > -5; });  // leaves tiles empty
+    lights.resize(20);
+    lights[7].w = -1;
+    lights[11].x = std::nanf("");
+    lights[13] = {0, 0, 50, 1};  // behind the eye
+    Binner<options> binner;
+    const auto grid = binner.bin(view, lights);
+    REQUIRE(grid);
+    const Statistics& statistics = binner.statistics();
+    const auto lists = test::to_lists(*grid);
+    std::vector<bool> listed(lights.size());
+    Statistics expected;
+    for (const auto& list : lists) {
+        for (const std::uint32_t id : list)
+            listed[id] = true;
+        expected.longest_list = std::max(expected.longest_list, static_cast<std::uint32_t>(list.size()));
+        std::size_t bits = 0;
+        while (list.size() >> bits)
+            ++bits;
+        ++expected.histogram[bits];
+    }
+    const auto in_view = static_cast<std::uint64_t>(std::count(listed.begin(), listed.end(), true));
+    CHECK(statistics.lights == 20);
+    CHECK(statistics.rejected == 2);
+    CHECK(grid->rejected() == 2);
+    CHECK(statistics.culled == 20 - 2 - in_view);
+    CHECK(statistics.entries == test::entries(lists));
+    CHECK(statistics.longest_list == expected.longest_list);
+    CHECK(statistics.histogram == expected.histogram);
+    CHECK(statistics.histogram[0] > 0);
+
+    (void)binner.bin(view, std::vector<glm::vec4>());
+    CHECK(binner.statistics().lights == 0);
+    CHECK(binner.statistics().histogram[0] == view.tile_count());
+}

@@ -1,0 +1,114 @@
+// The ways lights come in: they must all give the same grid.
+#include "scene.hpp"
+
+#include <doctest/doctest.h>
+
+#include <glm/ext/matrix_transform.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+using namespace lightbin;
+
+TEST_CASE("vec4 arrays, Spheres and the user's own structs give the same bytes") {
+    struct PointLight {  // nothing in the order lightbin would like
+        float power = 1;
+        glm::dvec3 position;
+        std::uint16_t flags = 7;
+        float range;
+    };
+    const auto spheres = test::random_lights(500, 1);
+    std::vector<Sphere> plain;
+    std::vector<PointLight> own;
+    for (const glm::vec4& s : spheres) {
+        plain.push_back({s.x, s.y, s.z, s.w});
+        own.push_back({.position = glm::dvec3(s), .range = s.w});
+    }
+    const View view = test::view({641, 361}, 16);
+    const auto expected = test::lists(view, spheres);
+    CHECK(test::lists(view, plain) == expected);
+    const auto to_sphere = [](const PointLight& light) {
+        const glm::vec3 p(light.position);
+        return Sphere{p.x, p.y, p.z, light.range};
+    };
+    CHECK(test::lists(view, view_space(own, to_sphere)) == expected);
+    CHECK(test::lists(view, view_space(std::span<const glm::vec4>(spheres))) == expected);
+
+    std::array<Sphere, 3> three = {plain[0], plain[1], plain[2]};
+    CHECK(test::lists(view, three) ==
+          test::lists(view, std::vector<Sphere>(plain.begin(), plain.begin() + 3)));
+}
+
+TEST_CASE("world-space lights cover the view-space ones, and by little more") {
+    glm::mat4 to_view = glm::rotate(glm::mat4(1.0f), 0.7f, glm::normalize(glm::vec3(1, 2, 3)));
+    to_view = glm::translate(to_view, {100.0f, -20.0f, 3.0f});
+    const glm::mat4 to_world = glm::inverse(to_view);
+    const auto in_view = test::random_lights(2000, 2);
+    std::vector<glm::vec4> in_world;
+    for (const glm::vec4& s : in_view)
+        in_world.emplace_back(glm::vec3(to_world * glm::vec4(glm::vec3(s), 1.0f)), s.w);
+
+    const View view = test::view({1920, 1080}, 32);
+    const auto expected = test::entries(test::lists(view, in_view));
+    const auto moved = test::entries(test::lists(view, world_space(in_world, to_view)));
+    CHECK(static_cast<double>(moved) == doctest::Approx(static_cast<double>(expected)).epsilon(1e-3));
+
+    const glm::mat4 identity(1.0f);
+    const auto same = test::lists(view, world_space(in_view, identity));
+    CHECK(test::is_superset(same, test::lists(view, in_view)));
+    CHECK(test::entries(same) <= expected + expected / 1000);
+}
+
+TEST_CASE("a scaled world scales its lights") {
+    const glm::mat4 doubled = glm::scale(glm::mat4(1.0f), glm::vec3(2.0f));
+    const auto small = test::random_lights(1000, 3);
+    std::vector<glm::vec4> large;
+    for (const glm::vec4& s : small)
+        large.push_back(2.0f * s);
+    const View view = test::view({800, 600}, 32);
+    CHECK(test::is_superset(test::lists(view, world_space(small, doubled)), test::lists(view, large)));
+}
+
+TEST_CASE("a view matrix that is not affine is refused") {
+    const auto lights = test::random_lights(4, 4);
+    const View view = test::view({800, 600}, 32);
+    Binner<> binner;
+    glm::mat4 bad(1.0f);
+    bad[1][3] = 0.5f;
+    CHECK(binner.bin(view, world_space(lights, bad)).error().code == ErrorCode::view_matrix_not_affine);
+    bad = glm::mat4(1.0f);
+    bad[3][3] = 2.0f;
+    CHECK(binner.bin(view, world_space(lights, bad)).error().code == ErrorCode::view_matrix_not_affine);
+    bad = glm::mat4(1.0f);
+    bad[3][0] = std::nanf("");
+    CHECK(binner.count(view, world_space(lights, bad)).error().code == ErrorCode::view_matrix_not_affine);
+}
+
+TEST_CASE("a light whose move overflows covers everything rather than nothing") {
+    const View view = test::view({800, 600}, 32);
+    const std::vector<glm::vec4> lights = {{3e38f, 3e38f, 0, 3e38f}};
+    glm::mat4 quarter = glm::rotate(glm::mat4(1.0f), 0.785398f, glm::vec3(0, 0, 1));
+    const auto lists = test::lists(view, world_space(lights, quarter));
+    CHECK(test::entries(lists) == view.tile_count());
+}
+
+TEST_CASE("light_range") {
+    CHECK(light_range(100.0f, 1.0f) == doctest::Approx(10.0f));
+    CHECK(light_range(2.0f, 0.5f) == doctest::Approx(2.0f));
+    for (const float intensity : {1.0f, 3.0f, 800.0f, 1e-20f, 1e30f})
+        for (const float cutoff : {1.0f, 0.3f, 1e-3f, 7e10f}) {
+            const double range = static_cast<double>(light_range(intensity, cutoff));
+            CHECK(static_cast<double>(intensity) / (range * range) <=
+                  static_cast<double>(cutoff));  // rounded up
+            CHECK(static_cast<double>(intensity) / (range * range) >=
+                  static_cast<double>(cutoff) * (1 - 1e-6));
+        }
+    CHECK(light_range(0, 1) == 0);
+    CHECK(light_range(-5, 1) == 0);
+    CHECK(light_range(5, 0) == HUGE_VALF);
+    CHECK(light_range(5, -1) == HUGE_VALF);
+    CHECK(std::isnan(light_range(std::nanf(""), 1)));
+    CHECK(std::isnan(light_range(1, std::nanf(""))));
+}

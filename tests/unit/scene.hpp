@@ -1,0 +1,80 @@
+// What the unit tests share: a view, random lights, and grids in a form that is easy to compare.
+#pragma once
+
+#include <lightbin/lightbin.hpp>
+
+#include <doctest/doctest.h>
+
+#include <glm/ext/matrix_clip_space.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+namespace test {
+
+/// 60 degrees high, near 0.1, far 1000, as OpenGL has it.
+inline lightbin::View view(lightbin::Extent viewport, int tile_size) {
+    const float aspect =
+        viewport.height > 0 ? static_cast<float>(viewport.width) / static_cast<float>(viewport.height) : 1.0f;
+    const glm::mat4 projection = glm::perspectiveRH_NO(1.0471976f, aspect > 0 ? aspect : 1.0f, 0.1f, 1000.0f);
+    return *lightbin::View::from_projection(projection, viewport, {.tile_size = tile_size});
+}
+
+/// Around and in front of the eye, which looks down -z; some behind, some around the eye.
+inline std::vector<glm::vec4> random_lights(std::size_t count, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> depth(-10.0f, 100.0f), side(-1.0f, 1.0f);
+    std::lognormal_distribution<float> radius(1.0f, 0.7f);
+    std::vector<glm::vec4> lights;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float z = depth(random);
+        lights.emplace_back(side(random) * (std::fabs(z) + 2), side(random) * (std::fabs(z) + 2), -z,
+                            radius(random));
+    }
+    return lights;
+}
+
+/// One list of ids a tile.
+using Lists = std::vector<std::vector<std::uint32_t>>;
+
+template <class Id> Lists to_lists(const lightbin::LightGrid<Id>& grid) {
+    Lists lists;
+    for (int y = 0; y < grid.tiles_y(); ++y)
+        for (int x = 0; x < grid.tiles_x(); ++x) {
+            const auto ids = grid.lights_in(x, y);
+            lists.emplace_back(ids.begin(), ids.end());
+        }
+    return lists;
+}
+
+template <lightbin::Options options = lightbin::Options{}, class Lights, class... Bounds>
+Lists lists(const lightbin::View& view, const Lights& lights, const Bounds&... bounds) {
+    lightbin::Binner<options> binner;
+    const auto grid = binner.bin(view, lights, bounds...);
+    REQUIRE(grid);
+    return to_lists(*grid);
+}
+
+inline std::size_t entries(const Lists& lists) {
+    std::size_t sum = 0;
+    for (const auto& list : lists)
+        sum += list.size();
+    return sum;
+}
+
+/// Every tile of `outer` lists all that the same tile of `inner` lists.
+inline bool is_superset(const Lists& outer, const Lists& inner) {
+    if (outer.size() != inner.size()) return false;
+    for (std::size_t tile = 0; tile < outer.size(); ++tile)
+        if (!std::includes(outer[tile].begin(), outer[tile].end(), inner[tile].begin(), inner[tile].end()))
+            return false;
+    return true;
+}
+
+}  // namespace test

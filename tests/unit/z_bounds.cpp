@@ -1,0 +1,164 @@
+// reduce_depth: what counts, where it lies, what it refuses. Exact values are compared with rationals in
+// tests/oracle.
+#include "scene.hpp"
+
+#include <limits>
+
+using namespace lightbin;
+
+namespace {
+
+constexpr float inf = std::numeric_limits<float>::infinity();
+
+struct Reduced {
+    std::vector<float> min, max;
+};
+
+Reduced reduce(const View& view, const DepthBuffer& buffer) {
+    Reduced reduced{std::vector<float>(view.tile_count()), std::vector<float>(view.tile_count())};
+    REQUIRE(reduce_depth(view, buffer, reduced.min, reduced.max));
+    return reduced;
+}
+
+/// Window depth of a view depth for test::view().
+float window_depth(double z) {
+    constexpr double near = 0.1, far = 1000.0;
+    return static_cast<float>(0.5 + 0.5 * ((far + near) / (far - near) - 2 * far * near / (far - near) / z));
+}
+
+/// And back.
+double view_depth(double window) {
+    constexpr double near = 0.1, far = 1000.0;
+    return 2 * far * near / (far - near) / ((far + near) / (far - near) - (2 * window - 1));
+}
+
+}  // namespace
+
+TEST_CASE("each sample lands in its own tile: partial tiles, several samples, a row pitch") {
+    const View view = test::view({37, 21}, 8);  // 5 x 3 tiles
+    for (const int samples : {1, 2, 4, 8}) {
+        const std::size_t pitch = static_cast<std::size_t>(37 * samples + 5);
+        for (int y : {0, 7, 8, 20})
+            for (int x : {0, 7, 8, 31, 32, 36})
+                for (const int sample : {0, samples - 1}) {
+                    std::vector<float> depth(pitch * 21, window_depth(10));
+                    for (std::size_t row = 0; row < 21; ++row)  // padding must not be read
+                        std::fill_n(depth.begin() + static_cast<std::ptrdiff_t>(row * pitch) + 37 * samples,
+                                    5, 0.0f);
+                    depth[static_cast<std::size_t>(y) * pitch +
+                          static_cast<std::size_t>(x * samples + sample)] = window_depth(50);
+                    const Reduced reduced =
+                        reduce(view, {.depth = depth, .samples = samples, .row_pitch = pitch});
+                    for (int ty = 0; ty < 3; ++ty)
+                        for (int tx = 0; tx < 5; ++tx) {
+                            const std::size_t tile = static_cast<std::size_t>(ty * 5 + tx);
+                            const bool here = tx == x / 8 && ty == y / 8;
+                            CHECK(reduced.min[tile] == doctest::Approx(10).epsilon(1e-3));
+                            CHECK(reduced.max[tile] == doctest::Approx(here ? 50 : 10).epsilon(1e-3));
+                        }
+                }
+    }
+}
+
+TEST_CASE("background, NaN and out-of-range samples") {
+    const View view = test::view({32, 16}, 16);  // two tiles
+    const float near = view.near_depth(), far = view.far_depth();
+    std::vector<float> depth(32 * 16, 1.0f);  // cleared
+    const std::size_t left = 3, right = 20;
+    depth[right] = window_depth(10);
+
+    const Reduced kept = reduce(view, {.depth = depth});
+    CHECK(kept.max[0] == far);
+    CHECK(kept.min[0] == doctest::Approx(1000).epsilon(0.01));
+    CHECK(kept.max[1] == far);
+    const Reduced skipped = reduce(view, {.depth = depth, .skip_background = true});
+    CHECK(skipped.min[0] == inf);
+    CHECK(skipped.max[0] == -inf);
+    CHECK(skipped.min[1] == doctest::Approx(10).epsilon(1e-3));
+    CHECK(skipped.max[1] == doctest::Approx(10).epsilon(1e-3));
+
+    for (const bool skip : {false, true}) {
+        depth[left] = std::nanf("");
+        const Reduced unknown = reduce(view, {.depth = depth, .skip_background = skip});
+        CHECK(unknown.min[0] == near);
+        CHECK(unknown.max[0] == far);
+        depth[left] = -std::nanf("");
+        CHECK(reduce(view, {.depth = depth, .skip_background = skip}).min[0] == near);
+    }
+    for (const float beyond : {-1.0f, -inf, -0.0f}) {
+        depth[left] = beyond;
+        CHECK(reduce(view, {.depth = depth, .skip_background = true}).min[0] == near);
+    }
+    for (const float beyond : {1.5f, inf}) {
+        depth[left] = beyond;
+        CHECK(reduce(view, {.depth = depth, .skip_background = true}).max[0] == far);
+    }
+}
+
+TEST_CASE("reversed Z: the far end is zero") {
+    glm::mat4 projection(0.0f);
+    projection[0][0] = projection[1][1] = 1;
+    projection[2][3] = -1;
+    projection[3][2] = 0.1f;
+    const View view =
+        *View::from_projection(projection, {16, 16}, {.tile_size = 16, .clip_depth = ClipDepth::zero_to_one});
+    std::vector<float> depth(256, 0.0f);
+    depth[5] = 0.1f / 20;
+    depth[6] = 0.1f / 40;
+    const Reduced kept = reduce(view, {.depth = depth});
+    CHECK(kept.min[0] == doctest::Approx(20));
+    CHECK(kept.max[0] == inf);
+    const Reduced skipped = reduce(view, {.depth = depth, .skip_background = true});
+    CHECK(skipped.min[0] == doctest::Approx(20));
+    CHECK(skipped.max[0] == doctest::Approx(40));
+}
+
+TEST_CASE("one side alone, and the formats' steps") {
+    const View view = test::view({64, 64}, 32);
+    const std::vector<float> depth(64 * 64, window_depth(100));
+    std::vector<float> min(4, -1.0f), max(4, -1.0f);
+    const auto only_max = reduce_depth(view, {.depth = depth}, {}, max);
+    REQUIRE(only_max);
+    CHECK(only_max->min.empty());
+    CHECK(only_max->max.size() == 4);
+    CHECK(max[3] == doctest::Approx(100).epsilon(1e-2));
+    const auto only_min = reduce_depth(view, {.depth = depth}, min, {});
+    REQUIRE(only_min);
+    CHECK(only_min->max.empty());
+    CHECK(min[3] == doctest::Approx(100).epsilon(1e-2));
+
+    for (const auto& [format, step] : {std::pair(DepthFormat::float32, std::ldexp(1.0, -24)),
+                                       std::pair(DepthFormat::unorm24, 1 / (std::ldexp(1.0, 24) - 1)),
+                                       std::pair(DepthFormat::unorm16, 1 / (std::ldexp(1.0, 16) - 1))}) {
+        const Reduced reduced = reduce(view, {.depth = depth, .format = format});
+        const double nearer = view_depth(static_cast<double>(depth[0]) - step);
+        const double farther = view_depth(static_cast<double>(depth[0]) + step);
+        CHECK(static_cast<double>(reduced.min[0]) <= nearer);
+        CHECK(static_cast<double>(reduced.max[0]) >= farther);
+        CHECK(static_cast<double>(reduced.max[0] - reduced.min[0]) < 2.2 * (farther - nearer));
+    }
+}
+
+TEST_CASE("sizes that do not fit are errors that name what is needed") {
+    const View view = test::view({64, 48}, 16);
+    const std::vector<float> depth(64 * 48);
+    std::vector<float> min(12), max(12);
+    const auto code = [&](const DepthBuffer& buffer, std::span<float> a, std::span<float> b) {
+        const auto bounds = reduce_depth(view, buffer, a, b);
+        REQUIRE(!bounds);
+        const auto needed =
+            static_cast<std::int64_t>(bounds.error().needed);  // a sample count may be negative
+        CHECK(bounds.error().message().find(std::to_string(needed)) != std::string::npos);
+        return bounds.error().code;
+    };
+    const std::span<const float> short_depth(depth.data(), depth.size() - 1);
+    CHECK(code({.depth = short_depth}, min, max) == ErrorCode::depth_buffer_too_small);
+    CHECK(code({.depth = depth, .samples = 2}, min, max) == ErrorCode::depth_buffer_too_small);
+    CHECK(code({.depth = depth, .row_pitch = 65}, min, max) == ErrorCode::depth_buffer_too_small);
+    CHECK(code({.depth = depth, .row_pitch = 63}, min, max) == ErrorCode::row_pitch_too_small);
+    CHECK(code({.depth = depth, .samples = 0}, min, max) == ErrorCode::samples_out_of_range);
+    CHECK(code({.depth = depth, .samples = 9}, min, max) == ErrorCode::samples_out_of_range);
+    CHECK(code({.depth = depth, .samples = -1}, min, max) == ErrorCode::samples_out_of_range);
+    CHECK(code({.depth = depth}, std::span(min).first(11), max) == ErrorCode::z_bounds_too_small);
+    CHECK(code({.depth = depth}, min, std::span(max).first(11)) == ErrorCode::z_bounds_too_small);
+}
