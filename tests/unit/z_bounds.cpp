@@ -26,10 +26,10 @@ float window_depth(double z) {
     return static_cast<float>(0.5 + 0.5 * ((far + near) / (far - near) - 2 * far * near / (far - near) / z));
 }
 
-/// And back.
+/// And back, through the float matrix that the view has read.
 double view_depth(double window) {
-    constexpr double near = 0.1, far = 1000.0;
-    return 2 * far * near / (far - near) / ((far + near) / (far - near) - (2 * window - 1));
+    const glm::dmat4 projection(glm::perspectiveRH_NO(1.0471976f, 1.0f, 0.1f, 1000.0f));
+    return projection[3][2] / (2 * window - 1 + projection[2][2]);
 }
 
 }  // namespace
