@@ -7,11 +7,9 @@
 #include <lightbin/view.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 namespace lightbin {
@@ -63,15 +61,17 @@ inline void extend(DepthRange& range, std::span<const float> samples, bool skip,
     }
 }
 
-/// Depths of `range` and of the fragments that may have written them.
-inline DepthRange widen(DepthRange range, DepthFormat format) {
-    const float step = format == DepthFormat::unorm24   ? 0x1.000002p-24f
-                       : format == DepthFormat::unorm16 ? 0x1.0002p-16f
-                                                        : 0.0f;
-    const float ulp = format == DepthFormat::float32 ? 0x1p-23f : 0.0f;
-    if (range.unknown) return {0, 1, true};
-    return {std::clamp(range.lower * (1 - ulp) - step, 0.0f, 1.0f),
-            std::clamp(range.upper * (1 + ulp) + step, 0.0f, 1.0f), false};
+/// View depths of the samples in `range` and of the fragments that may have written them. In double: a float
+/// sum near 1 would be off by a step of its own.
+inline DepthInterval view_depths(const View& view, const DepthRange& range, DepthFormat format) {
+    if (range.unknown) return view.view_depths(0, 1);
+    if (range.lower > range.upper) return {infinity, -infinity};
+    const double step = format == DepthFormat::unorm24   ? 0x1.000002p-24
+                        : format == DepthFormat::unorm16 ? 0x1.0002p-16
+                                                         : 0.0;
+    const double ulp = format == DepthFormat::float32 ? 0x1p-23 : 0.0;
+    return view.view_depths(std::clamp(static_cast<double>(range.lower) * (1 - ulp) - step, 0.0, 1.0),
+                            std::clamp(static_cast<double>(range.upper) * (1 + ulp) + step, 0.0, 1.0));
 }
 
 }  // namespace detail
@@ -114,11 +114,7 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
                                                         static_cast<std::size_t>(x0) * samples,
                                                     static_cast<std::size_t>(x1 - x0) * samples),
                                buffer.skip_background, background);
-            DepthInterval depths = {detail::infinity, -detail::infinity};
-            if (range.lower <= range.upper || range.unknown) {
-                range = detail::widen(range, buffer.format);
-                depths = view.view_depths(static_cast<double>(range.lower), static_cast<double>(range.upper));
-            }
+            const DepthInterval depths = detail::view_depths(view, range, buffer.format);
             if (!min.empty()) min[tile] = depths.min;
             if (!max.empty()) max[tile] = depths.max;
         }
