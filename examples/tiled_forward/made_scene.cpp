@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "scene.hpp"
+
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+namespace {
+
+// The same numbers everywhere, which the standard distributions do not promise.
+class Dice {
+public:
+    float between(float low, float high) {
+        return low + (high - low) * static_cast<float>(engine_() >> 8) / 16777216.0f;
+    }
+
+private:
+    std::mt19937 engine_{2011};
+};
+
+void add_quad(Scene& scene, const std::array<glm::vec3, 4>& corners, glm::vec3 normal, glm::vec3 colour) {
+    for (const std::size_t k : {0u, 1u, 2u, 0u, 2u, 3u})
+        scene.triangles.push_back({corners[k], normal, colour});
+}
+
+// The five sides of a block that can be seen.
+void add_block(Scene& scene, glm::vec3 low, glm::vec3 high, glm::vec3 colour) {
+    const float x0 = low.x, y0 = low.y, z0 = low.z, x1 = high.x, y1 = high.y, z1 = high.z;
+    add_quad(scene, {{{x0, y1, z1}, {x1, y1, z1}, {x1, y1, z0}, {x0, y1, z0}}}, {0, 1, 0}, colour);
+    add_quad(scene, {{{x0, y0, z1}, {x1, y0, z1}, {x1, y1, z1}, {x0, y1, z1}}}, {0, 0, 1}, colour);
+    add_quad(scene, {{{x1, y0, z0}, {x0, y0, z0}, {x0, y1, z0}, {x1, y1, z0}}}, {0, 0, -1}, colour);
+    add_quad(scene, {{{x1, y0, z1}, {x1, y0, z0}, {x1, y1, z0}, {x1, y1, z1}}}, {1, 0, 0}, colour);
+    add_quad(scene, {{{x0, y0, z0}, {x0, y0, z1}, {x0, y1, z1}, {x0, y1, z0}}}, {-1, 0, 0}, colour);
+}
+
+void add_dome(Scene& scene, glm::vec3 centre, float radius, glm::vec3 colour) {
+    constexpr int around = 32, up = 8;
+    const auto point = [&](int i, int j) {
+        const float a = glm::two_pi<float>() * static_cast<float>(i) / around;
+        const float b = glm::half_pi<float>() * static_cast<float>(j) / up;
+        return glm::vec3(std::cos(a) * std::cos(b), std::sin(b), -std::sin(a) * std::cos(b));
+    };
+    for (int j = 0; j < up; ++j)
+        for (int i = 0; i < around; ++i) {
+            const std::array<glm::vec3, 4> n{point(i, j), point(i + 1, j), point(i + 1, j + 1),
+                                             point(i, j + 1)};
+            for (const std::size_t k : {0u, 1u, 2u, 0u, 2u, 3u})
+                scene.triangles.push_back({centre + radius * n[k], n[k], colour});
+        }
+}
+
+glm::vec3 rainbow(float hue) {
+    const auto channel = [&](float shift) {
+        return 0.5f + 0.5f * std::cos(glm::two_pi<float>() * (hue + shift));
+    };
+    return {channel(0.0f), channel(0.667f), channel(0.333f)};
+}
+
+Camera look(const char* name, glm::dvec3 from, glm::dvec3 to, double fov_degrees) {
+    Camera camera;
+    camera.name = name;
+    camera.to_world = glm::inverse(glm::lookAt(from, to, glm::dvec3(0, 1, 0)));
+    camera.height = glm::radians(fov_degrees);
+    camera.near = 0.2;
+    camera.far = 500;
+    return camera;
+}
+
+}  // namespace
+
+Scene make_scene(int light_count) {
+    constexpr int blocks = 20;               // a side
+    constexpr float pitch = 8, half = 2.6f;  // of a block, and half its width: the streets are what is left
+    constexpr float edge = blocks * pitch / 2;
+    Dice dice;
+    Scene scene;
+    scene.name = "made scene";
+
+    add_quad(scene,
+             {{{-edge - 4, 0, edge + 4},
+               {edge + 4, 0, edge + 4},
+               {edge + 4, 0, -edge - 4},
+               {-edge - 4, 0, -edge - 4}}},
+             {0, 1, 0}, glm::vec3(0.55f));
+    for (int i = 0; i < blocks; ++i)
+        for (int j = 0; j < blocks; ++j) {
+            const glm::vec3 centre(pitch * (static_cast<float>(i) + 0.5f) - edge, 0,
+                                   pitch * (static_cast<float>(j) + 0.5f) - edge);
+            const float downtown = std::exp(-glm::dot(centre, centre) / 1600);
+            const float height = dice.between(0.6f, 3.0f) + downtown * dice.between(2.0f, 16.0f);
+            const glm::vec3 colour(dice.between(0.5f, 0.8f));
+            const float kind = dice.between(0, 1);
+            if (kind < 0.15f) {
+                add_dome(scene, centre, half, colour);
+            } else {
+                add_block(scene, centre - glm::vec3(half, 0, half), centre + glm::vec3(half, height, half),
+                          colour);
+                if (kind > 0.6f) {  // a smaller one on top
+                    const float inner = half * dice.between(0.4f, 0.8f);
+                    add_block(scene, centre + glm::vec3(-inner, height, -inner),
+                              centre + glm::vec3(inner, height + dice.between(0.5f, 4.0f) * (0.5f + downtown),
+                                                 inner),
+                              colour);
+                }
+                if (kind < 0.3f) add_dome(scene, centre + glm::vec3(0, height, 0), half * 0.8f, colour);
+            }
+        }
+
+    // Along the streets and up the walls; their colours go round the rainbow across the city.
+    const float range = 8 * std::pow(1024 / static_cast<float>(std::max(light_count, 1)), 0.33f);
+    for (int i = 0; i < light_count; ++i) {
+        const float across =
+            pitch * std::floor(dice.between(0, blocks + 1)) - edge + dice.between(-1.2f, 1.2f);
+        const float along = dice.between(-edge, edge);
+        Light light;
+        light.position = i % 2 == 0 ? glm::vec3(along, 0, across) : glm::vec3(across, 0, along);
+        const float downtown = std::exp(-glm::dot(light.position, light.position) / 1600);
+        light.position.y =
+            dice.between(0, 1) < 0.7f ? dice.between(0.4f, 2.0f) : dice.between(2.0f, 4.0f + 14 * downtown);
+        light.range = range * dice.between(0.7f, 1.3f);
+        const float hue =
+            (light.position.x - 0.6f * light.position.z) / (1.5f * edge) + dice.between(-0.1f, 0.1f);
+        light.intensity = rainbow(hue) * dice.between(6, 18) * (range / 8) * (range / 8);
+        scene.lights.push_back(light);
+    }
+
+    scene.cameras = {look("over the roofs", {-40, 30, 60}, {2, -2, 8}, 48),
+                     look("in a street", {0.4, 2.2, 71}, {0, 4, 0}, 55),
+                     look("from above", {0, 100, 0.1}, {0, 0, 0}, 60)};
+    return scene;
+}
+
+Camera framing_camera(const std::vector<Vertex>& triangles) {
+    glm::dvec3 low(std::numeric_limits<double>::max()), high(-low);
+    for (const Vertex& vertex : triangles) {
+        low = glm::min(low, glm::dvec3(vertex.position));
+        high = glm::max(high, glm::dvec3(vertex.position));
+    }
+    const glm::dvec3 centre = (low + high) / 2.0;
+    const double radius = std::max(glm::length(high - low) / 2, 1e-3);
+    Camera camera = look("the whole scene", {}, {0, 0, -1}, 45);
+    const double distance = radius / std::sin(camera.height / 2);
+    camera.to_world = glm::inverse(glm::lookAt(centre + distance * glm::normalize(glm::dvec3(0.5, 0.6, 1)),
+                                               centre, glm::dvec3(0, 1, 0)));
+    camera.near = (distance - radius) / 10;
+    camera.far = distance + 2 * radius;
+    return camera;
+}

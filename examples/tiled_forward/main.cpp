@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+// Draws a scene lit by hundreds of lights: in a window where there is a display, else as a PNG file.
+#include "gl_context.hpp"
+#include "renderer.hpp"
+#include "window.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <stdexcept>
+#include <string>
+
+namespace {
+
+struct Options {
+    std::string scene;
+    std::string output;
+    bool headless = false;
+    bool check = false;
+    bool heat_map = false;
+    int view = 0;
+    int lights = 0;
+    int glsl = 0;
+    float cutoff = 0.05f;
+    float stops = 0;
+    FrameSettings frame;
+};
+
+// Fills in the options. Returns false when the program has nothing more to do.
+bool parse(int argc, char** argv, Options& options, int& exit_code) {
+    CLI::App app("Tiled forward shading with lightbin: a scene lit by hundreds of lights.");
+    app.add_option("scene", options.scene,
+                   "A .glb file with KHR_lights_punctual lights (default: a made scene)");
+    app.add_option("--lights", options.lights,
+                   "Lights of the made scene (default: 1024), or the most to take from a file")
+        ->check(CLI::Range(1, 1000000));
+    app.add_option("--cutoff", options.cutoff, "Lux at which a light without a range ends; 0: never")
+        ->check(CLI::Range(0.0, 1e6))
+        ->capture_default_str();
+    app.add_option("--view", options.view, "Which camera")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    app.add_option("--tile", options.frame.tile_size, "Side of a tile in pixels")
+        ->check(CLI::Range(1, 32768))
+        ->capture_default_str();
+    bool no_pre_pass = false;
+    app.add_flag("--no-pre-pass", no_pre_pass, "No depth pre-pass (only with --z-bounds none)");
+    const std::map<std::string, ZBoundsUse> uses{
+        {"none", ZBoundsUse::none}, {"max", ZBoundsUse::max}, {"both", ZBoundsUse::both}};
+    app.add_option("--z-bounds", options.frame.z_bounds,
+                   "Depth bounds of a tile: none, max or both (default)")
+        ->transform(CLI::CheckedTransformer(uses))
+        ->type_name("WHICH");
+    app.add_option("--glsl", options.glsl,
+                   "330: texture buffers, 430: storage buffers (default: the newer that works)")
+        ->check(CLI::IsMember({330, 430}));
+    app.add_option("--exposure", options.stops, "Stops brighter (+) or darker (-) than the light meter says")
+        ->check(CLI::Range(-20.0, 20.0));
+    std::string size;
+    app.add_option("--size", size, "Width and height in pixels")->type_name("WxH")->default_str("1280x720");
+    app.add_flag("--heat-map", options.heat_map, "Lay the length of each tile's list over the picture");
+    app.add_flag("--headless", options.headless, "Write a picture although there is a display");
+    app.add_option("-o,--output", options.output,
+                   "Write this PNG file, no window (default without one: tiled_forward.png)");
+    app.add_flag("--check", options.check,
+                 "Draw again with every light in every fragment and compare; no window");
+    app.add_option("--drop-light", options.frame.dropped_light,
+                   "Leave this light out of the lists, to see --check fail")
+        ->check(CLI::NonNegativeNumber);
+
+    exit_code = 0;
+    try {
+        app.parse(argc, argv);
+        options.frame.pre_pass = !no_pre_pass;
+        if (no_pre_pass && options.frame.z_bounds != ZBoundsUse::none)
+            throw CLI::ValidationError("--no-pre-pass",
+                                       "Z bounds come from the pre-pass, so it needs --z-bounds none");
+        int end = -1;
+        if (!size.empty() &&
+            (std::sscanf(size.c_str(), "%5dx%5d%n", &options.frame.width, &options.frame.height, &end) != 2 ||
+             end != static_cast<int>(size.size()) || options.frame.width < 1 || options.frame.height < 1))
+            throw CLI::ValidationError("--size", "'" + size + "' is not a size like 1280x720");
+        return true;
+    } catch (const CLI::CallForHelp&) {
+        std::fputs(app.help().c_str(), stdout);
+    } catch (const CLI::ParseError& error) {
+        std::fprintf(stderr, "tiled_forward: %s (--help lists the options)\n", error.what());
+        exit_code = 2;
+    }
+    return false;
+}
+
+Scene open_scene(const Options& options) {
+    if (options.scene.empty()) return make_scene(options.lights > 0 ? options.lights : 1024);
+    Scene scene = load_glb(options.scene, options.cutoff);
+    if (const auto most = static_cast<std::size_t>(options.lights); most > 0 && scene.lights.size() > most) {
+        scene.notes.push_back("only the first " + std::to_string(most) + " of " +
+                              std::to_string(scene.lights.size()) + " lights are taken (--lights)");
+        scene.lights.resize(most);
+    }
+    return scene;
+}
+
+void print(const Scene& scene, const FrameSettings& frame, const Camera& camera, const FrameReport& report) {
+    const auto unsigned_long = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
+    const double every = static_cast<double>(scene.lights.size());
+    std::printf("view         \"%s\", %d x %d pixels in %d x %d tiles of %d\n", camera.name.c_str(),
+                frame.width, frame.height, report.tiles_x, report.tiles_y, frame.tile_size);
+    std::printf("lights       %llu in view of %zu", unsigned_long(report.lights_in_view),
+                scene.lights.size());
+    if (report.rejected > 0) std::printf(", %llu rejected as bad input", unsigned_long(report.rejected));
+    std::printf("\nlists        %llu entries, the longest has %u\n", unsigned_long(report.entries),
+                report.longest_list);
+    std::printf("evaluations  %.2f lights a pixel", report.evaluations_per_pixel);
+    if (report.evaluations_per_pixel > 0)
+        std::printf("; every light for every pixel would be %.1f times as many",
+                    every / report.evaluations_per_pixel);
+    const auto& ms = report.milliseconds;
+    std::printf("\ntime         %8.2f ms  depth pre-pass and read-back\n", ms.pre_pass);
+    std::printf("             %8.2f ms  reduce to Z bounds\n", ms.reduce);
+    std::printf("             %8.2f ms  bin\n", ms.bin);
+    std::printf("             %8.2f ms  upload\n", ms.upload);
+    std::printf("             %8.2f ms  draw\n", ms.draw);
+}
+
+// Says whether the tiled picture is that of every light in every fragment.
+bool check(Renderer& renderer, const Scene& scene, const Camera& camera, const FrameSettings& frame,
+           const Picture& tiled) {
+    renderer.draw_every_light(camera, frame);
+    const Difference difference = compare(tiled, renderer.read_picture());
+    if (difference.pixels == 0) {
+        std::printf(
+            "check        identical: %d x %d pixels, each lit by its tile's list and by all %zu lights\n",
+            frame.width, frame.height, scene.lights.size());
+        return true;
+    }
+    std::printf("check        DIFFERENT: %zu of %d x %d pixels, by up to %d of 255; the first is x %d, y %d "
+                "from the top, in tile (%d, %d)\n",
+                difference.pixels, frame.width, frame.height, difference.largest, difference.x,
+                frame.height - 1 - difference.y, difference.x / frame.tile_size,
+                difference.y / frame.tile_size);
+    return false;
+}
+
+int run(const Options& options) {
+    const Scene scene = open_scene(options);
+    if (static_cast<std::size_t>(options.view) >= scene.cameras.size())
+        throw std::runtime_error("there is no view " + std::to_string(options.view) + ": the scene has " +
+                                 std::to_string(scene.cameras.size()) + ", counted from 0");
+    std::printf("scene        %s: %zu triangles, %zu lights, %zu views\n", scene.name.c_str(),
+                scene.triangles.size() / 3, scene.lights.size(), scene.cameras.size());
+    for (const std::string& note : scene.notes)
+        std::printf("note         %s\n", note.c_str());
+    std::fflush(stdout);
+
+    if (!options.headless && !options.check && options.output.empty() &&
+        show_in_window(scene, options.glsl, options.view, options.frame, options.stops, options.heat_map))
+        return EXIT_SUCCESS;
+
+    const OffscreenContext context(options.glsl);
+    std::printf("OpenGL       %s, GLSL %d\n", reinterpret_cast<const char*>(glGetString(GL_RENDERER)),
+                context.glsl());
+    Renderer renderer(scene, context.glsl());
+    const Camera& camera = scene.cameras[static_cast<std::size_t>(options.view)];
+    FrameSettings frame = options.frame;
+    frame.exposure = renderer.meter(camera, frame) * std::exp2(options.stops);
+    renderer.draw(
+        camera, frame);  // the first frame waits for shader compilers and memory; the times are the second's
+    const FrameReport report = renderer.draw(camera, frame);
+    print(scene, frame, camera, report);
+
+    const Picture tiled = renderer.read_picture();
+    if (options.heat_map) renderer.draw_heat_map(report);
+    const std::string output = options.output.empty() ? "tiled_forward.png" : options.output;
+    write_png(options.heat_map ? renderer.read_picture() : tiled, output);
+    std::printf("picture      %s\n", output.c_str());
+    std::fflush(stdout);
+    return options.check && !check(renderer, scene, camera, frame, tiled) ? EXIT_FAILURE : EXIT_SUCCESS;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    int exit_code = 0;
+    if (!parse(argc, argv, options, exit_code)) return exit_code;
+    try {
+        return run(options);
+    } catch (const std::exception& problem) {
+        std::fprintf(stderr, "tiled_forward: %s\n", problem.what());
+        return EXIT_FAILURE;
+    }
+}

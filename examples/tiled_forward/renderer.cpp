@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: MIT
+#include "renderer.hpp"
+
+#include "gl_program.hpp"
+#include "shaders.hpp"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace {
+
+// Milliseconds since the last call, with OpenGL's work done.
+class Stopwatch {
+public:
+    double lap() {
+        glFinish();
+        const auto now = std::chrono::steady_clock::now();
+        const double milliseconds = std::chrono::duration<double, std::milli>(now - start_).count();
+        start_ = now;
+        return milliseconds;
+    }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+glm::mat4 projection_of(const Camera& camera, double aspect) {
+    if (camera.orthographic) {
+        const double y = camera.height / 2, x = y * aspect;
+        return glm::mat4(glm::ortho(-x, x, -y, y, camera.near, camera.far));
+    }
+    if (std::isinf(camera.far))
+        return glm::mat4(glm::infinitePerspective(camera.height, aspect, camera.near));
+    return glm::mat4(glm::perspective(camera.height, aspect, camera.near, camera.far));
+}
+
+template <class T> T value_of(lightbin::Result<T> result) {
+    if (!result) throw std::runtime_error(result.error().message());
+    return *result;
+}
+
+}  // namespace
+
+// The frame, from top to bottom.
+FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) {
+    FrameReport report;
+    Stopwatch watch;
+    set_size(settings.width, settings.height, settings.exposure == 0 ? GL_RGBA32F : GL_RGBA8);
+    set_camera(camera);
+    clear();
+    watch.lap();
+
+    // 1. The view: the projection matrix, the viewport and the tile size fix the grid of tiles.
+    const lightbin::View view = value_of(lightbin::View::from_projection(
+        projection_, {settings.width, settings.height}, {.tile_size = settings.tile_size}));
+
+    // 2. Depth alone, and from it the depths between which each tile has anything to light.
+    if (settings.pre_pass) draw_depth();
+    if (settings.z_bounds != ZBoundsUse::none) {
+        depth_buffer_.resize(static_cast<std::size_t>(settings.width) *
+                             static_cast<std::size_t>(settings.height));
+        glReadPixels(0, 0, settings.width, settings.height, GL_DEPTH_COMPONENT, GL_FLOAT,
+                     depth_buffer_.data());
+    }
+    report.milliseconds.pre_pass = watch.lap();
+
+    lightbin::ZBounds z_bounds;
+    if (settings.z_bounds != ZBoundsUse::none) {
+        min_depth_.resize(settings.z_bounds == ZBoundsUse::both ? view.tile_count() : 0);
+        max_depth_.resize(view.tile_count());
+        z_bounds = value_of(lightbin::reduce_depth(view, {.depth = depth_buffer_, .skip_background = true},
+                                                   min_depth_, max_depth_));
+    }
+    report.milliseconds.reduce = watch.lap();
+
+    // 3. The lists: which lights can reach which tile. The lights are read as they go to the GPU.
+    const std::span local_lights(gpu_lights_.data(), scene_.lights.size());
+    const auto lights = lightbin::view_space(local_lights, [&](const GpuLight& light) {
+        const bool dropped = &light - gpu_lights_.data() == settings.dropped_light;
+        const glm::vec4& s = light.sphere;
+        return lightbin::Sphere{s.x, s.y, s.z, dropped ? -1.0f : s.w};
+    });
+    const auto lists = value_of(binner_.bin(view, lights, z_bounds));
+    report.milliseconds.bin = watch.lap();
+
+    // 4. To the GPU.
+    grid_ = lightbin::shader_grid(view);
+    upload(lights_, gpu_lights_.data(), gpu_lights_.size() * sizeof(GpuLight), sizeof(glm::vec4), "lights");
+    upload(tiles_, lists.tiles().data(), lists.tiles().size_bytes(), sizeof(lightbin::Tile), "tiles");
+    upload(indices_, lists.indices().data(), lists.indices().size_bytes(), sizeof(std::uint32_t),
+           "light lists");
+    report.milliseconds.upload = watch.lap();
+
+    // 5. The picture.
+    draw_triangles(tiled_program_, settings);
+    report.milliseconds.draw = watch.lap();
+
+    const lightbin::Statistics& statistics = binner_.statistics();
+    report.tiles_x = view.tiles_x();
+    report.tiles_y = view.tiles_y();
+    report.lights_in_view = statistics.lights - statistics.culled - statistics.rejected;
+    report.rejected = statistics.rejected;
+    report.entries = statistics.entries;
+    report.longest_list = statistics.longest_list;
+    const int t = settings.tile_size;
+    double evaluations = 0;
+    for (int ty = 0; ty < view.tiles_y(); ++ty)
+        for (int tx = 0; tx < view.tiles_x(); ++tx) {
+            const double pixels = static_cast<double>(std::min(t, settings.width - tx * t)) *
+                                  std::min(t, settings.height - ty * t);
+            evaluations += pixels * static_cast<double>(lists.lights_in(tx, ty).size());
+        }
+    report.evaluations_per_pixel = evaluations / settings.width / settings.height;
+    if (const GLenum error = glGetError(); error != GL_NO_ERROR)
+        throw std::runtime_error("OpenGL reports error " + std::to_string(error));
+    return report;
+}
+
+void Renderer::draw_every_light(const Camera& camera, const FrameSettings& settings) {
+    set_size(settings.width, settings.height, GL_RGBA8);
+    set_camera(camera);
+    clear();
+    if (settings.pre_pass) draw_depth();
+    upload(lights_, gpu_lights_.data(), gpu_lights_.size() * sizeof(GpuLight), sizeof(glm::vec4), "lights");
+    draw_triangles(brute_force_program_, settings);
+}
+
+void Renderer::draw_heat_map(const FrameReport& report) {
+    glUseProgram(heat_map_program_);
+    bind_lists(heat_map_program_, grid_);
+    glUniform1f(uniform(heat_map_program_, "longest_list"),
+                static_cast<float>(std::max(report.longest_list, 1u)));
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDisable(GL_BLEND);
+}
+
+// The brighter parts of what is lit are to come out well, whatever unit the scene's lights are in: three
+// quarters of the lit pixels stay below the middle of the display's range.
+float Renderer::meter(const Camera& camera, const FrameSettings& settings) {
+    FrameSettings small = settings;
+    small.width = 128;
+    small.height = 72;
+    small.tile_size = 8;
+    small.exposure = 0;
+    draw(camera, small);
+
+    std::vector<glm::vec4> pixels(static_cast<std::size_t>(small.width) *
+                                  static_cast<std::size_t>(small.height));
+    glReadPixels(0, 0, small.width, small.height, GL_RGBA, GL_FLOAT, pixels.data());
+    std::vector<float> lit;
+    for (const glm::vec4& pixel : pixels)
+        if (const float brightest = std::max({pixel.r, pixel.g, pixel.b}); pixel.a > 0 && brightest > 0)
+            lit.push_back(brightest);
+    if (lit.empty()) return 1;
+    const auto quartile = lit.begin() + static_cast<std::ptrdiff_t>(lit.size() * 3 / 4);
+    std::nth_element(lit.begin(), quartile, lit.end());
+    return 0.5f / *quartile;
+}
+
+Picture Renderer::read_picture() const {
+    Picture picture{width_, height_, {}};
+    picture.rgb.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 3);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, picture.rgb.data());
+    return picture;
+}
+
+void Renderer::show() const {
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+Renderer::Renderer(const Scene& scene, int glsl) : scene_(scene), glsl_(glsl) {
+    const bool spots =
+        std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return l.spot; });
+    const std::string geometry = geometry_vertex_shader(glsl);
+    depth_program_ = link_program(geometry, depth_fragment_shader(glsl));
+    tiled_program_ = link_program(geometry, forward_fragment_shader(glsl, LightLoop::tile_list, spots));
+    brute_force_program_ =
+        link_program(geometry, forward_fragment_shader(glsl, LightLoop::every_light, spots));
+    heat_map_program_ = link_program(overlay_vertex_shader(glsl), heat_map_fragment_shader(glsl));
+
+    glGenVertexArrays(1, &vertex_array_);
+    glBindVertexArray(vertex_array_);
+    GLuint vertices = 0;
+    glGenBuffers(1, &vertices);
+    glBindBuffer(GL_ARRAY_BUFFER, vertices);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(scene.triangles.size() * sizeof(Vertex)),
+                 scene.triangles.data(), GL_STATIC_DRAW);
+    for (const GLuint attribute : {0u, 1u, 2u}) {  // the three vec3 of a Vertex
+        glEnableVertexAttribArray(attribute);
+        glVertexAttribPointer(attribute, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                              reinterpret_cast<const void*>(attribute * sizeof(glm::vec3)));
+    }
+
+    const auto make_buffer = [](GLenum format, bool with_texture) {
+        GpuBuffer made;
+        made.format = format;
+        glGenBuffers(1, &made.buffer);
+        if (with_texture) glGenTextures(1, &made.texture);
+        return made;
+    };
+    lights_ = make_buffer(GL_RGBA32F, true);
+    tiles_ = make_buffer(GL_RG32UI, glsl < 430);
+    indices_ = make_buffer(GL_R32UI, glsl < 430);
+
+    glGenFramebuffers(1, &framebuffer_);
+    glGenRenderbuffers(1, &colour_);
+    glGenRenderbuffers(1, &depth_);
+}
+
+void Renderer::set_size(int width, int height, GLenum colour_format) {
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest);
+    if (std::max(width, height) > largest)
+        throw std::runtime_error("this OpenGL draws at most " + std::to_string(largest) + " pixels a side");
+    glBindRenderbuffer(GL_RENDERBUFFER, colour_);
+    glRenderbufferStorage(GL_RENDERBUFFER, colour_format, width, height);
+    glBindRenderbuffer(GL_RENDERBUFFER, depth_);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, width, height);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        throw std::runtime_error("this OpenGL cannot draw a picture of " + std::to_string(width) + "x" +
+                                 std::to_string(height) + " pixels");
+    glViewport(0, 0, width, height);
+    width_ = width;
+    height_ = height;
+}
+
+// The matrices, and the lights in view space. In double, as a scene can be far from the origin.
+void Renderer::set_camera(const Camera& camera) {
+    const glm::dmat4 view = glm::inverse(camera.to_world);
+    const glm::dmat3 turn(view);
+    view_ = glm::mat4(view);
+    projection_ = projection_of(camera, static_cast<double>(width_) / height_);
+
+    gpu_lights_.clear();
+    for (const Light& light : scene_.lights) {
+        GpuLight gpu{glm::vec4(glm::vec3(view * glm::dvec4(light.position, 1.0)), light.range),
+                     glm::vec4(light.intensity, 0), glm::vec4(0, 0, 0, 1)};
+        if (light.spot) {
+            const float scale = 1 / std::max(light.cos_inner - light.cos_outer, 0.001f);
+            gpu.cone =
+                glm::vec4(-scale * glm::vec3(turn * glm::dvec3(light.direction)), -scale * light.cos_outer);
+        }
+        gpu_lights_.push_back(gpu);
+    }
+    for (const Sun& sun : scene_.suns)
+        gpu_lights_.push_back({glm::vec4(-glm::vec3(turn * glm::dvec3(sun.direction)), 0),
+                               glm::vec4(sun.illuminance, 0), glm::vec4(0)});
+}
+
+void Renderer::clear() const {
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glClearColor(0.02f, 0.025f, 0.04f, 0);  // alpha tells the light meter where nothing is drawn
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+void Renderer::draw_depth() const {
+    glUseProgram(depth_program_);
+    glUniformMatrix4fv(uniform(depth_program_, "view"), 1, GL_FALSE, glm::value_ptr(view_));
+    glUniformMatrix4fv(uniform(depth_program_, "projection"), 1, GL_FALSE, glm::value_ptr(projection_));
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(scene_.triangles.size()));
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthFunc(GL_LEQUAL);  // what follows is at the depths already there
+}
+
+void Renderer::draw_triangles(GLuint program, const FrameSettings& settings) const {
+    glUseProgram(program);
+    glUniformMatrix4fv(uniform(program, "view"), 1, GL_FALSE, glm::value_ptr(view_));
+    glUniformMatrix4fv(uniform(program, "projection"), 1, GL_FALSE, glm::value_ptr(projection_));
+    glUniform2f(uniform(program, "picture_size"), static_cast<float>(width_), static_cast<float>(height_));
+    glUniform3fv(uniform(program, "moon"), 1,
+                 glm::value_ptr(glm::mat3(view_) * glm::normalize(glm::vec3(0.3f, 0.8f, 0.5f))));
+    glUniform1f(uniform(program, "exposure"), settings.exposure);
+    glUniform1i(uniform(program, "light_count"), static_cast<int>(scene_.lights.size()));
+    glUniform1i(uniform(program, "sun_count"), static_cast<int>(scene_.suns.size()));
+    glActiveTexture(GL_TEXTURE2);
+    glBindTexture(GL_TEXTURE_BUFFER, lights_.texture);
+    glUniform1i(uniform(program, "lights"), 2);
+    if (program == tiled_program_) bind_lists(program, grid_);
+    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(scene_.triangles.size()));
+}
+
+// Hands the lists to the text that lightbin/shader.hpp generates.
+void Renderer::bind_lists(GLuint program, std::array<std::uint32_t, 4> grid) const {
+    glUniform4uiv(uniform(program, "lightbin_grid"), 1, grid.data());
+    if (glsl_ >= 430) {
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, tiles_.buffer);
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, indices_.buffer);
+    } else {
+        glActiveTexture(GL_TEXTURE0);
+        glBindTexture(GL_TEXTURE_BUFFER, tiles_.texture);
+        glUniform1i(uniform(program, "lightbin_tiles"), 0);
+        glActiveTexture(GL_TEXTURE1);
+        glBindTexture(GL_TEXTURE_BUFFER, indices_.texture);
+        glUniform1i(uniform(program, "lightbin_indices"), 1);
+    }
+}
+
+void Renderer::upload(const GpuBuffer& target, const void* data, std::size_t bytes, std::size_t texel_size,
+                      const char* what) const {
+    GLint64 most = 0;
+    glGetInteger64v(target.texture ? GL_MAX_TEXTURE_BUFFER_SIZE : GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
+    if (target.texture) most *= static_cast<GLint64>(texel_size);
+    if (bytes > static_cast<std::size_t>(most))
+        throw std::runtime_error("the " + std::string(what) + " take " + std::to_string(bytes) +
+                                 " bytes and shaders here read at most " + std::to_string(most) +
+                                 ": use larger tiles or fewer lights");
+    glBindBuffer(GL_TEXTURE_BUFFER, target.buffer);
+    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max<std::size_t>(bytes, 16)), nullptr,
+                 GL_STREAM_DRAW);
+    glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
+    if (target.texture) {
+        glActiveTexture(GL_TEXTURE3);
+        glBindTexture(GL_TEXTURE_BUFFER, target.texture);
+        glTexBuffer(GL_TEXTURE_BUFFER, target.format, target.buffer);
+    }
+}

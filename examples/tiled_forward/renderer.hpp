@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// Tiled forward shading of a scene: renderer.cpp has the frame from top to bottom.
+#pragma once
+
+#include "picture.hpp"
+#include "scene.hpp"
+
+#include <lightbin/lightbin.hpp>
+
+#include <epoxy/gl.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+enum class ZBoundsUse { none, max, both };
+
+struct FrameSettings {
+    int width = 1280;
+    int height = 720;
+    int tile_size = 16;
+    bool pre_pass = true;                    // depth first, so that only what is seen is shaded
+    ZBoundsUse z_bounds = ZBoundsUse::both;  // need the pre-pass
+    float exposure = 1;                      // 0: linear radiance, see Renderer::meter
+    int dropped_light = -1;                  // left out of the lists, to see --check fail
+};
+
+// What a frame cost and what its lists hold.
+struct FrameReport {
+    int tiles_x = 0, tiles_y = 0;
+    std::uint64_t lights_in_view = 0;
+    std::uint64_t rejected = 0;
+    std::uint64_t entries = 0;
+    std::uint32_t longest_list = 0;
+    double evaluations_per_pixel = 0;
+    struct {
+        double pre_pass, reduce, bin, upload, draw;
+    } milliseconds{};
+};
+
+class Renderer {
+public:
+    // Needs a current OpenGL context, and leaves its objects to it: they live as long as the program.
+    Renderer(const Scene& scene, int glsl);
+
+    // Draws the scene, each fragment lit by the list of its tile.
+    FrameReport draw(const Camera& camera, const FrameSettings& settings);
+
+    // Draws the same with every light in every fragment.
+    void draw_every_light(const Camera& camera, const FrameSettings& settings);
+
+    // Lays the length of each tile's list, as of the last draw(), over the picture.
+    void draw_heat_map(const FrameReport& report);
+
+    // Returns the exposure that shows this view well, from a small picture of it.
+    float meter(const Camera& camera, const FrameSettings& settings);
+
+    Picture read_picture() const;
+
+    // Copies the picture to the window.
+    void show() const;
+
+private:
+    // A light as the shaders read it, in view space: three texels.
+    struct GpuLight {
+        glm::vec4 sphere;  // centre, range; a sun: the way to it
+        glm::vec4 colour;  // candela; a sun: lux
+        glm::vec4
+            cone;  // angular falloff = (dot(cone.xyz, direction to the light) + cone.w) squared, in 0..1
+    };
+
+    // A buffer that shaders read as a buffer texture or as a storage buffer.
+    struct GpuBuffer {
+        GLuint buffer = 0;
+        GLuint texture = 0;
+        GLenum format = 0;
+    };
+
+    void set_size(int width, int height, GLenum colour_format);
+    void set_camera(const Camera& camera);
+    void clear() const;
+    void draw_depth() const;
+    void draw_triangles(GLuint program, const FrameSettings& settings) const;
+    void bind_lists(GLuint program, std::array<std::uint32_t, 4> grid) const;
+    void upload(const GpuBuffer& target, const void* data, std::size_t bytes, std::size_t texel_size,
+                const char* what) const;
+
+    const Scene& scene_;
+    int glsl_;
+
+    GLuint depth_program_, tiled_program_, brute_force_program_, heat_map_program_;
+    GLuint vertex_array_ = 0;
+    GLuint framebuffer_ = 0, colour_ = 0, depth_ = 0;
+    GpuBuffer lights_, tiles_, indices_;
+
+    // Of the frame
+    int width_ = 0, height_ = 0;
+    glm::mat4 projection_{1}, view_{1};
+    std::array<std::uint32_t, 4> grid_{};
+    std::vector<GpuLight> gpu_lights_;
+    std::vector<float> depth_buffer_, min_depth_, max_depth_;
+    lightbin::Binner<{.depth_test = lightbin::DepthTest::interval, .statistics = true}> binner_;
+};

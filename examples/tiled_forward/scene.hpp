@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// A scene as the renderer wants it: triangles and lights in world space, and places to look from.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+struct Vertex {
+    glm::vec3 position;
+    glm::vec3 normal;
+    glm::vec3 colour;  // base colour, linear
+};
+
+// A point light or a spot light. What it gives falls with the squared distance and is windowed to zero at its
+// range.
+struct Light {
+    glm::vec3 position{0};
+    float range = 0;         // metres; infinity: lights everything
+    glm::vec3 intensity{0};  // candela, linear colour
+    bool spot = false;       // a spot light has a cone as well
+    glm::vec3 direction{0};  // of the cone's axis, unit length
+    float cos_inner = 1;     // full strength inside this angle,
+    float cos_outer = -1;    // nothing outside this one
+};
+
+// A directional light: it has no range, so it is in no list; every fragment is shaded with it.
+struct Sun {
+    glm::vec3 direction{0};    // the way the light travels, unit length
+    glm::vec3 illuminance{0};  // lux, linear colour
+};
+
+struct Camera {
+    std::string name;
+    glm::dmat4 to_world{1};  // rigid; the camera looks down its -z, as in OpenGL and glTF
+    bool orthographic = false;
+    double height =
+        1;  // perspective: the vertical field of view, radians; orthographic: of the picture, metres
+    double near = 0.1;
+    double far = std::numeric_limits<double>::infinity();
+};
+
+struct Scene {
+    std::string name;
+    std::vector<Vertex> triangles;  // three vertices each
+    std::vector<Light> lights;
+    std::vector<Sun> suns;
+    std::vector<Camera> cameras;     // at least one
+    std::vector<std::string> notes;  // what was read in a way the user may not expect, a line each
+};
+
+// Reads a binary glTF 2.0 file. A light without a range gets the one at which it still gives `cutoff` lux
+// (0: it stays infinite). Throws std::runtime_error with one line of text.
+Scene load_glb(const std::string& path, float cutoff);
+
+// A small city at night with this many coloured lights in its streets. The same every time.
+Scene make_scene(int light_count);
+
+// A camera that has all of the scene in sight, from the front and above.
+Camera framing_camera(const std::vector<Vertex>& triangles);

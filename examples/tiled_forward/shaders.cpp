@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "shaders.hpp"
+
+#include <lightbin/shader.hpp>
+
+namespace {
+
+std::string version_line(int glsl) {
+    return "#version " + std::to_string(glsl) + " core\n";
+}
+
+// Declares lightbin_list() and lightbin_light(), and the two buffers they read.
+std::string tile_lists(int glsl) {
+    return lightbin::shader_snippet(
+        {.language = glsl >= 430 ? lightbin::ShaderLanguage::glsl_430 : lightbin::ShaderLanguage::glsl_330});
+}
+
+// What light `id` sends to the surface at `position`, all in view space.
+const char* const lighting = R"(
+uniform samplerBuffer lights;  // three texels each, see GpuLight
+
+// Inverse-square falloff, windowed to zero at the range, as KHR_lights_punctual recommends.
+float falloff(float square_distance, float inverse_square_range) {
+    float x = square_distance * inverse_square_range;
+    return clamp(1.0 - x * x, 0.0, 1.0) / max(square_distance, 1e-4);
+}
+
+vec3 irradiance(int id, vec3 position, vec3 normal) {
+    vec4 sphere = texelFetch(lights, 3 * id);
+    vec4 colour = texelFetch(lights, 3 * id + 1);
+    vec3 to_light = sphere.xyz - position;
+    float square_distance = dot(to_light, to_light);
+    vec3 direction = to_light * inversesqrt(max(square_distance, 1e-20));
+    float facing = max(dot(normal, direction), 0.0);
+    float inverse_square_range = 1.0 / (sphere.w * sphere.w);
+#ifdef SPOTS
+    vec4 cone = texelFetch(lights, 3 * id + 2);
+    float angular = clamp(dot(cone.xyz, direction) + cone.w, 0.0, 1.0);
+    facing *= angular * angular;
+#endif
+    return colour.rgb * (facing * falloff(square_distance, inverse_square_range));
+}
+)";
+
+const char* const forward_main = R"(
+uniform mat4 projection;
+uniform vec2 picture_size;
+uniform vec3 moon;       // the way to it, in view space
+uniform float exposure;  // 0: write linear radiance, for the light meter
+uniform int light_count;
+uniform int sun_count;   // the directional lights follow the others
+
+in vec3 surface_normal;
+in vec3 base_colour;
+out vec4 pixel;
+
+// From gl_FragCoord, the very numbers that tiles and Z bounds are made of: an interpolated position differs from
+// the depth buffer's by the rasteriser's rounding, which can be much at a triangle seen edge-on.
+vec3 view_position() {
+    vec3 ndc = 2.0 * vec3(gl_FragCoord.xy / picture_size, gl_FragCoord.z) - 1.0;
+    float z = (projection[3][2] - ndc.z * projection[3][3]) / (ndc.z * projection[2][3] - projection[2][2]);
+    float w = projection[2][3] * z + projection[3][3];
+    vec2 offset = vec2(projection[2][0], projection[2][1]) * z + vec2(projection[3][0], projection[3][1]);
+    return vec3((ndc.xy * w - offset) / vec2(projection[0][0], projection[1][1]), z);
+}
+
+void main() {
+    vec3 position = view_position();
+    vec3 normal = normalize(gl_FrontFacing ? surface_normal : -surface_normal);
+
+    vec3 light = vec3(0.0);
+    for (int sun = light_count; sun < light_count + sun_count; ++sun)
+        light += texelFetch(lights, 3 * sun + 1).rgb * max(dot(normal, texelFetch(lights, 3 * sun).xyz), 0.0);
+#ifdef EVERY_LIGHT
+    for (int id = 0; id < light_count; ++id)
+        light += irradiance(id, position, normal);
+#else
+    uvec2 list = lightbin_list(gl_FragCoord.xy);
+    for (uint i = 0u; i < list.y; ++i)
+        light += irradiance(int(lightbin_light(list.x + i)), position, normal);
+#endif
+
+    vec3 radiance = base_colour * light / 3.14159265;
+    if (exposure == 0.0) {
+        pixel = vec4(radiance, 1.0);
+    } else {
+        vec3 night = base_colour * vec3(0.012, 0.015, 0.024) * (1.0 + dot(normal, moon));  // so that nothing is all black
+        vec3 display = 1.0 - exp(-exposure * radiance - night);
+        pixel = vec4(pow(display, vec3(1.0 / 2.2)), 1.0);
+    }
+}
+)";
+
+}  // namespace
+
+std::string geometry_vertex_shader(int glsl) {
+    return version_line(glsl) + R"(
+uniform mat4 view;
+uniform mat4 projection;
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec3 colour;
+out vec3 surface_normal;
+out vec3 base_colour;
+invariant gl_Position;  // the same bits in the depth pre-pass and in the shading pass
+
+void main() {
+    surface_normal = mat3(view) * normal;
+    base_colour = colour;
+    gl_Position = projection * (view * vec4(position, 1.0));
+}
+)";
+}
+
+std::string depth_fragment_shader(int glsl) {
+    return version_line(glsl) + "void main() {}\n";
+}
+
+std::string forward_fragment_shader(int glsl, LightLoop loop, bool has_spots) {
+    std::string text = version_line(glsl);
+    if (has_spots) text += "#define SPOTS\n";
+    if (loop == LightLoop::every_light)
+        text += "#define EVERY_LIGHT\n";
+    else
+        text += tile_lists(glsl);
+    return text + lighting + forward_main;
+}
+
+std::string overlay_vertex_shader(int glsl) {
+    return version_line(glsl) + R"(
+void main() {
+    gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 2.0 * float(gl_VertexID & 2) - 1.0, 0.0, 1.0);
+}
+)";
+}
+
+std::string heat_map_fragment_shader(int glsl) {
+    return version_line(glsl) + tile_lists(glsl) + R"(
+uniform float longest_list;
+out vec4 pixel;
+
+void main() {
+    float heat = float(lightbin_list(gl_FragCoord.xy).y) / longest_list;
+    // blue, cyan, green, yellow, red
+    vec3 colour = clamp(vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat), 0.0, 1.0);
+    pixel = vec4(colour, heat > 0.0 ? 0.6 : 0.0);
+}
+)";
+}

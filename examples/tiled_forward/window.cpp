@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "window.hpp"
+
+#include <epoxy/gl.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+
+namespace {
+
+// Ends GLFW, and with it the window, when it goes.
+struct Glfw {
+    bool running = glfwInit() == GLFW_TRUE;
+    Glfw() = default;
+    ~Glfw() { glfwTerminate(); }
+    Glfw(const Glfw&) = delete;
+    Glfw& operator=(const Glfw&) = delete;
+};
+
+GLFWwindow* open_window(const char* title, const FrameSettings& settings, int wanted_glsl, int& glsl) {
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    for (const int version : {430, 330}) {
+        if (wanted_glsl != 0 && wanted_glsl != version) continue;
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, version / 100);
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, version / 10 % 10);
+        glsl = version;
+        if (GLFWwindow* window = glfwCreateWindow(settings.width, settings.height, title, nullptr, nullptr))
+            return window;
+    }
+    throw std::runtime_error("no usable OpenGL: no window with an OpenGL 3.3 core context can be opened");
+}
+
+// W A S D and Q E move, a held mouse button turns, shift hurries.
+class FreeCamera {
+public:
+    FreeCamera(const Camera& start, double metres_per_second) : camera_(start), speed_(metres_per_second) {
+        const glm::dvec3 forward = -glm::dvec3(start.to_world[2]);
+        yaw_ = std::atan2(-forward.x, -forward.z);
+        pitch_ = std::asin(std::clamp(forward.y, -1.0, 1.0));
+    }
+
+    void move(GLFWwindow* window, double seconds) {
+        double x = 0, y = 0;
+        glfwGetCursorPos(window, &x, &y);
+        if (glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS) {
+            yaw_ -= 0.004 * (x - mouse_x_);
+            pitch_ = std::clamp(pitch_ - 0.004 * (y - mouse_y_), -1.55, 1.55);
+        }
+        mouse_x_ = x;
+        mouse_y_ = y;
+
+        const glm::dmat4 turn =
+            glm::rotate(glm::rotate(glm::dmat4(1), yaw_, glm::dvec3(0, 1, 0)), pitch_, glm::dvec3(1, 0, 0));
+        const auto key = [&](int forth, int back) {
+            return static_cast<double>(glfwGetKey(window, forth)) -
+                   static_cast<double>(glfwGetKey(window, back));
+        };
+        const glm::dvec3 step(key(GLFW_KEY_D, GLFW_KEY_A), key(GLFW_KEY_E, GLFW_KEY_Q),
+                              key(GLFW_KEY_S, GLFW_KEY_W));
+        const double hurry = glfwGetKey(window, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS ? 4 : 1;
+        const glm::dvec3 place =
+            glm::dvec3(camera_.to_world[3]) + glm::dmat3(turn) * step * (speed_ * hurry * seconds);
+        camera_.to_world = turn;
+        camera_.to_world[3] = glm::dvec4(place, 1);
+    }
+
+    const Camera& camera() const { return camera_; }
+
+private:
+    Camera camera_;
+    double speed_;
+    double yaw_ = 0, pitch_ = 0;
+    double mouse_x_ = 0, mouse_y_ = 0;
+};
+
+// A tenth of the scene a second.
+double walking_speed(const Scene& scene) {
+    glm::vec3 low = scene.triangles[0].position, high = low;
+    for (const Vertex& vertex : scene.triangles) {
+        low = glm::min(low, vertex.position);
+        high = glm::max(high, vertex.position);
+    }
+    return static_cast<double>(glm::length(high - low)) / 10;
+}
+
+}  // namespace
+
+bool show_in_window(const Scene& scene, int wanted_glsl, int view, FrameSettings settings,
+                    float exposure_stops, bool heat_map) {
+    const Glfw glfw;
+    if (!glfw.running) return false;
+    int glsl = 0;
+    GLFWwindow* const window = open_window(scene.name.c_str(), settings, wanted_glsl, glsl);
+    glfwMakeContextCurrent(window);
+    glfwSwapInterval(1);
+    Renderer renderer(scene, glsl);
+
+    std::printf(
+        "W A S D Q E: move (shift: faster), mouse button held: turn, 1-9: views, H: heat map, Escape: end\n");
+    const double speed = walking_speed(scene);
+    FreeCamera walker(scene.cameras[0], speed);
+    const auto go_to = [&](std::size_t index) {
+        walker = FreeCamera(scene.cameras[index], speed);
+        settings.exposure = renderer.meter(scene.cameras[index], settings) * std::exp2(exposure_stops);
+    };
+    go_to(static_cast<std::size_t>(view));
+
+    double last = glfwGetTime(), last_title = 0;
+    bool h_was_down = false;
+    while (!glfwWindowShouldClose(window)) {
+        glfwPollEvents();
+        if (glfwGetKey(window, GLFW_KEY_ESCAPE) == GLFW_PRESS) break;
+        const bool h_is_down = glfwGetKey(window, GLFW_KEY_H) == GLFW_PRESS;
+        if (h_is_down && !h_was_down) heat_map = !heat_map;
+        h_was_down = h_is_down;
+        for (int i = 0; i < 9; ++i)
+            if (static_cast<std::size_t>(i) < scene.cameras.size() &&
+                glfwGetKey(window, GLFW_KEY_1 + i) == GLFW_PRESS)
+                go_to(static_cast<std::size_t>(i));
+        const double now = glfwGetTime();
+        walker.move(window, now - last);
+        last = now;
+
+        glfwGetFramebufferSize(window, &settings.width, &settings.height);
+        if (settings.width < 1 || settings.height < 1) {  // minimised
+            glfwWaitEventsTimeout(0.1);
+            continue;
+        }
+        const FrameReport report = renderer.draw(walker.camera(), settings);
+        if (heat_map) renderer.draw_heat_map(report);
+        renderer.show();
+        glfwSwapBuffers(window);
+
+        if (now - last_title > 0.5) {
+            last_title = now;
+            char title[160];
+            std::snprintf(title, sizeof title,
+                          "%s: %llu lights in view, %.1f evaluations a pixel, bin %.2f ms, draw %.1f ms",
+                          scene.name.c_str(), static_cast<unsigned long long>(report.lights_in_view),
+                          report.evaluations_per_pixel, report.milliseconds.bin, report.milliseconds.draw);
+            glfwSetWindowTitle(window, title);
+        }
+    }
+    return true;
+}

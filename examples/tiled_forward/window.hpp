@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+// A window with a free camera.
+#pragma once
+
+#include "renderer.hpp"
+
+// Opens a window, draws the scene in it until it is closed, and returns true. Returns false where there is no
+// display. Throws std::runtime_error if there is a display without a usable OpenGL.
+bool show_in_window(const Scene& scene, int wanted_glsl, int view, FrameSettings settings,
+                    float exposure_stops, bool heat_map);
