@@ -31,12 +31,24 @@ void* counted(std::size_t size, std::align_val_t alignment) {
 }  // namespace
 
 // The array and nothrow forms call these.
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new(std::size_t size, std::align_val_t alignment) { return counted(size, alignment); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void* operator new(std::size_t size) {
+    return counted(size);
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+    return counted(size, alignment);
+}
+void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+    std::free(memory);
+}
 
 namespace {
 
@@ -46,12 +58,14 @@ std::vector<glm::vec4> random_lights(std::size_t count) {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> side(-40, 40), depth(-90, 10), radius(0.5f, 12);
     std::vector<glm::vec4> lights(count);
-    for (glm::vec4& light : lights) light = {side(random), side(random), depth(random), radius(random)};
+    for (glm::vec4& light : lights)
+        light = {side(random), side(random), depth(random), radius(random)};
     return lights;
 }
 
 View make_view(int width, int height, int tile_size) {
-    const auto projection = glm::perspective(1.0f, static_cast<float>(width) / static_cast<float>(height), 0.1f, 100.0f);
+    const auto projection =
+        glm::perspective(1.0f, static_cast<float>(width) / static_cast<float>(height), 0.1f, 100.0f);
     const auto view = View::from_projection(projection, {width, height}, {.tile_size = tile_size});
     if (!view) std::abort();
     return *view;
@@ -74,7 +88,8 @@ struct Scene {
         : view(make_view(width, height, 32)), lights(random_lights(light_count)),
           depth(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)), min(view.tile_count()),
           max(view.tile_count()) {
-        for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = 0.9f + 0.1f * static_cast<float>(i % 97) / 97.0f;
+        for (std::size_t i = 0; i < depth.size(); ++i)
+            depth[i] = 0.9f + 0.1f * static_cast<float>(i % 97) / 97.0f;
     }
 
     ZBounds reduce() {
@@ -109,8 +124,7 @@ std::size_t frame(Binner<options>& binner, Scene& scene, std::vector<Tile>& tile
     return entries;
 }
 
-template <Options options>
-void check_options() {
+template <Options options> void check_options() {
     Scene scene(640, 360, 500), smaller(320, 200, 300);
     std::vector<Tile> tiles(scene.view.tile_count());
     std::vector<typename Binner<options>::Id> indices(500 * tiles.size());

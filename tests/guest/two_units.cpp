@@ -1,4 +1,5 @@
-// use_everything.cpp twice in one program, with different flags: it links, it runs, and both get the same bytes.
+// use_everything.cpp twice in one program, with different flags: it links, it runs, and both get the same
+// bytes.
 #include <cinttypes>
 #include <cstdint>
 #include <cstdio>

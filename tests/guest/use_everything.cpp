@@ -1,5 +1,5 @@
-// Every public template instantiated with every kind of argument, in a function named by the macro UNIT: compiled by
-// several compilers with several flags for its warnings, and twice into one program.
+// Every public template instantiated with every kind of argument, in a function named by the macro UNIT:
+// compiled by several compilers with several flags for its warnings, and twice into one program.
 #include <lightbin/lightbin.hpp>
 
 #include <glm/glm.hpp>
@@ -28,11 +28,11 @@ struct Hash {
     std::uint64_t value = 14695981039346656037u;
 
     void add(std::uint64_t word) {
-        for (int byte = 0; byte < 8; ++byte) value = (value ^ ((word >> (8 * byte)) & 255)) * 1099511628211u;
+        for (int byte = 0; byte < 8; ++byte)
+            value = (value ^ ((word >> (8 * byte)) & 255)) * 1099511628211u;
     }
 
-    template <class Id>
-    void add(const LightGrid<Id>& grid) {
+    template <class Id> void add(const LightGrid<Id>& grid) {
         add(static_cast<std::uint64_t>(grid.tiles_x()));
         add(static_cast<std::uint64_t>(grid.tiles_y()));
         add(grid.rejected());
@@ -40,14 +40,14 @@ struct Hash {
             add(tile.offset);
             add(tile.count);
         }
-        for (const Id id : grid.indices()) add(id);
-        for (const Id id : grid.lights_in(0, 0)) add(id);
+        for (const Id id : grid.indices())
+            add(id);
+        for (const Id id : grid.lights_in(0, 0))
+            add(id);
     }
-
 };
 
-template <class T>
-T value_of(const Result<T>& result) {
+template <class T> T value_of(const Result<T>& result) {
     if (result) return *result;
     std::printf("%s\n", result.error().message().c_str());
     std::abort();
@@ -80,7 +80,8 @@ void use_binner(Hash& hash, const View& view, const auto& lights, const ZBounds&
         hash.add(statistics.culled);
         hash.add(statistics.entries);
         hash.add(statistics.longest_list);
-        for (const std::uint64_t tiles : statistics.histogram) hash.add(tiles);
+        for (const std::uint64_t tiles : statistics.histogram)
+            hash.add(tiles);
     }
 }
 
@@ -88,8 +89,10 @@ template <DepthTest depth_test>
 void use_all_options(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
     use_binner<Options{.index = Index::u16, .depth_test = depth_test}>(hash, view, lights, bounds);
     use_binner<Options{.index = Index::u32, .depth_test = depth_test}>(hash, view, lights, bounds);
-    use_binner<Options{.index = Index::u16, .depth_test = depth_test, .statistics = true}>(hash, view, lights, bounds);
-    use_binner<Options{.index = Index::u32, .depth_test = depth_test, .statistics = true}>(hash, view, lights, bounds);
+    use_binner<Options{.index = Index::u16, .depth_test = depth_test, .statistics = true}>(hash, view, lights,
+                                                                                           bounds);
+    use_binner<Options{.index = Index::u32, .depth_test = depth_test, .statistics = true}>(hash, view, lights,
+                                                                                           bounds);
 }
 
 void use_lights(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
@@ -100,13 +103,16 @@ void use_lights(Hash& hash, const View& view, const auto& lights, const ZBounds&
 void use_view(Hash& hash, const View& view) {
     hash.add(static_cast<std::uint64_t>(view.tile_size()));
     hash.add(static_cast<std::uint64_t>(view.viewport().width));
-    hash.add(static_cast<std::uint64_t>(view.origin()) + (view.orthographic() ? 8u : 0u) + (view.reversed_z() ? 16u : 0u));
-    for (const std::uint32_t word : shader_grid(view)) hash.add(word);
+    hash.add(static_cast<std::uint64_t>(view.origin()) + (view.orthographic() ? 8u : 0u) +
+             (view.reversed_z() ? 16u : 0u));
+    for (const std::uint32_t word : shader_grid(view))
+        hash.add(word);
 
-    const std::size_t pixels = static_cast<std::size_t>(view.viewport().width) *
-                               static_cast<std::size_t>(view.viewport().height);
+    const std::size_t pixels =
+        static_cast<std::size_t>(view.viewport().width) * static_cast<std::size_t>(view.viewport().height);
     std::vector<float> depth(2 * pixels), min(view.tile_count()), max(view.tile_count());
-    for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = static_cast<float>(i % 1000) / 1000.0f;
+    for (std::size_t i = 0; i < depth.size(); ++i)
+        depth[i] = static_cast<float>(i % 1000) / 1000.0f;
     DepthBuffer buffer{.depth = depth, .samples = 2};
     buffer.format = DepthFormat::unorm24;
     const ZBounds bounds = value_of(reduce_depth(view, buffer, min, max));
@@ -146,7 +152,8 @@ std::uint64_t UNIT() {
     const glm::dmat4 reversed(1.2, 0, 0, 0, 0, 1.8, 0, 0, 0.1, 0.2, 0, -1, 0, 0, 0.1, 0);
     const float infinite[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, -1}, {0, 0, -0.2f, 0}};
     const double orthographic[4][4] = {{0.02, 0, 0, 0}, {0, 0.03, 0, 0}, {0, 0, -0.02, 0}, {0, 0, -1, 1}};
-    const ViewOptions upper{.tile_size = 16, .clip_depth = ClipDepth::zero_to_one, .origin = WindowOrigin::upper_left};
+    const ViewOptions upper{
+        .tile_size = 16, .clip_depth = ClipDepth::zero_to_one, .origin = WindowOrigin::upper_left};
     for (const auto& view :
          {View::from_projection(opengl, viewport), View::from_projection(reversed, viewport, upper),
           View::from_projection(infinite, viewport), View::from_projection(orthographic, viewport)})
