@@ -39,7 +39,7 @@ public:
         std::uint64_t entries = 0;
         for (const std::uint32_t count : counts_)
             entries += count;
-        constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+        constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
         if (entries > most) return Error{ErrorCode::too_many_entries, entries, most};
         entries_ = static_cast<std::size_t>(entries);
         return entries_;

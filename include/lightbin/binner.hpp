@@ -178,7 +178,7 @@ private:
         statistics_.culled = footprints_.lights() - footprints_.visible() - footprints_.rejected();
         statistics_.entries = entries;
         for (const std::uint32_t count : buckets_.counts()) {
-            statistics_.longest_list = std::max(statistics_.longest_list, count);
+            statistics_.longest_list = (std::max)(statistics_.longest_list, count);
             ++statistics_.histogram[static_cast<std::size_t>(std::bit_width(count))];
         }
     }

@@ -70,7 +70,7 @@ public:
             double row_sum = 0;
             for (int j = 0; j < 3; ++j)
                 row_sum += std::fabs(m_[i][0] * m_[j][0] + m_[i][1] * m_[j][1] + m_[i][2] * m_[j][2]);
-            square = std::max(square, row_sum);
+            square = (std::max)(square, row_sum);
         }
         stretch_ = std::sqrt(square) * (1 + 0x1p-48);
     }
@@ -154,7 +154,7 @@ template <class Light, class ToViewSphere, class Consume>
 void for_each_block(const Lights<Light, ToViewSphere>& lights, Consume consume) {
     std::array<Sphere, 64> block;
     for (std::size_t first = 0; first < lights.array.size(); first += block.size()) {
-        const std::size_t count = std::min(block.size(), lights.array.size() - first);
+        const std::size_t count = (std::min)(block.size(), lights.array.size() - first);
         for (std::size_t i = 0; i < count; ++i)
             block[i] = std::invoke(lights.to_view_sphere, lights.array[first + i]);
         consume(block.data(), static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(first));

@@ -37,7 +37,7 @@ struct ViewOptions {
     ClipDepth clip_depth = ClipDepth::minus_one_to_one;
     WindowOrigin origin = WindowOrigin::lower_left;
     bool reversed_z =
-        false;  ///< near has the larger depth. Read for orthographic matrices only: a perspective one tells
+        false;  ///< near has the larger depth. For orthographic matrices: a perspective one tells
 };
 
 /// View depths from min to max, both included.
@@ -57,9 +57,8 @@ struct ImageAxis {
     float sign = 1;     ///< of the view-space coordinate
     float scale_f = 0;  ///< scale, offset rounded to nearest
     float offset_f = 0;
-    float margin =
-        0;  ///< bound on the rounding error of a float tile coordinate inside the viewport, in tiles
-    float limit = 0;  ///< the viewport's far edge in tiles, rounded up
+    float margin = 0;  ///< bound on the error of a float tile coordinate inside the viewport, in tiles
+    float limit = 0;   ///< the viewport's far edge in tiles, rounded up
     int tiles = 0;
 };
 
@@ -76,19 +75,19 @@ struct Camera {
 
 /// A projection, a viewport and a tile size: what fixes the tile grid.
 ///
-/// Tile (tx, ty) has index ty * tiles_x() + tx and covers the pixels [tx * t, (tx + 1) * t) x [ty * t, (ty +
-/// 1) * t), cut off at the viewport's edge. View depth is the distance from the eye (orthographic: from the
-/// plane z = 0) along the viewing direction, in the units of view space.
+/// Tile (tx, ty) has index ty * tiles_x() + tx. It covers the pixels from tx * t to (tx + 1) * t across and
+/// from ty * t to (ty + 1) * t up, cut off at the viewport's edge. View depth is the distance from the eye
+/// (orthographic: from the plane z = 0) along the viewing direction, in the units of view space.
 class View {
 public:
     static constexpr int max_side = 32768;
 
     /// Returns the view of a projection matrix, or an Error that names why the matrix or a size is refused.
     ///
-    /// projection  maps view space to clip space, columns first: projection[column][row] in float or double
-    /// (a glm::mat4
-    ///             as it is). Perspective: symmetric or not, jittered, finite or infinite far, standard or
-    ///             reversed Z, looking down -z or +z, x or y flipped. Orthographic: centred or not.
+    /// projection  maps view space to clip space, columns first: projection[column][row] in float or double,
+    ///             a glm::mat4 as it is. Perspective: symmetric or not, jittered, finite or infinite far,
+    ///             standard or reversed Z, looking down -z or +z, x or y flipped. Orthographic: centred or
+    ///             not.
     /// viewport    0 to max_side pixels a side. An empty one has no tiles.
     template <class Matrix>
     static Result<View> from_projection(const Matrix& projection, Extent viewport,

@@ -55,8 +55,8 @@ struct DepthRange {
 inline void extend(DepthRange& range, std::span<const float> samples, bool skip, float background) {
     for (const float depth : samples) {
         if (skip && depth == background) continue;
-        range.lower = std::min(range.lower, depth);  // keeps its first argument when the second is NaN
-        range.upper = std::max(range.upper, depth);
+        range.lower = (std::min)(range.lower, depth);  // keeps its first argument when the second is NaN
+        range.upper = (std::max)(range.upper, depth);
         range.unknown |= std::isnan(depth);
     }
 }
@@ -104,9 +104,9 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
     const float background = view.reversed_z() ? 0.0f : 1.0f;
     std::size_t tile = 0;
     for (int ty = 0; ty < view.tiles_y(); ++ty) {
-        const int y0 = ty * view.tile_size(), y1 = std::min(viewport.height - y0, view.tile_size()) + y0;
+        const int y0 = ty * view.tile_size(), y1 = (std::min)(viewport.height - y0, view.tile_size()) + y0;
         for (int tx = 0; tx < view.tiles_x(); ++tx, ++tile) {
-            const int x0 = tx * view.tile_size(), x1 = std::min(viewport.width - x0, view.tile_size()) + x0;
+            const int x0 = tx * view.tile_size(), x1 = (std::min)(viewport.width - x0, view.tile_size()) + x0;
             detail::DepthRange range;
             for (int y = y0; y < y1; ++y)
                 detail::extend(range,

@@ -32,28 +32,29 @@ template <class Real> Span<Real> tangent_slopes(Real c, Real z, Real r, Real e) 
     return c < 0 ? Span<Real>{-outer, -inner} : Span<Real>{inner, outer};
 }
 
-/// Upper bound on c / z over the part of the disc (c, z, r) at depth `near` or more; +inf where double
-/// precision can't tell. For discs that cross the near plane, z - r <= near <= z + r. Doubles that hold
+/// Upper bound on c / z over the part of the disc (c, z, r) at depth `near_z` or more; +inf where double
+/// precision can't tell. For discs that cross the near plane, z - r <= near_z <= z + r. Doubles that hold
 /// floats: products are exact, none overflows.
 ///
 /// That part is convex, so its largest slope is at the tangent point if that lies beyond the near plane, else
 /// at the corner where the circle meets the plane. The tangent bounds the whole disc, so it is right whenever
 /// it exists: the corner is taken only when it is beyond doubt.
-inline double clipped_max_slope(double c, double z, double r, double near) {
-    const double w = near - z;
+inline double clipped_max_slope(double c, double z, double r, double near_z) {
+    const double w = near_z - z;
     const double h2 = (r - w) * (r + w);  // half chord, squared
     const double h2_error = 0x1p-50 * r * r;
     const double h = std::sqrt(std::fmax(h2, 0.0) + h2_error);  // rounded up
     const double h_low = std::sqrt(std::fmax(h2 - h2_error, 0.0));
 
-    // The circle's outward normal at the corner, (h, w), against the direction of growing slope there, (near,
-    // -(c + h)): the slope still grows beyond the plane iff  near (z - near) > h (c + h).
+    // Along the circle into the region the corner (c + h, near_z) moves by (-w, h), and c / z grows by
+    // (near_z, -(c + h)) a step: the tangent point lies beyond the plane iff  near_z (z - near_z) > h (c +
+    // h).
     const double corner_side = h_low * h_low + c * (c >= 0 ? h_low : h);
-    const double tangent_side = near * (z - near);
-    const double doubt = 0x1p-48 * (h * h + std::fabs(c) * h + near * (std::fabs(z) + near));
+    const double tangent_side = near_z * (z - near_z);
+    const double doubt = 0x1p-48 * (h * h + std::fabs(c) * h + near_z * (std::fabs(z) + near_z));
     if (corner_side > tangent_side + doubt) {
-        const double corner = (c + h) / near;
-        return corner + 0x1p-48 * (std::fabs(c) + h) / near;
+        const double corner = (c + h) / near_z;
+        return corner + 0x1p-48 * (std::fabs(c) + h) / near_z;
     }
 
     const double t2 = (c * c + z * z) - r * r;  // tangent length, squared
@@ -91,18 +92,18 @@ inline Visibility project_carefully(const Camera& camera, const Sphere& light, T
     if (!std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) || !(light.radius >= 0))
         return Visibility::rejected;
     const double z = static_cast<double>(camera.z_sign * light.z), r = static_cast<double>(light.radius);
-    const double near = static_cast<double>(camera.near_depth);
-    if (z + r < near || z - r > static_cast<double>(camera.far_depth)) return Visibility::culled;
+    const double near_z = static_cast<double>(camera.near_depth);
+    if (z + r < near_z || z - r > static_cast<double>(camera.far_depth)) return Visibility::culled;
 
     const auto extent = [&](const ImageAxis& axis, float coordinate) -> Span<double> {
         const double c = static_cast<double>(axis.sign * coordinate);
         if (std::isinf(r)) return {-r, r};
         if (camera.orthographic) return {c - r, c + r};
-        if (z - r > near) {
+        if (z - r > near_z) {
             const Span<double> slopes = tangent_slopes(c, z, r, (z - r) * (z + r));
             return r > 0 ? slopes : Span<double>{c / z, c / z};
         }
-        return {-clipped_max_slope(-c, z, r, near), clipped_max_slope(c, z, r, near)};
+        return {-clipped_max_slope(-c, z, r, near_z), clipped_max_slope(c, z, r, near_z)};
     };
     const bool visible =
         tile_span(camera.x, camera.x.scale, camera.x.offset, extent(camera.x, light.x), rect.x0, rect.x1) &&
