@@ -28,4 +28,5 @@ for flags in "-std=c++20 -O2" "-std=c++20 -O3 -DNDEBUG -fno-exceptions -fno-rtti
     # shellcheck disable=SC2086  # several flags
     compile $flags -c -o "$work/object.o" -DUNIT=unit "$here/use_everything.cpp"
 done
+compile -std=c++20 -fsyntax-only "$here/hostile_macros.cpp"
 echo "$compiler: $count headers, no warning"
