@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sphere sets, each a named generator that depends on the camera and the seed only. They are
-// aimed in double precision (aim is all they need): what is exact is the float sphere that comes out.
+// Sphere sets, each a named generator that depends on the camera and the seed only. They are aimed in double precision,
+// and aim is all they need: the sphere that is asked about is the float one that comes out.
 #pragma once
 
 #include "cameras.hpp"
@@ -45,6 +45,13 @@ public:
 private:
     std::uint64_t state_;
 };
+
+/// A seed from a name (FNV-1a), so that no two kinds of camera get the same spheres.
+inline std::uint64_t seed_of(const std::string& name) {
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    return hash;
+}
 
 /// Where things are for a camera, in its own axes: image coordinates that grow with pixels, depth that grows with distance.
 class Aim {
@@ -96,6 +103,8 @@ public:
         const auto rounded = [](double v) { return static_cast<float>(std::clamp<double>(v, -FLT_MAX, FLT_MAX)); };
         return {rounded(sign_[0] * x), rounded(sign_[1] * y), rounded(sign_[2] * depth), rounded(radius)};
     }
+
+    float depth_of(const Light& light) const { return static_cast<float>(sign_[2]) * light.z; }
 
     Camera camera;
     bool orthographic;
