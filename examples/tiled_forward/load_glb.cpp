@@ -145,21 +145,21 @@ public:
             note("the file has no camera: made one that has the whole scene in sight");
         }
         if (skipped_primitives_ > 0)
-            note(std::to_string(skipped_primitives_) + " primitives of points or lines left out");
+            note(counted(skipped_primitives_, "primitive") + " of points or lines left out");
         if (without_range_ > 0 && cutoff_ > 0)
-            note(std::to_string(without_range_) + " lights without a range: cut off where they give " +
-                 number(cutoff_) + " lux (--cutoff)");
+            note(counted(without_range_, "light") + " without a range: cut off at " + number(cutoff_) +
+                 " lux (--cutoff)");
         else if (without_range_ > 0)
-            note(std::to_string(without_range_) +
-                 " lights without a range: infinite, so in every list (--cutoff 0)");
+            note(counted(without_range_, "light") +
+                 " without a range: infinite, so in every list (--cutoff 0)");
         const auto spots =
             std::count_if(scene_.lights.begin(), scene_.lights.end(), [](const Light& l) { return l.spot; });
         if (spots > 0)
-            note(std::to_string(spots) +
-                 " spot lights: binned as whole spheres, their cones are in the shader");
+            note(counted(static_cast<std::size_t>(spots), "spot light") +
+                 ": binned as whole spheres, the shader has the cones");
         if (!scene_.suns.empty())
-            note(std::to_string(scene_.suns.size()) +
-                 " directional lights: no range, so every fragment is shaded with them");
+            note(counted(scene_.suns.size(), "directional light") +
+                 ": in no list, every fragment is shaded with them");
         return std::move(scene_);
     }
 
@@ -168,8 +168,8 @@ private:
     float cutoff_;
     std::vector<bool> seen_;  // nodes, to survive a graph that is no tree
     Scene scene_;
-    int skipped_primitives_ = 0;
-    int without_range_ = 0;
+    std::size_t skipped_primitives_ = 0;
+    std::size_t without_range_ = 0;
 
     void note(std::string text) { scene_.notes.push_back(std::move(text)); }
 
@@ -211,8 +211,11 @@ private:
                     add_primitive(primitive, to_world);
             if (node.camera >= 0) add_camera(node, to_world);
             if (const auto found = node.extensions.find("KHR_lights_punctual");
-                found != node.extensions.end())
+                found != node.extensions.end()) {
+                if (!found->second.IsObject() || !found->second.Has("light"))
+                    fail("node " + std::to_string(work.node) + " has a light without a number");
                 add_light(found->second.Get("light").GetNumberAsInt(), to_world);
+            }
             for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
                 stack.push_back({*child, to_world});
         }
@@ -324,17 +327,16 @@ std::string first_line(const std::string& text) {
 Scene load_glb(const std::string& path, float cutoff) {
     std::ifstream file(path, std::ios::binary);
     if (!file) fail("cannot open '" + path + "'");
-    std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
-    if (!file.good() && !file.eof()) fail("cannot read '" + path + "'");
-
-    tinygltf::TinyGLTF gltf;
-    gltf.SetImageLoader([](auto...) { return true; },
-                        nullptr);  // no textures here, so no need to decode them
-    tinygltf::Model model;
-    std::string error;
-    std::string warning;
-    const std::string folder = path.find('/') == std::string::npos ? "." : path.substr(0, path.rfind('/'));
     try {
+        const std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
+        tinygltf::TinyGLTF gltf;
+        gltf.SetImageLoader([](auto...) { return true; },
+                            nullptr);  // no textures here, so no need to decode them
+        tinygltf::Model model;
+        std::string error;
+        std::string warning;
+        const std::string folder =
+            path.find('/') == std::string::npos ? "." : path.substr(0, path.rfind('/'));
         if (!gltf.LoadBinaryFromMemory(&model, &error, &warning,
                                        reinterpret_cast<const unsigned char*>(bytes.data()),
                                        static_cast<unsigned>(bytes.size()), folder))

@@ -48,12 +48,10 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
         ->capture_default_str();
     bool no_pre_pass = false;
     app.add_flag("--no-pre-pass", no_pre_pass, "No depth pre-pass (only with --z-bounds none)");
-    const std::map<std::string, ZBoundsUse> uses{
-        {"none", ZBoundsUse::none}, {"max", ZBoundsUse::max}, {"both", ZBoundsUse::both}};
-    app.add_option("--z-bounds", options.frame.z_bounds,
-                   "Depth bounds of a tile: none, max or both (default)")
-        ->transform(CLI::CheckedTransformer(uses))
-        ->type_name("WHICH");
+    std::string z_bounds = "both";
+    app.add_option("--z-bounds", z_bounds, "Depth bounds of a tile: none, max or both")
+        ->check(CLI::IsMember({"none", "max", "both"}))
+        ->capture_default_str();
     app.add_option("--glsl", options.glsl,
                    "330: texture buffers, 430: storage buffers (default: the newer that works)")
         ->check(CLI::IsMember({330, 430}));
@@ -75,6 +73,9 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
     try {
         app.parse(argc, argv);
         options.frame.pre_pass = !no_pre_pass;
+        options.frame.z_bounds = z_bounds == "none"  ? ZBoundsUse::none
+                                 : z_bounds == "max" ? ZBoundsUse::max
+                                                     : ZBoundsUse::both;
         if (no_pre_pass && options.frame.z_bounds != ZBoundsUse::none)
             throw CLI::ValidationError("--no-pre-pass",
                                        "Z bounds come from the pre-pass, so it needs --z-bounds none");
@@ -149,9 +150,10 @@ int run(const Options& options) {
     const Scene scene = open_scene(options);
     if (static_cast<std::size_t>(options.view) >= scene.cameras.size())
         throw std::runtime_error("there is no view " + std::to_string(options.view) + ": the scene has " +
-                                 std::to_string(scene.cameras.size()) + ", counted from 0");
-    std::printf("scene        %s: %zu triangles, %zu lights, %zu views\n", scene.name.c_str(),
-                scene.triangles.size() / 3, scene.lights.size(), scene.cameras.size());
+                                 counted(scene.cameras.size(), "view") + ", numbered from 0");
+    std::printf("scene        %s: %s, %s, %s\n", scene.name.c_str(),
+                counted(scene.triangles.size() / 3, "triangle").c_str(),
+                counted(scene.lights.size(), "light").c_str(), counted(scene.cameras.size(), "view").c_str());
     for (const std::string& note : scene.notes)
         std::printf("note         %s\n", note.c_str());
     std::fflush(stdout);

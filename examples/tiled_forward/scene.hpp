@@ -60,3 +60,8 @@ Scene make_scene(int light_count);
 
 // A camera that has all of the scene in sight, from the front and above.
 Camera framing_camera(const std::vector<Vertex>& triangles);
+
+// "1 light", "2 lights".
+inline std::string counted(std::size_t n, const char* what) {
+    return std::to_string(n) + ' ' + what + (n == 1 ? "" : "s");
+}

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// Every form of the snippet, and a fragment shader around it that tells what it reads.
+#pragma once
+
+#include <lightbin/shader.hpp>
+
+#include <string>
+#include <vector>
+
+struct SnippetForm {
+    std::string name;
+    int glsl;
+    lightbin::ShaderOptions options;
+};
+
+inline std::vector<SnippetForm> snippet_forms() {
+    using namespace lightbin;
+    std::vector<SnippetForm> forms;
+    for (const int glsl : {330, 430})
+        for (const Index index : {Index::u16, Index::u32})
+            for (const WindowOrigin origin : {WindowOrigin::lower_left, WindowOrigin::upper_left})
+                for (const bool custom : {false, true}) {
+                    ShaderOptions options;
+                    options.language = glsl == 330 ? ShaderLanguage::glsl_330 : ShaderLanguage::glsl_430;
+                    options.index = index;
+                    options.origin = origin;
+                    if (custom) {
+                        options.prefix = "my";
+                        options.tiles_binding = 5;
+                        options.indices_binding = 3;
+                    }
+                    forms.push_back({std::to_string(glsl) + (index == Index::u16 ? "_u16" : "_u32") +
+                                         (origin == WindowOrigin::lower_left ? "_lower" : "_upper") +
+                                         (custom ? "_my" : ""),
+                                     glsl, options});
+                }
+    return forms;
+}
+
+// Writes to each pixel: the offset and the length of its list, and two sums over the ids that depend on their
+// order.
+inline std::string list_reader(const SnippetForm& form) {
+    const std::string prefix(form.options.prefix);
+    return "#version " + std::to_string(form.glsl) + " core\n" + lightbin::shader_snippet(form.options) + R"(
+uniform vec2 corner;  // of the viewport
+out uvec4 pixel;
+
+void main() {
+    uvec2 list = )" +
+           prefix + R"(list(gl_FragCoord.xy - corner);
+    uint hash = 2166136261u;
+    uint sum = 0u;
+    for (uint i = 0u; i < list.y; ++i) {
+        uint id = )" +
+           prefix + R"(light(list.x + i);
+        hash = (hash ^ id) * 16777619u;
+        sum += (i + 1u) * id;
+    }
+    pixel = uvec4(list, hash, sum);
+}
+)";
+}
