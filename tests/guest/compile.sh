@@ -29,4 +29,12 @@ for flags in "-std=c++20 -O2" "-std=c++20 -O3 -DNDEBUG -fno-exceptions -fno-rtti
     compile $flags -c -o "$work/object.o" -DUNIT=unit "$here/use_everything.cpp"
 done
 compile -std=c++20 -fsyntax-only "$here/hostile_macros.cpp"
+
+# Under -ffast-math lights could be missed, so the headers refuse and say why.
+if refusal=$("$compiler" -I "$include" -std=c++20 -ffast-math -fsyntax-only "$here/hostile_macros.cpp" 2>&1); then
+    echo "$compiler accepts -ffast-math" >&2
+    exit 1
+fi
+echo "$refusal" | grep -q 'error.*lightbin: -ffast-math'
+
 echo "$compiler: $count headers, no warning"
