@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // No miss, and no excess beyond what rectangles and depth intervals explain, on every camera kind.
+#include "bounds.hpp"
 #include "harness.hpp"
 
 using namespace oracle;
@@ -26,51 +27,6 @@ void examine_rectangles(const Camera& camera, Tally& tally, std::uint64_t& seed)
     }
 }
 
-/// Z bounds a tile: at random, like a tilted plane, or close to where a light's depth interval ends.
-struct Bounds {
-    std::vector<float> min, max;
-};
-
-Bounds make_bounds(const Camera& camera, const Aim& aim, const std::vector<Light>& lights, int shape, Random& random) {
-    constexpr float inf = std::numeric_limits<float>::infinity();
-    const int nx = (camera.width + camera.tile - 1) / camera.tile, ny = (camera.height + camera.tile - 1) / camera.tile;
-    const double first = aim.depth(random), across = aim.depth(random) / nx, up = aim.depth(random) / ny;
-    Bounds bounds;
-    for (int y = 0; y < ny; ++y)
-        for (int x = 0; x < nx; ++x) {
-            double low = aim.depth(random), high = low + std::abs(aim.depth(random)) * random.uniform();
-            if (shape == 1) {
-                low = first + across * x + up * y;
-                high = low + across + up;
-            } else if (shape == 2) {
-                const Light& light = lights[static_cast<std::size_t>(random.integer(0, static_cast<int>(lights.size()) - 1))];
-                const float end = aim.depth_of(light) + (random.chance(0.5) ? light.w : -light.w);
-                low = high = std::isfinite(end) ? static_cast<double>(end) : first;
-            }
-            float min = static_cast<float>(low), max = static_cast<float>(high);
-            if (shape == 2 && random.chance(0.5)) min = std::nextafter(min, random.chance(0.5) ? inf : -inf);
-            if (shape == 2) max = min;
-            switch (random.integer(0, 24)) {
-            case 0: std::swap(min, max); break;
-            case 1: min = -inf; break;
-            case 2: max = inf; break;
-            case 3: min = inf, max = -inf; break; // nothing drawn
-            default: break;
-            }
-            bounds.min.push_back(min);
-            bounds.max.push_back(max);
-        }
-    return bounds;
-}
-
-template <class Id>
-std::vector<std::vector<bool>> membership(const lightbin::LightGrid<Id>& grid, std::size_t lights) {
-    std::vector<std::vector<bool>> in(grid.tiles().size(), std::vector<bool>(lights));
-    for (std::size_t tile = 0; tile < in.size(); ++tile)
-        for (const Id id : grid.indices().subspan(grid.tiles()[tile].offset, grid.tiles()[tile].count)) in[tile][id] = true;
-    return in;
-}
-
 template <class Id>
 bool same(const lightbin::LightGrid<Id>& a, const lightbin::LightGrid<Id>& b) {
     return std::equal(a.indices().begin(), a.indices().end(), b.indices().begin(), b.indices().end()) &&
@@ -93,7 +49,7 @@ void examine_intervals(const Camera& camera, Tally& tally, std::uint64_t& seed) 
         const std::size_t count = std::clamp<std::size_t>(40000 / tiles, 8, 300);
         const std::vector<Light> lights = make(set, camera, count, ++seed);
         Random random(++seed);
-        const Bounds bounds = make_bounds(camera, aim, lights, static_cast<int>(seed / 2 % 3), random);
+        const Bounds bounds = make_bounds(camera, aim, lights, static_cast<BoundsShape>(seed / 2 % 3), random);
         const auto rectangle_grid = rectangles.bin(view, lights);
         REQUIRE(rectangle_grid.has_value());
         const auto in_rectangle = membership(*rectangle_grid, lights.size());

@@ -78,6 +78,15 @@ std::vector<Emitted> emitted_tiles(const lightbin::LightGrid<Id>& grid, std::siz
     return emitted;
 }
 
+/// in[tile][light]
+template <class Id>
+std::vector<std::vector<bool>> membership(const lightbin::LightGrid<Id>& grid, std::size_t lights) {
+    std::vector<std::vector<bool>> in(grid.tiles().size(), std::vector<bool>(lights));
+    for (std::size_t tile = 0; tile < in.size(); ++tile)
+        for (const Id id : grid.indices().subspan(grid.tiles()[tile].offset, grid.tiles()[tile].count)) in[tile][id] = true;
+    return in;
+}
+
 /// What was asked of the oracle and what went wrong.
 struct Tally {
     std::uint64_t verdicts = 0;    ///< "this ball does not meet this cell", each proven exactly

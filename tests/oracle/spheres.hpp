@@ -81,6 +81,14 @@ public:
         const Matrix& m = camera.m;
         return sign_[2] * (ndc(axis, pixel) * m[2][3] - up(axis) * m[2][axis]) / std::abs(m[axis][axis]);
     }
+    /// The pixel that an image coordinate at a depth falls on.
+    double pixel_of(int axis, double coordinate, double depth) const {
+        const double low = at(axis, 0, depth), high = at(axis, side(axis), depth);
+        return (coordinate - low) / (high - low) * side(axis);
+    }
+    double coordinate(int axis, const Light& light) const {
+        return sign_[axis] * static_cast<double>(axis == 0 ? light.x : light.y);
+    }
     int side(int axis) const { return axis == 0 ? camera.width : camera.height; }
 
     /// A tile edge inside the viewport or at its border.

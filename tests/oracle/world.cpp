@@ -4,6 +4,7 @@
 // A matrix of floats is never exactly a rotation, and some are not meant to be one, so the image of a ball is an
 // ellipsoid. It meets a cell iff the ball meets the cell's preimage, and the preimage of a polyhedron under an affine map
 // is one too, with rational planes: the second decider answers for ellipsoids exactly.
+#include "bounds.hpp"
 #include "harness.hpp"
 
 using namespace oracle;
@@ -95,7 +96,18 @@ struct ExactView {
     }
 };
 
-void examine(const Camera& camera, Tally& tally, std::uint64_t& seed) {
+/// Does the image of the ball meet the cell?
+bool image_meets(const ExactView& view, std::vector<HalfSpace> cell, const Ball& ball) {
+    for (HalfSpace& h : cell) h = view.preimage(h);
+    if (!ball.all) // beyond one plane: no need to look further
+        for (const HalfSpace& h : cell) {
+            const Rational at = h.at(ball.centre);
+            if (at < 0 && square(at) > square(ball.radius) * dot(h.a, h.a)) return false;
+        }
+    return meets(cell, ball);
+}
+
+void examine_rectangles(const Camera& camera, Tally& tally, std::uint64_t& seed) {
     Examiner examiner(camera, tally);
     const Oracle& oracle = examiner.oracle;
     const lightbin::View view = view_of(camera);
@@ -121,14 +133,7 @@ void examine(const Camera& camera, Tally& tally, std::uint64_t& seed) {
                 const auto ask = [&](int x0, int x1, int y0, int y1) {
                     if (x0 >= x1 || y0 >= y1) return;
                     ++tally.verdicts;
-                    std::vector<HalfSpace> cell = oracle.half_spaces(oracle.columns(x0, x1), oracle.rows(y0, y1), {});
-                    for (HalfSpace& h : cell) h = exact_view.preimage(h);
-                    if (!ball.all) // beyond one plane: no need to look further
-                        for (const HalfSpace& h : cell) {
-                            const Rational at = h.at(ball.centre);
-                            if (at < 0 && square(at) > square(ball.radius) * dot(h.a, h.a)) return;
-                        }
-                    if (meets(cell, ball))
+                    if (image_meets(exact_view, oracle.half_spaces(oracle.columns(x0, x1), oracle.rows(y0, y1), {}), ball))
                         tally.report(tally.misses, "MISS", camera, matrix.name + ", " + set.name, i, lights[i], "");
                 };
                 if (!e.any()) {
@@ -157,13 +162,71 @@ void examine(const Camera& camera, Tally& tally, std::uint64_t& seed) {
     }
 }
 
+/// With Z bounds there is no margin in pixels to hide behind: what counts is where the image's depth ends.
+void examine_intervals(const Camera& camera, Tally& tally, std::uint64_t& seed) {
+    Examiner examiner(camera, tally);
+    const Oracle& oracle = examiner.oracle;
+    const lightbin::View view = view_of(camera);
+    const Aim aim(camera);
+    const std::size_t tiles = view.tile_count();
+    lightbin::Binner<> rectangles;
+    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner;
+    Random random(++seed);
+    for (const ViewMatrix& matrix : view_matrices(random)) {
+        const ExactView exact_view(matrix.m);
+        for (const SphereSet& set : sphere_sets()) {
+            if (set.name != "field" && set.name != "near eye" && set.name != "tiny and far") continue;
+            const std::vector<Light> aimed = make(set, camera, 1000, ++seed), lights = into_world(aimed, matrix);
+            const Bounds bounds = make_bounds(camera, aim, aimed, BoundsShape::tips, random);
+            const auto world = lightbin::world_space(lights, matrix.m);
+            const auto rectangle_grid = rectangles.bin(view, world);
+            REQUIRE(rectangle_grid.has_value());
+            const auto in_rectangle = membership(*rectangle_grid, lights.size());
+            for (const bool at_least : {true, false}) {
+                lightbin::ZBounds given;
+                (at_least ? given.min : given.max) = at_least ? bounds.min : bounds.max;
+                const auto grid = binner.bin(view, world, given);
+                REQUIRE(grid.has_value());
+                const auto in_list = membership(*grid, lights.size());
+                bool added = false; // a pair that is not in the rectangles
+                for (std::size_t tile = 0; tile < tiles; ++tile) {
+                    const int x = static_cast<int>(tile) % oracle.tiles_x(), y = static_cast<int>(tile) / oracle.tiles_x();
+                    std::optional<float> min, max;
+                    (at_least ? min : max) = at_least ? bounds.min[tile] : bounds.max[tile];
+                    for (std::size_t i = 0; i < lights.size(); ++i) {
+                        if (i % 8 != 0 && bounds.owner[tile] != i) continue; // for time
+                        added |= in_list[tile][i] && !in_rectangle[tile][i];
+                        if (!in_rectangle[tile][i] || in_list[tile][i]) continue;
+                        ++tally.verdicts;
+                        const Ball ball = exact_ball(lights[i].x, lights[i].y, lights[i].z, lights[i].w);
+                        const auto cell = oracle.half_spaces(oracle.columns(x, x + 1), oracle.rows(y, y + 1), oracle.depths(min, max));
+                        if (image_meets(exact_view, cell, ball))
+                            tally.report(tally.misses, "MISS", camera, matrix.name + ", " + set.name, i, lights[i],
+                                         "tile " + std::to_string(x) + ", " + std::to_string(y));
+                    }
+                }
+                CHECK(!added);
+            }
+        }
+    }
+}
+
 } // namespace
+
+TEST_CASE("world space with Z bounds") {
+    Tally tally;
+    std::uint64_t seed = 6;
+    for (const auto& cameras : {kinds::symmetric(), kinds::orthographic_off_centre()}) examine_intervals(cameras.front(), tally, seed);
+    MESSAGE(tally.verdicts << " exact verdicts");
+    CHECK(tally.misses == 0);
+    CHECK(tally.verdicts >= 100000);
+}
 
 TEST_CASE("world space") {
     Tally tally;
     std::uint64_t seed = 5;
     for (const auto& cameras : {kinds::symmetric(), kinds::reversed_infinite(), kinds::orthographic_off_centre()})
-        for (const std::size_t screen : {std::size_t{0}, std::size_t{1}}) examine(cameras[screen], tally, seed);
+        for (const std::size_t screen : {std::size_t{0}, std::size_t{1}}) examine_rectangles(cameras[screen], tally, seed);
     MESSAGE(tally.verdicts << " exact verdicts, " << tally.explained << " rectangles explained");
     CHECK(tally.misses == 0);
     CHECK(tally.unexplained == 0);
