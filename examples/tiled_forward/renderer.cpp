@@ -219,23 +219,25 @@ Renderer::Renderer(const Scene& scene, int glsl) : scene_(scene), glsl_(glsl) {
 }
 
 void Renderer::set_size(int width, int height, GLenum colour_format) {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    glViewport(0, 0, width, height);
+    if (width == width_ && height == height_ && colour_format == colour_format_) return;
     GLint largest = 0;
     glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest);
     if (std::max(width, height) > largest)
         throw std::runtime_error("this OpenGL draws at most " + std::to_string(largest) + " pixels a side");
     glBindRenderbuffer(GL_RENDERBUFFER, colour_);
     glRenderbufferStorage(GL_RENDERBUFFER, colour_format, width, height);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
     glBindRenderbuffer(GL_RENDERBUFFER, depth_);
     glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, width, height);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        throw std::runtime_error("this OpenGL cannot draw a picture of " + std::to_string(width) + "x" +
+        throw std::runtime_error("this OpenGL cannot draw a picture of " + std::to_string(width) + " x " +
                                  std::to_string(height) + " pixels");
-    glViewport(0, 0, width, height);
     width_ = width;
     height_ = height;
+    colour_format_ = colour_format;
 }
 
 // The matrices, and the lights in view space. In double, as a scene can be far from the origin.
@@ -307,7 +309,8 @@ void Renderer::bind_lists(GLuint program, std::array<std::uint32_t, 4> grid) con
         glUniform1i(uniform(program, "lightbin_tiles"), 0);
         glActiveTexture(GL_TEXTURE1);
         glBindTexture(GL_TEXTURE_BUFFER, indices_.texture);
-        glUniform1i(uniform(program, "lightbin_indices"), 1);
+        // The heat map reads no ids, so its sampler is optimised away: -1 sets nothing.
+        glUniform1i(glGetUniformLocation(program, "lightbin_indices"), 1);
     }
 }
 

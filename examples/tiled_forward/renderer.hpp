@@ -96,9 +96,11 @@ private:
 
     // Of the frame
     int width_ = 0, height_ = 0;
+    GLenum colour_format_ = 0;
     glm::mat4 projection_{1}, view_{1};
     std::array<std::uint32_t, 4> grid_{};
     std::vector<GpuLight> gpu_lights_;
     std::vector<float> depth_buffer_, min_depth_, max_depth_;
-    lightbin::Binner<{.depth_test = lightbin::DepthTest::interval, .statistics = true}> binner_;
+    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval, .statistics = true}>
+        binner_;
 };

@@ -11,8 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 #include <stdexcept>
+#include <vector>
 
 namespace {
 
@@ -82,14 +82,14 @@ private:
     double mouse_x_ = 0, mouse_y_ = 0;
 };
 
-// A tenth of the scene a second.
+// A light's range a second: a step that fits the scene, whatever its size.
 double walking_speed(const Scene& scene) {
-    glm::vec3 low = scene.triangles[0].position, high = low;
-    for (const Vertex& vertex : scene.triangles) {
-        low = glm::min(low, vertex.position);
-        high = glm::max(high, vertex.position);
-    }
-    return static_cast<double>(glm::length(high - low)) / 10;
+    std::vector<float> ranges;
+    for (const Light& light : scene.lights)
+        ranges.push_back(light.range);
+    const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
+    std::nth_element(ranges.begin(), middle, ranges.end());
+    return std::isfinite(*middle) ? static_cast<double>(*middle) : 5.0;
 }
 
 }  // namespace
@@ -102,6 +102,7 @@ bool show_in_window(const Scene& scene, int wanted_glsl, int view, FrameSettings
     GLFWwindow* const window = open_window(scene.name.c_str(), settings, wanted_glsl, glsl);
     glfwMakeContextCurrent(window);
     glfwSwapInterval(1);
+    glfwSetInputMode(window, GLFW_STICKY_KEYS, GLFW_TRUE);  // a key tapped within a slow frame counts
     Renderer renderer(scene, glsl);
 
     std::printf(

@@ -77,7 +77,7 @@ template <lightbin::Index index> void check_form(const SnippetForm& form, const 
     const auto view = lightbin::View::from_projection(
         projection, {size.width, size.height}, {.tile_size = size.tile_size, .origin = form.options.origin});
     REQUIRE(view);
-    lightbin::Binner<{.index = index}> binner;
+    lightbin::Binner<lightbin::Options{.index = index}> binner;
     const auto grid = binner.bin(*view, some_lights());
     REQUIRE(grid);
     REQUIRE(!grid->indices().empty());
