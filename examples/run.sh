@@ -9,8 +9,8 @@ cd "$(dirname "$0")/.."
 . tests/packages.sh
 
 build="g++ cmake ninja-build"
-libraries="libglm-dev libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libglfw3-dev libegl-dev libgl-dev"
-opengl="libegl1 libegl-mesa0 libgl1-mesa-dri"
+libraries="libglm-dev libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
+opengl=libgl1-mesa-dri # Mesa draws where there is no GPU
 # shellcheck disable=SC2086  # one word a package
 install_packages $build $libraries $opengl
 
