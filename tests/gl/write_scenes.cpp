@@ -6,6 +6,8 @@ int main() {
     const std::string everything = everything_glb();
     write_file("everything.glb", everything);
     write_file("no_camera.glb", with(with(everything, "\"camera\": 0,", ""), "\"camera\": 1,", ""));
+    // So near a near plane that float depth ends in the middle of the scene.
+    write_file("tiny_near.glb", with(everything, "\"znear\": 0.5", "\"znear\":6e-7"));
     write_file("truncated.glb", everything.substr(0, everything.size() / 2));
     write_file("empty.glb", "");
     write_file("not_a_glb.glb", "This is no glTF file at all, but a line of text.\n");
