@@ -45,6 +45,14 @@ template <class T> T value_of(lightbin::Result<T> result) {
     return *result;
 }
 
+// Mesa's software renderer ends a shader's loops after 65,535 rounds, and says nothing.
+void check_loop(std::size_t lights) {
+    if (lights > 65000)
+        throw std::runtime_error(
+            "a fragment would loop over " + std::to_string(lights) +
+            " lights, and some drivers end a loop after 65,535: use fewer lights or smaller tiles");
+}
+
 }  // namespace
 
 // The frame, from top to bottom.
@@ -98,6 +106,7 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     report.milliseconds.upload = watch.lap();
 
     // 5. The picture.
+    check_loop(binner_.statistics().longest_list);
     draw_triangles(tiled_program_, settings);
     report.milliseconds.draw = watch.lap();
 
@@ -123,6 +132,7 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
 }
 
 void Renderer::draw_every_light(const Camera& camera, const FrameSettings& settings) {
+    check_loop(scene_.lights.size());
     set_size(settings.width, settings.height, GL_RGBA8);
     set_camera(camera);
     clear();
