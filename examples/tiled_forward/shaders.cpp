@@ -54,8 +54,8 @@ in vec3 surface_normal;
 in vec3 base_colour;
 out vec4 pixel;
 
-// From gl_FragCoord, the very numbers that tiles and Z bounds are made of: an interpolated position differs from
-// the depth buffer's by the rasteriser's rounding, which can be much at a triangle seen edge-on.
+// From gl_FragCoord, the very numbers that tiles and Z bounds are made of: an interpolated position differs
+// from the depth buffer's by the rasteriser's rounding, which can be much at a triangle seen edge-on.
 vec3 view_position() {
     vec3 ndc = 2.0 * vec3(gl_FragCoord.xy / picture_size, gl_FragCoord.z) - 1.0;
     float z = (projection[3][2] - ndc.z * projection[3][3]) / (ndc.z * projection[2][3] - projection[2][2]);
@@ -84,7 +84,8 @@ void main() {
     if (exposure == 0.0) {
         pixel = vec4(radiance, 1.0);
     } else {
-        vec3 night = base_colour * vec3(0.012, 0.015, 0.024) * (1.0 + dot(normal, moon));  // so that nothing is all black
+        // Moonlight, so that nothing is all black.
+        vec3 night = base_colour * vec3(0.012, 0.015, 0.024) * (1.0 + dot(normal, moon));
         vec3 display = 1.0 - exp(-exposure * radiance - night);
         pixel = vec4(pow(display, vec3(1.0 / 2.2)), 1.0);
     }
@@ -142,8 +143,8 @@ out vec4 pixel;
 void main() {
     float heat = float(lightbin_list(gl_FragCoord.xy).y) / longest_list;
     // blue, cyan, green, yellow, red
-    vec3 colour = clamp(vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat), 0.0, 1.0);
-    pixel = vec4(colour, heat > 0.0 ? 0.6 : 0.0);
+    vec3 colour = vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat);
+    pixel = vec4(clamp(colour, 0.0, 1.0), heat > 0.0 ? 0.6 : 0.0);
 }
 )";
 }
