@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Stage 3: footprints (+ Z bounds) -> how long each tile's list is, then the lists themselves.
+// Stage 3: footprints (+ Z bounds) -> the light grid.
 #pragma once
 
+#include <lightbin/detail/buffer.hpp>
 #include <lightbin/detail/kernels.hpp>
+#include <lightbin/detail/scratch.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/project.hpp>
 #include <lightbin/result.hpp>
@@ -13,65 +15,60 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
-#include <vector>
 
 namespace lightbin {
 
-/// Bucketing in two steps, so that sizes are known before anything is written (Tiled Shading, section 3:
-/// count, then fill). Keeps its memory from call to call.
-template <class Id, bool with_depth> class Buckets {
+/// A light grid in memory of its own, kept from call to call.
+template <class Id, bool with_depth> class GridLists {
 public:
-    /// Counts the lights of each tile. Returns the length of the light index list, or an Error if Z bounds
-    /// are shorter than the grid or 32-bit offsets can't reach the list's end. `bounds` must live until
-    /// emit().
-    Result<std::size_t> count(const View& view, Footprints<with_depth>& footprints, const ZBounds& bounds) {
+    /// Builds the grid of the footprints with a kernel of an instruction set. Returns an Error if Z bounds
+    /// are shorter than the grid, or 32-bit offsets can't reach the list's end; then there is no grid.
+    std::optional<Error> build(Isa isa, const View& view, const Footprints<with_depth>& footprints,
+                               const ZBounds& bounds, detail::Scratch& scratch) {
         const std::size_t tiles = view.tile_count();
         for (const std::span<const float> side : {bounds.min, bounds.max})
             if (!side.empty() && side.size() < tiles)
                 return Error{ErrorCode::z_bounds_too_small, tiles, side.size()};
-        bounds_ = tile_depths(bounds);
-        tiles_x_ = view.tiles_x();
-        tiles_y_ = view.tiles_y();
-        counts_.assign(tiles, 0);
-        kernels().count(footprints.arrays(), footprints.visible(), static_cast<std::size_t>(tiles_x_),
-                        bounds_, counts_.data());
-        std::uint64_t entries = 0;
-        for (const std::uint32_t count : counts_)
-            entries += count;
+
+        using Job = detail::BinJob<Id>;
+        Job job = {.lights = footprints.arrays(),
+                   .count = footprints.visible(),
+                   .tiles_x = view.tiles_x(),
+                   .tiles_y = view.tiles_y(),
+                   .bounds = tile_depths(bounds),
+                   .offsets = scratch.offsets.room(tiles + Job::slack),
+                   .indices = nullptr};
+        // Every kernel fits in the rectangles' area. Where that is out of reach, Z bounds may still bring the
+        // list below what 32-bit offsets reach: counted exactly, and the one kernel that needs no more room
+        // than that.
         constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
-        if (entries > most) return Error{ErrorCode::too_many_entries, entries, most};
-        entries_ = static_cast<std::size_t>(entries);
-        return entries_;
-    }
-
-    /// The list lengths, row-major, after count() and until emit().
-    std::span<const std::uint32_t> counts() const { return counts_; }
-
-    /// Writes what count() counted: once after each count(), with the same footprints. An Error names the
-    /// size that is needed, and then nothing is written.
-    Result<LightGrid<Id>> emit(Footprints<with_depth>& footprints, std::span<Tile> tiles,
-                               std::span<Id> indices) {
-        if (tiles.size() < counts_.size())
-            return Error{ErrorCode::tile_buffer_too_small, counts_.size(), tiles.size()};
-        if (indices.size() < entries_)
-            return Error{ErrorCode::index_buffer_too_small, entries_, indices.size()};
-        std::uint32_t offset = 0;
-        for (std::size_t tile = 0; tile < counts_.size(); ++tile) {
-            const std::uint32_t count = counts_[tile];
-            tiles[tile] = {offset, count};
-            counts_[tile] = offset;  // from here on the tile's cursor
-            offset += count;
+        std::uint64_t room = footprints.area();
+        auto kernel = detail::bin_kernel<Id, with_depth>(isa, job, room);
+        if (room > most / 2) {
+            if constexpr (with_depth)
+                room = detail::count_scalar<true>(job, scratch, scratch.cursors.room(tiles));
+            if (room > most) return Error{ErrorCode::too_many_entries, room, most};
+            kernel = detail::bin_scalar<with_depth, Id>;
         }
-        kernels().emit(footprints.arrays(), footprints.visible(), static_cast<std::size_t>(tiles_x_), bounds_,
-                       counts_.data(), indices.data());
-        return LightGrid<Id>(tiles_x_, tiles_y_, tiles.first(counts_.size()), indices.first(entries_),
-                             footprints.rejected());
+        job.indices = indices_.room(static_cast<std::size_t>(room) + Job::slack);
+        entries_ = static_cast<std::size_t>(kernel(job, scratch));
+
+        tile_count_ = tiles;
+        Tile* grid = tiles_.room(tiles);
+        for (std::size_t tile = 0; tile < tiles; ++tile) {
+            const std::uint32_t end =
+                tile + 1 < tiles ? job.offsets[tile + 1] : static_cast<std::uint32_t>(entries_);
+            grid[tile] = {job.offsets[tile], end - job.offsets[tile]};
+        }
+        return std::nullopt;
     }
+
+    std::span<const Tile> tiles() const { return {tiles_.data(), tile_count_}; }
+    std::span<const Id> indices() const { return {indices_.data(), entries_}; }
 
 private:
-    static const detail::Kernels<Id, with_depth>& kernels() { return detail::kernels<Id, with_depth>(); }
-
     static detail::TileDepths tile_depths(const ZBounds& bounds) {
         static constexpr float none = -detail::infinity, all = detail::infinity;
         constexpr std::size_t every = ~std::size_t{0};
@@ -79,10 +76,9 @@ private:
                 bounds.min.empty() ? 0 : every, bounds.max.empty() ? 0 : every};
     }
 
-    std::vector<std::uint32_t> counts_;
-    detail::TileDepths bounds_ = {};
-    std::size_t entries_ = 0;
-    int tiles_x_ = 0, tiles_y_ = 0;
+    detail::Buffer<Tile> tiles_;
+    detail::Buffer<Id> indices_;
+    std::size_t tile_count_ = 0, entries_ = 0;
 };
 
 }  // namespace lightbin

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <lightbin/bin.hpp>
+#include <lightbin/detail/platform.hpp>
+#include <lightbin/detail/scratch.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/project.hpp>
@@ -18,7 +20,6 @@
 #include <optional>
 #include <span>
 #include <type_traits>
-#include <vector>
 
 namespace lightbin {
 
@@ -33,6 +34,8 @@ struct Options {
     Index index = Index::u32;
     DepthTest depth_test = DepthTest::none;
     bool statistics = false;  ///< keep Statistics; costs a pass over the tiles
+    /// Use no wider instructions than these, even where the machine has them. The result is the same.
+    Isa isa = detail::compiled_isa;
 };
 
 /// Number of elements that Binner::emit writes.
@@ -91,7 +94,7 @@ public:
         return count_all(view, lights, {});
     }
 
-    /// The same with Z bounds, which must live until emit().
+    /// The same with Z bounds.
     template <class LightRange>
     requires(with_depth) Result<GridSize> count(const View& view, const LightRange& lights,
                                                 const ZBounds& bounds) {
@@ -99,13 +102,20 @@ public:
     }
 
     /// Writes the grid that count() sized to the caller's memory, once after each count(). Only writes there,
-    /// so it may be a mapped GPU buffer. Error: a buffer is smaller than GridSize says; then nothing is
-    /// written, and emit() may be called again.
+    /// in order, so it may be a mapped GPU buffer. Error: a buffer is smaller than GridSize says; then
+    /// nothing is written, and emit() may be called again.
     Result<LightGrid<Id>> emit(std::span<Tile> tiles, std::span<Id> indices) {
         LIGHTBIN_ASSERT(counted_);
-        auto grid = buckets_.emit(footprints_, tiles, indices);
-        counted_ = !grid;
-        return grid;
+        const LightGrid<Id> grid = *counted_;
+        if (tiles.size() < grid.tiles().size())
+            return Error{ErrorCode::tile_buffer_too_small, grid.tiles().size(), tiles.size()};
+        if (indices.size() < grid.indices().size())
+            return Error{ErrorCode::index_buffer_too_small, grid.indices().size(), indices.size()};
+        std::ranges::copy(grid.tiles(), tiles.begin());
+        std::ranges::copy(grid.indices(), indices.begin());
+        counted_.reset();
+        return LightGrid<Id>(grid.tiles_x(), grid.tiles_y(), tiles.first(grid.tiles().size()),
+                             indices.first(grid.indices().size()), grid.rejected());
     }
 
     /// Returns both grids of a scene with transparent geometry from one projection, valid until the Binner's
@@ -115,9 +125,9 @@ public:
                                                                         const LightRange& lights,
                                                                         const ZBounds& bounds) {
         if (const auto error = project(view, lights)) return *error;
-        const auto transparent = emit_owned(view, {.min = {}, .max = bounds.max}, transparent_);
+        const auto transparent = build(transparent_, view, {.min = {}, .max = bounds.max});
         if (!transparent) return transparent.error();
-        const auto opaque = emit_owned(view, bounds, lists_);
+        const auto opaque = build(lists_, view, bounds);
         if (!opaque) return opaque.error();
         return TransparencyGrids<Id>{*opaque, *transparent};
     }
@@ -126,69 +136,62 @@ public:
     const Statistics& statistics() const requires(options.statistics) { return statistics_; }
 
 private:
-    struct Lists {
-        std::vector<Tile> tiles;
-        std::vector<Id> indices;
-    };
+    using Lists = GridLists<Id, with_depth>;
     struct Nothing {};
 
     template <class LightRange>
     Result<LightGrid<Id>> bin_owned(const View& view, const LightRange& lights, const ZBounds& bounds) {
         if (const auto error = project(view, lights)) return *error;
-        return emit_owned(view, bounds, lists_);
+        return build(lists_, view, bounds);
     }
 
     template <class LightRange>
     Result<GridSize> count_all(const View& view, const LightRange& lights, const ZBounds& bounds) {
-        if (const auto error = project(view, lights)) return *error;
-        return count_footprints(view, bounds);
+        const Result<LightGrid<Id>> grid = bin_owned(view, lights, bounds);
+        if (!grid) return grid.error();
+        counted_ = *grid;
+        return GridSize{grid->tiles().size(), grid->indices().size()};
     }
 
     template <class LightRange> std::optional<Error> project(const View& view, const LightRange& lights) {
-        counted_ = false;
+        counted_.reset();
         const auto& source = detail::as_lights(lights);
         if (!source.valid) return Error{ErrorCode::view_matrix_not_affine};
         const std::uint64_t count = source.array.size(),
                             most = options.index == Index::u16 ? 0x10000 : 0xffffffff;
         if (count > most) return Error{ErrorCode::too_many_lights, count, most};
-        footprints_.project(detail::kernels<Id, with_depth>().project, view, source);
+        isa_ = detail::machine_isa(options.isa);
+        footprints_.project(isa_, view, source);
         return std::nullopt;
     }
 
-    Result<GridSize> count_footprints(const View& view, const ZBounds& bounds) {
-        const Result<std::size_t> entries = buckets_.count(view, footprints_, bounds);
-        if (!entries) return entries.error();
-        if constexpr (options.statistics) gather_statistics(*entries);
-        counted_ = true;
-        return GridSize{view.tile_count(), *entries};
+    Result<LightGrid<Id>> build(Lists& lists, const View& view, const ZBounds& bounds) {
+        if (const auto error = lists.build(isa_, view, footprints_, bounds, scratch_)) return *error;
+        const LightGrid<Id> grid(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(),
+                                 footprints_.rejected());
+        if constexpr (options.statistics) gather_statistics(grid);
+        return grid;
     }
 
-    Result<LightGrid<Id>> emit_owned(const View& view, const ZBounds& bounds, Lists& lists) {
-        const Result<GridSize> size = count_footprints(view, bounds);
-        if (!size) return size.error();
-        if (lists.tiles.size() < size->tiles) lists.tiles.resize(size->tiles);
-        if (lists.indices.size() < size->indices) lists.indices.resize(size->indices);
-        return emit(lists.tiles, lists.indices);
-    }
-
-    void gather_statistics(std::size_t entries) {
+    void gather_statistics(const LightGrid<Id>& grid) {
         statistics_ = {};
         statistics_.lights = footprints_.lights();
         statistics_.rejected = footprints_.rejected();
         statistics_.culled = footprints_.lights() - footprints_.visible() - footprints_.rejected();
-        statistics_.entries = entries;
-        for (const std::uint32_t count : buckets_.counts()) {
-            statistics_.longest_list = (std::max)(statistics_.longest_list, count);
-            ++statistics_.histogram[static_cast<std::size_t>(std::bit_width(count))];
+        statistics_.entries = grid.indices().size();
+        for (const Tile& tile : grid.tiles()) {
+            statistics_.longest_list = (std::max)(statistics_.longest_list, tile.count);
+            ++statistics_.histogram[static_cast<std::size_t>(std::bit_width(tile.count))];
         }
     }
 
+    Isa isa_ = Isa::scalar;
+    detail::Scratch scratch_;
     Footprints<with_depth> footprints_;
-    Buckets<Id, with_depth> buckets_;
     Lists lists_;
     std::conditional_t<with_depth, Lists, Nothing> transparent_;
     std::conditional_t<options.statistics, Statistics, Nothing> statistics_;
-    bool counted_ = false;  ///< emit() has something to write
+    std::optional<LightGrid<Id>> counted_;  ///< what emit() has to write, in lists_
 };
 
 }  // namespace lightbin

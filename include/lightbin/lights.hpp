@@ -2,6 +2,7 @@
 // The lights as the caller has them: vec4 arrays or the caller's own structs, in view space or world space.
 #pragma once
 
+#include <lightbin/detail/matrix.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/result.hpp>
 
@@ -57,13 +58,11 @@ namespace detail {
 class WorldToView {
 public:
     template <class Matrix> explicit WorldToView(const Matrix& matrix) {
-        for (int column = 0; column < 4; ++column) {
-            for (int row = 0; row < 3; ++row) {
-                m_[column][row] = static_cast<double>(matrix[column][row]);
-                affine_ = affine_ && std::isfinite(m_[column][row]);
-            }
-            affine_ = affine_ && static_cast<double>(matrix[column][3]) == (column == 3 ? 1.0 : 0.0);
-        }
+        copy_matrix(matrix, m_);
+        affine_ = m_[0][3] == 0 && m_[1][3] == 0 && m_[2][3] == 0 && m_[3][3] == 1;
+        for (const auto& column : m_)
+            for (const double entry : column)
+                affine_ = affine_ && std::isfinite(entry);
         // The largest singular value is at most the root of the largest row sum of M^T M.
         double square = 0;
         for (int i = 0; i < 3; ++i) {
@@ -98,7 +97,7 @@ public:
     }
 
 private:
-    double m_[4][3] = {};
+    double m_[4][4] = {};
     double stretch_ = 0;
     bool affine_ = true;
 };

@@ -3,6 +3,7 @@
 // outward.
 #pragma once
 
+#include <lightbin/detail/buffer.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/kernels.hpp>
 #include <lightbin/lights.hpp>
@@ -10,48 +11,41 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace lightbin {
 
 /// The footprints of the lights in view, in ascending order of id. Keeps its memory from call to call.
 template <bool with_depth> class Footprints {
 public:
-    /// Projects every light with a kernel of this machine's tier. After it, a light's rectangle holds each
+    /// Projects every light with the kernel of an instruction set. After it, a light's rectangle holds each
     /// tile that the part of its sphere beyond the near plane projects to; it is the smallest such rectangle
     /// but for the rounding margin of the view. The depth interval is z - r to z + r in float: rounding is
     /// monotone, so comparing it with float bounds never loses a light.
     template <class Light, class ToViewSphere>
-    void project(detail::ProjectKernel<with_depth> kernel, const View& view,
-                 const Lights<Light, ToViewSphere>& lights) {
+    void project(Isa isa, const View& view, const Lights<Light, ToViewSphere>& lights) {
         lights_ = lights.array.size();
-        if (ids_.size() < lights_) {
-            ids_.resize(lights_);
-            rects_.resize(lights_);
-            if constexpr (with_depth) depths_.resize(lights_);
-        }
+        const std::size_t room = lights_ + detail::FootprintArrays::padding;
+        arrays_ = {ids_.room(room), x0_.room(room), y0_.room(room), x1_.room(room), y1_.room(room), nullptr};
+        if constexpr (with_depth) arrays_.depths = depths_.room(room);
         counts_ = {};
+        const detail::ProjectKernel<with_depth> kernel = detail::project_kernel<with_depth>(isa);
         detail::for_each_block(lights, [&](const Sphere* spheres, std::uint32_t n, std::uint32_t first_id) {
-            const detail::ProjectCounts block =
-                kernel(view.camera(), spheres, n, first_id, arrays(counts_.visible));
-            counts_.visible += block.visible;
-            counts_.rejected += block.rejected;
+            kernel(view.camera(), spheres, n, first_id, arrays_, counts_);
         });
     }
 
     std::size_t lights() const { return lights_; }
     std::uint32_t visible() const { return counts_.visible; }
     std::uint32_t rejected() const { return counts_.rejected; }  ///< bad input, see Sphere
-
-    detail::FootprintArrays arrays(std::size_t first = 0) {
-        return {ids_.data() + first, rects_.data() + first, with_depth ? depths_.data() + first : nullptr};
-    }
+    std::uint64_t area() const { return counts_.area; }          ///< sum of the rectangles' tiles
+    const detail::FootprintArrays& arrays() const { return arrays_; }
 
 private:
-    std::vector<std::uint32_t> ids_;
-    std::vector<detail::TileRect> rects_;
-    std::vector<DepthInterval> depths_;
+    detail::Buffer<std::uint32_t> ids_;
+    detail::Buffer<std::uint16_t> x0_, y0_, x1_, y1_;
+    detail::Buffer<DepthInterval> depths_;
     std::size_t lights_ = 0;
+    detail::FootprintArrays arrays_ = {};
     detail::ProjectCounts counts_;
 };
 

@@ -2,6 +2,7 @@
 // Stage 1: projection matrix + viewport + tile size -> the few constants that all other stages use.
 #pragma once
 
+#include <lightbin/detail/matrix.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/result.hpp>
 
@@ -59,6 +60,7 @@ struct ImageAxis {
     float offset_f = 0;
     float margin = 0;  ///< bound on the error of a float tile coordinate inside the viewport, in tiles
     float limit = 0;   ///< the viewport's far edge in tiles, rounded up
+    float inside = 0;  ///< a coordinate in the last tile
     int tiles = 0;
 };
 
@@ -68,6 +70,8 @@ struct Camera {
     float z_sign = 1;      ///< view depth = z_sign * z
     float near_depth = 0;  ///< rounded down
     float far_depth = 0;   ///< rounded up, may be +inf
+    float near_fast =
+        0;  ///< spheres beyond it are projected in float: the near plane, or 2^-40 where it is nearer
     bool orthographic = false;
 };
 
@@ -93,9 +97,7 @@ public:
     static Result<View> from_projection(const Matrix& projection, Extent viewport,
                                         const ViewOptions& options = {}) {
         double m[4][4];
-        for (int column = 0; column < 4; ++column)
-            for (int row = 0; row < 4; ++row)
-                m[column][row] = static_cast<double>(projection[column][row]);
+        detail::copy_matrix(projection, m);
         return from_rows(m, viewport, options);
     }
 
@@ -192,6 +194,7 @@ private:
         axis.offset = (q / w + 1.0) * tiles_per_ndc;
         axis.scale_f = static_cast<float>(axis.scale);
         axis.offset_f = static_cast<float>(axis.offset);
+        axis.inside = static_cast<float>(axis.tiles) - 0.5f;
         axis.limit = detail::float_above(static_cast<double>(side) / tile_size_);
         // A float slope is within 9u of the truth (u = 2^-24, see project.hpp), times scale_f 11u, plus u of
         // offset_f and u of the sum; inside the viewport |scale * slope| <= |offset| + tiles. 16u leaves room
@@ -209,6 +212,7 @@ private:
     bool set_depth_range() {
         const DepthInterval range = view_depths(0, 1);
         camera_.near_depth = range.min;
+        camera_.near_fast = (std::fmax)(range.min, 0x1p-40f);
         camera_.far_depth = range.max;
         if (!(range.min < range.max)) return false;
         if (camera_.orthographic) return std::isfinite(range.min) && std::isfinite(range.max);

@@ -14,16 +14,32 @@ struct TileRect {
     std::uint16_t x0, y0, x1, y1;
 };
 
-/// Parallel arrays, one element a light in view. depths is null where no depth test reads it.
+/// The lights in view, as parallel arrays in ascending order of id: tiles x0..x1, y0..y1, both ends included.
+/// Readable (not meaningful) up to `padding` elements past the end.
 struct FootprintArrays {
+    static constexpr std::size_t padding = 64;
+
     std::uint32_t* ids;
-    TileRect* rects;
-    DepthInterval* depths;
+    std::uint16_t *x0, *y0, *x1, *y1;
+    DepthInterval* depths;  ///< by id, of all lights; null where no depth test reads it
 };
 
+/// What the projection of some lights came to.
 struct ProjectCounts {
     std::uint32_t visible = 0, rejected = 0;
+    std::uint64_t area = 0;  ///< sum of the rectangles' tiles: the most entries there can be
 };
+
+/// Appends one light in view.
+inline void append(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t id, TileRect rect) {
+    const std::uint32_t at = counts.visible++;
+    out.ids[at] = id;
+    out.x0[at] = rect.x0;
+    out.y0[at] = rect.y0;
+    out.x1[at] = rect.x1;
+    out.y1[at] = rect.y1;
+    counts.area += (rect.x1 - rect.x0 + 1u) * std::uint64_t{rect.y1 - rect.y0 + 1u};
+}
 
 /// Z bounds in a form without branches: an absent side reads the one element of a constant.
 struct TileDepths {
@@ -36,6 +52,19 @@ struct TileDepths {
         const float low = min[tile & min_mask], high = max[tile & max_mask];
         return !(light.max < low) && !(light.min > high) && !(low > high);
     }
+};
+
+/// What a binning kernel works on and writes.
+template <class Id> struct BinJob {
+    /// Elements that a kernel may write past the end of `offsets` and `indices`: full vectors are stored.
+    static constexpr std::size_t slack = 64;
+
+    FootprintArrays lights;
+    std::uint32_t count;
+    int tiles_x, tiles_y;
+    TileDepths bounds;
+    std::uint32_t* offsets;  ///< one a tile, row-major
+    Id* indices;             ///< room for ProjectCounts::area
 };
 
 }  // namespace lightbin::detail

@@ -1,27 +1,53 @@
 // SPDX-License-Identifier: MIT
-// The table of kernels, one row an instruction set. The scalar row is the reference and, so far, the only
-// one.
+// The tiers' kernels side by side, and the choice between them.
 #pragma once
 
+#include <lightbin/detail/avx2.hpp>
+#include <lightbin/detail/avx512.hpp>
+#include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/scalar.hpp>
+#include <lightbin/detail/scratch.hpp>
+#include <lightbin/detail/sse2.hpp>
+
+#include <cstddef>
+#include <cstdint>
 
 namespace lightbin::detail {
 
 template <bool with_depth> using ProjectKernel = decltype(&project_scalar<with_depth>);
+template <class Id, bool with_depth> using BinKernel = decltype(&bin_scalar<with_depth, Id>);
 
-template <class Id, bool with_depth> struct Kernels {
-    ProjectKernel<with_depth> project;
-    decltype(&count_scalar<with_depth>) count;
-    decltype(&emit_scalar<Id, with_depth>) emit;
-};
+inline namespace LIGHTBIN_FLAVOUR {
 
-template <class Id, bool with_depth>
-inline constexpr Kernels<Id, with_depth> scalar_kernels = {
-    project_scalar<with_depth>, count_scalar<with_depth>, emit_scalar<Id, with_depth>};
-
-/// The kernels to use on this machine.
-template <class Id, bool with_depth> constexpr const Kernels<Id, with_depth>& kernels() {
-    return scalar_kernels<Id, with_depth>;
+template <bool with_depth> ProjectKernel<with_depth> project_kernel(Isa isa) {
+#if defined(LIGHTBIN_X86)
+    if (isa == Isa::avx512) return avx512::project<with_depth>;
+    if (isa == Isa::avx2) return avx2::project<with_depth>;
+    if (isa == Isa::sse2) return sse2::project<with_depth>;
+#endif
+    static_cast<void>(isa);
+    return project_scalar<with_depth>;
 }
 
+/// The fastest kernel for lights that cover `area` tiles in all. Kernels with full-vector stores need the
+/// room for `area` entries that the scalar one does without.
+template <class Id, bool with_depth>
+BinKernel<Id, with_depth> bin_kernel(Isa isa, const BinJob<Id>& job, std::uint64_t area) {
+    // Nearly empty grids: the walk over all supertiles costs more than counting and scattering the few
+    // entries.
+    const std::uint64_t tiles =
+        static_cast<std::uint64_t>(job.tiles_x) * static_cast<std::uint64_t>(job.tiles_y);
+    if (area < tiles / 4) return bin_scalar<with_depth, Id>;
+#if defined(LIGHTBIN_X86)
+    const bool small_grid = job.tiles_x <= 248 && job.tiles_y <= 248;
+    const bool short_ids = job.count > 0 && job.lights.ids[0] >> 16 == job.lights.ids[job.count - 1] >> 16;
+    if (isa == Isa::avx512 && small_grid && short_ids) return avx512::bin_compress<with_depth, Id>;
+    if (isa >= Isa::avx2) return avx2::bin_supertiles<with_depth, Id>;
+#endif
+    static_cast<void>(isa);
+    return bin_scalar<with_depth, Id>;
+}
+
+}  // namespace LIGHTBIN_FLAVOUR
 }  // namespace lightbin::detail

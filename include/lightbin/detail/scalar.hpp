@@ -3,67 +3,107 @@
 #pragma once
 
 #include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/platform.hpp>
+#include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/sphere_bounds.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/view.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
 namespace lightbin::detail {
+inline namespace LIGHTBIN_FLAVOUR {
 
-/// Writes the footprints of those of the `count` spheres that are in view to `out`. The first sphere has id
+/// Appends the footprints of those of the `count` spheres that are in view. The first sphere has id
 /// `first_id`.
 template <bool with_depth>
-ProjectCounts project_scalar(const Camera& camera, const Sphere* spheres, std::uint32_t count,
-                             std::uint32_t first_id, FootprintArrays out) {
-    ProjectCounts counts;
+void project_scalar(const Camera& camera, const Sphere* spheres, std::uint32_t count, std::uint32_t first_id,
+                    const FootprintArrays& out, ProjectCounts& counts) {
     for (std::uint32_t i = 0; i < count; ++i) {
         const Sphere& light = spheres[i];
-        const Visibility visibility = project_sphere(camera, light, out.rects[counts.visible]);
-        out.ids[counts.visible] = first_id + i;
         if constexpr (with_depth) {
             const float z = camera.z_sign * light.z;
-            out.depths[counts.visible] = {z - light.radius, z + light.radius};
+            out.depths[first_id + i] = {z - light.radius, z + light.radius};
         }
-        counts.visible += visibility == Visibility::visible;
+        TileRect rect;
+        const Visibility visibility = project_sphere(camera, light, rect);
         counts.rejected += visibility == Visibility::rejected;
+        if (visibility == Visibility::visible) append(out, counts, first_id + i, rect);
     }
-    return counts;
 }
 
 /// Calls visit(tile, light) for each tile that footprint `light` reaches, lights in ascending order.
-template <bool with_depth, class Visit>
-void for_each_pair(const FootprintArrays& footprints, std::size_t count, std::size_t tiles_x,
-                   const TileDepths& bounds, Visit visit) {
-    for (std::size_t light = 0; light < count; ++light) {
-        const TileRect rect = footprints.rects[light];
-        for (std::size_t y = rect.y0; y <= rect.y1; ++y)
-            for (std::size_t tile = y * tiles_x + rect.x0, last = y * tiles_x + rect.x1; tile <= last;
-                 ++tile) {
+template <bool with_depth, class Id, class Visit> void for_each_pair(const BinJob<Id>& job, Visit visit) {
+    const FootprintArrays& lights = job.lights;
+    const std::size_t width = static_cast<std::size_t>(job.tiles_x);
+    for (std::size_t light = 0; light < job.count; ++light)
+        for (std::size_t y = lights.y0[light]; y <= lights.y1[light]; ++y)
+            for (std::size_t tile = y * width + lights.x0[light], last = y * width + lights.x1[light];
+                 tile <= last; ++tile) {
                 if constexpr (with_depth)
-                    if (!bounds.meets(tile, footprints.depths[light])) continue;
+                    if (!job.bounds.meets(tile, lights.depths[lights.ids[light]])) continue;
                 visit(tile, light);
             }
+}
+
+/// Writes how many lights reach each tile to `counts`. Returns their sum.
+///
+/// Without Z a rectangle costs four corners of a difference array, whose prefix sums along both axes are the
+/// counts.
+template <bool with_depth, class Id>
+std::uint64_t count_scalar(const BinJob<Id>& job, Scratch& scratch, std::uint32_t* counts) {
+    const std::size_t width = static_cast<std::size_t>(job.tiles_x),
+                      height = static_cast<std::size_t>(job.tiles_y);
+    std::uint64_t entries = 0;
+    if constexpr (with_depth) {
+        std::fill_n(counts, width * height, 0u);
+        for_each_pair<true>(job, [&](std::size_t tile, std::size_t) {
+            ++counts[tile];
+            ++entries;
+        });
+    } else {
+        const std::size_t pitch = width + 1;
+        std::int32_t* corners = scratch.corners.room(pitch * (height + 1));
+        std::fill_n(corners, pitch * (height + 1), 0);
+        const FootprintArrays& lights = job.lights;
+        for (std::size_t light = 0; light < job.count; ++light) {
+            const std::size_t left = lights.x0[light], right = lights.x1[light] + 1u;
+            const std::size_t top = lights.y0[light] * pitch, bottom = (lights.y1[light] + 1u) * pitch;
+            ++corners[top + left];
+            --corners[top + right];
+            --corners[bottom + left];
+            ++corners[bottom + right];
+        }
+        for (std::size_t y = 0; y < height; ++y) {
+            std::uint32_t row = 0;  // sums wrap, and come out right
+            for (std::size_t x = 0; x < width; ++x) {
+                row += static_cast<std::uint32_t>(corners[y * pitch + x]);
+                counts[y * width + x] = row + (y > 0 ? counts[(y - 1) * width + x] : 0);
+                entries += counts[y * width + x];
+            }
+        }
     }
+    return entries;
 }
 
-/// Adds to counts[tile] the number of lights that reach it.
-template <bool with_depth>
-void count_scalar(const FootprintArrays& footprints, std::size_t count, std::size_t tiles_x,
-                  const TileDepths& bounds, std::uint32_t* counts) {
-    for_each_pair<with_depth>(footprints, count, tiles_x, bounds,
-                              [counts](std::size_t tile, std::size_t) { ++counts[tile]; });
-}
-
-/// Writes each light's id at its tiles' cursors, and advances them. Reads nothing of `indices`: it may be
-/// write-combined.
-template <class Id, bool with_depth>
-void emit_scalar(const FootprintArrays& footprints, std::size_t count, std::size_t tiles_x,
-                 const TileDepths& bounds, std::uint32_t* cursors, Id* indices) {
-    for_each_pair<with_depth>(footprints, count, tiles_x, bounds, [=](std::size_t tile, std::size_t light) {
-        indices[cursors[tile]++] = static_cast<Id>(footprints.ids[light]);
+/// Count, prefix, fill (Tiled Shading, section 3). Returns the number of entries. Never writes past the end.
+template <bool with_depth, class Id> std::uint64_t bin_scalar(const BinJob<Id>& job, Scratch& scratch) {
+    const std::size_t tiles = static_cast<std::size_t>(job.tiles_x) * static_cast<std::size_t>(job.tiles_y);
+    std::uint32_t* cursors = scratch.cursors.room(tiles);
+    count_scalar<with_depth>(job, scratch, cursors);
+    std::uint32_t offset = 0;
+    for (std::size_t tile = 0; tile < tiles; ++tile) {
+        const std::uint32_t count = cursors[tile];
+        job.offsets[tile] = cursors[tile] = offset;
+        offset += count;
+    }
+    for_each_pair<with_depth>(job, [&](std::size_t tile, std::size_t light) {
+        job.indices[cursors[tile]++] = static_cast<Id>(job.lights.ids[light]);
     });
+    return offset;
 }
 
+}  // namespace LIGHTBIN_FLAVOUR
 }  // namespace lightbin::detail

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/view.hpp>
@@ -14,6 +15,10 @@
 #include <cstdint>
 
 namespace lightbin::detail {
+
+enum class Visibility : std::uint8_t { visible, culled, rejected };
+
+inline namespace LIGHTBIN_FLAVOUR {
 
 /// Extent of a sphere along one image axis: slopes (perspective) or view-space coordinates (orthographic).
 template <class Real> struct Span { Real low, high; };
@@ -25,8 +30,8 @@ template <class Real> struct Span { Real low, high; };
 /// product is (c^2 - r^2) / e.)
 template <class Real> Span<Real> tangent_slopes(Real c, Real z, Real r, Real e) {
     const Real a = std::fabs(c);
-    const Real tangent_length = std::sqrt(a * a + e);
-    const Real q = a * z + r * tangent_length;
+    const Real tangent_length = std::sqrt(rounded(a * a) + e);
+    const Real q = rounded(a * z) + rounded(r * tangent_length);
     const Real outer = q / e;
     const Real inner = (a - r) * (a + r) / q;
     return c < 0 ? Span<Real>{-outer, -inner} : Span<Real>{inner, outer};
@@ -74,21 +79,19 @@ inline double clipped_max_slope(double c, double z, double r, double near_z) {
 template <class Real>
 bool tile_span(const ImageAxis& axis, Real scale, Real offset, Span<Real> extent, std::uint16_t& first,
                std::uint16_t& last) {
-    const Real low = extent.low * scale + offset - static_cast<Real>(axis.margin);
-    const Real high = extent.high * scale + offset + static_cast<Real>(axis.margin);
+    const Real low = rounded(extent.low * scale) + offset - static_cast<Real>(axis.margin);
+    const Real high = rounded(extent.high * scale) + offset + static_cast<Real>(axis.margin);
     if (!(high >= 0) || !(low <= static_cast<Real>(axis.limit))) return false;
-    const Real end = static_cast<Real>(axis.tiles);
-    const int last_tile = axis.tiles - 1;
-    first = static_cast<std::uint16_t>(low < 0 ? 0 : low < end ? static_cast<int>(low) : last_tile);
-    last = static_cast<std::uint16_t>(high < end ? static_cast<int>(high) : last_tile);
+    const Real end = static_cast<Real>(axis.inside);
+    first = static_cast<std::uint16_t>(low < 0 ? 0 : low < end ? low : end);
+    last = static_cast<std::uint16_t>(high < end ? high : end);
     return true;
 }
 
-enum class Visibility : std::uint8_t { visible, culled, rejected };
-
 /// The general case, in double: near-plane straddlers, eye inside, tiny, huge and infinite spheres, bad
-/// input.
-inline Visibility project_carefully(const Camera& camera, const Sphere& light, TileRect& rect) {
+/// input. Never inlined: all tiers share its one set of instructions and so its roundings.
+LIGHTBIN_NOINLINE inline Visibility project_carefully(const Camera& camera, const Sphere& light,
+                                                      TileRect& rect) {
     if (!std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) || !(light.radius >= 0))
         return Visibility::rejected;
     const double z = static_cast<double>(camera.z_sign * light.z), r = static_cast<double>(light.radius);
@@ -126,8 +129,8 @@ inline Visibility project_sphere(const Camera& camera, const Sphere& light, Tile
         extent_x = {x - r, x + r};
         extent_y = {y - r, y + r};
     } else {
-        if (!(z - r > std::fmax(camera.near_depth, 0x1p-40f))) return project_carefully(camera, light, rect);
-        const float e = (z - r) * (z + r);
+        if (!(z - r > camera.near_fast)) return project_carefully(camera, light, rect);
+        const float e = rounded((z - r) * (z + r));
         extent_x = tangent_slopes(x, z, r, e);
         extent_y = tangent_slopes(y, z, r, e);
     }
@@ -137,4 +140,5 @@ inline Visibility project_sphere(const Camera& camera, const Sphere& light, Tile
     return visible ? Visibility::visible : Visibility::culled;
 }
 
+}  // namespace LIGHTBIN_FLAVOUR
 }  // namespace lightbin::detail

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+// The AVX2 tier's vectors: most desktop machines and consoles. Eight lights at a time.
+#pragma once
+
+#include <lightbin/detail/platform.hpp>
+
+#if defined(LIGHTBIN_X86)
+
+#include <lightbin/detail/scratch.hpp>
+#include <lightbin/detail/sphere_bounds.hpp>
+#include <lightbin/detail/supertile.hpp>
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <immintrin.h>
+
+#define LIGHTBIN_TARGET __attribute__((target("avx2,bmi,popcnt")))
+
+namespace lightbin::detail {
+inline namespace LIGHTBIN_FLAVOUR {
+namespace avx2 {
+
+using Floats = __m256;
+using Mask = __m256;
+inline constexpr std::uint32_t lanes = 8;
+
+LIGHTBIN_TARGET inline Floats all(float value) {
+    return _mm256_set1_ps(value);
+}
+LIGHTBIN_TARGET inline Floats add(Floats a, Floats b) {
+    return _mm256_add_ps(a, b);
+}
+LIGHTBIN_TARGET inline Floats sub(Floats a, Floats b) {
+    return _mm256_sub_ps(a, b);
+}
+LIGHTBIN_TARGET inline Floats mul(Floats a, Floats b) {
+    Floats product = _mm256_mul_ps(a, b);
+    __asm__("" : "+x"(product));  // see rounded()
+    return product;
+}
+LIGHTBIN_TARGET inline Floats div(Floats a, Floats b) {
+    return _mm256_div_ps(a, b);
+}
+LIGHTBIN_TARGET inline Floats sqrt(Floats a) {
+    return _mm256_sqrt_ps(a);
+}
+LIGHTBIN_TARGET inline Floats min(Floats a, Floats b) {
+    return _mm256_min_ps(a, b);
+}
+LIGHTBIN_TARGET inline Floats max(Floats a, Floats b) {
+    return _mm256_max_ps(a, b);
+}
+LIGHTBIN_TARGET inline Floats abs(Floats a) {
+    return _mm256_andnot_ps(all(-0.0f), a);
+}
+LIGHTBIN_TARGET inline Floats negate(Floats a) {
+    return _mm256_xor_ps(all(-0.0f), a);
+}
+LIGHTBIN_TARGET inline Mask less(Floats a, Floats b) {
+    return _mm256_cmp_ps(a, b, _CMP_LT_OQ);
+}
+LIGHTBIN_TARGET inline Mask less_equal(Floats a, Floats b) {
+    return _mm256_cmp_ps(a, b, _CMP_LE_OQ);
+}
+LIGHTBIN_TARGET inline Mask both(Mask a, Mask b) {
+    return _mm256_and_ps(a, b);
+}
+LIGHTBIN_TARGET inline Mask either(Mask a, Mask b) {
+    return _mm256_or_ps(a, b);
+}
+LIGHTBIN_TARGET inline Mask both_not(Mask a, Mask b) {
+    return _mm256_andnot_ps(b, a);
+}
+LIGHTBIN_TARGET inline Floats select(Mask mask, Floats a, Floats b) {
+    return _mm256_blendv_ps(b, a, mask);
+}
+LIGHTBIN_TARGET inline unsigned bits(Mask mask) {
+    return static_cast<unsigned>(_mm256_movemask_ps(mask));
+}
+
+LIGHTBIN_TARGET inline Floats pair(const Sphere* sphere) {  // it and the fourth after it
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(&sphere->x)), _mm_loadu_ps(&sphere[4].x),
+                                1);
+}
+
+LIGHTBIN_TARGET inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z,
+                                         Floats& radius) {
+    const Floats a = pair(spheres), b = pair(spheres + 1), c = pair(spheres + 2), d = pair(spheres + 3);
+    const Floats xy_low = _mm256_unpacklo_ps(a, b), zr_low = _mm256_unpackhi_ps(a, b);
+    const Floats xy_high = _mm256_unpacklo_ps(c, d), zr_high = _mm256_unpackhi_ps(c, d);
+    x = _mm256_shuffle_ps(xy_low, xy_high, 0x44);
+    y = _mm256_shuffle_ps(xy_low, xy_high, 0xee);
+    z = _mm256_shuffle_ps(zr_low, zr_high, 0x44);
+    radius = _mm256_shuffle_ps(zr_low, zr_high, 0xee);
+}
+
+LIGHTBIN_TARGET inline void store_tiles(std::uint16_t* tiles, Floats values) {
+    const __m256i whole = _mm256_cvttps_epi32(values);
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(tiles),
+                     _mm_packs_epi32(_mm256_castsi256_si128(whole), _mm256_extracti128_si256(whole, 1)));
+}
+
+LIGHTBIN_TARGET inline void store_depths(DepthInterval* depths, Floats nearest, Floats farthest) {
+    const Floats low = _mm256_unpacklo_ps(nearest, farthest), high = _mm256_unpackhi_ps(nearest, farthest);
+    _mm256_storeu_ps(&depths[0].min, _mm256_permute2f128_ps(low, high, 0x20));
+    _mm256_storeu_ps(&depths[4].min, _mm256_permute2f128_ps(low, high, 0x31));
+}
+
+#include <lightbin/detail/project_simd.inl>
+
+/// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
+LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
+    __m256i low = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes));
+    __m256i high = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes + 32));
+    for (int bit = 7; bit >= 0; --bit) {
+        words[bit] = static_cast<std::uint32_t>(_mm256_movemask_epi8(low)) |
+                     std::uint64_t{static_cast<std::uint32_t>(_mm256_movemask_epi8(high))} << 32;
+        low = _mm256_add_epi8(low, low);
+        high = _mm256_add_epi8(high, high);
+    }
+}
+
+/// One bit a tile of the supertile: !(light.max < low) && !(light.min > high).
+LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* low, const float* high, DepthInterval light) {
+    const Floats nearest = all(light.min), farthest = all(light.max);
+    std::uint64_t met = 0;
+    for (int i = 0; i < 64; i += 8)
+        met |= std::uint64_t{bits(both(_mm256_cmp_ps(farthest, _mm256_loadu_ps(low + i), _CMP_NLT_UQ),
+                                       _mm256_cmp_ps(nearest, _mm256_loadu_ps(high + i), _CMP_NGT_UQ)))}
+               << i;
+    return met;
+}
+
+/// For each byte, the places of its set bits in ascending order.
+inline constexpr std::array<std::array<std::uint8_t, 8>, 256> set_bits = [] {
+    std::array<std::array<std::uint8_t, 8>, 256> table = {};
+    for (unsigned byte = 0; byte < 256; ++byte)
+        for (std::uint8_t bit = 0, place = 0; bit < 8; ++bit)
+            if (byte >> bit & 1) table[byte][place++] = bit;
+    return table;
+}();
+
+/// Lights an append() takes at a time.
+inline constexpr unsigned step = 8;
+
+/// Writes those of 8 ids whose bit is set, in order; then up to 8 elements that mean nothing. Returns how
+/// many.
+template <class Id>
+LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, unsigned mask) {
+    std::uint64_t places;
+    std::memcpy(&places, set_bits[mask].data(), sizeof places);
+    const __m256i chosen =
+        _mm256_permutevar8x32_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(ids)),
+                                    _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(places))));
+    if constexpr (sizeof(Id) == 4)
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), chosen);
+    else
+        _mm_storeu_si128(
+            reinterpret_cast<__m128i*>(out),
+            _mm_packus_epi32(_mm256_castsi256_si128(chosen), _mm256_extracti128_si256(chosen, 1)));
+    return static_cast<std::uint32_t>(std::popcount(mask));
+}
+
+#include <lightbin/detail/supertile.inl>
+
+}  // namespace avx2
+}  // namespace LIGHTBIN_FLAVOUR
+}  // namespace lightbin::detail
+
+#undef LIGHTBIN_TARGET
+#endif

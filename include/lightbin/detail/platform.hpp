@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// Which instruction sets this compiler can make kernels for, and which of them this machine runs. Define
+// LIGHTBIN_NO_SIMD to have the scalar kernels alone.
+#pragma once
+
+#include <cstdint>
+
+#if !defined(LIGHTBIN_NO_SIMD) && (defined(__GNUC__) || defined(__clang__))
+#if defined(__x86_64__)
+#define LIGHTBIN_X86 1
+#elif defined(__aarch64__)
+#define LIGHTBIN_NEON 1
+#endif
+#endif
+
+// Names functions after the flags they are compiled with, so that two translation units with different flags
+// never share one: the linker would pick either, and its instructions might not exist on the machine.
+#if defined(__AVX512F__)
+#define LIGHTBIN_FLAVOUR built_for_avx512
+#elif defined(__AVX2__)
+#define LIGHTBIN_FLAVOUR built_for_avx2
+#elif defined(__AVX__)
+#define LIGHTBIN_FLAVOUR built_for_avx
+#else
+#define LIGHTBIN_FLAVOUR built_for_baseline
+#endif
+
+#if defined(_MSC_VER) && !defined(__clang__)
+#define LIGHTBIN_NOINLINE __declspec(noinline)
+#else
+#define LIGHTBIN_NOINLINE __attribute__((noinline))
+#endif
+
+namespace lightbin {
+
+/// Instruction sets with kernels of their own. All give the same bytes.
+enum class Isa : std::uint8_t {
+    scalar,
+    sse2,
+    neon,
+    avx2,
+    avx512,  ///< with VBMI2, BITALG and VPOPCNTDQ: Ice Lake, Zen 4 and later
+};
+
+namespace detail {
+
+inline constexpr Isa compiled_isa =
+#if defined(LIGHTBIN_X86)
+    Isa::avx512;
+#elif defined(LIGHTBIN_NEON)
+    Isa::neon;
+#else
+    Isa::scalar;
+#endif
+
+/// The widest instruction set, `cap` or below, that was compiled in and that this machine runs.
+inline Isa machine_isa(Isa cap) {
+#if defined(LIGHTBIN_X86)
+    if (cap >= Isa::avx512 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+        __builtin_cpu_supports("avx512vbmi") && __builtin_cpu_supports("avx512vbmi2") &&
+        __builtin_cpu_supports("avx512bitalg") && __builtin_cpu_supports("avx512vpopcntdq"))
+        return Isa::avx512;
+    if (cap >= Isa::avx2 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
+        __builtin_cpu_supports("popcnt"))
+        return Isa::avx2;
+    return cap >= Isa::sse2 ? Isa::sse2 : Isa::scalar;
+#elif defined(LIGHTBIN_NEON)
+    return cap >= Isa::neon ? Isa::neon : Isa::scalar;
+#else
+    return cap, Isa::scalar;
+#endif
+}
+
+inline namespace LIGHTBIN_FLAVOUR {
+
+/// A product that is rounded before it is added to anything: keeps compilers from fusing the two, which would
+/// make the result depend on the instruction set.
+template <class Real> inline Real rounded(Real product) {
+#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
+    __asm__("" : "+x"(product));
+#elif defined(__aarch64__) && (defined(__GNUC__) || defined(__clang__))
+    __asm__("" : "+w"(product));
+#endif
+    return product;
+}
+
+}  // namespace LIGHTBIN_FLAVOUR
+}  // namespace detail
+}  // namespace lightbin
