@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Draws a scene lit by hundreds of lights: in a window where there is a display, else as a PNG file.
+// Draws a scene lit by hundreds of lights: as a PNG file, then in a window where there is a display.
 #include "gl_context.hpp"
 #include "renderer.hpp"
 #include "window.hpp"
@@ -17,7 +17,7 @@ namespace {
 
 struct Options {
     std::string scene;
-    std::string output;
+    std::string output = "tiled_forward.png";
     bool headless = false;
     bool check = false;
     bool heat_map = false;
@@ -60,9 +60,8 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
     std::string size;
     app.add_option("--size", size, "Width and height in pixels")->type_name("WxH")->default_str("1280x720");
     app.add_flag("--heat-map", options.heat_map, "Lay the length of each tile's list over the picture");
-    app.add_flag("--headless", options.headless, "Write a picture although there is a display");
-    app.add_option("-o,--output", options.output,
-                   "Write this PNG file, no window (default without one: tiled_forward.png)");
+    app.add_option("-o,--output", options.output, "The PNG file to write")->capture_default_str();
+    app.add_flag("--headless", options.headless, "No window, although there is a display");
     app.add_flag("--check", options.check,
                  "Draw again with every light in every fragment and compare; no window");
     app.add_option("--drop-light", options.frame.dropped_light,
@@ -146,6 +145,27 @@ bool check(Renderer& renderer, const Scene& scene, const Camera& camera, const F
     return false;
 }
 
+// Draws the picture, writes it, and checks it if asked to. Returns the exit code.
+int draw_picture(const Options& options, const Scene& scene) {
+    const OffscreenContext context(options.glsl);
+    std::printf("OpenGL       %s, GLSL %d\n", reinterpret_cast<const char*>(glGetString(GL_RENDERER)),
+                context.glsl());
+    Renderer renderer(scene, context.glsl());
+    const Camera& camera = scene.cameras[static_cast<std::size_t>(options.view)];
+    FrameSettings frame = options.frame;
+    frame.exposure = renderer.meter(camera, frame) * std::exp2(options.stops);
+    renderer.draw(camera, frame);  // waits for shader compilers and memory; the times are the second frame's
+    const FrameReport report = renderer.draw(camera, frame);
+    print(scene, frame, camera, report);
+
+    const Picture tiled = renderer.read_picture();
+    if (options.heat_map) renderer.draw_heat_map(report);
+    write_png(options.heat_map ? renderer.read_picture() : tiled, options.output);
+    std::printf("picture      %s\n", options.output.c_str());
+    std::fflush(stdout);
+    return options.check && !check(renderer, scene, camera, frame, tiled) ? EXIT_FAILURE : EXIT_SUCCESS;
+}
+
 int run(const Options& options) {
     const Scene scene = open_scene(options);
     if (static_cast<std::size_t>(options.view) >= scene.cameras.size())
@@ -158,29 +178,10 @@ int run(const Options& options) {
         std::printf("note         %s\n", note.c_str());
     std::fflush(stdout);
 
-    if (!options.headless && !options.check && options.output.empty() &&
-        show_in_window(scene, options.glsl, options.view, options.frame, options.stops, options.heat_map))
-        return EXIT_SUCCESS;
-
-    const OffscreenContext context(options.glsl);
-    std::printf("OpenGL       %s, GLSL %d\n", reinterpret_cast<const char*>(glGetString(GL_RENDERER)),
-                context.glsl());
-    Renderer renderer(scene, context.glsl());
-    const Camera& camera = scene.cameras[static_cast<std::size_t>(options.view)];
-    FrameSettings frame = options.frame;
-    frame.exposure = renderer.meter(camera, frame) * std::exp2(options.stops);
-    renderer.draw(
-        camera, frame);  // the first frame waits for shader compilers and memory; the times are the second's
-    const FrameReport report = renderer.draw(camera, frame);
-    print(scene, frame, camera, report);
-
-    const Picture tiled = renderer.read_picture();
-    if (options.heat_map) renderer.draw_heat_map(report);
-    const std::string output = options.output.empty() ? "tiled_forward.png" : options.output;
-    write_png(options.heat_map ? renderer.read_picture() : tiled, output);
-    std::printf("picture      %s\n", output.c_str());
-    std::fflush(stdout);
-    return options.check && !check(renderer, scene, camera, frame, tiled) ? EXIT_FAILURE : EXIT_SUCCESS;
+    const int exit_code = draw_picture(options, scene);
+    if (!options.headless && !options.check)
+        show_in_window(scene, options.glsl, options.view, options.frame, options.stops, options.heat_map);
+    return exit_code;
 }
 
 }  // namespace

@@ -94,10 +94,10 @@ double walking_speed(const Scene& scene) {
 
 }  // namespace
 
-bool show_in_window(const Scene& scene, int wanted_glsl, int view, FrameSettings settings,
+void show_in_window(const Scene& scene, int wanted_glsl, int view, FrameSettings settings,
                     float exposure_stops, bool heat_map) {
     const Glfw glfw;
-    if (!glfw.running) return false;
+    if (!glfw.running) return;
     int glsl = 0;
     GLFWwindow* const window = open_window(scene.name.c_str(), settings, wanted_glsl, glsl);
     glfwMakeContextCurrent(window);
@@ -151,5 +151,4 @@ bool show_in_window(const Scene& scene, int wanted_glsl, int view, FrameSettings
             glfwSetWindowTitle(window, title);
         }
     }
-    return true;
 }

@@ -24,7 +24,8 @@ for header in $(cd "$include" && find lightbin -name '*.hpp'); do
 done
 [ "$count" -gt 0 ]
 
-for flags in "-std=c++20 -O2" "-std=c++20 -O3 -DNDEBUG -fno-exceptions -fno-rtti" "-std=c++2b -fsyntax-only"; do
+for flags in "-std=c++20 -O2" "-std=c++20 -O3 -DNDEBUG -fno-exceptions -fno-rtti" "-std=c++20 -O2 -march=native" \
+    "-std=c++20 -O2 -DLIGHTBIN_NO_SIMD" "-std=c++2b -fsyntax-only"; do
     # shellcheck disable=SC2086  # several flags
     compile $flags -c -o "$work/object.o" -DUNIT=unit "$here/use_everything.cpp"
 done

@@ -45,10 +45,10 @@ LIGHTBIN_TARGET inline Floats div(Floats a, Floats b) {
 LIGHTBIN_TARGET inline Floats sqrt(Floats a) {
     return _mm256_sqrt_ps(a);
 }
-LIGHTBIN_TARGET inline Floats min(Floats a, Floats b) {
+LIGHTBIN_TARGET inline Floats lesser(Floats a, Floats b) {
     return _mm256_min_ps(a, b);
 }
-LIGHTBIN_TARGET inline Floats max(Floats a, Floats b) {
+LIGHTBIN_TARGET inline Floats greater(Floats a, Floats b) {
     return _mm256_max_ps(a, b);
 }
 LIGHTBIN_TARGET inline Floats abs(Floats a) {

@@ -53,10 +53,10 @@ LIGHTBIN_TARGET inline Floats div(Floats a, Floats b) {
 LIGHTBIN_TARGET inline Floats sqrt(Floats a) {
     return _mm512_sqrt_ps(a);
 }
-LIGHTBIN_TARGET inline Floats min(Floats a, Floats b) {
+LIGHTBIN_TARGET inline Floats lesser(Floats a, Floats b) {
     return _mm512_min_ps(a, b);
 }
-LIGHTBIN_TARGET inline Floats max(Floats a, Floats b) {
+LIGHTBIN_TARGET inline Floats greater(Floats a, Floats b) {
     return _mm512_max_ps(a, b);
 }
 LIGHTBIN_TARGET inline Floats abs(Floats a) {

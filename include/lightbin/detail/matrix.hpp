@@ -6,7 +6,7 @@ namespace lightbin::detail {
 
 /// Copies any matrix[column][row]. Indices are constants, which no type of index warns of.
 template <class Matrix> void copy_matrix(const Matrix& matrix, double (&m)[4][4]) {
-    const auto copy_column = [](const auto& column, double (&to)[4]) {
+    const auto copy_column = [](const auto& column, double(&to)[4]) {
         to[0] = static_cast<double>(column[0]);
         to[1] = static_cast<double>(column[1]);
         to[2] = static_cast<double>(column[2]);

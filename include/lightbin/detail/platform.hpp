@@ -5,12 +5,8 @@
 
 #include <cstdint>
 
-#if !defined(LIGHTBIN_NO_SIMD) && (defined(__GNUC__) || defined(__clang__))
-#if defined(__x86_64__)
+#if !defined(LIGHTBIN_NO_SIMD) && defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
 #define LIGHTBIN_X86 1
-#elif defined(__aarch64__)
-#define LIGHTBIN_NEON 1
-#endif
 #endif
 
 // Names functions after the flags they are compiled with, so that two translation units with different flags
@@ -37,20 +33,16 @@ namespace lightbin {
 enum class Isa : std::uint8_t {
     scalar,
     sse2,
-    neon,
     avx2,
     avx512,  ///< with VBMI2, BITALG and VPOPCNTDQ: Ice Lake, Zen 4 and later
 };
 
 namespace detail {
 
-inline constexpr Isa compiled_isa =
 #if defined(LIGHTBIN_X86)
-    Isa::avx512;
-#elif defined(LIGHTBIN_NEON)
-    Isa::neon;
+inline constexpr Isa compiled_isa = Isa::avx512;
 #else
-    Isa::scalar;
+inline constexpr Isa compiled_isa = Isa::scalar;
 #endif
 
 /// The widest instruction set, `cap` or below, that was compiled in and that this machine runs.
@@ -65,10 +57,9 @@ inline Isa machine_isa(Isa cap) {
         __builtin_cpu_supports("popcnt"))
         return Isa::avx2;
     return cap >= Isa::sse2 ? Isa::sse2 : Isa::scalar;
-#elif defined(LIGHTBIN_NEON)
-    return cap >= Isa::neon ? Isa::neon : Isa::scalar;
 #else
-    return cap, Isa::scalar;
+    static_cast<void>(cap);
+    return Isa::scalar;
 #endif
 }
 

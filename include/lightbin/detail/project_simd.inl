@@ -10,8 +10,8 @@ LIGHTBIN_TARGET inline Mask tile_span(const ImageAxis& axis, Floats low, Floats 
     low = sub(add(mul(low, scale), offset), margin);
     high = add(add(mul(high, scale), offset), margin);
     const Floats zero = all(0), inside = all(axis.inside);
-    store_tiles(first, min(max(low, zero), inside));
-    store_tiles(last, min(high, inside));
+    store_tiles(first, lesser(greater(low, zero), inside));
+    store_tiles(last, lesser(high, inside));
     return both(visible, both(less_equal(zero, high), less_equal(low, all(axis.limit))));
 }
 

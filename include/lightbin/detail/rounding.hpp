@@ -6,10 +6,11 @@
 #include <cmath>
 #include <limits>
 
-#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) ||                     \
+    defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(_M_FP_FAST)
 #error                                                                                                       \
-    "lightbin: -ffast-math, -ffinite-math-only and /fp:fast let the compiler drop the NaN tests and reorder the sums \
-that keep lights from being missed. Compile the files that include lightbin without them."
+    "lightbin: -ffast-math, /fp:fast and their parts let the compiler drop the NaN tests and reorder the sums that \
+keep lights from being missed. Compile the files that include lightbin without them."
 #endif
 
 namespace lightbin::detail {

@@ -41,10 +41,10 @@ inline Floats div(Floats a, Floats b) {
 inline Floats sqrt(Floats a) {
     return _mm_sqrt_ps(a);
 }
-inline Floats min(Floats a, Floats b) {
+inline Floats lesser(Floats a, Floats b) {
     return _mm_min_ps(a, b);
 }
-inline Floats max(Floats a, Floats b) {
+inline Floats greater(Floats a, Floats b) {
     return _mm_max_ps(a, b);
 }
 inline Floats abs(Floats a) {
