@@ -13,18 +13,20 @@ namespace oracle {
 
 struct Bounds {
     std::vector<float> min, max;
-    std::vector<std::size_t> owner; ///< whose tip it is; no light's if there are as many as lights
+    std::vector<std::size_t> owner;  ///< whose tip it is; no light's if there are as many as lights
 };
 
 enum class BoundsShape {
     random,
-    plane, ///< grow from tile to tile, like a ground seen at an angle
-    tips,  ///< where a light's nearest or farthest point is, its depth, give or take an ulp: minimum and maximum alike
+    plane,  ///< grow from tile to tile, like a ground seen at an angle
+    tips,   ///< where a light's nearest or farthest point is, its depth, give or take an ulp: minimum and
+            ///< maximum alike
 };
 
-/// Bounds for every tile of the camera; a few of any shape are infinite, the wrong way round, or those of an empty tile.
-inline Bounds make_bounds(const Camera& camera, const Aim& aim, const std::vector<Light>& lights, BoundsShape shape,
-                          Random& random) {
+/// Bounds for every tile of the camera; a few of any shape are infinite, the wrong way round, or those of an
+/// empty tile.
+inline Bounds make_bounds(const Camera& camera, const Aim& aim, const std::vector<Light>& lights,
+                          BoundsShape shape, Random& random) {
     constexpr float inf = std::numeric_limits<float>::infinity();
     const int nx = (camera.width + camera.tile - 1) / camera.tile;
     const int ny = (camera.height + camera.tile - 1) / camera.tile;
@@ -39,11 +41,20 @@ inline Bounds make_bounds(const Camera& camera, const Aim& aim, const std::vecto
             }
             float min = static_cast<float>(low), max = static_cast<float>(high);
             switch (random.integer(0, 24)) {
-            case 0: std::swap(min, max); break;
-            case 1: min = -inf; break;
-            case 2: max = inf; break;
-            case 3: min = inf, max = -inf; break; // nothing drawn
-            default: break;
+            case 0:
+                std::swap(min, max);
+                break;
+            case 1:
+                min = -inf;
+                break;
+            case 2:
+                max = inf;
+                break;
+            case 3:
+                min = inf, max = -inf;
+                break;  // nothing drawn
+            default:
+                break;
             }
             bounds.min.push_back(min);
             bounds.max.push_back(max);
@@ -58,7 +69,8 @@ inline Bounds make_bounds(const Camera& camera, const Aim& aim, const std::vecto
             const double x = aim.pixel_of(0, aim.coordinate(0, light), static_cast<double>(tip));
             const double y = aim.pixel_of(1, aim.coordinate(1, light), static_cast<double>(tip));
             if (!(x >= 0 && x < camera.width && y >= 0 && y < camera.height)) continue;
-            const std::size_t tile = static_cast<std::size_t>(static_cast<int>(y) / camera.tile * nx + static_cast<int>(x) / camera.tile);
+            const std::size_t tile = static_cast<std::size_t>(static_cast<int>(y) / camera.tile * nx +
+                                                              static_cast<int>(x) / camera.tile);
             const int ulps = random.integer(-1, 1);
             if (ulps != 0) tip = std::nextafter(tip, ulps < 0 ? -inf : inf);
             bounds.min[tile] = bounds.max[tile] = tip;
@@ -67,4 +79,4 @@ inline Bounds make_bounds(const Camera& camera, const Aim& aim, const std::vecto
     return bounds;
 }
 
-} // namespace oracle
+}  // namespace oracle

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Every camera kind that is promised to work, by name: what a user hands over (a matrix, the API's settings), no more.
+// Every camera kind that is promised to work, by name: what a user hands over (a matrix, the API's settings),
+// no more.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -11,28 +11,34 @@
 
 namespace oracle {
 
-using Matrix = std::array<std::array<double, 4>, 4>; ///< m[column][row]
+/// m[column][row]
+template <class Real> struct Matrix4 {
+    Real entry[4][4] = {};
+    Real* operator[](int column) { return entry[column]; }
+    const Real* operator[](int column) const { return entry[column]; }
+};
+using Matrix = Matrix4<double>;
 
 struct Camera {
     std::string name;
-    Matrix m{};             ///< every entry is a float, unless `doubles`
-    bool doubles = false;   ///< handed over in double precision
+    Matrix m{};            ///< every entry is a float, unless `doubles`
+    bool doubles = false;  ///< handed over in double precision
     int width = 0, height = 0, tile = 0;
-    bool zero_to_one = false; ///< range of clip depth
-    bool upper_left = false;  ///< window origin
-    bool reversed = false;    ///< declared for orthographic matrices only
+    bool zero_to_one = false;  ///< range of clip depth
+    bool upper_left = false;   ///< window origin
+    bool reversed = false;     ///< declared for orthographic matrices only
 };
 
-/// What a projection matrix is made from. Extents are those of the image plane at depth 1 (perspective) or of the box
-/// (orthographic), x to the right, y up.
+/// What a projection matrix is made from. Extents are those of the image plane at depth 1 (perspective) or of
+/// the box (orthographic), x to the right, y up.
 struct Lens {
     double left = 0, right = 0, bottom = 0, top = 0;
-    double near_plane = 0.1, far_plane = 1000; ///< far may be infinite
+    double near_plane = 0.1, far_plane = 1000;  ///< far may be infinite
     bool orthographic = false;
-    bool looks_up_z = false; ///< +z is forward ("left-handed"); otherwise -z
+    bool looks_up_z = false;  ///< +z is forward ("left-handed"); otherwise -z
     bool zero_to_one = false;
     bool reversed = false;
-    double factor = 1; ///< times the whole matrix
+    double factor = 1;  ///< times the whole matrix
     bool flip_x = false, flip_y = false;
     bool doubles = false;
 };
@@ -41,20 +47,20 @@ inline Matrix projection(const Lens& lens) {
     const double n = lens.near_plane, f = lens.far_plane, s = lens.looks_up_z ? 1 : -1;
     const double width = lens.right - lens.left, height = lens.top - lens.bottom;
     const double shift_x = (lens.right + lens.left) / width, shift_y = (lens.top + lens.bottom) / height;
-    const double far_end = lens.zero_to_one ? 0 : -1; // of NDC depth, the other end is 1
+    const double far_end = lens.zero_to_one ? 0 : -1;  // of NDC depth, the other end is 1
     const double at_near = lens.reversed ? 1 : far_end, at_far = lens.reversed ? far_end : 1;
 
     Matrix m{};
     m[0][0] = (lens.flip_x ? -2 : 2) / width;
     m[1][1] = (lens.flip_y ? -2 : 2) / height;
-    if (lens.orthographic) { // ndc depth = a d + b
+    if (lens.orthographic) {  // ndc depth = a d + b
         const double a = (at_far - at_near) / (f - n);
         m[2][2] = s * a;
         m[3][2] = at_near - a * n;
         m[3][0] = (lens.flip_x ? 1 : -1) * shift_x;
         m[3][1] = (lens.flip_y ? 1 : -1) * shift_y;
         m[3][3] = 1;
-    } else { // clip depth = a d + b, w = d
+    } else {  // clip depth = a d + b, w = d
         const double a = std::isinf(f) ? at_far : (at_far * f - at_near * n) / (f - n);
         m[2][2] = s * a;
         m[3][2] = n * (at_near - a);
@@ -62,7 +68,7 @@ inline Matrix projection(const Lens& lens) {
         m[2][1] = (lens.flip_y ? 1 : -1) * s * shift_y;
         m[2][3] = s;
     }
-    for (auto& column : m)
+    for (auto& column : m.entry)
         for (double& entry : column) {
             entry *= lens.factor;
             if (!lens.doubles) entry = static_cast<double>(static_cast<float>(entry));
@@ -70,27 +76,30 @@ inline Matrix projection(const Lens& lens) {
     return m;
 }
 
-/// Viewport, tile size and window origin: whole tiles, odd sizes with partial last tiles on both sides, one-pixel tiles, a
-/// tile that does not divide anything, one tile larger than the screen.
+/// Viewport, tile size and window origin: whole tiles, odd sizes with partial last tiles on both sides,
+/// one-pixel tiles, a tile that does not divide anything, one tile larger than the screen.
 struct Screen {
     int width, height, tile;
     bool upper_left;
 };
 
 inline const std::vector<Screen>& screens() {
-    static const std::vector<Screen> all = {{1920, 1088, 32, false}, {1919, 1079, 16, true}, {61, 47, 1, false},
-                                            {3841, 2161, 57, true},  {100, 75, 256, false},  {47, 61, 1, true}};
+    static const std::vector<Screen> all = {{1920, 1088, 32, false}, {1919, 1079, 16, true},
+                                            {61, 47, 1, false},      {3841, 2161, 57, true},
+                                            {100, 75, 256, false},   {47, 61, 1, true}};
     return all;
 }
 
-inline std::vector<Camera> on_every_screen(const std::string& name, const std::function<Lens(double aspect)>& lens_of) {
+inline std::vector<Camera> on_every_screen(const std::string& name,
+                                           const std::function<Lens(double aspect)>& lens_of) {
     std::vector<Camera> cameras;
     for (const Screen& screen : screens()) {
         const Lens lens = lens_of(static_cast<double>(screen.width) / screen.height);
-        cameras.push_back({name + " " + std::to_string(screen.width) + "x" + std::to_string(screen.height) + "/" +
-                               std::to_string(screen.tile) + (screen.upper_left ? " upper left" : " lower left"),
-                           projection(lens), lens.doubles, screen.width, screen.height, screen.tile, lens.zero_to_one,
-                           screen.upper_left, lens.orthographic && lens.reversed});
+        cameras.push_back({name + " " + std::to_string(screen.width) + "x" + std::to_string(screen.height) +
+                               "/" + std::to_string(screen.tile) +
+                               (screen.upper_left ? " upper left" : " lower left"),
+                           projection(lens), lens.doubles, screen.width, screen.height, screen.tile,
+                           lens.zero_to_one, screen.upper_left, lens.orthographic && lens.reversed});
     }
     return cameras;
 }
@@ -117,7 +126,8 @@ inline std::vector<Camera> symmetric() {
     auto cameras = on_every_screen("symmetric", [](double aspect) { return symmetric_lens(aspect, 60); });
     // 90 degrees and a power-of-two grid: tile edges with slopes such as 3/4, which a ball can touch exactly.
     const Lens square{-1, 1, -1, 1, 0.125, 512};
-    cameras.push_back({"symmetric 90 degrees 256x256/32", projection(square), false, 256, 256, 32, false, false, false});
+    cameras.push_back(
+        {"symmetric 90 degrees 256x256/32", projection(square), false, 256, 256, 32, false, false, false});
     return cameras;
 }
 
@@ -139,9 +149,8 @@ inline std::vector<Camera> right_handed_zero_to_one() {
 }
 
 inline std::vector<Camera> off_centre() {
-    return on_every_screen("off-centre", [](double aspect) {
-        return Lens{-0.9 * aspect, 0.3 * aspect, -0.2, 0.7, 0.25, 500};
-    });
+    return on_every_screen(
+        "off-centre", [](double aspect) { return Lens{-0.9 * aspect, 0.3 * aspect, -0.2, 0.7, 0.25, 500}; });
 }
 
 inline std::vector<Camera> jittered() {
@@ -258,12 +267,15 @@ inline std::vector<Camera> orthographic_reversed() {
     });
 }
 
-} // namespace kinds
+}  // namespace kinds
 
 /// Calls X(function name) for every kind.
-#define ORACLE_CAMERA_KINDS(X)                                                                                         \
-    X(symmetric) X(left_handed) X(right_handed_zero_to_one) X(off_centre) X(jittered) X(infinite_far) X(reversed)      \
-    X(reversed_minus_one_to_one) X(reversed_infinite) X(y_flip) X(x_flip) X(tiny_fov) X(wide_fov) X(scaled_matrix)     \
-    X(double_matrix) X(screens_off_centre) X(orthographic) X(orthographic_off_centre) X(orthographic_reversed)
+#define ORACLE_CAMERA_KINDS(X)                                                                               \
+    X(symmetric)                                                                                             \
+    X(left_handed)                                                                                           \
+    X(right_handed_zero_to_one) X(off_centre) X(jittered) X(infinite_far) X(reversed)                        \
+        X(reversed_minus_one_to_one) X(reversed_infinite) X(y_flip) X(x_flip) X(tiny_fov) X(wide_fov)        \
+            X(scaled_matrix) X(double_matrix) X(screens_off_centre) X(orthographic)                          \
+                X(orthographic_off_centre) X(orthographic_reversed)
 
-} // namespace oracle
+}  // namespace oracle

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The two deciders of oracle.hpp against each other, and each "yes" against a point that lies in both cell and ball. No
-// part of the library takes part.
+// The two deciders of oracle.hpp against each other, and each "yes" against a point that lies in both cell
+// and ball. No part of the library takes part.
 #include "oracle.hpp"
 #include "spheres.hpp"
 
@@ -24,7 +24,8 @@ struct Tally {
     int cells = 0, met = 0, empty = 0, touching = 0;
 };
 
-void compare(const Camera& camera, const Aim& aim, const std::vector<Light>& lights, Random& random, Tally& tally) {
+void compare(const Camera& camera, const Aim& aim, const std::vector<Light>& lights, Random& random,
+             Tally& tally) {
     const Oracle oracle(camera);
     for (const Light& light : lights) {
         if (is_bad(light)) continue;
@@ -41,47 +42,53 @@ void compare(const Camera& camera, const Aim& aim, const std::vector<Light>& lig
         const Depths depths = oracle.depths(min, max);
         const Edges columns = oracle.columns(x0, x1), rows = oracle.rows(y0, y1);
 
-        const bool fast = meets({oracle.column_slab(columns), oracle.row_slab(rows)}, depths, oracle.in_camera(ball));
+        const bool fast =
+            meets({oracle.column_slab(columns), oracle.row_slab(rows)}, depths, oracle.in_camera(ball));
         const auto cell = oracle.half_spaces(columns, rows, depths);
         const auto nearest = nearest_point(cell, ball.centre);
         bool slow = false;
         if (nearest) {
-            for (const HalfSpace& h : cell) REQUIRE(h.at(*nearest) >= 0);
+            for (const HalfSpace& h : cell)
+                REQUIRE(h.at(*nearest) >= 0);
             const Vector away = *nearest - ball.centre;
             slow = ball.all || dot(away, away) <= square(ball.radius);
             tally.touching += !ball.all && dot(away, away) == square(ball.radius);
         }
         REQUIRE(nearest.has_value() == !depths.contains_none());
         REQUIRE(slow == meets(cell, ball));
-        if (fast != slow) FAIL_CHECK(camera.name << ": the deciders differ, tiles " << x0 << " " << x1 << " " << y0 << " " << y1);
+        if (fast != slow)
+            FAIL_CHECK(camera.name << ": the deciders differ, tiles " << x0 << " " << x1 << " " << y0 << " "
+                                   << y1);
         ++tally.cells;
         tally.met += fast;
         tally.empty += !nearest;
     }
 }
 
-} // namespace
+}  // namespace
 
-#define AGREE(kind)                                                                                                    \
-    TEST_CASE("the deciders agree: " #kind) {                                                                         \
-        Tally tally;                                                                                                   \
-        std::uint64_t seed = seed_of(#kind);                                                                                       \
-        for (const Camera& camera : kinds::kind()) {                                                                   \
-            const Aim aim(camera);                                                                                     \
-            Random random(seed);                                                                                       \
-            for (const SphereSet& set : sphere_sets()) compare(camera, aim, make(set, camera, 60, seed++), random, tally); \
-        }                                                                                                              \
-        MESSAGE(#kind ": " << tally.cells << " cells, " << tally.met << " met, " << tally.empty << " empty, "          \
-                           << tally.touching << " touched in one point");                                              \
-        CHECK(tally.cells >= 5000);                                                                                    \
-        CHECK(tally.met >= 500);                                                                                       \
-        CHECK(tally.cells - tally.met - tally.empty >= 500);                                                           \
-        CHECK(tally.empty >= 50);                                                                                      \
+#define AGREE(kind)                                                                                          \
+    TEST_CASE("the deciders agree: " #kind) {                                                                \
+        Tally tally;                                                                                         \
+        std::uint64_t seed = seed_of(#kind);                                                                 \
+        for (const Camera& camera : kinds::kind()) {                                                         \
+            const Aim aim(camera);                                                                           \
+            Random random(seed);                                                                             \
+            for (const SphereSet& set : sphere_sets())                                                       \
+                compare(camera, aim, make(set, camera, 60, seed++), random, tally);                          \
+        }                                                                                                    \
+        MESSAGE(#kind ": " << tally.cells << " cells, " << tally.met << " met, " << tally.empty              \
+                           << " empty, " << tally.touching << " touched in one point");                      \
+        CHECK(tally.cells >= 5000);                                                                          \
+        CHECK(tally.met >= 500);                                                                             \
+        CHECK(tally.cells - tally.met - tally.empty >= 500);                                                 \
+        CHECK(tally.empty >= 50);                                                                            \
     }
 ORACLE_CAMERA_KINDS(AGREE)
 
-// A closed ball and a closed cell that share one point meet, and only exact arithmetic can say so. Each edge of the grid
-// splits the screen into two blocks; the spheres of this set touch one of the edges, if their numbers come out even.
+// A closed ball and a closed cell that share one point meet, and only exact arithmetic can say so. Each edge
+// of the grid splits the screen into two blocks; the spheres of this set touch one of the edges, if their
+// numbers come out even.
 TEST_CASE("one point is enough") {
     int touching = 0;
     for (const Camera& camera : {kinds::symmetric().back(), kinds::orthographic().front()}) {
@@ -95,14 +102,17 @@ TEST_CASE("one point is enough") {
                 if (smaller) light.w = std::nextafter(light.w, 0.0f);
                 const Ball ball = exact_ball(light.x, light.y, light.z, light.w);
                 for (int edge = 1; edge < oracle.tiles_x(); ++edge)
-                    for (const auto& [first, last] : {std::pair(0, edge), std::pair(edge, oracle.tiles_x())}) {
-                        const Edges columns = oracle.columns(first, last), rows = oracle.rows(0, oracle.tiles_y());
+                    for (const auto& [first, last] :
+                         {std::pair(0, edge), std::pair(edge, oracle.tiles_x())}) {
+                        const Edges columns = oracle.columns(first, last),
+                                    rows = oracle.rows(0, oracle.tiles_y());
                         const auto cell = oracle.half_spaces(columns, rows, oracle.range());
                         const auto nearest = nearest_point(cell, ball.centre);
                         REQUIRE(nearest.has_value());
                         const Vector away = *nearest - ball.centre;
                         const Rational gap = dot(away, away) - square(ball.radius);
-                        const bool fast = meets({oracle.column_slab(columns), oracle.row_slab(rows)}, oracle.range(), oracle.in_camera(ball));
+                        const bool fast = meets({oracle.column_slab(columns), oracle.row_slab(rows)},
+                                                oracle.range(), oracle.in_camera(ball));
                         CHECK(fast == (gap <= 0));
                         touching += gap.is_zero();
                     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// reduce_depth against exact view depths: every sample lies within its tile's bounds, and the bounds are no wider than
-// float rounding and the format's step explain.
+// reduce_depth against exact view depths: every sample lies within its tile's bounds, and the bounds are no
+// wider than float rounding and the format's step explain.
 #include "harness.hpp"
 
 #include <set>
@@ -12,8 +12,12 @@ namespace {
 
 constexpr float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
 
-Rational of(float value) { return exact(static_cast<double>(value)); }
-Rational clamped(const Rational& v) { return v < 0 ? Rational(0) : v > 1 ? Rational(1) : v; }
+Rational of(float value) {
+    return exact(static_cast<double>(value));
+}
+Rational clamped(const Rational& v) {
+    return v < 0 ? Rational(0) : v > 1 ? Rational(1) : v;
+}
 
 Rational step_of(DepthFormat format) {
     if (format == DepthFormat::unorm24) return Rational(1) / ((1 << 24) - 1);
@@ -21,7 +25,8 @@ Rational step_of(DepthFormat format) {
     return 0;
 }
 
-/// What reading the depth buffer back gives for a fragment: the nearest value of the format, as the nearest float.
+/// What reading the depth buffer back gives for a fragment: the nearest value of the format, as the nearest
+/// float.
 float stored(const Rational& fragment, DepthFormat format) {
     Rational value = fragment;
     if (format != DepthFormat::float32) {
@@ -38,12 +43,12 @@ float stored(const Rational& fragment, DepthFormat format) {
 /// View depth in the affinely extended numbers: nothing is +infinity.
 using Depth = std::optional<Rational>;
 
-bool below(float bound, const Depth& depth) { // bound <= depth
+bool below(float bound, const Depth& depth) {  // bound <= depth
     if (std::isnan(bound)) return false;
     if (std::isinf(bound)) return bound < 0 || !depth;
     return !depth || of(bound) <= *depth;
 }
-bool above(float bound, const Depth& depth) { // bound >= depth
+bool above(float bound, const Depth& depth) {  // bound >= depth
     if (std::isnan(bound)) return false;
     if (std::isinf(bound)) return bound > 0;
     return depth && of(bound) >= *depth;
@@ -56,41 +61,59 @@ struct Counts {
 /// A depth buffer of every style a tile at a time, and what a rasteriser should never leave in one.
 float odd_sample(Random& random, int style) {
     switch (style) {
-    case 0: return static_cast<float>(random.uniform());
-    case 1: return static_cast<float>(1 - random.power_of_two(-24, 0)); // far away, or close if Z is reversed
-    case 2: return static_cast<float>(random.power_of_two(-60, 0));
-    case 3: return 0.0f;
-    case 4: return 1.0f;
-    case 5: return random.chance(0.5) ? 0.0f : 1.0f;
-    default: break;
+    case 0:
+        return static_cast<float>(random.uniform());
+    case 1:
+        return static_cast<float>(1 - random.power_of_two(-24, 0));  // far away, or close if Z is reversed
+    case 2:
+        return static_cast<float>(random.power_of_two(-60, 0));
+    case 3:
+        return 0.0f;
+    case 4:
+        return 1.0f;
+    case 5:
+        return random.chance(0.5) ? 0.0f : 1.0f;
+    default:
+        break;
     }
     switch (random.integer(0, 90)) {
-    case 0: return nan;
-    case 1: return -inf;
-    case 2: return inf;
-    case 3: return static_cast<float>(random.uniform(-2, 0));
-    case 4: return static_cast<float>(random.uniform(1, 3));
-    case 5: return FLT_TRUE_MIN;
-    case 6: return -0.0f;
-    default: return static_cast<float>(random.uniform(0.4, 0.6));
+    case 0:
+        return nan;
+    case 1:
+        return -inf;
+    case 2:
+        return inf;
+    case 3:
+        return static_cast<float>(random.uniform(-2, 0));
+    case 4:
+        return static_cast<float>(random.uniform(1, 3));
+    case 5:
+        return FLT_TRUE_MIN;
+    case 6:
+        return -0.0f;
+    default:
+        return static_cast<float>(random.uniform(0.4, 0.6));
     }
 }
 
 class DepthExaminer {
 public:
     DepthExaminer(Camera camera, int width, int height, int tile, Counts& counts)
-        : camera_(resized(std::move(camera), width, height, tile)), oracle_(camera_), view_(view_of(camera_)), counts_(counts) {
+        : camera_(resized(std::move(camera), width, height, tile)), oracle_(camera_), view_(view_of(camera_)),
+          counts_(counts) {
         const Depth at_0 = oracle_.view_depth(0), at_1 = oracle_.view_depth(1);
         reversed_ = !at_0 || (at_1 && *at_0 > *at_1);
         CHECK(reversed_ == view_.reversed_z());
     }
 
     void odd_buffer(int samples, DepthFormat format, bool skip_background, Random& random) {
-        const std::size_t w = static_cast<std::size_t>(camera_.width), h = static_cast<std::size_t>(camera_.height);
+        const std::size_t w = static_cast<std::size_t>(camera_.width),
+                          h = static_cast<std::size_t>(camera_.height);
         const std::size_t s = static_cast<std::size_t>(samples), pitch = w * s + 3;
         std::vector<int> style(view_.tile_count());
-        for (int& v : style) v = random.integer(0, 7);
-        std::vector<float> depth(pitch * h, nan); // the gaps between rows are not to be read
+        for (int& v : style)
+            v = random.integer(0, 7);
+        std::vector<float> depth(pitch * h, nan);  // the gaps between rows are not to be read
         std::vector<std::vector<float>> in_tile(view_.tile_count());
         for (std::size_t y = 0; y < h; ++y)
             for (std::size_t i = 0; i < w * s; ++i) {
@@ -101,10 +124,12 @@ public:
                 if (!(skip_background && value == (reversed_ ? 0.0f : 1.0f))) in_tile[tile].push_back(value);
             }
         reduce({depth, samples, pitch, format, skip_background});
-        for (std::size_t tile = 0; tile < in_tile.size(); ++tile) examine_tile(tile, in_tile[tile], format);
+        for (std::size_t tile = 0; tile < in_tile.size(); ++tile)
+            examine_tile(tile, in_tile[tile], format);
     }
 
-    /// One sample a tile, and the depth of the fragment that left it: it need not be the stored one, but must be inside.
+    /// One sample a tile, and the depth of the fragment that left it: it need not be the stored one, but must
+    /// be inside.
     void fragments(DepthFormat format, Random& random) {
         std::vector<Rational> fragment;
         std::vector<float> depth;
@@ -112,11 +137,19 @@ public:
         for (std::size_t tile = 0; tile < view_.tile_count(); ++tile) {
             Rational f;
             switch (tile % 4) {
-            case 0: f = exact(random.uniform()); break;
-            case 1: f = exact(1 - random.power_of_two(-24, 0)); break;
+            case 0:
+                f = exact(random.uniform());
+                break;
+            case 1:
+                f = exact(1 - random.power_of_two(-24, 0));
+                break;
             // Half way between two steps, or a hair off it; just above 1/2 floats are as coarse as they get.
-            case 2: f = (random.integer(1, steps - 1) + Rational(1) / 2) / steps; break;
-            default: f = (steps / 2 + random.integer(0, 40) + Rational(1) / 2) / steps; break;
+            case 2:
+                f = (random.integer(1, steps - 1) + Rational(1) / 2) / steps;
+                break;
+            default:
+                f = (steps / 2 + random.integer(0, 40) + Rational(1) / 2) / steps;
+                break;
             }
             if (tile % 4 >= 2) f += exact(random.sign() * std::exp2(-random.integer(40, 60)));
             fragment.push_back(clamped(f));
@@ -158,18 +191,21 @@ private:
             CHECK(max_[tile] == -inf);
             return;
         }
-        Rational lowest = 1, highest = 0; // window depth
-        const bool unknown = std::any_of(samples.begin(), samples.end(), [](float v) { return std::isnan(v); });
+        Rational lowest = 1, highest = 0;  // window depth
+        const bool unknown =
+            std::any_of(samples.begin(), samples.end(), [](float v) { return std::isnan(v); });
         if (unknown) {
-            lowest = 0, highest = 1; // near to far
+            lowest = 0, highest = 1;  // near to far
             ++counts_.unknown;
         } else {
             for (const float sample : std::set<float>(samples.begin(), samples.end())) {
-                const Rational window = std::isinf(sample) ? Rational(sample > 0 ? 1 : 0) : clamped(of(sample));
+                const Rational window =
+                    std::isinf(sample) ? Rational(sample > 0 ? 1 : 0) : clamped(of(sample));
                 lowest = std::min(lowest, window);
                 highest = std::max(highest, window);
                 ++counts_.samples;
-                if (!contains(tile, oracle_.view_depth(window))) report("sample outside", tile, static_cast<double>(sample), format);
+                if (!contains(tile, oracle_.view_depth(window)))
+                    report("sample outside", tile, static_cast<double>(sample), format);
                 // A float that is one ulp off, as the documentation allows for.
                 if (format != DepthFormat::float32 || !(sample >= FLT_MIN && sample < 1)) continue;
                 for (const float end : {0.0f, 1.0f})
@@ -178,17 +214,21 @@ private:
             }
         }
         for (const Rational& window : {lowest, highest})
-            if (!contains(tile, oracle_.view_depth(window))) report("end outside", tile, window.convert_to<double>(), format);
+            if (!contains(tile, oracle_.view_depth(window)))
+                report("end outside", tile, window.convert_to<double>(), format);
         examine_tightness(tile, unknown ? Rational(0) : lowest, unknown ? Rational(1) : highest, format);
     }
 
-    /// From above: no bound is further out than the view depth of a window depth further by the format's step (twice, for
-    /// its rounding to float; two ulps of a float format), then a few ulps. The entries of the matrix cancel in double
-    /// precision where depth is far: 2^-49 of window depth.
-    void examine_tightness(std::size_t tile, const Rational& lowest, const Rational& highest, DepthFormat format) {
+    /// From above: no bound is further out than the view depth of a window depth further by the format's step
+    /// (twice, for its rounding to float; two ulps of a float format), then a few ulps. The entries of the
+    /// matrix cancel in double precision where depth is far: 2^-49 of window depth.
+    void examine_tightness(std::size_t tile, const Rational& lowest, const Rational& highest,
+                           DepthFormat format) {
         const auto further = [&](const Rational& window, int direction) {
-            const Rational format_step = format == DepthFormat::float32 ? Rational(window / (1 << 22)) : 2 * step_of(format);
-            return clamped(window + direction * format_step) + direction * Rational(1) / (std::int64_t{1} << 49);
+            const Rational format_step =
+                format == DepthFormat::float32 ? Rational(window / (1 << 22)) : 2 * step_of(format);
+            return clamped(window + direction * format_step) +
+                   direction * Rational(1) / (std::int64_t{1} << 49);
         };
         const Depth least = oracle_.view_depth(reversed_ ? further(highest, 1) : further(lowest, -1));
         const Depth most = oracle_.view_depth(reversed_ ? further(lowest, -1) : further(highest, 1));
@@ -198,20 +238,24 @@ private:
         counts_.endless += !most && max_[tile] == inf;
         if (!min_tight || !max_tight) {
             if (++counts_.loose <= 5)
-                MESSAGE("loose: " << camera_.name << " tile " << tile << " window " << lowest.convert_to<double>() << " "
-                                  << highest.convert_to<double>() << " format " << static_cast<int>(format) << " bounds "
-                                  << min_[tile] << " " << max_[tile]);
+                MESSAGE("loose: " << camera_.name << " tile " << tile << " window "
+                                  << lowest.convert_to<double>() << " " << highest.convert_to<double>()
+                                  << " format " << static_cast<int>(format) << " bounds " << min_[tile] << " "
+                                  << max_[tile]);
         }
     }
 
-    bool contains(std::size_t tile, const Depth& depth) const { return below(min_[tile], depth) && above(max_[tile], depth); }
+    bool contains(std::size_t tile, const Depth& depth) const {
+        return below(min_[tile], depth) && above(max_[tile], depth);
+    }
 
     void report(const std::string& what, std::size_t tile, double window, DepthFormat format) {
         char number[40];
         std::snprintf(number, sizeof number, "%a", window);
         if (++counts_.outside <= 5)
-            MESSAGE(what << ": " << camera_.name << " tile " << tile << " window depth " << std::string(number) << " format "
-                         << static_cast<int>(format) << " bounds " << min_[tile] << " " << max_[tile]);
+            MESSAGE(what << ": " << camera_.name << " tile " << tile << " window depth "
+                         << std::string(number) << " format " << static_cast<int>(format) << " bounds "
+                         << min_[tile] << " " << max_[tile]);
     }
 
     Camera camera_;
@@ -225,18 +269,20 @@ private:
 void prove_depths(const std::string& kind, const Camera& camera) {
     Counts counts;
     Random random(seed_of(kind));
-    DepthExaminer partial_tiles(camera, 37, 29, 8, counts), one_tile(camera, 5, 3, 64, counts), pixels(camera, 60, 50, 1, counts);
+    DepthExaminer partial_tiles(camera, 37, 29, 8, counts), one_tile(camera, 5, 3, 64, counts),
+        pixels(camera, 60, 50, 1, counts);
     for (const DepthFormat format : {DepthFormat::float32, DepthFormat::unorm24, DepthFormat::unorm16}) {
         for (int samples = 1; samples <= 8; ++samples)
             for (const bool skip : {false, true}) {
                 partial_tiles.odd_buffer(samples, format, skip, random);
-                for (int i = 0; i < 10; ++i) one_tile.odd_buffer(samples, format, skip, random);
+                for (int i = 0; i < 10; ++i)
+                    one_tile.odd_buffer(samples, format, skip, random);
             }
         pixels.odd_buffer(1, format, true, random);
         pixels.fragments(format, random);
     }
-    MESSAGE(kind << ": " << counts.samples << " samples in " << counts.tiles << " tiles, " << counts.unknown << " with NaN, "
-                 << counts.empty << " empty, " << counts.endless << " without end");
+    MESSAGE(kind << ": " << counts.samples << " samples in " << counts.tiles << " tiles, " << counts.unknown
+                 << " with NaN, " << counts.empty << " empty, " << counts.endless << " without end");
     CHECK(counts.outside == 0);
     CHECK(counts.loose == 0);
     CHECK(counts.samples > 50000);
@@ -244,8 +290,10 @@ void prove_depths(const std::string& kind, const Camera& camera) {
     CHECK(counts.empty > 100);
 }
 
-} // namespace
+}  // namespace
 
-#define PROVE_DEPTHS(kind)                                                                                             \
-    TEST_CASE("depths: " #kind) { prove_depths(#kind, kinds::kind().front()); }
+#define PROVE_DEPTHS(kind)                                                                                   \
+    TEST_CASE("depths: " #kind) {                                                                            \
+        prove_depths(#kind, kinds::kind().front());                                                          \
+    }
 ORACLE_CAMERA_KINDS(PROVE_DEPTHS)

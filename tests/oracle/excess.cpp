@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// How much more than the exact set the lists hold, on the synthetic field: no more and no less than rectangles and depth
-// intervals explain.
+// How much more than the exact set the lists hold, on the synthetic field: no more and no less than
+// rectangles and depth intervals explain.
 #include "harness.hpp"
 
 using namespace oracle;
 
 namespace {
 
-/// The field that benchmarks use as well: 80 % of centres uniform in the frustum's volume from z = 1 to 200, the others in a box around it;
-/// radius lognormal, median 6.1154, sigma 0.5.
+/// The field that benchmarks use as well: 80 % of centres uniform in the frustum's volume from z = 1 to 200,
+/// the others in a box around it; radius lognormal, median 6.1154, sigma 0.5.
 std::vector<Light> field(std::size_t count, std::uint64_t seed) {
     Random random(seed);
     std::vector<Light> lights;
@@ -29,15 +29,17 @@ std::vector<Light> field(std::size_t count, std::uint64_t seed) {
 }
 
 Camera field_camera(int tile) {
-    return {"field", projection(symmetric_lens(1920.0 / 1080, 60)), false, 1920, 1080, tile, false, false, false};
+    return {"field", projection(symmetric_lens(1920.0 / 1080, 60)), false, 1920, 1080, tile, false, false,
+            false};
 }
 
 /// The tiles along one axis whose wedges the ball meets.
-template <class Meets>
-std::pair<int, int> met_range(int count, Meets meets) {
-    int first = 0, last = count; // the wedges met are neighbours, as the ball is convex
-    while (first < count && !meets(first)) ++first;
-    for (last = first; last < count && meets(last); ++last) {}
+template <class Meets> std::pair<int, int> met_range(int count, Meets meets) {
+    int first = 0, last = count;  // the wedges met are neighbours, as the ball is convex
+    while (first < count && !meets(first))
+        ++first;
+    for (last = first; last < count && meets(last); ++last) {
+    }
     return {first, last};
 }
 
@@ -58,7 +60,8 @@ Pairs count_pairs(const std::vector<Light>& lights, int tile, bool interval) {
     std::vector<Depths> depths;
     for (int y = 0; y < ny; ++y)
         for (int x = 0; x < nx; ++x) {
-            const double t = std::tan(std::acos(-1.0) / 6), low = (1 - 2.0 * y * tile / 1080) * t, high = (1 - 2.0 * (y + 1) * tile / 1080) * t;
+            const double t = std::tan(std::acos(-1.0) / 6), low = (1 - 2.0 * y * tile / 1080) * t,
+                         high = (1 - 2.0 * (y + 1) * tile / 1080) * t;
             const bool ground = high > 10.0 / 150;
             min.push_back(ground ? static_cast<float>(10 / low) : 150.0f);
             max.push_back(ground ? static_cast<float>(10 / high) : 400.0f);
@@ -68,7 +71,8 @@ Pairs count_pairs(const std::vector<Light>& lights, int tile, bool interval) {
     Pairs pairs;
     if (interval) {
         lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner;
-        pairs.emitted = static_cast<double>(binner.bin(view, lights, {.min = min, .max = max})->indices().size());
+        pairs.emitted =
+            static_cast<double>(binner.bin(view, lights, {.min = min, .max = max})->indices().size());
     } else {
         lightbin::Binner<> binner;
         pairs.emitted = static_cast<double>(binner.bin(view, lights)->indices().size());
@@ -76,8 +80,10 @@ Pairs count_pairs(const std::vector<Light>& lights, int tile, bool interval) {
     for (const Light& light : lights) {
         const auto s = examiner.subject(light);
         const Rational lowest = s.seen.depth - s.seen.radius, highest = s.seen.depth + s.seen.radius;
-        const auto [x0, x1] = met_range(nx, [&](int x) { return examiner.meets_columns(s, x, x + 1, oracle.range()); });
-        const auto [y0, y1] = met_range(ny, [&](int y) { return examiner.meets_rows(s, y, y + 1, oracle.range()); });
+        const auto [x0, x1] =
+            met_range(nx, [&](int x) { return examiner.meets_columns(s, x, x + 1, oracle.range()); });
+        const auto [y0, y1] =
+            met_range(ny, [&](int y) { return examiner.meets_rows(s, y, y + 1, oracle.range()); });
         for (int y = y0; y < y1; ++y)
             for (int x = x0; x < x1; ++x) {
                 const Depths& bounds = depths[static_cast<std::size_t>(y * nx + x)];
@@ -89,25 +95,27 @@ Pairs count_pairs(const std::vector<Light>& lights, int tile, bool interval) {
     return pairs;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("excess on the field") {
     const std::vector<Light> lights = field(3000, 42);
     for (const int tile : {32, 16})
         for (const bool interval : {false, true}) {
             const Pairs pairs = count_pairs(lights, tile, interval);
-            MESSAGE(tile << " px, " << std::string(interval ? "interval" : "none") << ": emitted " << pairs.emitted
-                         << ", exact rectangles " << pairs.rectangle << ", exact set " << pairs.exact << ": excess "
-                         << pairs.emitted / pairs.exact - 1 << ", of it rounding " << pairs.emitted / pairs.rectangle - 1);
+            MESSAGE(tile << " px, " << std::string(interval ? "interval" : "none") << ": emitted "
+                         << pairs.emitted << ", exact rectangles " << pairs.rectangle << ", exact set "
+                         << pairs.exact << ": excess " << pairs.emitted / pairs.exact - 1
+                         << ", of it rounding " << pairs.emitted / pairs.rectangle - 1);
             CHECK(pairs.exact > 10000);
             // All that the method's geometry demands, and a thousandth for the margin that rounding takes.
             CHECK(pairs.emitted >= pairs.rectangle);
             CHECK(pairs.emitted <= pairs.rectangle * 1.001);
-            // The rectangle's corners: a disc leaves 1 - pi/4 of its square empty, a large light at most 4/pi - 1 = 27 %.
+            // The rectangle's corners: a disc leaves 1 - pi/4 of its square empty, a large light at most 4/pi
+            // - 1 = 27 %.
             if (!interval) {
                 CHECK(pairs.rectangle / pairs.exact > 1.05);
                 CHECK(pairs.rectangle / pairs.exact < 1.35);
-            } else { // and the sphere's depth interval is as long at its rim as in its middle
+            } else {  // and the sphere's depth interval is as long at its rim as in its middle
                 CHECK(pairs.rectangle / pairs.exact > 1.1);
                 CHECK(pairs.rectangle / pairs.exact < 1.6);
             }

@@ -20,8 +20,10 @@ namespace oracle {
 inline lightbin::View view_of(const Camera& camera) {
     lightbin::ViewOptions options;
     options.tile_size = camera.tile;
-    options.clip_depth = camera.zero_to_one ? lightbin::ClipDepth::zero_to_one : lightbin::ClipDepth::minus_one_to_one;
-    options.origin = camera.upper_left ? lightbin::WindowOrigin::upper_left : lightbin::WindowOrigin::lower_left;
+    options.clip_depth =
+        camera.zero_to_one ? lightbin::ClipDepth::zero_to_one : lightbin::ClipDepth::minus_one_to_one;
+    options.origin =
+        camera.upper_left ? lightbin::WindowOrigin::upper_left : lightbin::WindowOrigin::lower_left;
     options.reversed_z = camera.reversed;
     const lightbin::Extent viewport{camera.width, camera.height};
     if (camera.doubles) {
@@ -29,9 +31,10 @@ inline lightbin::View view_of(const Camera& camera) {
         REQUIRE_MESSAGE(view.has_value(), camera.name);
         return *view;
     }
-    std::array<std::array<float, 4>, 4> m;
-    for (std::size_t column = 0; column < 4; ++column)
-        for (std::size_t row = 0; row < 4; ++row) m[column][row] = static_cast<float>(camera.m[column][row]);
+    Matrix4<float> m;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row)
+            m[column][row] = static_cast<float>(camera.m[column][row]);
     auto view = lightbin::View::from_projection(m, viewport, options);
     REQUIRE_MESSAGE(view.has_value(), camera.name);
     return *view;
@@ -39,8 +42,8 @@ inline lightbin::View view_of(const Camera& camera) {
 
 inline std::string text(const Light& light) {
     char buffer[160];
-    std::snprintf(buffer, sizeof buffer, "{%a, %a, %a, %a}", static_cast<double>(light.x), static_cast<double>(light.y),
-                  static_cast<double>(light.z), static_cast<double>(light.w));
+    std::snprintf(buffer, sizeof buffer, "{%a, %a, %a, %a}", static_cast<double>(light.x),
+                  static_cast<double>(light.y), static_cast<double>(light.z), static_cast<double>(light.w));
     return buffer;
 }
 
@@ -52,7 +55,8 @@ struct Emitted {
     bool rectangle() const { return !any() || entries == std::int64_t{x1 - x0 + 1} * (y1 - y0 + 1); }
 };
 
-/// Turns lists a tile into tiles a light, checking what every grid must be: tiles in order without gaps, ids ascending.
+/// Turns lists a tile into tiles a light, checking what every grid must be: tiles in order without gaps, ids
+/// ascending.
 template <class Id>
 std::vector<Emitted> emitted_tiles(const lightbin::LightGrid<Id>& grid, std::size_t lights) {
     std::vector<Emitted> emitted(lights);
@@ -83,22 +87,25 @@ template <class Id>
 std::vector<std::vector<bool>> membership(const lightbin::LightGrid<Id>& grid, std::size_t lights) {
     std::vector<std::vector<bool>> in(grid.tiles().size(), std::vector<bool>(lights));
     for (std::size_t tile = 0; tile < in.size(); ++tile)
-        for (const Id id : grid.indices().subspan(grid.tiles()[tile].offset, grid.tiles()[tile].count)) in[tile][id] = true;
+        for (const Id id : grid.indices().subspan(grid.tiles()[tile].offset, grid.tiles()[tile].count))
+            in[tile][id] = true;
     return in;
 }
 
 /// What was asked of the oracle and what went wrong.
 struct Tally {
-    std::uint64_t verdicts = 0;    ///< "this ball does not meet this cell", each proven exactly
-    std::uint64_t twice = 0;       ///< of these, put to the second decider as well
+    std::uint64_t verdicts = 0;  ///< "this ball does not meet this cell", each proven exactly
+    std::uint64_t twice = 0;     ///< of these, put to the second decider as well
     std::uint64_t misses = 0;
-    std::uint64_t below = 0;       ///< pairs that the method's geometry demands and the lists lack
-    std::uint64_t unexplained = 0; ///< pairs that the method's geometry, with its margin, does not explain
+    std::uint64_t below = 0;        ///< pairs that the method's geometry demands and the lists lack
+    std::uint64_t unexplained = 0;  ///< pairs that the method's geometry, with its margin, does not explain
     std::uint64_t explained = 0;
 
-    void report(std::uint64_t& count, const std::string& what, const Camera& camera, const std::string& set, std::size_t id,
-                const Light& light, const std::string& where) {
-        if (++count <= 5) MESSAGE(what << ": " << camera.name << ", " << set << " " << id << " " << text(light) << " " << where);
+    void report(std::uint64_t& count, const std::string& what, const Camera& camera, const std::string& set,
+                std::size_t id, const Light& light, const std::string& where) {
+        if (++count <= 5)
+            MESSAGE(what << ": " << camera.name << ", " << set << " " << id << " " << text(light) << " "
+                         << where);
     }
 };
 
@@ -106,10 +113,12 @@ struct Tally {
 class Examiner {
 public:
     Examiner(const Camera& camera, Tally& counts) : oracle(camera), tally(counts) {
-        for (int x = 0; x < oracle.tiles_x(); ++x) columns_.push_back(oracle.column_slab(oracle.columns(x, x + 1)));
-        for (int y = 0; y < oracle.tiles_y(); ++y) rows_.push_back(oracle.row_slab(oracle.rows(y, y + 1)));
-        // The image-plane margin that rounding explains, in pixels. The library states 16 u (|O| + tiles) tiles,
-        // u = 2^-24, for its error and adds as much: twice that.
+        for (int x = 0; x < oracle.tiles_x(); ++x)
+            columns_.push_back(oracle.column_slab(oracle.columns(x, x + 1)));
+        for (int y = 0; y < oracle.tiles_y(); ++y)
+            rows_.push_back(oracle.row_slab(oracle.rows(y, y + 1)));
+        // The image-plane margin that rounding explains, in pixels. The library states 16 u (|O| + tiles)
+        // tiles, u = 2^-24, for its error and adds as much: twice that.
         const auto margin = [&](const Rational& offset, int tiles) {
             return Rational(2 * camera.tile) * (abs(offset) + tiles) / (1 << 20);
         };
@@ -138,7 +147,8 @@ public:
         return verdict;
     }
     bool meets_tile(const Subject& s, int x, int y, const Depths& depths) const {
-        return meets({columns_[static_cast<std::size_t>(x)], rows_[static_cast<std::size_t>(y)]}, depths, s.seen);
+        return meets({columns_[static_cast<std::size_t>(x)], rows_[static_cast<std::size_t>(y)]}, depths,
+                     s.seen);
     }
     /// What a rectangle tests, one image axis at a time: the wedge of whole columns (rows) of tiles.
     bool meets_columns(const Subject& s, int x0, int x1, const Depths& depths) const {
@@ -148,10 +158,12 @@ public:
         return y0 < y1 && meets({{}, oracle.row_slab(oracle.rows(y0, y1))}, depths, s.seen);
     }
 
-    /// A light without Z bounds: no tile outside `emitted` may be met, and the rectangle must be the method's own.
+    /// A light without Z bounds: no tile outside `emitted` may be met, and the rectangle must be the method's
+    /// own.
     void examine_rectangle(const Light& light, std::size_t id, const std::string& set, const Emitted& e) {
         const auto at = [&] {
-            return "tiles " + std::to_string(e.x0) + ".." + std::to_string(e.x1) + " x " + std::to_string(e.y0) + ".." + std::to_string(e.y1);
+            return "tiles " + std::to_string(e.x0) + ".." + std::to_string(e.x1) + " x " +
+                   std::to_string(e.y0) + ".." + std::to_string(e.y1);
         };
         if (is_bad(light)) {
             CHECK(!e.any());
@@ -165,7 +177,8 @@ public:
         const auto ask = [&](int x0, int x1, int y0, int y1) {
             if (x0 >= x1 || y0 >= y1) return;
             ++tally.verdicts;
-            if (meets_block(s, x0, x1, y0, y1, range)) tally.report(tally.misses, "MISS", oracle.camera(), set, id, light, at());
+            if (meets_block(s, x0, x1, y0, y1, range))
+                tally.report(tally.misses, "MISS", oracle.camera(), set, id, light, at());
         };
         if (!e.any()) {
             ask(0, nx, 0, ny);
@@ -178,7 +191,8 @@ public:
         ask(e.x0, e.x1 + 1, 0, e.y0);
         ask(e.x0, e.x1 + 1, e.y1 + 1, ny);
 
-        // From below: a column (row) whose wedge is met belongs to the rectangle, if any row (column) is met at all.
+        // From below: a column (row) whose wedge is met belongs to the rectangle, if any row (column) is met
+        // at all.
         const bool wider = meets_columns(s, 0, e.x0, range) || meets_columns(s, e.x1 + 1, nx, range);
         const bool taller = meets_rows(s, 0, e.y0, range) || meets_rows(s, e.y1 + 1, ny, range);
         if ((wider && meets_rows(s, 0, ny, range)) || (taller && meets_columns(s, 0, nx, range)))
@@ -186,32 +200,37 @@ public:
 
         // From above: the outermost columns and rows are met, give or take rounding.
         ++tally.explained;
-        if (!explained(s, e)) tally.report(tally.unexplained, "unexplained", oracle.camera(), set, id, light, at());
+        if (!explained(s, e))
+            tally.report(tally.unexplained, "unexplained", oracle.camera(), set, id, light, at());
     }
 
     bool explained(const Subject& s, const Emitted& e) const {
         if (s.seen.all) return true;
         if (!depths_within(s, oracle.range().min, oracle.range().max)) return false;
-        // A perspective sphere is cut at the near plane, held as a float, and not at the far plane; an orthographic one is
-        // not cut. Where the circle in the near plane is tiny its size is all rounding, of the radius in double precision.
+        // A perspective sphere is cut at the near plane, held as a float, and not at the far plane; an
+        // orthographic one is not cut. Where the circle in the near plane is tiny its size is all rounding,
+        // of the radius in double precision.
         Depths beyond_near;
         if (!oracle.orthographic()) beyond_near.at_least(*oracle.range().min * (1 - Rational(1) / (1 << 22)));
         CameraBall ball = s.seen;
         ball.radius *= 1 + Rational(1) / (std::int64_t{1} << 40);
         const auto column = [&](int x) {
             const Edges edges = oracle.columns(x, x + 1);
-            return meets({oracle.column_slab({edges.low - grow_x_, edges.high + grow_x_}), {}}, beyond_near, ball);
+            return meets({oracle.column_slab({edges.low - grow_x_, edges.high + grow_x_}), {}}, beyond_near,
+                         ball);
         };
         const auto row = [&](int y) {
             const Edges edges = oracle.rows(y, y + 1);
-            return meets({{}, oracle.row_slab({edges.low - grow_y_, edges.high + grow_y_})}, beyond_near, ball);
+            return meets({{}, oracle.row_slab({edges.low - grow_y_, edges.high + grow_y_})}, beyond_near,
+                         ball);
         };
         return (eye_on_surface(ball.x, ball) || (column(e.x0) && column(e.x1))) &&
                (eye_on_surface(ball.y, ball) || (row(e.y0) && row(e.y1)));
     }
 
     /// z - r to z + r meets the bounds, the sums in float arithmetic.
-    bool depths_within(const Subject& s, const std::optional<Rational>& min, const std::optional<Rational>& max) const {
+    bool depths_within(const Subject& s, const std::optional<Rational>& min,
+                       const std::optional<Rational>& max) const {
         if (s.seen.all) return true;
         const Rational rounding = (abs(s.seen.depth) + s.seen.radius) / (1 << 23);
         return (!min || s.seen.depth + s.seen.radius + rounding >= *min - abs(*min) / (1 << 22)) &&
@@ -222,7 +241,8 @@ public:
     Tally& tally;
 
 private:
-    /// Double precision cannot tell on which side of the circle (c, depth) the eye is, so any slope may be reached.
+    /// Double precision cannot tell on which side of the circle (c, depth) the eye is, so any slope may be
+    /// reached.
     bool eye_on_surface(const Rational& c, const CameraBall& ball) const {
         const Rational squares = square(c) + square(ball.depth), radius = square(ball.radius);
         return !oracle.orthographic() && abs(squares - radius) * (1 << 29) < squares + radius;
@@ -233,4 +253,4 @@ private:
     std::uint64_t asked_ = 0;
 };
 
-} // namespace oracle
+}  // namespace oracle

@@ -1,28 +1,33 @@
 // SPDX-License-Identifier: MIT
-// The truth the light lists are held against: does a closed ball meet a closed cell? Decided in rational arithmetic,
-// without rounding anywhere.
+// The truth the light lists are held against: does a closed ball meet a closed cell? Decided in rational
+// arithmetic, without rounding anywhere.
 //
 // What exactness rests on:
-// - A float or double is a rational number, and mpq (GMP) computes with rationals exactly. The one entry is exact().
-// - Everything is read from the projection matrix itself, the viewport, the tile size and the API's settings. Nothing is
+// - A float or double is a rational number, and mpq (GMP) computes with rationals exactly. The one entry is
+// exact().
+// - Everything is read from the projection matrix itself, the viewport, the tile size and the API's settings.
+// Nothing is
 //   taken from the library: not its View, not a constant, not a margin.
-// - A cell is what clip space says: the points with  W clip_x >= (2a - W) clip_w  right of pixel edge a, and so on for
-//   each side, between the clip planes of depth and, where asked, between two view depths. Clip coordinates are linear in
-//   the point, so a cell is a convex polyhedron with rational planes, and the squared distance from a rational point to it
-//   is rational: no square root is ever needed.
-// - Two deciders that share no formula must agree. meets() works in the camera's own axes on a convex function of depth
-//   alone; nearest_point() knows only half-spaces and finds the point that satisfies the Karush-Kuhn-Tucker conditions,
-//   which is a proof by itself. deciders.cpp compares them.
-// - The word "pixel edge" means the real number a in window coordinates; how a GPU rounds its own vertices is not ours.
+// - A cell is what clip space says: the points with  W clip_x >= (2a - W) clip_w  right of pixel edge a, and
+// so on for
+//   each side, between the clip planes of depth and, where asked, between two view depths. Clip coordinates
+//   are linear in the point, so a cell is a convex polyhedron with rational planes, and the squared distance
+//   from a rational point to it is rational: no square root is ever needed.
+// - Two deciders that share no formula must agree. meets() works in the camera's own axes on a convex
+// function of depth
+//   alone; nearest_point() knows only half-spaces and finds the point that satisfies the Karush-Kuhn-Tucker
+//   conditions, which is a proof by itself. deciders.cpp compares them.
+// - The word "pixel edge" means the real number a in window coordinates; how a GPU rounds its own vertices is
+// not ours.
 #pragma once
 
 #include "cameras.hpp"
 
 #include <boost/multiprecision/gmp.hpp>
 
-#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -30,23 +35,34 @@
 namespace oracle {
 
 // Expression templates off: auto and ?: then mean what they say.
-using Rational = boost::multiprecision::number<boost::multiprecision::gmp_rational, boost::multiprecision::et_off>;
+using Rational =
+    boost::multiprecision::number<boost::multiprecision::gmp_rational, boost::multiprecision::et_off>;
 
 inline Rational exact(double value) {
     assert(std::isfinite(value));
     return Rational(value);
 }
 
-inline Rational square(const Rational& v) { return v * v; }
+inline Rational square(const Rational& v) {
+    return v * v;
+}
 
 struct Vector {
     Rational x, y, z;
 };
 
-inline Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline Vector operator*(const Rational& k, const Vector& v) { return {k * v.x, k * v.y, k * v.z}; }
-inline Rational dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vector operator+(const Vector& a, const Vector& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vector operator-(const Vector& a, const Vector& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vector operator*(const Rational& k, const Vector& v) {
+    return {k * v.x, k * v.y, k * v.z};
+}
+inline Rational dot(const Vector& a, const Vector& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 
 /// A closed ball; `all` is the ball of infinite radius.
 struct Ball {
@@ -60,7 +76,8 @@ inline Ball exact_ball(float x, float y, float z, float radius) {
     return {{exact(x), exact(y), exact(z)}, all ? Rational(0) : exact(radius), all};
 }
 
-/// Pixel edges of a block, window coordinates. Real numbers, not only integers: excess is tested with grown blocks.
+/// Pixel edges of a block, window coordinates. Real numbers, not only integers: excess is tested with grown
+/// blocks.
 struct Edges {
     Rational low, high;
 };
@@ -86,14 +103,16 @@ struct HalfSpace {
     Rational at(const Vector& p) const { return dot(a, p) + b; }
 };
 
-//----------------------------------------------------------------------------------------------------------------------
+//------------------------------------------------------------------------------------------------------------
 // Decider 2 first, as it needs least: half-spaces and nothing else.
 
-/// Returns the point of the intersection of `cell` that is nearest to `p`, or nothing when the intersection is empty.
+/// Returns the point of the intersection of `cell` that is nearest to `p`, or nothing when the intersection
+/// is empty.
 ///
-/// q is nearest iff it lies in the cell and p - q = -sum l_i a_i over planes through q with all l_i >= 0. By Caratheodory
-/// linearly independent planes are enough, and in space there are at most three of those: so trying every subset of up to
-/// three planes, with its Gram system solved exactly, finds q or proves there is none.
+/// q is nearest iff it lies in the cell and p - q = -sum l_i a_i over planes through q with all l_i >= 0. By
+/// Caratheodory linearly independent planes are enough, and in space there are at most three of those: so
+/// trying every subset of up to three planes, with its Gram system solved exactly, finds q or proves there is
+/// none.
 inline std::optional<Vector> nearest_point(const std::vector<HalfSpace>& cell, const Vector& p) {
     std::vector<const HalfSpace*> planes;
     for (const HalfSpace& h : cell) {
@@ -115,11 +134,12 @@ inline std::optional<Vector> nearest_point(const std::vector<HalfSpace>& cell, c
     std::vector<std::vector<Rational>> gram(n, std::vector<Rational>(n));
     for (std::size_t i = 0; i < n; ++i) {
         value[i] = planes[i]->at(p);
-        for (std::size_t j = 0; j <= i; ++j) gram[i][j] = gram[j][i] = dot(planes[i]->a, planes[j]->a);
+        for (std::size_t j = 0; j <= i; ++j)
+            gram[i][j] = gram[j][i] = dot(planes[i]->a, planes[j]->a);
     }
     // q = p + sum l_i a_i with a_i . q + b_i = 0 for the chosen planes:  gram l = -value
     for (std::size_t i = 0; i < n; ++i) {
-        if (value[i] > 0) continue; // l would be negative
+        if (value[i] > 0) continue;  // l would be negative
         const Vector q = p + (-value[i] / gram[i][i]) * planes[i]->a;
         if (inside(q)) return q;
     }
@@ -129,7 +149,7 @@ inline std::optional<Vector> nearest_point(const std::vector<HalfSpace>& cell, c
             if (det.is_zero()) continue;
             const Rational li = gram[i][j] * value[j] - gram[j][j] * value[i];
             const Rational lj = gram[i][j] * value[i] - gram[i][i] * value[j];
-            if (li < 0 || lj < 0) continue; // det > 0 (Cauchy-Schwarz), so the signs are those of l
+            if (li < 0 || lj < 0) continue;  // det > 0 (Cauchy-Schwarz), so the signs are those of l
             const Vector q = p + (li / det) * planes[i]->a + (lj / det) * planes[j]->a;
             if (inside(q)) return q;
         }
@@ -138,25 +158,30 @@ inline std::optional<Vector> nearest_point(const std::vector<HalfSpace>& cell, c
             for (std::size_t k = j + 1; k < n; ++k) {
                 const std::size_t s[3] = {i, j, k};
                 const auto g = [&](int r, int c) -> const Rational& { return gram[s[r]][s[c]]; };
-                const auto minor = [&](int r, int c) { // of the symmetric 3x3 Gram matrix, signs by cyclic indices
+                const auto minor = [&](int r,
+                                       int c) {  // of the symmetric 3x3 Gram matrix, signs by cyclic indices
                     const int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
                     return g(r1, c1) * g(r2, c2) - g(r1, c2) * g(r2, c1);
                 };
                 Rational cofactor[3][3];
                 for (int r = 0; r < 3; ++r)
-                    for (int c = 0; c < 3; ++c) cofactor[r][c] = minor(r, c);
-                const Rational det = g(0, 0) * cofactor[0][0] + g(0, 1) * cofactor[0][1] + g(0, 2) * cofactor[0][2];
+                    for (int c = 0; c < 3; ++c)
+                        cofactor[r][c] = minor(r, c);
+                const Rational det =
+                    g(0, 0) * cofactor[0][0] + g(0, 1) * cofactor[0][1] + g(0, 2) * cofactor[0][2];
                 if (det.is_zero()) continue;
                 Rational l[3];
                 bool positive = true;
                 for (int r = 0; r < 3 && positive; ++r) {
                     l[r] = Rational(0);
-                    for (int c = 0; c < 3; ++c) l[r] -= cofactor[r][c] * value[s[c]];
+                    for (int c = 0; c < 3; ++c)
+                        l[r] -= cofactor[r][c] * value[s[c]];
                     positive = l[r] >= 0;
                 }
                 if (!positive) continue;
                 Vector q = p;
-                for (int r = 0; r < 3; ++r) q = q + (l[r] / det) * planes[s[r]]->a;
+                for (int r = 0; r < 3; ++r)
+                    q = q + (l[r] / det) * planes[s[r]]->a;
                 if (inside(q)) return q;
             }
     return std::nullopt;
@@ -169,8 +194,9 @@ inline bool meets(const std::vector<HalfSpace>& cell, const Ball& ball) {
     return ball.all || dot(away, away) <= square(ball.radius);
 }
 
-//----------------------------------------------------------------------------------------------------------------------
-// Decider 1: in the camera's own axes a block of tiles is  low(d) <= c <= high(d)  in each image axis, linear in depth d.
+//------------------------------------------------------------------------------------------------------------
+// Decider 1: in the camera's own axes a block of tiles is  low(d) <= c <= high(d)  in each image axis, linear
+// in depth d.
 
 /// offset + slope * d; one of the two is 0 (perspective: offset, orthographic: slope).
 struct Line {
@@ -184,7 +210,7 @@ struct Slab {
 
 /// The image axis the slab is in decides which coordinate of the ball counts.
 struct Slabs {
-    std::optional<Slab> x, y; ///< nothing: this axis is not bounded
+    std::optional<Slab> x, y;  ///< nothing: this axis is not bounded
 };
 
 /// A ball in the camera's axes: image coordinates growing with pixels, depth growing away from the eye.
@@ -213,14 +239,14 @@ inline bool beyond_a_side(const Slab& slab, const Rational& c, const CameraBall&
     return false;
 }
 
-} // namespace detail
+}  // namespace detail
 
 /// Does the ball meet the cell with these slabs and depths?
 ///
-/// f(d) = squared distance from the centre to the cell's slice at depth d, measured in three dimensions, is convex and
-/// piecewise quadratic with a continuous derivative. Its least value over the depths is therefore taken at an end or where
-/// the derivative of one of the nine pieces is 0; each of those (moved into the depths) is a point of the cell anyway, so
-/// the smallest f among them is the squared distance.
+/// f(d) = squared distance from the centre to the cell's slice at depth d, measured in three dimensions, is
+/// convex and piecewise quadratic with a continuous derivative. Its least value over the depths is therefore
+/// taken at an end or where the derivative of one of the nine pieces is 0; each of those (moved into the
+/// depths) is a point of the cell anyway, so the smallest f among them is the squared distance.
 inline bool meets(const Slabs& slabs, const Depths& depths, const CameraBall& ball) {
     if (depths.contains_none()) return false;
     if (ball.all) return true;
@@ -243,17 +269,16 @@ inline bool meets(const Slabs& slabs, const Depths& depths, const CameraBall& ba
         if (slabs.y) f += square(detail::outside(*slabs.y, ball.y, d));
         return f <= reach;
     };
-    if (within(clamped(ball.depth))) return true; // the piece inside both slabs
+    if (within(clamped(ball.depth))) return true;  // the piece inside both slabs
     if (depths.min && within(*depths.min)) return true;
     if (depths.max && within(*depths.max)) return true;
 
-    std::array<const Line*, 3> x_lines{}, y_lines{};
-    if (slabs.x) x_lines = {nullptr, &slabs.x->low, &slabs.x->high};
-    if (slabs.y) y_lines = {nullptr, &slabs.y->low, &slabs.y->high};
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j) {
-            const Line *u = x_lines[i], *v = y_lines[j];
-            if ((i > 0 && !u) || (j > 0 && !v)) continue;
+    const Line* const x_lines[] = {nullptr, slabs.x ? &slabs.x->low : nullptr,
+                                   slabs.x ? &slabs.x->high : nullptr};
+    const Line* const y_lines[] = {nullptr, slabs.y ? &slabs.y->low : nullptr,
+                                   slabs.y ? &slabs.y->high : nullptr};
+    for (const Line* u : x_lines)
+        for (const Line* v : y_lines) {
             Rational top = ball.depth, bottom = 1;
             if (u) top += u->slope * (ball.x - u->offset), bottom += square(u->slope);
             if (v) top += v->slope * (ball.y - v->offset), bottom += square(v->slope);
@@ -262,28 +287,34 @@ inline bool meets(const Slabs& slabs, const Depths& depths, const CameraBall& ba
     return false;
 }
 
-//----------------------------------------------------------------------------------------------------------------------
+//------------------------------------------------------------------------------------------------------------
 
 /// A camera in rationals, and the cells of its tiles in both forms.
 class Oracle {
 public:
     explicit Oracle(const Camera& camera) : camera_(camera), width_(camera.width), height_(camera.height) {
         for (int column = 0; column < 4; ++column)
-            for (int row = 0; row < 4; ++row) m_[column][row] = exact(camera.m[column][row]);
+            for (int row = 0; row < 4; ++row)
+                m_[column][row] = exact(camera.m[column][row]);
         const auto zero = [&](int column, int row) { return m_[column][row].is_zero(); };
         // What meets() on slabs takes for granted; the other decider does not.
         const bool axes = zero(1, 0) && zero(0, 1) && zero(0, 2) && zero(1, 2) && zero(0, 3) && zero(1, 3);
-        const bool eye = orthographic() ? m_[3][3] > 0 && zero(2, 0) && zero(2, 1) : zero(3, 3) && zero(3, 0) && zero(3, 1);
+        const bool eye = orthographic() ? m_[3][3] > 0 && zero(2, 0) && zero(2, 1)
+                                        : zero(3, 3) && zero(3, 0) && zero(3, 1);
         if (!axes || !eye) std::abort();
 
-        // A perspective w = (direction) z; an orthographic one says nothing, but NDC depth does, given reversed or not.
+        // A perspective w = (direction) z; an orthographic one says nothing, but NDC depth does, given
+        // reversed or not.
         const Rational& along = orthographic() ? m_[2][2] : m_[2][3];
         depth_sign_ = (along > 0) != (orthographic() && camera.reversed) ? 1 : -1;
-        for (const HalfSpace& plane : depth_planes()) { // a.z z + b >= 0, z = sign * depth
+        for (const HalfSpace& plane : depth_planes()) {  // a.z z + b >= 0, z = sign * depth
             const Rational slope = depth_sign_ * plane.a.z;
-            if (slope > 0) range_.at_least(-plane.b / slope);
-            else if (slope < 0) range_.at_most(plane.b / -slope);
-            else if (plane.b < 0) range_.empty = true;
+            if (slope > 0)
+                range_.at_least(-plane.b / slope);
+            else if (slope < 0)
+                range_.at_most(plane.b / -slope);
+            else if (plane.b < 0)
+                range_.empty = true;
         }
     }
 
@@ -296,13 +327,18 @@ public:
     /// Near and far plane as view depths; no max where the far plane is at infinity.
     const Depths& range() const { return range_; }
 
-    /// The depths of a cell: near to far, and between two floats where given. -inf, +inf bound nothing from below, above.
+    /// The depths of a cell: near to far, and between two floats where given. -inf, +inf bound nothing from
+    /// below, above.
     Depths depths(std::optional<float> min = {}, std::optional<float> max = {}) const {
         Depths depths = range_;
-        if (min && std::isinf(*min)) depths.empty |= *min > 0;
-        else if (min) depths.at_least(exact(*min));
-        if (max && std::isinf(*max)) depths.empty |= *max < 0;
-        else if (max) depths.at_most(exact(*max));
+        if (min && std::isinf(*min))
+            depths.empty |= *min > 0;
+        else if (min)
+            depths.at_least(exact(*min));
+        if (max && std::isinf(*max))
+            depths.empty |= *max < 0;
+        else if (max)
+            depths.at_most(exact(*max));
         return depths;
     }
 
@@ -315,16 +351,19 @@ public:
     Rational offset_y() const { return offset(1, height_); }
 
     CameraBall in_camera(const Ball& ball) const {
-        return {x_sign() * ball.centre.x, y_sign() * ball.centre.y, depth_sign_ * ball.centre.z, ball.radius, ball.all};
+        return {x_sign() * ball.centre.x, y_sign() * ball.centre.y, depth_sign_ * ball.centre.z, ball.radius,
+                ball.all};
     }
 
     Slab column_slab(const Edges& e) const { return {line(0, width_, e.low), line(0, width_, e.high)}; }
     Slab row_slab(const Edges& e) const { return {line(1, height_, e.low), line(1, height_, e.high)}; }
 
-    /// The cell as half-spaces of view space, straight from the clip-space inequalities (w > 0 follows from the depths).
+    /// The cell as half-spaces of view space, straight from the clip-space inequalities (w > 0 follows from
+    /// the depths).
     std::vector<HalfSpace> half_spaces(const Edges& columns, const Edges& rows, const Depths& depths) const {
         std::vector<HalfSpace> cell = depth_planes();
-        const auto add = [&](int row, const Rational& clip, const Rational& w) { // clip * clip_row + w * clip_w >= 0
+        const auto add = [&](int row, const Rational& clip,
+                             const Rational& w) {  // clip * clip_row + w * clip_w >= 0
             const auto mix = [&](int column) { return clip * m_[column][row] + w * m_[column][3]; };
             cell.push_back({{mix(0), mix(1), mix(2)}, mix(3)});
         };
@@ -362,7 +401,8 @@ private:
     }
 
     Edges edges(int first, int last, int side) const {
-        return {Rational(std::min(first * camera_.tile, side)), Rational(std::min(last * camera_.tile, side))};
+        return {Rational(std::min(first * camera_.tile, side)),
+                Rational(std::min(last * camera_.tile, side))};
     }
 
     int up(int row) const { return row == 1 && camera_.upper_left ? -1 : 1; }
@@ -377,7 +417,8 @@ private:
     }
 
     Rational offset(int axis, const Rational& side) const {
-        const Rational ndc = up(axis) * (orthographic() ? Rational(m_[3][axis] / m_[3][3]) : Rational(m_[2][axis] / m_[2][3]));
+        const Rational ndc =
+            up(axis) * (orthographic() ? Rational(m_[3][axis] / m_[3][3]) : Rational(m_[2][axis] / m_[2][3]));
         return (ndc + 1) * side / (2 * camera_.tile);
     }
 
@@ -388,4 +429,4 @@ private:
     Depths range_;
 };
 
-} // namespace oracle
+}  // namespace oracle

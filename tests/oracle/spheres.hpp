@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sphere sets, each a named generator that depends on the camera and the seed only. They are aimed in double precision,
-// and aim is all they need: the sphere that is asked about is the float one that comes out.
+// Sphere sets, each a named generator, repeatable from the camera and a seed. They are aimed in double
+// precision, and aim is all they need: the sphere that is asked about is the float one that comes out.
 #pragma once
 
 #include "cameras.hpp"
@@ -16,7 +16,7 @@
 namespace oracle {
 
 struct Light {
-    float x, y, z, w; ///< w = radius
+    float x, y, z, w;  ///< w = radius
 };
 
 /// SplitMix64. std:: distributions differ from one standard library to the next.
@@ -32,12 +32,12 @@ public:
     double uniform(double low = 0, double high = 1) {
         return low + (high - low) * (static_cast<double>(bits() >> 11) * 0x1p-53);
     }
-    int integer(int low, int high) { ///< both ends included
+    int integer(int low, int high) {  ///< both ends included
         return low + static_cast<int>(bits() % static_cast<std::uint64_t>(high - low + 1));
     }
     bool chance(double p) { return uniform() < p; }
     double sign() { return chance(0.5) ? 1 : -1; }
-    double normal() { // Box-Muller
+    double normal() {  // Box-Muller
         return std::sqrt(-2 * std::log(1 - uniform())) * std::cos(2 * std::acos(-1.0) * uniform());
     }
     double power_of_two(double low, double high) { return std::exp2(uniform(low, high)); }
@@ -49,11 +49,13 @@ private:
 /// A seed from a name (FNV-1a), so that no two kinds of camera get the same spheres.
 inline std::uint64_t seed_of(const std::string& name) {
     std::uint64_t hash = 0xcbf29ce484222325u;
-    for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    for (const char c : name)
+        hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
     return hash;
 }
 
-/// Where things are for a camera, in its own axes: image coordinates that grow with pixels, depth that grows with distance.
+/// Where things are for a camera, in its own axes: image coordinates that grow with pixels, depth that grows
+/// with distance.
 class Aim {
 public:
     explicit Aim(const Camera& of) : camera(of) {
@@ -67,12 +69,14 @@ public:
         const bool low_is_near = low >= 0 && (low < high || high < 0);
         near_plane = orthographic ? std::min(low, high) : (low_is_near ? low : high);
         far_plane = orthographic ? std::max(low, high) : (low_is_near ? high : low);
-        if (!(far_plane > near_plane) || far_plane > 1e6) far_plane = 1e6; // at infinity, or as good as
+        if (!(far_plane > near_plane) || far_plane > 1e6) far_plane = 1e6;  // at infinity, or as good as
         unit = orthographic ? (at(1, camera.height, 0) - at(1, 0, 0)) / 64 : near_plane;
     }
 
     /// Image coordinate of pixel edge a on an axis (0: x, 1: y), at a depth.
-    double at(int axis, double pixel, double depth) const { return offset(axis, pixel) + slope(axis, pixel) * depth; }
+    double at(int axis, double pixel, double depth) const {
+        return offset(axis, pixel) + slope(axis, pixel) * depth;
+    }
     double offset(int axis, double pixel) const {
         const Matrix& m = camera.m;
         return (ndc(axis, pixel) * m[3][3] - up(axis) * m[3][axis]) / std::abs(m[axis][axis]);
@@ -108,7 +112,9 @@ public:
     }
 
     Light light(double x, double y, double depth, double radius) const {
-        const auto rounded = [](double v) { return static_cast<float>(std::clamp<double>(v, -FLT_MAX, FLT_MAX)); };
+        const auto rounded = [](double v) {
+            return static_cast<float>(std::clamp<double>(v, -FLT_MAX, FLT_MAX));
+        };
         return {rounded(sign_[0] * x), rounded(sign_[1] * y), rounded(sign_[2] * depth), rounded(radius)};
     }
 
@@ -117,7 +123,7 @@ public:
     Camera camera;
     bool orthographic;
     double near_plane, far_plane;
-    double unit; ///< a length that matters: near plane distance, or a piece of the orthographic box
+    double unit;  ///< a length that matters: near plane distance, or a piece of the orthographic box
 
 private:
     double up(int axis) const { return axis == 1 && camera.upper_left ? -1 : 1; }
@@ -156,10 +162,13 @@ inline Light field(const Aim& aim, Random& random) {
 inline Light near_eye(const Aim& aim, Random& random) {
     const double u = 10 * aim.unit, z = random.uniform(-3, 30);
     const double half = aim.half_height(aim.orthographic ? 0 : 1);
-    const double x = (3 + 1.2 * std::abs(z)) * random.uniform(-1, 1), y = (3 + 0.8 * std::abs(z)) * random.uniform(-1, 1);
-    const double shift_x = aim.at(0, 0.5 * aim.side(0), u * std::max(z, 0.1)), shift_y = aim.at(1, 0.5 * aim.side(1), u * std::max(z, 0.1));
+    const double x = (3 + 1.2 * std::abs(z)) * random.uniform(-1, 1),
+                 y = (3 + 0.8 * std::abs(z)) * random.uniform(-1, 1);
+    const double shift_x = aim.at(0, 0.5 * aim.side(0), u * std::max(z, 0.1)),
+                 shift_y = aim.at(1, 0.5 * aim.side(1), u * std::max(z, 0.1));
     const double spread = aim.orthographic ? 1 : std::max(1.0, half);
-    return aim.light(shift_x + spread * u * x, shift_y + spread * u * y, u * z, u * 2 * spread * std::exp(0.7 * random.normal()));
+    return aim.light(shift_x + spread * u * x, shift_y + spread * u * y, u * z,
+                     u * 2 * spread * std::exp(0.7 * random.normal()));
 }
 
 /// Straddles or just reaches the near plane: from behind by 2^-k, or touching it from the front.
@@ -169,7 +178,8 @@ inline Light near_poke(const Aim& aim, Random& random) {
     const double d = aim.near_plane + (random.chance(0.7) ? -r : r) + poke;
     const double n = aim.near_plane, reach = random.chance(0.5) ? 0.1 * r : aim.unit;
     return nudged(aim.light(aim.at(0, aim.pixel(0, random), n) + reach * random.uniform(-1, 1),
-                            aim.at(1, aim.pixel(1, random), n) + reach * random.uniform(-1, 1), d, r), random);
+                            aim.at(1, aim.pixel(1, random), n) + reach * random.uniform(-1, 1), d, r),
+                  random);
 }
 
 /// The circle in which the sphere cuts the near plane ends at a tile edge.
@@ -193,7 +203,8 @@ inline Light eye_surface(const Aim& aim, Random& random) {
 
 /// |x| or |y| equals the radius: one tangent plane holds the depth axis.
 inline Light axis_tangent(const Aim& aim, Random& random) {
-    const double d = aim.depth(random), r = aim.half_height(std::max(d, aim.unit)) * random.power_of_two(-8, 2);
+    const double d = aim.depth(random),
+                 r = aim.half_height(std::max(d, aim.unit)) * random.power_of_two(-8, 2);
     const int axis = random.integer(0, 1);
     double c[2];
     c[axis] = random.sign() * r * (1 + random.sign() * std::exp2(-random.integer(1, 40)));
@@ -204,14 +215,17 @@ inline Light axis_tangent(const Aim& aim, Random& random) {
 /// z = r (1 + 2^-k): almost reaches the plane through the eye, so its projection almost reaches infinity.
 inline Light eye_plane(const Aim& aim, Random& random) {
     const double r = aim.unit * random.power_of_two(-2, 20), d = r * (1 + std::exp2(-random.integer(1, 30)));
-    return nudged(aim.light(aim.at(0, aim.pixel(0, random, 1), d), aim.at(1, aim.pixel(1, random, 1), d), d, r), random);
+    return nudged(
+        aim.light(aim.at(0, aim.pixel(0, random, 1), d), aim.at(1, aim.pixel(1, random, 1), d), d, r),
+        random);
 }
 
 inline Light tiny_far(const Aim& aim, Random& random) {
     const double d = aim.depth(random);
     const double x = random.chance(0.5) ? aim.pixel(0, random) : aim.tile_edge(0, random);
     return nudged(aim.light(aim.at(0, x, d), aim.at(1, aim.pixel(1, random), d), d,
-                            random.chance(0.1) ? 0.0 : std::abs(d) * random.power_of_two(-40, -13)), random);
+                            random.chance(0.1) ? 0.0 : std::abs(d) * random.power_of_two(-40, -13)),
+                  random);
 }
 
 inline Light huge(const Aim& aim, Random& random) {
@@ -226,7 +240,8 @@ inline Light huge(const Aim& aim, Random& random) {
 inline Light scales(const Aim& aim, Random& random) {
     const double k = random.power_of_two(-40, 40);
     const Light light = field(aim, random);
-    return {static_cast<float>(light.x * k), static_cast<float>(light.y * k), static_cast<float>(light.z * k), static_cast<float>(light.w * k)};
+    return {static_cast<float>(light.x * k), static_cast<float>(light.y * k), static_cast<float>(light.z * k),
+            static_cast<float>(light.w * k)};
 }
 
 /// Tangent to the plane of a tile edge.
@@ -244,7 +259,8 @@ inline Light tile_edge(const Aim& aim, Random& random) {
 
 /// The same with few bits in every number, so that on edges of rational length the touch can be exact.
 inline Light tile_edge_exact(const Aim& aim, Random& random) {
-    const double r = aim.unit * 5 * random.integer(1, 12) * 0.125, d = aim.near_plane + r + aim.unit * random.integer(0, 40);
+    const double r = aim.unit * 5 * random.integer(1, 12) * 0.125,
+                 d = aim.near_plane + r + aim.unit * random.integer(0, 40);
     const int axis = random.integer(0, 1);
     const double edge = aim.tile_edge(axis, random), s = aim.slope(axis, edge);
     double c[2];
@@ -262,33 +278,46 @@ inline Light tile_corner(const Aim& aim, Random& random) {
     const double angle = random.uniform(0, 2 * std::acos(-1.0));
     // A unit vector at right angles to the ray: a random one less its part along the ray.
     double n[3] = {std::cos(angle), std::sin(angle), random.uniform(-1, 1)};
-    const double along = (n[0] * ray[0] + n[1] * ray[1] + n[2] * ray[2]) / (ray[0] * ray[0] + ray[1] * ray[1] + 1);
-    for (int i = 0; i < 3; ++i) n[i] -= along * ray[i];
+    const double along =
+        (n[0] * ray[0] + n[1] * ray[1] + n[2] * ray[2]) / (ray[0] * ray[0] + ray[1] * ray[1] + 1);
+    for (int i = 0; i < 3; ++i)
+        n[i] -= along * ray[i];
     const double length = std::hypot(n[0], n[1], n[2]);
-    return nudged(aim.light(aim.at(0, px, d) + r * n[0] / length, aim.at(1, py, d) + r * n[1] / length, d + r * n[2] / length, r), random);
+    return nudged(aim.light(aim.at(0, px, d) + r * n[0] / length, aim.at(1, py, d) + r * n[1] / length,
+                            d + r * n[2] / length, r),
+                  random);
 }
 
 inline Light behind(const Aim& aim, Random& random) {
     const double r = aim.unit * random.power_of_two(-4, 12);
-    return aim.light(r * random.normal(), r * random.normal(), aim.near_plane - r * random.uniform(0.9, 3), r);
+    return aim.light(r * random.normal(), r * random.normal(), aim.near_plane - r * random.uniform(0.9, 3),
+                     r);
 }
 
 inline Light beyond_far(const Aim& aim, Random& random) {
     const double f = aim.far_plane, r = aim.half_height(f) * random.power_of_two(-6, 0);
     const double d = f + r * (1 + random.sign() * std::exp2(-random.integer(1, 24)));
-    return nudged(aim.light(aim.at(0, aim.pixel(0, random), d), aim.at(1, aim.pixel(1, random), d), d, r), random);
+    return nudged(aim.light(aim.at(0, aim.pixel(0, random), d), aim.at(1, aim.pixel(1, random), d), d, r),
+                  random);
 }
 
 /// Any finite bits at all, denormals, the ends of the range, zeros of both signs, and bad input.
 inline Light special(const Aim& aim, Random& random) {
     const auto odd = [&]() -> float {
         switch (random.integer(0, 9)) {
-        case 0: return 0.0f;
-        case 1: return -0.0f;
-        case 2: return static_cast<float>(random.sign()) * FLT_MAX;
-        case 3: return static_cast<float>(random.sign()) * FLT_MIN;
-        case 4: return static_cast<float>(random.sign()) * FLT_TRUE_MIN * static_cast<float>(random.integer(1, 1000));
-        case 5: return static_cast<float>(random.sign() * aim.near_plane);
+        case 0:
+            return 0.0f;
+        case 1:
+            return -0.0f;
+        case 2:
+            return static_cast<float>(random.sign()) * FLT_MAX;
+        case 3:
+            return static_cast<float>(random.sign()) * FLT_MIN;
+        case 4:
+            return static_cast<float>(random.sign()) * FLT_TRUE_MIN *
+                   static_cast<float>(random.integer(1, 1000));
+        case 5:
+            return static_cast<float>(random.sign() * aim.near_plane);
         default: {
             const float any = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits()));
             return std::isfinite(any) ? any : 1.0f;
@@ -296,27 +325,45 @@ inline Light special(const Aim& aim, Random& random) {
         }
     };
     Light light = random.chance(0.5) ? Light{odd(), odd(), odd(), std::abs(odd())} : field(aim, random);
-    constexpr float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float inf = std::numeric_limits<float>::infinity(),
+                    nan = std::numeric_limits<float>::quiet_NaN();
     switch (random.integer(0, 19)) {
-    case 0: light.w = inf; break;
-    case 1: light.w = FLT_MAX; break;
-    case 2: light.w = -light.w; break; // bad unless 0
-    case 3: light.w = random.chance(0.5) ? nan : -inf; break;
-    case 4: light.x = nan; break;
-    case 5: light.y = random.chance(0.5) ? inf : -inf; break;
-    case 6: light.z = random.chance(0.5) ? nan : inf; break;
-    case 7: light.w = odd() * 0.0f; break;
-    default: break;
+    case 0:
+        light.w = inf;
+        break;
+    case 1:
+        light.w = FLT_MAX;
+        break;
+    case 2:
+        light.w = -light.w;
+        break;  // bad unless 0
+    case 3:
+        light.w = random.chance(0.5) ? nan : -inf;
+        break;
+    case 4:
+        light.x = nan;
+        break;
+    case 5:
+        light.y = random.chance(0.5) ? inf : -inf;
+        break;
+    case 6:
+        light.z = random.chance(0.5) ? nan : inf;
+        break;
+    case 7:
+        light.w = odd() * 0.0f;
+        break;
+    default:
+        break;
     }
     return light;
 }
 
-} // namespace spheres
+}  // namespace spheres
 
 struct SphereSet {
     std::string name;
     Light (*one)(const Aim&, Random&);
-    bool stiff; ///< built where rounding hurts most
+    bool stiff;  ///< built where rounding hurts most
 };
 
 inline const std::vector<SphereSet>& sphere_sets() {
@@ -342,11 +389,13 @@ inline const std::vector<SphereSet>& sphere_sets() {
     return sets;
 }
 
-inline std::vector<Light> make(const SphereSet& set, const Camera& camera, std::size_t count, std::uint64_t seed) {
+inline std::vector<Light> make(const SphereSet& set, const Camera& camera, std::size_t count,
+                               std::uint64_t seed) {
     const Aim aim(camera);
     Random random(seed);
     std::vector<Light> lights;
-    for (std::size_t i = 0; i < count; ++i) lights.push_back(set.one(aim, random));
+    for (std::size_t i = 0; i < count; ++i)
+        lights.push_back(set.one(aim, random));
     return lights;
 }
 
@@ -355,4 +404,4 @@ inline bool is_bad(const Light& light) {
     return !std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) || !(light.w >= 0);
 }
 
-} // namespace oracle
+}  // namespace oracle

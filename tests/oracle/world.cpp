@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // World-space input: no miss for the exact image of the ball under the view matrix.
 //
-// A matrix of floats is never exactly a rotation, and some are not meant to be one, so the image of a ball is an
-// ellipsoid. It meets a cell iff the ball meets the cell's preimage, and the preimage of a polyhedron under an affine map
-// is one too, with rational planes: the second decider answers for ellipsoids exactly.
+// A matrix of floats is never exactly a rotation, and some are not meant to be one, so the image of a ball is
+// an ellipsoid. It meets a cell iff the ball meets the cell's preimage, and the preimage of a polyhedron
+// under an affine map is one too, with rational planes: the second decider answers for ellipsoids exactly.
 #include "bounds.hpp"
 #include "harness.hpp"
 
@@ -11,37 +11,45 @@ using namespace oracle;
 
 namespace {
 
-using Affine = std::array<std::array<float, 4>, 4>; // [column][row]
+using Affine = Matrix4<float>;
 
 struct ViewMatrix {
     std::string name;
     Affine m;
-    double stretch; ///< of a rotation times a scale, that scale; 0 for other maps
+    double stretch;  ///< of a rotation times a scale, that scale; 0 for other maps
 };
 
 /// Columns are the images of the axes; translation t.
-ViewMatrix view_matrix(const std::string& name, const double (&columns)[3][3], const double (&t)[3], double stretch) {
+ViewMatrix view_matrix(const std::string& name, const double (&columns)[3][3], const double (&t)[3],
+                       double stretch) {
     ViewMatrix v{name, {}, stretch};
-    for (std::size_t c = 0; c < 3; ++c)
-        for (std::size_t r = 0; r < 3; ++r) v.m[c][r] = static_cast<float>(columns[c][r]);
-    for (std::size_t r = 0; r < 3; ++r) v.m[3][r] = static_cast<float>(t[r]);
+    for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r)
+            v.m[c][r] = static_cast<float>(columns[c][r]);
+    for (int r = 0; r < 3; ++r)
+        v.m[3][r] = static_cast<float>(t[r]);
     v.m[3][3] = 1;
     return v;
 }
 
 /// A rotation about a random axis, columns scaled, then one column leaned towards another.
-ViewMatrix random_view(const std::string& name, Random& random, double distance, std::array<double, 3> scale, double lean) {
+ViewMatrix random_view(const std::string& name, Random& random, double distance, std::array<double, 3> scale,
+                       double lean) {
     double q[4];
     double length = 0;
-    for (double& v : q) v = random.normal(), length += v * v;
-    for (double& v : q) v /= std::sqrt(length);
+    for (double& v : q)
+        v = random.normal(), length += v * v;
+    for (double& v : q)
+        v /= std::sqrt(length);
     const auto [w, x, y, z] = q;
     double c[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
                       {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
                       {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
     for (std::size_t i = 0; i < 3; ++i)
-        for (double& v : c[i]) v *= scale[i];
-    for (std::size_t i = 0; i < 3; ++i) c[0][i] += lean * c[1][i];
+        for (double& v : c[i])
+            v *= scale[i];
+    for (std::size_t i = 0; i < 3; ++i)
+        c[0][i] += lean * c[1][i];
     const double t[3] = {distance * random.normal(), distance * random.normal(), distance * random.normal()};
     const bool similar = lean == 0 && scale[0] == scale[1] && scale[1] == scale[2];
     return view_matrix(name, c, t, similar ? scale[0] : 0);
@@ -58,26 +66,31 @@ std::vector<ViewMatrix> view_matrices(Random& random) {
             random_view("sheared", random, 10, {1, 1, 1}, 1.7)};
 }
 
-/// World-space lights that land, more or less, where a set wants them in view space. Solved in double; the truth that is
-/// asked for is the image of what comes out.
+/// World-space lights that land, more or less, where a set wants them in view space. Solved in double; the
+/// truth that is asked for is the image of what comes out.
 std::vector<Light> into_world(const std::vector<Light>& lights, const ViewMatrix& view) {
     double m[4][3];
-    for (std::size_t c = 0; c < 4; ++c)
-        for (std::size_t r = 0; r < 3; ++r) m[c][r] = static_cast<double>(view.m[c][r]);
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 3; ++r)
+            m[c][r] = static_cast<double>(view.m[c][r]);
     double inverse[3][3], det = 0, size = 0;
-    for (std::size_t c = 0; c < 3; ++c)
-        for (std::size_t r = 0; r < 3; ++r) {
-            const std::size_t c1 = (c + 1) % 3, c2 = (c + 2) % 3, r1 = (r + 1) % 3, r2 = (r + 2) % 3;
+    for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) {
+            const int c1 = (c + 1) % 3, c2 = (c + 2) % 3, r1 = (r + 1) % 3, r2 = (r + 2) % 3;
             inverse[r][c] = m[c1][r1] * m[c2][r2] - m[c1][r2] * m[c2][r1];
         }
-    for (std::size_t r = 0; r < 3; ++r) det += m[0][r] * inverse[r][0];
-    for (std::size_t c = 0; c < 3; ++c) size = std::max(size, std::hypot(m[c][0], m[c][1], m[c][2]));
+    for (int r = 0; r < 3; ++r)
+        det += m[0][r] * inverse[r][0];
+    for (int c = 0; c < 3; ++c)
+        size = std::max(size, std::hypot(m[c][0], m[c][1], m[c][2]));
     std::vector<Light> world;
     for (const Light& light : lights) {
-        const double p[3] = {static_cast<double>(light.x) - m[3][0], static_cast<double>(light.y) - m[3][1], static_cast<double>(light.z) - m[3][2]};
+        const double p[3] = {static_cast<double>(light.x) - m[3][0], static_cast<double>(light.y) - m[3][1],
+                             static_cast<double>(light.z) - m[3][2]};
         double q[3] = {};
-        for (std::size_t c = 0; c < 3; ++c)
-            for (std::size_t r = 0; r < 3; ++r) q[c] += inverse[r][c] * p[r] / det;
+        for (int c = 0; c < 3; ++c)
+            for (int r = 0; r < 3; ++r)
+                q[c] += inverse[r][c] * p[r] / det;
         world.push_back({static_cast<float>(q[0]), static_cast<float>(q[1]), static_cast<float>(q[2]),
                          static_cast<float>(static_cast<double>(light.w) / size)});
     }
@@ -87,10 +100,13 @@ std::vector<Light> into_world(const std::vector<Light>& lights, const ViewMatrix
 struct ExactView {
     Vector column[4];
     explicit ExactView(const Affine& m) {
-        for (std::size_t c = 0; c < 4; ++c)
-            column[c] = {exact(static_cast<double>(m[c][0])), exact(static_cast<double>(m[c][1])), exact(static_cast<double>(m[c][2]))};
+        for (int c = 0; c < 4; ++c)
+            column[c] = {exact(static_cast<double>(m[c][0])), exact(static_cast<double>(m[c][1])),
+                         exact(static_cast<double>(m[c][2]))};
     }
-    Vector operator()(const Vector& q) const { return q.x * column[0] + q.y * column[1] + q.z * column[2] + column[3]; }
+    Vector operator()(const Vector& q) const {
+        return q.x * column[0] + q.y * column[1] + q.z * column[2] + column[3];
+    }
     HalfSpace preimage(const HalfSpace& h) const {
         return {{dot(h.a, column[0]), dot(h.a, column[1]), dot(h.a, column[2])}, dot(h.a, column[3]) + h.b};
     }
@@ -98,8 +114,9 @@ struct ExactView {
 
 /// Does the image of the ball meet the cell?
 bool image_meets(const ExactView& view, std::vector<HalfSpace> cell, const Ball& ball) {
-    for (HalfSpace& h : cell) h = view.preimage(h);
-    if (!ball.all) // beyond one plane: no need to look further
+    for (HalfSpace& h : cell)
+        h = view.preimage(h);
+    if (!ball.all)  // beyond one plane: no need to look further
         for (const HalfSpace& h : cell) {
             const Rational at = h.at(ball.centre);
             if (at < 0 && square(at) > square(ball.radius) * dot(h.a, h.a)) return false;
@@ -133,8 +150,11 @@ void examine_rectangles(const Camera& camera, Tally& tally, std::uint64_t& seed)
                 const auto ask = [&](int x0, int x1, int y0, int y1) {
                     if (x0 >= x1 || y0 >= y1) return;
                     ++tally.verdicts;
-                    if (image_meets(exact_view, oracle.half_spaces(oracle.columns(x0, x1), oracle.rows(y0, y1), {}), ball))
-                        tally.report(tally.misses, "MISS", camera, matrix.name + ", " + set.name, i, lights[i], "");
+                    if (image_meets(exact_view,
+                                    oracle.half_spaces(oracle.columns(x0, x1), oracle.rows(y0, y1), {}),
+                                    ball))
+                        tally.report(tally.misses, "MISS", camera, matrix.name + ", " + set.name, i,
+                                     lights[i], "");
                 };
                 if (!e.any()) {
                     ask(0, nx, 0, ny);
@@ -145,18 +165,21 @@ void examine_rectangles(const Camera& camera, Tally& tally, std::uint64_t& seed)
                 ask(e.x0, e.x1 + 1, 0, e.y0);
                 ask(e.x0, e.x1 + 1, e.y1 + 1, ny);
 
-                // A rotation and scale gives the ball back, but for the rounding of its matrix and of the moved centre. A
-                // centre that leaves the range of float is taken to be everywhere.
+                // A rotation and scale gives the ball back, but for the rounding of its matrix and of the
+                // moved centre. A centre that leaves the range of float is taken to be everywhere.
                 if (matrix.stretch == 0 || ball.all) continue;
                 Ball image{exact_view(ball.centre), ball.radius * exact(matrix.stretch)};
                 const Vector& c = image.centre;
                 if (abs(c.x) + abs(c.y) + abs(c.z) + image.radius > exact(FLT_MAX)) continue;
                 const Vector &p = ball.centre, &t = exact_view.column[3];
-                const Rational terms = exact(matrix.stretch) * (abs(p.x) + abs(p.y) + abs(p.z)) + abs(t.x) + abs(t.y) + abs(t.z);
-                image.radius += (image.radius + abs(c.x) + abs(c.y) + abs(c.z)) / (1 << 21) + terms / (std::int64_t{1} << 44) + exact(0x1p-125);
+                const Rational terms =
+                    exact(matrix.stretch) * (abs(p.x) + abs(p.y) + abs(p.z)) + abs(t.x) + abs(t.y) + abs(t.z);
+                image.radius += (image.radius + abs(c.x) + abs(c.y) + abs(c.z)) / (1 << 21) +
+                                terms / (std::int64_t{1} << 44) + exact(0x1p-125);
                 ++tally.explained;
                 if (!examiner.explained({image, oracle.in_camera(image)}, e))
-                    tally.report(tally.unexplained, "unexplained", camera, matrix.name + ", " + set.name, i, lights[i], "");
+                    tally.report(tally.unexplained, "unexplained", camera, matrix.name + ", " + set.name, i,
+                                 lights[i], "");
             }
         }
     }
@@ -176,7 +199,8 @@ void examine_intervals(const Camera& camera, Tally& tally, std::uint64_t& seed) 
         const ExactView exact_view(matrix.m);
         for (const SphereSet& set : sphere_sets()) {
             if (set.name != "field" && set.name != "near eye" && set.name != "tiny and far") continue;
-            const std::vector<Light> aimed = make(set, camera, 1000, ++seed), lights = into_world(aimed, matrix);
+            const std::vector<Light> aimed = make(set, camera, 1000, ++seed),
+                                     lights = into_world(aimed, matrix);
             const Bounds bounds = make_bounds(camera, aim, aimed, BoundsShape::tips, random);
             const auto world = lightbin::world_space(lights, matrix.m);
             const auto rectangle_grid = rectangles.bin(view, world);
@@ -188,21 +212,23 @@ void examine_intervals(const Camera& camera, Tally& tally, std::uint64_t& seed) 
                 const auto grid = binner.bin(view, world, given);
                 REQUIRE(grid.has_value());
                 const auto in_list = membership(*grid, lights.size());
-                bool added = false; // a pair that is not in the rectangles
+                bool added = false;  // a pair that is not in the rectangles
                 for (std::size_t tile = 0; tile < tiles; ++tile) {
-                    const int x = static_cast<int>(tile) % oracle.tiles_x(), y = static_cast<int>(tile) / oracle.tiles_x();
+                    const int x = static_cast<int>(tile) % oracle.tiles_x(),
+                              y = static_cast<int>(tile) / oracle.tiles_x();
                     std::optional<float> min, max;
                     (at_least ? min : max) = at_least ? bounds.min[tile] : bounds.max[tile];
                     for (std::size_t i = 0; i < lights.size(); ++i) {
-                        if (i % 8 != 0 && bounds.owner[tile] != i) continue; // for time
+                        if (i % 8 != 0 && bounds.owner[tile] != i) continue;  // for time
                         added |= in_list[tile][i] && !in_rectangle[tile][i];
                         if (!in_rectangle[tile][i] || in_list[tile][i]) continue;
                         ++tally.verdicts;
                         const Ball ball = exact_ball(lights[i].x, lights[i].y, lights[i].z, lights[i].w);
-                        const auto cell = oracle.half_spaces(oracle.columns(x, x + 1), oracle.rows(y, y + 1), oracle.depths(min, max));
+                        const auto cell = oracle.half_spaces(oracle.columns(x, x + 1), oracle.rows(y, y + 1),
+                                                             oracle.depths(min, max));
                         if (image_meets(exact_view, cell, ball))
-                            tally.report(tally.misses, "MISS", camera, matrix.name + ", " + set.name, i, lights[i],
-                                         "tile " + std::to_string(x) + ", " + std::to_string(y));
+                            tally.report(tally.misses, "MISS", camera, matrix.name + ", " + set.name, i,
+                                         lights[i], "tile " + std::to_string(x) + ", " + std::to_string(y));
                     }
                 }
                 CHECK(!added);
@@ -211,12 +237,13 @@ void examine_intervals(const Camera& camera, Tally& tally, std::uint64_t& seed) 
     }
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("world space with Z bounds") {
     Tally tally;
     std::uint64_t seed = 6;
-    for (const auto& cameras : {kinds::symmetric(), kinds::orthographic_off_centre()}) examine_intervals(cameras.front(), tally, seed);
+    for (const auto& cameras : {kinds::symmetric(), kinds::orthographic_off_centre()})
+        examine_intervals(cameras.front(), tally, seed);
     MESSAGE(tally.verdicts << " exact verdicts");
     CHECK(tally.misses == 0);
     CHECK(tally.verdicts >= 100000);
@@ -225,8 +252,10 @@ TEST_CASE("world space with Z bounds") {
 TEST_CASE("world space") {
     Tally tally;
     std::uint64_t seed = 5;
-    for (const auto& cameras : {kinds::symmetric(), kinds::reversed_infinite(), kinds::orthographic_off_centre()})
-        for (const std::size_t screen : {std::size_t{0}, std::size_t{1}}) examine_rectangles(cameras[screen], tally, seed);
+    for (const auto& cameras :
+         {kinds::symmetric(), kinds::reversed_infinite(), kinds::orthographic_off_centre()})
+        for (const std::size_t screen : {std::size_t{0}, std::size_t{1}})
+            examine_rectangles(cameras[screen], tally, seed);
     MESSAGE(tally.verdicts << " exact verdicts, " << tally.explained << " rectangles explained");
     CHECK(tally.misses == 0);
     CHECK(tally.unexplained == 0);
