@@ -69,8 +69,8 @@ public:
 
     /// Returns the light grid of `lights` in `view`, in the Binner's memory: valid until its next call.
     ///
-    /// lights  a contiguous range of vec4 (x, y, z, radius) or Sphere in view space, or view_space(...) or
-    /// world_space(...)
+    /// lights  a contiguous range of vec4 (x, y, z, radius) or Sphere in view space, view_space(...) or
+    ///         world_space(...)
     ///
     /// After it, every tile lists every light whose sphere meets the tile's cell (no miss), in ascending
     /// order. Errors: more lights than Id can number; more than 2^32 - 1 entries; a world_space() matrix that
@@ -88,7 +88,7 @@ public:
         return bin_owned(view, lights, bounds);
     }
 
-    /// Returns the sizes of the light grid, ready for emit(). Errors as bin().
+    /// Builds the light grid in the Binner's memory and returns its sizes, ready for emit(). Errors as bin().
     template <class LightRange>
     requires(!with_depth) Result<GridSize> count(const View& view, const LightRange& lights) {
         return count_all(view, lights, {});
@@ -119,7 +119,9 @@ public:
     }
 
     /// Returns both grids of a scene with transparent geometry from one projection, valid until the Binner's
-    /// next call. bounds  of the opaque geometry. Errors as bin(). Statistics are those of the opaque grid.
+    /// next call. Errors as bin(). Statistics are those of the opaque grid.
+    ///
+    /// bounds  of the opaque geometry
     template <class LightRange>
     requires(with_depth) Result<TransparencyGrids<Id>> bin_transparency(const View& view,
                                                                         const LightRange& lights,

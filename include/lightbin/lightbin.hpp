@@ -22,10 +22,10 @@
 //   4. Upload grid->tiles() and grid->indices().                                               light_grid.hpp
 //   5. Put shader_snippet({...}) in your shader and set its uniform to shader_grid(view).      shader.hpp
 //
-// Building. No compiler flags are needed. On x86-64 with gcc or clang there are kernels for SSE2, AVX2 and AVX-512,
-// and the machine's own is picked at run time; elsewhere the scalar ones run. All give the same bytes. Define
-// LIGHTBIN_NO_SIMD to leave them out, LIGHTBIN_ASSERT to take over the assertions. -ffast-math is refused where the
-// compiler tells of it; clang does not tell of -funsafe-math-optimizations alone: don't.
+// Building. No compiler flags are needed. On x86-64 with gcc or clang there are kernels for SSE2, AVX2 and
+// AVX-512, and the machine's own is picked at run time; elsewhere the scalar ones run. All give the same
+// bytes. Define LIGHTBIN_NO_SIMD to leave them out, LIGHTBIN_ASSERT to take over the assertions. -ffast-math
+// is refused where the compiler tells of it; clang does not tell of -funsafe-math-optimizations alone: don't.
 //
 // Sources: Olsson and Assarsson, "Tiled Shading", JGT 15(4), 2011. Billeter, Olsson and Assarsson, "Tiled
 // Forward Shading", GPU Pro 4, 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.

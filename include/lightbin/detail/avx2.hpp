@@ -141,9 +141,6 @@ inline constexpr std::array<std::array<std::uint8_t, 8>, 256> set_bits = [] {
     return table;
 }();
 
-/// Lights an append() takes at a time.
-inline constexpr unsigned step = 8;
-
 /// Writes those of 8 ids whose bit is set, in order; then up to 8 elements that mean nothing. Returns how
 /// many.
 template <class Id>

@@ -119,19 +119,45 @@ LIGHTBIN_TARGET inline void store_depths(DepthInterval* depths, Floats nearest, 
                      _mm512_permutex2var_ps(nearest, _mm512_add_epi32(low, _mm512_set1_epi32(8)), farthest));
 }
 
+/// As the general append_visible, with compress instructions.
+LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCounts& counts,
+                                           std::uint32_t first_id, unsigned visible,
+                                           const LaneRects<lanes>& rects) {
+    const Mask kept = static_cast<Mask>(visible);
+    const __m256i x0 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.x0));
+    const __m256i y0 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.y0));
+    const __m256i x1 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.x1));
+    const __m256i y1 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.y1));
+    const std::uint32_t at = counts.visible;
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.x0 + at), _mm256_maskz_compress_epi16(kept, x0));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.y0 + at), _mm256_maskz_compress_epi16(kept, y0));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.x1 + at), _mm256_maskz_compress_epi16(kept, x1));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.y1 + at), _mm256_maskz_compress_epi16(kept, y1));
+    const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    const __m512i ids = _mm512_add_epi32(lane, _mm512_set1_epi32(static_cast<int>(first_id)));
+    _mm512_storeu_si512(out.ids + at, _mm512_maskz_compress_epi32(kept, ids));
+    counts.visible += static_cast<std::uint32_t>(std::popcount(visible));
+
+    const __m512i one = _mm512_set1_epi32(1);
+    const __m512i width = _mm512_add_epi32(_mm512_cvtepu16_epi32(_mm256_sub_epi16(x1, x0)), one);
+    const __m512i height = _mm512_add_epi32(_mm512_cvtepu16_epi32(_mm256_sub_epi16(y1, y0)), one);
+    const __m512i area = _mm512_maskz_mullo_epi32(kept, width, height);  // at most 2^30 each
+    const __m512i sums = _mm512_add_epi64(_mm512_cvtepu32_epi64(_mm512_castsi512_si256(area)),
+                                          _mm512_cvtepu32_epi64(_mm512_extracti64x4_epi64(area, 1)));
+    counts.area += static_cast<std::uint64_t>(_mm512_reduce_add_epi64(sums));
+}
+
 #include <lightbin/detail/project_simd.inl>
 
-// Binning by supertiles of 8x8 tiles. As supertile.inl, but membership of a list is made by compressing 64
-// lights at a time instead of inserting them one by one:
+// Binning by supertiles of 8x8 tiles, as supertile.inl, but lists are made by compressing 64 lights at a time
+// instead of inserting them one by one:
 //
 //   1. 64 lights' rows against each band of 8 tile rows: a saturating subtraction and two byte shuffles give
-//   each light's
-//      byte of covered rows, zero if it misses the band. Those that do not are compressed onto the band's
-//      list.
+//      each light's byte of covered rows, zero if it misses the band. Those that do not are compressed onto
+//      the band's list.
 //   2. The same with the band's list and each supertile's 8 columns: the supertile's list, then its words.
 //   3. Tiles in row-major order: the lights of tile (row, column) are rows[row] & columns[column]; their ids
-//   are
-//      compressed onto the index list. A supertile of up to 8 lights takes one compress for 8 tiles.
+//      are compressed onto the index list. A supertile of up to 8 lights takes one compress for 8 tiles.
 //
 // Coordinates are bytes and ids 16 bits here, so the grid is at most 248 x 248 tiles and the ids of one call
 // share their upper 16 bits.

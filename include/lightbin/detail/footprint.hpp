@@ -41,6 +41,30 @@ inline void append(const FootprintArrays& out, ProjectCounts& counts, std::uint3
     counts.area += (rect.x1 - rect.x0 + 1u) * std::uint64_t{rect.y1 - rect.y0 + 1u};
 }
 
+/// The tiles of a vector of lights, before those out of view are dropped.
+template <unsigned lanes> struct LaneRects {
+    alignas(64) std::uint16_t x0[lanes], y0[lanes], x1[lanes], y1[lanes];
+};
+
+/// Appends the lights whose bit in `visible` is set. Every lane is written, and the place moves on for those in
+/// view: no branch to predict.
+template <unsigned lanes>
+void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
+                    unsigned visible, const LaneRects<lanes>& rects) {
+    for (unsigned lane = 0; lane < lanes; ++lane) {
+        const unsigned in_view = visible >> lane & 1;
+        const std::uint32_t at = counts.visible;
+        out.ids[at] = first_id + lane;
+        out.x0[at] = rects.x0[lane];
+        out.y0[at] = rects.y0[lane];
+        out.x1[at] = rects.x1[lane];
+        out.y1[at] = rects.y1[lane];
+        counts.visible += in_view;
+        counts.area += in_view * ((rects.x1[lane] - rects.x0[lane] + 1u) *
+                                  std::uint64_t{rects.y1[lane] - rects.y0[lane] + 1u});
+    }
+}
+
 /// Z bounds in a form without branches: an absent side reads the one element of a constant.
 struct TileDepths {
     const float* min;

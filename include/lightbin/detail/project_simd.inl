@@ -66,9 +66,9 @@ LIGHTBIN_TARGET void project(const Camera& camera, const Sphere* spheres, std::u
             tangent_slopes(x, z, r, e, low_x, high_x);
             tangent_slopes(y, z, r, e, low_y, high_y);
         }
-        alignas(64) std::uint16_t x0[lanes], x1[lanes], y0[lanes], y1[lanes];
-        plain = tile_span(camera.x, low_x, high_x, plain, x0, x1);
-        plain = tile_span(camera.y, low_y, high_y, plain, y0, y1);
+        LaneRects<lanes> rects;
+        plain = tile_span(camera.x, low_x, high_x, plain, rects.x0, rects.x1);
+        plain = tile_span(camera.y, low_y, high_y, plain, rects.y0, rects.y1);
         if constexpr (with_depth) store_depths(out.depths + first_id + i, nearest, farthest);
 
         const unsigned valid = used == 32 ? ~0u : (1u << used) - 1;
@@ -79,21 +79,13 @@ LIGHTBIN_TARGET void project(const Camera& camera, const Sphere* spheres, std::u
             const Visibility visibility = project_carefully(camera, block[lane], rect);
             counts.rejected += visibility == Visibility::rejected;
             if (visibility != Visibility::visible) continue;
-            x0[lane] = rect.x0, x1[lane] = rect.x1, y0[lane] = rect.y0, y1[lane] = rect.y1;
+            rects.x0[lane] = rect.x0;
+            rects.y0[lane] = rect.y0;
+            rects.x1[lane] = rect.x1;
+            rects.y1[lane] = rect.y1;
             visible |= 1u << lane;
         }
         if (visible == 0) continue;
-        // Every lane is written, and the place moves on for those in view: no branch to predict.
-        for (unsigned lane = 0; lane < lanes; ++lane) {
-            const unsigned in_view = visible >> lane & 1;
-            const std::uint32_t at = counts.visible;
-            out.ids[at] = first_id + i + lane;
-            out.x0[at] = x0[lane];
-            out.y0[at] = y0[lane];
-            out.x1[at] = x1[lane];
-            out.y1[at] = y1[lane];
-            counts.visible += in_view;
-            counts.area += in_view * ((x1[lane] - x0[lane] + 1u) * std::uint64_t{y1[lane] - y0[lane] + 1u});
-        }
+        append_visible(out, counts, first_id + i, visible, rects);
     }
 }

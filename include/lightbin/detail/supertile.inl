@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Binning by supertiles of 8x8 tiles, for tiers without a compress instruction. Included once a tier; see
-// kernels.hpp.
+// Binning by supertiles of 8x8 tiles, for tiers without a compress instruction. Included within a tier, after
+// its vectors.
 //
 //   1. Each light is put in the lists of the supertiles that its rectangle meets, with a byte of the columns
-//   and a byte of the
-//      rows it covers there. A difference array has sized the lists.
-//   2. A supertile's list is turned round, 64 lights at a time: for each column and for each row a word with
-//   a bit a light.
+//      and a byte of the rows it covers there. A difference array has sized the lists.
+//   2. A supertile's list is turned round, 64 lights at a time: for each column and each row a word with a
+//      bit a light.
 //   3. The lights of tile (row, column) are  rows[row] & columns[column].  Tiles are taken in row-major
-//   order, so the index
-//      list is written strictly in sequence: no count pass over tiles, no scatter, no sort.
+//      order, so the index list is written strictly in sequence: no count pass over tiles, no scatter, no
+//      sort.
 //
 // With Z bounds step 2 makes a word for each of the 64 tiles: the light's tiles as one 64-bit mask, and-ed
 // with the tiles whose bounds it meets, turned round by rows.
@@ -141,18 +140,17 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
                 for (unsigned column = 0; column < last_column; ++column) {
                     *offset++ = static_cast<std::uint32_t>(out - job.indices);
                     if (count == 0) continue;
-                    if (count <= 8) {  // one step of 8 lights or two of 4, without a loop
+                    if (count <= 8) {  // the usual length of a list: no loop to predict
                         const std::uint64_t lit = Words<with_depth>::of_tile(word, row, column);
-                        for (unsigned i = 0; i < 8; i += step)
-                            out += append(out, ids + i, static_cast<unsigned>(lit >> i & ((1u << step) - 1)));
+                        out += append(out, ids, static_cast<unsigned>(lit & 0xff));
                         continue;
                     }
                     for (std::uint32_t i = 0; i < count; i += 64) {
                         std::uint64_t lit =
                             Words<with_depth>::of_tile(word + i / 64 * Words<with_depth>::size, row, column);
                         const std::uint32_t used = count - i < 64 ? count - i : 64;
-                        for (std::uint32_t j = 0; j < used; j += step, lit >>= step)
-                            out += append(out, ids + i + j, static_cast<unsigned>(lit & ((1u << step) - 1)));
+                        for (std::uint32_t j = 0; j < used; j += 8, lit >>= 8)
+                            out += append(out, ids + i + j, static_cast<unsigned>(lit & 0xff));
                     }
                 }
                 word += (count + 63) / 64 * Words<with_depth>::size;
