@@ -40,7 +40,7 @@ inline float light_range(float intensity, float cutoff) {
                                (1 + 0x1p-50));
 }
 
-/// How a light becomes a Sphere by default: its x, y, z and w (a vec4), or x, y, z and radius.
+/// How a light becomes a Sphere by default: a vec4's x, y, z and w, or a Sphere as it is.
 struct AsSphere {
     constexpr Sphere operator()(const Sphere& light) const { return light; }
 
@@ -112,9 +112,10 @@ template <class Light, class ToViewSphere> struct Lights {
     bool valid = true;  ///< false: the view matrix is not affine
 };
 
-/// Returns lights in view space (the space that the projection matrix takes).
-/// to_sphere  any callable that makes a Sphere of an element. The array is read in place and must live
-/// through the call.
+/// Returns lights in view space (the space that the projection matrix takes). The array is read in place: it
+/// must live until the Binner's call returns.
+///
+/// to_sphere  any callable that makes a Sphere of an element
 template <std::ranges::contiguous_range Range, class ToSphere = AsSphere>
 auto view_space(const Range& lights, ToSphere to_sphere = {}) {
     using Light = std::ranges::range_value_t<const Range>;

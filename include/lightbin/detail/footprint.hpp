@@ -46,8 +46,8 @@ template <unsigned lanes> struct LaneRects {
     alignas(64) std::uint16_t x0[lanes], y0[lanes], x1[lanes], y1[lanes];
 };
 
-/// Appends the lights whose bit in `visible` is set. Every lane is written, and the place moves on for those in
-/// view: no branch to predict.
+/// Appends the lights whose bit in `visible` is set. Every lane is written, and the place moves on for those
+/// in view: no branch to predict.
 template <unsigned lanes>
 void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
                     unsigned visible, const LaneRects<lanes>& rects) {

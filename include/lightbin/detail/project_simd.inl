@@ -51,7 +51,7 @@ LIGHTBIN_TARGET void project(const Camera& camera, const Sphere* spheres, std::u
         const Mask culled =
             either(less(farthest, all(camera.near_depth)), less(all(camera.far_depth), nearest));
         Mask plain = both_not(usable, culled);
-        Mask careful = usable;  // and then its complement
+        Mask settled = usable;  // the others need project_carefully
         Floats low_x, high_x, low_y, high_y;
         if (camera.orthographic) {
             low_x = sub(x, r);
@@ -60,7 +60,7 @@ LIGHTBIN_TARGET void project(const Camera& camera, const Sphere* spheres, std::u
             high_y = add(y, r);
         } else {
             const Mask beyond = less(all(camera.near_fast), nearest);
-            careful = both(usable, either(culled, beyond));
+            settled = both(usable, either(culled, beyond));
             plain = both(plain, beyond);
             const Floats e = mul(nearest, farthest);
             tangent_slopes(x, z, r, e, low_x, high_x);
@@ -71,9 +71,9 @@ LIGHTBIN_TARGET void project(const Camera& camera, const Sphere* spheres, std::u
         plain = tile_span(camera.y, low_y, high_y, plain, rects.y0, rects.y1);
         if constexpr (with_depth) store_depths(out.depths + first_id + i, nearest, farthest);
 
-        const unsigned valid = used == 32 ? ~0u : (1u << used) - 1;
+        const unsigned valid = (1u << used) - 1;
         unsigned visible = bits(plain) & valid;
-        for (unsigned rest = ~bits(careful) & valid; rest != 0; rest &= rest - 1) {
+        for (unsigned rest = ~bits(settled) & valid; rest != 0; rest &= rest - 1) {
             const unsigned lane = static_cast<unsigned>(std::countr_zero(rest));
             TileRect rect;
             const Visibility visibility = project_carefully(camera, block[lane], rect);
