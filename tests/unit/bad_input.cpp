@@ -1,4 +1,4 @@
-// Promise 4, line by line: bad input stays local, and the empty and the odd are fine.
+// Bad input stays local, and the empty and the odd are fine.
 #include "scene.hpp"
 
 #include <cmath>

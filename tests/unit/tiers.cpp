@@ -1,4 +1,4 @@
-// Promise 5: every instruction set that this machine has gives the same bytes as the scalar kernels.
+// Every instruction set that this machine has gives the same bytes as the scalar kernels.
 #include "scene.hpp"
 
 #include <cstring>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Outward rounding from double to float. No miss (promise 1) rests on it and on IEEE comparisons with NaN.
+// Outward rounding from double to float. That no light is missed rests on it and on IEEE comparisons with NaN.
 #pragma once
 
 #include <cfloat>
