@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// lightbin without a GPU: a projection matrix and lights in, a list of lights for each tile of the screen
-// out.
+// lightbin without a GPU: a projection matrix and lights in, a list of lights for each screen tile out.
 #include <lightbin/lightbin.hpp>
 
 #include <glm/glm.hpp>
@@ -19,8 +18,7 @@ int main() {
         return 1;
     }
 
-    // The lights: centre and radius, as the camera sees them, looking down -z. Lamps on both sides of a
-    // street.
+    // The lights: centre and radius, as the camera sees them, looking down -z. Lamps along a street.
     std::vector<glm::vec4> lights;
     for (float z = -4; z > -60; z -= 4) {
         lights.emplace_back(-4, 1, z, 3);
@@ -35,8 +33,8 @@ int main() {
         return 1;
     }
 
-    // A renderer uploads lists->tiles() and lists->indices(). Here is how many lights each tile has; row 0 is
-    // the lowest.
+    // A renderer uploads lists->tiles() and lists->indices(). Here is how many lights each tile has, from the
+    // upper rows down: row 0 is the lowest.
     for (int y = lists->tiles_y() - 1; y >= 0; --y) {
         for (int x = 0; x < lists->tiles_x(); ++x)
             std::putchar(" .:-=+*#%@"[std::min<std::size_t>(lists->lights_in(x, y).size(), 9)]);
