@@ -4,21 +4,18 @@
 //
 // What exactness rests on:
 // - A float or double is a rational number, and mpq (GMP) computes with rationals exactly. The one entry is
-// exact().
+//   exact().
 // - Everything is read from the projection matrix itself, the viewport, the tile size and the API's settings.
-// Nothing is
-//   taken from the library: not its View, not a constant, not a margin.
-// - A cell is what clip space says: the points with  W clip_x >= (2a - W) clip_w  right of pixel edge a, and
-// so on for
-//   each side, between the clip planes of depth and, where asked, between two view depths. Clip coordinates
-//   are linear in the point, so a cell is a convex polyhedron with rational planes, and the squared distance
-//   from a rational point to it is rational: no square root is ever needed.
-// - Two deciders that share no formula must agree. meets() works in the camera's own axes on a convex
-// function of depth
-//   alone; nearest_point() knows only half-spaces and finds the point that satisfies the Karush-Kuhn-Tucker
-//   conditions, which is a proof by itself. deciders.cpp compares them.
+//   Nothing is taken from the library: not its View, not a constant, not a margin.
+// - A cell is what clip space says: the points with  W clip_x >= (2a - W) clip_w  right of pixel edge a, and so
+//   on for each side, between the clip planes of depth and, where asked, between two view depths. Clip
+//   coordinates are linear in the point, so a cell is a convex polyhedron with rational planes, and the squared
+//   distance from a rational point to it is rational: no square root is ever needed.
+// - Two deciders that share no formula must agree. meets() works in the camera's own axes on a convex function
+//   of depth alone; nearest_point() knows only half-spaces and finds the point that satisfies the
+//   Karush-Kuhn-Tucker conditions, which is a proof by itself. deciders.cpp compares them.
 // - The word "pixel edge" means the real number a in window coordinates; how a GPU rounds its own vertices is
-// not ours.
+//   not ours.
 #pragma once
 
 #include "cameras.hpp"
