@@ -15,8 +15,8 @@ using Lights = std::vector<glm::vec4>;
 
 inline constexpr float tan_half_fov = 0.57735027f, aspect = 16.0f / 9.0f;
 
-/// "field": 80 % of the centres uniform in the frustum's volume from z = 1 to 200, 20 % outside it in a box of
-/// +-260 x +-160 x -50..250; radius lognormal, sigma 0.5. The median sets how many tiles a light covers.
+/// "field": 80 % of the centres uniform in the frustum's volume from z = 1 to 200, 20 % outside it in a box
+/// of +-260 x +-160 x -50..250; radius lognormal, sigma 0.5. The median sets how many tiles a light covers.
 inline Lights field(std::size_t count, float median_radius, std::uint32_t seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> unit(0, 1), side(-1, 1);
@@ -41,8 +41,8 @@ inline Lights field(std::size_t count, float median_radius, std::uint32_t seed) 
     return lights;
 }
 
-/// "near": eye inside and beside lights. z in -3..30, |x| <= 3 + 1.2 |z|, |y| <= 3 + 0.8 |z|, radius lognormal,
-/// median 2, sigma 0.7.
+/// "near": eye inside and beside lights. z in -3..30, |x| <= 3 + 1.2 |z|, |y| <= 3 + 0.8 |z|, radius
+/// lognormal, median 2, sigma 0.7.
 inline Lights near_eye(std::size_t count, std::uint32_t seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> depth(-3, 30), side(-1, 1);

@@ -34,13 +34,14 @@ template <bool with_depth> ProjectKernel<with_depth> project_kernel(Isa isa) {
 /// room for `area` entries that the scalar one does without.
 template <class Id, bool with_depth>
 BinKernel<Id, with_depth> bin_kernel(Isa isa, const BinJob<Id>& job, std::uint64_t area) {
-    // Nearly empty grids: the walk over all supertiles costs more than counting and scattering the few entries.
+    // Nearly empty grids, and those without tiles or lights: the walk over all supertiles costs more than
+    // counting and scattering the few entries.
     const std::uint64_t tiles =
         static_cast<std::uint64_t>(job.tiles_x) * static_cast<std::uint64_t>(job.tiles_y);
-    if (with_depth ? area < tiles : area < tiles / 4) return bin_scalar<with_depth, Id>;
+    if (with_depth ? area <= tiles : area <= tiles / 4) return bin_scalar<with_depth, Id>;
 #if defined(LIGHTBIN_X86)
     const bool small_grid = job.tiles_x <= 248 && job.tiles_y <= 248;
-    const bool short_ids = job.count > 0 && job.lights.ids[0] >> 16 == job.lights.ids[job.count - 1] >> 16;
+    const bool short_ids = job.lights.ids[0] >> 16 == job.lights.ids[job.count - 1] >> 16;
     if (isa == Isa::avx512 && small_grid && short_ids) return avx512::bin_compress<with_depth, Id>;
     // Without compress, putting a small light in its lists costs as much as scattering it.
     const bool small_lights = !with_depth && area < std::uint64_t{16} * job.count;

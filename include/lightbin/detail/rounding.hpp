@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Outward rounding from double to float. That no light is missed rests on it and on IEEE comparisons with NaN.
+// Outward rounding from double to float. That no light is missed rests on it and on IEEE comparisons with
+// NaN.
 #pragma once
 
 #include <cfloat>
