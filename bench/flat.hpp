@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 /// A symmetric perspective view in tiles, looking down -z: tile coordinate = scale * (c / depth) + half the
@@ -15,12 +16,12 @@
 struct FlatView {
     int tiles_x, tiles_y;
     double width, height;  ///< of the viewport in tiles, the last ones counted as far as they reach
-    double scale, near_depth;
+    double scale, near_depth, far_depth;
 };
 
-/// Flat two-pass binning, scalar. Per light the tangent rectangle, counting into the tile table in the same
-/// pass; a prefix sum; a fill pass over the stored rectangles; 32-bit ids; vectors reused. With Z bounds
-/// every pair is tested in both passes. Lights that cross the near plane get the whole screen.
+/// Flat two-pass binning, scalar. Per light the tangent rectangle of what lies beyond the near plane,
+/// counting into the tile table in the same pass; a prefix sum; a fill pass over the stored rectangles;
+/// 32-bit ids; vectors reused. With Z bounds every pair is tested in both passes.
 template <class Real> class Flat {
 public:
     struct Rect {
@@ -29,7 +30,7 @@ public:
     };
 
     template <bool with_depth>
-    void build(const FlatView& view, const std::vector<glm::vec4>& lights, const float* tile_min,
+    void build(const FlatView& view, std::span<const glm::vec4> lights, const float* tile_min,
                const float* tile_max) {
         const std::size_t tiles =
             static_cast<std::size_t>(view.tiles_x) * static_cast<std::size_t>(view.tiles_y);
@@ -67,24 +68,44 @@ public:
 private:
     static Rect project(const FlatView& view, const glm::vec4& light) {
         const Real x = Real(light.x), y = Real(light.y), z = -Real(light.z), r = Real(light.w);
+        const Real near_depth = Real(view.near_depth), scale = Real(view.scale);
         Rect rect = {0, 0, -1, -1, z - r, z + r};
-        if (z + r < Real(view.near_depth)) return rect;
+        if (z + r < near_depth || z - r > Real(view.far_depth)) return rect;
         const Real width = Real(view.width), height = Real(view.height);
-        Real x0 = 0, x1 = width, y0 = 0, y1 = height;
-        if (z - r >= Real(view.near_depth)) {
-            const Real scale = Real(view.scale), e = (z - r) * (z + r), over = 1 / e;
+        Real x0, x1, y0, y1;
+        if (z - r > near_depth) {
+            const Real e = (z - r) * (z + r), over = 1 / e;
             const Real tx = r * std::sqrt(x * x + e), ty = r * std::sqrt(y * y + e);
-            x0 = scale * (x * z - tx) * over + width / 2;
-            x1 = scale * (x * z + tx) * over + width / 2;
-            y0 = scale * (y * z - ty) * over + height / 2;
-            y1 = scale * (y * z + ty) * over + height / 2;
+            x0 = (x * z - tx) * over;
+            x1 = (x * z + tx) * over;
+            y0 = (y * z - ty) * over;
+            y1 = (y * z + ty) * over;
+        } else {
+            const Real h = std::sqrt(std::max(r * r - (near_depth - z) * (near_depth - z), Real(0)));
+            x0 = -clipped_slope(-x, z, r, h, near_depth);
+            x1 = clipped_slope(x, z, r, h, near_depth);
+            y0 = -clipped_slope(-y, z, r, h, near_depth);
+            y1 = clipped_slope(y, z, r, h, near_depth);
         }
+        x0 = scale * x0 + width / 2;
+        x1 = scale * x1 + width / 2;
+        y0 = scale * y0 + height / 2;
+        y1 = scale * y1 + height / 2;
         if (x1 < 0 || y1 < 0 || x0 >= width || y0 >= height) return rect;
         rect.x0 = static_cast<int>(std::max(x0, Real(0)));
         rect.y0 = static_cast<int>(std::max(y0, Real(0)));
         rect.x1 = static_cast<int>(std::min(x1, Real(view.tiles_x - 1)));
         rect.y1 = static_cast<int>(std::min(y1, Real(view.tiles_y - 1)));
         return rect;
+    }
+
+    /// Largest slope of the part beyond the near plane of a disc (c, z, r) that the plane cuts at c - h and
+    /// c + h: at the tangent point if that is beyond the plane too, else at the corner (Mara and McGuire,
+    /// JCGT 2(2), 2013).
+    static Real clipped_slope(Real c, Real z, Real r, Real h, Real near_depth) {
+        if (near_depth * (z - near_depth) <= h * (c + h)) return (c + h) / near_depth;
+        const Real t = std::sqrt(std::max(c * c + z * z - r * r, Real(0)));
+        return (t * c + r * z) / (t * z - r * c);
     }
 
     std::vector<std::uint32_t> cursors;
