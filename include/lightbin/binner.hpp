@@ -7,6 +7,8 @@
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/lights.hpp>
+#include <lightbin/options.hpp>
+#include <lightbin/parallel.hpp>
 #include <lightbin/project.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/view.hpp>
@@ -22,21 +24,6 @@
 #include <type_traits>
 
 namespace lightbin {
-
-/// What keeps a light out of a tile beside its rectangle.
-enum class DepthTest : std::uint8_t {
-    none,      ///< nothing: no Z bounds are needed
-    interval,  ///< its depths z - r to z + r must meet the tile's Z bounds (Tiled Shading, section 3)
-};
-
-/// What a Binner does, fixed at compile time: what is off leaves no code.
-struct Options {
-    Index index = Index::u32;
-    DepthTest depth_test = DepthTest::none;
-    bool statistics = false;  ///< keep Statistics; costs a pass over the tiles
-    /// Use no wider instructions than these, even where the machine has them. The result is the same.
-    Isa isa = detail::compiled_isa;
-};
 
 /// Number of elements that Binner::emit writes.
 struct GridSize {
@@ -75,30 +62,34 @@ public:
     /// After it, every tile lists every light whose sphere meets the tile's cell (no miss), in ascending
     /// order. Errors: more lights than Id can number; more than 2^32 - 1 entries; a world_space() matrix that
     /// is not affine.
+    ///
+    /// parallel  threads to share the work among. The grid is the same with any number of them.
     template <class LightRange>
-    requires(!with_depth) Result<LightGrid<Id>> bin(const View& view, const LightRange& lights) {
-        return bin_owned(view, lights, {});
+    requires(!with_depth) Result<LightGrid<Id>> bin(const View& view, const LightRange& lights,
+                                                    const Parallel& parallel = {}) {
+        return bin_owned(view, lights, {}, parallel);
     }
 
     /// The same with Z bounds, minimum, maximum or both; also an error: a side is shorter than
     /// view.tile_count().
     template <class LightRange>
     requires(with_depth) Result<LightGrid<Id>> bin(const View& view, const LightRange& lights,
-                                                   const ZBounds& bounds) {
-        return bin_owned(view, lights, bounds);
+                                                   const ZBounds& bounds, const Parallel& parallel = {}) {
+        return bin_owned(view, lights, bounds, parallel);
     }
 
     /// Builds the light grid in the Binner's memory and returns its sizes, ready for emit(). Errors as bin().
     template <class LightRange>
-    requires(!with_depth) Result<GridSize> count(const View& view, const LightRange& lights) {
-        return count_all(view, lights, {});
+    requires(!with_depth) Result<GridSize> count(const View& view, const LightRange& lights,
+                                                 const Parallel& parallel = {}) {
+        return count_all(view, lights, {}, parallel);
     }
 
     /// The same with Z bounds.
     template <class LightRange>
     requires(with_depth) Result<GridSize> count(const View& view, const LightRange& lights,
-                                                const ZBounds& bounds) {
-        return count_all(view, lights, bounds);
+                                                const ZBounds& bounds, const Parallel& parallel = {}) {
+        return count_all(view, lights, bounds, parallel);
     }
 
     /// Writes the grid that count() sized to the caller's memory, once after each count(). Only writes there,
@@ -125,11 +116,12 @@ public:
     template <class LightRange>
     requires(with_depth) Result<TransparencyGrids<Id>> bin_transparency(const View& view,
                                                                         const LightRange& lights,
-                                                                        const ZBounds& bounds) {
-        if (const auto error = project(view, lights)) return *error;
-        const auto transparent = build(transparent_, view, {.min = {}, .max = bounds.max});
+                                                                        const ZBounds& bounds,
+                                                                        const Parallel& parallel = {}) {
+        if (const auto error = project(view, lights, parallel)) return *error;
+        const auto transparent = build(transparent_, view, ZBounds{.max = bounds.max}, parallel);
         if (!transparent) return transparent.error();
-        const auto opaque = build(lists_, view, bounds);
+        const auto opaque = build(lists_, view, bounds, parallel);
         if (!opaque) return opaque.error();
         return TransparencyGrids<Id>{*opaque, *transparent};
     }
@@ -138,24 +130,27 @@ public:
     const Statistics& statistics() const requires(options.statistics) { return statistics_; }
 
 private:
-    using Lists = GridLists<Id, with_depth>;
+    using Lists = GridLists<Id, options.footprint, options.depth_test>;
     struct Nothing {};
 
     template <class LightRange>
-    Result<LightGrid<Id>> bin_owned(const View& view, const LightRange& lights, const ZBounds& bounds) {
-        if (const auto error = project(view, lights)) return *error;
-        return build(lists_, view, bounds);
+    Result<LightGrid<Id>> bin_owned(const View& view, const LightRange& lights, const ZBounds& bounds,
+                                    const Parallel& parallel) {
+        if (const auto error = project(view, lights, parallel)) return *error;
+        return build(lists_, view, bounds, parallel);
     }
 
     template <class LightRange>
-    Result<GridSize> count_all(const View& view, const LightRange& lights, const ZBounds& bounds) {
-        const Result<LightGrid<Id>> grid = bin_owned(view, lights, bounds);
+    Result<GridSize> count_all(const View& view, const LightRange& lights, const ZBounds& bounds,
+                               const Parallel& parallel) {
+        const Result<LightGrid<Id>> grid = bin_owned(view, lights, bounds, parallel);
         if (!grid) return grid.error();
         counted_ = *grid;
         return GridSize{grid->tiles().size(), grid->indices().size()};
     }
 
-    template <class LightRange> std::optional<Error> project(const View& view, const LightRange& lights) {
+    template <class LightRange>
+    std::optional<Error> project(const View& view, const LightRange& lights, const Parallel& parallel) {
         counted_.reset();
         const auto& source = detail::as_lights(lights);
         if (!source.valid) return Error{ErrorCode::view_matrix_not_affine};
@@ -163,12 +158,14 @@ private:
                             most = options.index == Index::u16 ? 0x10000 : 0xffffffff;
         if (count > most) return Error{ErrorCode::too_many_lights, count, most};
         isa_ = detail::machine_isa(options.isa);
-        footprints_.project(isa_, view, source);
+        footprints_.project(isa_, view, source, parallel);
         return std::nullopt;
     }
 
-    Result<LightGrid<Id>> build(Lists& lists, const View& view, const ZBounds& bounds) {
-        if (const auto error = lists.build(isa_, view, footprints_, bounds, scratch_)) return *error;
+    Result<LightGrid<Id>> build(Lists& lists, const View& view, const ZBounds& bounds,
+                                const Parallel& parallel) {
+        if (const auto error = lists.build(isa_, view, footprints_, bounds, scratch_, parallel))
+            return *error;
         const LightGrid<Id> grid(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(),
                                  footprints_.rejected());
         if constexpr (options.statistics) gather_statistics(grid);
@@ -189,7 +186,7 @@ private:
 
     Isa isa_ = Isa::scalar;
     detail::Scratch scratch_;
-    Footprints<with_depth> footprints_;
+    Footprints<options.footprint, with_depth> footprints_;
     Lists lists_;
     std::conditional_t<with_depth, Lists, Nothing> transparent_;
     std::conditional_t<options.statistics, Statistics, Nothing> statistics_;

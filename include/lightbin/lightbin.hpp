@@ -33,6 +33,8 @@
 
 #include <lightbin/binner.hpp>
 #include <lightbin/lights.hpp>
+#include <lightbin/options.hpp>
+#include <lightbin/parallel.hpp>
 #include <lightbin/shader.hpp>
 #include <lightbin/version.hpp>
 #include <lightbin/view.hpp>

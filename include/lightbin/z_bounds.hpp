@@ -22,6 +22,10 @@ namespace lightbin {
 struct ZBounds {
     std::span<const float> min = {};
     std::span<const float> max = {};
+    /// For DepthTest::split_box, both or neither: nothing is drawn in the tile at depths strictly between
+    /// gap_min and gap_max. A tile with gap_min >= gap_max, or NaN, has no gap.
+    std::span<const float> gap_min = {};
+    std::span<const float> gap_max = {};
 };
 
 /// How a depth buffer stores depth: how far the stored value can be from that of the fragment that wrote it.

@@ -101,12 +101,6 @@ LIGHTBIN_TARGET inline void store_tiles(std::uint16_t* tiles, Floats values) {
                      _mm_packs_epi32(_mm256_castsi256_si128(whole), _mm256_extracti128_si256(whole, 1)));
 }
 
-LIGHTBIN_TARGET inline void store_depths(DepthInterval* depths, Floats nearest, Floats farthest) {
-    const Floats low = _mm256_unpacklo_ps(nearest, farthest), high = _mm256_unpackhi_ps(nearest, farthest);
-    _mm256_storeu_ps(&depths[0].min, _mm256_permute2f128_ps(low, high, 0x20));
-    _mm256_storeu_ps(&depths[4].min, _mm256_permute2f128_ps(low, high, 0x31));
-}
-
 #include <lightbin/detail/project_simd.inl>
 
 /// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.

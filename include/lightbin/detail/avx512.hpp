@@ -112,13 +112,6 @@ LIGHTBIN_TARGET inline void store_tiles(std::uint16_t* tiles, Floats values) {
                         _mm512_cvtusepi32_epi16(_mm512_cvttps_epi32(values)));
 }
 
-LIGHTBIN_TARGET inline void store_depths(DepthInterval* depths, Floats nearest, Floats farthest) {
-    const __m512i low = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
-    _mm512_storeu_ps(&depths[0].min, _mm512_permutex2var_ps(nearest, low, farthest));
-    _mm512_storeu_ps(&depths[8].min,
-                     _mm512_permutex2var_ps(nearest, _mm512_add_epi32(low, _mm512_set1_epi32(8)), farthest));
-}
-
 /// As the general append_visible, with compress instructions.
 LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCounts& counts,
                                            std::uint32_t first_id, unsigned visible,
@@ -383,10 +376,11 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
                         alignas(64) std::uint8_t by_row[8][64];
                         const std::uint32_t used = count - i < 64 ? count - i : 64;
                         for (std::uint32_t light = 0; light < used; ++light) {
-                            const std::uint64_t tiles = tiles_met(scratch.tile_min.data() + list * 64,
-                                                                  scratch.tile_max.data() + list * 64,
-                                                                  job.lights.depths[upper | ids[i + light]]) &
-                                                        scratch.lit_tiles.data()[list];
+                            const std::uint64_t tiles =
+                                tiles_met(scratch.tile_min.data() + list * 64,
+                                          scratch.tile_max.data() + list * 64,
+                                          job.bounds.of(job.lights.spheres[upper | ids[i + light]])) &
+                                scratch.lit_tiles.data()[list];
                             for (unsigned row = 0; row < 8; ++row)
                                 by_row[row][light] = static_cast<std::uint8_t>(tiles >> 8 * row);
                         }

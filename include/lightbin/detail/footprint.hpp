@@ -2,10 +2,12 @@
 // The types that pass between the stages' kernels, apart from the kernels themselves.
 #pragma once
 
+#include <lightbin/lights.hpp>
 #include <lightbin/view.hpp>
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace lightbin::detail {
 
@@ -14,14 +16,33 @@ struct TileRect {
     std::uint16_t x0, y0, x1, y1;
 };
 
-/// The lights in view, as parallel arrays in ascending order of id: tiles x0..x1, y0..y1, both ends included.
-/// Readable (not meaningful) up to `padding` elements past the end.
+/// The tiles first..last of one tile row that a light's silhouette reaches; none if first > last.
+struct RowSpan {
+    std::uint16_t first, last;
+};
+
+/// A part of the footprint arrays: elements begin..end-1.
+struct FootprintRun {
+    std::uint32_t begin, end;
+};
+
+/// The lights in view, as parallel arrays: tiles x0..x1, y0..y1, both ends included. They lie in one or more
+/// runs; ids ascend within a run and from run to run. Readable (not meaningful) up to `padding` elements past
+/// the end.
 struct FootprintArrays {
     static constexpr std::size_t padding = 64;
+    static constexpr std::uint32_t whole_rectangle = 0xffffffff;
 
     std::uint32_t* ids;
     std::uint16_t *x0, *y0, *x1, *y1;
-    DepthInterval* depths;  ///< by id, of all lights; null where no depth test reads it
+
+    /// With Footprint::silhouette, as the arrays above: the place in `spans` of the light's first row, y0;
+    /// one span a row up to y1. Or whole_rectangle.
+    std::uint32_t* span_begin;
+    const RowSpan* spans;
+
+    /// With a depth test, by id, of all lights: view space as the caller has it.
+    const Sphere* spheres;
 };
 
 /// What the projection of some lights came to.
@@ -70,6 +91,12 @@ struct TileDepths {
     const float* min;
     const float* max;
     std::size_t min_mask, max_mask;  ///< 0 for an absent side, all ones otherwise
+    float z_sign;                    ///< see Camera
+
+    /// z - r to z + r in float: rounding is monotone, so comparing them with float bounds never loses a light.
+    DepthInterval of(const Sphere& light) const {
+        return {z_sign * light.z - light.radius, z_sign * light.z + light.radius};
+    }
 
     /// True unless the interval is surely out of the tile's bounds or the tile is empty. NaN tests nothing.
     bool meets(std::size_t tile, DepthInterval light) const {
@@ -84,7 +111,8 @@ template <class Id> struct BinJob {
     static constexpr std::size_t slack = 64;
 
     FootprintArrays lights;
-    std::uint32_t count;
+    std::span<const FootprintRun> runs;
+    std::uint32_t count;  ///< of lights, in all runs
     int tiles_x, tiles_y;
     TileDepths bounds;
     std::uint32_t* offsets;  ///< one a tile, row-major

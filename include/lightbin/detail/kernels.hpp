@@ -15,19 +15,19 @@
 
 namespace lightbin::detail {
 
-template <bool with_depth> using ProjectKernel = decltype(&project_scalar<with_depth>);
+using ProjectKernel = decltype(&project_scalar);
 template <class Id, bool with_depth> using BinKernel = decltype(&bin_scalar<with_depth, Id>);
 
 inline namespace LIGHTBIN_FLAVOUR {
 
-template <bool with_depth> ProjectKernel<with_depth> project_kernel(Isa isa) {
+inline ProjectKernel project_kernel(Isa isa) {
 #if defined(LIGHTBIN_X86)
-    if (isa == Isa::avx512) return avx512::project<with_depth>;
-    if (isa == Isa::avx2) return avx2::project<with_depth>;
-    if (isa == Isa::sse2) return sse2::project<with_depth>;
+    if (isa == Isa::avx512) return avx512::project;
+    if (isa == Isa::avx2) return avx2::project;
+    if (isa == Isa::sse2) return sse2::project;
 #endif
     static_cast<void>(isa);
-    return project_scalar<with_depth>;
+    return project_scalar;
 }
 
 /// The fastest kernel for lights that cover `area` tiles in all. Kernels with full-vector stores need the

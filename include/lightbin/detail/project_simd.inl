@@ -28,8 +28,7 @@ LIGHTBIN_TARGET inline void tangent_slopes(Floats c, Floats z, Floats r, Floats 
     high = select(negative, negate(inner), outer);
 }
 
-template <bool with_depth>
-LIGHTBIN_TARGET void project(const Camera& camera, const Sphere* spheres, std::uint32_t count,
+LIGHTBIN_TARGET inline void project(const Camera& camera, const Sphere* spheres, std::uint32_t count,
                              std::uint32_t first_id, const FootprintArrays& out, ProjectCounts& counts) {
     Sphere padded[lanes];
     for (std::uint32_t i = 0; i < count; i += lanes) {
@@ -69,7 +68,6 @@ LIGHTBIN_TARGET void project(const Camera& camera, const Sphere* spheres, std::u
         LaneRects<lanes> rects;
         plain = tile_span(camera.x, low_x, high_x, plain, rects.x0, rects.x1);
         plain = tile_span(camera.y, low_y, high_y, plain, rects.y0, rects.y1);
-        if constexpr (with_depth) store_depths(out.depths + first_id + i, nearest, farthest);
 
         const unsigned valid = (1u << used) - 1;
         unsigned visible = bits(plain) & valid;

@@ -18,17 +18,11 @@ inline namespace LIGHTBIN_FLAVOUR {
 
 /// Appends the footprints of those of the `count` spheres that are in view. The first sphere has id
 /// `first_id`.
-template <bool with_depth>
-void project_scalar(const Camera& camera, const Sphere* spheres, std::uint32_t count, std::uint32_t first_id,
-                    const FootprintArrays& out, ProjectCounts& counts) {
+inline void project_scalar(const Camera& camera, const Sphere* spheres, std::uint32_t count,
+                           std::uint32_t first_id, const FootprintArrays& out, ProjectCounts& counts) {
     for (std::uint32_t i = 0; i < count; ++i) {
-        const Sphere& light = spheres[i];
-        if constexpr (with_depth) {
-            const float z = camera.z_sign * light.z;
-            out.depths[first_id + i] = {z - light.radius, z + light.radius};
-        }
         TileRect rect;
-        const Visibility visibility = project_sphere(camera, light, rect);
+        const Visibility visibility = project_sphere(camera, spheres[i], rect);
         counts.rejected += visibility == Visibility::rejected;
         if (visibility == Visibility::visible) append(out, counts, first_id + i, rect);
     }
@@ -43,7 +37,7 @@ template <bool with_depth, class Id, class Visit> void for_each_pair(const BinJo
             for (std::size_t tile = y * width + lights.x0[light], last = y * width + lights.x1[light];
                  tile <= last; ++tile) {
                 if constexpr (with_depth)
-                    if (!job.bounds.meets(tile, lights.depths[lights.ids[light]])) continue;
+                    if (!job.bounds.meets(tile, job.bounds.of(lights.spheres[lights.ids[light]]))) continue;
                 visit(tile, light);
             }
 }

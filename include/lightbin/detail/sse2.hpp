@@ -89,11 +89,6 @@ inline void store_tiles(std::uint16_t* tiles, Floats values) {
     _mm_storel_epi64(reinterpret_cast<__m128i*>(tiles), _mm_packs_epi32(whole, whole));
 }
 
-inline void store_depths(DepthInterval* depths, Floats nearest, Floats farthest) {
-    _mm_storeu_ps(&depths[0].min, _mm_unpacklo_ps(nearest, farthest));
-    _mm_storeu_ps(&depths[2].min, _mm_unpackhi_ps(nearest, farthest));
-}
-
 #include <lightbin/detail/project_simd.inl>
 
 }  // namespace sse2

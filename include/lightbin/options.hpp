@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// What a Binner does, fixed at compile time: an option that is off leaves no code.
+#pragma once
+
+#include <lightbin/detail/platform.hpp>
+#include <lightbin/light_grid.hpp>
+
+#include <cstdint>
+
+namespace lightbin {
+
+/// The tiles that a light's projection is taken to cover.
+enum class Footprint : std::uint8_t {
+    rectangle,   ///< its bounding rectangle (the papers' method)
+    silhouette,  ///< one exact span of tiles a tile row: drops the rectangle's corners
+};
+
+/// What keeps a light out of a tile beside its footprint. All but `none` need Z bounds.
+enum class DepthTest : std::uint8_t {
+    none,       ///< nothing
+    interval,   ///< its depths z - r to z + r must meet the tile's Z bounds (Tiled Shading, section 3)
+    box,        ///< its sphere must also meet the view-space box around the tile's cell
+    split_box,  ///< the same with two boxes, before and behind the tile's gap (see ZBounds)
+};
+
+/// What a Binner does.
+struct Options {
+    Index index = Index::u32;
+    Footprint footprint = Footprint::rectangle;
+    DepthTest depth_test = DepthTest::none;
+    bool statistics = false;  ///< keep Statistics; costs a pass over the tiles
+    /// Use no wider instructions than these, even where the machine has them. The result is the same.
+    Isa isa = detail::compiled_isa;
+};
+
+}  // namespace lightbin

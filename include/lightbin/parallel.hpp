@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// The caller's threads, lent for the time of a call: lightbin has none of its own.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <type_traits>
+
+namespace lightbin {
+
+/// A worker count and the caller's way to run a loop on several threads. Refers to the caller's callable,
+/// which must outlive the call that it is given to.
+class Parallel {
+    struct Body {
+        void operator()(std::size_t i) const { call(context, i); }
+
+        const void* context;
+        void (*call)(const void* context, std::size_t i);
+    };
+
+public:
+    /// No threads: the work is done by the calling thread.
+    Parallel() = default;
+
+    /// workers  how many threads `run` has; more or fewer change the speed, never the result
+    /// run      run(n, body) calls body(i), a std::size_t, once for each 0 <= i < n, in any order, on any
+    ///          threads, and returns when all calls have returned: tbb::parallel_for, a thread pool, OpenMP
+    template <class Run>
+    Parallel(std::size_t workers, Run&& run)
+        : workers_(workers > 1 ? workers : 1),
+          run_(const_cast<void*>(static_cast<const void*>(std::addressof(run)))),
+          start_([](void* function, std::size_t n, Body body) {
+              (*static_cast<std::remove_reference_t<Run>*>(function))(n, body);
+          }) {}
+
+    std::size_t workers() const { return workers_; }
+
+    /// Calls body(i) for each 0 <= i < n.
+    template <class Function> void run(std::size_t n, const Function& body) const {
+        const auto call = [](const void* context, std::size_t i) {
+            (*static_cast<const Function*>(context))(i);
+        };
+        if (start_ != nullptr && n > 1) return start_(run_, n, Body{&body, call});
+        for (std::size_t i = 0; i < n; ++i)
+            body(i);
+    }
+
+private:
+    std::size_t workers_ = 1;
+    void* run_ = nullptr;
+    void (*start_)(void* run, std::size_t n, Body body) = nullptr;
+};
+
+}  // namespace lightbin
