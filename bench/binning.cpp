@@ -1,48 +1,85 @@
 // SPDX-License-Identifier: MIT
 // A whole build, spheres in to lists out, against the flat baseline measured in turns in the same run, on
-// rotating light sets. Prints Google Benchmark's table and writes binning.csv.
+// rotating light sets. Prints Google Benchmark's table, what falls short of the project's goals, and writes
+// binning.csv.
 #include "flat.hpp"
-#include "sets.hpp"
+#include "frames.hpp"
+#include "goals.hpp"
+#include "reference.hpp"
 
 #include <lightbin/lightbin.hpp>
 
 #include <benchmark/benchmark.h>
-#include <glm/ext/matrix_clip_space.hpp>
-#include <glm/mat4x4.hpp>
 
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
+#include <functional>
 #include <string>
 
 namespace {
 
 using lightbin::DepthTest;
 using lightbin::Isa;
+using lightbin::Options;
 
-constexpr lightbin::Extent screen = {1920, 1080};
-const char* const tier_names[] = {"scalar", "sse2", "avx2", "avx512"};
-std::FILE* csv = nullptr;
+double seconds_a_case = 0.3;
+std::vector<Result> results;
+std::vector<Scene> scenes;
 
 struct Case {
     std::string set;
-    float median_radius;  ///< of the field sets; 0: the near set
     std::size_t lights;
     int tile_size;
+    std::function<std::vector<Frame>()> frames;
 };
 
-/// Per tile a slab of depth on a plane that runs away from the viewer: what a ground with things on it gives.
-void ground_bounds(const lightbin::View& view, std::vector<float>& min, std::vector<float>& max) {
-    for (int y = 0; y < view.tiles_y(); ++y)
-        for (int x = 0; x < view.tiles_x(); ++x) {
-            const float depth =
-                2.0f +
-                150.0f * std::pow(static_cast<float>(y + 1) / static_cast<float>(view.tiles_y()), 3.0f);
-            min.push_back(0.9f * depth);
-            max.push_back(1.25f * depth + static_cast<float>(x * 7 % 11));
-        }
+const char* name(Isa isa) {
+    switch (isa) {
+    case Isa::scalar:
+        return "scalar";
+    case Isa::sse2:
+        return "sse2";
+    case Isa::avx2:
+        return "avx2";
+    case Isa::avx512:
+        return "avx512";
+    }
+    return "?";
 }
+
+const char* name(DepthTest test) {
+    return test == DepthTest::none ? "none" : "interval";
+}
+
+/// The frames of a case, kept while the cases that follow have the same.
+const std::vector<Frame>& frames_of(const Case& which) {
+    static std::vector<Frame> frames;
+    static std::string kept;
+    const std::string key = which.set + "/" + std::to_string(which.lights);
+    if (kept != key) {
+        frames.clear();
+        frames = which.frames();
+        kept = key;
+    }
+    return frames;
+}
+
+/// Z bounds of the made depth buffer, which all field sets have in common.
+struct MadeBounds {
+    std::vector<float> min, max;
+    lightbin::ZBounds bounds;
+
+    explicit MadeBounds(int tile_size) {
+        static const std::vector<float> depth = made_depth({});
+        const lightbin::View view = Lens().view(tile_size);
+        min.resize(view.tile_count());
+        max.resize(view.tile_count());
+        bounds = *lightbin::reduce_depth(view, {.depth = depth}, min, max);
+    }
+};
 
 template <class Work> double seconds(Work work) {
     const auto start = std::chrono::steady_clock::now();
@@ -51,31 +88,33 @@ template <class Work> double seconds(Work work) {
 }
 
 double percentile(std::vector<double>& values, double share) {
-    const auto place =
-        values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * double(values.size() - 1));
     std::nth_element(values.begin(), place, values.end());
     return *place;
 }
 
-/// Stops the run unless the lists hold what the baseline in double precision finds, give or take the lights
-/// that it decides by a hair, and little more.
+/// Stops the run unless the lists hold what the double-precision two-pass finds, and next to nothing else.
 template <class Grid>
-void verify(const FlatView& flat_view, const Lights& lights, const Grid& grid, const float* min,
-            const float* max, bool with_depth) {
+void verify(const FlatView& view, const Lights& lights, const Grid& grid, DepthTest test,
+            const lightbin::ZBounds& bounds) {
     Flat<double> flat;
-    with_depth ? flat.build<true>(flat_view, lights, min, max)
-               : flat.build<false>(flat_view, lights, min, max);
+    flat.build<false>(view, lights, nullptr, nullptr);
+    const PairTest pair(view, bounds);
     std::size_t missing = 0, extra = 0, common = 0;
     for (std::size_t tile = 0; tile < grid.tiles().size(); ++tile) {
+        const int x = int(tile) % view.tiles_x, y = int(tile) / view.tiles_x;
         const auto ours = grid.indices().subspan(grid.tiles()[tile].offset, grid.tiles()[tile].count);
-        const auto theirs =
-            std::span(flat.indices).subspan(flat.offsets[tile], flat.offsets[tile + 1] - flat.offsets[tile]);
-        std::vector<std::uint32_t> shared;
-        std::set_intersection(ours.begin(), ours.end(), theirs.begin(), theirs.end(),
-                              std::back_inserter(shared));
-        missing += theirs.size() - shared.size();
-        extra += ours.size() - shared.size();
-        common += shared.size();
+        auto next = ours.begin();
+        for (std::uint32_t i = flat.offsets[tile]; i < flat.offsets[tile + 1]; ++i) {
+            const std::uint32_t id = flat.indices[i];
+            if (!pair.passes(test, lights[id], x, y)) continue;
+            for (; next != ours.end() && *next < id; ++next)
+                ++extra;
+            const bool found = next != ours.end() && *next == id;
+            ++(found ? common : missing);
+            if (found) ++next;
+        }
+        extra += std::size_t(ours.end() - next);
     }
     if (missing * 100000 <= common && extra * 500 <= common + 1000) return;
     std::fprintf(stderr, "binning: wrong lists: %zu entries are missing, %zu are extra, %zu are right\n",
@@ -83,107 +122,204 @@ void verify(const FlatView& flat_view, const Lights& lights, const Grid& grid, c
     std::exit(EXIT_FAILURE);
 }
 
-template <DepthTest depth_test, Isa isa> void build(benchmark::State& state, const Case& which) {
-    constexpr bool with_depth = depth_test != DepthTest::none;
-    const glm::mat4 projection = glm::perspectiveRH_NO(2 * std::atan(tan_half_fov), aspect, 0.1f, 1000.0f);
-    const lightbin::View view =
-        *lightbin::View::from_projection(projection, screen, {.tile_size = which.tile_size});
-    const double tile = which.tile_size;
-    const FlatView flat_view = {.tiles_x = view.tiles_x(),
-                                .tiles_y = view.tiles_y(),
-                                .width = screen.width / tile,
-                                .height = screen.height / tile,
-                                .scale = 0.5 * screen.height / tan_half_fov / tile,
-                                .near_depth = 0.1,
-                                .far_depth = 1000};
-    std::vector<float> min, max;
-    ground_bounds(view, min, max);
+/// Times one case. In turns: the baseline, ours, and storing the list once; each time a few frames together
+/// where one is too short for the clock. Who goes first alternates, as the second finds the lights in cache.
+template <Options options> void build(benchmark::State& state, const Case& which) {
+    constexpr bool with_depth = options.depth_test != DepthTest::none;
+    constexpr bool twin = options.depth_test == DepthTest::interval;  // the baseline has this depth test too
+    const std::vector<Frame>& frames = frames_of(which);
+    const MadeBounds made(which.tile_size);
 
-    // A set that is met again and again is learnt by the branch predictor.
-    const std::size_t rotation = std::max<std::size_t>(48, 50000 / which.lights);
-    std::vector<Lights> sets;
-    for (std::uint32_t seed = 0; seed < (which.lights > 20000 ? 4 : rotation); ++seed)
-        sets.push_back(which.median_radius > 0 ? field(which.lights, which.median_radius, seed)
-                                               : near_eye(which.lights, seed));
-
-    Flat<float> flat;
-    lightbin::Binner<lightbin::Options{.depth_test = depth_test, .isa = isa}> binner;
-    const auto bin = [&](const Lights& lights) {
-        if constexpr (with_depth)
-            return binner.bin(view, lights, {min, max});
-        else
-            return binner.bin(view, lights);
-    };
-    verify(flat_view, sets[0], *bin(sets[0]), min.data(), max.data(), with_depth);
-
-    std::vector<double> ours, theirs, ratios;
-    double entries = 0;
-    std::size_t turn = 0;
-    for (auto _ : state) {
-        const Lights& lights = sets[turn++ % sets.size()];
-        const double baseline =
-            seconds([&] { flat.build<with_depth>(flat_view, lights, min.data(), max.data()); });
-        const double time = seconds([&] { entries += static_cast<double>(bin(lights)->indices().size()); });
-        state.SetIterationTime(time);
-        ours.push_back(time);
-        theirs.push_back(baseline);
-        ratios.push_back(time / baseline);
+    std::vector<lightbin::View> views;
+    std::vector<FlatView> flat_views;
+    for (const Frame& frame : frames) {
+        views.push_back(frame.lens.view(which.tile_size));
+        flat_views.push_back(frame.lens.flat_view(which.tile_size));
     }
-    const double n = static_cast<double>(which.lights), time = percentile(ours, 0.5);
-    entries /= static_cast<double>(ours.size());
-    const double ratio = time / percentile(theirs, 0.5);
-    const double spread =
-        percentile(ratios, 0.9) - percentile(ratios, 0.1);  // of single builds, in the ratio's unit
-    state.counters["ratio"] = ratio;
-    state.counters["spread"] = spread;
-    state.counters["ns/light"] = 1e9 * time / n;
-    std::fprintf(csv, "%s,%zu,%d,%.1f,%s,%s,1,%.2f,%.3f,%.3f,%.3f\n", which.set.c_str(), which.lights,
-                 which.tile_size, entries / n, with_depth ? "interval" : "none",
-                 tier_names[static_cast<int>(isa)], 1e9 * time / n, 1e9 * time / entries, ratio, spread);
+    Flat<float> flat;
+    lightbin::Binner<options> binner;
+    const auto bin = [&](std::size_t frame) {
+        if constexpr (with_depth)
+            return *binner.bin(views[frame], frames[frame].lights, made.bounds);
+        else
+            return *binner.bin(views[frame], frames[frame].lights);
+    };
+    const auto bin_flat = [&](std::size_t frame) {
+        flat.build<twin>(flat_views[frame], frames[frame].lights, made.min.data(), made.max.data());
+    };
+    verify(flat_views[0], frames[0].lights, bin(0), options.depth_test, made.bounds);
+
+    std::vector<double> theirs, ours, stores, ratios;
+    std::vector<char> list;
+    double entries = 0, spent = 0;
+    std::size_t turn = 0;
+    const std::size_t n = which.lights,
+                      together = std::max<std::size_t>(1, 256 / std::max<std::size_t>(n, 1));
+    for (auto _ : state) {
+        while (spent < seconds_a_case || ours.size() < 5) {
+            const std::size_t first = turn++ * together;
+            std::size_t written = 0;
+            const auto each = [&](auto work) {
+                for (std::size_t i = 0; i < together; ++i)
+                    work((first + i) % frames.size());
+            };
+            const auto time_ours = [&] {
+                ours.push_back(seconds(
+                    [&] { each([&](std::size_t frame) { written += bin(frame).indices().size(); }); }));
+            };
+            if (turn % 2 == 0) time_ours();
+            theirs.push_back(seconds([&] { each(bin_flat); }));
+            if (turn % 2 == 1) time_ours();
+            list.resize(std::max(list.size(), written * sizeof(typename lightbin::Binner<options>::Id)));
+            stores.push_back(seconds([&] {
+                std::memset(list.data(), int(turn), written * sizeof(typename lightbin::Binner<options>::Id));
+                benchmark::ClobberMemory();
+            }));
+            ratios.push_back(ours.back() / theirs.back());
+            entries += double(written);
+            spent += ours.back() + theirs.back() + stores.back();
+        }
+        state.SetIterationTime(percentile(ours, 0.5) / double(together));
+    }
+
+    const double lights = double(n * together), ns = 1e9 * percentile(ours, 0.5);
+    entries /= double(ours.size());
+    const Result result = {.set = which.set,
+                           .lights = n,
+                           .tile_size = which.tile_size,
+                           .footprint = "rectangle",
+                           .depth_test = name(options.depth_test),
+                           .tier = name(options.isa),
+                           .threads = 1,
+                           .ns_per_light = ns / lights,
+                           .ns_per_entry = ns / std::max(entries, 1.0),
+                           .ratio = ns / (1e9 * percentile(theirs, 0.5)),
+                           .spread = percentile(ratios, 0.9) - percentile(ratios, 0.1),
+                           .entries_per_light = entries / lights,
+                           .store_ratio = ns / (1e9 * percentile(stores, 0.5))};
+    results.push_back(result);
 }
 
-template <DepthTest depth_test, Isa isa> void add(const Case& which) {
-    if (lightbin::detail::machine_isa(isa) != isa) return;  // not on this machine
-    const std::string name =
-        which.set + "/" + std::to_string(which.lights) + "/" + std::to_string(which.tile_size) + "px/" +
-        (depth_test == DepthTest::none ? "none/" : "interval/") + tier_names[static_cast<int>(isa)];
-    benchmark::RegisterBenchmark(name.c_str(), build<depth_test, isa>, which)
+/// Google Benchmark's rows, narrow enough to read.
+class Table : public benchmark::BenchmarkReporter {
+public:
+    bool ReportContext(const Context&) override {
+        std::printf("this machine's tier: %s\n\n", name(lightbin::detail::machine_isa(Options{}.isa)));
+        std::printf("%-16s%8s%4s %-11s%-10s%-7s%2s%10s%10s%8s%8s%9s%9s\n", "set", "n", "px", "footprint",
+                    "depth", "tier", "th", "ns/light", "ns/entry", "ratio", "spread", "entries", "x store");
+        return true;
+    }
+    void ReportRuns(const std::vector<Run>&) override {
+        const Result& r = results.back();
+        std::printf("%-16s%8zu%4d %-11s%-10s%-7s%2d%10.2f%10.3f%8.3f%8.3f%9.2f%9.1f\n", r.set.c_str(),
+                    r.lights, r.tile_size, r.footprint.c_str(), r.depth_test.c_str(), r.tier.c_str(),
+                    r.threads, r.ns_per_light, r.ns_per_entry, r.ratio, r.spread, r.entries_per_light,
+                    r.store_ratio);
+        std::fflush(stdout);
+    }
+};
+
+template <Options options> void add(const Case& which) {
+    if (lightbin::detail::machine_isa(options.isa) != options.isa) return;  // not on this machine
+    const std::string label = which.set + "/" + std::to_string(which.lights) + "/" +
+                              std::to_string(which.tile_size) + "px/rectangle/" + name(options.depth_test) +
+                              "/" + name(options.isa);
+    benchmark::RegisterBenchmark(label.c_str(), build<options>, which)
+        ->Iterations(1)
         ->UseManualTime()
         ->Unit(benchmark::kMicrosecond);
 }
 
 template <DepthTest depth_test> void add_tiers(const Case& which) {
-    add<depth_test, Isa::scalar>(which);
-    add<depth_test, Isa::sse2>(which);
-    add<depth_test, Isa::avx2>(which);
-    add<depth_test, Isa::avx512>(which);
+    add<Options{.depth_test = depth_test, .isa = Isa::scalar}>(which);
+    add<Options{.depth_test = depth_test, .isa = Isa::sse2}>(which);
+    add<Options{.depth_test = depth_test, .isa = Isa::avx2}>(which);
+    add<Options{.depth_test = depth_test, .isa = Isa::avx512}>(which);
+}
+
+/// Frames of `count` lights each of one of the made sets.
+template <class Make>
+std::function<std::vector<Frame>()> made_frames(std::size_t count, Lens lens, Make make) {
+    return [=] {
+        std::vector<Frame> frames;
+        for (std::uint32_t seed = 0; seed < rotation(count); ++seed)
+            frames.push_back({lens, make(count, seed)});
+        return frames;
+    };
+}
+
+void add_field(const std::string& set, float median, double footprint, bool quick) {
+    const auto make = [median](std::size_t count, std::uint32_t seed) {
+        return median > 0 ? field(count, median, seed) : near_eye(count, seed);
+    };
+    const std::vector<std::size_t> numbers =
+        quick ? std::vector<std::size_t>{256, 4096}
+              : std::vector<std::size_t>{1, 256, 1000, 4096, 10000, 100000, 1000000};
+    const std::vector<int> tile_sizes = quick ? std::vector<int>{16, 32} : std::vector<int>{8, 16, 32, 64};
+    for (const std::size_t n : numbers)
+        for (const int tile : tile_sizes) {
+            const bool in_goals = n >= 256 && n <= 10000;
+            if (!in_goals && tile != 32) continue;
+            if (footprint * double(n) * 1024 / (tile * tile) > 6e7) continue;  // gigabytes of lists
+            const Case which = {set, n, tile, made_frames(n, {}, make)};
+            add_tiers<DepthTest::none>(which);
+            if (in_goals && (tile == 16 || tile == 32) && (median == field20_median || n == 4096))
+                add_tiers<DepthTest::interval>(which);
+        }
+    if (median == field4_median || median == field20_median) {
+        Lens uhd;
+        uhd.screen = {3840, 2160};
+        for (const std::size_t n : numbers)
+            if (n == 256 || n == 10000)
+                add_tiers<DepthTest::none>({set + "-4k", n, 16, made_frames(n, uhd, make)});
+    }
+}
+
+int run(int argc, char** argv) {
+    bool quick = false;
+    std::vector<std::string> paths = {LIGHTBIN_FIXTURES "/nova.glb", LIGHTBIN_FIXTURES "/darkness.glb"};
+    std::vector<char*> rest = {argv[0]};
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        if (word == "--quick")
+            quick = true;
+        else if (word.size() > 4 && word.ends_with(".glb"))
+            paths.push_back(word);
+        else
+            rest.push_back(argv[i]);
+    }
+    int count = int(rest.size());
+    rest.push_back(nullptr);
+    benchmark::Initialize(&count, rest.data());
+    if (benchmark::ReportUnrecognizedArguments(count, rest.data())) return 2;
+    if (quick) seconds_a_case = 0.04;
+
+    add_field("field4", field4_median, 4, quick);
+    add_field("field20", field20_median, 20, quick);
+    add_field("field200", field200_median, 200, quick);
+    add_field("near", 0, 200, quick);
+    for (const std::string& path : paths) {
+        const Scene scene = load_glb(path, 0.05f);
+        const auto frames = [scene] { return scene_frames(scene); };
+        const std::string set = scene.name.substr(0, scene.name.rfind('.'));
+        for (const int tile : {8, 16, 32, 64})
+            if (!quick || tile == 32) add_tiers<DepthTest::none>({set, scene.lights.size(), tile, frames});
+    }
+    Table table;
+    benchmark::RunSpecifiedBenchmarks(&table);
+    write_csv(results, "binning.csv");
+    print_goals(results);
+    std::puts("\nwrote binning.csv");
+    return EXIT_SUCCESS;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    const bool quick = argc > 1 && std::strcmp(argv[1], "--quick") == 0;
-    std::string minimum_time = quick ? "--benchmark_min_time=0.01" : "--benchmark_min_time=0.1";
-    char* arguments[] = {argv[0], minimum_time.data(), nullptr};
-    int count = 2;
-    benchmark::Initialize(&count, arguments);
-    csv = std::fopen("binning.csv", "w");
-    if (csv == nullptr) return std::perror("binning: binning.csv"), EXIT_FAILURE;
-    std::fputs(
-        "set,n,tile_px,footprint,depth_test,tier,threads,ns_per_light,ns_per_entry,ratio_to_flat,spread\n",
-        csv);
-
-    const std::vector<std::size_t> numbers = quick ? std::vector<std::size_t>{256, 4096}
-                                                   : std::vector<std::size_t>{256, 1000, 4096, 10000, 100000};
-    for (const auto& [set, median] : {std::pair("field4", 2.0f), std::pair("field20", 6.1154f),
-                                      std::pair("field200", 24.0f), std::pair("near", 0.0f)})
-        for (const int tile : {32, 16})
-            for (const std::size_t lights : numbers) {
-                if (lights > 10000 && (tile == 16 || median == 0 || median > 10))
-                    continue;  // gigabytes of lists
-                add_tiers<DepthTest::none>({set, median, lights, tile});
-                if (!quick || tile == 16) add_tiers<DepthTest::interval>({set, median, lights, tile});
-            }
-    benchmark::RunSpecifiedBenchmarks();
-    std::fclose(csv);
+    try {
+        return run(argc, argv);
+    } catch (const std::exception& problem) {
+        std::fprintf(stderr, "binning: %s\n", problem.what());
+        return EXIT_FAILURE;
+    }
 }

@@ -1,19 +1,42 @@
 #!/bin/sh
-# Times the binning: `sh bench/run.sh [--quick]` on Debian 12, as root or with sudo. Installs the packages that are
-# missing, builds in build/bench, prints the ratios to the flat baseline and writes build/bench/binning.csv. Leave the
-# machine alone while it runs.
+# Measures: `sh bench/run.sh [PROGRAM] [options]` on Debian 12, as root or with sudo. Installs the packages that
+# are missing, builds in build/bench and runs there. Leave the machine alone while it runs.
+#
+#   binning [--quick] [SCENE.glb ...] [--benchmark_filter=REGEX]
+#       (the default) Whole builds as a ratio to the flat baseline; writes build/bench/binning.csv.
 set -eu
 me=bench/run.sh
+here=$(pwd)
 cd "$(dirname "$0")/.."
 . tests/packages.sh
 
-install_packages g++ cmake ninja-build libglm-dev libbenchmark-dev
+program=binning
+case ${1-} in
+binning)
+    program=$1
+    shift
+    ;;
+-h | --help)
+    sed -n '2,/^set/s/^# \{0,1\}//p' bench/run.sh
+    exit
+    ;;
+esac
+
+install_packages g++ cmake ninja-build libglm-dev libbenchmark-dev libtinygltf-dev
 
 make_build_folder
 echo "$me: building in build/bench"
-{ cmake --preset bench && cmake --build --preset bench; } >build/bench.log 2>&1 ||
+{ cmake --preset bench && cmake --build build/bench --target $program; } >build/bench.log 2>&1 ||
     { cat build/bench.log; fail "the build failed"; }
 echo "$me: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores; $(c++ --version | head -n 1)"
+
+# Scenes are named from where the caller stands.
+for word; do
+    shift
+    case $word in
+    -* | /*) set -- "$@" "$word" ;;
+    *) set -- "$@" "$here/$word" ;;
+    esac
+done
 cd build/bench
-./bench/binning "$@"
-echo "$me: wrote build/bench/binning.csv"
+exec ./bench/$program "$@"

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// What was measured, as a file and held against the project's goals.
+#pragma once
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <string>
+#include <vector>
+
+struct Result {
+    std::string set;
+    std::size_t lights;
+    int tile_size;
+    std::string footprint, depth_test, tier;
+    int threads;
+    double ns_per_light, ns_per_entry;
+    double ratio;   ///< of the medians, to the flat baseline
+    double spread;  ///< 10th to 90th percentile of the turns' own ratios
+    double entries_per_light;
+    double store_ratio;  ///< to storing the light index list once
+};
+
+inline void write_csv(const std::vector<Result>& results, const char* path) {
+    std::FILE* csv = std::fopen(path, "w");
+    if (csv == nullptr) return std::perror(path), std::exit(EXIT_FAILURE);
+    std::fputs(
+        "set,n,tile_px,footprint,depth_test,tier,threads,ns_per_light,ns_per_entry,ratio_to_flat,spread\n",
+        csv);
+    for (const Result& r : results)
+        std::fprintf(csv, "%s,%zu,%d,%s,%s,%s,%d,%.3f,%.4f,%.4f,%.4f\n", r.set.c_str(), r.lights, r.tile_size,
+                     r.footprint.c_str(), r.depth_test.c_str(), r.tier.c_str(), r.threads, r.ns_per_light,
+                     r.ns_per_entry, r.ratio, r.spread);
+    std::fclose(csv);
+}
+
+/// Ratio to the flat baseline that must be reached at 1,000 to 10,000 lights, and the one aimed at; at fewer
+/// lights one and a half times these.
+struct Goal {
+    double must, aim;
+};
+
+struct GoalRow {
+    const char* name;
+    std::function<bool(const Result&)> covers;
+    std::vector<std::pair<const char*, Goal>> tiers;
+};
+
+inline std::vector<GoalRow> goal_rows() {
+    const auto plain = [](const Result& r) {
+        return r.depth_test == "none" && r.footprint == "rectangle" && r.threads == 1;
+    };
+    const auto is_made = [](const Result& r) {
+        return r.set.starts_with("field") || r.set.starts_with("near");
+    };
+    return {
+        {"field20, 32 px",
+         [=](const Result& r) { return plain(r) && r.set == "field20" && r.tile_size == 32; },
+         {{"avx512", {0.16, 0.09}}, {"avx2", {0.34, 0.20}}, {"sse2", {0.48, 0.35}}, {"scalar", {1.0, 0.6}}}},
+        {"field20, 16 px",
+         [=](const Result& r) { return plain(r) && r.set == "field20" && r.tile_size == 16; },
+         {{"avx512", {0.20, 0.11}}, {"avx2", {0.42, 0.22}}, {"sse2", {0.55, 0.40}}, {"scalar", {1.0, 0.7}}}},
+        {"field200",
+         [=](const Result& r) { return plain(r) && r.set == "field200" && r.tile_size == 32; },
+         {{"avx512", {0.17, 0.10}}, {"avx2", {0.36, 0.18}}, {"sse2", {0.50, 0.32}}, {"scalar", {1.0, 0.7}}}},
+        {"real scenes",
+         [=](const Result& r) { return plain(r) && !is_made(r) && r.tile_size == 32; },
+         {{"avx512", {0.17, 0.10}}, {"avx2", {0.36, 0.18}}, {"sse2", {0.50, 0.32}}, {"scalar", {1.0, 0.7}}}},
+        {"field4",
+         [=](const Result& r) { return plain(r) && r.set == "field4" && r.tile_size == 32; },
+         {{"avx512", {0.20, 0.11}}, {"avx2", {0.42, 0.25}}, {"sse2", {0.50, 0.38}}, {"scalar", {1.0, 0.6}}}},
+        {"box, field20, 32 px",
+         [](const Result& r) {
+             return r.depth_test == "box" && r.footprint == "rectangle" && r.threads == 1 &&
+                    r.set == "field20" && r.tile_size == 32;
+         },
+         {{"avx512", {0.50, 0.25}}, {"avx2", {1.0, 0.5}}}},
+        {"near",
+         [=](const Result& r) { return plain(r) && r.set == "near" && r.tile_size == 32; },
+         {{"avx512", {0.25, 0.12}}, {"avx2", {0.50, 0.25}}}},
+    };
+}
+
+/// The worst ratio of each row and tier, beside what it must be and what is aimed at.
+inline void print_goals(const std::vector<Result>& results) {
+    std::printf("\nworst ratio to the flat baseline, one thread       1,000 to 10,000 lights          fewer\n"
+                "%-24s %-8s %24s %24s\n",
+                "case", "tier", "must   aim  measured", "must   aim  measured");
+    for (const GoalRow& row : goal_rows())
+        for (const auto& [tier, goal] : row.tiers) {
+            double worst[2] = {0, 0};
+            for (const Result& r : results)
+                if (row.covers(r) && r.tier == tier && r.lights >= 200 && r.lights <= 10000) {
+                    double& of_size = worst[r.lights < 900 ? 1 : 0];
+                    of_size = std::max(of_size, r.ratio);
+                }
+            if (worst[0] == 0 && worst[1] == 0) continue;
+            std::printf("%-24s %-8s", row.name, tier);
+            for (const int few : {0, 1}) {
+                const double scale = few != 0 ? 1.5 : 1.0;
+                if (worst[few] == 0)
+                    std::printf("%25s", "");
+                else
+                    std::printf(" %8.2f %5.2f %5.2f %-4s", scale * goal.must, scale * goal.aim, worst[few],
+                                worst[few] > scale * goal.must ? "MISS" : "");
+            }
+            std::printf("\n");
+        }
+}
