@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 namespace lightbin {
 
@@ -101,6 +102,11 @@ public:
         return from_rows(m, viewport, options);
     }
 
+    /// Returns the same projection and viewport on a grid of other tiles, as from_projection makes it.
+    Result<View> with_tile_size(int tile_size) const {
+        return from_rows(projection_, viewport_, {tile_size, clip_depth_, origin_, reversed_});
+    }
+
     Extent viewport() const { return viewport_; }
     int tile_size() const { return tile_size_; }
     int tiles_x() const { return camera_.x.tiles; }
@@ -157,6 +163,7 @@ private:
         if (m[0][2] != 0 || m[1][2] != 0) return error(ErrorCode::oblique_depth);
 
         View view;
+        std::memcpy(view.projection_, m, sizeof m);
         view.viewport_ = viewport;
         view.tile_size_ = options.tile_size;
         view.origin_ = options.origin;
@@ -242,6 +249,7 @@ private:
     }
 
     detail::Camera camera_;
+    double projection_[4][4] = {};
     Extent viewport_;
     int tile_size_ = 1;
     WindowOrigin origin_ = WindowOrigin::lower_left;

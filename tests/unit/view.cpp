@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 using lightbin::ClipDepth;
 using lightbin::ErrorCode;
@@ -162,4 +163,37 @@ TEST_CASE("any matrix indexable as m[column][row] will do") {
     CHECK(View::from_projection(plain, full_hd)->near_depth() == near);
     CHECK(View::from_projection(wide, full_hd)->near_depth() == near);
     CHECK(View::from_projection(glm::dmat4(m), full_hd)->near_depth() == near);
+}
+
+TEST_CASE("a view's grid can be made anew with other tiles") {
+    const glm::mat4 jittered = glm::frustumRH_ZO(-1.1f, 2.0f, 0.6f, -0.5f, 30.0f, 0.25f);
+    const ViewOptions options = {
+        .tile_size = 8, .clip_depth = ClipDepth::zero_to_one, .origin = WindowOrigin::upper_left};
+    const auto view = View::from_projection(jittered, {1919, 1079}, options);
+    const glm::mat4 flat = glm::orthoRH_ZO(-4.0f, 4.0f, -3.0f, 3.0f, 50.0f, 1.0f);
+    ViewOptions reversed = options;
+    reversed.reversed_z = true;
+    const auto orthographic = View::from_projection(flat, {1919, 1079}, reversed);
+    REQUIRE(view);
+    REQUIRE(orthographic);
+    for (const int size : {1, 8, 17, 64, 5000}) {
+        ViewOptions other = options;
+        other.tile_size = reversed.tile_size = size;
+        for (const auto& [made_anew, direct] :
+             {std::pair(view->with_tile_size(size), View::from_projection(jittered, {1919, 1079}, other)),
+              std::pair(orthographic->with_tile_size(size),
+                        View::from_projection(flat, {1919, 1079}, reversed))}) {
+            REQUIRE(made_anew);
+            CHECK(made_anew->tile_size() == size);
+            CHECK(made_anew->tiles_x() == direct->tiles_x());
+            CHECK(made_anew->tiles_y() == direct->tiles_y());
+            CHECK(made_anew->origin() == direct->origin());
+            CHECK(made_anew->reversed_z() == direct->reversed_z());
+            CHECK(made_anew->near_depth() == direct->near_depth());
+            CHECK(made_anew->far_depth() == direct->far_depth());
+            CHECK(made_anew->camera().x.scale == direct->camera().x.scale);
+            CHECK(made_anew->camera().y.offset == direct->camera().y.offset);
+        }
+    }
+    CHECK(view->with_tile_size(0).error().code == ErrorCode::tile_size_out_of_range);
 }
