@@ -308,8 +308,8 @@ void Renderer::draw_triangles(GLuint program, const FrameSettings& settings) con
 }
 
 // Hands the lists to the text that lightbin/shader.hpp generates.
-void Renderer::bind_lists(GLuint program, std::array<std::uint32_t, 4> grid) const {
-    glUniform4uiv(uniform(program, "lightbin_grid"), 1, grid.data());
+void Renderer::bind_lists(GLuint program, const lightbin::ShaderGrid& grid) const {
+    glUniform4uiv(uniform(program, "lightbin_grid"), 1, &grid.tile_size);
     if (glsl_ >= 430) {
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, tiles_.buffer);
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, indices_.buffer);
@@ -320,7 +320,7 @@ void Renderer::bind_lists(GLuint program, std::array<std::uint32_t, 4> grid) con
         glActiveTexture(GL_TEXTURE1);
         glBindTexture(GL_TEXTURE_BUFFER, indices_.texture);
         // The heat map reads no ids, so its sampler is optimised away: -1 sets nothing.
-        glUniform1i(glGetUniformLocation(program, "lightbin_indices"), 1);
+        glUniform1i(glGetUniformLocation(program, "lightbin_lists"), 1);
     }
 }
 

@@ -9,7 +9,6 @@
 
 #include <epoxy/gl.h>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -82,7 +81,7 @@ private:
     void clear() const;
     void draw_depth() const;
     void draw_triangles(GLuint program, const FrameSettings& settings) const;
-    void bind_lists(GLuint program, std::array<std::uint32_t, 4> grid) const;
+    void bind_lists(GLuint program, const lightbin::ShaderGrid& grid) const;
     void upload(const GpuBuffer& target, const void* data, std::size_t bytes, std::size_t texel_size,
                 const char* what) const;
 
@@ -98,7 +97,7 @@ private:
     int width_ = 0, height_ = 0;
     GLenum colour_format_ = 0;
     glm::mat4 projection_{1}, view_{1};
-    std::array<std::uint32_t, 4> grid_{};
+    lightbin::ShaderGrid grid_{};
     std::vector<GpuLight> gpu_lights_;
     std::vector<float> depth_buffer_, min_depth_, max_depth_;
     lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval, .statistics = true}>

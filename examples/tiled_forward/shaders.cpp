@@ -9,10 +9,15 @@ std::string version_line(int glsl) {
     return "#version " + std::to_string(glsl) + " core\n";
 }
 
-// Declares lightbin_list() and lightbin_light(), and the two buffers they read.
-std::string tile_lists(int glsl) {
-    return lightbin::shader_snippet(
-        {.language = glsl >= 430 ? lightbin::ShaderLanguage::glsl_430 : lightbin::ShaderLanguage::glsl_330});
+// Declares lightbin_for_each_light() and what it reads.
+std::string tile_lists(int glsl, bool heat_map = false) {
+    lightbin::ShaderOptions options;
+    if (glsl < 430) {
+        options.language = lightbin::ShaderLanguage::glsl_330;
+        options.storage = lightbin::ListStorage::texel_buffer;
+    }
+    options.heat_map = heat_map;
+    return lightbin::shader_snippet(options)->text;
 }
 
 // What light `id` sends to the surface at `position`, all in view space.
@@ -75,9 +80,8 @@ void main() {
     for (int id = 0; id < light_count; ++id)
         light += irradiance(id, position, normal);
 #else
-    uvec2 list = lightbin_list(gl_FragCoord.xy);
-    for (uint i = 0u; i < list.y; ++i)
-        light += irradiance(int(lightbin_light(list.x + i)), position, normal);
+    lightbin_for_each_light(listed, uvec2(gl_FragCoord.xy))
+        light += irradiance(int(listed.id), position, normal);
 #endif
 
     vec3 radiance = base_colour * light / 3.14159265;
@@ -136,15 +140,13 @@ void main() {
 }
 
 std::string heat_map_fragment_shader(int glsl) {
-    return version_line(glsl) + tile_lists(glsl) + R"(
+    return version_line(glsl) + tile_lists(glsl, true) + R"(
 uniform float longest_list;
 out vec4 pixel;
 
 void main() {
-    float heat = float(lightbin_list(gl_FragCoord.xy).y) / longest_list;
-    // blue, cyan, green, yellow, red
-    vec3 colour = vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat);
-    pixel = vec4(clamp(colour, 0.0, 1.0), heat > 0.0 ? 0.6 : 0.0);
+    uvec2 here = uvec2(gl_FragCoord.xy);
+    pixel = vec4(lightbin_heat(here, longest_list), lightbin_count(here) > 0u ? 0.6 : 0.0);
 }
 )";
 }

@@ -20,7 +20,7 @@
 //        or world_space(yours, view_matrix[, to_sphere])                                       lights.hpp
 //        To write to your own buffers instead: binner.count(...), then binner.emit(tiles, indices).
 //   4. Upload grid->tiles() and grid->indices().                                               light_grid.hpp
-//   5. Put shader_snippet({...}) in your shader and set its uniform to shader_grid(view).      shader.hpp
+//   5. Put shader_snippet({...})->text in your shader, and bind what its bindings list.        shader.hpp
 //
 // Building. No compiler flags are needed. On x86-64 with gcc or clang there are kernels for SSE2, AVX2 and
 // AVX-512, and the machine's own is picked at run time; elsewhere the scalar ones run. All give the same

@@ -39,6 +39,21 @@ enum class ErrorCode : std::uint8_t {
     depth_buffer_too_small,
     samples_out_of_range,
     row_pitch_too_small,
+    // encodings and shader text
+    ids_too_narrow,
+    list_buffer_too_small,
+    capacity_unknown,
+    max_lights_unknown,
+    block_size_unknown,
+    uniform_block_too_small,
+    no_storage_buffers,
+    no_texel_buffers,
+    no_byte_address_buffers,
+    no_sets,
+    no_push_constants,
+    texture_width_out_of_range,
+    bindings_overlap,
+    not_a_prefix,
 };
 
 /// What went wrong, and where a size was the trouble: how much is needed and how much there was.
@@ -102,6 +117,43 @@ struct Error {
             return "a depth buffer has 1 to 8 samples a pixel, not " + signed_text(needed);
         case ErrorCode::row_pitch_too_small:
             return "the depth buffer's row pitch is " + have + " samples and a row of pixels has " + need;
+        case ErrorCode::ids_too_narrow:
+            return "the lists' format numbers " + have + " lights and " + need +
+                   " are needed: use wider ids, or a larger ListFormat::max_lights";
+        case ErrorCode::list_buffer_too_small:
+            return "the buffer for the encoded lists holds " + have + " bytes and " + need + " are needed";
+        case ErrorCode::capacity_unknown:
+            return "sentinel lists need ListFormat::capacity, the lights a tile can hold";
+        case ErrorCode::max_lights_unknown:
+            return "bitmasks need ListFormat::max_lights, which fixes the words a tile";
+        case ErrorCode::block_size_unknown:
+            return "uniform blocks have a fixed size: ShaderOptions::max_tiles must be given, and "
+                   "max_entries where the light index list lies in one";
+        case ErrorCode::uniform_block_too_small:
+            return "a uniform block would need " + need + " bytes and holds " + have +
+                   ": use larger tiles, narrower ids or another storage, or raise uniform_block_bytes to "
+                   "what the device has";
+        case ErrorCode::no_storage_buffers:
+            return "GLSL 3.30 and GLSL ES 3.00 have no storage buffers and no compute shaders: read the "
+                   "lists from texel_buffer (not ES), texture_2d or uniform_block";
+        case ErrorCode::no_texel_buffers:
+            return "GLSL ES 3.00 and 3.10 have no buffer textures: use texture_2d, uniform_block or (ES "
+                   "3.10) storage_buffer";
+        case ErrorCode::no_byte_address_buffers:
+            return "byte_address buffers are HLSL's: use storage_buffer";
+        case ErrorCode::no_sets:
+            return "this language has no descriptor sets or register spaces: ShaderSlot::set must be 0 and "
+                   "is " +
+                   need;
+        case ErrorCode::no_push_constants:
+            return "push constants are Vulkan GLSL's: set ShaderOptions::push_constants to false";
+        case ErrorCode::texture_width_out_of_range:
+            return "ShaderOptions::texture_width must be 1 to " + have + " texels, and is " + need;
+        case ErrorCode::bindings_overlap:
+            return "two resources of the shader are bound to binding " + need + " of set " + have;
+        case ErrorCode::not_a_prefix:
+            return "ShaderOptions::prefix must begin a name in every language: letters, digits and single "
+                   "underscores, no digit first, not gl_";
         }
         return "unknown error";
     }

@@ -1,89 +1,295 @@
 // SPDX-License-Identifier: MIT
-// Stage 4: the shader text that reads a light grid. Needs nothing but the view.
+// Stage 4b: the shader text that reads a light grid. shader.md beside it shows its use.
 #pragma once
 
-#include <lightbin/light_grid.hpp>
+#include <lightbin/encode.hpp>
+#include <lightbin/shader_text.hpp>
 #include <lightbin/view.hpp>
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
 namespace lightbin {
 
-/// Dialect of the snippet and where it reads the lists.
-enum class ShaderLanguage : std::uint8_t {
-    glsl_330,  ///< buffer textures: grid.tiles() as GL_RG32UI, grid.indices() as GL_R32UI (u16: GL_R16UI)
-    glsl_430,  ///< shader storage buffers; u16 ids are read in pairs, so the buffer's size must be a multiple
-               ///< of 4 bytes
+/// Where the lists lie.
+enum class ListStorage : std::uint8_t {
+    storage_buffer,  ///< GLSL 4.30, Vulkan, ES 3.10: storage buffers; HLSL: StructuredBuffer
+    texel_buffer,    ///< buffer textures; HLSL: Buffer (not ES)
+    texture_2d,      ///< 2D textures (Tiled Shading, Listing 1)
+    uniform_block,   ///< uniform blocks, cbuffers (Tiled Forward Shading, Listing 4.1)
+    byte_address,    ///< HLSL: ByteAddressBuffer
 };
 
 struct ShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
-    Index index = Index::u32;                        ///< as the Binner's
-    WindowOrigin origin = WindowOrigin::lower_left;  ///< as the view's
-    std::string_view prefix = "lightbin_";           ///< of every name declared
-    int tiles_binding = 0;                           ///< storage buffer bindings (glsl_430)
-    int indices_binding = 1;
+    ListStorage storage = ListStorage::storage_buffer;
+    ListFormat format =
+        {};  ///< as given to encode(). offset_count with the Binner's own ids needs no encode().
+    /// offset_count: the table of tiles in a uniform block, whatever `storage` is for the ids.
+    bool tiles_in_uniform_block = false;
+    /// texel_buffer, texture_2d: narrow ids in 32-bit texels, as the other storages have them, not in texels
+    /// of their own width.
+    bool packed_ids = false;
+
+    int tile_size = 0;             ///< in pixels, as a constant of the text; 0: a uniform
+    bool flip_y = false;           ///< the shader's pixel rows count against those of the view's WindowOrigin
+    bool viewport_corner = false;  ///< pixels are the window's, and the viewport's corner a uniform
+    bool heat_map = false;         ///< also `count` and `heat`
+
+    std::uint32_t texture_width = 2048;  ///< texture_2d: texels a row, 1 to 16384; a power of two is best
+    std::uint32_t max_tiles = 0;         ///< uniform blocks: the most tiles they hold,
+    std::uint32_t max_entries = 0;       ///< and offset_count: the most list entries
+    std::uint32_t uniform_block_bytes = 16384;  ///< the most that the device allows; every one has 16384
+
+    ShaderSlot tiles = {0}, lists = {1}, grid = {2};
+    bool push_constants = false;  ///< Vulkan: `grid` as push constants
+    std::string_view prefix = "lightbin_";
 };
 
-/// Returns GLSL declarations to insert after `#version` and before their use; `lightbin_` stands for
-/// options.prefix.
-///
-///     uniform uvec4 lightbin_grid;               // shader_grid(view)
-///     uvec2 lightbin_list(vec2 position);        // offset and count of the list for a window position
-///     uint  lightbin_light(uint i);              // the id at place i of the light index list
-///
-/// `position` is gl_FragCoord.xy less the viewport's corner. glsl_330 also declares the samplers
-/// lightbin_tiles and lightbin_indices. Use:
-///
-///     uvec2 list = lightbin_list(gl_FragCoord.xy);
-///     for (uint i = 0u; i < list.y; ++i) { uint id = lightbin_light(list.x + i); ... }
-///
-/// Source: Tiled Shading, Listing 1.
-inline std::string shader_snippet(const ShaderOptions& options = {}) {
-    const bool storage = options.language == ShaderLanguage::glsl_430;
-    const std::string prefix(options.prefix);
-    const auto name = [&](const char* suffix) { return prefix + suffix; };
-    const auto storage_buffer = [&](int binding, const char* suffix, const char* type) {
-        return "layout(std430, binding = " + std::to_string(binding) + ") readonly buffer " + name(suffix) +
-               "_buffer {\n    " + type + " " + name(suffix) + "[];\n};\n";
-    };
+/// What the text's constants `grid` and `corner` are set to. In a uniform block or push constants: this
+/// struct, 16 bytes of it without viewport_corner.
+struct ShaderGrid {
+    std::uint32_t tile_size, tiles_x, width, height;  ///< grid
+    std::int32_t corner_x, corner_y;                  ///< corner
+    std::int32_t unused[2];
+};
+static_assert(sizeof(ShaderGrid) == 32 && offsetof(ShaderGrid, tile_size) == 0 &&
+              offsetof(ShaderGrid, tiles_x) == 4 && offsetof(ShaderGrid, width) == 8 &&
+              offsetof(ShaderGrid, height) == 12 && offsetof(ShaderGrid, corner_x) == 16 &&
+              offsetof(ShaderGrid, corner_y) == 20);
+static_assert(sizeof(Tile) == 8 && offsetof(Tile, offset) == 0 && offsetof(Tile, count) == 4);
 
-    std::string text =
-        "uniform uvec4 " + name("grid") + "; // tile size, tiles across, viewport width and height\n";
-    if (storage) {
-        text += storage_buffer(options.tiles_binding, "tiles", "uvec2");
-        text += storage_buffer(options.indices_binding, "indices", "uint");
-    } else {
-        text += "uniform usamplerBuffer " + name("tiles") + ";\n";
-        text += "uniform usamplerBuffer " + name("indices") + ";\n";
-    }
-
-    text += "\nuvec2 " + name("list") + "(vec2 position) {\n    uvec2 pixel = uvec2(position);\n";
-    if (options.origin == WindowOrigin::upper_left)
-        text += "    pixel.y = " + name("grid") + ".w - 1u - pixel.y;\n";
-    text += "    uvec2 tile = pixel / " + name("grid") + ".x;\n    uint index = tile.y * " + name("grid") +
-            ".y + tile.x;\n";
-    text += storage ? "    return " + name("tiles") + "[index];\n}\n"
-                    : "    return texelFetch(" + name("tiles") + ", int(index)).xy;\n}\n";
-
-    text += "\nuint " + name("light") + "(uint i) {\n";
-    if (!storage)
-        text += "    return texelFetch(" + name("indices") + ", int(i)).x;\n}\n";
-    else if (options.index == Index::u16)
-        text += "    return (" + name("indices") + "[i >> 1u] >> ((i & 1u) * 16u)) & 0xffffu;\n}\n";
-    else
-        text += "    return " + name("indices") + "[i];\n}\n";
-    return text;
+/// Returns the constants of a view. The corner is the window pixel at the viewport's first column and row, as
+/// the shader counts pixels; it is read with viewport_corner only.
+inline ShaderGrid shader_grid(const View& view, int corner_x = 0, int corner_y = 0) {
+    return {static_cast<std::uint32_t>(view.tile_size()),
+            static_cast<std::uint32_t>(view.tiles_x()),
+            static_cast<std::uint32_t>(view.viewport().width),
+            static_cast<std::uint32_t>(view.viewport().height),
+            corner_x,
+            corner_y,
+            {}};
 }
 
-/// Returns the value of the snippet's uniform `grid`: tile size, tiles across, viewport width and height.
-inline std::array<std::uint32_t, 4> shader_grid(const View& view) {
-    return {static_cast<std::uint32_t>(view.tile_size()), static_cast<std::uint32_t>(view.tiles_x()),
-            static_cast<std::uint32_t>(view.viewport().width),
-            static_cast<std::uint32_t>(view.viewport().height)};
+namespace detail {
+
+inline bool is_prefix(std::string_view prefix) {
+    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    char before = '_';
+    if (prefix.empty() || !letter(prefix.front()) || prefix.starts_with("gl_")) return false;
+    for (const char c : prefix) {
+        if (!letter(c) && !(c >= '0' && c <= '9') && (c != '_' || before == '_')) return false;
+        before = c;
+    }
+    return true;
+}
+
+/// What holds for every text: the name prefix and the slots.
+inline std::optional<Error> refuse_names(const Dialect& dialect, std::string_view prefix,
+                                         std::initializer_list<ShaderSlot> slots) {
+    if (!is_prefix(prefix)) return Error{ErrorCode::not_a_prefix};
+    for (const ShaderSlot& slot : slots)
+        if (slot.set != 0 && !dialect.spaces)
+            return Error{ErrorCode::no_sets, static_cast<std::uint64_t>(slot.set)};
+    return std::nullopt;
+}
+
+inline std::optional<Error> refuse(const ShaderOptions& options) {
+    const Dialect dialect = detail::dialect(options.language);
+    if (auto error = refuse_names(dialect, options.prefix, {options.tiles, options.lists, options.grid}))
+        return error;
+    if (options.storage == ListStorage::storage_buffer && !dialect.storage_buffers)
+        return Error{ErrorCode::no_storage_buffers};
+    if (options.storage == ListStorage::texel_buffer && !dialect.texel_buffers)
+        return Error{ErrorCode::no_texel_buffers};
+    if (options.storage == ListStorage::byte_address && !dialect.hlsl)
+        return Error{ErrorCode::no_byte_address_buffers};
+    if (options.push_constants && !dialect.vulkan) return Error{ErrorCode::no_push_constants};
+    if (options.tile_size < 0)
+        return Error{ErrorCode::tile_size_out_of_range, static_cast<std::uint64_t>(options.tile_size)};
+    if (options.storage == ListStorage::texture_2d &&
+        (options.texture_width < 1 || options.texture_width > 16384))
+        return Error{ErrorCode::texture_width_out_of_range, options.texture_width, 16384};
+
+    const ListFormat& format = options.format;
+    if (format.max_lights > countable_lights(format))
+        return Error{ErrorCode::ids_too_narrow, format.max_lights, countable_lights(format)};
+    if (format.encoding == ListEncoding::sentinel && format.capacity == 0)
+        return Error{ErrorCode::capacity_unknown};
+    if (format.encoding == ListEncoding::bitmask && format.max_lights == 0)
+        return Error{ErrorCode::max_lights_unknown};
+
+    const bool table = format.encoding == ListEncoding::offset_count;
+    const bool tiles_in_block =
+                   options.storage == ListStorage::uniform_block || (table && options.tiles_in_uniform_block),
+               lists_in_block = options.storage == ListStorage::uniform_block;
+    if ((tiles_in_block && options.max_tiles == 0) || (lists_in_block && table && options.max_entries == 0))
+        return Error{ErrorCode::block_size_unknown};
+    const std::uint64_t most = options.uniform_block_bytes > 65536 && dialect.hlsl
+                                   ? 65536
+                                   : options.uniform_block_bytes,
+                        tile_bytes = table && tiles_in_block ? 8ull * options.max_tiles : 0,
+                        list_bytes = lists_in_block
+                                         ? encoded_bytes(format, options.max_tiles, options.max_entries)
+                                         : 0;
+    for (const std::uint64_t bytes : {tile_bytes, list_bytes})
+        if (bytes > most) return Error{ErrorCode::uniform_block_too_small, bytes, most};
+    return std::nullopt;
+}
+
+inline ShaderResource resource(ListStorage storage) {
+    switch (storage) {
+    case ListStorage::storage_buffer:
+        return ShaderResource::storage_buffer;
+    case ListStorage::texel_buffer:
+        return ShaderResource::texel_buffer;
+    case ListStorage::texture_2d:
+        return ShaderResource::texture_2d;
+    case ListStorage::uniform_block:
+        return ShaderResource::uniform_block;
+    case ListStorage::byte_address:
+        break;
+    }
+    return ShaderResource::byte_address;
+}
+
+/// The constants of the grid.
+inline void declare_grid(ShaderWriter& writer, ShaderSlot slot, bool corner, bool push) {
+    const Dialect& dialect = writer.dialect();
+    if (dialect.hlsl || dialect.vulkan) {
+        writer.declare_constants("grid", corner ? "uvec4 $grid;\n    ivec2 $corner;" : "uvec4 $grid;", slot,
+                                 push, corner ? 32 : 16);
+        return;
+    }
+    const auto bind = [&](const char* name, std::uint32_t bytes) {
+        writer.bind(
+            {writer.prefix() + name, ShaderResource::uniform_vector, {}, TexelFormat::none, bytes, bytes, 0});
+    };
+    writer.add("uniform uvec4 $grid;\n");
+    bind("grid", 16);
+    if (!corner) return;
+    writer.add("uniform ivec2 $corner;\n");
+    bind("corner", 8);
+}
+
+/// `tile`: the tile of a pixel.
+inline void add_tile(ShaderWriter& writer, const ShaderOptions& options) {
+    writer.add("\n// The tile that a pixel lies in.\nuvec2 $tile(uvec2 pixel) {\n");
+    if (options.viewport_corner) writer.add("    pixel -= uvec2($corner);\n");
+    if (options.flip_y) writer.add("    pixel.y = $grid.w - 1u - pixel.y;\n");
+    writer.add("    return pixel / " +
+               (options.tile_size == 0 ? "$grid.x" : std::to_string(options.tile_size) + "u") + ";\n}\n");
+}
+
+/// The expression that reads the id at a place of the lists.
+inline std::string read_id(const ShaderWriter& writer, const ShaderBuffer& lists, IdWidth ids) {
+    if (ids == IdWidth::u32 || lists.format != TexelFormat::r32ui) return writer.read(lists, "c.at");
+    return ids == IdWidth::u16 ? "(" + writer.read(lists, "c.at >> 1u") + " >> ((c.at & 1u) * 16u)) & 0xffffu"
+                               : "(" + writer.read(lists, "c.at >> 2u") + " >> ((c.at & 3u) * 8u)) & 0xffu";
+}
+
+}  // namespace detail
+
+/// Returns text to insert before its use and after `#version`, or an Error that names the limit that the
+/// options break. `lightbin_` stands for options.prefix, with which every name begins:
+///
+///     uvec2 lightbin_tile(uvec2 pixel);                   // the tile that a pixel lies in
+///     struct lightbin_cursor { uint id; ... };            // a light of a list
+///     lightbin_cursor lightbin_begin(uvec2 pixel);        // before the first light of the pixel's tile
+///     bool lightbin_next(inout lightbin_cursor cursor);   // moves on to the next light; false: there is none
+///     #define lightbin_for_each_light(cursor, pixel)      // the loop
+///     uint lightbin_count(uvec2 pixel);                   // with heat_map: the length of the list, and as
+///     vec3 lightbin_heat(uvec2 pixel, float most);        // a colour: blue, cyan, green, yellow, red = most
+///
+/// The same in every language and for every encoding and storage:
+///
+///     lightbin_for_each_light(light, uvec2(gl_FragCoord.xy)) { colour += shade(light.id, position); }
+///
+/// `break`, `continue` and `return` work in the loop's body, and loops nest. A pixel must lie in the
+/// viewport. Ids come in ascending order, each once.
+inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
+    using namespace detail;
+    if (const auto error = refuse(options)) return *error;
+    ShaderWriter writer(options.language, options.prefix);
+    const ListFormat& format = options.format;
+    const bool table = format.encoding == ListEncoding::offset_count,
+               bits = format.encoding == ListEncoding::bitmask;
+    const bool typed =
+        !options.packed_ids && !bits &&
+        (options.storage == ListStorage::texel_buffer || options.storage == ListStorage::texture_2d);
+
+    ShaderBuffer tiles = {
+        "tiles",
+        resource(options.tiles_in_uniform_block ? ListStorage::uniform_block : options.storage),
+        options.tiles,
+        TexelFormat::rg32ui,
+        (options.max_tiles + 1) / 2,
+        0};
+    ShaderBuffer lists = {
+        "lists",
+        resource(options.storage),
+        options.lists,
+        typed && format.ids == IdWidth::u8    ? TexelFormat::r8ui
+        : typed && format.ids == IdWidth::u16 ? TexelFormat::r16ui
+                                              : TexelFormat::r32ui,
+        static_cast<std::uint32_t>((encoded_bytes(format, options.max_tiles, options.max_entries) + 15) / 16),
+        options.texture_width};
+    declare_grid(writer, options.grid, options.viewport_corner, options.push_constants);
+    if (table) writer.declare(tiles);
+    writer.declare(lists);
+    add_tile(writer, options);
+
+    const std::string index = "tile.y * $grid.y + tile.x";
+    const auto number = [](std::uint64_t n) { return std::to_string(n) + "u"; };
+    writer.add("\nstruct $cursor {\n    uint id;\n    uint at;\n    uint end;\n");
+    if (bits) writer.add("    uint bits;\n");
+    writer.add("};\n\n$cursor $begin(uvec2 pixel) {\n    uvec2 tile = $tile(pixel);\n    $cursor c;\n");
+    if (table) {
+        writer.add("    uvec2 list = " +
+                   (tiles.resource == ShaderResource::texture_2d
+                        ? writer.read_texel(tiles, "int(tile.x), int(tile.y)")
+                        : writer.read(tiles, "(" + index + ")")) +
+                   ";\n    c.id = 0u;\n    c.at = list.x;\n    c.end = list.x + list.y;\n");
+    } else {
+        const std::string each = number(bits ? (format.max_lights + 31ull) / 32 : format.capacity);
+        writer.add(std::string("    c.id = ") + (bits ? "0u - 32u" : "0u") + ";\n    c.at = (" + index +
+                   ") * " + each + ";\n    c.end = c.at + " + each + ";\n");
+        if (bits) writer.add("    c.bits = 0u;\n");
+    }
+    writer.add("    return c;\n}\n\nbool $next(inout $cursor c) {\n");
+    if (bits) {
+        // id is that of the word's bit 0, less what was passed: kept in its upper 27 bits.
+        writer.add("    c.id &= ~31u;\n    while (c.bits == 0u && c.at < c.end) {\n        c.bits = " +
+                   writer.read(lists, "c.at") +
+                   ";\n        c.at += 1u;\n        c.id += 32u;\n    }\n"
+                   "    if (c.bits == 0u) return false;\n    c.id += " +
+                   (writer.dialect().finds_bits
+                        ? "uint(findLSB(c.bits))"
+                        : "(floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u") +
+                   ";\n    c.bits &= c.bits - 1u;\n    return true;\n}\n");
+    } else {
+        writer.add("    if (c.at >= c.end) return false;\n    c.id = " + read_id(writer, lists, format.ids) +
+                   ";\n    c.at += 1u;\n    return " +
+                   (table ? "true" : "c.id != " + number(countable_lights(format))) + ";\n}\n");
+    }
+    writer.add("\n#define $for_each_light(cursor, pixel) for ($cursor cursor = $begin(pixel); "
+               "$next(cursor);)\n");
+
+    if (options.heat_map)
+        writer.add(std::string("\nuint $count(uvec2 pixel) {\n    $cursor c = $begin(pixel);\n") +
+                   (table ? "    return c.end - c.at;\n"
+                          : "    uint count = 0u;\n    while ($next(c)) count += 1u;\n    return count;\n") +
+                   R"(}
+
+vec3 $heat(uvec2 pixel, float most) {
+    float heat = float($count(pixel)) / most;
+    return clamp(vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat), 0.0, 1.0);
+}
+)");
+    return writer.finish();
 }
 
 }  // namespace lightbin

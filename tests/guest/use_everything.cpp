@@ -105,8 +105,7 @@ void use_view(Hash& hash, const View& view) {
     hash.add(static_cast<std::uint64_t>(view.viewport().width));
     hash.add(static_cast<std::uint64_t>(view.origin()) + (view.orthographic() ? 8u : 0u) +
              (view.reversed_z() ? 16u : 0u));
-    for (const std::uint32_t word : shader_grid(view))
-        hash.add(word);
+    hash.add(shader_grid(view).tiles_x);
 
     const std::size_t pixels =
         static_cast<std::size_t>(view.viewport().width) * static_cast<std::size_t>(view.viewport().height);
@@ -158,9 +157,11 @@ std::uint64_t UNIT() {
          {View::from_projection(opengl, viewport), View::from_projection(reversed, viewport, upper),
           View::from_projection(infinite, viewport), View::from_projection(orthographic, viewport)})
         use_view(hash, value_of(view));
-    for (const ShaderLanguage language : {ShaderLanguage::glsl_330, ShaderLanguage::glsl_430})
-        for (const Index index : {Index::u16, Index::u32})
-            for (const char letter : shader_snippet({.language = language, .index = index}))
+    for (const ShaderLanguage language : {ShaderLanguage::glsl_430, ShaderLanguage::hlsl_5_0})
+        for (const IdWidth ids : {IdWidth::u16, IdWidth::u32}) {
+            const Result<ShaderText> shader = shader_snippet({.language = language, .format = {.ids = ids}});
+            for (const char letter : value_of(shader).text)
                 hash.add(static_cast<unsigned char>(letter));
+        }
     return hash.value;
 }

@@ -54,9 +54,9 @@ void bind(GLuint program, const SnippetForm& form, const std::vector<lightbin::T
     const GLuint tile_buffer = make_buffer(tiles.data(), tiles.size() * sizeof(lightbin::Tile));
     const GLuint id_buffer = make_buffer(ids.data(), ids.size());
     if (form.glsl >= 430) {
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(form.options.tiles_binding),
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(form.options.tiles.binding),
                          tile_buffer);
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(form.options.indices_binding),
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(form.options.lists.binding),
                          id_buffer);
         return;
     }
@@ -70,12 +70,16 @@ void bind(GLuint program, const SnippetForm& form, const std::vector<lightbin::T
                     static_cast<int>(unit));
     };
     bind_texture(0, GL_RG32UI, tile_buffer, "tiles");
-    bind_texture(1, form.options.index == lightbin::Index::u16 ? GL_R16UI : GL_R32UI, id_buffer, "indices");
+    bind_texture(1, form.options.format.ids == lightbin::IdWidth::u16 ? GL_R16UI : GL_R32UI, id_buffer,
+                 "lists");
 }
 
 template <lightbin::Index index> void check_form(const SnippetForm& form, const Case& size) {
-    const auto view = lightbin::View::from_projection(
-        projection, {size.width, size.height}, {.tile_size = size.tile_size, .origin = form.options.origin});
+    const auto view =
+        lightbin::View::from_projection(projection, {size.width, size.height},
+                                        {.tile_size = size.tile_size,
+                                         .origin = form.options.flip_y ? lightbin::WindowOrigin::upper_left
+                                                                       : lightbin::WindowOrigin::lower_left});
     REQUIRE(view);
     lightbin::Binner<lightbin::Options{.index = index}> binner;
     const auto grid = binner.bin(*view, some_lights());
@@ -85,7 +89,7 @@ template <lightbin::Index index> void check_form(const SnippetForm& form, const 
     const GLuint program = link_program(overlay_vertex_shader(form.glsl), list_reader(form));
     glUseProgram(program);
     const auto words = lightbin::shader_grid(*view);
-    glUniform4uiv(uniform(program, (std::string(form.options.prefix) + "grid").c_str()), 1, words.data());
+    glUniform4uiv(uniform(program, (std::string(form.options.prefix) + "grid").c_str()), 1, &words.tile_size);
     glUniform2f(uniform(program, "corner"), corner_x, corner_y);
 
     const std::vector<lightbin::Tile> tiles(grid->tiles().begin(), grid->tiles().end());
@@ -118,18 +122,15 @@ template <lightbin::Index index> void check_form(const SnippetForm& form, const 
     int wrong = 0;
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x) {
-            const int row =
-                form.options.origin == lightbin::WindowOrigin::lower_left ? y : size.height - 1 - y;
+            const int row = form.options.flip_y ? size.height - 1 - y : y;
             const int tx = x / size.tile_size, ty = row / size.tile_size;
-            const auto& tile =
-                grid->tiles()[static_cast<std::size_t>(ty) * static_cast<std::size_t>(grid->tiles_x()) +
-                              static_cast<std::size_t>(tx)];
             std::uint32_t hash = 2166136261u, sum = 0, place = 0;
             for (const std::uint32_t id : grid->lights_in(tx, ty)) {
                 hash = (hash ^ id) * 16777619u;
                 sum += ++place * id;
             }
-            const std::array<std::uint32_t, 4> expected = {tile.offset, tile.count, hash, sum};
+            const std::array<std::uint32_t, 4> expected = {static_cast<std::uint32_t>(tx | ty << 16), place,
+                                                           hash, sum};
             if (pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) +
                        static_cast<std::size_t>(x)] != expected)
                 ++wrong;
@@ -147,7 +148,7 @@ TEST_CASE("each pixel reads the list of its tile") {
             CAPTURE(size.width);
             CAPTURE(size.tile_size);
             const OffscreenContext context(form.glsl);
-            if (form.options.index == lightbin::Index::u16)
+            if (form.options.format.ids == lightbin::IdWidth::u16)
                 check_form<lightbin::Index::u16>(form, size);
             else
                 check_form<lightbin::Index::u32>(form, size);

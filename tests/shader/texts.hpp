@@ -22,12 +22,13 @@ inline std::vector<SnippetForm> snippet_forms() {
                 for (const bool custom : {false, true}) {
                     ShaderOptions options;
                     options.language = glsl == 330 ? ShaderLanguage::glsl_330 : ShaderLanguage::glsl_430;
-                    options.index = index;
-                    options.origin = origin;
+                    if (glsl == 330) options.storage = ListStorage::texel_buffer;
+                    options.format.ids = index == Index::u16 ? IdWidth::u16 : IdWidth::u32;
+                    options.flip_y = origin == WindowOrigin::upper_left;
                     if (custom) {
                         options.prefix = "my";
-                        options.tiles_binding = 5;
-                        options.indices_binding = 3;
+                        options.tiles = {5};
+                        options.lists = {3};
                     }
                     forms.push_back({std::to_string(glsl) + (index == Index::u16 ? "_u16" : "_u32") +
                                          (origin == WindowOrigin::lower_left ? "_lower" : "_upper") +
@@ -37,26 +38,29 @@ inline std::vector<SnippetForm> snippet_forms() {
     return forms;
 }
 
-// Writes to each pixel: the offset and the length of its list, and two sums over the ids that depend on their
+// Writes to each pixel: its tile and the length of its list, and two sums over the ids that depend on their
 // order.
 inline std::string list_reader(const SnippetForm& form) {
     const std::string prefix(form.options.prefix);
-    return "#version " + std::to_string(form.glsl) + " core\n" + lightbin::shader_snippet(form.options) + R"(
+    return "#version " + std::to_string(form.glsl) + " core\n" +
+           lightbin::shader_snippet(form.options)->text + R"(
 uniform vec2 corner;  // of the viewport
 out uvec4 pixel;
 
 void main() {
-    uvec2 list = )" +
-           prefix + R"(list(gl_FragCoord.xy - corner);
     uint hash = 2166136261u;
     uint sum = 0u;
-    for (uint i = 0u; i < list.y; ++i) {
-        uint id = )" +
-           prefix + R"(light(list.x + i);
-        hash = (hash ^ id) * 16777619u;
-        sum += (i + 1u) * id;
+    uint count = 0u;
+    uvec2 here = uvec2(gl_FragCoord.xy - corner);
+    )" + prefix +
+           R"(for_each_light(light, here) {
+        hash = (hash ^ light.id) * 16777619u;
+        count += 1u;
+        sum += count * light.id;
     }
-    pixel = uvec4(list, hash, sum);
+    uvec2 tile = )" +
+           prefix + R"(tile(here);
+    pixel = uvec4(tile.x + (tile.y << 16u), count, hash, sum);
 }
 )";
 }

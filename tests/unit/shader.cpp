@@ -1,5 +1,5 @@
-// The snippet's text: what is off leaves no line. That it compiles and reads the right lists is tested in
-// tests/shader.
+// The snippet's text: what is off leaves no line, what can't be is refused. That it compiles and reads the
+// right lists is tested in tests/shader.
 #include <doctest/doctest.h>
 
 #include <lightbin/shader.hpp>
@@ -15,34 +15,99 @@ namespace {
 bool has(const std::string& text, const char* part) {
     return text.find(part) != std::string::npos;
 }
+
+std::string text_of(const ShaderOptions& options) {
+    const Result<ShaderText> shader = shader_snippet(options);
+    REQUIRE(shader);
+    return shader->text;
+}
+
+std::string refusal(const ShaderOptions& options) {
+    const Result<ShaderText> shader = shader_snippet(options);
+    REQUIRE(!shader);
+    return shader.error().message();
+}
 }  // namespace
 
 TEST_CASE("each option brings its own lines and no others") {
-    const std::string storage = shader_snippet();
+    const std::string storage = text_of({});
     CHECK(has(storage, "layout(std430, binding = 0)"));
     CHECK(has(storage, "layout(std430, binding = 1)"));
-    CHECK(!has(storage, "sampler"));
-    CHECK(!has(storage, "pixel.y ="));
-    CHECK(!has(storage, "0xffff"));
-    CHECK(!has(storage, "#version"));
+    for (const char* absent : {"sampler", "pixel.y =", "0xffff", "#version", "corner", "heat", "count",
+                               "bits", "highp", "set =", "precision"})
+        CHECK(!has(storage, absent));
 
-    const std::string texture = shader_snippet({.language = ShaderLanguage::glsl_330, .index = Index::u16});
+    const std::string texture = text_of({.language = ShaderLanguage::glsl_330,
+                                         .storage = ListStorage::texel_buffer,
+                                         .format = {.ids = IdWidth::u16}});
     CHECK(has(texture, "uniform usamplerBuffer lightbin_tiles;"));
     CHECK(!has(texture, "buffer lightbin"));
     CHECK(!has(texture, "0xffff"));  // an R16UI texture is already one id a texel
 
-    CHECK(has(shader_snippet({.index = Index::u16}), "0xffff"));
-    CHECK(has(shader_snippet({.origin = WindowOrigin::upper_left}), "pixel.y ="));
-    const std::string bound = shader_snippet({.tiles_binding = 5, .indices_binding = 9});
+    CHECK(has(text_of({.format = {.ids = IdWidth::u16}}), "0xffff"));
+    CHECK(has(text_of({.flip_y = true}), "pixel.y ="));
+    CHECK(has(text_of({.viewport_corner = true}), "lightbin_corner"));
+    CHECK(has(text_of({.heat_map = true}), "lightbin_heat"));
+    CHECK(!has(text_of({.tile_size = 16}), "grid.x"));
+    const std::string bound = text_of({.tiles = {5}, .lists = {9}});
     CHECK(has(bound, "binding = 5"));
     CHECK(has(bound, "binding = 9"));
 }
 
+TEST_CASE("the bindings tell what the text declares") {
+    const auto shader = shader_snippet({.language = ShaderLanguage::glsl_vulkan,
+                                        .storage = ListStorage::texel_buffer,
+                                        .format = {.ids = IdWidth::u16},
+                                        .tiles = {3, 1},
+                                        .lists = {4, 1},
+                                        .grid = {5, 1}});
+    REQUIRE(shader);
+    REQUIRE(shader->bindings.size() == 3);
+    const auto &grid = shader->bindings[0], &tiles = shader->bindings[1], &lists = shader->bindings[2];
+    CHECK(grid.resource == ShaderResource::uniform_block);
+    CHECK(grid.bytes == offsetof(ShaderGrid, corner_x));
+    CHECK(grid.slot.binding == 5);
+    CHECK(tiles.resource == ShaderResource::texel_buffer);
+    CHECK(tiles.format == TexelFormat::rg32ui);
+    CHECK(tiles.stride == sizeof(Tile));
+    CHECK(lists.format == TexelFormat::r16ui);
+    CHECK(lists.stride == 2);
+    CHECK(lists.slot.set == 1);
+    for (const ShaderBinding& binding : shader->bindings)
+        CHECK(has(shader->text, binding.name.c_str()));
+}
+
+TEST_CASE("a wrong option set is refused with a sentence that names the limit") {
+    const std::string ids = refusal({.format = {.ids = IdWidth::u8, .max_lights = 300}});
+    CHECK(has(ids, "300"));
+    CHECK(has(ids, "256"));
+    CHECK(has(refusal({.format = {ListEncoding::sentinel, IdWidth::u8, 8, 256}}), "255"));
+    const std::string block =
+        refusal({.storage = ListStorage::uniform_block, .max_tiles = 2049, .max_entries = 1});
+    CHECK(has(block, "16392"));
+    CHECK(has(block, "16384"));
+    CHECK(has(refusal({.storage = ListStorage::uniform_block}), "max_tiles"));
+    CHECK(has(refusal({.language = ShaderLanguage::essl_300}), "storage"));
+    CHECK(has(refusal({.language = ShaderLanguage::essl_310, .storage = ListStorage::texel_buffer}),
+              "texture_2d"));
+    CHECK(has(refusal({.storage = ListStorage::byte_address}), "HLSL"));
+    CHECK(has(refusal({.format = {.encoding = ListEncoding::sentinel}}), "capacity"));
+    CHECK(has(refusal({.format = {.encoding = ListEncoding::bitmask}}), "max_lights"));
+    CHECK(has(refusal({.language = ShaderLanguage::hlsl_5_0, .tiles = {0, 1}}), "set"));
+    CHECK(has(refusal({.tiles = {1}}), "binding 1"));
+    CHECK(has(refusal({.push_constants = true}), "Vulkan"));
+    CHECK(has(refusal({.storage = ListStorage::texture_2d, .texture_width = 16385}), "16384"));
+    CHECK(has(refusal({.tile_size = -1}), "-1"));
+    for (const char* prefix : {"", "1a", "gl_a", "a__", "a-b", "_a"})
+        CHECK(has(refusal({.prefix = prefix}), "prefix"));
+}
+
 TEST_CASE("every name declared carries the prefix") {
-    for (const ShaderLanguage language : {ShaderLanguage::glsl_330, ShaderLanguage::glsl_430}) {
-        const std::string text = shader_snippet({.language = language, .prefix = "my_"});
+    for (const ShaderLanguage language : {ShaderLanguage::glsl_430, ShaderLanguage::hlsl_5_0}) {
+        const std::string text = text_of({.language = language, .heat_map = true, .prefix = "my_"});
         CHECK(!has(text, "lightbin"));
-        for (const char* name : {"my_grid", "my_tiles", "my_indices", "my_list(", "my_light("})
+        for (const char* name : {"my_grid", "my_tiles", "my_lists", "my_cursor ", "my_begin(", "my_next(",
+                                 "my_for_each_light(", "my_count(", "my_heat("})
             CHECK(has(text, name));
     }
 }
@@ -50,5 +115,11 @@ TEST_CASE("every name declared carries the prefix") {
 TEST_CASE("shader_grid") {
     const auto view =
         View::from_projection(glm::perspective(1.0f, 1.5f, 0.1f, 100.0f), {1919, 1079}, {.tile_size = 16});
-    CHECK(shader_grid(*view) == std::array<std::uint32_t, 4>{16, 120, 1919, 1079});
+    const ShaderGrid grid = shader_grid(*view, 3, -5);
+    CHECK(grid.tile_size == 16);
+    CHECK(grid.tiles_x == 120);
+    CHECK(grid.width == 1919);
+    CHECK(grid.height == 1079);
+    CHECK(grid.corner_x == 3);
+    CHECK(grid.corner_y == -5);
 }

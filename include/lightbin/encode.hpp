@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// Stage 4a: the light grid in other forms: narrow ids, sentinel-terminated lists, a bitmask a tile.
+#pragma once
+
+#include <lightbin/light_grid.hpp>
+#include <lightbin/result.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+namespace lightbin {
+
+/// How the lights of a tile are written down.
+enum class ListEncoding : std::uint8_t {
+    offset_count,  ///< grid.tiles(), and the ids of all tiles one after the other (Tiled Shading, Figure 1)
+    /// `capacity` ids a tile; a shorter list ends with the sentinel, the largest value of the id's width.
+    /// Needs no table of tiles (Light Indexed Deferred Rendering).
+    sentinel,
+    bitmask,  ///< (max_lights + 31) / 32 words of 32 bits a tile: bit b of word w is light 32 w + b
+};
+
+/// Bytes of a light id.
+enum class IdWidth : std::uint8_t { u8 = 1, u16 = 2, u32 = 4 };
+
+/// A form of the lists. What encode() writes and what a shader reads must have the same.
+struct ListFormat {
+    ListEncoding encoding = ListEncoding::offset_count;
+    IdWidth ids = IdWidth::u32;    ///< offset_count, sentinel
+    std::uint32_t capacity = 0;    ///< sentinel: lights a tile can hold, 1 or more
+    std::uint32_t max_lights = 0;  ///< ids are below it; bitmask: needed, others: 0 is as many as ids number
+};
+
+/// Returns how many lights ids of a format can number.
+inline std::uint64_t countable_lights(const ListFormat& format) {
+    const std::uint64_t values = std::uint64_t{1} << (8 * static_cast<unsigned>(format.ids));
+    if (format.encoding == ListEncoding::bitmask) return 0xffffffff;
+    return format.encoding == ListEncoding::sentinel ? values - 1 : values;
+}
+
+/// Returns the bytes that encode() writes for a grid of so many tiles and list entries, a multiple of 4.
+inline std::uint64_t encoded_bytes(const ListFormat& format, std::uint64_t tiles, std::uint64_t entries) {
+    if (format.encoding == ListEncoding::bitmask) return tiles * 4 * ((format.max_lights + 31ull) / 32);
+    const std::uint64_t ids = format.encoding == ListEncoding::sentinel ? tiles * format.capacity : entries;
+    return (ids * static_cast<unsigned>(format.ids) + 3) / 4 * 4;
+}
+
+/// What a sentinel list's capacity cut off.
+struct Encoded {
+    std::uint64_t entries_cut = 0;
+    std::uint32_t tiles_cut = 0;        ///< tiles that lost some
+    std::uint32_t capacity_needed = 0;  ///< length of the longest list: a capacity that cuts nothing
+};
+
+namespace detail {
+
+template <class To, class Id>
+void encode_ids(const LightGrid<Id>& grid, const ListFormat& format, std::byte* out) {
+    const auto put = [&](std::size_t at, To id) { std::memcpy(out + at * sizeof(To), &id, sizeof(To)); };
+    if (format.encoding == ListEncoding::offset_count) {
+        for (std::size_t i = 0; i < grid.indices().size(); ++i)
+            put(i, static_cast<To>(grid.indices()[i]));
+        return;
+    }
+    std::size_t at = 0;
+    for (const Tile tile : grid.tiles()) {
+        const std::uint32_t kept = (std::min)(tile.count, format.capacity);
+        for (std::uint32_t i = 0; i < kept; ++i)
+            put(at + i, static_cast<To>(grid.indices()[tile.offset + i]));
+        if (kept < format.capacity) put(at + kept, static_cast<To>(~To{0}));
+        at += format.capacity;
+    }
+}
+
+template <class Id> void encode_bits(const LightGrid<Id>& grid, std::uint32_t words, std::byte* out) {
+    for (const Tile tile : grid.tiles()) {
+        std::memset(out, 0, std::size_t{4} * words);
+        for (std::uint32_t i = 0; i < tile.count; ++i) {
+            const std::uint32_t id = grid.indices()[tile.offset + i];
+            std::uint32_t word = 0;
+            std::memcpy(&word, out + id / 32 * 4, 4);
+            word |= std::uint32_t{1} << id % 32;
+            std::memcpy(out + id / 32 * 4, &word, 4);
+        }
+        out += std::size_t{4} * words;
+    }
+}
+
+}  // namespace detail
+
+/// Writes the lists of a grid to `out`, which takes encoded_bytes(format, tiles, entries) or more; what lies
+/// beyond the ids is left as it is. Ids and words are in this machine's byte order.
+///
+/// After it, each tile's list in `out` is the grid's. Only a sentinel list longer than its capacity is cut:
+/// its first `capacity` ids, the lowest, stay, and the result counts the others. offset_count: the table of
+/// tiles is grid.tiles() as it is. Errors: an id the format can't number; `out` too small. Then `out` is not
+/// touched.
+template <class Id>
+Result<Encoded> encode(const LightGrid<Id>& grid, const ListFormat& format, std::span<std::byte> out) {
+    const std::uint64_t bytes = encoded_bytes(format, grid.tiles().size(), grid.indices().size());
+    if (out.size() < bytes) return Error{ErrorCode::list_buffer_too_small, bytes, out.size()};
+    const std::uint64_t most = countable_lights(format);
+    const std::uint64_t limit = format.max_lights ? (std::min<std::uint64_t>)(format.max_lights, most) : most;
+    for (const Id id : grid.indices())
+        if (id >= limit) return Error{ErrorCode::ids_too_narrow, id + std::uint64_t{1}, limit};
+
+    Encoded encoded;
+    for (const Tile tile : grid.tiles()) {
+        encoded.capacity_needed = (std::max)(encoded.capacity_needed, tile.count);
+        if (format.encoding != ListEncoding::sentinel || tile.count <= format.capacity) continue;
+        encoded.entries_cut += tile.count - format.capacity;
+        ++encoded.tiles_cut;
+    }
+    if (format.encoding == ListEncoding::bitmask)
+        detail::encode_bits(grid, (format.max_lights + 31) / 32, out.data());
+    else if (format.ids == IdWidth::u8)
+        detail::encode_ids<std::uint8_t>(grid, format, out.data());
+    else if (format.ids == IdWidth::u16)
+        detail::encode_ids<std::uint16_t>(grid, format, out.data());
+    else
+        detail::encode_ids<std::uint32_t>(grid, format, out.data());
+    return encoded;
+}
+
+}  // namespace lightbin

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: MIT
+// Shader languages: one text, written in GLSL, becomes each of them.
+#pragma once
+
+#include <lightbin/result.hpp>
+
+#include <cctype>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lightbin {
+
+enum class ShaderLanguage : std::uint8_t {
+    glsl_330,     ///< OpenGL 3.3 to 4.2
+    glsl_430,     ///< OpenGL 4.3 and later
+    glsl_vulkan,  ///< GLSL 450 for Vulkan
+    essl_300,     ///< OpenGL ES 3.0, WebGL 2
+    essl_310,     ///< OpenGL ES 3.1 and later
+    hlsl_5_0,     ///< shader model 5.0: Direct3D 11
+    hlsl_5_1,     ///< shader models 5.1 and 6.x: Direct3D 12, and Vulkan by DXC
+};
+
+/// What a name in the text is bound to.
+enum class ShaderResource : std::uint8_t {
+    uniform_vector,   ///< loose uniforms `grid` (uvec4) and `corner` (ivec2)
+    uniform_block,    ///< GLSL: std140 block; HLSL: cbuffer, register b
+    push_constants,   ///< Vulkan
+    storage_buffer,   ///< GLSL: std430 block; HLSL: StructuredBuffer, register t
+    byte_address,     ///< HLSL: ByteAddressBuffer, register t
+    texel_buffer,     ///< GLSL: buffer texture, uniform texel buffer; HLSL: Buffer, register t
+    texture_2d,       ///< read without a sampler; GLSL: NEAREST, no mipmaps
+    writable_buffer,  ///< storage buffer that is written; HLSL: RWStructuredBuffer, register u
+};
+
+/// Texel of a texture or buffer texture: GL_R8UI, VK_FORMAT_R8_UINT, DXGI_FORMAT_R8_UINT and so on.
+enum class TexelFormat : std::uint8_t { none, r8ui, r16ui, r32ui, rg32ui };
+
+/// Where a resource is bound. GLSL: binding and set; HLSL: register number and space. OpenGL 3.3 and ES 3.0
+/// have no bindings in the text: set the sampler or block by its name.
+struct ShaderSlot {
+    int binding = 0;
+    int set = 0;  ///< Vulkan and hlsl_5_1 only
+};
+
+/// Something to bind.
+struct ShaderBinding {
+    std::string name = {};  ///< of the uniform, sampler, block or buffer in the text
+    ShaderResource resource = ShaderResource::uniform_vector;
+    ShaderSlot slot = {};
+    TexelFormat format = TexelFormat::none;
+    std::uint32_t stride = 0;  ///< bytes of one element or texel
+    std::uint32_t bytes = 0;   ///< uniform blocks, push constants: size in the text; otherwise 0, as the data
+    std::uint32_t width = 0;   ///< texture_2d: texels a row; 0: as many as there are tiles across
+};
+
+/// A text and what it wants bound, in the order of the text.
+struct ShaderText {
+    std::string text;
+    std::vector<ShaderBinding> bindings;
+};
+
+namespace detail {
+
+/// What a language has.
+struct Dialect {
+    bool hlsl, es, vulkan;
+    bool binds;            ///< bindings in the text
+    bool spaces;           ///< sets or register spaces
+    bool storage_buffers;  ///< and compute shaders
+    bool texel_buffers;
+    bool finds_bits;  ///< findLSB
+};
+
+inline Dialect dialect(ShaderLanguage language) {
+    switch (language) {
+    case ShaderLanguage::glsl_330:
+        return {false, false, false, false, false, false, true, false};
+    case ShaderLanguage::glsl_430:
+        return {false, false, false, true, false, true, true, true};
+    case ShaderLanguage::glsl_vulkan:
+        return {false, false, true, true, true, true, true, true};
+    case ShaderLanguage::essl_300:
+        return {false, true, false, false, false, false, false, false};
+    case ShaderLanguage::essl_310:
+        return {false, true, false, true, false, true, false, true};
+    case ShaderLanguage::hlsl_5_0:
+        return {true, false, false, true, false, true, true, true};
+    case ShaderLanguage::hlsl_5_1:
+        break;
+    }
+    return {true, false, false, true, true, true, true, true};
+}
+
+/// The word of HLSL for a word of GLSL.
+inline std::string_view hlsl_word(std::string_view word) {
+    constexpr std::string_view words[][2] = {
+        {"uvec2", "uint2"}, {"uvec4", "uint4"}, {"ivec2", "int2"},          {"vec2", "float2"},
+        {"vec3", "float3"}, {"vec4", "float4"}, {"findLSB", "firstbitlow"}, {"floatBitsToUint", "asuint"},
+    };
+    for (const auto& [glsl, hlsl] : words)
+        if (word == glsl) return hlsl;
+    return word;
+}
+
+/// Returns a GLSL text in a language, `$` being the prefix. Types are declared highp in ES: a fragment
+/// shader's integers have 16 bits there otherwise, and no default precision is set, as it would reach the
+/// user's code.
+inline std::string translate(const Dialect& dialect, std::string_view prefix, std::string_view glsl) {
+    constexpr std::string_view types[] = {"uint",  "uvec2", "uvec4", "ivec2",     "int",
+                                          "float", "vec2",  "vec3",  "usampler2D"};
+    const auto of_a_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+    std::string text;
+    for (std::size_t at = 0; at < glsl.size();) {
+        std::size_t end = at;
+        while (end < glsl.size() && of_a_name(glsl[end]))
+            ++end;
+        const std::string_view word = glsl.substr(at, end - at);
+        if (word.empty()) {
+            const char c = glsl[at++];
+            if (c == '$') {
+                text += prefix;
+                for (; at < glsl.size() && of_a_name(glsl[at]); ++at)
+                    text += glsl[at];
+            } else {
+                text += c;
+            }
+            continue;
+        }
+        const bool declares = end < glsl.size() && glsl[end] != '(';
+        if (dialect.es && declares)
+            for (const std::string_view type : types)
+                if (word == type) text += "highp ";
+        text += dialect.hlsl ? hlsl_word(word) : word;
+        at = end;
+    }
+    return text;
+}
+
+/// A buffer of uint or uvec2 that a shader reads.
+struct ShaderBuffer {
+    std::string_view name;
+    ShaderResource resource = ShaderResource::storage_buffer;
+    ShaderSlot slot = {};
+    TexelFormat format = TexelFormat::r32ui;  ///< rg32ui: elements are uvec2
+    std::uint32_t vectors = 0;                ///< uniform_block: its size in uvec4
+    std::uint32_t width = 0;                  ///< texture_2d
+};
+
+/// Puts a text together in one language.
+class ShaderWriter {
+public:
+    ShaderWriter(ShaderLanguage language, std::string_view prefix)
+        : dialect_(detail::dialect(language)), prefix_(prefix) {}
+
+    const Dialect& dialect() const { return dialect_; }
+
+    void add(std::string_view glsl) { shader_.text += translate(dialect_, prefix_, glsl); }
+
+    /// Declares a read-only buffer and lists it among the bindings.
+    void declare(const ShaderBuffer& buffer) {
+        const bool pairs = buffer.format == TexelFormat::rg32ui;
+        const std::string name = "$" + std::string(buffer.name), type = pairs ? "uvec2" : "uint",
+                          vectors = std::to_string(buffer.vectors);
+        ShaderBinding binding = {prefix_ + std::string(buffer.name),
+                                 buffer.resource,
+                                 buffer.slot,
+                                 TexelFormat::none,
+                                 pairs ? 8u : 4u,
+                                 0,
+                                 0};
+        const std::string at = dialect_.hlsl ? hlsl_register(buffer.slot, 't') : "";
+        switch (buffer.resource) {
+        case ShaderResource::uniform_block:
+            binding.bytes = buffer.vectors * 16;
+            add_block(name, "uvec4 " + name + "[" + vectors + "];", buffer.slot, binding);
+            return;
+        case ShaderResource::storage_buffer:
+            if (dialect_.hlsl) {
+                add("StructuredBuffer<" + type + "> " + name + at + ";\n");
+                break;
+            }
+            binding.name += "_block";
+            add(layout("std430", buffer.slot) + "readonly buffer " + name + "_block {\n    " + type + " " +
+                name + "[];\n};\n");
+            break;
+        case ShaderResource::byte_address:
+            add("ByteAddressBuffer " + name + at + ";\n");
+            break;
+        default: {
+            const bool texture = buffer.resource == ShaderResource::texture_2d;
+            binding.format = buffer.format;
+            binding.stride = texel_bytes(buffer.format);
+            binding.width = buffer.width;
+            if (dialect_.hlsl)
+                add((texture ? "Texture2D<" : "Buffer<") + type + "> " + name + at + ";\n");
+            else
+                add(layout("", buffer.slot) + (texture ? "uniform usampler2D " : "uniform usamplerBuffer ") +
+                    name + ";\n");
+        }
+        }
+        shader_.bindings.push_back(binding);
+    }
+
+    /// Returns the expression that reads an element: of a uvec2 buffer a uvec2, otherwise a uint.
+    std::string read(const ShaderBuffer& buffer, const std::string& index) const {
+        const bool pairs = buffer.format == TexelFormat::rg32ui;
+        const std::string name = "$" + std::string(buffer.name), swizzle = pairs ? ".xy" : ".x";
+        switch (buffer.resource) {
+        case ShaderResource::uniform_block: {
+            const auto word = [&](const std::string& i) {
+                return name + "[(" + i + ") >> 2u][(" + i + ") & 3u]";
+            };
+            if (!pairs) return word(index);
+            return "uvec2(" + word("2u * " + index) + ", " + word("2u * " + index + " + 1u") + ")";
+        }
+        case ShaderResource::byte_address:
+            return name + (pairs ? ".Load2(8u * (" : ".Load(4u * (") + index + "))";
+        case ShaderResource::texel_buffer:
+            if (dialect_.hlsl) break;
+            return "texelFetch(" + name + ", int(" + index + "))" + swizzle;
+        case ShaderResource::texture_2d: {
+            const std::string texel = "int((" + index + ") % " + std::to_string(buffer.width) + "u), int((" +
+                                      index + ") / " + std::to_string(buffer.width) + "u)";
+            return read_texel(buffer, texel);
+        }
+        default:
+            break;
+        }
+        return name + "[" + index + "]";
+    }
+
+    /// The same of a texture_2d, at "x, y".
+    std::string read_texel(const ShaderBuffer& buffer, const std::string& texel) const {
+        const std::string name = "$" + std::string(buffer.name),
+                          swizzle = buffer.format == TexelFormat::rg32ui ? ".xy" : ".x";
+        return (dialect_.hlsl ? name + ".Load(int3(" + texel + ", 0))"
+                              : "texelFetch(" + name + ", ivec2(" + texel + "), 0)") +
+               swizzle;
+    }
+
+    /// Declares constants that the CPU sets: lines of "type $name;".
+    void declare_constants(std::string_view name, const std::string& lines, ShaderSlot slot, bool push,
+                           std::uint32_t bytes) {
+        const std::string block = "$" + std::string(name);
+        ShaderBinding binding = {prefix_ + std::string(name),
+                                 ShaderResource::uniform_block,
+                                 slot,
+                                 TexelFormat::none,
+                                 bytes,
+                                 bytes,
+                                 0};
+        if (push) {
+            binding.resource = ShaderResource::push_constants;
+            add("layout(push_constant) uniform " + block + "_block {\n    " + lines + "\n};\n");
+            shader_.bindings.push_back(binding);
+        } else {
+            add_block(block, lines, slot, binding);
+        }
+    }
+
+    /// Lists a resource that add() declared.
+    void bind(ShaderBinding binding) { shader_.bindings.push_back(std::move(binding)); }
+
+    const std::string& prefix() const { return prefix_; }
+
+    /// Returns the text, or an Error if two of its resources are bound to one slot.
+    Result<ShaderText> finish() {
+        for (const ShaderBinding& a : shader_.bindings)
+            for (const ShaderBinding& b : shader_.bindings)
+                if (&a < &b && same_place(a, b))
+                    return Error{ErrorCode::bindings_overlap, static_cast<std::uint64_t>(a.slot.binding),
+                                 static_cast<std::uint64_t>(a.slot.set)};
+        return shader_;
+    }
+
+    std::string layout(const std::string& packing, ShaderSlot slot) const {
+        std::string inside = packing;
+        const auto item = [&](const char* key, int value) {
+            inside += (inside.empty() ? "" : ", ") + std::string(key) + " = " + std::to_string(value);
+        };
+        if (dialect_.spaces) item("set", slot.set);
+        if (dialect_.binds) item("binding", slot.binding);
+        return inside.empty() ? "" : "layout(" + inside + ") ";
+    }
+
+    std::string hlsl_register(ShaderSlot slot, char kind) const {
+        return " : register(" + std::string(1, kind) + std::to_string(slot.binding) +
+               (dialect_.spaces ? ", space" + std::to_string(slot.set) : "") + ")";
+    }
+
+private:
+    static std::uint32_t texel_bytes(TexelFormat format) {
+        return format == TexelFormat::r8ui    ? 1
+               : format == TexelFormat::r16ui ? 2
+               : format == TexelFormat::r32ui ? 4
+                                              : 8;
+    }
+
+    void add_block(const std::string& name, const std::string& lines, ShaderSlot slot,
+                   ShaderBinding binding) {
+        binding.name += "_block";
+        add(dialect_.hlsl ? "cbuffer " + name + "_block" + hlsl_register(slot, 'b')
+                          : layout("std140", slot) + "uniform " + name + "_block");
+        add(" {\n    " + lines + "\n};\n");
+        shader_.bindings.push_back(std::move(binding));
+    }
+
+    /// Vulkan has one row of bindings a set; elsewhere each kind has its own, and a text without bindings has
+    /// none to clash.
+    bool same_place(const ShaderBinding& a, const ShaderBinding& b) const {
+        const auto kind = [&](const ShaderBinding& binding) {
+            switch (binding.resource) {
+            case ShaderResource::uniform_vector:
+            case ShaderResource::push_constants:
+                return 0;
+            case ShaderResource::uniform_block:
+                return 1;
+            case ShaderResource::writable_buffer:
+                return dialect_.hlsl ? 3 : 2;
+            case ShaderResource::storage_buffer:
+                return 2;
+            default:
+                return dialect_.hlsl ? 2 : 4;
+            }
+        };
+        const int kind_a = kind(a), kind_b = kind(b);
+        return dialect_.binds && kind_a != 0 && kind_b != 0 && (dialect_.vulkan || kind_a == kind_b) &&
+               a.slot.binding == b.slot.binding && a.slot.set == b.slot.set;
+    }
+
+    Dialect dialect_;
+    std::string prefix_;
+    ShaderText shader_;
+};
+
+}  // namespace detail
+
+}  // namespace lightbin
