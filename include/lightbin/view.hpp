@@ -62,6 +62,9 @@ struct ImageAxis {
     float margin = 0;  ///< bound on the error of a float tile coordinate inside the viewport, in tiles
     float limit = 0;   ///< the viewport's far edge in tiles, rounded up
     float inside = 0;  ///< a coordinate in the last tile
+    /// A plane through the eye with the whole viewport on one side, and so its mirror image: points at depth
+    /// d with  side * |c| + side_z * d > 0  are out of view. Of unit length; 0 if there is no such plane.
+    float side = 0, side_z = 0;
     int tiles = 0;
 };
 
@@ -209,6 +212,13 @@ private:
         // flushes denormal numbers to zero.
         axis.margin =
             detail::float_above(0x1p-20 * (std::fabs(axis.offset) + axis.tiles) + 0x1p-80 * axis.scale);
+        if (!camera_.orthographic && axis.scale > 0) {
+            const double slope =
+                (std::fmax)(axis.offset, side / double(tile_size_) - axis.offset) / axis.scale;
+            const double length = std::sqrt(1 + slope * slope);
+            axis.side = static_cast<float>(1 / length);
+            axis.side_z = static_cast<float>(-slope / length);
+        }
         if (side == 0) {
             axis.limit = -1;  // nothing is inside
             return p != 0;

@@ -6,8 +6,8 @@
 
 #if defined(LIGHTBIN_X86)
 
+#include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/scratch.hpp>
-#include <lightbin/detail/sphere_bounds.hpp>
 #include <lightbin/detail/supertile.hpp>
 
 #include <array>
@@ -22,61 +22,31 @@ inline namespace LIGHTBIN_FLAVOUR {
 namespace avx2 {
 
 using Floats = __m256;
-using Mask = __m256;
-inline constexpr std::uint32_t lanes = 8;
+using Doubles = __m256d;
+inline constexpr std::uint32_t lanes = 8, double_lanes = 4;
 
-LIGHTBIN_TARGET inline Floats all(float value) {
-    return _mm256_set1_ps(value);
-}
-LIGHTBIN_TARGET inline Floats add(Floats a, Floats b) {
-    return _mm256_add_ps(a, b);
-}
-LIGHTBIN_TARGET inline Floats sub(Floats a, Floats b) {
-    return _mm256_sub_ps(a, b);
-}
-LIGHTBIN_TARGET inline Floats mul(Floats a, Floats b) {
-    Floats product = _mm256_mul_ps(a, b);
-    __asm__("" : "+x"(product));  // see rounded()
-    return product;
-}
-LIGHTBIN_TARGET inline Floats div(Floats a, Floats b) {
-    return _mm256_div_ps(a, b);
-}
 LIGHTBIN_TARGET inline Floats sqrt(Floats a) {
     return _mm256_sqrt_ps(a);
 }
-LIGHTBIN_TARGET inline Floats lesser(Floats a, Floats b) {
-    return _mm256_min_ps(a, b);
+LIGHTBIN_TARGET inline Doubles sqrt(Doubles a) {
+    return _mm256_sqrt_pd(a);
 }
-LIGHTBIN_TARGET inline Floats greater(Floats a, Floats b) {
-    return _mm256_max_ps(a, b);
-}
-LIGHTBIN_TARGET inline Floats abs(Floats a) {
-    return _mm256_andnot_ps(all(-0.0f), a);
-}
-LIGHTBIN_TARGET inline Floats negate(Floats a) {
-    return _mm256_xor_ps(all(-0.0f), a);
-}
-LIGHTBIN_TARGET inline Mask less(Floats a, Floats b) {
-    return _mm256_cmp_ps(a, b, _CMP_LT_OQ);
-}
-LIGHTBIN_TARGET inline Mask less_equal(Floats a, Floats b) {
-    return _mm256_cmp_ps(a, b, _CMP_LE_OQ);
-}
-LIGHTBIN_TARGET inline Mask both(Mask a, Mask b) {
-    return _mm256_and_ps(a, b);
-}
-LIGHTBIN_TARGET inline Mask either(Mask a, Mask b) {
-    return _mm256_or_ps(a, b);
-}
-LIGHTBIN_TARGET inline Mask both_not(Mask a, Mask b) {
-    return _mm256_andnot_ps(b, a);
-}
-LIGHTBIN_TARGET inline Floats select(Mask mask, Floats a, Floats b) {
-    return _mm256_blendv_ps(b, a, mask);
-}
+
+#include <lightbin/detail/vectors.inl>
+
+using Mask = decltype(less(Floats{}, Floats{}));
+using DoubleMask = decltype(less(Doubles{}, Doubles{}));
+
 LIGHTBIN_TARGET inline unsigned bits(Mask mask) {
-    return static_cast<unsigned>(_mm256_movemask_ps(mask));
+    return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<Floats>(mask)));
+}
+LIGHTBIN_TARGET inline unsigned bits(DoubleMask mask) {
+    return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<Doubles>(mask)));
+}
+
+/// Half 0 or 1 of the lanes.
+LIGHTBIN_TARGET inline Doubles widened(Floats a, unsigned half) {
+    return _mm256_cvtps_pd(half == 0 ? _mm256_castps256_ps128(a) : _mm256_extractf128_ps(a, 1));
 }
 
 LIGHTBIN_TARGET inline Floats pair(const Sphere* sphere) {  // it and the fourth after it
@@ -100,8 +70,12 @@ LIGHTBIN_TARGET inline void store_tiles(std::uint16_t* tiles, Floats values) {
     _mm_storeu_si128(reinterpret_cast<__m128i*>(tiles),
                      _mm_packs_epi32(_mm256_castsi256_si128(whole), _mm256_extracti128_si256(whole, 1)));
 }
+LIGHTBIN_TARGET inline void store_tiles(std::uint16_t* tiles, Doubles values) {
+    const __m128i whole = _mm256_cvttpd_epi32(values);
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(tiles), _mm_packs_epi32(whole, whole));
+}
 
-#include <lightbin/detail/project_simd.inl>
+#include <lightbin/detail/project.inl>
 
 /// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
 LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
@@ -118,12 +92,12 @@ LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t*
 /// One bit a tile of the supertile: !(light.max < low) && !(light.min > high).
 LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* low, const float* high, DepthInterval light) {
     const Floats nearest = all(light.min), farthest = all(light.max);
-    std::uint64_t met = 0;
+    std::uint64_t apart = 0;
     for (int i = 0; i < 64; i += 8)
-        met |= std::uint64_t{bits(both(_mm256_cmp_ps(farthest, _mm256_loadu_ps(low + i), _CMP_NLT_UQ),
-                                       _mm256_cmp_ps(nearest, _mm256_loadu_ps(high + i), _CMP_NGT_UQ)))}
-               << i;
-    return met;
+        apart |= std::uint64_t{bits(either(less(farthest, _mm256_loadu_ps(low + i)),
+                                           less(_mm256_loadu_ps(high + i), nearest)))}
+                 << i;
+    return ~apart;
 }
 
 /// For each byte, the places of its set bits in ascending order.

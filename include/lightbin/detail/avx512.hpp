@@ -6,8 +6,8 @@
 
 #if defined(LIGHTBIN_X86)
 
+#include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/scratch.hpp>
-#include <lightbin/detail/sphere_bounds.hpp>
 #include <lightbin/detail/supertile.hpp>
 
 #include <bit>
@@ -30,28 +30,37 @@ inline namespace LIGHTBIN_FLAVOUR {
 namespace avx512 {
 
 using Floats = __m512;
+using Doubles = __m512d;
 using Mask = __mmask16;
-inline constexpr std::uint32_t lanes = 16;
+using DoubleMask = __mmask8;
+inline constexpr std::uint32_t lanes = 16, double_lanes = 8;
 
-LIGHTBIN_TARGET inline Floats all(float value) {
-    return _mm512_set1_ps(value);
-}
-LIGHTBIN_TARGET inline Floats add(Floats a, Floats b) {
-    return _mm512_add_ps(a, b);
-}
-LIGHTBIN_TARGET inline Floats sub(Floats a, Floats b) {
-    return _mm512_sub_ps(a, b);
-}
-LIGHTBIN_TARGET inline Floats mul(Floats a, Floats b) {
-    Floats product = _mm512_mul_ps(a, b);
-    __asm__("" : "+v"(product));  // see rounded()
-    return product;
-}
-LIGHTBIN_TARGET inline Floats div(Floats a, Floats b) {
-    return _mm512_div_ps(a, b);
-}
 LIGHTBIN_TARGET inline Floats sqrt(Floats a) {
     return _mm512_sqrt_ps(a);
+}
+LIGHTBIN_TARGET inline Doubles sqrt(Doubles a) {
+    return _mm512_sqrt_pd(a);
+}
+
+#include <lightbin/detail/vectors.inl>
+
+LIGHTBIN_TARGET inline Mask less(Floats a, Floats b) {
+    return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
+}
+LIGHTBIN_TARGET inline DoubleMask less(Doubles a, Doubles b) {
+    return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ);
+}
+LIGHTBIN_TARGET inline Mask less_equal(Floats a, Floats b) {
+    return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ);
+}
+LIGHTBIN_TARGET inline DoubleMask less_equal(Doubles a, Doubles b) {
+    return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ);
+}
+LIGHTBIN_TARGET inline Floats select(Mask mask, Floats a, Floats b) {
+    return _mm512_mask_mov_ps(b, mask, a);
+}
+LIGHTBIN_TARGET inline Doubles select(DoubleMask mask, Doubles a, Doubles b) {
+    return _mm512_mask_mov_pd(b, mask, a);
 }
 LIGHTBIN_TARGET inline Floats lesser(Floats a, Floats b) {
     return _mm512_min_ps(a, b);
@@ -59,32 +68,13 @@ LIGHTBIN_TARGET inline Floats lesser(Floats a, Floats b) {
 LIGHTBIN_TARGET inline Floats greater(Floats a, Floats b) {
     return _mm512_max_ps(a, b);
 }
-LIGHTBIN_TARGET inline Floats abs(Floats a) {
-    return _mm512_andnot_ps(all(-0.0f), a);
-}
-LIGHTBIN_TARGET inline Floats negate(Floats a) {
-    return _mm512_xor_ps(all(-0.0f), a);
-}
-LIGHTBIN_TARGET inline Mask less(Floats a, Floats b) {
-    return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
-}
-LIGHTBIN_TARGET inline Mask less_equal(Floats a, Floats b) {
-    return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ);
-}
-LIGHTBIN_TARGET inline Mask both(Mask a, Mask b) {
-    return static_cast<Mask>(a & b);
-}
-LIGHTBIN_TARGET inline Mask either(Mask a, Mask b) {
-    return static_cast<Mask>(a | b);
-}
-LIGHTBIN_TARGET inline Mask both_not(Mask a, Mask b) {
-    return static_cast<Mask>(a & ~b);
-}
-LIGHTBIN_TARGET inline Floats select(Mask mask, Floats a, Floats b) {
-    return _mm512_mask_mov_ps(b, mask, a);
-}
-LIGHTBIN_TARGET inline unsigned bits(Mask mask) {
+LIGHTBIN_TARGET inline unsigned bits(unsigned mask) {
     return mask;
+}
+
+/// Half 0 or 1 of the lanes.
+LIGHTBIN_TARGET inline Doubles widened(Floats a, unsigned half) {
+    return _mm512_cvtps_pd(half == 0 ? _mm512_castps512_ps256(a) : _mm512_extractf32x8_ps(a, 1));
 }
 
 LIGHTBIN_TARGET inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z,
@@ -111,23 +101,26 @@ LIGHTBIN_TARGET inline void store_tiles(std::uint16_t* tiles, Floats values) {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(tiles),
                         _mm512_cvtusepi32_epi16(_mm512_cvttps_epi32(values)));
 }
+LIGHTBIN_TARGET inline void store_tiles(std::uint16_t* tiles, Doubles values) {
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(tiles), _mm256_cvtepi32_epi16(_mm512_cvttpd_epi32(values)));
+}
 
 /// As the general append_visible, with compress instructions.
 LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCounts& counts,
-                                           std::uint32_t first_id, unsigned visible,
-                                           const LaneRects<lanes>& rects) {
+                                           std::uint32_t first_id, unsigned visible, const ChunkRects& rects,
+                                           std::uint32_t first) {
     const Mask kept = static_cast<Mask>(visible);
-    const __m256i x0 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.x0));
-    const __m256i y0 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.y0));
-    const __m256i x1 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.x1));
-    const __m256i y1 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.y1));
+    const __m256i x0 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.x0 + first));
+    const __m256i y0 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.y0 + first));
+    const __m256i x1 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.x1 + first));
+    const __m256i y1 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.y1 + first));
     const std::uint32_t at = counts.visible;
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.x0 + at), _mm256_maskz_compress_epi16(kept, x0));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.y0 + at), _mm256_maskz_compress_epi16(kept, y0));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.x1 + at), _mm256_maskz_compress_epi16(kept, x1));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.y1 + at), _mm256_maskz_compress_epi16(kept, y1));
     const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-    const __m512i ids = _mm512_add_epi32(lane, _mm512_set1_epi32(static_cast<int>(first_id)));
+    const __m512i ids = _mm512_add_epi32(lane, _mm512_set1_epi32(static_cast<int>(first_id + first)));
     _mm512_storeu_si512(out.ids + at, _mm512_maskz_compress_epi32(kept, ids));
     counts.visible += static_cast<std::uint32_t>(std::popcount(visible));
 
@@ -140,7 +133,7 @@ LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCo
     counts.area += static_cast<std::uint64_t>(_mm512_reduce_add_epi64(sums));
 }
 
-#include <lightbin/detail/project_simd.inl>
+#include <lightbin/detail/project.inl>
 
 // Binning by supertiles of 8x8 tiles, as supertile.inl, but lists are made by compressing 64 lights at a time
 // instead of inserting them one by one:

@@ -11,11 +11,6 @@
 
 namespace lightbin::detail {
 
-/// Tiles x0..x1, y0..y1, both ends included.
-struct TileRect {
-    std::uint16_t x0, y0, x1, y1;
-};
-
 /// The tiles first..last of one tile row that a light's silhouette reaches; none if first > last.
 struct RowSpan {
     std::uint16_t first, last;
@@ -51,40 +46,11 @@ struct ProjectCounts {
     std::uint64_t area = 0;  ///< sum of the rectangles' tiles: the most entries there can be
 };
 
-/// Appends one light in view.
-inline void append(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t id, TileRect rect) {
-    const std::uint32_t at = counts.visible++;
-    out.ids[at] = id;
-    out.x0[at] = rect.x0;
-    out.y0[at] = rect.y0;
-    out.x1[at] = rect.x1;
-    out.y1[at] = rect.y1;
-    counts.area += (rect.x1 - rect.x0 + 1u) * std::uint64_t{rect.y1 - rect.y0 + 1u};
-}
-
-/// The tiles of a vector of lights, before those out of view are dropped.
-template <unsigned lanes> struct LaneRects {
-    alignas(64) std::uint16_t x0[lanes], y0[lanes], x1[lanes], y1[lanes];
+/// The tiles of as many lights as are projected at a time, before those out of view are dropped.
+struct ChunkRects {
+    static constexpr std::uint32_t size = 256;
+    alignas(64) std::uint16_t x0[size], y0[size], x1[size], y1[size];
 };
-
-/// Appends the lights whose bit in `visible` is set. Every lane is written, and the place moves on for those
-/// in view: no branch to predict.
-template <unsigned lanes>
-void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
-                    unsigned visible, const LaneRects<lanes>& rects) {
-    for (unsigned lane = 0; lane < lanes; ++lane) {
-        const unsigned in_view = visible >> lane & 1;
-        const std::uint32_t at = counts.visible;
-        out.ids[at] = first_id + lane;
-        out.x0[at] = rects.x0[lane];
-        out.y0[at] = rects.y0[lane];
-        out.x1[at] = rects.x1[lane];
-        out.y1[at] = rects.y1[lane];
-        counts.visible += in_view;
-        counts.area += in_view * ((rects.x1[lane] - rects.x0[lane] + 1u) *
-                                  std::uint64_t{rects.y1[lane] - rects.y0[lane] + 1u});
-    }
-}
 
 /// Z bounds in a form without branches: an absent side reads the one element of a constant.
 struct TileDepths {

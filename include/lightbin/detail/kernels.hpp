@@ -15,7 +15,7 @@
 
 namespace lightbin::detail {
 
-using ProjectKernel = decltype(&project_scalar);
+using ProjectKernel = decltype(&scalar::project);
 template <class Id, bool with_depth> using BinKernel = decltype(&bin_scalar<with_depth, Id>);
 
 inline namespace LIGHTBIN_FLAVOUR {
@@ -27,7 +27,7 @@ inline ProjectKernel project_kernel(Isa isa) {
     if (isa == Isa::sse2) return sse2::project;
 #endif
     static_cast<void>(isa);
-    return project_scalar;
+    return scalar::project;
 }
 
 /// The fastest kernel for lights that cover `area` tiles in all. Kernels with full-vector stores need the

@@ -27,6 +27,15 @@
 #define LIGHTBIN_NOINLINE __attribute__((noinline))
 #endif
 
+// Makes the compiler forget how `product`, a number or a vector, came about. See rounded().
+#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
+#define LIGHTBIN_ROUND(product) __asm__("" : "+v"(product))
+#elif defined(__aarch64__) && (defined(__GNUC__) || defined(__clang__))
+#define LIGHTBIN_ROUND(product) __asm__("" : "+w"(product))
+#else
+#define LIGHTBIN_ROUND(product) static_cast<void>(product)
+#endif
+
 namespace lightbin {
 
 /// Instruction sets with kernels of their own. All give the same bytes.
@@ -68,11 +77,7 @@ inline namespace LIGHTBIN_FLAVOUR {
 /// A product that is rounded before it is added to anything: keeps compilers from fusing the two, which would
 /// make the result depend on the instruction set.
 template <class Real> inline Real rounded(Real product) {
-#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
-    __asm__("" : "+x"(product));
-#elif defined(__aarch64__) && (defined(__GNUC__) || defined(__clang__))
-    __asm__("" : "+w"(product));
-#endif
+    LIGHTBIN_ROUND(product);
     return product;
 }
 

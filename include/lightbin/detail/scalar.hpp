@@ -5,28 +5,57 @@
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/scratch.hpp>
-#include <lightbin/detail/sphere_bounds.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/view.hpp>
 
 #include <algorithm>
+#include <bit>
+#include <cfloat>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
 namespace lightbin::detail {
 inline namespace LIGHTBIN_FLAVOUR {
 
-/// Appends the footprints of those of the `count` spheres that are in view. The first sphere has id
-/// `first_id`.
-inline void project_scalar(const Camera& camera, const Sphere* spheres, std::uint32_t count,
-                           std::uint32_t first_id, const FootprintArrays& out, ProjectCounts& counts) {
-    for (std::uint32_t i = 0; i < count; ++i) {
-        TileRect rect;
-        const Visibility visibility = project_sphere(camera, spheres[i], rect);
-        counts.rejected += visibility == Visibility::rejected;
-        if (visibility == Visibility::visible) append(out, counts, first_id + i, rect);
-    }
+namespace scalar {
+
+#define LIGHTBIN_TARGET
+
+using Floats = float;
+using Doubles = double;
+inline constexpr std::uint32_t lanes = 1, double_lanes = 1;
+
+inline float sqrt(float a) {
+    return std::sqrt(a);
 }
+inline double sqrt(double a) {
+    return std::sqrt(a);
+}
+
+#include <lightbin/detail/vectors.inl>
+
+inline unsigned bits(bool mask) {
+    return mask;
+}
+inline double widened(float a, unsigned) {
+    return static_cast<double>(a);
+}
+inline void load_spheres(const Sphere* spheres, float& x, float& y, float& z, float& radius) {
+    x = spheres->x;
+    y = spheres->y;
+    z = spheres->z;
+    radius = spheres->radius;
+}
+template <class Real> void store_tiles(std::uint16_t* tiles, Real value) {
+    *tiles = static_cast<std::uint16_t>(value);
+}
+
+#include <lightbin/detail/project.inl>
+
+#undef LIGHTBIN_TARGET
+
+}  // namespace scalar
 
 /// Calls visit(tile, light) for each tile that footprint `light` reaches, lights in ascending order.
 template <bool with_depth, class Id, class Visit> void for_each_pair(const BinJob<Id>& job, Visit visit) {

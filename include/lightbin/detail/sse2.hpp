@@ -6,9 +6,10 @@
 
 #if defined(LIGHTBIN_X86)
 
-#include <lightbin/detail/sphere_bounds.hpp>
+#include <lightbin/detail/footprint.hpp>
 
 #include <bit>
+#include <cstring>
 #include <emmintrin.h>
 
 #define LIGHTBIN_TARGET
@@ -18,61 +19,31 @@ inline namespace LIGHTBIN_FLAVOUR {
 namespace sse2 {
 
 using Floats = __m128;
-using Mask = __m128;
-inline constexpr std::uint32_t lanes = 4;
+using Doubles = __m128d;
+inline constexpr std::uint32_t lanes = 4, double_lanes = 2;
 
-inline Floats all(float value) {
-    return _mm_set1_ps(value);
-}
-inline Floats add(Floats a, Floats b) {
-    return _mm_add_ps(a, b);
-}
-inline Floats sub(Floats a, Floats b) {
-    return _mm_sub_ps(a, b);
-}
-inline Floats mul(Floats a, Floats b) {
-    Floats product = _mm_mul_ps(a, b);
-    __asm__("" : "+x"(product));  // see rounded()
-    return product;
-}
-inline Floats div(Floats a, Floats b) {
-    return _mm_div_ps(a, b);
-}
 inline Floats sqrt(Floats a) {
     return _mm_sqrt_ps(a);
 }
-inline Floats lesser(Floats a, Floats b) {
-    return _mm_min_ps(a, b);
+inline Doubles sqrt(Doubles a) {
+    return _mm_sqrt_pd(a);
 }
-inline Floats greater(Floats a, Floats b) {
-    return _mm_max_ps(a, b);
-}
-inline Floats abs(Floats a) {
-    return _mm_andnot_ps(all(-0.0f), a);
-}
-inline Floats negate(Floats a) {
-    return _mm_xor_ps(all(-0.0f), a);
-}
-inline Mask less(Floats a, Floats b) {
-    return _mm_cmplt_ps(a, b);
-}
-inline Mask less_equal(Floats a, Floats b) {
-    return _mm_cmple_ps(a, b);
-}
-inline Mask both(Mask a, Mask b) {
-    return _mm_and_ps(a, b);
-}
-inline Mask either(Mask a, Mask b) {
-    return _mm_or_ps(a, b);
-}
-inline Mask both_not(Mask a, Mask b) {
-    return _mm_andnot_ps(b, a);
-}
-inline Floats select(Mask mask, Floats a, Floats b) {
-    return _mm_or_ps(_mm_and_ps(mask, a), _mm_andnot_ps(mask, b));
-}
+
+#include <lightbin/detail/vectors.inl>
+
+using Mask = decltype(less(Floats{}, Floats{}));
+using DoubleMask = decltype(less(Doubles{}, Doubles{}));
+
 inline unsigned bits(Mask mask) {
-    return static_cast<unsigned>(_mm_movemask_ps(mask));
+    return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<Floats>(mask)));
+}
+inline unsigned bits(DoubleMask mask) {
+    return static_cast<unsigned>(_mm_movemask_pd(reinterpret_cast<Doubles>(mask)));
+}
+
+/// Half 0 or 1 of the lanes.
+inline Doubles widened(Floats a, unsigned half) {
+    return _mm_cvtps_pd(half == 0 ? a : _mm_movehl_ps(a, a));
 }
 
 inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z, Floats& radius) {
@@ -88,8 +59,13 @@ inline void store_tiles(std::uint16_t* tiles, Floats values) {
     const __m128i whole = _mm_cvttps_epi32(values);
     _mm_storel_epi64(reinterpret_cast<__m128i*>(tiles), _mm_packs_epi32(whole, whole));
 }
+inline void store_tiles(std::uint16_t* tiles, Doubles values) {
+    const __m128i whole = _mm_cvttpd_epi32(values);
+    const int both_tiles = _mm_cvtsi128_si32(_mm_packs_epi32(whole, whole));
+    std::memcpy(tiles, &both_tiles, sizeof both_tiles);
+}
 
-#include <lightbin/detail/project_simd.inl>
+#include <lightbin/detail/project.inl>
 
 }  // namespace sse2
 }  // namespace LIGHTBIN_FLAVOUR

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+// Spheres to tile rectangles, a vector of lights at a time. Included once a tier, after its vectors; the
+// scalar tier's hold one light. All do the same operations in the same order, so they give the same bytes.
+//
+// Everything is a 2-D problem in slope space: tile edges are planes x = s z through the eye, so along each
+// image axis a sphere becomes a disc of centre (c, z), c being x or y, and its bounds are the slopes of two
+// tangents (Mara and McGuire, "2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D Sphere", JCGT
+// 2(2), 2013).
+
+/// Slopes of the tangents from the origin to the discs (c, z, r), for z - r > 0, where `e` = (z - r)(z + r).
+///
+/// Each sum is of terms of one sign, so errors only add up: with u the unit roundoff, e is within 3u, c^2 + e
+/// within 4u, its root 3u, q 5u, and both slopes 9u of the truth, each relative to itself. (The roots'
+/// product is (c^2 - r^2) / e.)
+template <class Reals>
+LIGHTBIN_TARGET inline void tangent_slopes(Reals c, Reals z, Reals r, Reals e, Reals& low, Reals& high) {
+    const Reals a = abs(c);
+    const Reals tangent_length = sqrt(mul(a, a) + e);
+    const Reals q = mul(a, z) + mul(r, tangent_length);
+    const Reals outer = q / e, inner = mul(a - r, a + r) / q;
+    const auto negative = less(c, Reals{});
+    low = select(negative, -outer, inner);
+    high = select(negative, -inner, outer);
+}
+
+/// Bounds on c / z over the part of the discs (c, z, r) at depth near_z or more; infinite where double
+/// precision can't tell. For discs that cross the near plane, z - r <= near_z <= z + r. Doubles that hold
+/// floats: their products are exact, none overflows.
+///
+/// That part is convex, so its largest slope is at the tangent point if that lies beyond the near plane, else
+/// at the corner where the circle meets the plane. The tangent bounds the whole disc, so it is right whenever
+/// it exists: the corner is taken only when it is beyond doubt. The smallest slope is the largest of -c.
+LIGHTBIN_TARGET inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, Doubles& low,
+                                           Doubles& high) {
+    const Doubles near_z = all(near_depth), zero = all(0.0), endless = all(HUGE_VAL);
+    const Doubles a = abs(c);
+    const Doubles h2 = mul(r - (near_z - z), r + (near_z - z));  // half chord, squared
+    const Doubles h2_error = mul(r, r) * 0x1p-50;
+    const Doubles h = sqrt(greater(h2, zero) + h2_error);  // rounded up
+    const Doubles h_low = sqrt(greater(h2 - h2_error, zero));
+
+    // Along the circle into the region the corner (c + h, near_z) moves by (z - near_z, h), and c / z grows by
+    // (near_z, -(c + h)) a step: the tangent point lies beyond the plane iff  near_z (z - near_z) > h (c +
+    // h). Here for c = a (outer) and c = -a (inner).
+    const Doubles doubt = (mul(h, h) + mul(a, h) + mul(near_z, abs(z) + near_z)) * 0x1p-48;
+    const Doubles tangent_side = mul(near_z, z - near_z) + doubt, square = mul(h_low, h_low);
+    const auto outer_cut = less(tangent_side, square + mul(a, h_low));
+    const auto inner_cut = less(tangent_side, square - mul(a, h));
+    const Doubles corner_error = (a + h) * 0x1p-48;
+    const Doubles outer_corner = (h + a + corner_error) / near_z;
+    const Doubles inner_corner = (h - a + corner_error) / near_z;
+
+    // Tangent length, squared: not positive with the eye on the surface or inside.
+    const Doubles squares = mul(a, a) + mul(z, z), t2 = squares - mul(r, r);
+    const Doubles error = (squares + mul(r, r)) * 0x1p-50 / t2 + 0x1p-48;  // relative, of a slope
+    const auto sure = both(less(zero, t2), less_equal(error, all(0x1p-20)));
+    // As in tangent_slopes: of the two forms of the same root, the one whose sums are of one sign. With the
+    // eye beside the centre's far side the outer tangent points backward.
+    const Doubles az = mul(a, z), rt = mul(r, sqrt(t2)), e = mul(z - r, z + r);
+    const auto behind = less(z, zero);
+    const Doubles outer = (az + rt) / e;
+    const Doubles inner = select(behind, rt - az, mul(r - a, r + a)) / select(behind, e, rt + az);
+    const Doubles high_outer = select(
+        outer_cut, outer_corner, select(both(sure, less(r, z)), outer + mul(abs(outer), error), endless));
+    const Doubles high_inner =
+        select(inner_cut, inner_corner, select(sure, inner + mul(abs(inner), error), endless));
+    const auto negative = less(c, zero);
+    low = -select(negative, high_outer, high_inner);
+    high = select(negative, high_inner, high_outer);
+}
+
+/// Writes the tiles that the extents low..high touch, slopes (perspective) or view-space coordinates
+/// (orthographic), grown by the axis' margin. Takes those out of the viewport out of `visible`.
+template <class Real, class Reals, class Mask>
+LIGHTBIN_TARGET inline Mask tile_span(const ImageAxis& axis, Real scale, Real offset, Reals low, Reals high,
+                                      Mask visible, std::uint16_t* first, std::uint16_t* last) {
+    const Real margin = static_cast<Real>(axis.margin);
+    low = mul(low, all(scale)) + offset - margin;
+    high = mul(high, all(scale)) + offset + margin;
+    const Reals zero = Reals{}, inside = all(static_cast<Real>(axis.inside));
+    store_tiles(first, lesser(greater(low, zero), inside));
+    store_tiles(last, lesser(greater(high, zero), inside));
+    return both(visible, both(less_equal(zero, high), less_equal(low, all(static_cast<Real>(axis.limit)))));
+}
+
+/// The general case, in double, for up to `lanes` of a chunk's lights: near-plane straddlers, eye inside,
+/// tiny, huge and infinite spheres, bad input. Sets the bits of those in view in `visible`.
+LIGHTBIN_TARGET inline void project_carefully(const Camera& camera, const Sphere* spheres,
+                                              const std::uint8_t* places, std::uint32_t count,
+                                              ChunkRects& rects, unsigned* visible, ProjectCounts& counts) {
+    Sphere gathered[lanes];
+    for (std::uint32_t i = 0; i < lanes; ++i)
+        gathered[i] = spheres[places[i < count ? i : 0]];
+    Floats floats[4];
+    load_spheres(gathered, floats[0], floats[1], floats[2], floats[3]);
+    alignas(64) std::uint16_t x0[double_lanes], y0[double_lanes], x1[double_lanes], y1[double_lanes];
+    for (std::uint32_t from = 0; from < count; from += double_lanes) {
+        const unsigned half = from != 0;
+        const Doubles x = widened(floats[0], half) * static_cast<double>(camera.x.sign);
+        const Doubles y = widened(floats[1], half) * static_cast<double>(camera.y.sign);
+        const Doubles z = widened(floats[2], half) * static_cast<double>(camera.z_sign);
+        const Doubles radius = widened(floats[3], half), most = all(static_cast<double>(FLT_MAX));
+        const double near_depth = static_cast<double>(camera.near_depth);
+        const auto good = both(both(less_equal(abs(x), most), less_equal(abs(y), most)),
+                               both(less_equal(abs(z), most), less_equal(all(0.0), radius)));
+        const Doubles nearest = z - radius, farthest = z + radius;
+        auto seen = both_not(good, either(less(farthest, all(near_depth)),
+                                          less(all(static_cast<double>(camera.far_depth)), nearest)));
+        // Not 0, so that no root is: much less than the rounding of any float.
+        const Doubles r = greater(radius, all(0x1p-400));
+        Doubles left = x - r, right = x + r, bottom = y - r, top = y + r;
+        if (!camera.orthographic) {
+            const auto whole = less(all(near_depth), nearest);
+            const Doubles e = mul(nearest, farthest);
+            Doubles low, high;
+            tangent_slopes(x, z, r, e, low, high);
+            clipped_slopes(x, z, r, near_depth, left, right);
+            left = select(whole, low, left);
+            right = select(whole, high, right);
+            tangent_slopes(y, z, r, e, low, high);
+            clipped_slopes(y, z, r, near_depth, bottom, top);
+            bottom = select(whole, low, bottom);
+            top = select(whole, high, top);
+        }
+        seen = tile_span(camera.x, camera.x.scale, camera.x.offset, left, right, seen, x0, x1);
+        seen = tile_span(camera.y, camera.y.scale, camera.y.offset, bottom, top, seen, y0, y1);
+        const std::uint32_t used = count - from < double_lanes ? count - from : double_lanes;
+        counts.rejected += used - static_cast<std::uint32_t>(std::popcount(bits(good) & ((1u << used) - 1)));
+        const unsigned in_view = bits(seen);
+        for (std::uint32_t i = 0; i < used; ++i) {
+            const std::uint32_t place = places[from + i];
+            rects.x0[place] = x0[i];
+            rects.y0[place] = y0[i];
+            rects.x1[place] = x1[i];
+            rects.y1[place] = y1[i];
+            visible[place / lanes] |= (in_view >> i & 1) << place % lanes;
+        }
+    }
+}
+
+/// Appends those of a vector of a chunk's lights, from `first` on, whose bit in `visible` is set. Every lane
+/// is written, and the place moves on for those in view: no branch to predict. A tier with a better way has a
+/// plain function for it, which wins over this one.
+template <class Rects>
+LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCounts& counts,
+                                           std::uint32_t first_id, unsigned visible, const Rects& rects,
+                                           std::uint32_t first) {
+    for (std::uint32_t i = first; i < first + lanes; ++i, visible >>= 1) {
+        const std::uint32_t at = counts.visible, in_view = visible & 1;
+        out.ids[at] = first_id + i;
+        out.x0[at] = rects.x0[i];
+        out.y0[at] = rects.y0[i];
+        out.x1[at] = rects.x1[i];
+        out.y1[at] = rects.y1[i];
+        counts.visible += in_view;
+        counts.area +=
+            in_view * ((rects.x1[i] - rects.x0[i] + 1u) * std::uint64_t{rects.y1[i] - rects.y0[i] + 1u});
+    }
+}
+
+/// Appends the footprints of those of the `count` spheres that are in view. The first sphere has id
+/// `first_id`.
+///
+/// In float where the error bound of tangent_slopes holds: no over- or underflow (sizes of 2^-40 to 2^40) and
+/// the whole sphere beyond the near plane. Comparisons are arranged so that NaN goes the careful way.
+LIGHTBIN_TARGET inline void project(const Camera& camera, const Sphere* spheres, std::uint32_t count,
+                                    std::uint32_t first_id, const FootprintArrays& out,
+                                    ProjectCounts& counts) {
+    ChunkRects rects;
+    unsigned visible[ChunkRects::size / lanes];
+    std::uint8_t careful[ChunkRects::size];
+    Sphere padded[lanes];
+    for (; count > 0; spheres += ChunkRects::size, first_id += ChunkRects::size) {
+        const std::uint32_t here = count < ChunkRects::size ? count : ChunkRects::size;
+        count -= here;
+        std::uint32_t careful_count = 0;
+        for (std::uint32_t i = 0; i < here; i += lanes) {
+            const Sphere* block = spheres + i;
+            const std::uint32_t used = here - i < lanes ? here - i : lanes;
+            if (used < lanes) {
+                for (std::uint32_t lane = 0; lane < lanes; ++lane)
+                    padded[lane] = block[lane < used ? lane : 0];
+                block = padded;
+            }
+            Floats x, y, z, r;
+            load_spheres(block, x, y, z, r);
+            x = x * camera.x.sign;
+            y = y * camera.y.sign;
+            z = z * camera.z_sign;
+            const Floats nearest = z - r, farthest = z + r, a = abs(x), b = abs(y), size = a + b + abs(z) + r;
+            const auto usable = both(less_equal(size, all(0x1p40f)), less_equal(all(0x1p-40f), r));
+            // Rounding is monotone and near and far are floats, so comparing rounded sums with them is exact.
+            // The distance to a side plane is within 4u of the sizes that it is made of.
+            const Floats aside = greater(mul(a, all(camera.x.side)) + mul(z, all(camera.x.side_z)),
+                                         mul(b, all(camera.y.side)) + mul(z, all(camera.y.side_z)));
+            const auto culled = both(usable, either(either(less(farthest, all(camera.near_depth)),
+                                                           less(all(camera.far_depth), nearest)),
+                                                    less(size * 0x1p-21f, aside - r)));
+            const unsigned valid = used < 32 ? (1u << used) - 1 : ~0u;
+            unsigned& in_view = visible[i / lanes] = 0;
+            if ((~bits(culled) & valid) == 0) continue;
+
+            auto plain = both_not(usable, culled);
+            Floats left = x - r, right = x + r, bottom = y - r, top = y + r;
+            if (!camera.orthographic) {
+                plain = both(plain, less(all(camera.near_fast), nearest));
+                const Floats e = mul(nearest, farthest);
+                tangent_slopes(x, z, r, e, left, right);
+                tangent_slopes(y, z, r, e, bottom, top);
+            }
+            for (unsigned rest = ~bits(either(plain, culled)) & valid; rest != 0; rest &= rest - 1)
+                careful[careful_count++] =
+                    static_cast<std::uint8_t>(i + static_cast<unsigned>(std::countr_zero(rest)));
+            plain = tile_span(camera.x, camera.x.scale_f, camera.x.offset_f, left, right, plain, rects.x0 + i,
+                              rects.x1 + i);
+            plain = tile_span(camera.y, camera.y.scale_f, camera.y.offset_f, bottom, top, plain, rects.y0 + i,
+                              rects.y1 + i);
+            in_view = bits(plain) & valid;
+        }
+        for (std::uint32_t i = 0; i < careful_count; i += lanes)
+            project_carefully(camera, spheres, careful + i,
+                              careful_count - i < lanes ? careful_count - i : lanes, rects, visible, counts);
+        for (std::uint32_t i = 0; i < here; i += lanes)
+            if (visible[i / lanes] != 0) append_visible(out, counts, first_id, visible[i / lanes], rects, i);
+    }
+}
