@@ -90,17 +90,30 @@ inline const std::vector<Screen>& screens() {
     return all;
 }
 
+inline double aspect_of(const Screen& screen) {
+    return static_cast<double>(screen.width) / screen.height;
+}
+
+inline Camera camera_of(const std::string& name, const Lens& lens, const Screen& screen) {
+    return {name,
+            projection(lens),
+            lens.doubles,
+            screen.width,
+            screen.height,
+            screen.tile,
+            lens.zero_to_one,
+            screen.upper_left,
+            lens.orthographic && lens.reversed};
+}
+
 inline std::vector<Camera> on_every_screen(const std::string& name,
                                            const std::function<Lens(double aspect)>& lens_of) {
     std::vector<Camera> cameras;
-    for (const Screen& screen : screens()) {
-        const Lens lens = lens_of(static_cast<double>(screen.width) / screen.height);
-        cameras.push_back({name + " " + std::to_string(screen.width) + "x" + std::to_string(screen.height) +
-                               "/" + std::to_string(screen.tile) +
-                               (screen.upper_left ? " upper left" : " lower left"),
-                           projection(lens), lens.doubles, screen.width, screen.height, screen.tile,
-                           lens.zero_to_one, screen.upper_left, lens.orthographic && lens.reversed});
-    }
+    for (const Screen& screen : screens())
+        cameras.push_back(camera_of(name + " " + std::to_string(screen.width) + "x" +
+                                        std::to_string(screen.height) + "/" + std::to_string(screen.tile) +
+                                        (screen.upper_left ? " upper left" : " lower left"),
+                                    lens_of(aspect_of(screen)), screen));
     return cameras;
 }
 
@@ -273,9 +286,9 @@ inline std::vector<Camera> orthographic_reversed() {
 #define ORACLE_CAMERA_KINDS(X)                                                                               \
     X(symmetric)                                                                                             \
     X(left_handed)                                                                                           \
-    X(right_handed_zero_to_one) X(off_centre) X(jittered) X(infinite_far) X(reversed)                        \
-        X(reversed_minus_one_to_one) X(reversed_infinite) X(y_flip) X(x_flip) X(tiny_fov) X(wide_fov)        \
-            X(scaled_matrix) X(double_matrix) X(screens_off_centre) X(orthographic)                          \
-                X(orthographic_off_centre) X(orthographic_reversed)
+    X(right_handed_zero_to_one)                                                                              \
+    X(off_centre) X(jittered) X(infinite_far) X(reversed) X(reversed_minus_one_to_one) X(reversed_infinite)  \
+        X(y_flip) X(x_flip) X(tiny_fov) X(wide_fov) X(scaled_matrix) X(double_matrix) X(screens_off_centre)  \
+            X(orthographic) X(orthographic_off_centre) X(orthographic_reversed)
 
 }  // namespace oracle

@@ -69,7 +69,8 @@ public:
         const bool low_is_near = low >= 0 && (low < high || high < 0);
         near_plane = orthographic ? std::min(low, high) : (low_is_near ? low : high);
         far_plane = orthographic ? std::max(low, high) : (low_is_near ? high : low);
-        if (!(far_plane > near_plane) || far_plane > 1e6) far_plane = 1e6;  // at infinity, or as good as
+        if (!(far_plane > near_plane) || (!orthographic && far_plane > 1e13 * near_plane))
+            far_plane = 1e7 * near_plane;  // at infinity, or as good as
         unit = orthographic ? (at(1, camera.height, 0) - at(1, 0, 0)) / 64 : near_plane;
     }
 
@@ -108,7 +109,13 @@ public:
     /// A depth in view, as likely near as far.
     double depth(Random& random) const {
         if (orthographic) return random.uniform(near_plane, far_plane);
-        return near_plane * std::exp(random.uniform(0, std::log(std::min(far_plane / near_plane, 1e4))));
+        return near_plane * std::exp(random.uniform(0, std::log(std::min(far_plane / near_plane, deepest))));
+    }
+
+    /// View depth of a window depth.
+    double view_depth(double window) const {
+        const double v = std::clamp(window, 0.0, 1.0);
+        return plane(camera.zero_to_one ? v : 2 * v - 1);
     }
 
     Light light(double x, double y, double depth, double radius) const {
@@ -123,7 +130,8 @@ public:
     Camera camera;
     bool orthographic;
     double near_plane, far_plane;
-    double unit;  ///< a length that matters: near plane distance, or a piece of the orthographic box
+    double unit;           ///< a length that matters: near plane distance, or a piece of the orthographic box
+    double deepest = 1e4;  ///< how many near plane distances away depth() may be
 
 private:
     double up(int axis) const { return axis == 1 && camera.upper_left ? -1 : 1; }
@@ -171,15 +179,21 @@ inline Light near_eye(const Aim& aim, Random& random) {
                      u * 2 * spread * std::exp(0.7 * random.normal()));
 }
 
-/// Straddles or just reaches the near plane: from behind by 2^-k, or touching it from the front.
-inline Light near_poke(const Aim& aim, Random& random) {
+/// Just reaches the near plane from one side of it: pokes through, or stays short of it, by 2^-k of its size.
+inline Light touching_near(const Aim& aim, Random& random, bool from_behind) {
     const double r = aim.unit * random.power_of_two(-12, 20);
-    const double poke = random.sign() * r * std::exp2(-random.integer(1, 30));
-    const double d = aim.near_plane + (random.chance(0.7) ? -r : r) + poke;
+    const double poke = random.sign() * r * std::exp2(-random.integer(1, 40));
+    const double d = aim.near_plane + (from_behind ? -r : r) + poke;
     const double n = aim.near_plane, reach = random.chance(0.5) ? 0.1 * r : aim.unit;
     return nudged(aim.light(aim.at(0, aim.pixel(0, random), n) + reach * random.uniform(-1, 1),
                             aim.at(1, aim.pixel(1, random), n) + reach * random.uniform(-1, 1), d, r),
                   random);
+}
+inline Light poke_from_behind(const Aim& aim, Random& random) {
+    return touching_near(aim, random, true);
+}
+inline Light touch_from_front(const Aim& aim, Random& random) {
+    return touching_near(aim, random, false);
 }
 
 /// The circle in which the sphere cuts the near plane ends at a tile edge.
@@ -371,7 +385,8 @@ inline const std::vector<SphereSet>& sphere_sets() {
     static const std::vector<SphereSet> sets = {
         {"field", field, false},
         {"near eye", near_eye, false},
-        {"near poke", near_poke, true},
+        {"poke from behind", poke_from_behind, true},
+        {"touch from the front", touch_from_front, true},
         {"near corner", near_corner, true},
         {"eye on the surface", eye_surface, true},
         {"axis tangent", axis_tangent, true},

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "engine.hpp"
+
+#include <lightbin/lightbin.hpp>
+
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+#endif
+
+namespace oracle {
+
+namespace {
+
+/// Sets FTZ and DAZ for its life.
+class Flush {
+public:
+    explicit Flush(bool on) : before_(get()) {
+        if (on) set(before_ | flags);
+    }
+    ~Flush() { set(before_); }
+    Flush(const Flush&) = delete;
+    Flush& operator=(const Flush&) = delete;
+
+private:
+#if defined(__x86_64__)
+    static constexpr unsigned flags = 0x8040;
+    static unsigned get() {
+        return _mm_getcsr();
+    }
+    static void set(unsigned value) {
+        _mm_setcsr(value);
+    }
+#else
+    static constexpr unsigned flags = 0;
+    static unsigned get() {
+        return 0;
+    }
+    static void set(unsigned) {}
+#endif
+    unsigned before_;
+};
+
+template <lightbin::Options options> Lists built(const lightbin::View& view, const Scene& scene, bool flush) {
+    thread_local lightbin::Binner<options> binner;
+    thread_local std::vector<float> min, max;
+    const auto grid = [&] {
+        const Flush flushing(flush);
+        if constexpr (options.depth_test == lightbin::DepthTest::none) {
+            return binner.bin(view, scene.lights);
+        } else {
+            lightbin::ZBounds bounds{.min = scene.min, .max = scene.max};
+            if (!scene.depth.empty()) {
+                min.resize(view.tile_count());
+                max.resize(view.tile_count());
+                bounds = *lightbin::reduce_depth(
+                    view, {.depth = scene.depth, .skip_background = scene.skip_background}, min, max);
+            }
+            return binner.bin(view, scene.lights, bounds);
+        }
+    }();
+    Lists lists;
+    if (!grid) return lists;
+    lists.rejected = grid->rejected();
+    for (const lightbin::Tile& tile : grid->tiles())
+        lists.offsets.push_back(tile.offset);
+    lists.offsets.push_back(static_cast<std::uint32_t>(grid->indices().size()));
+    lists.ids.assign(grid->indices().begin(), grid->indices().end());
+    return lists;
+}
+
+template <lightbin::Options options>
+Lists on_all_tiers(const lightbin::View& view, const Scene& scene, bool flush,
+                   std::vector<std::string>& complaints) {
+    using lightbin::Isa;
+    constexpr auto capped = [](Isa isa) {
+        lightbin::Options with_isa = options;
+        with_isa.isa = isa;
+        return with_isa;
+    };
+    Lists lists = built<capped(Isa::scalar)>(view, scene, flush);
+    if (lists.offsets.empty()) complaints.push_back("the lights were refused");
+#if defined(LIGHTBIN_X86)
+    if (built<capped(Isa::sse2)>(view, scene, flush) != lists) complaints.push_back("SSE2 differs");
+    if (built<capped(Isa::avx2)>(view, scene, flush) != lists) complaints.push_back("AVX2 differs");
+    if (built<capped(Isa::avx512)>(view, scene, flush) != lists) complaints.push_back("AVX-512 differs");
+#endif
+    return lists;
+}
+
+}  // namespace
+
+Lists Engine::lists(const Scene& scene, Rung rung, std::vector<std::string>& complaints) const {
+    const Camera& camera = scene.camera;
+    lightbin::ViewOptions options;
+    options.tile_size = camera.tile;
+    options.clip_depth =
+        camera.zero_to_one ? lightbin::ClipDepth::zero_to_one : lightbin::ClipDepth::minus_one_to_one;
+    options.origin =
+        camera.upper_left ? lightbin::WindowOrigin::upper_left : lightbin::WindowOrigin::lower_left;
+    options.reversed_z = camera.reversed;
+    // The entries are floats unless the camera says otherwise, so nothing changes on the way to double.
+    const auto view = lightbin::View::from_projection(camera.m, {camera.width, camera.height}, options);
+    if (!view) {
+        complaints.push_back("the camera was refused: " + view.error().message());
+        return {};
+    }
+    using lightbin::DepthTest;
+    switch (rung) {
+    case Rung::rectangle:
+        return on_all_tiers<lightbin::Options{}>(*view, scene, flush_, complaints);
+    case Rung::rectangle_interval:
+        return on_all_tiers<lightbin::Options{.depth_test = DepthTest::interval}>(*view, scene, flush_,
+                                                                                  complaints);
+    }
+    return {};
+}
+
+}  // namespace oracle

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// The library behind an interface without it, so that it can be built with other flags, or another compiler, than
+// the oracle that judges it.
+#pragma once
+
+#include "families.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace oracle {
+
+/// What is built of a scene.
+enum class Rung {
+    rectangle,
+    rectangle_interval,
+};
+
+struct RungInfo {
+    Rung rung;
+    std::string name;
+    bool split;  ///< of the depths of a tile, those in its gap do not count
+};
+
+inline const std::vector<RungInfo>& all_rungs() {
+    static const std::vector<RungInfo> all = {
+        {Rung::rectangle, "rectangle", false},
+        {Rung::rectangle_interval, "rectangle, interval", false},
+    };
+    return all;
+}
+
+inline const RungInfo& info(Rung rung) {
+    return all_rungs()[static_cast<std::size_t>(rung)];
+}
+
+/// The light lists a tile: of tile t, ids[offsets[t]] up to ids[offsets[t + 1]].
+struct Lists {
+    std::vector<std::uint32_t> offsets, ids;
+    std::uint32_t rejected = 0;
+    bool operator==(const Lists&) const = default;
+};
+
+/// Builds a scene's lists on every instruction set that the machine has.
+class Engine {
+public:
+    /// flush_denormals  the processor takes denormal floats for 0 while the library runs (FTZ and DAZ)
+    explicit Engine(bool flush_denormals = false) : flush_(flush_denormals) {}
+
+    /// Returns the scalar tier's lists. What was wrong (the view refused, tiers that differ) is added to
+    /// `complaints`.
+    Lists lists(const Scene& scene, Rung rung, std::vector<std::string>& complaints) const;
+
+private:
+    bool flush_;
+};
+
+}  // namespace oracle

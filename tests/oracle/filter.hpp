@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+// "These do not meet", proven in double precision: the quick answer to most of the oracle's questions. Where it
+// has none, oracle.hpp decides.
+//
+// A direction n separates a ball from a cell if  n.p > n.c + r |n|  for every point p of the cell. Which n to try
+// is found with ordinary rounding and needs no proof: a bad one only proves nothing. What is proven is the
+// inequality, for the n that came out, as the doubles they are:
+// - On a cell low(d) <= x <= high(d), the same in y, d0 <= d <= d1, lines  offset + slope d,  a positive n_x meets
+//   its least product on the low line, a negative one on the high line. So
+//       n.p >= A + B d,  A = n_x offset_x + n_y offset_y,  B = n_x slope_x + n_y slope_y + n_z,
+//   least at d0 if B >= 0 and at d1 if B <= 0; a B whose sign rounding hides proves nothing.
+// - Lines and ends of depth are rationals cut to double, each within 2^-52 of itself; n, c, r are exact. A term of
+//   A, B d or n.c is a product of at most three of them and goes through fewer than 12 roundings of 2^-53, so it
+//   is within 2^-48 of itself in the computed sum (of B alone as well): the error of a sum is at most 2^-48 of the
+//   sum of its terms' sizes. 2^-47 is taken, for the roundings of that bound and of the comparison.
+// - Overflow leaves infinity or NaN, for which no comparison below holds. Underflow of a product is less than
+//   2^-1074, times at most 2^230 later on: nothing beside the 2^-800 that is asked of the difference.
+#pragma once
+
+#include "oracle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace oracle {
+
+/// View depths in double, each end within 2^-52 of the true one; max may be +inf.
+struct FlatDepths {
+    double min, max;
+
+    /// Beyond doubt no depth lies between them.
+    bool surely_empty() const { return min - max > 0x1p-50 * (std::abs(min) + std::abs(max)); }
+};
+
+/// A ball in the camera's axes, exact.
+struct FlatBall {
+    double x, y, depth, radius;
+};
+
+class Filter {
+public:
+    explicit Filter(const Oracle& exact)
+        : oracle_(exact), columns_(static_cast<std::size_t>(exact.tiles_x()) + 1),
+          rows_(static_cast<std::size_t>(exact.tiles_y()) + 1) {}
+
+    /// True: the ball does not meet the block of tiles [x0, x1) x [y0, y1) between these depths. False: unknown.
+    bool apart(int x0, int x1, int y0, int y1, const FlatDepths& depths, const FlatBall& ball) {
+        if (separates({0, 0, ball.depth < depths.min ? 1.0 : -1.0}, {}, depths, ball)) return true;
+        const Cell cell = {{{column(x0), column(x1)}, {row(y0), row(y1)}}};
+        for (const int axis : {0, 1})
+            for (const int side : {0, 1})
+                if (separates(of_planes(axis, side == 0 ? 1.0 : -1.0, cell), cell, depths, ball)) return true;
+        return apart_at_edge(cell, depths, ball);
+    }
+
+private:
+    struct FlatLine {
+        double offset = 0, slope = 0;
+        bool known = false;
+        double at(double d) const { return offset + slope * d; }
+    };
+    struct Cell {
+        FlatLine side[2][2];  ///< axis, low or high
+    };
+    struct Direction {
+        double x, y, z;
+    };
+
+    const FlatLine& column(int x) { return line(columns_, x, true); }
+    const FlatLine& row(int y) { return line(rows_, y, false); }
+    const FlatLine& line(std::vector<FlatLine>& lines, int edge, bool across) {
+        FlatLine& flat = lines[static_cast<std::size_t>(edge)];
+        if (!flat.known) {
+            const Line exact = across ? oracle_.column_slab(oracle_.columns(edge, edge)).low
+                                      : oracle_.row_slab(oracle_.rows(edge, edge)).low;
+            flat = {exact.offset.convert_to<double>(), exact.slope.convert_to<double>(), true};
+        }
+        return flat;
+    }
+
+    /// The direction into the cell with these x and y, at right angles to its lines, but for a tilt that puts
+    /// the sign of B beyond doubt.
+    static Direction lifted(double x, double y, const Cell& cell) {
+        const double u = x * cell.side[0][x > 0 ? 0 : 1].slope, v = y * cell.side[1][y > 0 ? 0 : 1].slope;
+        return {x, y, 0x1p-44 * (std::abs(u) + std::abs(v)) - (u + v)};
+    }
+    static Direction of_planes(int axis, double towards, const Cell& cell) {
+        return axis == 0 ? lifted(towards, 0, cell) : lifted(0, towards, cell);
+    }
+
+    static bool separates(const Direction& n, const Cell& cell, const FlatDepths& depths, const FlatBall& c) {
+        const FlatLine& x = cell.side[0][n.x > 0 ? 0 : 1];
+        const FlatLine& y = cell.side[1][n.y > 0 ? 0 : 1];
+        const double b = n.x * x.slope + n.y * y.slope + n.z;
+        const double b_error = 0x1p-47 * (std::abs(n.x * x.slope) + std::abs(n.y * y.slope) + std::abs(n.z));
+        if (!(std::abs(b) >= b_error)) return false;
+        const double d = b >= 0 ? depths.min : depths.max;
+        const double along = n.x * x.offset + n.y * y.offset + b * d,
+                     centre = n.x * c.x + n.y * c.y + n.z * c.depth;
+        const double sizes =
+            std::abs(n.x * x.offset) + std::abs(n.y * y.offset) +
+            (std::abs(n.x * x.slope) + std::abs(n.y * y.slope) + std::abs(n.z)) * std::abs(d) +
+            std::abs(n.x * c.x) + std::abs(n.y * c.y) + std::abs(n.z * c.depth);
+        const double length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+        const double gap = along - centre;
+        return gap > 0x1p-800 && gap - 0x1p-47 * sizes > c.radius * length * (1 + 0x1p-47);
+    }
+
+    /// From the nearest point, found as meets() of oracle.hpp does.
+    static bool apart_at_edge(const Cell& cell, const FlatDepths& depths, const FlatBall& c) {
+        const double centre[2] = {c.x, c.y};
+        double best = std::numeric_limits<double>::infinity(), best_d = 0;
+        const auto clamped = [](double v, double low, double high) {
+            return v < low ? low : v > high ? high : v;
+        };
+        const auto distance = [&](double d) {
+            double sum = (d - c.depth) * (d - c.depth);
+            for (const int axis : {0, 1}) {
+                const FlatLine(&lines)[2] = cell.side[axis];
+                const double off = centre[axis] - clamped(centre[axis], lines[0].at(d), lines[1].at(d));
+                sum += off * off;
+            }
+            return sum;
+        };
+        const auto consider = [&](double d) {
+            d = clamped(d, depths.min, depths.max);
+            const double f = distance(d);
+            if (f < best) best = f, best_d = d;
+        };
+        for (int i = -1; i < 2; ++i)
+            for (int j = -1; j < 2; ++j) {
+                double top = c.depth, bottom = 1;
+                if (i >= 0) {
+                    const FlatLine& line = cell.side[0][i];
+                    top += line.slope * (c.x - line.offset), bottom += line.slope * line.slope;
+                }
+                if (j >= 0) {
+                    const FlatLine& line = cell.side[1][j];
+                    top += line.slope * (c.y - line.offset), bottom += line.slope * line.slope;
+                }
+                consider(top / bottom);
+            }
+        consider(depths.min);
+        if (std::isfinite(depths.max)) consider(depths.max);
+        double n[2];
+        for (const int axis : {0, 1}) {
+            const FlatLine(&lines)[2] = cell.side[axis];
+            n[axis] = clamped(centre[axis], lines[0].at(best_d), lines[1].at(best_d)) - centre[axis];
+        }
+        return separates(lifted(n[0], n[1], cell), cell, depths, c) ||
+               separates({n[0], n[1], best_d - c.depth}, cell, depths, c);
+    }
+
+    const Oracle& oracle_;
+    std::vector<FlatLine> columns_, rows_;  ///< at tile edges
+};
+
+}  // namespace oracle
