@@ -10,6 +10,8 @@
 #include <lightbin/lightbin.hpp>
 
 #include <benchmark/benchmark.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <chrono>
 #include <cstdio>
@@ -17,23 +19,39 @@
 #include <cstring>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <string>
+#include <thread>
 
 namespace {
 
 using lightbin::DepthTest;
+using lightbin::Footprint;
+using lightbin::Index;
 using lightbin::Isa;
 using lightbin::Options;
 
 double seconds_a_case = 0.3;
 std::vector<Result> results;
-std::vector<Scene> scenes;
 
 struct Case {
     std::string set;
     std::size_t lights;
     int tile_size;
     std::function<std::vector<Frame>()> frames;
+    int threads = 1;
+};
+
+/// lightbin's work on at most so many of oneTBB's threads.
+class TbbLoop {
+public:
+    explicit TbbLoop(int threads) : arena_(threads) {}
+    template <class Body> void operator()(std::size_t n, const Body& body) {
+        arena_.execute([&] { tbb::parallel_for(std::size_t{0}, n, body); });
+    }
+
+private:
+    tbb::task_arena arena_;
 };
 
 const char* name(Isa isa) {
@@ -51,7 +69,21 @@ const char* name(Isa isa) {
 }
 
 const char* name(DepthTest test) {
-    return test == DepthTest::none ? "none" : "interval";
+    switch (test) {
+    case DepthTest::none:
+        return "none";
+    case DepthTest::interval:
+        return "interval";
+    case DepthTest::box:
+        return "box";
+    case DepthTest::split_box:
+        return "split_box";
+    }
+    return "?";
+}
+
+const char* name(Footprint footprint) {
+    return footprint == Footprint::rectangle ? "rectangle" : "silhouette";
 }
 
 /// The frames of a case, kept while the cases that follow have the same.
@@ -69,14 +101,14 @@ const std::vector<Frame>& frames_of(const Case& which) {
 
 /// Z bounds of the made depth buffer, which all field sets have in common.
 struct MadeBounds {
-    std::vector<float> min, max;
+    std::vector<float> min, max, gap_min, gap_max;
     lightbin::ZBounds bounds;
 
     explicit MadeBounds(int tile_size) {
-        static const std::vector<float> depth = made_depth({});
+        static const std::vector<float> depth = made_depth();
         const lightbin::View view = Lens().view(tile_size);
-        min.resize(view.tile_count());
-        max.resize(view.tile_count());
+        for (auto* side : {&min, &max, &gap_min, &gap_max})
+            side->resize(view.tile_count());
         bounds = *lightbin::reduce_depth(view, {.depth = depth}, min, max);
     }
 };
@@ -95,7 +127,7 @@ double percentile(std::vector<double>& values, double share) {
 
 /// Stops the run unless the lists hold what the double-precision two-pass finds, and next to nothing else.
 template <class Grid>
-void verify(const FlatView& view, const Lights& lights, const Grid& grid, DepthTest test,
+void verify(const FlatView& view, const Lights& lights, const Grid& grid, const Options& options,
             const lightbin::ZBounds& bounds) {
     Flat<double> flat;
     flat.build<false>(view, lights, nullptr, nullptr);
@@ -107,7 +139,7 @@ void verify(const FlatView& view, const Lights& lights, const Grid& grid, DepthT
         auto next = ours.begin();
         for (std::uint32_t i = flat.offsets[tile]; i < flat.offsets[tile + 1]; ++i) {
             const std::uint32_t id = flat.indices[i];
-            if (!pair.passes(test, lights[id], x, y)) continue;
+            if (!pair.passes(options.footprint, options.depth_test, lights[id], x, y)) continue;
             for (; next != ours.end() && *next < id; ++next)
                 ++extra;
             const bool found = next != ours.end() && *next == id;
@@ -122,8 +154,15 @@ void verify(const FlatView& view, const Lights& lights, const Grid& grid, DepthT
     std::exit(EXIT_FAILURE);
 }
 
-/// Times one case. In turns: the baseline, ours, and storing the list once; each time a few frames together
-/// where one is too short for the clock. Who goes first alternates, as the second finds the lights in cache.
+/// Writes the memory once, in order, with the machine's widest stores.
+void fill(char* memory, std::size_t size) {
+    std::memset(memory, 0, size);
+    benchmark::ClobberMemory();
+}
+
+/// Times one case. In turns: the baseline, ours, storing the list once, clearing the tile table; each time a
+/// few frames together where one is too short for the clock. Whether ours comes first alternates, as the
+/// second finds the lights in the cache.
 template <Options options> void build(benchmark::State& state, const Case& which) {
     constexpr bool with_depth = options.depth_test != DepthTest::none;
     constexpr bool twin = options.depth_test == DepthTest::interval;  // the baseline has this depth test too
@@ -138,19 +177,22 @@ template <Options options> void build(benchmark::State& state, const Case& which
     }
     Flat<float> flat;
     lightbin::Binner<options> binner;
+    TbbLoop loop(which.threads);
+    const lightbin::Parallel parallel =
+        which.threads > 1 ? lightbin::Parallel(std::size_t(which.threads), loop) : lightbin::Parallel();
     const auto bin = [&](std::size_t frame) {
         if constexpr (with_depth)
-            return *binner.bin(views[frame], frames[frame].lights, made.bounds);
+            return *binner.bin(views[frame], frames[frame].lights, made.bounds, parallel);
         else
-            return *binner.bin(views[frame], frames[frame].lights);
+            return *binner.bin(views[frame], frames[frame].lights, parallel);
     };
     const auto bin_flat = [&](std::size_t frame) {
         flat.build<twin>(flat_views[frame], frames[frame].lights, made.min.data(), made.max.data());
     };
-    verify(flat_views[0], frames[0].lights, bin(0), options.depth_test, made.bounds);
+    verify(flat_views[0], frames[0].lights, bin(0), options, made.bounds);
 
-    std::vector<double> theirs, ours, stores, ratios;
-    std::vector<char> list;
+    std::vector<double> theirs, ours, stores, clears, ratios;
+    std::vector<char> list, table(sizeof(lightbin::Tile) * views[0].tile_count());
     double entries = 0, spent = 0;
     std::size_t turn = 0;
     const std::size_t n = which.lights,
@@ -170,33 +212,33 @@ template <Options options> void build(benchmark::State& state, const Case& which
             if (turn % 2 == 0) time_ours();
             theirs.push_back(seconds([&] { each(bin_flat); }));
             if (turn % 2 == 1) time_ours();
-            list.resize(std::max(list.size(), written * sizeof(typename lightbin::Binner<options>::Id)));
-            stores.push_back(seconds([&] {
-                std::memset(list.data(), int(turn), written * sizeof(typename lightbin::Binner<options>::Id));
-                benchmark::ClobberMemory();
-            }));
+            written *= sizeof(typename lightbin::Binner<options>::Id);
+            list.resize(std::max(list.size(), written));
+            stores.push_back(seconds([&] { fill(list.data(), written); }));
+            clears.push_back(seconds([&] { each([&](std::size_t) { fill(table.data(), table.size()); }); }));
             ratios.push_back(ours.back() / theirs.back());
-            entries += double(written);
+            entries += double(written / sizeof(typename lightbin::Binner<options>::Id));
             spent += ours.back() + theirs.back() + stores.back();
         }
         state.SetIterationTime(percentile(ours, 0.5) / double(together));
     }
 
-    const double lights = double(n * together), ns = 1e9 * percentile(ours, 0.5);
+    const double lights = double(std::max<std::size_t>(n, 1) * together), ns = 1e9 * percentile(ours, 0.5);
     entries /= double(ours.size());
     const Result result = {.set = which.set,
                            .lights = n,
                            .tile_size = which.tile_size,
-                           .footprint = "rectangle",
+                           .footprint = name(options.footprint),
                            .depth_test = name(options.depth_test),
                            .tier = name(options.isa),
-                           .threads = 1,
+                           .threads = which.threads,
                            .ns_per_light = ns / lights,
                            .ns_per_entry = ns / std::max(entries, 1.0),
                            .ratio = ns / (1e9 * percentile(theirs, 0.5)),
                            .spread = percentile(ratios, 0.9) - percentile(ratios, 0.1),
                            .entries_per_light = entries / lights,
-                           .store_ratio = ns / (1e9 * percentile(stores, 0.5))};
+                           .store_ratio = ns / (1e9 * percentile(stores, 0.5)),
+                           .clear_ratio = ns / (1e9 * percentile(clears, 0.5))};
     results.push_back(result);
 }
 
@@ -222,19 +264,37 @@ public:
 template <Options options> void add(const Case& which) {
     if (lightbin::detail::machine_isa(options.isa) != options.isa) return;  // not on this machine
     const std::string label = which.set + "/" + std::to_string(which.lights) + "/" +
-                              std::to_string(which.tile_size) + "px/rectangle/" + name(options.depth_test) +
-                              "/" + name(options.isa);
-    benchmark::RegisterBenchmark(label.c_str(), build<options>, which)
-        ->Iterations(1)
-        ->UseManualTime()
-        ->Unit(benchmark::kMicrosecond);
+                              std::to_string(which.tile_size) + "px/" + name(options.footprint) + "/" +
+                              name(options.depth_test) + "/" + name(options.isa) + "/" +
+                              std::to_string(which.threads);
+    benchmark::RegisterBenchmark(label.c_str(), build<options>, which)->Iterations(1)->UseManualTime();
 }
 
-template <DepthTest depth_test> void add_tiers(const Case& which) {
-    add<Options{.depth_test = depth_test, .isa = Isa::scalar}>(which);
-    add<Options{.depth_test = depth_test, .isa = Isa::sse2}>(which);
-    add<Options{.depth_test = depth_test, .isa = Isa::avx2}>(which);
-    add<Options{.depth_test = depth_test, .isa = Isa::avx512}>(which);
+template <DepthTest depth_test = DepthTest::none, Footprint footprint = Footprint::rectangle,
+          Index index = Index::u32>
+void add_tiers(const Case& which) {
+    add<Options{.index = index, .footprint = footprint, .depth_test = depth_test, .isa = Isa::scalar}>(which);
+    add<Options{.index = index, .footprint = footprint, .depth_test = depth_test, .isa = Isa::sse2}>(which);
+    add<Options{.index = index, .footprint = footprint, .depth_test = depth_test, .isa = Isa::avx2}>(which);
+    add<Options{.index = index, .footprint = footprint, .depth_test = depth_test, .isa = Isa::avx512}>(which);
+}
+
+void add_rungs(const Case& which) {
+    add_tiers<DepthTest::interval>(which);
+    // add_tiers<DepthTest::box>(which);
+    // add_tiers<DepthTest::split_box>(which);
+    // add_tiers<DepthTest::none, Footprint::silhouette>(which);
+    // add_tiers<DepthTest::box, Footprint::silhouette>(which);
+}
+
+/// 1, 2, 4, ... threads, as far as the machine has them.
+void add_threads(Case which) {
+    const int most = int(std::thread::hardware_concurrency());
+    for (which.threads = 1; which.threads <= most; which.threads *= 2) {
+        if (which.threads == 1 && which.lights <= 10000) continue;  // is there already
+        add<Options{.isa = Isa::avx2}>(which);
+        add<Options{.isa = Isa::avx512}>(which);
+    }
 }
 
 /// Frames of `count` lights each of one of the made sets.
@@ -248,31 +308,42 @@ std::function<std::vector<Frame>()> made_frames(std::size_t count, Lens lens, Ma
     };
 }
 
-void add_field(const std::string& set, float median, double footprint, bool quick) {
+/// All that is timed of one of the made sets. median 0: the near set.
+void add_set(const std::string& set, float median, double footprint, bool quick) {
     const auto make = [median](std::size_t count, std::uint32_t seed) {
         return median > 0 ? field(count, median, seed) : near_eye(count, seed);
     };
-    const std::vector<std::size_t> numbers =
-        quick ? std::vector<std::size_t>{256, 4096}
-              : std::vector<std::size_t>{1, 256, 1000, 4096, 10000, 100000, 1000000};
-    const std::vector<int> tile_sizes = quick ? std::vector<int>{16, 32} : std::vector<int>{8, 16, 32, 64};
-    for (const std::size_t n : numbers)
-        for (const int tile : tile_sizes) {
-            const bool in_goals = n >= 256 && n <= 10000;
-            if (!in_goals && tile != 32) continue;
+    const auto add_number = [&](std::size_t n, bool in_goals) {
+        for (const int tile : {8, 16, 32, 64}) {
+            const bool often = tile == 16 || tile == 32;
+            if (tile != 32 && (!in_goals || (quick && !often))) continue;
             if (footprint * double(n) * 1024 / (tile * tile) > 6e7) continue;  // gigabytes of lists
             const Case which = {set, n, tile, made_frames(n, {}, make)};
-            add_tiers<DepthTest::none>(which);
-            if (in_goals && (tile == 16 || tile == 32) && (median == field20_median || n == 4096))
-                add_tiers<DepthTest::interval>(which);
+            add_tiers(which);
+            if (in_goals && often && (median == field20_median || (n == 4096 && tile == 32)))
+                add_rungs(which);
+            if (tile == 32 && n == 10000)
+                add_tiers<DepthTest::none, Footprint::rectangle, Index::u16>(
+                    {set + "-u16", n, tile, which.frames});
+            if (tile == 32 && (n == 256 || n >= 10000)) add_threads(which);
         }
-    if (median == field4_median || median == field20_median) {
         Lens uhd;
         uhd.screen = {3840, 2160};
-        for (const std::size_t n : numbers)
-            if (n == 256 || n == 10000)
-                add_tiers<DepthTest::none>({set + "-4k", n, 16, made_frames(n, uhd, make)});
-    }
+        if (footprint <= 20 && (n == 256 || n == 10000))
+            add_tiers({set + "-4k", n, 16, made_frames(n, uhd, make)});
+    };
+    for (const std::size_t n : {256, 1000, 4096, 10000})
+        if (!quick || n == 256 || n == 4096) add_number(n, true);
+    for (const std::size_t n : {0, 1, 100000, 1000000})
+        if (!quick || n <= 1) add_number(n, false);
+}
+
+/// Lights 99 % of which are out of view: behind the eye, or to the side.
+Lights away(std::size_t count, std::uint32_t seed) {
+    Lights lights = field(count, field4_median, seed);
+    for (std::size_t i = 0; i < count; ++i)
+        if (i % 100 != 0) (i % 2 == 0 ? lights[i].z : lights[i].x) += 600;
+    return lights;
 }
 
 int run(int argc, char** argv) {
@@ -294,21 +365,24 @@ int run(int argc, char** argv) {
     if (benchmark::ReportUnrecognizedArguments(count, rest.data())) return 2;
     if (quick) seconds_a_case = 0.04;
 
-    add_field("field4", field4_median, 4, quick);
-    add_field("field20", field20_median, 20, quick);
-    add_field("field200", field200_median, 200, quick);
-    add_field("near", 0, 200, quick);
+    add_set("field4", field4_median, 4, quick);
+    add_set("field20", field20_median, 20, quick);
+    add_set("field200", field200_median, 200, quick);
+    add_set("near", 0, 200, quick);
     for (const std::string& path : paths) {
-        const Scene scene = load_glb(path, 0.05f);
-        const auto frames = [scene] { return scene_frames(scene); };
-        const std::string set = scene.name.substr(0, scene.name.rfind('.'));
+        const std::vector<BenchScene> views = glb_scenes(path);
+        const std::string set = views[0].name.substr(0, views[0].name.rfind(':'));
+        const std::size_t lights = views[0].lights(0).size();
         for (const int tile : {8, 16, 32, 64})
-            if (!quick || tile == 32) add_tiers<DepthTest::none>({set, scene.lights.size(), tile, frames});
+            if (!quick || tile == 32)
+                add_tiers({set, lights, tile, [=] { return scene_frames(views, lights); }});
     }
+    add_tiers({"away", 1000000, 32, made_frames(1000000, {}, away)});
     Table table;
     benchmark::RunSpecifiedBenchmarks(&table);
     write_csv(results, "binning.csv");
     print_goals(results);
+    print_scale_goals(results);
     std::puts("\nwrote binning.csv");
     return EXIT_SUCCESS;
 }

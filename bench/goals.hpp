@@ -3,10 +3,13 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 struct Result {
@@ -20,6 +23,7 @@ struct Result {
     double spread;  ///< 10th to 90th percentile of the turns' own ratios
     double entries_per_light;
     double store_ratio;  ///< to storing the light index list once
+    double clear_ratio;  ///< to clearing the tile table
 };
 
 inline void write_csv(const std::vector<Result>& results, const char* path) {
@@ -107,4 +111,54 @@ inline void print_goals(const std::vector<Result>& results) {
             }
             std::printf("\n");
         }
+}
+
+/// Worst over the results that `covers` picks; 0 where there is none.
+inline double worst(const std::vector<Result>& results, const std::function<bool(const Result&)>& covers,
+                    const std::function<double(const Result&)>& figure) {
+    double most = 0;
+    for (const Result& r : results)
+        if (covers(r)) most = std::max(most, figure(r));
+    return most;
+}
+
+/// The goals that are not a ratio to the baseline at equal work, tier by tier.
+inline void print_scale_goals(const std::vector<Result>& results) {
+    std::printf("\n%-56s %-8s %6s %6s %9s\n", "scale", "tier", "must", "aim", "measured");
+    for (const std::string tier : {"avx512", "avx2", "sse2", "scalar"}) {
+        const auto pick = [&](const char* set, std::size_t n, int threads, auto figure) {
+            return worst(
+                results,
+                [&](const Result& r) {
+                    return r.set == set && r.lights == n && r.threads == threads && r.tier == tier &&
+                           r.tile_size == (r.set.ends_with("4k") ? 16 : 32) && r.depth_test == "none" &&
+                           r.footprint == "rectangle";
+                },
+                figure);
+        };
+        const auto print = [&](const char* what, double must, double aim, double measured,
+                               bool more_is_better) {
+            if (!(measured > 0) || std::isinf(measured)) return;
+            std::printf("%-56s %-8s %6.2f %6.2f %9.2f %s\n", what, tier.c_str(), must, aim, measured,
+                        (more_is_better ? measured < must : measured > must) ? "MISS" : "");
+        };
+        const auto clears = [](const Result& r) { return r.clear_ratio; };
+        const auto ratio = [](const Result& r) { return r.ratio; };
+        const auto ns = [](const Result& r) { return r.ns_per_light; };
+        print("no light, to clearing the tile table", 2, 1.2, pick("field4", 0, 1, clears), false);
+        print("one light (field20), to clearing the tile table", 2, 1.2, pick("field20", 1, 1, clears),
+              false);
+        print("4K, 16 px, 256 small lights (field4), to flat", 0.6, 0.35, pick("field4-4k", 256, 1, ratio),
+              false);
+        print("1,000,000 lights, 99 % out of view, ns a light", 1.5, 0.6, pick("away", 1000000, 1, ns),
+              false);
+        print("field4, ns a light, 1,000,000 to 10,000", 1.5, 1.1,
+              pick("field4", 1000000, 1, ns) / pick("field4", 10000, 1, ns), false);
+        for (const auto& [what, set, n] :
+             {std::tuple("2 threads, 10,000 of field200, times as fast", "field200", 10000),
+              std::tuple("2 threads, 10,000 of field20, times as fast", "field20", 10000),
+              std::tuple("2 threads, 256 of field4, times as fast (no goal)", "field4", 256)})
+            print(what, n == 256 ? 0 : 1.5, n == 256 ? 0 : 1.9,
+                  pick(set, std::size_t(n), 1, ratio) / pick(set, std::size_t(n), 2, ratio), true);
+    }
 }

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <span>
 
-/// One light and the piece of space that a tile's lists are for, as the rungs of the ladder see them.
+/// One light and one tile, as the rungs of the ladder see them.
 class PairTest {
 public:
     PairTest(const FlatView& view, const lightbin::ZBounds& bounds) : view_(view), bounds_(bounds) {}
@@ -47,12 +47,22 @@ public:
         return distance2(low) <= r * r;
     }
 
-    bool passes(lightbin::DepthTest test, const glm::vec4& light, int tile_x, int tile_y) const {
-        if (test == lightbin::DepthTest::none) return true;
+    /// Whether a light whose rectangle has the tile stays in its list.
+    bool passes(lightbin::Footprint footprint, lightbin::DepthTest test, const glm::vec4& light, int tile_x,
+                int tile_y) const {
+        using lightbin::DepthTest;
+        if (footprint == lightbin::Footprint::silhouette && !meets_pyramid(light, tile_x, tile_y))
+            return false;
+        if (test == DepthTest::none) return true;
         const std::size_t tile = std::size_t(tile_y * view_.tiles_x + tile_x);
         const double min = double(bounds_.min[tile]), max = double(bounds_.max[tile]);
         const double z = -double(light.z), r = double(light.w);
-        return z + r >= min && z - r <= max;
+        if (z + r < min || z - r > max) return false;
+        if (test == DepthTest::interval) return true;
+        const double gap_min = double(bounds_.gap_min[tile]), gap_max = double(bounds_.gap_max[tile]);
+        if (test == DepthTest::box || !(gap_min < gap_max)) return meets_box(light, tile_x, tile_y, min, max);
+        return meets_box(light, tile_x, tile_y, min, gap_min) ||
+               meets_box(light, tile_x, tile_y, gap_max, max);
     }
 
 private:

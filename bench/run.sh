@@ -22,7 +22,7 @@ binning)
     ;;
 esac
 
-install_packages g++ cmake ninja-build libglm-dev libbenchmark-dev libtinygltf-dev
+install_packages g++ cmake ninja-build libglm-dev libbenchmark-dev libtbb-dev libtinygltf-dev
 
 make_build_folder
 echo "$me: building in build/bench"
