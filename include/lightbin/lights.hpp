@@ -7,10 +7,10 @@
 #include <lightbin/result.hpp>
 
 #include <algorithm>
-#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <ranges>
 #include <span>
@@ -148,17 +148,34 @@ const Lights<Light, ToViewSphere>& as_lights(const Lights<Light, ToViewSphere>& 
     return lights;
 }
 
-/// Calls consume(spheres, count, first_id) for the lights in order, a block at a time, so that kernels can be
-/// plain functions.
-template <class Light, class ToViewSphere, class Consume>
-void for_each_block(const Lights<Light, ToViewSphere>& lights, Consume consume) {
-    std::array<Sphere, 64> block;
-    for (std::size_t first = 0; first < lights.array.size(); first += block.size()) {
-        const std::size_t count = (std::min)(block.size(), lights.array.size() - first);
-        for (std::size_t i = 0; i < count; ++i)
-            block[i] = std::invoke(lights.to_view_sphere, lights.array[first + i]);
-        consume(block.data(), static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(first));
+/// The caller's array as spheres, if its elements are Spheres, or vec4s laid out like them, and are not to be
+/// moved; else null. Read it with load_sphere.
+template <class Light, class ToViewSphere>
+const Sphere* as_they_are(const Lights<Light, ToViewSphere>& lights) {
+    if constexpr (std::is_same_v<ToViewSphere, AsSphere> && sizeof(Light) == sizeof(Sphere) &&
+                  std::is_trivially_copyable_v<Light>) {
+        if (lights.array.empty()) return nullptr;
+        const void* const array = lights.array.data();
+        if constexpr (std::is_same_v<Light, Sphere>) {
+            return lights.array.data();
+        } else if constexpr (std::is_same_v<decltype(Light::x), float>) {
+            const Light& first = lights.array.front();
+            const auto at = [&](const auto& member) {
+                return static_cast<const char*>(static_cast<const void*>(&member)) -
+                       static_cast<const char*>(array);
+            };
+            if (at(first.x) == 0 && at(first.y) == 4 && at(first.z) == 8 && at(first.w) == 12)
+                return static_cast<const Sphere*>(array);
+        }
     }
+    return nullptr;
+}
+
+/// Reads bytes, which may be of any type.
+inline Sphere load_sphere(const Sphere* from) {
+    Sphere sphere;
+    std::memcpy(&sphere, from, sizeof sphere);
+    return sphere;
 }
 
 }  // namespace detail

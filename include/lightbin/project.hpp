@@ -12,8 +12,10 @@
 #include <lightbin/view.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 
 namespace lightbin {
@@ -30,9 +32,15 @@ public:
     /// tile that the part of its sphere beyond the near plane projects to; it is the smallest such rectangle
     /// but for the rounding margin of the view.
     template <class Light, class ToViewSphere>
-    void project(Isa isa, const View& view, const Lights<Light, ToViewSphere>& lights, const Parallel&) {
+    void project(Isa isa, const View& view, const Lights<Light, ToViewSphere>& lights,
+                 const Parallel& parallel) {
         lights_ = lights.array.size();
-        const std::size_t room = lights_ + detail::FootprintArrays::padding;
+        // A few parts a worker, so that a late one costs little; serial work is one part.
+        const std::size_t parts = parallel.workers() > 1 && lights_ >= 2 * smallest_part
+                                      ? (std::min)(lights_ / smallest_part, 4 * parallel.workers())
+                                      : 1;
+        const std::size_t size = lights_ / parts + 1, stride = size + detail::FootprintArrays::padding;
+        const std::size_t room = parts * stride;
         arrays_ = {.ids = ids_.room(room),
                    .x0 = x0_.room(room),
                    .y0 = y0_.room(room),
@@ -40,16 +48,46 @@ public:
                    .y1 = y1_.room(room),
                    .span_begin = nullptr,
                    .spans = nullptr,
-                   .spheres = nullptr};
+                   .spheres = detail::as_they_are(lights)};
+        const bool move = arrays_.spheres == nullptr;
         Sphere* kept = nullptr;
-        if constexpr (with_spheres) arrays_.spheres = kept = spheres_.room(room);
-        counts_ = {};
+        if constexpr (with_spheres)
+            if (move) arrays_.spheres = kept = spheres_.room(lights_);
+        detail::FootprintRun* runs = runs_.room(parts);
+        detail::ProjectCounts* counts = part_counts_.room(parts);
         const detail::ProjectKernel kernel = detail::project_kernel(isa);
-        detail::for_each_block(lights, [&](const Sphere* spheres, std::uint32_t n, std::uint32_t first_id) {
-            if constexpr (with_spheres) std::copy_n(spheres, n, kept + first_id);
-            kernel(view.camera(), spheres, n, first_id, arrays_, counts_);
+        parallel.run(parts, [&](std::size_t part) {
+            const std::size_t end = (std::min)((part + 1) * size, lights_);
+            const detail::FootprintArrays out = arrays_.from(part * stride);
+            detail::ProjectCounts sum;
+            const auto consume = [&](const Sphere* spheres, std::size_t first, std::size_t count) {
+                kernel(view.camera(), spheres, static_cast<std::uint32_t>(count),
+                       static_cast<std::uint32_t>(first), out, sum);
+            };
+            std::size_t first = (std::min)(part * size, lights_);
+            if (!move) {
+                consume(arrays_.spheres + first, first, end - first);
+            } else {
+                std::array<Sphere, detail::ChunkRects::size> block;
+                for (; first < end; first += block.size()) {
+                    const std::size_t count = (std::min)(block.size(), end - first);
+                    Sphere* to = with_spheres ? kept + first : block.data();
+                    for (std::size_t i = 0; i < count; ++i)
+                        to[i] = std::invoke(lights.to_view_sphere, lights.array[first + i]);
+                    consume(to, first, count);
+                }
+            }
+            counts[part] = sum;
+            const std::uint32_t begin = static_cast<std::uint32_t>(part * stride);
+            runs[part] = {begin, begin + sum.visible};
         });
-        run_ = {0, counts_.visible};
+        run_count_ = parts;
+        counts_ = {};
+        for (std::size_t part = 0; part < parts; ++part) {
+            counts_.visible += counts[part].visible;
+            counts_.rejected += counts[part].rejected;
+            counts_.area += counts[part].area;
+        }
     }
 
     std::size_t lights() const { return lights_; }
@@ -57,15 +95,18 @@ public:
     std::uint32_t rejected() const { return counts_.rejected; }  ///< bad input, see Sphere
     std::uint64_t area() const { return counts_.area; }          ///< sum of the rectangles' tiles
     const detail::FootprintArrays& arrays() const { return arrays_; }
-    std::span<const detail::FootprintRun> runs() const { return {&run_, 1}; }
+    std::span<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
 
 private:
+    static constexpr std::size_t smallest_part = 4096;  ///< lights: less is not worth a thread's start
+
     detail::Buffer<std::uint32_t> ids_;
     detail::Buffer<std::uint16_t> x0_, y0_, x1_, y1_;
     detail::Buffer<Sphere> spheres_;
-    std::size_t lights_ = 0;
+    detail::Buffer<detail::FootprintRun> runs_;
+    detail::Buffer<detail::ProjectCounts> part_counts_;
+    std::size_t lights_ = 0, run_count_ = 0;
     detail::FootprintArrays arrays_ = {};
-    detail::FootprintRun run_ = {};
     detail::ProjectCounts counts_;
 };
 

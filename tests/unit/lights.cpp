@@ -36,6 +36,18 @@ TEST_CASE("vec4 arrays, Spheres and the user's own structs give the same bytes")
     CHECK(test::lists(view, view_space(own, to_sphere)) == expected);
     CHECK(test::lists(view, view_space(std::span<const glm::vec4>(spheres))) == expected);
 
+    struct Reversed {  // as large as a Sphere, and not laid out like one
+        float w, z, y, x;
+    };
+    std::vector<Reversed> reversed;
+    for (const glm::vec4& s : spheres)
+        reversed.push_back({s.w, s.z, s.y, s.x});
+    CHECK(test::lists(view, reversed) == expected);
+    constexpr Options interval = {.depth_test = DepthTest::interval};
+    const std::vector<float> low(view.tile_count(), 5.0f), high(view.tile_count(), 40.0f);
+    const ZBounds bounds = {.min = low, .max = high};
+    CHECK(test::lists<interval>(view, reversed, bounds) == test::lists<interval>(view, spheres, bounds));
+
     std::array<Sphere, 3> three = {plain[0], plain[1], plain[2]};
     CHECK(test::lists(view, three) ==
           test::lists(view, std::vector<Sphere>(plain.begin(), plain.begin() + 3)));

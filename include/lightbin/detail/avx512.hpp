@@ -372,7 +372,8 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
                             const std::uint64_t tiles =
                                 tiles_met(scratch.tile_min.data() + list * 64,
                                           scratch.tile_max.data() + list * 64,
-                                          job.bounds.of(job.lights.spheres[upper | ids[i + light]])) &
+                                          job.bounds.of(
+                                              load_sphere(job.lights.spheres + (upper | ids[i + light])))) &
                                 scratch.lit_tiles.data()[list];
                             for (unsigned row = 0; row < 8; ++row)
                                 by_row[row][light] = static_cast<std::uint8_t>(tiles >> 8 * row);

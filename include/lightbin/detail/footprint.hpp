@@ -36,8 +36,13 @@ struct FootprintArrays {
     std::uint32_t* span_begin;
     const RowSpan* spans;
 
-    /// With a depth test, by id, of all lights: view space as the caller has it.
+    /// With a depth test, by id, of all lights: view space as the caller has it. To be read with load_sphere.
     const Sphere* spheres;
+
+    /// The same arrays with their first `begin` elements left out.
+    FootprintArrays from(std::size_t begin) const {
+        return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin, span_begin, spans, spheres};
+    }
 };
 
 /// What the projection of some lights came to.

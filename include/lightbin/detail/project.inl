@@ -90,7 +90,7 @@ LIGHTBIN_TARGET inline void project_carefully(const Camera& camera, const Sphere
                                               ChunkRects& rects, unsigned* visible, ProjectCounts& counts) {
     Sphere gathered[lanes];
     for (std::uint32_t i = 0; i < lanes; ++i)
-        gathered[i] = spheres[places[i < count ? i : 0]];
+        gathered[i] = load_sphere(spheres + places[i < count ? i : 0]);
     Floats floats[4];
     load_spheres(gathered, floats[0], floats[1], floats[2], floats[3]);
     alignas(64) std::uint16_t x0[double_lanes], y0[double_lanes], x1[double_lanes], y1[double_lanes];
@@ -179,7 +179,7 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const Sphere* spheres,
             const std::uint32_t used = here - i < lanes ? here - i : lanes;
             if (used < lanes) {
                 for (std::uint32_t lane = 0; lane < lanes; ++lane)
-                    padded[lane] = block[lane < used ? lane : 0];
+                    padded[lane] = load_sphere(block + (lane < used ? lane : 0));
                 block = padded;
             }
             Floats x, y, z, r;

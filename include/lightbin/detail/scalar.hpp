@@ -42,10 +42,11 @@ inline double widened(float a, unsigned) {
     return static_cast<double>(a);
 }
 inline void load_spheres(const Sphere* spheres, float& x, float& y, float& z, float& radius) {
-    x = spheres->x;
-    y = spheres->y;
-    z = spheres->z;
-    radius = spheres->radius;
+    const Sphere sphere = load_sphere(spheres);
+    x = sphere.x;
+    y = sphere.y;
+    z = sphere.z;
+    radius = sphere.radius;
 }
 template <class Real> void store_tiles(std::uint16_t* tiles, Real value) {
     *tiles = static_cast<std::uint16_t>(value);
@@ -66,7 +67,9 @@ template <bool with_depth, class Id, class Visit> void for_each_pair(const BinJo
             for (std::size_t tile = y * width + lights.x0[light], last = y * width + lights.x1[light];
                  tile <= last; ++tile) {
                 if constexpr (with_depth)
-                    if (!job.bounds.meets(tile, job.bounds.of(lights.spheres[lights.ids[light]]))) continue;
+                    if (!job.bounds.meets(tile,
+                                          job.bounds.of(load_sphere(lights.spheres + lights.ids[light]))))
+                        continue;
                 visit(tile, light);
             }
 }

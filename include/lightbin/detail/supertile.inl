@@ -117,7 +117,8 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
                         std::uint64_t tiles =
                             tiles_met(scratch.tile_min.data() + list * 64,
                                       scratch.tile_max.data() + list * 64,
-                                      job.bounds.of(job.lights.spheres[scratch.list_ids.data()[first + light]])) &
+                                      job.bounds.of(load_sphere(job.lights.spheres +
+                                                                scratch.list_ids.data()[first + light]))) &
                             scratch.lit_tiles.data()[list];
                         const unsigned row_bits = rows[first + light], column_bits = columns[first + light];
                         for (unsigned row = 0; row < 8; ++row, tiles >>= 8)
