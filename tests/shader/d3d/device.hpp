@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+// A Direct3D 11 device that runs one shader at a time.
+#pragma once
+
+#include "../job.hpp"
+
+#include <d3d11.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+inline void check(HRESULT result, const char* what) {
+    if (SUCCEEDED(result)) return;
+    std::printf("%s: HRESULT %08lx\n", what, static_cast<unsigned long>(result));
+    std::exit(1);
+}
+
+/// A COM object, released with it.
+template <class T> class Com {
+public:
+    Com() = default;
+    Com(Com&& other) noexcept : object_(other.object_) { other.object_ = nullptr; }
+    Com& operator=(Com&&) = delete;
+    ~Com() {
+        if (object_) object_->Release();
+    }
+    T** out() { return &object_; }
+    T* operator->() const { return object_; }
+    T* get() const { return object_; }
+
+private:
+    T* object_ = nullptr;
+};
+
+class D3d11Device {
+public:
+    D3d11Device() {
+        const D3D_FEATURE_LEVEL level = D3D_FEATURE_LEVEL_11_0;
+        check(D3D11CreateDevice(nullptr, D3D_DRIVER_TYPE_HARDWARE, nullptr, 0, &level, 1, D3D11_SDK_VERSION,
+                                device_.out(), nullptr, context_.out()),
+              "a Direct3D 11 device of feature level 11_0");
+    }
+
+    /// Returns what the job's shader, given as byte code, wrote: the words of its result buffer, or four
+    /// words a pixel of its picture.
+    std::vector<std::uint32_t> run(const Job& job, const std::vector<char>& code,
+                                   const std::vector<char>& vertex_code) {
+        context_->ClearState();
+        std::vector<Com<ID3D11Buffer>> buffers(job.inputs.size());
+        for (std::size_t i = 0; i < job.inputs.size(); ++i)
+            bind(job.inputs[i], buffers[i]);
+        if (job.stage == Stage::fragment) return draw(job, code, vertex_code);
+        Com<ID3D11ComputeShader> shader;
+        check(device_->CreateComputeShader(code.data(), code.size(), nullptr, shader.out()), "compute shader");
+        context_->CSSetShader(shader.get(), nullptr, 0);
+        context_->Dispatch(job.groups[0], job.groups[1], 1);
+        return read(buffers[job.result].get(), job.inputs[job.result].bytes.size());
+    }
+
+private:
+    static DXGI_FORMAT texel_format(lightbin::TexelFormat format) {
+        using lightbin::TexelFormat;
+        switch (format) {
+        case TexelFormat::r8ui:
+            return DXGI_FORMAT_R8_UINT;
+        case TexelFormat::r16ui:
+            return DXGI_FORMAT_R16_UINT;
+        case TexelFormat::r32ui:
+            return DXGI_FORMAT_R32_UINT;
+        case TexelFormat::rg32ui:
+            return DXGI_FORMAT_R32G32_UINT;
+        default:
+            return DXGI_FORMAT_UNKNOWN;
+        }
+    }
+
+    void bind(const Input& input, Com<ID3D11Buffer>& buffer) {
+        using lightbin::ShaderResource;
+        const auto slot = static_cast<UINT>(input.binding.slot.binding);
+        const auto bytes = static_cast<UINT>(input.bytes.size());
+        D3D11_SUBRESOURCE_DATA data{input.bytes.data(), 0, 0};
+        if (input.binding.resource == ShaderResource::texture_2d) {
+            bind_texture(input, slot);
+            return;
+        }
+        D3D11_BUFFER_DESC info{};
+        info.ByteWidth = bytes;
+        D3D11_SHADER_RESOURCE_VIEW_DESC view{};
+        view.ViewDimension = D3D11_SRV_DIMENSION_BUFFEREX;
+        switch (input.binding.resource) {
+        case ShaderResource::uniform_block:
+            info.BindFlags = D3D11_BIND_CONSTANT_BUFFER;
+            break;
+        case ShaderResource::writable_buffer:
+            info.BindFlags = D3D11_BIND_UNORDERED_ACCESS;
+            info.MiscFlags = D3D11_RESOURCE_MISC_BUFFER_STRUCTURED;
+            break;
+        case ShaderResource::storage_buffer:
+            info.BindFlags = D3D11_BIND_SHADER_RESOURCE;
+            info.MiscFlags = D3D11_RESOURCE_MISC_BUFFER_STRUCTURED;
+            break;
+        case ShaderResource::byte_address:
+            info.BindFlags = D3D11_BIND_SHADER_RESOURCE;
+            info.MiscFlags = D3D11_RESOURCE_MISC_BUFFER_ALLOW_RAW_VIEWS;
+            view.Format = DXGI_FORMAT_R32_TYPELESS;
+            view.BufferEx.NumElements = bytes / 4;
+            view.BufferEx.Flags = D3D11_BUFFEREX_SRV_FLAG_RAW;
+            break;
+        default:  // texel_buffer
+            info.BindFlags = D3D11_BIND_SHADER_RESOURCE;
+            view.Format = texel_format(input.binding.format);
+            view.ViewDimension = D3D11_SRV_DIMENSION_BUFFER;
+            view.Buffer.NumElements = bytes / input.binding.stride;
+        }
+        if (info.MiscFlags & D3D11_RESOURCE_MISC_BUFFER_STRUCTURED) {
+            info.StructureByteStride = input.binding.stride;
+            view.BufferEx.NumElements = bytes / input.binding.stride;
+        }
+        check(device_->CreateBuffer(&info, &data, buffer.out()), "buffer");
+        if (info.BindFlags == D3D11_BIND_CONSTANT_BUFFER) {
+            ID3D11Buffer* constants = buffer.get();
+            context_->CSSetConstantBuffers(slot, 1, &constants);
+            context_->PSSetConstantBuffers(slot, 1, &constants);
+        } else if (info.BindFlags == D3D11_BIND_UNORDERED_ACCESS) {
+            Com<ID3D11UnorderedAccessView> writable;
+            check(device_->CreateUnorderedAccessView(buffer.get(), nullptr, writable.out()), "writable view");
+            ID3D11UnorderedAccessView* target = writable.get();
+            context_->CSSetUnorderedAccessViews(slot, 1, &target, nullptr);
+        } else {
+            set_view(buffer.get(), &view, slot);
+        }
+    }
+
+    void bind_texture(const Input& input, UINT slot) {
+        D3D11_TEXTURE2D_DESC info{};
+        info.Width = input.width;
+        info.Height = input.height;
+        info.MipLevels = info.ArraySize = info.SampleDesc.Count = 1;
+        info.Format = texel_format(input.binding.format);
+        info.BindFlags = D3D11_BIND_SHADER_RESOURCE;
+        const D3D11_SUBRESOURCE_DATA data{input.bytes.data(), input.width * input.binding.stride, 0};
+        Com<ID3D11Texture2D> texture;
+        check(device_->CreateTexture2D(&info, &data, texture.out()), "texture");
+        set_view(texture.get(), nullptr, slot);
+    }
+
+    void set_view(ID3D11Resource* resource, const D3D11_SHADER_RESOURCE_VIEW_DESC* info, UINT slot) {
+        Com<ID3D11ShaderResourceView> view;
+        check(device_->CreateShaderResourceView(resource, info, view.out()), "view");
+        ID3D11ShaderResourceView* bound = view.get();
+        context_->CSSetShaderResources(slot, 1, &bound);
+        context_->PSSetShaderResources(slot, 1, &bound);
+    }
+
+    std::vector<std::uint32_t> read(ID3D11Buffer* buffer, std::size_t bytes) {
+        D3D11_BUFFER_DESC info{};
+        info.ByteWidth = static_cast<UINT>(bytes);
+        info.Usage = D3D11_USAGE_STAGING;
+        info.CPUAccessFlags = D3D11_CPU_ACCESS_READ;
+        Com<ID3D11Buffer> copy;
+        check(device_->CreateBuffer(&info, nullptr, copy.out()), "staging buffer");
+        context_->CopyResource(copy.get(), buffer);
+        D3D11_MAPPED_SUBRESOURCE mapped;
+        check(context_->Map(copy.get(), 0, D3D11_MAP_READ, 0, &mapped), "map");
+        std::vector<std::uint32_t> words(bytes / 4);
+        std::memcpy(words.data(), mapped.pData, bytes);
+        context_->Unmap(copy.get(), 0);
+        return words;
+    }
+
+    // A triangle over the viewport, which lies at job.corner in a picture that is as much larger.
+    std::vector<std::uint32_t> draw(const Job& job, const std::vector<char>& code,
+                                    const std::vector<char>& vertex_code) {
+        D3D11_TEXTURE2D_DESC info{};
+        info.Width = job.width + job.corner[0];
+        info.Height = job.height + job.corner[1];
+        info.MipLevels = info.ArraySize = info.SampleDesc.Count = 1;
+        info.Format = DXGI_FORMAT_R32G32B32A32_UINT;
+        info.BindFlags = D3D11_BIND_RENDER_TARGET;
+        Com<ID3D11Texture2D> picture, copy;
+        check(device_->CreateTexture2D(&info, nullptr, picture.out()), "picture");
+        Com<ID3D11RenderTargetView> view;
+        check(device_->CreateRenderTargetView(picture.get(), nullptr, view.out()), "render target");
+        ID3D11RenderTargetView* target = view.get();
+        context_->OMSetRenderTargets(1, &target, nullptr);
+        Com<ID3D11VertexShader> vertex;
+        check(device_->CreateVertexShader(vertex_code.data(), vertex_code.size(), nullptr, vertex.out()),
+              "vertex shader");
+        Com<ID3D11PixelShader> pixel;
+        check(device_->CreatePixelShader(code.data(), code.size(), nullptr, pixel.out()), "pixel shader");
+        context_->VSSetShader(vertex.get(), nullptr, 0);
+        context_->PSSetShader(pixel.get(), nullptr, 0);
+        context_->IASetPrimitiveTopology(D3D11_PRIMITIVE_TOPOLOGY_TRIANGLELIST);
+        const D3D11_VIEWPORT viewport{static_cast<float>(job.corner[0]), static_cast<float>(job.corner[1]),
+                                      static_cast<float>(job.width),     static_cast<float>(job.height), 0, 1};
+        context_->RSSetViewports(1, &viewport);
+        context_->Draw(3, 0);
+
+        info.BindFlags = 0;
+        info.Usage = D3D11_USAGE_STAGING;
+        info.CPUAccessFlags = D3D11_CPU_ACCESS_READ;
+        check(device_->CreateTexture2D(&info, nullptr, copy.out()), "staging picture");
+        context_->CopyResource(copy.get(), picture.get());
+        D3D11_MAPPED_SUBRESOURCE mapped;
+        check(context_->Map(copy.get(), 0, D3D11_MAP_READ, 0, &mapped), "map");
+        std::vector<std::uint32_t> words(std::size_t{4} * job.width * job.height);
+        for (std::size_t y = 0; y < job.height; ++y)
+            std::memcpy(words.data() + 4 * job.width * y,
+                        static_cast<const char*>(mapped.pData) + (y + job.corner[1]) * mapped.RowPitch +
+                            std::size_t{16} * job.corner[0],
+                        std::size_t{16} * job.width);
+        context_->Unmap(copy.get(), 0);
+        return words;
+    }
+
+    Com<ID3D11Device> device_;
+    Com<ID3D11DeviceContext> context_;
+};

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// A shader to run, what it reads and what it must write. OpenGL, Vulkan and Direct3D each have a runner.
+#pragma once
+
+#include <lightbin/shader_text.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+enum class Stage : std::uint8_t { compute, fragment };
+
+struct Input {
+    lightbin::ShaderBinding binding;
+    std::vector<std::byte> bytes;
+    std::uint32_t width = 0, height = 0;  // texture_2d
+};
+
+struct Job {
+    std::string name;
+    std::string text;
+    bool hlsl = false;
+    Stage stage = Stage::compute;
+    std::vector<Input> inputs;
+    std::size_t result = 0;                          // compute: the input that the shader writes
+    std::array<std::uint32_t, 2> groups = {1, 1};    // compute
+    std::uint32_t width = 0, height = 0;             // fragment: of the viewport
+    std::array<std::uint32_t, 2> corner = {0, 0};    // fragment: where in the picture the viewport begins
+    std::vector<std::uint32_t> expected;             // fragment: 4 words a pixel, rows as the shader counts them
+};

@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: MIT
+// Every form of the snippet, a shader around each that tells what every pixel reads, and what it must be.
+#pragma once
+
+#include "job.hpp"
+
+#include <lightbin/lightbin.hpp>
+#include <lightbin/shader.hpp>
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+struct ScreenSize {
+    int width, height, tile_size;
+};
+
+inline const char* name_of(lightbin::ShaderLanguage language) {
+    constexpr const char* names[] = {"glsl_330", "glsl_430", "glsl_vulkan", "essl_300",
+                                     "essl_310", "hlsl_5_0", "hlsl_5_1"};
+    return names[static_cast<int>(language)];
+}
+
+inline std::string name_of(const lightbin::ShaderOptions& options) {
+    constexpr const char* storages[] = {"storage_buffer", "texel_buffer", "texture_2d", "uniform_block",
+                                        "byte_address"};
+    constexpr const char* encodings[] = {"offset_count", "sentinel", "bitmask"};
+    std::string name = std::string(name_of(options.language)) + " " +
+                       storages[static_cast<int>(options.storage)] + " " +
+                       encodings[static_cast<int>(options.format.encoding)] + " " +
+                       std::to_string(8 * static_cast<int>(options.format.ids)) + " bits";
+    const auto option = [&](bool on, const char* word) {
+        if (on) name += std::string(", ") + word;
+    };
+    option(options.packed_ids, "packed");
+    option(options.tiles_in_uniform_block, "tiles in a block");
+    option(options.push_constants, "push constants");
+    option(options.tile_size != 0, "constant tile size");
+    option(options.flip_y, "flipped");
+    option(options.viewport_corner, "corner");
+    option(options.heat_map, "heat map");
+    return name;
+}
+
+/// Every place and writing of the lists that a language has; the other options are as given.
+inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions options) {
+    using namespace lightbin;
+    const detail::Dialect dialect = detail::dialect(options.language);
+    std::vector<ShaderOptions> every;
+    for (const ListStorage storage : {ListStorage::storage_buffer, ListStorage::texel_buffer,
+                                      ListStorage::texture_2d, ListStorage::uniform_block,
+                                      ListStorage::byte_address}) {
+        if ((storage == ListStorage::storage_buffer && !dialect.storage_buffers) ||
+            (storage == ListStorage::texel_buffer && !dialect.texel_buffers) ||
+            (storage == ListStorage::byte_address && !dialect.hlsl))
+            continue;
+        options.storage = storage;
+        const bool texels = storage == ListStorage::texel_buffer || storage == ListStorage::texture_2d;
+        for (const ListEncoding encoding :
+             {ListEncoding::offset_count, ListEncoding::sentinel, ListEncoding::bitmask})
+            for (const IdWidth ids : {IdWidth::u8, IdWidth::u16, IdWidth::u32}) {
+                if (encoding == ListEncoding::bitmask && ids != IdWidth::u32) continue;
+                options.format = {encoding, ids, encoding == ListEncoding::sentinel ? 5u : 0u,
+                                  encoding == ListEncoding::bitmask ? 100u : 0u};
+                for (const bool packed : {false, true})
+                    for (const bool block : {false, true}) {
+                        if (packed && (!texels || ids == IdWidth::u32)) continue;
+                        if (block && (encoding != ListEncoding::offset_count ||
+                                      storage == ListStorage::uniform_block))
+                            continue;
+                        options.packed_ids = packed;
+                        options.tiles_in_uniform_block = block;
+                        every.push_back(options);
+                    }
+            }
+    }
+    return every;
+}
+
+/// Whole numbers that make up every set of options that are on or off.
+struct Switches {
+    static constexpr unsigned count = 16;
+    static lightbin::ShaderOptions set(lightbin::ShaderOptions options, unsigned switches) {
+        options.flip_y = switches & 1;
+        options.viewport_corner = switches & 2;
+        options.tile_size = switches & 4 ? 16 : 0;
+        options.heat_map = switches & 8;
+        return options;
+    }
+};
+
+/// Every set of options for a language, in which each is on and off. Bindings are numbered so that no two
+/// kinds share a number: glslang puts the registers t, u and b of HLSL in one row.
+inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguage language) {
+    std::vector<lightbin::ShaderOptions> every;
+    const lightbin::detail::Dialect dialect = lightbin::detail::dialect(language);
+    for (const bool push : {false, true}) {
+        if (push && !dialect.vulkan) continue;
+        const int set = dialect.spaces ? 1 : 0;
+        for (const lightbin::ShaderOptions& list :
+             every_list({.language = language,
+                         .texture_width = 37,  // no power of two
+                         .max_tiles = 100,
+                         .max_entries = 400,
+                         .uniform_block_bytes = 65536,
+                         .tiles = {3, set},
+                         .lists = {4, set},
+                         .grid = {5, 0},
+                         .push_constants = push,
+                         .prefix = set ? "my_" : "lightbin_"}))
+            for (unsigned switches = 0; switches < Switches::count; ++switches)
+                every.push_back(Switches::set(list, switches));
+    }
+    return every;
+}
+
+/// Where in the window the viewport begins.
+constexpr int corner_x = 3, corner_y = 5;
+
+constexpr int result_binding = 2;  // compute
+
+/// Returns a whole shader. It writes for every pixel: its tile, the length of its list, and two sums over the
+/// ids that depend on their order.
+inline std::string reader_text(const lightbin::ShaderOptions& options, const lightbin::ShaderText& snippet,
+                               Stage stage, std::uint32_t width, std::uint32_t height) {
+    using lightbin::ShaderLanguage;
+    const lightbin::detail::Dialect dialect = lightbin::detail::dialect(options.language);
+    const std::string prefix(options.prefix), binding = std::to_string(result_binding);
+    const auto pair = [](auto x, auto y) {
+        return "uvec2(" + std::to_string(x) + "u, " + std::to_string(y) + "u)";
+    };
+    std::string text;
+    if (!dialect.hlsl) {
+        text += options.language == ShaderLanguage::glsl_330   ? "#version 330 core\n"
+                : options.language == ShaderLanguage::glsl_430 ? "#version 430 core\n"
+                : options.language == ShaderLanguage::essl_300 ? "#version 300 es\n"
+                : options.language == ShaderLanguage::essl_310 ? "#version 310 es\n"
+                                                               : "#version 450\n";
+    }
+    text += snippet.text + "\n";
+    if (dialect.hlsl) text += "#define highp\n#define uvec2 uint2\n#define uvec4 uint4\n";
+    text += R"(
+uvec4 read_list(highp uvec2 pixel) {
+    highp uint hash = 2166136261u;
+    highp uint sum = 0u;
+    highp uint count = 0u;
+    )" + prefix +
+            R"(for_each_light(light, pixel) {
+        hash = (hash ^ light.id) * 16777619u;
+        count += 1u;
+        sum += count * light.id;
+    }
+)";
+    if (options.heat_map)
+        text += "    if (" + prefix + "count(pixel) != count || " + prefix +
+                "heat(pixel, 8.0).x > 1.0) hash += 1u;\n";
+    text += "    highp uvec2 tile = " + prefix +
+            "tile(pixel);\n    return uvec4(tile.x + (tile.y << 16u), count, hash, sum);\n}\n\n";
+
+    if (stage == Stage::compute) {
+        const std::string add_corner = options.viewport_corner ? " + " + pair(corner_x, corner_y) : "";
+        const std::string size = pair(width, height);
+        if (dialect.hlsl)
+            text += "RWStructuredBuffer<uint4> result : register(u" + binding + ");\n" +
+                    "[numthreads(8, 8, 1)] void main(uint3 id : SV_DispatchThreadID) {\n" +
+                    "    uint2 pixel = id.xy;\n";
+        else
+            text += "layout(local_size_x = 8, local_size_y = 8) in;\nlayout(std430, binding = " + binding +
+                    ") writeonly buffer result_block {\n    highp uvec4 result[];\n};\n" +
+                    "void main() {\n    highp uvec2 pixel = gl_GlobalInvocationID.xy;\n";
+        return text + "    highp uvec2 size = " + size +
+               ";\n    if (pixel.x < size.x && pixel.y < size.y)\n"
+               "        result[pixel.y * size.x + pixel.x] = read_list(pixel" +
+               add_corner + ");\n}\n";
+    }
+    const std::string less_corner = options.viewport_corner ? "" : " - " + pair(corner_x, corner_y);
+    if (dialect.hlsl)
+        return text + "uint4 main(float4 position : SV_Position) : SV_Target {\n    return read_list(uint2("
+                      "position.xy)" +
+               less_corner + ");\n}\n";
+    return text + (dialect.vulkan ? "layout(location = 0) " : "") +
+           "out highp uvec4 colour;\nvoid main() {\n    colour = read_list(uvec2(gl_FragCoord.xy)" +
+           less_corner + ");\n}\n";
+}
+
+/// About 40 of `count` spheres are in view, the last among them; the others are behind the eye.
+inline std::vector<lightbin::Sphere> reader_lights(std::size_t count) {
+    std::mt19937 engine(5);
+    const auto number = [&](float low, float high) {
+        return low + (high - low) * static_cast<float>(engine() >> 8) / 16777216.0f;
+    };
+    std::vector<lightbin::Sphere> lights(count, {0, 0, 5, 1});
+    for (std::size_t i = 1; i <= 40; ++i) {
+        const float z = -number(2, 20);
+        lights[count * i / 40 - 1] = {number(-0.8f, 0.8f) * z, number(-0.6f, 0.6f) * z, z,
+                                      number(0.05f, 0.2f) * -z};
+    }
+    return lights;
+}
+
+/// The bytes of what a snippet binds.
+inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin::ShaderOptions& options,
+                          const lightbin::ShaderGrid& constants, const lightbin::View& view,
+                          std::span<const lightbin::Tile> tiles, std::span<const std::byte> lists) {
+    const std::string name = binding.name.substr(options.prefix.size());
+    Input input;
+    input.binding = binding;
+    std::span<const std::byte> data = lists;
+    if (name.starts_with("grid"))
+        data = std::as_bytes(std::span(&constants, 1));
+    else if (name.starts_with("corner"))
+        data = std::as_bytes(std::span(&constants.corner_x, 2));
+    else if (name.starts_with("tiles"))
+        data = std::as_bytes(tiles);
+    if (binding.bytes != 0 && data.size() > binding.bytes) data = data.first(binding.bytes);
+    input.bytes.assign(data.begin(), data.end());
+    std::size_t size = (std::max)({input.bytes.size(), std::size_t{binding.bytes}, std::size_t{16}});
+    if (binding.resource == lightbin::ShaderResource::texture_2d) {
+        input.width = binding.width ? binding.width : static_cast<std::uint32_t>(view.tiles_x());
+        const std::size_t row = std::size_t{input.width} * binding.stride;
+        input.height = static_cast<std::uint32_t>((size + row - 1) / row);
+        size = row * input.height;
+    }
+    input.bytes.resize(size, std::byte{0xee});
+    return input;
+}
+
+/// Returns a run of a snippet, fit to a screen: options.tile_size other than 0 becomes that of the screen.
+inline Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& screen) {
+    using namespace lightbin;
+    constexpr float projection[4][4] = {{1.2f, 0, 0, 0}, {0, 1.7f, 0, 0}, {0, 0, -1.01f, -1}, {0, 0, -0.2f, 0}};
+    const auto view = View::from_projection(projection, {screen.width, screen.height},
+                                            {.tile_size = screen.tile_size});
+    Binner<> binner;
+    const std::size_t lights = options.format.encoding == ListEncoding::bitmask ? options.format.max_lights
+                               : options.format.ids == IdWidth::u8              ? 200
+                               : options.format.ids == IdWidth::u16             ? 50000
+                                                                                : 100000;
+    const auto grid = binner.bin(*view, reader_lights(lights));
+    std::vector<std::byte> lists(encoded_bytes(options.format, grid->tiles().size(), grid->indices().size()));
+    Job job;
+    job.name = name_of(options) + (stage == Stage::compute ? ", compute, " : ", fragment, ") +
+               std::to_string(screen.width) + "x" + std::to_string(screen.height) + ", tile " +
+               std::to_string(screen.tile_size);
+    if (options.tile_size != 0) options.tile_size = screen.tile_size;
+    options.max_tiles = static_cast<std::uint32_t>(grid->tiles().size());
+    options.max_entries = static_cast<std::uint32_t>(grid->indices().size()) + 1;  // 0 would be unknown
+    const auto snippet = shader_snippet(options);
+    if (!snippet || !encode(*grid, options.format, lists)) return job;  // no text: the runner refuses it
+
+    job.stage = stage;
+    job.hlsl = detail::dialect(options.language).hlsl;
+    job.width = static_cast<std::uint32_t>(screen.width);
+    job.height = static_cast<std::uint32_t>(screen.height);
+    job.corner = {corner_x, corner_y};
+    job.groups = {(job.width + 7) / 8, (job.height + 7) / 8};
+    job.text = reader_text(options, *snippet, stage, job.width, job.height);
+    const ShaderGrid constants = shader_grid(*view, corner_x, corner_y);
+    for (const ShaderBinding& binding : snippet->bindings)
+        job.inputs.push_back(reader_input(binding, options, constants, *view, grid->tiles(), lists));
+
+    for (int y = 0; y < screen.height; ++y)
+        for (int x = 0; x < screen.width; ++x) {
+            const int tx = x / screen.tile_size,
+                      ty = (options.flip_y ? screen.height - 1 - y : y) / screen.tile_size;
+            std::uint32_t hash = 2166136261u, sum = 0, count = 0;
+            for (const std::uint32_t id : grid->lights_in(tx, ty)) {
+                if (options.format.encoding == ListEncoding::sentinel && count == options.format.capacity) break;
+                hash = (hash ^ id) * 16777619u;
+                sum += ++count * id;
+            }
+            for (const std::uint32_t word :
+                 {static_cast<std::uint32_t>(tx + (ty << 16)), count, hash, sum})
+                job.expected.push_back(word);
+        }
+    if (stage == Stage::compute) {
+        job.result = job.inputs.size();
+        Input result;
+        result.binding = {"result_block", ShaderResource::writable_buffer, {result_binding, 0},
+                          TexelFormat::none, 16, 0, 0};
+        result.bytes.resize(job.expected.size() * 4, std::byte{0xee});
+        job.inputs.push_back(result);
+    }
+    return job;
+}
+
+/// A run that is not put together yet.
+struct ReaderRun {
+    lightbin::ShaderOptions options;
+    Stage stage;
+    ScreenSize screen;
+    Job job() const { return reader_job(options, stage, screen); }
+};
+
+/// What a language runs: every list, flipped and not, in fragment and compute shaders, at each small screen;
+/// the other options take turns. At the large screen: one width of ids.
+inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language) {
+    constexpr ScreenSize small[] = {{33, 17, 1}, {33, 17, 7}, {33, 17, 16}, {33, 17, 64}, {1, 1, 1}, {1, 1, 64}};
+    constexpr ScreenSize large = {1919, 1079, 32};
+    std::vector<ReaderRun> runs;
+    const auto every = every_reader(language);
+    const bool computes = lightbin::detail::dialect(language).storage_buffers;
+    unsigned turn = 0;
+    for (std::size_t list = 0; list < every.size(); list += Switches::count)
+        for (unsigned flip = 0; flip < 2; ++flip)
+            for (const Stage stage : {Stage::fragment, Stage::compute}) {
+                if (stage == Stage::compute && !computes) continue;
+                const auto add = [&](const ScreenSize& screen) {
+                    turn = (turn + 1) % (Switches::count / 2);
+                    runs.push_back({every[list + 2 * turn + flip], stage, screen});
+                };
+                for (const ScreenSize& screen : small)
+                    add(screen);
+                if (every[list].format.ids == lightbin::IdWidth::u16 ||
+                    every[list].format.encoding == lightbin::ListEncoding::bitmask)
+                    add(large);
+            }
+    return runs;
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// GLSL and HLSL to SPIR-V by glslang, in this process.
+#pragma once
+
+#include <glslang/Public/ResourceLimits.h>
+#include <glslang/Public/ShaderLang.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/// Returns SPIR-V for Vulkan 1.0, or nothing with the reason in `error`.
+inline std::vector<std::uint32_t> compile_spirv(const std::string& text, EShLanguage stage, bool hlsl,
+                                                std::string& error) {
+    static const bool ready = glslang::InitializeProcess();
+    const auto language = hlsl ? glslang::EShSourceHlsl : glslang::EShSourceGlsl;
+    glslang::TShader shader(stage);
+    const char* begin = text.c_str();
+    shader.setStrings(&begin, 1);
+    shader.setEntryPoint("main");
+    shader.setEnvInput(language, stage, glslang::EShClientVulkan, 100);
+    shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_0);
+    shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_0);
+    auto rules = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
+    if (hlsl) rules = static_cast<EShMessages>(rules | EShMsgReadHlsl);
+    glslang::TProgram program;
+    program.addShader(&shader);
+    std::vector<std::uint32_t> spirv;
+    if (ready && shader.parse(GetDefaultResources(), 100, false, rules) && program.link(rules))
+        glslang::GlslangToSpv(*program.getIntermediate(stage), spirv);
+    error = std::string(shader.getInfoLog()) + program.getInfoLog();
+    return spirv;
+}

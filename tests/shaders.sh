@@ -1,0 +1,120 @@
+#!/bin/sh
+# Proves the generated shader text in what the normal test run lacks: `sh tests/shaders.sh` on Debian 12, as root
+# or with sudo. Vulkan under its validation layer, Microsoft's compilers (fxc, dxc) and Direct3D 11 under Wine.
+# Installs what is missing; what can't be had is skipped, and the summary says so. Takes about 10 minutes.
+set -eu
+me=tests/shaders.sh
+cd "$(dirname "$0")/.."
+. tests/packages.sh
+
+jobs=$(nproc)
+make_build_folder
+out=$(pwd)/build/shaders
+mkdir -p "$out"
+: >"$out/summary"
+
+# note PART WORDS: a line for now and for the summary.
+note() {
+    part=$1
+    shift
+    echo "$me: $part: $*"
+    echo "  $part: $*" >>"$out/summary"
+}
+
+# have PART PACKAGES: whether the packages are there or could be installed.
+have() {
+    part=$1
+    shift
+    (install_packages "$@") && return
+    note "$part" "SKIPPED, as the Debian packages are not to be had: $*"
+    return 1
+}
+
+# run PART PROGRAM ARGUMENTS: runs the program once a processor, each with its share of the work, and waits.
+run() {
+    part=$1
+    shift
+    echo "$me: $part"
+    processes=
+    for share in $(seq 0 $((jobs - 1))); do
+        timeout 1200 "$@" "$share" "$jobs" >"$out/log.$share" 2>&1 &
+        processes="$processes $!"
+    done
+    share=0
+    for process in $processes; do
+        if wait "$process"; then verdict=ok; else verdict=FAILED failed=yes; fi
+        [ $verdict = ok ] || cat "$out/log.$share"
+        note "$part" "$verdict: $(tail -n 1 "$out/log.$share" | tr -d '\r')"
+        share=$((share + 1))
+    done
+}
+
+# build COMPILER SOURCE PROGRAM LIBRARIES
+build() {
+    compiler=$1 source=$2 program=$3
+    shift 3
+    # The structs of Vulkan and Direct3D are filled member by member.
+    $compiler -std=c++20 -O1 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror \
+        -Wno-missing-field-initializers -Iinclude "tests/shader/$source" -o "$out/$program" "$@" ||
+        fail "tests/shader/$source does not compile"
+}
+
+failed=
+wine_prefix=
+display=
+finish() {
+    [ -z "$wine_prefix" ] || WINEPREFIX=$wine_prefix wineserver -k || true
+    [ -z "$display" ] || kill "$display"
+}
+trap finish EXIT
+
+if have Vulkan g++ glslang-dev libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers; then
+    echo "$me: building the Vulkan runner"
+    build g++ vulkan/run_jobs.cpp run_vulkan -lvulkan -lglslang -lMachineIndependent -lGenericCodeGen -lHLSL \
+        -lOSDependent -lOGLCompiler -lSPIRV -lSPIRV-Tools-opt -lSPIRV-Tools \
+        -lglslang-default-resource-limits
+    mkdir -p "$out/runtime" && chmod 700 "$out/runtime"
+    run Vulkan env HOME="$out" XDG_RUNTIME_DIR="$out/runtime" \
+        VK_ICD_FILENAMES=/usr/share/vulkan/icd.d/lvp_icd.x86_64.json "$out/run_vulkan"
+fi
+
+# Microsoft's compilers come with an npm package. Debian's npm is installed only where there is none.
+compilers=webgpu@0.6.2
+node=npm
+! command -v npm >/dev/null || node=
+# shellcheck disable=SC2086  # no word where npm is there
+if have Direct3D $node wine wine64 g++-mingw-w64-x86-64-posix xvfb libgl1-mesa-dri; then
+    # The prefix keeps it here: npm otherwise looks for a project in the folders above.
+    mkdir -p "$out/npm"
+    if npm install --prefix "$out/npm" --no-save --ignore-scripts --no-audit --no-fund $compilers \
+        >"$out/npm.log" 2>&1; then
+        cp "$out/npm/node_modules/webgpu/dist/win32-x64/d3dcompiler_47.dll" \
+            "$out/npm/node_modules/webgpu/dist/win32-x64/dxcompiler.dll" "$out"
+        echo "$me: building the Direct3D programs"
+        build x86_64-w64-mingw32-g++-posix d3d/compile.cpp compile.exe -static
+        build x86_64-w64-mingw32-g++-posix d3d/run_jobs.cpp run_d3d11.exe -static -ld3d11
+
+        export WINEPREFIX="$out/wine" HOME="$out" WINEDEBUG=-all
+        # Wine's own d3dcompiler refuses most of HLSL.
+        export WINEDLLOVERRIDES="mscoree=;mshtml=;winemenubuilder.exe=;d3dcompiler_47=n"
+        wine_prefix=$WINEPREFIX
+        timeout 300 wine wineboot -i >"$out/wine.log" 2>&1 || fail "Wine does not start; its log is $out/wine.log"
+        run "fxc 5.0" wine "$out/compile.exe" fxc 5_0
+        run "fxc 5.1" wine "$out/compile.exe" fxc 5_1
+        run "dxc 6.0" wine "$out/compile.exe" dxc 6_0
+        run "dxc 6.6" wine "$out/compile.exe" dxc 6_6
+
+        rm -f "$out/display"
+        Xvfb -displayfd 3 -screen 0 640x480x24 3>"$out/display" 2>/dev/null &
+        display=$!
+        for _ in $(seq 50); do [ -s "$out/display" ] || sleep 0.2; done
+        run "Direct3D 11" env DISPLAY=:"$(cat "$out/display")" wine "$out/run_d3d11.exe"
+    else
+        note Direct3D "SKIPPED, as npm could not install $compilers: $(tail -n 1 "$out/npm.log")"
+    fi
+fi
+
+echo "$me: summary"
+cat "$out/summary"
+[ -z "$failed" ] || fail "not every part passed"
+! grep -q SKIPPED "$out/summary" || echo "$me: what ran passed, but NOT EVERYTHING RAN"
