@@ -259,21 +259,23 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
                    ") * " + each + ";\n    c.end = c.at + " + each + ";\n");
         if (bits) writer.add("    c.bits = 0u;\n");
     }
+    // One return: fxc's shader model 5.1 takes a second one for a value that was not set.
     writer.add("    return c;\n}\n\nbool $next(inout $cursor c) {\n");
     if (bits) {
         // id is that of the word's bit 0, less what was passed: kept in its upper 27 bits.
         writer.add("    c.id &= ~31u;\n    while (c.bits == 0u && c.at < c.end) {\n        c.bits = " +
                    writer.read(lists, "c.at") +
                    ";\n        c.at += 1u;\n        c.id += 32u;\n    }\n"
-                   "    if (c.bits == 0u) return false;\n    c.id += " +
+                   "    bool more = c.bits != 0u;\n    if (more) {\n        c.id += " +
                    (writer.dialect().finds_bits
                         ? "uint(findLSB(c.bits))"
                         : "(floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u") +
-                   ";\n    c.bits &= c.bits - 1u;\n    return true;\n}\n");
+                   ";\n        c.bits &= c.bits - 1u;\n    }\n    return more;\n}\n");
     } else {
-        writer.add("    if (c.at >= c.end) return false;\n    c.id = " + read_id(writer, lists, format.ids) +
-                   ";\n    c.at += 1u;\n    return " +
-                   (table ? "true" : "c.id != " + number(countable_lights(format))) + ";\n}\n");
+        writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = " +
+                   read_id(writer, lists, format.ids) + ";\n        c.at += 1u;\n" +
+                   (table ? "" : "        more = c.id != " + number(countable_lights(format)) + ";\n") +
+                   "    }\n    return more;\n}\n");
     }
     writer.add("\n#define $for_each_light(cursor, pixel) for ($cursor cursor = $begin(pixel); "
                "$next(cursor);)\n");

@@ -24,9 +24,9 @@ struct Job {
     bool hlsl = false;
     Stage stage = Stage::compute;
     std::vector<Input> inputs;
-    std::size_t result = 0;                          // compute: the input that the shader writes
-    std::array<std::uint32_t, 2> groups = {1, 1};    // compute
-    std::uint32_t width = 0, height = 0;             // fragment: of the viewport
-    std::array<std::uint32_t, 2> corner = {0, 0};    // fragment: where in the picture the viewport begins
-    std::vector<std::uint32_t> expected;             // fragment: 4 words a pixel, rows as the shader counts them
+    std::size_t result = 0;                        // compute: the input that the shader writes
+    std::array<std::uint32_t, 2> groups = {1, 1};  // compute
+    std::uint32_t width = 0, height = 0;           // fragment: of the viewport
+    std::array<std::uint32_t, 2> corner = {0, 0};  // fragment: where in the picture the viewport begins
+    std::vector<std::uint32_t> expected;  // fragment: 4 words a pixel, rows as the shader counts them
 };

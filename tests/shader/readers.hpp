@@ -50,9 +50,9 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions o
     using namespace lightbin;
     const detail::Dialect dialect = detail::dialect(options.language);
     std::vector<ShaderOptions> every;
-    for (const ListStorage storage : {ListStorage::storage_buffer, ListStorage::texel_buffer,
-                                      ListStorage::texture_2d, ListStorage::uniform_block,
-                                      ListStorage::byte_address}) {
+    for (const ListStorage storage :
+         {ListStorage::storage_buffer, ListStorage::texel_buffer, ListStorage::texture_2d,
+          ListStorage::uniform_block, ListStorage::byte_address}) {
         if ((storage == ListStorage::storage_buffer && !dialect.storage_buffers) ||
             (storage == ListStorage::texel_buffer && !dialect.texel_buffers) ||
             (storage == ListStorage::byte_address && !dialect.hlsl))
@@ -68,8 +68,8 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions o
                 for (const bool packed : {false, true})
                     for (const bool block : {false, true}) {
                         if (packed && (!texels || ids == IdWidth::u32)) continue;
-                        if (block && (encoding != ListEncoding::offset_count ||
-                                      storage == ListStorage::uniform_block))
+                        if (block &&
+                            (encoding != ListEncoding::offset_count || storage == ListStorage::uniform_block))
                             continue;
                         options.packed_ids = packed;
                         options.tiles_in_uniform_block = block;
@@ -100,17 +100,16 @@ inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguag
     for (const bool push : {false, true}) {
         if (push && !dialect.vulkan) continue;
         const int set = dialect.spaces ? 1 : 0;
-        for (const lightbin::ShaderOptions& list :
-             every_list({.language = language,
-                         .texture_width = 37,  // no power of two
-                         .max_tiles = 100,
-                         .max_entries = 400,
-                         .uniform_block_bytes = 65536,
-                         .tiles = {3, set},
-                         .lists = {4, set},
-                         .grid = {5, 0},
-                         .push_constants = push,
-                         .prefix = set ? "my_" : "lightbin_"}))
+        for (const lightbin::ShaderOptions& list : every_list({.language = language,
+                                                   .texture_width = 37,  // no power of two
+                                                               .max_tiles = 100,
+                                                   .max_entries = 400,
+                                                   .uniform_block_bytes = 65536,
+                                                   .tiles = {3, set},
+                                                   .lists = {4, set},
+                                                   .grid = {5, 0},
+                                                   .push_constants = push,
+                                                   .prefix = set ? "my_" : "lightbin_"}))
             for (unsigned switches = 0; switches < Switches::count; ++switches)
                 every.push_back(Switches::set(list, switches));
     }
@@ -178,8 +177,9 @@ uvec4 read_list(highp uvec2 pixel) {
     }
     const std::string less_corner = options.viewport_corner ? "" : " - " + pair(corner_x, corner_y);
     if (dialect.hlsl)
-        return text + "uint4 main(float4 position : SV_Position) : SV_Target {\n    return read_list(uint2("
-                      "position.xy)" +
+        return text +
+               "uint4 main(float4 position : SV_Position) : SV_Target {\n    return read_list(uint2("
+               "position.xy)" +
                less_corner + ");\n}\n";
     return text + (dialect.vulkan ? "layout(location = 0) " : "") +
            "out highp uvec4 colour;\nvoid main() {\n    colour = read_list(uvec2(gl_FragCoord.xy)" +
@@ -231,9 +231,10 @@ inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin
 /// Returns a run of a snippet, fit to a screen: options.tile_size other than 0 becomes that of the screen.
 inline Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& screen) {
     using namespace lightbin;
-    constexpr float projection[4][4] = {{1.2f, 0, 0, 0}, {0, 1.7f, 0, 0}, {0, 0, -1.01f, -1}, {0, 0, -0.2f, 0}};
-    const auto view = View::from_projection(projection, {screen.width, screen.height},
-                                            {.tile_size = screen.tile_size});
+    constexpr float projection[4][4] = {
+        {1.2f, 0, 0, 0}, {0, 1.7f, 0, 0}, {0, 0, -1.01f, -1}, {0, 0, -0.2f, 0}};
+    const auto view =
+        View::from_projection(projection, {screen.width, screen.height}, {.tile_size = screen.tile_size});
     Binner<> binner;
     const std::size_t lights = options.format.encoding == ListEncoding::bitmask ? options.format.max_lights
                                : options.format.ids == IdWidth::u8              ? 200
@@ -268,19 +269,24 @@ inline Job reader_job(lightbin::ShaderOptions options, Stage stage, const Screen
                       ty = (options.flip_y ? screen.height - 1 - y : y) / screen.tile_size;
             std::uint32_t hash = 2166136261u, sum = 0, count = 0;
             for (const std::uint32_t id : grid->lights_in(tx, ty)) {
-                if (options.format.encoding == ListEncoding::sentinel && count == options.format.capacity) break;
+                if (options.format.encoding == ListEncoding::sentinel && count == options.format.capacity)
+                    break;
                 hash = (hash ^ id) * 16777619u;
                 sum += ++count * id;
             }
-            for (const std::uint32_t word :
-                 {static_cast<std::uint32_t>(tx + (ty << 16)), count, hash, sum})
+            for (const std::uint32_t word : {static_cast<std::uint32_t>(tx + (ty << 16)), count, hash, sum})
                 job.expected.push_back(word);
         }
     if (stage == Stage::compute) {
         job.result = job.inputs.size();
         Input result;
-        result.binding = {"result_block", ShaderResource::writable_buffer, {result_binding, 0},
-                          TexelFormat::none, 16, 0, 0};
+        result.binding = {"result_block",
+                          ShaderResource::writable_buffer,
+                          {result_binding, 0},
+                          TexelFormat::none,
+                          16,
+                          0,
+                          0};
         result.bytes.resize(job.expected.size() * 4, std::byte{0xee});
         job.inputs.push_back(result);
     }
@@ -298,7 +304,8 @@ struct ReaderRun {
 /// What a language runs: every list, flipped and not, in fragment and compute shaders, at each small screen;
 /// the other options take turns. At the large screen: one width of ids.
 inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language) {
-    constexpr ScreenSize small[] = {{33, 17, 1}, {33, 17, 7}, {33, 17, 16}, {33, 17, 64}, {1, 1, 1}, {1, 1, 64}};
+    constexpr ScreenSize small[] = {{33, 17, 1},  {33, 17, 7}, {33, 17, 16},
+                                    {33, 17, 64}, {1, 1, 1},   {1, 1, 64}};
     constexpr ScreenSize large = {1919, 1079, 32};
     std::vector<ReaderRun> runs;
     const auto every = every_reader(language);

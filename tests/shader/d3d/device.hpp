@@ -55,7 +55,8 @@ public:
             bind(job.inputs[i], buffers[i]);
         if (job.stage == Stage::fragment) return draw(job, code, vertex_code);
         Com<ID3D11ComputeShader> shader;
-        check(device_->CreateComputeShader(code.data(), code.size(), nullptr, shader.out()), "compute shader");
+        check(device_->CreateComputeShader(code.data(), code.size(), nullptr, shader.out()),
+              "compute shader");
         context_->CSSetShader(shader.get(), nullptr, 0);
         context_->Dispatch(job.groups[0], job.groups[1], 1);
         return read(buffers[job.result].get(), job.inputs[job.result].bytes.size());
@@ -195,8 +196,12 @@ private:
         context_->VSSetShader(vertex.get(), nullptr, 0);
         context_->PSSetShader(pixel.get(), nullptr, 0);
         context_->IASetPrimitiveTopology(D3D11_PRIMITIVE_TOPOLOGY_TRIANGLELIST);
-        const D3D11_VIEWPORT viewport{static_cast<float>(job.corner[0]), static_cast<float>(job.corner[1]),
-                                      static_cast<float>(job.width),     static_cast<float>(job.height), 0, 1};
+        const D3D11_VIEWPORT viewport{static_cast<float>(job.corner[0]),
+                                      static_cast<float>(job.corner[1]),
+                                      static_cast<float>(job.width),
+                                      static_cast<float>(job.height),
+                                      0,
+                                      1};
         context_->RSSetViewports(1, &viewport);
         context_->Draw(3, 0);
 

@@ -15,8 +15,8 @@ public:
     Fxc() {
         const HMODULE library = LoadLibraryA("d3dcompiler_47.dll");
         if (library)
-            compile_ = reinterpret_cast<pD3DCompile>(
-                reinterpret_cast<void*>(GetProcAddress(library, "D3DCompile")));
+            compile_ =
+                reinterpret_cast<pD3DCompile>(reinterpret_cast<void*>(GetProcAddress(library, "D3DCompile")));
         if (!compile_) {
             std::printf("d3dcompiler_47.dll cannot be loaded\n");
             std::exit(1);

@@ -115,9 +115,11 @@ private:
 
     static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                                      VkDebugUtilsMessageTypeFlagsEXT,
-                                                     const VkDebugUtilsMessengerCallbackDataEXT* data, void* self) {
+                                                     const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                                     void* self) {
         auto& device = *static_cast<VulkanDevice*>(self);
-        if (!device.expecting_ && device.messages_ < 10) std::printf("validation layer: %s\n", data->pMessage);
+        if (!device.expecting_ && device.messages_ < 10)
+            std::printf("validation layer: %s\n", data->pMessage);
         ++device.messages_;
         return VK_FALSE;
     }
@@ -202,7 +204,8 @@ private:
         return memory;
     }
 
-    Buffer make_buffer(std::span<const std::byte> data, std::size_t bytes, VkBufferUsageFlags usage, Undo& undo) {
+    Buffer make_buffer(std::span<const std::byte> data, std::size_t bytes, VkBufferUsageFlags usage,
+                       Undo& undo) {
         VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
         info.size = bytes;
         info.usage = usage;
@@ -211,8 +214,8 @@ private:
         check(vkCreateBuffer(device_, &info, nullptr, &buffer.handle), "buffer");
         VkMemoryRequirements needs;
         vkGetBufferMemoryRequirements(device_, buffer.handle, &needs);
-        const VkDeviceMemory memory = allocate(
-            needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT, undo);
+        const VkDeviceMemory memory =
+            allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT, undo);
         undo.add([=, this] { vkDestroyBuffer(device_, buffer.handle, nullptr); });
         check(vkBindBufferMemory(device_, buffer.handle, memory, 0), "buffer memory");
         check(vkMapMemory(device_, memory, 0, VK_WHOLE_SIZE, 0, &buffer.mapped), "map");
@@ -333,8 +336,8 @@ private:
             const auto set = static_cast<std::size_t>(input.binding.slot.set);
             if (set >= layouts.size()) layouts.resize(set + 1);
             const VkDescriptorType type = descriptor_type(job, input.binding.resource);
-            layouts[set].push_back(
-                {static_cast<std::uint32_t>(input.binding.slot.binding), type, 1, VK_SHADER_STAGE_ALL, nullptr});
+            layouts[set].push_back({static_cast<std::uint32_t>(input.binding.slot.binding), type, 1,
+                                    VK_SHADER_STAGE_ALL, nullptr});
             sizes.push_back({type, 1});
         }
 
@@ -410,15 +413,16 @@ private:
             check(vkCreateBufferView(device_, &view, nullptr, &buffer_view), "buffer view");
             undo.add([=, this] { vkDestroyBufferView(device_, buffer_view, nullptr); });
         } else if (input.binding.resource == lightbin::ShaderResource::texture_2d) {
-            const Image image = make_image(format, input.width, input.height,
-                                           VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, undo);
+            const Image image =
+                make_image(format, input.width, input.height,
+                           VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, undo);
             change_layout(commands, image.handle, VK_IMAGE_LAYOUT_UNDEFINED,
                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0, VK_ACCESS_TRANSFER_WRITE_BIT);
             VkBufferImageCopy copy{};
             copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
             copy.imageExtent = {input.width, input.height, 1};
-            vkCmdCopyBufferToImage(commands, buffer.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                   1, &copy);
+            vkCmdCopyBufferToImage(commands, buffer.handle, image.handle,
+                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
             change_layout(commands, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_ACCESS_TRANSFER_WRITE_BIT,
                           VK_ACCESS_SHADER_READ_BIT);
@@ -469,8 +473,9 @@ private:
                 const Descriptors& descriptors, Undo& undo) {
         const std::uint32_t width = job.width + job.corner[0], height = job.height + job.corner[1];
         const VkFormat format = VK_FORMAT_R32G32B32A32_UINT;
-        const Image image = make_image(
-            format, width, height, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, undo);
+        const Image image =
+            make_image(format, width, height,
+                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, undo);
         VkAttachmentDescription attachment{};
         attachment.format = format;
         attachment.samples = VK_SAMPLE_COUNT_1_BIT;
@@ -514,9 +519,14 @@ private:
         undo.add([=, this] { vkDestroyFramebuffer(device_, framebuffer, nullptr); });
 
         const VkRect2D whole{{0, 0}, {width, height}};
-        const VkViewport viewport{static_cast<float>(job.corner[0]), static_cast<float>(job.corner[1]),
-                                  static_cast<float>(job.width),     static_cast<float>(job.height), 0, 1};
-        const VkPipeline pipeline = draw_pipeline(vertex, fragment, viewport, whole, descriptors.layout, pass, undo);
+        const VkViewport viewport{static_cast<float>(job.corner[0]),
+                                  static_cast<float>(job.corner[1]),
+                                  static_cast<float>(job.width),
+                                  static_cast<float>(job.height),
+                                  0,
+                                  1};
+        const VkPipeline pipeline =
+            draw_pipeline(vertex, fragment, viewport, whole, descriptors.layout, pass, undo);
         const VkClearValue clear{};
         VkRenderPassBeginInfo start{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
         start.renderPass = pass;
@@ -533,17 +543,19 @@ private:
             make_buffer({}, std::size_t{16} * job.width * job.height, VK_BUFFER_USAGE_TRANSFER_DST_BIT, undo);
         VkBufferImageCopy copy{};
         copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-        copy.imageOffset = {static_cast<std::int32_t>(job.corner[0]), static_cast<std::int32_t>(job.corner[1]), 0};
+        copy.imageOffset = {static_cast<std::int32_t>(job.corner[0]),
+                            static_cast<std::int32_t>(job.corner[1]), 0};
         copy.imageExtent = {job.width, job.height, 1};
-        vkCmdCopyImageToBuffer(commands, image.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, picture.handle, 1,
-                               &copy);
+        vkCmdCopyImageToBuffer(commands, image.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, picture.handle,
+                               1, &copy);
         barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                 VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
         return picture;
     }
 
     VkPipeline draw_pipeline(VkShaderModule vertex, VkShaderModule fragment, const VkViewport& viewport,
-                             const VkRect2D& scissor, VkPipelineLayout layout, VkRenderPass pass, Undo& undo) {
+                             const VkRect2D& scissor, VkPipelineLayout layout, VkRenderPass pass,
+                             Undo& undo) {
         const std::array stages = {stage(VK_SHADER_STAGE_VERTEX_BIT, vertex),
                                    stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
         const VkPipelineVertexInputStateCreateInfo no_input{
@@ -555,9 +567,11 @@ private:
         viewports.viewportCount = viewports.scissorCount = 1;
         viewports.pViewports = &viewport;
         viewports.pScissors = &scissor;
-        VkPipelineRasterizationStateCreateInfo raster{VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
+        VkPipelineRasterizationStateCreateInfo raster{
+            VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
         raster.lineWidth = 1;
-        VkPipelineMultisampleStateCreateInfo samples{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
+        VkPipelineMultisampleStateCreateInfo samples{
+            VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
         samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
         VkPipelineColorBlendAttachmentState write_all{};
         write_all.colorWriteMask = 15;
