@@ -4,7 +4,7 @@
 
 #include "scenes.hpp"
 
-#include "../examples/tiled_forward/scene.hpp"
+#include <scene.hpp>
 
 #include <lightbin/lights.hpp>
 

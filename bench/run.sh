@@ -4,6 +4,9 @@
 #
 #   binning [--quick] [SCENE.glb ...] [--benchmark_filter=REGEX]
 #       (the default) Whole builds as a ratio to the flat baseline; writes build/bench/binning.csv.
+#   error [--quick] [SCENE.glb ...]
+#       What each rung of the ladder lists too much, against the exact set, and what it takes to build, on made scenes
+#       and real ones (those of the tests, or the named ones); writes build/bench/error_vs_time.csv, .svg and .png.
 set -eu
 me=bench/run.sh
 here=$(pwd)
@@ -12,7 +15,7 @@ cd "$(dirname "$0")/.."
 
 program=binning
 case ${1-} in
-binning)
+binning | error)
     program=$1
     shift
     ;;
@@ -22,7 +25,8 @@ binning)
     ;;
 esac
 
-install_packages g++ cmake ninja-build libglm-dev libbenchmark-dev libtbb-dev libtinygltf-dev
+install_packages g++ cmake ninja-build gnuplot-nox libglm-dev libbenchmark-dev libboost-dev libgmp-dev libtbb-dev \
+    libtinygltf-dev
 
 make_build_folder
 echo "$me: building in build/bench"
@@ -39,4 +43,7 @@ for word; do
     esac
 done
 cd build/bench
-exec ./bench/$program "$@"
+./bench/$program "$@"
+case $program in
+error) gnuplot ../../bench/error_vs_time.gp ;;
+esac

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+// Error against run time: what each rung of the ladder lists that no pixel needs, and what it takes to build,
+// by tile size. Writes error_vs_time.csv and one file of points a scene for error_vs_time.gp to draw.
+//
+// Columns of the table, a row for each scene (all views of it together), tile size and rung:
+//   misses          entries that the rung must have by exact arithmetic and lacks, in `verdicts` pairs of a tile
+//                   and a light (every pair there is; by_rationals of the questions took rational arithmetic)
+//   exact           pairs whose sphere meets the tile's cell between its Z bounds, its gap left out
+//   excess          entries / exact - 1
+//   lit             pairs with a pixel whose point is in the sphere; excess_lit = entries / lit - 1
+//   margin          entries / entries of the same rung in exact arithmetic: what rounding outward adds
+//   evals           light evaluations a drawn pixel: the mean length of its list; evals_needed: the lights that
+//                   reach its point
+//   index_bytes     of the light index list, 32-bit ids
+//   us, ratio       median time of a build, and as a part of the flat baseline's (with Z interval tests for every
+//                   rung with a depth test), on rotating light sets; Z bounds not included
+//   reduce_us       what making the Z bounds of one view takes
+#include "exact.hpp"
+#include "glb_scenes.hpp"
+#include "ladder.hpp"
+
+#include <cstring>
+#include <exception>
+#include <map>
+
+namespace {
+
+bool quick = false;
+
+struct SeenScene {
+    BenchScene scene;
+    Picture picture;
+};
+struct Case {
+    std::string name;
+    std::vector<SeenScene> views;
+};
+
+struct Row {
+    std::uint64_t misses = 0, entries = 0, unrounded = 0;
+    double evaluations = 0;  ///< over all drawn pixels
+    double us = 0, ratio = 0;
+};
+
+/// Sums over a case's views.
+struct Report {
+    std::vector<Row> rows{std::size(ladder)};
+    std::uint64_t verdicts = 0, by_rationals = 0, exact = 0, lit = 0, needed = 0, drawn = 0;
+    double reduce_us = 0;
+};
+
+/// Whether a rung has this pair when nothing is rounded, and whether it must.
+bool keeps(const Method& method, std::uint32_t facts) {
+    constexpr std::uint32_t needed[] = {0, by_interval, by_box, by_split_box};
+    const std::uint32_t depth = needed[static_cast<int>(method.depth_test)];
+    return (facts & depth) == depth &&
+           (method.footprint == Footprint::rectangle || (facts & in_pyramid) != 0);
+}
+bool must_keep(const Method& method, std::uint32_t facts) {
+    constexpr std::uint32_t cell[] = {in_pyramid, in_cell, in_cell, in_split};
+    return (facts & cell[static_cast<int>(method.depth_test)]) != 0;
+}
+
+/// Points of a tile's drawn pixels, in view space.
+struct Points {
+    std::vector<float> x, y, z;
+
+    Points(const SeenScene& seen, const lightbin::View& view, int tile_x, int tile_y) {
+        const Frustum frustum(seen.scene.projection);
+        const lightbin::Extent size = seen.picture.size;
+        const int t = view.tile_size();
+        for (int py = tile_y * t; py < std::min((tile_y + 1) * t, size.height); ++py)
+            for (int px = tile_x * t; px < std::min((tile_x + 1) * t, size.width); ++px) {
+                const std::size_t pixel =
+                    static_cast<std::size_t>(py) * static_cast<std::size_t>(size.width) +
+                    static_cast<std::size_t>(px);
+                if (seen.picture.triangle[pixel] == Picture::nothing) continue;
+                const glm::vec3 point = point_at(frustum, size, px, py, seen.picture.view_depth[pixel]);
+                x.push_back(point.x), y.push_back(point.y), z.push_back(point.z);
+            }
+    }
+
+    std::uint32_t inside(const glm::vec4& light) const {
+        std::uint32_t count = 0;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const float dx = x[i] - light.x, dy = y[i] - light.y, dz = z[i] - light.z;
+            count += dx * dx + dy * dy + dz * dz <= light.w * light.w;
+        }
+        return count;
+    }
+};
+
+/// Counts what the rungs list for one view against what they ought to.
+void count(const SeenScene& seen, int tile_size, Report& report) {
+    const TiledView view(seen.scene, seen.picture, tile_size);
+    const Lights lights = seen.scene.lights(0);
+    ExactPairs truth =
+        ExactDecider(seen.scene.projection, seen.picture.size, tile_size).pairs(lights, view.bounds());
+    report.verdicts += truth.verdicts;
+    report.by_rationals += truth.by_rationals;
+    report.reduce_us += 1e6 * view.reduce_seconds;
+
+    std::vector<double> drawn;
+    for (int y = 0, tile = 0; y < view.view.tiles_y(); ++y)
+        for (int x = 0; x < view.view.tiles_x(); ++x, ++tile) {
+            const Points points(seen, view.view, x, y);
+            drawn.push_back(static_cast<double>(points.x.size()));
+            report.drawn += points.x.size();
+            for (const Pair& pair : truth.tiles[static_cast<std::size_t>(tile)]) {
+                if ((pair.facts & in_split) == 0) continue;
+                const std::uint32_t inside = points.inside(lights[pair.id]);
+                ++report.exact;
+                report.lit += inside > 0;
+                report.needed += inside;
+            }
+        }
+
+    for_each_rung([&]<std::size_t rung> {
+        constexpr Method method = ladder[rung];
+        Row& row = report.rows[rung];
+        Bin<method> bin;
+        const auto grid = bin(view, lights);
+        row.entries += grid.indices().size();
+        for (std::size_t tile = 0; tile < truth.tiles.size(); ++tile) {
+            const lightbin::Tile list = grid.tiles()[tile];
+            row.evaluations += static_cast<double>(list.count) * drawn[tile];
+            const std::uint32_t* id = grid.indices().data() + list.offset;
+            const std::uint32_t* const end = id + list.count;
+            for (const Pair& pair : truth.tiles[tile]) {
+                row.unrounded += keeps(method, pair.facts);
+                while (id != end && *id < pair.id)
+                    ++id;
+                const bool listed = id != end && *id == pair.id;
+                row.misses += !listed && must_keep(method, pair.facts);
+            }
+        }
+    });
+}
+
+/// Times the rungs and the baseline in turns.
+void time(const Case& scene, int tile_size, Report& report) {
+    std::vector<TiledView> views;
+    for (const SeenScene& seen : scene.views)
+        views.emplace_back(seen.scene, seen.picture, tile_size);
+    const std::size_t lights = scene.views[0].scene.lights(0).size();
+    const std::size_t turns = quick ? 12 : rotation(lights);
+
+    Flat<float> flat;
+    std::vector<double> times[std::size(ladder)], flat_times[2];
+    std::tuple<Bin<ladder[0]>, Bin<ladder[1]>> bins;
+    for (std::size_t turn = 0; turn < turns; ++turn) {
+        const std::size_t place = turn % views.size();
+        const TiledView& view = views[place];
+        const Lights set = scene.views[place].scene.lights(static_cast<std::uint32_t>(turn));
+        flat_times[0].push_back(
+            seconds([&] { flat.build<false>(view.flat, set, view.min.data(), view.max.data()); }));
+        flat_times[1].push_back(
+            seconds([&] { flat.build<true>(view.flat, set, view.min.data(), view.max.data()); }));
+        for_each_rung([&]<std::size_t rung> {
+            times[rung].push_back(seconds([&] { std::get<rung>(bins)(view, set); }));
+        });
+    }
+    for (std::size_t rung = 0; rung < std::size(ladder); ++rung) {
+        Row& row = report.rows[rung];
+        row.us = 1e6 * median(times[rung]);
+        row.ratio = row.us / (1e6 * median(flat_times[ladder[rung].depth_test == DepthTest::none ? 0 : 1]));
+    }
+}
+
+void write(std::FILE* csv, const Case& scene, int tile_size, const Report& report) {
+    for (std::size_t rung = 0; rung < std::size(ladder); ++rung) {
+        const Row& row = report.rows[rung];
+        const auto part = [](auto a, auto b) { return static_cast<double>(a) / static_cast<double>(b); };
+        const double views = static_cast<double>(scene.views.size());
+        std::fprintf(
+            csv,
+            "%s,%zu,%d,%s,%s,%llu,%llu,%llu,%llu,%llu,%.4f,%llu,%.4f,%.6f,%.3f,%.3f,%.0f,%.1f,%.3f,%.0f\n",
+            scene.name.c_str(), scene.views.size(), tile_size, name_of(ladder[rung].footprint),
+            name_of(ladder[rung].depth_test), static_cast<unsigned long long>(row.misses),
+            static_cast<unsigned long long>(report.verdicts),
+            static_cast<unsigned long long>(report.by_rationals),
+            static_cast<unsigned long long>(row.entries), static_cast<unsigned long long>(report.exact),
+            part(row.entries, report.exact) - 1, static_cast<unsigned long long>(report.lit),
+            part(row.entries, report.lit) - 1, part(row.entries, row.unrounded),
+            row.evaluations / static_cast<double>(report.drawn), part(report.needed, report.drawn),
+            4 * static_cast<double>(row.entries) / views, row.us, row.ratio, report.reduce_us / views);
+    }
+    std::fflush(csv);
+}
+
+void print(const Case& scene, int tile_size, const Report& report) {
+    for (std::size_t rung = 0; rung < std::size(ladder); ++rung) {
+        const Row& row = report.rows[rung];
+        std::printf(
+            "%-12s %2d px  %-10s %-9s  %llu misses  excess %7.1f %%  evals %6.2f  %8.1f us  %.2f of flat\n",
+            scene.name.c_str(), tile_size, name_of(ladder[rung].footprint), name_of(ladder[rung].depth_test),
+            static_cast<unsigned long long>(row.misses),
+            100 * (static_cast<double>(row.entries) / static_cast<double>(report.exact) - 1),
+            row.evaluations / static_cast<double>(report.drawn), row.us, row.ratio);
+    }
+    std::fflush(stdout);
+}
+
+SeenScene see(BenchScene scene) {
+    Picture picture = rasterise(scene, screen);
+    return {std::move(scene), std::move(picture)};
+}
+
+std::vector<Case> cases(const std::vector<std::string>& paths) {
+    std::vector<Case> all;
+    for (BenchScene& scene : std::vector{scenes::field_with_depth(), scenes::foliage(), scenes::top_down()}) {
+        std::string name = scene.name;
+        all.push_back({std::move(name), {see(std::move(scene))}});
+    }
+    for (const std::string& path : paths) {
+        Case scene;
+        for (BenchScene& view : glb_scenes(path)) {
+            scene.name = view.name.substr(0, view.name.find(':'));
+            scene.views.push_back(see(std::move(view)));
+        }
+        all.push_back(std::move(scene));
+    }
+    return all;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    std::vector<std::string> paths;
+    for (int i = 1; i < argc; ++i)
+        if (std::strcmp(argv[i], "--quick") == 0)
+            quick = true;
+        else
+            paths.push_back(argv[i]);
+    if (paths.empty()) paths = {LIGHTBIN_FIXTURES "/nova.glb", LIGHTBIN_FIXTURES "/darkness.glb"};
+
+    std::FILE* const csv =
+        open_report("error_vs_time.csv", "scene,views,tile_px,footprint,depth_test,misses,verdicts,by_"
+                                         "rationals,entries,exact,excess,lit,excess_lit,"
+                                         "margin,evals,evals_needed,index_bytes,us,ratio,reduce_us");
+    std::uint64_t misses = 0;
+    for (const Case& scene : cases(paths))
+        for (const int tile_size : {8, 16, 32, 64}) {
+            Report report;
+            time(scene, tile_size, report);
+            for (const SeenScene& seen : scene.views)
+                count(seen, tile_size, report);
+            write(csv, scene, tile_size, report);
+            print(scene, tile_size, report);
+            for (const Row& row : report.rows)
+                misses += row.misses;
+        }
+    std::fclose(csv);
+    return misses == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+} catch (const std::exception& problem) {
+    std::fprintf(stderr, "error: %s\n", problem.what());
+    return EXIT_FAILURE;
+}
