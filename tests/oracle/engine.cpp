@@ -40,13 +40,32 @@ private:
     unsigned before_;
 };
 
-template <lightbin::Options options> Lists built(const lightbin::View& view, const Scene& scene, bool flush) {
+lightbin::Result<lightbin::View> view_of(const Camera& camera) {
+    lightbin::ViewOptions options;
+    options.tile_size = camera.tile;
+    options.clip_depth =
+        camera.zero_to_one ? lightbin::ClipDepth::zero_to_one : lightbin::ClipDepth::minus_one_to_one;
+    options.origin =
+        camera.upper_left ? lightbin::WindowOrigin::upper_left : lightbin::WindowOrigin::lower_left;
+    options.reversed_z = camera.reversed;
+    // The entries are floats unless the camera says otherwise, so nothing changes on the way to double.
+    return lightbin::View::from_projection(camera.m, {camera.width, camera.height}, options);
+}
+
+template <lightbin::Options options>
+Lists built(const lightbin::View& view, const Scene& scene, bool flush, std::size_t workers = 1) {
     thread_local lightbin::Binner<options> binner;
     thread_local std::vector<float> min, max;
     const auto grid = [&] {
         const Flush flushing(flush);
+        // The caller's threads at their least helpful: one of them, which takes the work from the end.
+        auto run = [](std::size_t n, auto body) {
+            while (n > 0)
+                body(--n);
+        };
+        const auto parallel = workers > 1 ? lightbin::Parallel(workers, run) : lightbin::Parallel();
         if constexpr (options.depth_test == lightbin::DepthTest::none) {
-            return binner.bin(view, scene.lights);
+            return binner.bin(view, scene.lights, parallel);
         } else {
             lightbin::ZBounds bounds{.min = scene.min, .max = scene.max};
             if (!scene.depth.empty()) {
@@ -55,7 +74,7 @@ template <lightbin::Options options> Lists built(const lightbin::View& view, con
                 bounds = *lightbin::reduce_depth(
                     view, {.depth = scene.depth, .skip_background = scene.skip_background}, min, max);
             }
-            return binner.bin(view, scene.lights, bounds);
+            return binner.bin(view, scene.lights, bounds, parallel);
         }
     }();
     Lists lists;
@@ -84,22 +103,18 @@ Lists on_all_tiers(const lightbin::View& view, const Scene& scene, bool flush,
     if (built<capped(Isa::avx2)>(view, scene, flush) != lists) complaints.push_back("AVX2 differs");
     if (built<capped(Isa::avx512)>(view, scene, flush) != lists) complaints.push_back("AVX-512 differs");
 #endif
+    if (built<options>(view, scene, flush, 3) != lists) complaints.push_back("with workers it differs");
     return lists;
 }
 
 }  // namespace
 
+bool Engine::accepts(const Camera& camera) const {
+    return view_of(camera).has_value();
+}
+
 Lists Engine::lists(const Scene& scene, Rung rung, std::vector<std::string>& complaints) const {
-    const Camera& camera = scene.camera;
-    lightbin::ViewOptions options;
-    options.tile_size = camera.tile;
-    options.clip_depth =
-        camera.zero_to_one ? lightbin::ClipDepth::zero_to_one : lightbin::ClipDepth::minus_one_to_one;
-    options.origin =
-        camera.upper_left ? lightbin::WindowOrigin::upper_left : lightbin::WindowOrigin::lower_left;
-    options.reversed_z = camera.reversed;
-    // The entries are floats unless the camera says otherwise, so nothing changes on the way to double.
-    const auto view = lightbin::View::from_projection(camera.m, {camera.width, camera.height}, options);
+    const auto view = view_of(scene.camera);
     if (!view) {
         complaints.push_back("the camera was refused: " + view.error().message());
         return {};

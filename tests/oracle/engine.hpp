@@ -48,6 +48,9 @@ public:
     /// flush_denormals  the processor takes denormal floats for 0 while the library runs (FTZ and DAZ)
     explicit Engine(bool flush_denormals = false) : flush_(flush_denormals) {}
 
+    bool flushes_denormals() const { return flush_; }
+    bool accepts(const Camera& camera) const;
+
     /// Returns the scalar tier's lists. What was wrong (the view refused, tiers that differ) is added to
     /// `complaints`.
     Lists lists(const Scene& scene, Rung rung, std::vector<std::string>& complaints) const;

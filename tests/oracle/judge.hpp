@@ -38,7 +38,10 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// One scene of a family: built, judged, counted.
+/// Builds and judges every rung of a scene.
+void judge_scene(Scene scene, const Engine& engine, Verdicts& verdicts);
+
+/// One scene of a family: made, built, judged, counted.
 void run_scene(const Family& family, std::uint64_t seed, std::size_t lights, const Engine& engine,
                Verdicts& verdicts);
 

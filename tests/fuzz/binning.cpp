@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// Bytes to camera, lights, Z bounds or a depth buffer; then every rung on every tier, the oracle looking on.
+#include "../oracle/judge.hpp"
+#include "bytes.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+
+using namespace oracle;
+
+namespace {
+
+Camera take_camera(Bytes& bytes) {
+    const unsigned flags = bytes.byte();
+    Camera camera;
+    camera.zero_to_one = (flags & 1) != 0;
+    camera.upper_left = (flags & 2) != 0;
+    camera.reversed = (flags & 4) != 0;
+    camera.tile = 1 + static_cast<int>(bytes.below(300));
+    camera.width = 1 + static_cast<int>(bytes.below(static_cast<unsigned>(40 * camera.tile)));
+    camera.height = 1 + static_cast<int>(bytes.below(static_cast<unsigned>(40 * camera.tile)));
+    if ((flags & 8) != 0) {  // the entries that may be other than 0, as they come
+        const bool orthographic = (flags & 16) != 0;
+        const auto entry = [&] { return static_cast<double>(bytes.take<float>()); };
+        Matrix& m = camera.m;
+        m[0][0] = entry(), m[1][1] = entry(), m[2][2] = entry(), m[3][2] = entry();
+        m[orthographic ? 3 : 2][0] = entry(), m[orthographic ? 3 : 2][1] = entry();
+        m[orthographic ? 3 : 2][3] = entry();
+    } else {
+        Random random(bytes.take<std::uint16_t>());
+        const double aspect = aspect_of({camera.width, camera.height, camera.tile, camera.upper_left});
+        Lens lens = families::any_lens(aspect, random);
+        const int k = static_cast<int>(bytes.below(140)) - 70;
+        lens.near_plane = std::ldexp(lens.near_plane, k), lens.far_plane = std::ldexp(lens.far_plane, k);
+        if (lens.orthographic)
+            for (double* side : {&lens.left, &lens.right, &lens.bottom, &lens.top})
+                *side = std::ldexp(*side, k);
+        const Camera made =
+            camera_of("", lens, {camera.width, camera.height, camera.tile, camera.upper_left});
+        camera.m = made.m, camera.doubles = made.doubles;
+        camera.zero_to_one = made.zero_to_one, camera.reversed = made.reversed;
+    }
+    return camera;
+}
+
+Light take_light(Bytes& bytes, const Aim& aim) {
+    const auto& sets = sphere_sets();
+    const unsigned kind = bytes.byte();
+    if (kind < 64) return bytes.take<Light>();
+    Random random(bytes.byte());
+    Light light = sets[kind % sets.size()].one(aim, random);
+    if (kind < 128) {  // one number other than aimed at
+        float* numbers[] = {&light.x, &light.y, &light.z, &light.w};
+        *numbers[kind % 4] = bytes.take<float>();
+    }
+    return light;
+}
+
+/// A tile's or pixel's values, from a few.
+void fill(std::vector<float>& values, std::size_t count, Bytes& bytes, const Aim& aim) {
+    std::vector<float> palette;
+    Random random(bytes.byte());
+    for (unsigned i = bytes.below(12) + 1; i > 0; --i)
+        palette.push_back(bytes.flag() ? bytes.take<float>() : static_cast<float>(aim.depth(random)));
+    for (std::size_t i = 0; i < count; ++i)
+        values.push_back(palette[random.bits() % palette.size()]);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    Bytes bytes(data, size);
+    Scene scene;
+    scene.camera = take_camera(bytes);
+    const Engine engine((bytes.byte() & 7) == 7);
+    if (!engine.accepts(scene.camera)) return 0;
+
+    const Aim aim(scene.camera);
+    const Camera& camera = scene.camera;
+    const auto tiles = static_cast<std::size_t>((camera.width + camera.tile - 1) / camera.tile) *
+                       static_cast<std::size_t>((camera.height + camera.tile - 1) / camera.tile);
+    const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+    if (bytes.byte() % 4 == 3 && pixels < 5000) {
+        scene.skip_background = bytes.flag();
+        fill(scene.depth, pixels, bytes, aim);
+    } else {
+        for (auto* side : {&scene.min, &scene.max, &scene.gap_min, &scene.gap_max})
+            fill(*side, tiles, bytes, aim);
+    }
+    while (!bytes.empty() && scene.lights.size() < 200)
+        scene.lights.push_back(take_light(bytes, aim));
+
+    Verdicts verdicts;
+    judge_scene(std::move(scene), engine, verdicts);
+    for (const std::string& report : verdicts.reports)
+        std::fprintf(stderr, "%s\n", report.c_str());
+    if (!verdicts.reports.empty()) std::abort();
+    return 0;
+}
