@@ -24,9 +24,8 @@ namespace lightbin {
 
 /// A light grid in memory of its own, kept from call to call.
 template <class Id, Footprint footprint, DepthTest depth_test> class GridLists {
-    static constexpr bool with_depth = depth_test != DepthTest::none;
-    static_assert(depth_test != DepthTest::box && depth_test != DepthTest::split_box,
-                  "lightbin: the depth tests box and split_box are not built yet");
+    static constexpr bool with_depth = depth_test != DepthTest::none,
+                          with_boxes = depth_test == DepthTest::box || depth_test == DepthTest::split_box;
 
 public:
     /// Builds the grid of the footprints with a kernel of an instruction set. Returns an Error if Z bounds
@@ -34,41 +33,37 @@ public:
     std::optional<Error> build(Isa isa, const View& view, const Footprints<footprint, with_depth>& footprints,
                                const ZBounds& bounds, detail::Scratch& scratch, const Parallel&) {
         const std::size_t tiles = view.tile_count();
-        for (const std::span<const float> side : {bounds.min, bounds.max, bounds.gap_min, bounds.gap_max})
-            if (!side.empty() && side.size() < tiles)
-                return Error{ErrorCode::z_bounds_too_small, tiles, side.size()};
-
-        using Job = detail::BinJob<Id>;
-        Job job = {.lights = footprints.arrays(),
+        Job job = {.camera = &view.camera(),
+                   .lights = footprints.arrays(),
                    .runs = footprints.runs(),
-                   .count = footprints.visible(),
-                   .tiles_x = view.tiles_x(),
-                   .tiles_y = view.tiles_y(),
-                   .bounds = tile_depths(view, bounds),
-                   .offsets = scratch.offsets.room(tiles + Job::slack),
-                   .indices = nullptr};
-        // Every kernel fits in the rectangles' area. Where that is out of reach, Z bounds may still bring the
-        // list below what 32-bit offsets reach: counted exactly, and the one kernel that needs no more room
-        // than that.
+                   .bounds = {},
+                   .edges = {},
+                   .tiles = nullptr};
+        const std::span<const float> sides[] = {bounds.min, bounds.max, bounds.gap_min, bounds.gap_max};
+        for (std::size_t side = 0; side < 4; ++side) {
+            if (sides[side].empty()) continue;
+            if (sides[side].size() < tiles)
+                return Error{ErrorCode::z_bounds_too_small, tiles, sides[side].size()};
+            job.bounds[side] = sides[side].data();
+        }
+        if constexpr (with_boxes) find_edges(job);
+
+        const unsigned bands = static_cast<unsigned>(view.tiles_y() + 7) / 8;
         constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
         std::uint64_t room = footprints.area();
-        auto kernel = detail::bin_kernel<Id, with_depth>(isa, job, room);
-        if (room > most / 2) {
-            if constexpr (with_depth)
-                room = detail::count_scalar<true>(job, scratch, scratch.cursors.room(tiles));
-            if (room > most) return Error{ErrorCode::too_many_entries, room, most};
-            kernel = detail::bin_scalar<with_depth, Id>;
-        }
-        job.indices = indices_.room(static_cast<std::size_t>(room) + Job::slack);
-        entries_ = static_cast<std::size_t>(kernel(job, scratch));
+        // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.
+        if constexpr (detail::masked<footprint, depth_test>)
+            if (room > most)
+                room = detail::scalar::bin_supertiles<footprint, depth_test>(job, scratch,
+                                                                             {0, bands, nullptr, 0});
+        if (room > most) return Error{ErrorCode::too_many_entries, room, most};
 
         tile_count_ = tiles;
-        Tile* grid = tiles_.room(tiles);
-        for (std::size_t tile = 0; tile < tiles; ++tile) {
-            const std::uint32_t end =
-                tile + 1 < tiles ? job.offsets[tile + 1] : static_cast<std::uint32_t>(entries_);
-            grid[tile] = {job.offsets[tile], end - job.offsets[tile]};
-        }
+        job.tiles = tiles_.room(tiles);
+        const auto kernel =
+            detail::bin_kernel<footprint, depth_test, Id>(isa, view, footprints.visible(), footprints.area());
+        Id* list = indices_.room(static_cast<std::size_t>(room) + detail::BandJob<Id>::slack);
+        entries_ = static_cast<std::size_t>(kernel(job, scratch, {0, bands, list, 0}));
         return std::nullopt;
     }
 
@@ -76,15 +71,22 @@ public:
     std::span<const Id> indices() const { return {indices_.data(), entries_}; }
 
 private:
-    static detail::TileDepths tile_depths(const View& view, const ZBounds& bounds) {
-        static constexpr float none = -detail::infinity, all = detail::infinity;
-        constexpr std::size_t every = ~std::size_t{0};
-        return {bounds.min.empty() ? &none : bounds.min.data(), bounds.max.empty() ? &all : bounds.max.data(),
-                bounds.min.empty() ? 0 : every, bounds.max.empty() ? 0 : every, view.camera().z_sign};
+    using Job = detail::BinJob<Id>;
+
+    void find_edges(Job& job) {
+        const detail::ImageAxis* axes[] = {&job.camera->x, &job.camera->y};
+        for (std::size_t i = 0; i < 2; ++i) {
+            const std::size_t room = static_cast<std::size_t>(axes[i]->tiles) + 8;  // vectors are read
+            float *low = edges_[2 * i].room(room), *high = edges_[2 * i + 1].room(room);
+            detail::tile_edges(*axes[i], low, high);
+            job.edges[2 * i] = low;
+            job.edges[2 * i + 1] = high;
+        }
     }
 
     detail::Buffer<Tile> tiles_;
     detail::Buffer<Id> indices_;
+    detail::Buffer<float> edges_[4];
     std::size_t tile_count_ = 0, entries_ = 0;
 };
 

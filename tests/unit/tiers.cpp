@@ -10,7 +10,7 @@ namespace {
 struct Input {
     View view;
     std::vector<glm::vec4> lights;
-    std::vector<float> min, max;
+    std::vector<float> min, max, gap_min, gap_max;
 };
 
 /// Cameras, screens, tile sizes and lights of every order of magnitude, with some bad ones among them.
@@ -69,7 +69,12 @@ Input random_input(std::uint32_t seed) {
         bound = between(0, 1) < 0.01f ? std::nanf("") : between(-10, 60);
     for (float& bound : max)
         bound = between(0, 1) < 0.01f ? HUGE_VALF : between(0, 100);
-    return {view, lights, min, max};
+    std::vector<float> gap_min(view.tile_count()), gap_max(view.tile_count());
+    for (float& bound : gap_min)
+        bound = between(0, 1) < 0.01f ? std::nanf("") : between(-10, 80);
+    for (float& bound : gap_max)
+        bound = between(0, 1) < 0.01f ? HUGE_VALF : between(0, 100);
+    return {view, lights, min, max, gap_min, gap_max};
 }
 
 template <Isa isa, Index index, DepthTest depth_test> class Tier {
@@ -79,7 +84,8 @@ public:
             if constexpr (depth_test == DepthTest::none)
                 return binner_.bin(input.view, input.lights);
             else
-                return binner_.bin(input.view, input.lights, {input.min, input.max});
+                return binner_.bin(input.view, input.lights,
+                                   {input.min, input.max, input.gap_min, input.gap_max});
         }();
         REQUIRE(grid);
         std::vector<std::uint32_t> all = {grid->rejected()};
@@ -115,6 +121,8 @@ TEST_CASE("all tiers give the same bytes") {
     compare<Index::u16, DepthTest::none>(100, 1000);
     compare<Index::u32, DepthTest::interval>(200, 2000);
     compare<Index::u16, DepthTest::interval>(100, 3000);
+    compare<Index::u32, DepthTest::box>(200, 4000);
+    compare<Index::u32, DepthTest::split_box>(200, 5000);
 }
 
 TEST_CASE("more lights than 16 bits count, and more tiles than 8 bits count") {
@@ -123,6 +131,8 @@ TEST_CASE("more lights than 16 bits count, and more tiles than 8 bits count") {
     input.view = test::view({1280, 720}, 40);
     input.min.assign(input.view.tile_count(), 5.0f);
     input.max.assign(input.view.tile_count(), 9.0f);
+    input.gap_min.clear();
+    input.gap_max.clear();
     for (glm::vec4& light : input.lights)
         light.w *= 0.1f;
     const auto check = [&] {
@@ -132,6 +142,8 @@ TEST_CASE("more lights than 16 bits count, and more tiles than 8 bits count") {
                Tier<Isa::scalar, Index::u32, DepthTest::interval>().bytes(input)));
         CHECK((Tier<Isa::avx512, Index::u32, DepthTest::interval>().bytes(input) ==
                Tier<Isa::scalar, Index::u32, DepthTest::interval>().bytes(input)));
+        CHECK((Tier<Isa::avx512, Index::u32, DepthTest::box>().bytes(input) ==
+               Tier<Isa::scalar, Index::u32, DepthTest::box>().bytes(input)));
     };
     check();
     input.lights.resize(2000);

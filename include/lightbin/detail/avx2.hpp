@@ -89,17 +89,6 @@ LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t*
     }
 }
 
-/// One bit a tile of the supertile: !(light.max < low) && !(light.min > high).
-LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* low, const float* high, DepthInterval light) {
-    const Floats nearest = all(light.min), farthest = all(light.max);
-    std::uint64_t apart = 0;
-    for (int i = 0; i < 64; i += 8)
-        apart |= std::uint64_t{bits(either(less(farthest, _mm256_loadu_ps(low + i)),
-                                           less(_mm256_loadu_ps(high + i), nearest)))}
-                 << i;
-    return ~apart;
-}
-
 /// For each byte, the places of its set bits in ascending order.
 inline constexpr std::array<std::array<std::uint8_t, 8>, 256> set_bits = [] {
     std::array<std::array<std::uint8_t, 8>, 256> table = {};
@@ -126,6 +115,8 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
             _mm_packus_epi32(_mm256_castsi256_si128(chosen), _mm256_extracti128_si256(chosen, 1)));
     return static_cast<std::uint32_t>(std::popcount(mask));
 }
+
+#include <lightbin/detail/tile_masks.inl>
 
 #include <lightbin/detail/supertile.inl>
 

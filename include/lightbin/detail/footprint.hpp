@@ -2,6 +2,7 @@
 // The types that pass between the stages' kernels, apart from the kernels themselves.
 #pragma once
 
+#include <lightbin/light_grid.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/view.hpp>
 
@@ -57,37 +58,27 @@ struct ChunkRects {
     alignas(64) std::uint16_t x0[size], y0[size], x1[size], y1[size];
 };
 
-/// Z bounds in a form without branches: an absent side reads the one element of a constant.
-struct TileDepths {
-    const float* min;
-    const float* max;
-    std::size_t min_mask, max_mask;  ///< 0 for an absent side, all ones otherwise
-    float z_sign;                    ///< see Camera
-
-    /// z - r to z + r in float: rounding is monotone, so comparing them with float bounds never loses a light.
-    DepthInterval of(const Sphere& light) const {
-        return {z_sign * light.z - light.radius, z_sign * light.z + light.radius};
-    }
-
-    /// True unless the interval is surely out of the tile's bounds or the tile is empty. NaN tests nothing.
-    bool meets(std::size_t tile, DepthInterval light) const {
-        const float low = min[tile & min_mask], high = max[tile & max_mask];
-        return !(light.max < low) && !(light.min > high) && !(low > high);
-    }
-};
-
-/// What a binning kernel works on and writes.
+/// What binning works on and writes.
 template <class Id> struct BinJob {
-    /// Elements that a kernel may write past the end of `offsets` and `indices`: full vectors are stored.
-    static constexpr std::size_t slack = 64;
-
+    const Camera* camera;
     FootprintArrays lights;
     std::span<const FootprintRun> runs;
-    std::uint32_t count;  ///< of lights, in all runs
-    int tiles_x, tiles_y;
-    TileDepths bounds;
-    std::uint32_t* offsets;  ///< one a tile, row-major
-    Id* indices;             ///< room for ProjectCounts::area
+    const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one
+    const float* edges[4];   ///< of the tiles, for boxes: low x, high x, low y, high y; see cell_boxes.hpp
+    Tile* tiles;             ///< the table to write
+};
+
+/// The part of it that one call of a kernel does: the tile rows 8 * begin to 8 * end - 1.
+template <class Id> struct BandJob {
+    /// Elements that a kernel may write past the end of its index list: full vectors are stored.
+    static constexpr std::size_t slack = 64;
+
+    unsigned begin, end;
+    Id* out;           ///< where their index list begins
+    std::uint32_t at;  ///< and at what offset in the whole one
+    /// From this tile row on, write to `spare` instead: another call owns what follows `out`.
+    unsigned spare_row = ~0u;
+    Id* spare = nullptr;
 };
 
 }  // namespace lightbin::detail

@@ -8,23 +8,28 @@
 
 namespace lightbin::detail {
 
+/// Lights begin..end-1, of one run, whose ids share their upper 16 bits, `upper`.
+struct IdBlock {
+    std::uint32_t begin, end, upper;
+};
+
 struct Scratch {
-    Buffer<std::uint32_t> offsets;  ///< one a tile
-    Buffer<std::uint32_t> cursors;  ///< one a tile or supertile
-    Buffer<std::int32_t> corners;   ///< difference array of rectangles
+    Buffer<std::int32_t> corners;   ///< difference array of rectangles, over tiles or supertiles
+    Buffer<std::uint32_t> cursors;  ///< one a supertile
 
     // Lists of the lights that reach a supertile: id, and which of its columns and rows.
     Buffer<std::uint32_t> list_begin, list_size, list_ids;
     Buffer<std::uint8_t> list_columns, list_rows;
-    Buffer<std::uint64_t> words;  ///< of a band of supertiles: for 64 lights, one bit a light
-
-    Buffer<float> tile_min, tile_max;  ///< Z bounds, 64 a supertile
-    Buffer<std::uint64_t> lit_tiles;   ///< one bit a tile that has anything to light, a word a supertile
+    Buffer<std::uint64_t> masks;      ///< of a supertile: a word a light, a bit a tile
+    Buffer<std::uint64_t> words;      ///< of a band of supertiles: a bit a light
+    Buffer<std::uint8_t> tile_bytes;  ///< the same, a byte a tile for 8 lights
 
     // The same lists in the form of the AVX-512 kernel, and those of a band of supertiles.
     Buffer<std::uint8_t> band_x0, band_x1, band_rows;
     Buffer<std::uint16_t> band_ids, short_ids;
     Buffer<std::uint32_t> band_size, word_begin;
+    Buffer<IdBlock> blocks;
+    Buffer<std::uint32_t> block_ends, uppers;  ///< of a band's list; of 64 lights of a supertile's
 };
 
 }  // namespace lightbin::detail

@@ -7,6 +7,8 @@
 #if defined(LIGHTBIN_X86)
 
 #include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/scratch.hpp>
+#include <lightbin/detail/supertile.hpp>
 
 #include <bit>
 #include <cstring>
@@ -66,6 +68,35 @@ inline void store_tiles(std::uint16_t* tiles, Doubles values) {
 }
 
 #include <lightbin/detail/project.inl>
+
+/// As the AVX2 tier's, which see.
+inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
+    __m128i quarter[4];
+    for (int i = 0; i < 4; ++i)
+        quarter[i] = _mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes + 16 * i));
+    for (int bit = 7; bit >= 0; --bit) {
+        words[bit] = 0;
+        for (int i = 0; i < 4; ++i) {
+            words[bit] |= std::uint64_t{static_cast<unsigned>(_mm_movemask_epi8(quarter[i]))} << 16 * i;
+            quarter[i] = _mm_add_epi8(quarter[i], quarter[i]);
+        }
+    }
+}
+
+/// Writes those of 8 ids whose bit is set, in order, then elements that mean nothing: every id is written, and
+/// the place moves on for those chosen. Returns how many.
+template <class Id> std::uint32_t append(Id* out, const std::uint32_t* ids, unsigned mask) {
+    std::uint32_t count = 0;
+    for (unsigned i = 0; i < 8; ++i, mask >>= 1) {
+        out[count] = static_cast<Id>(ids[i]);
+        count += mask & 1;
+    }
+    return count;
+}
+
+#include <lightbin/detail/tile_masks.inl>
+
+#include <lightbin/detail/supertile.inl>
 
 }  // namespace sse2
 }  // namespace LIGHTBIN_FLAVOUR

@@ -1,59 +1,77 @@
 // SPDX-License-Identifier: MIT
-// What the supertile kernels of all tiers share: the layout of their words and of the Z bounds.
+// What the supertile kernels of all tiers share.
 #pragma once
 
+#include <lightbin/detail/cell_boxes.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/scratch.hpp>
+#include <lightbin/options.hpp>
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 
 namespace lightbin::detail {
 
-/// The words of 64 lights of a supertile, one bit a light: a word for each column and one for each row, or,
-/// with Z, one for each tile.
-template <bool with_depth> struct Words {
-    static constexpr std::size_t size = with_depth ? 64 : 16;
+/// Lights have a word with a bit a tile in each supertile, rather than a byte of columns and one of rows.
+template <Footprint footprint, DepthTest depth_test>
+inline constexpr bool masked = footprint != Footprint::rectangle || depth_test != DepthTest::none;
 
-    static std::uint64_t of_tile(const std::uint64_t* words, unsigned row, unsigned column) {
-        if constexpr (with_depth)
-            return words[8 * row + column];
-        else
-            return words[8 + row] & words[column];
-    }
-};
-
-inline constexpr std::array<std::uint8_t, 64> every_byte = [] {
-    std::array<std::uint8_t, 64> bytes = {};
-    for (std::uint8_t i = 0; i < 64; ++i)
-        bytes[i] = i;
-    return bytes;
-}();
+/// Planes of 64 floats that a depth test needs of a supertile, see arrange_cells().
+template <DepthTest depth_test>
+inline constexpr unsigned cell_planes = depth_test == DepthTest::split_box ? 12
+                                        : depth_test == DepthTest::box     ? 6
+                                                                           : 2;
 
 inline namespace LIGHTBIN_FLAVOUR {
 
-/// Fills tile_min, tile_max and lit_tiles of the scratch: the Z bounds in supertile order, `pitch` supertiles
-/// a row.
-template <class Id>
-void arrange_bounds(const BinJob<Id>& job, Scratch& scratch, std::size_t pitch, std::size_t height) {
-    float* low = scratch.tile_min.room(pitch * height * 64);
-    float* high = scratch.tile_max.room(pitch * height * 64);
-    std::uint64_t* lit = scratch.lit_tiles.room(pitch * height);
-    std::memset(lit, 0, pitch * height * sizeof *lit);
-    std::size_t tile = 0;
-    for (unsigned y = 0; y < static_cast<unsigned>(job.tiles_y); ++y)
-        for (unsigned x = 0; x < static_cast<unsigned>(job.tiles_x); ++x, ++tile) {
-            const std::size_t supertile = y / 8 * pitch + x / 8;
-            const unsigned place = y % 8 * 8 + x % 8;
-            const float min_depth = job.bounds.min[tile & job.bounds.min_mask];
-            const float max_depth = job.bounds.max[tile & job.bounds.max_mask];
-            low[supertile * 64 + place] = min_depth;
-            high[supertile * 64 + place] = max_depth;
-            lit[supertile] |= std::uint64_t{!(min_depth > max_depth)} << place;
-        }
+/// Bits of the tiles first..last of an 8-tile span that begins at tile `begin`, for a light that meets it.
+inline unsigned covered(unsigned first, unsigned last, unsigned begin) {
+    const unsigned low = first > begin ? first - begin : 0, high = last - begin < 7 ? last - begin : 7;
+    return ((2u << high) - 1) & (~0u << low);
+}
+
+/// For each set bit of a byte a byte of ones.
+inline std::uint64_t spread_rows(std::uint8_t rows) {
+    const std::uint64_t one_each = rows * std::uint64_t{0x0101010101010101} & 0x8040201008040201;
+    return ((one_each + 0x7f7f7f7f7f7f7f7f) >> 7 & 0x0101010101010101) * 0xff;
+}
+
+/// 8x8 bits turned: byte i bit j to byte j bit i (Warren, "Hacker's Delight", 7-3).
+inline std::uint64_t turned(std::uint64_t x) {
+    std::uint64_t t = (x ^ x >> 7) & 0x00aa00aa00aa00aa;
+    x ^= t ^ t << 7;
+    t = (x ^ x >> 14) & 0x0000cccc0000cccc;
+    x ^= t ^ t << 14;
+    t = (x ^ x >> 28) & 0x00000000f0f0f0f0;
+    return x ^ t ^ t << 28;
+}
+
+/// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
+inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
+    for (unsigned i = 0; i < 64; i += 8) {
+        std::uint64_t eight;
+        std::memcpy(&eight, bytes + i, 8);
+        eight = turned(eight);
+        for (unsigned bit = 0; bit < 8; ++bit)
+            words[bit] = (i == 0 ? 0 : words[bit]) | (eight >> 8 * bit & 0xff) << i;
+    }
+}
+
+/// Turns the words of up to 8 lights, a bit a tile, into a byte a tile, a bit a light.
+inline void turn_words(const std::uint64_t* words, std::uint32_t count, std::uint8_t* tiles) {
+    for (unsigned row = 0; row < 8; ++row) {
+        std::uint64_t of_row = 0;
+        for (unsigned light = 0; light < count; ++light)
+            of_row |= (words[light] >> 8 * row & 0xff) << 8 * light;
+        of_row = turned(of_row);
+        for (unsigned column = 0; column < 8; ++column)
+            tiles[8 * row + column] = static_cast<std::uint8_t>(of_row >> 8 * column);
+    }
 }
 
 }  // namespace LIGHTBIN_FLAVOUR

@@ -11,6 +11,15 @@ template <class Real> LIGHTBIN_TARGET inline typename VectorOf<Real>::Type all(R
     return value - typename VectorOf<Real>::Type{};
 }
 
+LIGHTBIN_TARGET inline Floats load_floats(const float* from) {
+    Floats values;
+    std::memcpy(&values, from, sizeof values);
+    return values;
+}
+LIGHTBIN_TARGET inline void store_floats(float* to, Floats values) {
+    std::memcpy(to, &values, sizeof values);
+}
+
 /// A product that is rounded before it is added to anything, see rounded().
 template <class Reals> LIGHTBIN_TARGET inline Reals mul(Reals a, Reals b) {
     Reals product = a * b;

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// The view-space box around a tile's cell, which DepthTest::box tests spheres against (Thomas, "Advancements
+// in Tiled-Based Compute Rendering", GDC 2015; Stewart, "Compute-Based Tiled Culling", GPU Pro 6).
+//
+// A cell lies between two planes a side, through the eye (perspective) or along the viewing direction
+// (orthographic), and between two depths. Between the depths z0 and z1, 0 < z0, the planes of slope s0 and s1
+// bound the coordinate by  min(s0 z0, s0 z1)  and  max(s1 z0, s1 z1).
+//
+// Rounding, u = 2^-24. Outward everywhere:
+// - an edge's slope is computed in double: the offset may be off by 2^-51 of its parts, the quotient by a few
+//   2^-53 of itself. It is moved outward by 2^-48 and 2^-21 of these, and rounding to float takes u.
+// - slope * depth takes another u, so the product is still outward of the truth: 2^-21 = 8u. Underflow, or a
+//   caller who flushes denormal numbers to zero, takes up to 2^-126; `flushed` is more.
+// - the distance along an axis is within u of the truth, its square 3u, the sum of three squares 5u (sums of
+//   terms of one sign). The squared radius loses 3u. 2^-20 = 16u makes up for the 8u, and 2^-125 for squares
+//   that are flushed to zero. What overflows to infinity did so in both or in the sphere's favour, since all
+//   roundings are monotone; infinity is not beyond infinity.
+#pragma once
+
+#include <lightbin/detail/platform.hpp>
+#include <lightbin/detail/rounding.hpp>
+#include <lightbin/lights.hpp>
+#include <lightbin/view.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lightbin::detail {
+inline namespace LIGHTBIN_FLAVOUR {
+
+inline constexpr float flushed = 0x1p-120f;
+
+/// Writes each tile's two edges along an axis, as slopes or coordinates, `low` rounded down and `high` up.
+inline void tile_edges(const ImageAxis& axis, float* low, float* high) {
+    constexpr double most = FLT_MAX;
+    const double error = 0x1p-48 * (std::fabs(axis.offset) + axis.tiles + 1);
+    for (int tile = 0; tile < axis.tiles; ++tile) {
+        const double end = (std::min)(tile + 1.0, static_cast<double>(axis.limit));
+        double from = (tile - axis.offset - error) / axis.scale,
+               to = (end - axis.offset + error) / axis.scale;
+        from -= std::fabs(from) * 0x1p-21 + 0x1p-100;
+        to += std::fabs(to) * 0x1p-21 + 0x1p-100;
+        low[tile] = from < -most ? -infinity : static_cast<float>((std::min)(from, most));
+        high[tile] = to > most ? infinity : static_cast<float>((std::max)(to, -most));
+    }
+}
+
+/// A light as the depth tests see it: the tile index grows with x and y, and z is the view depth.
+struct TestedLight {
+    TestedLight(const Camera& camera, const Sphere& light)
+        : x(camera.x.sign * light.x), y(camera.y.sign * light.y), z(camera.z_sign * light.z),
+          nearest(z - light.radius), farthest(z + light.radius),
+          reach2(rounded(rounded(light.radius * light.radius) * (1 + 0x1p-20f)) + 0x1p-125f) {}
+
+    float x, y, z;
+    float nearest, farthest;  ///< rounding is monotone: comparing them with float bounds never loses a light
+    float reach2;             ///< the squared radius, rounded up
+};
+
+}  // namespace LIGHTBIN_FLAVOUR
+}  // namespace lightbin::detail

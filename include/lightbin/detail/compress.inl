@@ -1,0 +1,426 @@
+// SPDX-License-Identifier: MIT
+// Binning by supertiles of 8x8 tiles on AVX-512, as supertile.inl, but lists are made by compressing 64 lights
+// at a time instead of inserting them one by one:
+//
+//   1. 64 lights' rows against each band of 8 tile rows: a saturating subtraction and two byte shuffles give
+//      each light's byte of covered rows, zero if it misses the band. Those that do not are compressed onto
+//      the band's list.
+//   2. The same with the band's list and each supertile's 8 columns: the supertile's list, then its words.
+//   3. Tiles in row-major order: the lights of tile (row, column) are rows[row] & columns[column]; their ids
+//      are compressed onto the index list. A supertile of up to 8 lights takes one compress for 8 tiles.
+//
+// Coordinates are bytes and ids 16 bits here. So lists are made for panels of 248 tiles a side, coordinates
+// counted from the panel; and lights are taken in blocks whose ids share their upper 16 bits: in every list a
+// block begins at a multiple of 64, filled up with lights that cover nothing.
+
+inline constexpr unsigned panel_side = 31;  // in supertiles
+
+inline constexpr std::array<std::uint8_t, 64> every_byte = [] {
+    std::array<std::uint8_t, 64> bytes = {};
+    for (std::uint8_t i = 0; i < 64; ++i)
+        bytes[i] = i;
+    return bytes;
+}();
+inline constexpr std::array<std::uint16_t, 32> every_word = [] {
+    std::array<std::uint16_t, 32> words = {};
+    for (std::uint16_t i = 0; i < 32; ++i)
+        words[i] = i;
+    return words;
+}();
+
+LIGHTBIN_TARGET inline __m512i load(const void* p) {
+    return _mm512_loadu_si512(p);
+}
+LIGHTBIN_TARGET inline void store(void* p, __m512i v) {
+    _mm512_storeu_si512(p, v);
+}
+LIGHTBIN_TARGET inline __m512i halves(__m256i low, __m256i high) {
+    return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
+}
+LIGHTBIN_TARGET inline __m512i load_low_halves(const std::uint32_t* p) {
+    return halves(_mm512_cvtepi32_epi16(load(p)), _mm512_cvtepi32_epi16(load(p + 16)));
+}
+LIGHTBIN_TARGET inline __mmask64 first_lanes(std::size_t count) {
+    return count >= 64 ? ~__mmask64{0} : (__mmask64{1} << count) - 1;
+}
+/// 64 coordinates (plus `more`) counted from `begin`, as bytes: 0 if before, 248 or more if beyond the panel.
+LIGHTBIN_TARGET inline __m512i load_from(const std::uint16_t* p, unsigned more, unsigned begin) {
+    const __m512i one = _mm512_set1_epi16(static_cast<short>(more)),
+                  start = _mm512_set1_epi16(static_cast<short>(begin));
+    return halves(_mm512_cvtusepi16_epi8(_mm512_subs_epu16(_mm512_add_epi16(load(p), one), start)),
+                  _mm512_cvtusepi16_epi8(_mm512_subs_epu16(_mm512_add_epi16(load(p + 32), one), start)));
+}
+
+/// Of each light first..end-1 (bytes), which of the 8 tiles from `begin` on it covers, a bit a tile.
+LIGHTBIN_TARGET inline __m512i covered_bytes(__m512i first, __m512i end, unsigned begin) {
+    const __m512i from =
+        _mm512_broadcast_i32x4(_mm_setr_epi8(-1, -2, -4, -8, -16, -32, -64, -128, 0, 0, 0, 0, 0, 0, 0, 0));
+    const __m512i before =
+        _mm512_broadcast_i32x4(_mm_setr_epi8(0, 1, 3, 7, 15, 31, 63, 127, -1, 0, 0, 0, 0, 0, 0, 0));
+    const __m512i start = _mm512_set1_epi8(static_cast<char>(begin)), eight = _mm512_set1_epi8(8);
+    return _mm512_and_si512(
+        _mm512_shuffle_epi8(from, _mm512_min_epu8(_mm512_subs_epu8(first, start), eight)),
+        _mm512_shuffle_epi8(before, _mm512_min_epu8(_mm512_subs_epu8(end, start), eight)));
+}
+
+/// Appends the chosen of 64 ids of 16 bits. Stores whole vectors.
+LIGHTBIN_TARGET inline void append_ids(std::uint16_t* to, __mmask64 chosen, __m512i low, __m512i high) {
+    const __mmask32 chosen_low = static_cast<__mmask32>(chosen);
+    store(to, _mm512_maskz_compress_epi16(chosen_low, low));
+    store(to + std::popcount(chosen_low),
+          _mm512_maskz_compress_epi16(static_cast<__mmask32>(chosen >> 32), high));
+}
+
+/// Stores 32 ids of 16 bits as Ids with the given upper bits.
+template <class Id> LIGHTBIN_TARGET inline void store_ids(Id* to, __m512i ids, std::uint32_t upper) {
+    if constexpr (sizeof(Id) == 2) {
+        store(to, ids);
+    } else {
+        const __m512i base = _mm512_set1_epi32(static_cast<int>(upper));
+        store(to, _mm512_or_si512(base, _mm512_cvtepu16_epi32(_mm512_castsi512_si256(ids))));
+        store(to + 16, _mm512_or_si512(base, _mm512_cvtepu16_epi32(_mm512_extracti64x4_epi64(ids, 1))));
+    }
+}
+
+/// Appends those of 64 ids (in two vectors of 16 bits) whose bit is set. Returns how many.
+template <class Id>
+LIGHTBIN_TARGET inline std::uint32_t append(Id* to, std::uint64_t lit, __m512i low, __m512i high,
+                                            std::uint32_t upper) {
+    const __m512i places = _mm512_maskz_compress_epi8(lit, load(every_byte.data()));
+    const std::uint32_t count = static_cast<std::uint32_t>(std::popcount(lit));
+    const __m512i first = _mm512_cvtepu8_epi16(_mm512_castsi512_si256(places));
+    store_ids(to, _mm512_permutex2var_epi16(low, first, high), upper);
+    if (count > 32) {
+        const __m512i rest = _mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64(places, 1));
+        store_ids(to + 32, _mm512_permutex2var_epi16(low, rest, high), upper);
+    }
+    return count;
+}
+
+/// Fills scratch.blocks; returns how many there are.
+template <class Id> std::size_t make_blocks(const BinJob<Id>& job, Scratch& scratch) {
+    std::size_t count = 0;
+    for (const FootprintRun& run : job.runs)
+        for (std::uint32_t i = run.begin; i < run.end; ++count) {
+            const std::uint32_t* ids = job.lights.ids;
+            const std::uint32_t upper = ids[i] & 0xffff0000, last = upper | 0xffff;
+            const std::uint32_t end =
+                ids[run.end - 1] <= last
+                    ? run.end
+                    : static_cast<std::uint32_t>(std::upper_bound(ids + i, ids + run.end, last) - ids);
+            scratch.blocks.room(count + 1, count)[count] = {i, end, upper};
+            i = end;
+        }
+    return count;
+}
+
+/// Lists of one band and panel, each of `stride` places: ids of 16 bits, or, where lights get words, places
+/// within the block; and its lights' columns and rows.
+struct BandLists {
+    std::size_t stride;
+    std::uint8_t *x0, *x1, *rows;
+    std::uint16_t* ids;
+    std::uint32_t* ends;  ///< of each block, rounded up to 64 but for the last
+};
+
+/// Step 1, for `bands` bands from `first_band` on. List (band, panel) is number band * panels + panel.
+template <bool with_words, class Id>
+LIGHTBIN_TARGET BandLists fill_bands(const BinJob<Id>& job, Scratch& scratch, std::size_t block_count,
+                                     unsigned first_band, unsigned bands, unsigned panels) {
+    const FootprintArrays& lights = job.lights;
+    const IdBlock* blocks = scratch.blocks.data();
+    const std::size_t lists = std::size_t{bands} * panels;
+    BandLists to = {};
+    for (std::size_t block = 0; block < block_count; ++block)
+        to.stride += (blocks[block].end - blocks[block].begin + 63) & ~63u;
+    to.stride += 192;  // whole vectors are stored and read
+    to.x0 = scratch.band_x0.room(lists * to.stride);
+    to.x1 = scratch.band_x1.room(lists * to.stride);
+    to.rows = scratch.band_rows.room(lists * to.stride);
+    to.ids = scratch.band_ids.room(lists * to.stride);
+    to.ends = scratch.block_ends.room(lists * block_count);
+    std::uint32_t* size = scratch.band_size.room(lists);
+    std::memset(size, 0, lists * sizeof *size);
+    for (std::size_t block = 0; block < block_count; ++block) {
+        for (std::size_t i = blocks[block].begin; i < blocks[block].end; i += 64) {
+            const __m512i first_y = load_from(lights.y0 + i, 0, 8 * first_band),
+                          end_y = load_from(lights.y1 + i, 1, 8 * first_band);
+            const __mmask64 valid = first_lanes(blocks[block].end - i);
+            __m512i low_ids, high_ids;
+            if constexpr (with_words) {
+                low_ids = _mm512_add_epi16(load(every_word.data()),
+                                           _mm512_set1_epi16(static_cast<short>(i - blocks[block].begin)));
+                high_ids = _mm512_add_epi16(low_ids, _mm512_set1_epi16(32));
+            } else {
+                low_ids = load_low_halves(lights.ids + i);
+                high_ids = load_low_halves(lights.ids + i + 32);
+            }
+            for (unsigned panel = 0; panel < panels; ++panel) {
+                const __m512i first_x = load_from(lights.x0 + i, 0, 8 * panel_side * panel),
+                              end_x = load_from(lights.x1 + i, 1, 8 * panel_side * panel);
+                __mmask64 in_panel = valid;
+                if (panels > 1)
+                    in_panel =
+                        _mm512_mask_cmplt_epu8_mask(_mm512_mask_test_epi8_mask(valid, end_x, end_x), first_x,
+                                                    _mm512_set1_epi8(static_cast<char>(8 * panel_side)));
+                if (in_panel == 0) continue;
+                for (unsigned band = 0; band < bands; ++band) {
+                    const __m512i here = covered_bytes(first_y, end_y, 8 * band);
+                    const __mmask64 chosen = _mm512_mask_test_epi8_mask(in_panel, here, here);
+                    const std::size_t list = std::size_t{band} * panels + panel,
+                                      at = list * to.stride + size[list];
+                    store(to.x0 + at, _mm512_maskz_compress_epi8(chosen, first_x));
+                    store(to.x1 + at, _mm512_maskz_compress_epi8(chosen, end_x));
+                    store(to.rows + at, _mm512_maskz_compress_epi8(chosen, here));
+                    append_ids(to.ids + at, chosen, low_ids, high_ids);
+                    size[list] += static_cast<std::uint32_t>(std::popcount(chosen));
+                }
+            }
+        }
+        for (std::size_t list = 0; list < lists; ++list) {
+            if (block + 1 < block_count) {
+                // x1 = 0: covers no column
+                store(to.x1 + list * to.stride + size[list], _mm512_setzero_si512());
+                size[list] = (size[list] + 63) & ~63u;
+            }
+            to.ends[list * block_count + block] = size[list];
+        }
+    }
+    return to;
+}
+
+/// The words of up to 8 lights: for each of 8 rows, 8 bytes (one a column) of 8 bits (one a light); after
+/// them, for each row, the running number of set bits up to and with each byte.
+LIGHTBIN_TARGET inline void store_small_words(std::uint64_t* words, __m512i lit) {
+    __m512i sums = _mm512_popcnt_epi8(lit);
+    sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 8));
+    sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 16));
+    sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 32));
+    store(words, lit);
+    store(words + 8, sums);
+}
+
+/// The same from bytes of columns and rows.
+LIGHTBIN_TARGET inline void small_words(const std::uint8_t* columns, const std::uint8_t* rows,
+                                        std::uint32_t count, std::uint64_t* words) {
+    const __m512i each_row =
+        _mm512_setr_epi64(0, 0x0101010101010101, 0x0202020202020202, 0x0303030303030303, 0x0404040404040404,
+                          0x0505050505050505, 0x0606060606060606, 0x0707070707070707);
+    std::uint64_t column_bytes, row_bytes;
+    std::memcpy(&column_bytes, columns, 8);
+    std::memcpy(&row_bytes, rows, 8);
+    if (count < 8) column_bytes &= (std::uint64_t{1} << 8 * count) - 1;
+    const __m512i by_column = _mm512_set1_epi64(static_cast<long long>(turned(column_bytes))),
+                  by_row = _mm512_set1_epi64(static_cast<long long>(turned(row_bytes)));
+    store_small_words(words, _mm512_and_si512(by_column, _mm512_shuffle_epi8(by_row, each_row)));
+}
+
+/// Appends one row of a supertile of up to 8 lights, and the row's `columns` tiles. Returns how many ids.
+template <class Id>
+LIGHTBIN_TARGET inline std::uint32_t append_small(Id* to, Tile* tiles, __mmask8 columns, std::uint32_t at,
+                                                  const std::uint64_t* words, const std::uint16_t* ids,
+                                                  std::uint32_t upper) {
+    const std::uint64_t lit = words[0], sums = words[8];
+    const __m512i light = _mm512_and_si512(load(every_byte.data()), _mm512_set1_epi8(7));
+    const __m512i places = _mm512_maskz_compress_epi8(lit, light);
+    // Tiles are pairs of 32 bits, offset and count: the difference of running sums.
+    const __m512i ends = _mm512_cvtepu8_epi64(_mm_cvtsi64_si128(static_cast<long long>(sums))),
+                  begins = _mm512_cvtepu8_epi64(_mm_cvtsi64_si128(static_cast<long long>(sums << 8)));
+    const __m512i pairs = _mm512_or_si512(_mm512_add_epi32(begins, _mm512_set1_epi64(at)),
+                                          _mm512_slli_epi64(_mm512_sub_epi64(ends, begins), 32));
+    _mm512_mask_storeu_epi64(tiles, columns, pairs);
+    const __m512i table = _mm512_castsi128_si512(_mm_loadu_si128(reinterpret_cast<const __m128i*>(ids)));
+    const std::uint32_t count = static_cast<std::uint32_t>(sums >> 56);
+    store_ids(to, _mm512_permutexvar_epi16(_mm512_cvtepu8_epi16(_mm512_castsi512_si256(places)), table),
+              upper);
+    if (count > 32)
+        store_ids(to + 32,
+                  _mm512_permutexvar_epi16(_mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64(places, 1)), table),
+                  upper);
+    return count;
+}
+
+/// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
+LIGHTBIN_TARGET inline void split_bits(__m512i bytes, __mmask64 valid, std::uint64_t* words) {
+    for (int bit = 0; bit < 8; ++bit)
+        words[bit] = _mm512_mask_test_epi8_mask(valid, bytes, _mm512_set1_epi8(static_cast<char>(1 << bit)));
+}
+
+/// Turns the words of 64 lights, a bit a tile, into a word a tile, a bit a light.
+LIGHTBIN_TARGET inline void turn_64_words(const std::uint64_t* lights, std::uint32_t count,
+                                          std::uint64_t* tiles) {
+    // Bytes first: in each vector of 8 lights, the bytes of one tile row side by side ...
+    __m512i v[8], w[8];
+    const __m512i by_row =
+        _mm512_set_epi8(63, 55, 47, 39, 31, 23, 15, 7, 62, 54, 46, 38, 30, 22, 14, 6, 61, 53, 45, 37, 29, 21,
+                        13, 5, 60, 52, 44, 36, 28, 20, 12, 4, 59, 51, 43, 35, 27, 19, 11, 3, 58, 50, 42, 34,
+                        26, 18, 10, 2, 57, 49, 41, 33, 25, 17, 9, 1, 56, 48, 40, 32, 24, 16, 8, 0);
+    for (unsigned i = 0; i < 8; ++i)
+        v[i] = _mm512_permutexvar_epi8(
+            by_row,
+            _mm512_maskz_loadu_epi64(static_cast<__mmask8>(first_lanes(count > 8 * i ? count - 8 * i : 0)),
+                                     lights + 8 * i));
+    // ... then those of all 64 lights, 8x8 words turned ...
+    for (unsigned i = 0; i < 8; i += 2) {
+        w[i] = _mm512_unpacklo_epi64(v[i], v[i + 1]);
+        w[i + 1] = _mm512_unpackhi_epi64(v[i], v[i + 1]);
+    }
+    for (unsigned i = 0; i < 8; i += 4)
+        for (unsigned odd = 0; odd < 2; ++odd) {
+            v[i + odd] = _mm512_shuffle_i64x2(w[i + odd], w[i + odd + 2], 0x88);
+            v[i + odd + 2] = _mm512_shuffle_i64x2(w[i + odd], w[i + odd + 2], 0xdd);
+        }
+    for (unsigned i = 0; i < 4; ++i) {
+        split_bits(_mm512_shuffle_i64x2(v[i], v[i + 4], 0x88), ~__mmask64{0}, tiles + 8 * i);
+        split_bits(_mm512_shuffle_i64x2(v[i], v[i + 4], 0xdd), ~__mmask64{0}, tiles + 8 * (i + 4));
+    }
+}
+
+/// Bins the tile rows of `bands`. Returns the number of entries. May write BandJob::slack ids past them.
+template <Footprint footprint, DepthTest depth_test, class Id>
+LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scratch,
+                                           const BandJob<Id>& bands) {
+    constexpr bool with_words = masked<footprint, depth_test>;
+    constexpr std::uint32_t group =
+        with_words ? 64 : 16;  // words for 64 lights: one a tile, or column and row
+    const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles),
+                   tiles_y = static_cast<unsigned>(job.camera->y.tiles);
+    const unsigned width = (tiles_x + 7) / 8, panels = (width + panel_side - 1) / panel_side;
+    const std::size_t block_count = make_blocks(job, scratch);
+    const IdBlock* blocks = scratch.blocks.data();
+    std::uint32_t* size = scratch.list_size.room(width);
+    std::uint32_t* begin = scratch.list_begin.room(width);
+    std::uint32_t* first_word = scratch.word_begin.room(width);
+
+    BandLists lists = {};
+    unsigned listed = bands.begin, first_listed = bands.begin;  // the bands that `lists` has
+    Id* out = bands.out;
+    std::uint32_t at = bands.at;
+    for (unsigned y = bands.begin; y < bands.end; ++y) {
+        if (y == listed) {
+            first_listed = y;
+            listed = (std::min)(y + panel_side, bands.end);
+            lists = fill_bands<with_words>(job, scratch, block_count, y, listed - y, panels);
+        }
+        std::uint32_t ids_used = 0, words_used = 0;
+        for (unsigned x = 0; x < width; ++x) {  // step 2
+            const std::size_t list = std::size_t{y - first_listed} * panels + x / panel_side,
+                              list_begin = list * lists.stride;
+            const std::uint32_t in_band = block_count == 0 ? 0 : lists.ends[(list + 1) * block_count - 1];
+            std::uint16_t* ids = scratch.short_ids.room(ids_used + in_band + 192, ids_used) + ids_used;
+            std::uint8_t* columns = scratch.list_columns.room(in_band + 192);
+            std::uint8_t* rows = scratch.list_rows.room(in_band + 192);
+            std::uint64_t* masks = nullptr;
+            float cells[cell_planes<depth_test> * 64];
+            std::uint64_t lit = 0;
+            bool arranged = false;
+            if constexpr (with_words) masks = scratch.masks.room(in_band + 64);
+            std::uint32_t count = 0, i = 0;
+            for (std::size_t block = 0; block < block_count; ++block) {
+                const std::uint32_t block_begin = count, in_block = lists.ends[list * block_count + block];
+                for (; i < in_block; i += 64) {
+                    const std::size_t from = list_begin + i;
+                    const __m512i here =
+                        covered_bytes(load(lists.x0 + from), load(lists.x1 + from), 8 * (x % panel_side));
+                    const __mmask64 chosen =
+                        _mm512_mask_test_epi8_mask(first_lanes(in_block - i), here, here);
+                    store(columns + count, _mm512_maskz_compress_epi8(chosen, here));
+                    store(rows + count, _mm512_maskz_compress_epi8(chosen, load(lists.rows + from)));
+                    append_ids(ids + count, chosen, load(lists.ids + from), load(lists.ids + from + 32));
+                    count += static_cast<std::uint32_t>(std::popcount(chosen));
+                }
+                if constexpr (with_words)
+                    if (count > block_begin) {
+                        if (depth_test != DepthTest::none && !arranged)
+                            lit = avx2::arrange_cells<depth_test>(job, x, y, cells);
+                        arranged = true;
+                        count = block_begin +
+                                mask_lights<footprint, depth_test>(job, x, y, cells, lit, ids + block_begin,
+                                                                   blocks[block].begin, columns + block_begin,
+                                                                   rows + block_begin, count - block_begin,
+                                                                   masks + block_begin);
+                    }
+                const std::uint32_t end = (count + 63) & ~63u, group_begin = (ids_used + block_begin) / 64,
+                                    group_end = (ids_used + end) / 64;
+                std::uint32_t* uppers = scratch.uppers.room(group_end, group_begin);
+                for (std::uint32_t g = group_begin; g < group_end; ++g)
+                    uppers[g] = blocks[block].upper;
+                if (block + 1 < block_count) {
+                    store(columns + count, _mm512_setzero_si512());
+                    if constexpr (with_words) std::memset(masks + count, 0, (end - count) * sizeof *masks);
+                    count = end;
+                }
+            }
+            size[x] = count;
+            begin[x] = ids_used;
+            first_word[x] = words_used;
+            const std::uint32_t needed = (count + 63) / 64 * group;
+            std::uint64_t* words = scratch.words.room(words_used + needed, words_used) + words_used;
+            if (count > 0 && count <= 8) {
+                if constexpr (with_words) {
+                    alignas(64) std::uint8_t bytes[64];
+                    turn_words(masks, count, bytes);
+                    store_small_words(words, load(bytes));
+                } else {
+                    small_words(columns, rows, count, words);
+                }
+            } else {
+                for (std::uint32_t j = 0; j < count; j += 64, words += group) {
+                    if constexpr (with_words) {
+                        turn_64_words(masks + j, count - j, words);
+                    } else {
+                        split_bits(load(columns + j), first_lanes(count - j), words);
+                        split_bits(load(rows + j), first_lanes(count - j), words + 8);
+                    }
+                }
+            }
+            words_used += needed;
+            ids_used += (count + 63) & ~63u;
+        }
+        for (unsigned row = 8 * y; row < 8 * y + 8 && row < tiles_y; ++row) {  // step 3
+            if (row == bands.spare_row) out = bands.spare;
+            for (unsigned x = 0; x < width; ++x) {
+                const std::uint32_t count = size[x];
+                const std::uint64_t* words = scratch.words.data() + first_word[x];
+                const std::uint16_t* ids = scratch.short_ids.data() + begin[x];
+                const std::uint32_t* uppers = scratch.uppers.data() + begin[x] / 64;
+                Tile* tiles = job.tiles + row * std::size_t{tiles_x} + 8 * x;
+                const unsigned columns = (std::min)(tiles_x - 8 * x, 8u);
+                const __mmask8 columns_mask = static_cast<__mmask8>(0xff >> (8 - columns));
+                if (count == 0) {
+                    _mm512_mask_storeu_epi64(tiles, columns_mask, _mm512_set1_epi64(at));
+                } else if (count <= 8) {
+                    const std::uint32_t n =
+                        append_small(out, tiles, columns_mask, at, words + row % 8, ids, uppers[0]);
+                    out += n;
+                    at += n;
+                } else if (count <= 64) {
+                    const __m512i low = load(ids), high = load(ids + 32);
+                    for (unsigned column = 0; column < columns; ++column) {
+                        const std::uint64_t bits =
+                            with_words ? words[row % 8 * 8 + column] : words[column] & words[8 + row % 8];
+                        const std::uint32_t n = append(out, bits, low, high, uppers[0]);
+                        tiles[column] = {at, n};
+                        out += n;
+                        at += n;
+                    }
+                } else {
+                    for (unsigned column = 0; column < columns; ++column) {
+                        const std::uint32_t from = at;
+                        for (std::uint32_t i = 0; i < count; i += 64) {
+                            const std::uint64_t* w = words + i / 64 * group;
+                            const std::uint64_t bits =
+                                with_words ? w[row % 8 * 8 + column] : w[column] & w[8 + row % 8];
+                            const std::uint32_t n =
+                                append(out, bits, load(ids + i), load(ids + i + 32), uppers[i / 64]);
+                            out += n;
+                            at += n;
+                        }
+                        tiles[column] = {from, at - from};
+                    }
+                }
+            }
+        }
+    }
+    return at - bands.at;
+}

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// Which of a supertile's 8x8 tiles a light is in, as one word with a bit a tile: its rectangle, and-ed with its
+// silhouette's row spans and with the tiles whose Z bounds it meets. Included once a tier, after its vectors.
+//
+//     bit  0  1 ..  7      . . . . . . . .      rows that the rectangle covers     0 1 1 1 0 0 0 0
+//          8  9 .. 15      . . # # # # . .      columns                            0 0 1 1 1 1 0 0
+//          :               . . # # # # . .
+//         56 57 .. 63      . . # # # # . .      Each pair of a light and a tile is tested once.
+//                          . . . . . . . .
+
+inline constexpr std::uint64_t every_lane = (std::uint64_t{1} << lanes) - 1;
+
+/// See cell_boxes.hpp.
+LIGHTBIN_TARGET inline void store_box(const Camera& camera, float* box, Floats x0, Floats x1, Floats y0,
+                                      Floats y1, Floats z0, Floats z1) {
+    const Floats zero = all(0.0f), near = camera.orthographic ? all(1.0f) : z0,
+                 far = camera.orthographic ? all(1.0f) : z1;
+    store_floats(box, z0);
+    store_floats(box + 64, z1);
+    store_floats(box + 128, mul(x0, select(less(x0, zero), far, near)) - all(flushed));
+    store_floats(box + 192, mul(x1, select(less(zero, x1), far, near)) + all(flushed));
+    store_floats(box + 256, mul(y0, select(less(y0, zero), far, near)) - all(flushed));
+    store_floats(box + 320, mul(y1, select(less(zero, y1), far, near)) + all(flushed));
+}
+
+/// Writes what a depth test needs to know of the tiles of supertile (x, y), in planes of 64 floats: the minimum
+/// and maximum depth, for boxes followed by the ends along x and y; split_box has a second box. Returns a bit
+/// for each tile that has anything to light.
+///
+/// Boxes are clamped to the near and far plane: lights in view meet the clamped depths just as the given ones.
+template <DepthTest depth_test, class Id>
+LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned y, float* cells) {
+    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
+    const unsigned rows = (std::min)(8u, static_cast<unsigned>(job.camera->y.tiles) - 8 * y);
+    const unsigned columns = (std::min)(8u, static_cast<unsigned>(width) - 8 * x);
+    constexpr float absent[] = {-infinity, infinity, infinity, -infinity};
+    std::uint64_t lit = 0;
+    for (unsigned row = 0; row < rows; ++row) {
+        float padded[4][8];
+        const float* sides[4];
+        for (unsigned side = 0; side < (depth_test == DepthTest::split_box ? 4 : 2); ++side) {
+            const float* given = job.bounds[side];
+            if (given != nullptr) given += (8 * y + row) * width + 8 * x;
+            sides[side] = given;
+            if (given != nullptr && columns == 8) continue;
+            for (unsigned column = 0; column < 8; ++column)
+                padded[side][column] =
+                    given != nullptr ? given[(std::min)(column, columns - 1)] : absent[side];
+            sides[side] = padded[side];
+        }
+        for (unsigned column = 0; column < 8; column += lanes) {
+            const unsigned place = 8 * row + column;
+            const Floats min = load_floats(sides[0] + column), max = load_floats(sides[1] + column);
+            lit |= (~std::uint64_t{bits(less(max, min))} & every_lane) << place;
+            if constexpr (depth_test == DepthTest::interval) {
+                store_floats(cells + place, min);
+                store_floats(cells + 64 + place, max);
+            } else {
+                const Floats near = all(job.camera->near_depth), far = all(job.camera->far_depth);
+                const Floats largest = all(FLT_MAX);  // 0 * infinity is to be avoided
+                const Floats z0 = lesser(select(less(near, min), min, near), largest);
+                const Floats z1 = select(less(max, far), max, far);
+                const unsigned at_x = 8 * x + column, at_y = 8 * y + row;
+                const Floats x0 = load_floats(job.edges[0] + at_x), x1 = load_floats(job.edges[1] + at_x);
+                const Floats y0 = all(job.edges[2][at_y]), y1 = all(job.edges[3][at_y]);
+                if constexpr (depth_test == DepthTest::box) {
+                    store_box(*job.camera, cells + place, x0, x1, y0, y1, z0, z1);
+                } else {
+                    const Floats gap0 = load_floats(sides[2] + column), gap1 = load_floats(sides[3] + column);
+                    const auto gap = less(gap0, gap1);
+                    const Floats end = select(both(gap, less(gap0, z1)), gap0, z1);
+                    const Floats begin = lesser(select(both(gap, less(z0, gap1)), gap1, z0), largest);
+                    store_box(*job.camera, cells + place, x0, x1, y0, y1, z0, end);
+                    store_box(*job.camera, cells + 6 * 64 + place, x0, x1, y0, y1, begin, z1);
+                }
+            }
+        }
+    }
+    return lit;
+}
+
+/// The distance of a coordinate from an interval.
+LIGHTBIN_TARGET inline Floats distance(Floats c, const float* ends) {
+    return greater(greater(load_floats(ends) - c, c - load_floats(ends + 64)), all(0.0f));
+}
+
+/// Of the given tiles, those whose Z bounds or boxes the light meets. NaN tests nothing.
+template <DepthTest depth_test>
+LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedLight& light,
+                                               std::uint64_t tiles) {
+    const Floats nearest = all(light.nearest), farthest = all(light.farthest);
+    std::uint64_t met = 0;
+    for (std::uint64_t rest = tiles; rest != 0;) {  // only the vectors that hold any of the tiles
+        const unsigned place = static_cast<unsigned>(std::countr_zero(rest)) & ~(lanes - 1);
+        rest &= ~(every_lane << place);
+        for (const float* cell = cells + place;; cell += 6 * 64) {
+            auto missed = either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest));
+            if constexpr (depth_test != DepthTest::interval) {
+                const Floats z = distance(all(light.z), cell), x = distance(all(light.x), cell + 128),
+                             y = distance(all(light.y), cell + 256);
+                const Floats distance2 = mul(x, x) + mul(y, y) + mul(z, z);
+                missed = either(missed, less(all(light.reach2), distance2));
+            }
+            met |= (~std::uint64_t{bits(missed)} & every_lane) << place;
+            if (depth_test != DepthTest::split_box || cell != cells + place) break;
+        }
+    }
+    return met & tiles;
+}
+
+/// Of the tiles of supertile (x, y), those within the row spans of visible light i.
+LIGHTBIN_TARGET inline std::uint64_t silhouette_tiles(const FootprintArrays& lights, std::uint32_t i,
+                                                      unsigned x, unsigned y, std::uint64_t tiles) {
+    if (lights.span_begin[i] == FootprintArrays::whole_rectangle) return tiles;
+    std::uint64_t spanned = 0;
+    for (unsigned row = static_cast<unsigned>(std::countr_zero(tiles)) / 8,
+                  last = 7 - static_cast<unsigned>(std::countl_zero(tiles)) / 8;
+         row <= last; ++row) {
+        const RowSpan span = lights.spans[lights.span_begin[i] + (8 * y + row - lights.y0[i])];
+        const bool here = span.first <= span.last && span.first < 8 * x + 8 && span.last >= 8 * x;
+        spanned |= std::uint64_t{here ? covered(span.first, span.last, 8 * x) & 0xff : 0} << 8 * row;
+    }
+    return tiles & spanned;
+}
+
+/// Makes the words of a supertile's lights, given by visible index (in `list`, counted from `first`) with the
+/// columns and the rows that they cover. Lights that are in none of the tiles are dropped; `list` then holds
+/// the ids of the others. Returns how many are left.
+template <Footprint footprint, DepthTest depth_test, class Id, class Listed>
+LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, unsigned x, unsigned y, const float* cells,
+                                          std::uint64_t lit, Listed* list, std::uint32_t first,
+                                          const std::uint8_t* columns, const std::uint8_t* rows,
+                                          std::uint32_t count, std::uint64_t* words) {
+    std::uint32_t left = 0;
+    for (std::uint32_t j = 0; j < count; ++j) {
+        const std::uint32_t i = first + list[j], id = job.lights.ids[i];
+        std::uint64_t tiles = spread_rows(rows[j]) & columns[j] * std::uint64_t{0x0101010101010101};
+        if constexpr (footprint == Footprint::silhouette)
+            tiles = silhouette_tiles(job.lights, i, x, y, tiles);
+        if constexpr (depth_test != DepthTest::none)
+            tiles = tiles_met<depth_test>(
+                cells, TestedLight(*job.camera, load_sphere(job.lights.spheres + id)), tiles & lit);
+        list[left] = static_cast<Listed>(id);
+        words[left] = tiles;
+        left += tiles != 0;
+    }
+    return left;
+}
