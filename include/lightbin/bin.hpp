@@ -4,6 +4,7 @@
 
 #include <lightbin/detail/buffer.hpp>
 #include <lightbin/detail/kernels.hpp>
+#include <lightbin/detail/parts.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/options.hpp>
@@ -19,6 +20,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace lightbin {
 
@@ -31,7 +33,8 @@ public:
     /// Builds the grid of the footprints with a kernel of an instruction set. Returns an Error if Z bounds
     /// are shorter than the grid, or 32-bit offsets can't reach the list's end; then there is no grid.
     std::optional<Error> build(Isa isa, const View& view, const Footprints<footprint, with_depth>& footprints,
-                               const ZBounds& bounds, detail::Scratch& scratch, const Parallel&) {
+                               const ZBounds& bounds, std::vector<detail::Scratch>& scratch,
+                               const Parallel& parallel) {
         const std::size_t tiles = view.tile_count();
         Job job = {.camera = &view.camera(),
                    .lights = footprints.arrays(),
@@ -54,7 +57,7 @@ public:
         // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.
         if constexpr (detail::masked<footprint, depth_test>)
             if (room > most)
-                room = detail::scalar::bin_supertiles<footprint, depth_test>(job, scratch,
+                room = detail::scalar::bin_supertiles<footprint, depth_test>(job, scratch[0],
                                                                              {0, bands, nullptr, 0});
         if (room > most) return Error{ErrorCode::too_many_entries, room, most};
 
@@ -62,8 +65,12 @@ public:
         job.tiles = tiles_.room(tiles);
         const auto kernel =
             detail::bin_kernel<footprint, depth_test, Id>(isa, view, footprints.visible(), footprints.area());
-        Id* list = indices_.room(static_cast<std::size_t>(room) + detail::BandJob<Id>::slack);
-        entries_ = static_cast<std::size_t>(kernel(job, scratch, {0, bands, list, 0}));
+        Id* list = indices_.room(static_cast<std::size_t>(room) + slack);
+        const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), bands);
+        if (parts < 2 || room < worth_sharing || footprints.area() > most)
+            entries_ = static_cast<std::size_t>(kernel(job, scratch[0], {0, bands, list, 0}));
+        else
+            entries_ = build_parts(job, kernel, list, scratch, parallel, parts);
         return std::nullopt;
     }
 
@@ -72,6 +79,60 @@ public:
 
 private:
     using Job = detail::BinJob<Id>;
+    static constexpr std::size_t slack = detail::BandJob<Id>::slack;
+    static constexpr std::uint64_t worth_sharing = 50000;  ///< entries: less is not worth a thread's start
+
+    /// Builds `count` parts on the caller's threads. Returns the number of entries.
+    std::size_t build_parts(const Job& job, detail::BinKernel<Id> kernel, Id* list,
+                            std::vector<detail::Scratch>& scratch, const Parallel& parallel,
+                            std::size_t count) {
+        if (scratch.size() < count) scratch.resize(count);
+        if (spares_.size() < count) spares_.resize(count);
+        detail::Part* parts = parts_.room(count);
+        detail::make_parts(job, parallel, row_sums_, parts, count);
+        if constexpr (!detail::masked<footprint, depth_test>) {
+            // Rectangles: a part's place in the list is known. Its last entries go there by way of spare room,
+            // as a kernel writes beyond its end, where the next part is at work.
+            parallel.run(count, [&](std::size_t i) {
+                const detail::Part& part = parts[i];
+                Id* out = list + part.before;
+                if (i + 1 == count || kernel == detail::bin_scatter<Id>) {  // which writes nothing beyond
+                    kernel(job, scratch[i],
+                           {part.begin, part.end, out, static_cast<std::uint32_t>(part.before)});
+                    return;
+                }
+                const std::size_t spare_room = static_cast<std::size_t>(part.spare_area);
+                Id* spare = spares_[i].room(spare_room + slack);
+                kernel(job, scratch[i],
+                       {part.begin, part.end, out, static_cast<std::uint32_t>(part.before), part.spare_row,
+                        spare});
+                std::copy_n(spare, spare_room, out + part.area - part.spare_area);
+            });
+            return static_cast<std::size_t>(parts[count - 1].before + parts[count - 1].area);
+        } else {
+            // Otherwise each part but the first makes a list of its own, and then they are put in their places.
+            parallel.run(count, [&](std::size_t i) {
+                Id* out = i == 0 ? list : spares_[i].room(static_cast<std::size_t>(parts[i].area) + slack);
+                parts[i].area = kernel(job, scratch[i], {parts[i].begin, parts[i].end, out, 0});
+            });
+            std::size_t entries = 0;
+            for (std::size_t i = 0; i < count; ++i) {
+                parts[i].before = entries;
+                entries += static_cast<std::size_t>(parts[i].area);
+            }
+            parallel.run(count - 1, [&](std::size_t previous) {
+                const detail::Part& part = parts[previous + 1];
+                const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
+                for (Tile *tile = job.tiles + 8 * width * part.begin,
+                          *end = job.tiles + (std::min)(8 * width * part.end, tile_count_);
+                     tile < end; ++tile)
+                    tile->offset += static_cast<std::uint32_t>(part.before);
+                std::copy_n(spares_[previous + 1].data(), static_cast<std::size_t>(part.area),
+                            list + part.before);
+            });
+            return entries;
+        }
+    }
 
     void find_edges(Job& job) {
         const detail::ImageAxis* axes[] = {&job.camera->x, &job.camera->y};
@@ -87,6 +148,9 @@ private:
     detail::Buffer<Tile> tiles_;
     detail::Buffer<Id> indices_;
     detail::Buffer<float> edges_[4];
+    detail::Buffer<detail::Part> parts_;
+    std::vector<detail::Buffer<Id>> spares_;  ///< one a part: what it can't put in its place at once
+    detail::Buffer<std::uint64_t> row_sums_;
     std::size_t tile_count_ = 0, entries_ = 0;
 };
 

@@ -22,6 +22,7 @@
 #include <optional>
 #include <span>
 #include <type_traits>
+#include <vector>
 
 namespace lightbin {
 
@@ -185,7 +186,7 @@ private:
     }
 
     Isa isa_ = Isa::scalar;
-    detail::Scratch scratch_;
+    std::vector<detail::Scratch> scratch_ = std::vector<detail::Scratch>(1);  ///< one a worker
     Footprints<options.footprint, with_depth> footprints_;
     Lists lists_;
     std::conditional_t<with_depth, Lists, Nothing> transparent_;

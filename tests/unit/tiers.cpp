@@ -1,7 +1,8 @@
 // Every instruction set that this machine has gives the same bytes as the scalar kernels.
 #include "scene.hpp"
 
-#include <cstring>
+#include <numeric>
+#include <thread>
 
 using namespace lightbin;
 
@@ -77,15 +78,32 @@ Input random_input(std::uint32_t seed) {
     return {view, lights, min, max, gap_min, gap_max};
 }
 
-template <Isa isa, Index index, DepthTest depth_test> class Tier {
+/// Runs the bodies on this thread in a shuffled order: what threads may do, and the same every time.
+const auto shuffled = [](std::size_t n, auto body) {
+    std::vector<std::size_t> order(n);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::shuffle(order.begin(), order.end(), std::mt19937(static_cast<std::uint32_t>(n)));
+    for (const std::size_t i : order)
+        body(i);
+};
+
+const auto threads = [](std::size_t n, auto body) {
+    std::vector<std::thread> running;
+    for (std::size_t i = 0; i < n; ++i)
+        running.emplace_back(body, i);
+    for (std::thread& thread : running)
+        thread.join();
+};
+
+template <Options options> class Tier {
 public:
-    std::vector<std::uint32_t> bytes(const Input& input) {
+    std::vector<std::uint32_t> bytes(const Input& input, const Parallel& parallel = {}) {
         const auto grid = [&] {
-            if constexpr (depth_test == DepthTest::none)
-                return binner_.bin(input.view, input.lights);
+            if constexpr (options.depth_test == DepthTest::none)
+                return binner_.bin(input.view, input.lights, parallel);
             else
                 return binner_.bin(input.view, input.lights,
-                                   {input.min, input.max, input.gap_min, input.gap_max});
+                                   {input.min, input.max, input.gap_min, input.gap_max}, parallel);
         }();
         REQUIRE(grid);
         std::vector<std::uint32_t> all = {grid->rejected()};
@@ -96,61 +114,92 @@ public:
     }
 
 private:
-    Binner<Options{.index = index, .depth_test = depth_test, .isa = isa}> binner_;
+    Binner<options> binner_;
 };
 
-template <Index index, DepthTest depth_test> void compare(std::uint32_t seeds, std::uint32_t first_seed) {
-    Tier<Isa::scalar, index, depth_test> scalar;
-    Tier<Isa::sse2, index, depth_test> sse2;
-    Tier<Isa::avx2, index, depth_test> avx2;
-    Tier<Isa::avx512, index, depth_test> avx512;
-    for (std::uint32_t seed = first_seed; seed < first_seed + seeds; ++seed) {
-        const Input input = random_input(seed);
-        const auto expected = scalar.bytes(input);
-        CHECK((sse2.bytes(input) == expected));
-        CHECK((avx2.bytes(input) == expected));
-        CHECK((avx512.bytes(input) == expected));
-    }
+constexpr Options with(Options options, Isa isa) {
+    options.isa = isa;
+    return options;
 }
+
+/// All tiers, serial and shared among workers, against the serial scalar one.
+template <Options options> class Tiers {
+public:
+    void compare(const Input& input) {
+        const auto expected = scalar_.bytes(input);
+        CHECK((sse2_.bytes(input) == expected));
+        CHECK((avx2_.bytes(input) == expected));
+        CHECK((avx512_.bytes(input) == expected));
+        for (const std::size_t workers : {2, 3, 7}) {
+            const Parallel parallel(workers, shuffled);
+            CHECK((scalar_.bytes(input, parallel) == expected));
+            CHECK((sse2_.bytes(input, parallel) == expected));
+            CHECK((avx2_.bytes(input, parallel) == expected));
+            CHECK((avx512_.bytes(input, parallel) == expected));
+        }
+    }
+
+    void compare_on_threads(const Input& input) {
+        const auto expected = avx512_.bytes(input);
+        for (const std::size_t workers : {1, 2, 3, 7})
+            CHECK((avx512_.bytes(input, {workers, threads}) == expected));
+    }
+
+private:
+    Tier<with(options, Isa::scalar)> scalar_;
+    Tier<with(options, Isa::sse2)> sse2_;
+    Tier<with(options, Isa::avx2)> avx2_;
+    Tier<with(options, Isa::avx512)> avx512_;
+};
+
+template <Options options> void compare(std::uint32_t seeds, std::uint32_t first_seed) {
+    Tiers<options> tiers;
+    for (std::uint32_t seed = first_seed; seed < first_seed + seeds; ++seed)
+        tiers.compare(random_input(seed));
+}
+
+constexpr Options plain = {}, interval = {.depth_test = DepthTest::interval},
+                  box = {.depth_test = DepthTest::box}, split_box = {.depth_test = DepthTest::split_box};
 
 }  // namespace
 
-TEST_CASE("all tiers give the same bytes") {
+TEST_CASE("all tiers give the same bytes, on any number of workers") {
     MESSAGE("widest tier on this machine: " << static_cast<int>(detail::machine_isa(Isa::avx512)));
-    compare<Index::u32, DepthTest::none>(200, 0);
-    compare<Index::u16, DepthTest::none>(100, 1000);
-    compare<Index::u32, DepthTest::interval>(200, 2000);
-    compare<Index::u16, DepthTest::interval>(100, 3000);
-    compare<Index::u32, DepthTest::box>(200, 4000);
-    compare<Index::u32, DepthTest::split_box>(200, 5000);
+    compare<plain>(150, 0);
+    compare<Options{.index = Index::u16}>(50, 1000);
+    compare<interval>(150, 2000);
+    compare<box>(100, 4000);
+    compare<Options{.index = Index::u16, .depth_test = DepthTest::split_box}>(100, 5000);
+}
+
+TEST_CASE("threads write their own parts only") {
+    Input input = random_input(5);
+    input.lights = test::random_lights(3000, 51);
+    input.view = test::view({1280, 720}, 16);
+    input.min.assign(input.view.tile_count(), 5.0f);
+    input.max.assign(input.view.tile_count(), 40.0f);
+    input.gap_min.assign(input.view.tile_count(), 10.0f);
+    input.gap_max.assign(input.view.tile_count(), 20.0f);
+    Tiers<plain>().compare_on_threads(input);
+    Tiers<split_box>().compare_on_threads(input);
 }
 
 TEST_CASE("more lights than 16 bits count, and more tiles than 8 bits count") {
     Input input = random_input(5);
-    input.lights = test::random_lights(150000, 50);
-    input.view = test::view({1280, 720}, 40);
-    input.min.assign(input.view.tile_count(), 5.0f);
-    input.max.assign(input.view.tile_count(), 9.0f);
     input.gap_min.clear();
     input.gap_max.clear();
-    for (glm::vec4& light : input.lights)
-        light.w *= 0.1f;
-    const auto check = [&] {
-        CHECK((Tier<Isa::avx512, Index::u32, DepthTest::none>().bytes(input) ==
-               Tier<Isa::scalar, Index::u32, DepthTest::none>().bytes(input)));
-        CHECK((Tier<Isa::avx2, Index::u32, DepthTest::interval>().bytes(input) ==
-               Tier<Isa::scalar, Index::u32, DepthTest::interval>().bytes(input)));
-        CHECK((Tier<Isa::avx512, Index::u32, DepthTest::interval>().bytes(input) ==
-               Tier<Isa::scalar, Index::u32, DepthTest::interval>().bytes(input)));
-        CHECK((Tier<Isa::avx512, Index::u32, DepthTest::box>().bytes(input) ==
-               Tier<Isa::scalar, Index::u32, DepthTest::box>().bytes(input)));
-    };
-    check();
-    input.lights.resize(2000);
-    for (const auto& [viewport, tile] : {std::pair(Extent{3000, 300}, 4), std::pair(Extent{300, 3000}, 4)}) {
-        input.view = test::view(viewport, tile);
+    const auto check = [&](Extent viewport, int tile_size, std::size_t lights, float scale) {
+        input.lights = test::random_lights(lights, 50);
+        for (glm::vec4& light : input.lights)
+            light.w *= scale;
+        input.view = test::view(viewport, tile_size);
         input.min.assign(input.view.tile_count(), 5.0f);
         input.max.assign(input.view.tile_count(), 9.0f);
-        check();
-    }
+        Tiers<plain>().compare(input);
+        Tiers<box>().compare(input);
+    };
+    check({1280, 720}, 40, 150000, 0.05f);
+    check({3000, 300}, 4, 1500, 0.2f);
+    check({300, 3000}, 4, 1500, 0.2f);
+    check({40000 / 2, 8}, 8, 70000, 0.01f);
 }

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// How binning is shared among threads: each part is some bands of tile rows and everything in them, so parts
+// share nothing but the lights they read.
+#pragma once
+
+#include <lightbin/detail/buffer.hpp>
+#include <lightbin/detail/footprint.hpp>
+#include <lightbin/parallel.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace lightbin::detail {
+
+/// Bands begin..end-1, and the tiles of all rectangles in them.
+struct Part {
+    unsigned begin, end;
+    std::uint64_t before, area;  ///< of the parts before it, of its own
+    /// From this tile row on there are BandJob::slack tiles or few more; before it, the rest.
+    unsigned spare_row;
+    std::uint64_t spare_area;
+};
+
+/// Writes `count` parts of about equal work. Needs no more than `count` bands.
+template <class Id>
+void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums, Part* parts,
+                std::size_t count) {
+    // Each run of lights adds its widths to the steps between rows, in a column of its own.
+    const std::size_t rows = static_cast<std::size_t>(job.camera->y.tiles), pitch = rows + 1;
+    std::uint64_t* row_area = sums.room(pitch * job.runs.size());
+    parallel.run(job.runs.size(), [&](std::size_t run) {
+        std::uint64_t* steps = row_area + run * pitch;
+        std::fill_n(steps, pitch, 0u);
+        for (std::uint32_t i = job.runs[run].begin; i < job.runs[run].end; ++i) {
+            const std::uint64_t width = job.lights.x1[i] - job.lights.x0[i] + 1u;
+            steps[job.lights.y0[i]] += width;
+            steps[job.lights.y1[i] + 1u] -= width;  // sums wrap, and come out right
+        }
+    });
+    std::uint64_t step_sum = 0, work = 0;
+    const std::uint64_t row_work =
+        static_cast<std::uint64_t>(job.camera->x.tiles);  // of a row without lights
+    for (std::size_t row = 0; row < rows; ++row) {
+        for (std::size_t run = 0; run < job.runs.size(); ++run)
+            step_sum += row_area[run * pitch + row];
+        row_area[row] = step_sum;
+        work += step_sum + row_work;
+    }
+
+    const unsigned bands = static_cast<unsigned>(rows + 7) / 8;
+    std::uint64_t before = 0, done = 0;
+    unsigned band = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        Part part = {band, band, before, 0, 0, 0};
+        const std::uint64_t goal = work / count * (i + 1);
+        const unsigned last =
+            bands - static_cast<unsigned>(count - 1 - i);  // leave a band for each later part
+        while (band < last && (band == part.begin || i + 1 == count || done < goal)) {
+            for (std::size_t row = 8 * band; row < (std::min)(8 * std::size_t{band} + 8, rows); ++row) {
+                part.area += row_area[row];
+                done += row_area[row] + row_work;
+            }
+            ++band;
+        }
+        part.end = band;
+        part.spare_row = static_cast<unsigned>((std::min)(8 * std::size_t{band}, rows));
+        while (part.spare_row > 8 * part.begin && part.spare_area < BandJob<Id>::slack)
+            part.spare_area += row_area[--part.spare_row];
+        before += part.area;
+        parts[i] = part;
+    }
+}
+
+}  // namespace lightbin::detail
