@@ -21,6 +21,7 @@
 //        To write to your own buffers instead: binner.count(...), then binner.emit(tiles, indices).
 //   4. Upload grid->tiles() and grid->indices().                                               light_grid.hpp
 //   5. Put shader_snippet({...})->text in your shader, and bind what its bindings list.        shader.hpp
+// Which tile size and options? advise(view, lights, costs[, bounds]) weighs them for a scene      advise.hpp
 //
 // Building. No compiler flags are needed. On x86-64 with gcc or clang there are kernels for SSE2, AVX2 and
 // AVX-512, and the machine's own is picked at run time; elsewhere the scalar ones run. All give the same
@@ -31,6 +32,7 @@
 // Forward Shading", GPU Pro 4, 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.
 #pragma once
 
+#include <lightbin/advise.hpp>
 #include <lightbin/binner.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/options.hpp>

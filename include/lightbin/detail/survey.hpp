@@ -68,15 +68,15 @@ inline double spread(std::size_t i, std::size_t count, double total) {
 /// Z bounds as arrays to read without asking which sides there are.
 struct BoundsReader {
     explicit BoundsReader(const ZBounds& bounds)
-        : min(bounds.min.empty() ? &lowest : bounds.min.data()),
-          max(bounds.max.empty() ? &highest : bounds.max.data()),
-          min_mask(bounds.min.empty() ? 0 : ~std::size_t{0}),
-          max_mask(bounds.max.empty() ? 0 : ~std::size_t{0}),
+        : lower(bounds.min.empty() ? &lowest : bounds.min.data()),
+          upper(bounds.max.empty() ? &highest : bounds.max.data()),
+          lower_mask(bounds.min.empty() ? 0 : ~std::size_t{0}),
+          upper_mask(bounds.max.empty() ? 0 : ~std::size_t{0}),
           gap_min(bounds.gap_max.empty() ? nullptr : bounds.gap_min.data()), gap_max(bounds.gap_max.data()) {}
 
     static constexpr float lowest = -infinity, highest = infinity;
-    const float *min, *max;
-    std::size_t min_mask, max_mask;
+    const float *lower, *upper;
+    std::size_t lower_mask, upper_mask;
     const float *gap_min, *gap_max;
 };
 
@@ -91,8 +91,8 @@ inline CellBounds merge_bounds(const View& view, const BoundsReader& bounds, int
             const std::size_t line = static_cast<std::size_t>(row) * static_cast<std::size_t>(view.tiles_x());
             for (std::size_t tile = line + static_cast<std::size_t>(x0);
                  tile < line + static_cast<std::size_t>(x1); ++tile) {
-                const DepthInterval depths = {bounds.min[tile & bounds.min_mask],
-                                              bounds.max[tile & bounds.max_mask]};
+                const DepthInterval depths = {bounds.lower[tile & bounds.lower_mask],
+                                              bounds.upper[tile & bounds.upper_mask]};
                 if (!(depths.min > depths.max)) visit(tile, depths);
             }
         }
@@ -201,7 +201,7 @@ Survey survey(Isa isa, const View& view, const Lights<Light, ToViewSphere>& ligh
     const int longest = (std::max)(screen.width, screen.height);
     std::array<View, Survey::most_grids> views = {view, view, view, view, view};
     std::array<double, Survey::most_grids> rect_pixels = {};
-    for (int shift = 0; shift == 0 || (shift <= 3 && view.tile_size() << shift < longest); ++shift) {
+    for (int shift = 0; shift == 0 || (shift <= 3 && view.tile_size() <= (longest - 1) >> shift); ++shift) {
         GridSurvey& grid = result.grids[result.grid_count++];
         grid.tile_size = view.tile_size() << shift;
         views[static_cast<std::size_t>(shift)] = *view.with_tile_size(grid.tile_size);

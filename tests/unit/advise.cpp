@@ -1,0 +1,254 @@
+// What advise() predicts against grids that are built, and what it chooses where the choice is plain. Nothing
+// here depends on how fast the machine is.
+#include "scene.hpp"
+
+#include <lightbin/advise.hpp>
+
+#include <cstring>
+#include <limits>
+#include <string>
+#include <utility>
+
+using namespace lightbin;
+
+namespace {
+
+constexpr float unbounded = std::numeric_limits<float>::infinity();
+
+/// Ground below the eye up to the horizon, blocks on it, sky above: window depth a pixel.
+std::vector<float> ground_depth(Extent size) {
+    std::vector<float> depth;
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x) {
+            const float slope =
+                (0.5f - (static_cast<float>(y) + 0.5f) / static_cast<float>(size.height)) * 1.1547f;
+            float z = slope > 0 ? 6 / slope : unbounded;
+            if (x / 37 % 5 == 2 && slope > -0.2f) z = std::min(z, 10.0f + static_cast<float>(x / 37));
+            depth.push_back(z > 999 ? 1.0f : (1000 * (z - 0.1f)) / (999.9f * z));
+        }
+    return depth;
+}
+
+struct Bounds {
+    explicit Bounds(const View& view, const std::vector<float>& depth)
+        : min(view.tile_count()), max(view.tile_count()) {
+        reduced = *reduce_depth(view, {.depth = depth, .skip_background = true}, min, max);
+    }
+    std::vector<float> min, max;
+    ZBounds reduced;
+};
+
+double tile_pixels(const View& view, std::size_t tile) {
+    const int x = static_cast<int>(tile) % view.tiles_x(), y = static_cast<int>(tile) / view.tiles_x();
+    const int t = view.tile_size();
+    return static_cast<double>(std::min((x + 1) * t, view.viewport().width) - x * t) *
+           (std::min((y + 1) * t, view.viewport().height) - y * t);
+}
+
+/// Evaluations of a grid that is built, in the view's own tiles that have something to light.
+template <Footprint footprint, DepthTest depth_test>
+double built(const View& fine, int tile_size, const std::vector<glm::vec4>& lights,
+             const std::vector<float>& depth) {
+    const View view = *fine.with_tile_size(tile_size);
+    Binner<Options{.footprint = footprint, .depth_test = depth_test}> binner;
+    Bounds bounds(view, depth), fine_bounds(fine, depth);
+    const auto grid = [&] {
+        if constexpr (depth_test == DepthTest::none)
+            return binner.bin(view, lights);
+        else
+            return binner.bin(view, lights, bounds.reduced);
+    }();
+    REQUIRE(grid);
+    double sum = 0;
+    const int scale = tile_size / fine.tile_size();
+    for (std::size_t tile = 0; tile < fine.tile_count(); ++tile) {
+        if (fine_bounds.min[tile] > fine_bounds.max[tile]) continue;
+        const int x = static_cast<int>(tile) % fine.tiles_x() / scale;
+        const int y = static_cast<int>(tile) / fine.tiles_x() / scale;
+        sum += tile_pixels(fine, tile) * static_cast<double>(grid->lights_in(x, y).size());
+    }
+    return sum;
+}
+
+double built(const View& fine, const Plan& plan, const std::vector<glm::vec4>& lights,
+             const std::vector<float>& depth) {
+    const auto of = [&]<Footprint footprint>() {
+        switch (plan.depth_test) {
+        case DepthTest::interval:
+            return built<footprint, DepthTest::interval>(fine, plan.tile_size, lights, depth);
+        default:
+            return built<footprint, DepthTest::none>(fine, plan.tile_size, lights, depth);
+        }
+    };
+    return of.operator()<Footprint::rectangle>();
+}
+
+Advice advised(const View& view, const auto& lights, const Costs& costs = {}, const ZBounds& bounds = {}) {
+    const Result<Advice> advice = advise(view, lights, costs, bounds);
+    REQUIRE(advice);
+    for (const Plan& plan : advice->plans()) {
+        CHECK(plan.build_ns >= 0);
+        CHECK(plan.evaluations >= 0);
+        CHECK(plan.total_ns == doctest::Approx(plan.build_ns + plan.evaluations * costs.evaluation_ns));
+        CHECK(plan.total_ns >= advice->best().total_ns);
+    }
+    return *advice;
+}
+
+}  // namespace
+
+TEST_CASE("the evaluations of lists without Z are those of the built grids, as far as 1024 lights go") {
+    const View view = test::view({1000, 700}, 8);
+    for (const std::size_t count : {1u, 40u, 1024u}) {
+        const auto lights = test::random_lights(count, static_cast<std::uint32_t>(count));
+        int plans = 0;
+        for (const Plan& plan : advised(view, lights).plans()) {
+            if (!plan.tiled || plan.footprint != Footprint::rectangle) continue;
+            // A constant depth: every tile has something to light.
+            const double truth = built(view, plan, lights, std::vector<float>(1000 * 700, 0.5f));
+            CHECK(plan.evaluations == doctest::Approx(truth).epsilon(0.005));
+            ++plans;
+        }
+        CHECK(plans == 5);  // 8, 16, 32, 64 and 1000 pixels
+    }
+}
+
+TEST_CASE("the evaluations of lists with Z are near those of the built grids") {
+    const View view = test::view({1280, 720}, 8);
+    const std::vector<float> depth = ground_depth({1280, 720});
+    const Bounds bounds(view, depth);
+    double squares = 0;
+    int plans = 0;
+    for (const std::size_t count : {20u, 300u, 1000u, 5000u}) {
+        const auto lights = test::random_lights(count, 7);
+        for (const Plan& plan : advised(view, lights, {}, bounds.reduced).plans()) {
+            if (!plan.tiled || plan.tile_size > 64) continue;
+            CAPTURE(count);
+            CAPTURE(plan.tile_size);
+            CAPTURE(static_cast<int>(plan.depth_test));
+            const double truth = built(view, plan, lights, depth);
+            const double untested =
+                built<Footprint::rectangle, DepthTest::none>(view, plan.tile_size, lights, depth);
+            // Three times the standard error of a share of 256 pairs, 0.03; more than 1024 lights add theirs.
+            CHECK(std::fabs(plan.evaluations - truth) <= 0.1 * untested);
+            squares += std::pow((plan.evaluations - truth) / untested, 2);
+            ++plans;
+        }
+    }
+    CHECK(std::sqrt(squares / plans) < 0.04);
+}
+
+TEST_CASE("kinds of light in turn are all seen by the sample") {
+    // One in four, or in seven, is large; the others are dots.
+    const View view = test::view({800, 600}, 8);
+    for (const std::size_t period : {4u, 7u, 8u, 64u}) {
+        std::vector<glm::vec4> lights;
+        for (std::size_t i = 0; i < 16384; ++i)
+            lights.emplace_back(0, 0, -20, i % period == 0 ? 4.0f : 0.001f);
+        const auto wanted = built<Footprint::rectangle, DepthTest::none>(view, 16, lights,
+                                                                         std::vector<float>(800 * 600, 0.5f));
+        for (const Plan& plan : advised(view, lights).plans())
+            if (plan.tiled && plan.tile_size == 16 && plan.footprint == Footprint::rectangle)
+                CHECK(plan.evaluations == doctest::Approx(wanted).epsilon(0.1));
+    }
+}
+
+TEST_CASE("without Z bounds no depth test is weighed, and none is chosen that costs more than it saves") {
+    const View view = test::view({1280, 720}, 8);
+    const auto lights = test::random_lights(500, 3);
+    for (const Plan& plan : advised(view, lights).plans())
+        CHECK(plan.depth_test == DepthTest::none);
+
+    const std::vector<float> depth = ground_depth({1280, 720});
+    const Bounds bounds(view, depth);
+    const auto best = [&](const Costs& costs) { return advised(view, lights, costs, bounds.reduced).best(); };
+    CHECK(best({.evaluation_ns = 1}).depth_test != DepthTest::none);
+    CHECK(best({.evaluation_ns = 1, .z_bounds_ns = 1e9}).depth_test == DepthTest::none);
+
+    // From above on flat ground with the lights on it, depth tells nothing apart.
+    const std::vector<float> flat(1280 * 720, 0.998f);
+    std::vector<glm::vec4> on_ground = test::random_lights(500, 4);
+    const float ground = Bounds(view, flat).max[0];
+    for (glm::vec4& light : on_ground)
+        light = {light.x * 0.5f, light.y * 0.5f, -ground, 2 + light.w};
+    for (const Plan& plan : advised(view, on_ground, {}, Bounds(view, flat).reduced).plans())
+        if (plan.depth_test == DepthTest::interval)
+            CHECK(plan.evaluations == doctest::Approx(built(view, plan, on_ground, flat)).epsilon(0.01));
+    CHECK(advised(view, on_ground, {}, Bounds(view, flat).reduced).best().depth_test != DepthTest::interval);
+}
+
+TEST_CASE("what the evaluations cost decides between tiles") {
+    const View view = test::view({1280, 720}, 8);
+    const auto lights = test::random_lights(500, 5);
+    CHECK(!advised(view, lights, {.evaluation_ns = 0}).best().tiled);  // nothing to save
+    const Advice dear = advised(view, lights, {.evaluation_ns = 1e6});
+    for (const Plan& plan : dear.plans())
+        CHECK(plan.evaluations >= dear.best().evaluations);
+    CHECK(dear.best().tile_size == 8);
+    CHECK(advised(view, lights, {.evaluation_ns = 0.002}).best().tile_size > 8);
+    const Advice slow = advised(view, lights, {.machine = 1000});
+    CHECK(slow.best().build_ns <= 1000 * advised(view, lights).best().build_ns);
+}
+
+TEST_CASE("scenes that need no grid get none") {
+    const View view = test::view({1280, 720}, 8);
+    const auto is_cheap = [&](const auto& lights, const Costs& costs = {}) {
+        const Plan best = advised(view, lights, costs).best();
+        return !best.tiled || best.tile_size >= 1280;
+    };
+    CHECK(is_cheap(std::vector<Sphere>{}));
+    CHECK(advised(view, std::vector<Sphere>{}).best().total_ns == 0);
+    CHECK(is_cheap(std::vector<Sphere>{{0, 0, -20, 500}}));
+    CHECK(is_cheap(std::vector<Sphere>(2000, Sphere{0, 0, 500, 20})));  // behind the eye
+    CHECK(advised(view, std::vector<Sphere>(2000, Sphere{0, 0, 500, 20})).best().evaluations == 0);
+    CHECK(!is_cheap(test::random_lights(1000, 6)));
+}
+
+TEST_CASE("any input") {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<Sphere> bad = {{nan, 0, 0, 1},          {0, 0, -9, -1},   {0, 0, -9, unbounded},
+                                     {0, 0, -9, 0},           {0, 0, 0, 1e30f}, {1e30f, 0, -1e38f, 1},
+                                     {0, nan, unbounded, nan}};
+    const std::vector<float> nothing(100000, nan), crossed(100000, 0.0f);
+    for (const Extent size : {Extent{0, 0}, {0, 50}, {1, 1}, {640, 1}, {1000, 700}, {32768, 32768}})
+        for (const int tile : {1, 8, 100, 40000, std::numeric_limits<int>::max()}) {
+            const View view = test::view(size, tile);
+            advised(view, bad);
+            advised(view, std::vector<Sphere>{});
+            if (view.tile_count() > nothing.size()) continue;
+            advised(view, bad, {}, {.min = nothing, .max = nothing, .gap_min = nothing, .gap_max = nothing});
+            advised(view, bad, {}, {.min = nothing});
+            const Advice empty =
+                advised(view, bad, {}, {.min = std::vector<float>(100000, 1.0f), .max = crossed});
+            for (const Plan& plan : empty.plans())
+                CHECK(plan.evaluations == 0);
+        }
+
+    const View view = test::view({1000, 700}, 32);
+    const std::vector<float> few(view.tile_count() - 1);
+    CHECK(advise(view, bad, {}, {.max = few}).error().code == ErrorCode::z_bounds_too_small);
+    CHECK(advise(view, bad, {}, {.min = crossed, .gap_min = few}).error().code ==
+          ErrorCode::z_bounds_too_small);
+    const float projective[4][4] = {{1, 0, 0, 1}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+    CHECK(advise(view, world_space(bad, projective)).error().code == ErrorCode::view_matrix_not_affine);
+}
+
+TEST_CASE("lights in any form and any number get the same advice each time, in words too") {
+    const View view = test::view({1000, 700}, 16);
+    const auto lights = test::random_lights(3000, 8);
+    const Advice first = advised(view, lights);
+    const float identity[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+    const Advice again = advised(view, view_space(lights)),
+                 moved = advised(view, world_space(lights, identity));
+    REQUIRE(again.plans().size() == first.plans().size());
+    for (std::size_t i = 0; i < first.plans().size(); ++i)
+        CHECK(again.plans()[i].total_ns == first.plans()[i].total_ns);
+    CHECK(moved.best().evaluations == doctest::Approx(first.best().evaluations).epsilon(0.02));
+    CHECK(first.best().index == Index::u16);
+    CHECK(advised(view, std::vector<Sphere>(65537, Sphere{0, 0, -9, 1})).best().index == Index::u32);
+
+    const std::string text = first.text();
+    CHECK(std::count(text.begin(), text.end(), '\n') ==
+          static_cast<std::ptrdiff_t>(first.plans().size()) + 1);
+    CHECK(text.find("no tiling") != std::string::npos);
+}
