@@ -287,11 +287,10 @@ void add_rungs(const Case& which) {
     // add_tiers<DepthTest::box, Footprint::silhouette>(which);
 }
 
-/// 1, 2, 4, ... threads, as far as the machine has them.
+/// 2, 4, ... threads, as far as the machine has them.
 void add_threads(Case which) {
     const int most = int(std::thread::hardware_concurrency());
-    for (which.threads = 1; which.threads <= most; which.threads *= 2) {
-        if (which.threads == 1 && which.lights <= 10000) continue;  // is there already
+    for (which.threads = 2; which.threads <= most; which.threads *= 2) {
         add<Options{.isa = Isa::avx2}>(which);
         add<Options{.isa = Isa::avx512}>(which);
     }
