@@ -281,8 +281,8 @@ void add_tiers(const Case& which) {
 
 void add_rungs(const Case& which) {
     add_tiers<DepthTest::interval>(which);
-    // add_tiers<DepthTest::box>(which);
-    // add_tiers<DepthTest::split_box>(which);
+    add_tiers<DepthTest::box>(which);
+    add_tiers<DepthTest::split_box>(which);
     // add_tiers<DepthTest::none, Footprint::silhouette>(which);
     // add_tiers<DepthTest::box, Footprint::silhouette>(which);
 }

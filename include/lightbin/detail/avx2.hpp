@@ -75,6 +75,50 @@ LIGHTBIN_TARGET inline void store_tiles(std::uint16_t* tiles, Doubles values) {
     _mm_storel_epi64(reinterpret_cast<__m128i*>(tiles), _mm_packs_epi32(whole, whole));
 }
 
+/// For each byte, the places of its set bits in ascending order.
+inline constexpr std::array<std::array<std::uint8_t, 8>, 256> set_bits = [] {
+    std::array<std::array<std::uint8_t, 8>, 256> table = {};
+    for (unsigned byte = 0; byte < 256; ++byte)
+        for (std::uint8_t bit = 0, place = 0; bit < 8; ++bit)
+            if (byte >> bit & 1) table[byte][place++] = bit;
+    return table;
+}();
+
+/// As the general append_visible, with shuffles by the table.
+LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCounts& counts,
+                                           std::uint32_t first_id, unsigned visible, const ChunkRects& rects,
+                                           std::uint32_t first) {
+    const __m128i places = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_bits[visible].data()));
+    const __m128i twice = _mm_add_epi8(places, places);
+    const __m128i bytes = _mm_add_epi8(_mm_unpacklo_epi8(twice, twice), _mm_set1_epi16(0x100));
+    const __m128i x0 = _mm_load_si128(reinterpret_cast<const __m128i*>(rects.x0 + first));
+    const __m128i y0 = _mm_load_si128(reinterpret_cast<const __m128i*>(rects.y0 + first));
+    const __m128i x1 = _mm_load_si128(reinterpret_cast<const __m128i*>(rects.x1 + first));
+    const __m128i y1 = _mm_load_si128(reinterpret_cast<const __m128i*>(rects.y1 + first));
+    const std::uint32_t at = counts.visible, count = static_cast<std::uint32_t>(std::popcount(visible));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out.x0 + at), _mm_shuffle_epi8(x0, bytes));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out.y0 + at), _mm_shuffle_epi8(y0, bytes));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out.x1 + at), _mm_shuffle_epi8(x1, bytes));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out.y1 + at), _mm_shuffle_epi8(y1, bytes));
+    const __m256i first_of_all = _mm256_set1_epi32(static_cast<int>(first_id + first));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.ids + at),
+                        _mm256_add_epi32(_mm256_cvtepu8_epi32(places), first_of_all));
+    counts.visible += count;
+
+    const __m256i one = _mm256_set1_epi32(1);
+    const __m256i width = _mm256_add_epi32(_mm256_cvtepu16_epi32(_mm_sub_epi16(x1, x0)), one);
+    const __m256i height = _mm256_add_epi32(_mm256_cvtepu16_epi32(_mm_sub_epi16(y1, y0)), one);
+    const __m256i lane_bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+    const __m256i kept = _mm256_cmpeq_epi32(
+        _mm256_and_si256(_mm256_set1_epi32(static_cast<int>(visible)), lane_bits), lane_bits);
+    const __m256i area = _mm256_and_si256(_mm256_mullo_epi32(width, height), kept);  // at most 2^30 each
+    const __m256i sums = _mm256_add_epi64(_mm256_cvtepu32_epi64(_mm256_castsi256_si128(area)),
+                                          _mm256_cvtepu32_epi64(_mm256_extracti128_si256(area, 1)));
+    const __m128i sum = _mm_add_epi64(_mm256_castsi256_si128(sums), _mm256_extracti128_si256(sums, 1));
+    counts.area += static_cast<std::uint64_t>(_mm_cvtsi128_si64(sum)) +
+                   static_cast<std::uint64_t>(_mm_extract_epi64(sum, 1));
+}
+
 #include <lightbin/detail/project.inl>
 
 /// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
@@ -88,15 +132,6 @@ LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t*
         high = _mm256_add_epi8(high, high);
     }
 }
-
-/// For each byte, the places of its set bits in ascending order.
-inline constexpr std::array<std::array<std::uint8_t, 8>, 256> set_bits = [] {
-    std::array<std::array<std::uint8_t, 8>, 256> table = {};
-    for (unsigned byte = 0; byte < 256; ++byte)
-        for (std::uint8_t bit = 0, place = 0; bit < 8; ++bit)
-            if (byte >> bit & 1) table[byte][place++] = bit;
-    return table;
-}();
 
 /// Writes those of 8 ids whose bit is set, in order; then up to 8 elements that mean nothing. Returns how
 /// many.
