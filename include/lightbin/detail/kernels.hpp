@@ -5,6 +5,7 @@
 #include <lightbin/detail/avx2.hpp>
 #include <lightbin/detail/avx512.hpp>
 #include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/neon.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/scalar.hpp>
 #include <lightbin/detail/scatter.hpp>
@@ -27,6 +28,8 @@ inline ProjectKernel project_kernel(Isa isa) {
     if (isa == Isa::avx512) return avx512::project;
     if (isa == Isa::avx2) return avx2::project;
     if (isa == Isa::sse2) return sse2::project;
+#elif defined(LIGHTBIN_NEON)
+    if (isa == Isa::neon) return neon::project;
 #endif
     static_cast<void>(isa);
     return scalar::project;

@@ -7,6 +7,8 @@
 
 #if !defined(LIGHTBIN_NO_SIMD) && defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
 #define LIGHTBIN_X86 1
+#elif !defined(LIGHTBIN_NO_SIMD) && defined(__aarch64__) && (defined(__GNUC__) || defined(__clang__))
+#define LIGHTBIN_NEON 1
 #endif
 
 // Names functions after the flags they are compiled with, so that two translation units with different flags
@@ -44,19 +46,26 @@ enum class Isa : std::uint8_t {
     sse2,
     avx2,
     avx512,  ///< with VBMI2, BITALG and VPOPCNTDQ: Ice Lake, Zen 4 and later
+    neon,    ///< 64-bit ARM
 };
 
 namespace detail {
 
 #if defined(LIGHTBIN_X86)
 inline constexpr Isa compiled_isa = Isa::avx512;
+#elif defined(LIGHTBIN_NEON)
+inline constexpr Isa compiled_isa = Isa::neon;
 #else
 inline constexpr Isa compiled_isa = Isa::scalar;
 #endif
 
-/// The widest instruction set, `cap` or below, that was compiled in and that this machine runs.
+/// The widest instruction set, `cap` or below, that was compiled in and that this machine runs. On ARM all
+/// but scalar mean neon; on x86 neon means scalar.
 inline Isa machine_isa(Isa cap) {
-#if defined(LIGHTBIN_X86)
+#if defined(LIGHTBIN_NEON)
+    return cap == Isa::scalar ? Isa::scalar : Isa::neon;
+#elif defined(LIGHTBIN_X86)
+    if (cap == Isa::neon) return Isa::scalar;
     if (cap >= Isa::avx512 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
         __builtin_cpu_supports("avx512vbmi") && __builtin_cpu_supports("avx512vbmi2") &&
