@@ -7,7 +7,7 @@
 #include "goals.hpp"
 #include "reference.hpp"
 
-#include <lightbin/lightbin.hpp>
+#include <lightbin/binner.hpp>
 
 #include <benchmark/benchmark.h>
 #include <tbb/parallel_for.h>
@@ -110,6 +110,8 @@ struct MadeBounds {
         for (auto* side : {&min, &max, &gap_min, &gap_max})
             side->resize(view.tile_count());
         bounds = *lightbin::reduce_depth(view, {.depth = depth}, min, max);
+        bounds.gap_min = gap_min;
+        bounds.gap_max = gap_max;
     }
 };
 

@@ -70,10 +70,10 @@ inline std::vector<float> made_depth() {
     SceneBuilder world({0, 12, 0}, {0, 12, -1});
     world.quad({-500, 0, -190}, {1000, 0, 0}, {0, 500, 0});
     Dice dice(7);
-    for (int i = 0; i < 80; ++i) {
-        const float z = dice.between(-185, -15);
+    for (int i = 0; i < 60; ++i) {
+        const float z = -190 * std::sqrt(dice.between(0.02f, 0.9f));
         const glm::vec3 at = dice.between({z, 0, z}, {-z, 0, z});
-        world.box(at, at + dice.between({4, 4, 4}, {14, 50, 14}));
+        world.box(at, at + dice.between({3, 3, 3}, {10, 25, 10}));
     }
     return rasterise(std::move(world).scene("", 0, [](Dice&, std::size_t) { return glm::vec4(); }),
                      Lens().screen)

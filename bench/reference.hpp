@@ -4,7 +4,7 @@
 
 #include "flat.hpp"
 
-#include <lightbin/lightbin.hpp>
+#include <lightbin/binner.hpp>
 
 #include <algorithm>
 #include <cmath>
