@@ -68,6 +68,8 @@ Lists built(const lightbin::View& view, const Scene& scene, bool flush, std::siz
             return binner.bin(view, scene.lights, parallel);
         } else {
             lightbin::ZBounds bounds{.min = scene.min, .max = scene.max};
+            if constexpr (options.depth_test == lightbin::DepthTest::split_box)
+                bounds.gap_min = scene.gap_min, bounds.gap_max = scene.gap_max;
             if (!scene.depth.empty()) {
                 min.resize(view.tile_count());
                 max.resize(view.tile_count());
@@ -126,6 +128,12 @@ Lists Engine::lists(const Scene& scene, Rung rung, std::vector<std::string>& com
     case Rung::rectangle_interval:
         return on_all_tiers<lightbin::Options{.depth_test = DepthTest::interval}>(*view, scene, flush_,
                                                                                   complaints);
+    case Rung::rectangle_box:
+        return on_all_tiers<lightbin::Options{.depth_test = DepthTest::box}>(*view, scene, flush_,
+                                                                             complaints);
+    case Rung::rectangle_split_box:
+        return on_all_tiers<lightbin::Options{.depth_test = DepthTest::split_box}>(*view, scene, flush_,
+                                                                                   complaints);
     }
     return {};
 }

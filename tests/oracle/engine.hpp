@@ -15,6 +15,8 @@ namespace oracle {
 enum class Rung {
     rectangle,
     rectangle_interval,
+    rectangle_box,
+    rectangle_split_box,
 };
 
 struct RungInfo {
@@ -27,6 +29,8 @@ inline const std::vector<RungInfo>& all_rungs() {
     static const std::vector<RungInfo> all = {
         {Rung::rectangle, "rectangle", false},
         {Rung::rectangle_interval, "rectangle, interval", false},
+        {Rung::rectangle_box, "rectangle, box", false},
+        {Rung::rectangle_split_box, "rectangle, split box", true},
     };
     return all;
 }

@@ -305,13 +305,14 @@ inline Scene one_pixel_tiles(Random& random, std::size_t count) {
             continue;
         }
         const double d = aim.depth(random), at = std::max(d, aim.unit);
-        double r = 0, c[2], edge[2];
+        double pixel = infinite, c[2], edge[2];
         for (int axis = 0; axis < 2; ++axis) {
             edge[axis] = aim.tile_edge(axis, random);
             c[axis] = aim.at(axis, edge[axis], at);
+            pixel = std::min(pixel, aim.at(axis, edge[axis] + 1, at) - c[axis]);
         }
         const int axis = random.integer(0, 1);
-        r = (aim.at(axis, edge[axis] + 1, at) - c[axis]) * random.power_of_two(-8, 3);
+        const double r = pixel * random.power_of_two(-8, 3);
         c[axis] += random.sign() * r * std::hypot(1, aim.slope(axis, edge[axis]));
         scene.lights.push_back(nudged(aim.light(c[0], c[1], at, r), random));
     }

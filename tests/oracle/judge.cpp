@@ -325,14 +325,22 @@ Random random_of(const Family& family, std::uint64_t seed) {
 }
 }  // namespace
 
+namespace {
+/// What a processor that takes denormal numbers for 0 sees of a scene.
+void flush(Scene& scene) {
+    const auto flush_number = [](float& v) {
+        if (std::abs(v) < FLT_MIN) v = 0;
+    };
+    for (Light& light : scene.lights)
+        for (float* v : {&light.x, &light.y, &light.z, &light.w})
+            flush_number(*v);
+    for (auto* depths : {&scene.min, &scene.max, &scene.gap_min, &scene.gap_max, &scene.depth})
+        std::for_each(depths->begin(), depths->end(), flush_number);
+}
+}  // namespace
+
 void judge_scene(Scene scene, const Engine& engine, Verdicts& verdicts) {
-    // To a processor that flushes, a denormal is 0: a sample may be the background, no radius is negative.
-    if (engine.flushes_denormals()) {
-        for (float& sample : scene.depth)
-            if (std::abs(sample) < FLT_MIN) sample = 0;
-        for (Light& light : scene.lights)
-            if (std::abs(light.w) < FLT_MIN) light.w = std::abs(light.w);
-    }
+    if (engine.flushes_denormals()) flush(scene);
     Judge judge(scene);
     for (const RungInfo& info : all_rungs()) {
         const Lists lists = engine.lists(scene, info.rung, verdicts.reports);
