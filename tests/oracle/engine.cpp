@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine.hpp"
 
-#include <lightbin/lightbin.hpp>
+#include <lightbin/binner.hpp>
 
 #if defined(__x86_64__)
 #include <xmmintrin.h>
