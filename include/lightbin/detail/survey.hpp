@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/buffer.hpp>
+#include <lightbin/detail/cell_boxes.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/lights.hpp>
@@ -153,8 +154,9 @@ inline bool in_silhouette(const FootprintArrays& lights, std::size_t i, int shif
 
 /// Whether a light meets a tile's bounds, by depth test.
 inline std::array<bool, 4> depth_tests_met(const View& view, const CellBounds& cell, const Sphere& light) {
-    const TileDepths depths = {&cell.min, &cell.max, 0, 0, view.camera().z_sign};
-    const bool interval = depths.meets(0, depths.of(light));
+    const TestedLight tested(view.camera(), light);
+    const bool interval =
+        !(tested.farthest < cell.min) && !(tested.nearest > cell.max) && !(cell.min > cell.max);
     return {true, interval, interval, interval};
 }
 
