@@ -110,7 +110,8 @@ if have Direct3D $node wine wine64 g++-mingw-w64-x86-64-posix xvfb libgl1-mesa-d
         for _ in $(seq 50); do [ -s "$out/display" ] || sleep 0.2; done
         run "Direct3D 11" env DISPLAY=:"$(cat "$out/display")" wine "$out/run_d3d11.exe"
     else
-        note Direct3D "SKIPPED, as npm could not install $compilers: $(tail -n 1 "$out/npm.log")"
+        note Direct3D "SKIPPED, as npm could not install $compilers:" \
+            "$(sed -n 's/^npm \(ERR!\|error\) //p' "$out/npm.log" | head -n 1)"
     fi
 fi
 

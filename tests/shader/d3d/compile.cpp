@@ -1,44 +1,49 @@
 // SPDX-License-Identifier: MIT
-// Compiles every HLSL text: compile fxc|dxc PROFILES [PART PARTS] takes every PARTS-th text from PART on;
-// PROFILES: 5_0, 5_1, 6_0, 6_6.
+// Compiles every HLSL text: compile fxc|dxc MODEL [FIRST COUNT] takes a share of them. MODEL: 5_0, 5_1, 6_0 ...
 #include "dxc.hpp"
 #include "fxc.hpp"
 
-#include "../readers.hpp"
+#include "../run_jobs.hpp"
 
-int main(int count, char** arguments) {
-    if (count != 3 && count != 5) return 2;
-    const std::string compiler = arguments[1], model = arguments[2];
-    const std::size_t part = count == 5 ? std::stoul(arguments[3]) : 0;
-    const std::size_t parts = count == 5 ? std::stoul(arguments[4]) : 1;
+namespace {
 
-    const auto compiles = [&](const std::string& text, Stage stage, std::string& error) {
-        const std::string profile = (stage == Stage::compute ? "cs_" : "ps_") + model;
-        if (compiler == "fxc") {
-            static const Fxc fxc;
-            return !fxc(text, profile.c_str(), error).empty();
+template <class Compiler> int compile_all(const std::string& model, const Share& share) {
+    const Compiler compiler;
+    int texts = 0, refused = 0;
+    const auto compiles = [&](const std::string& name, const std::string& text, Stage stage) {
+        ++texts;
+        try {
+            compiler(text, (stage == Stage::compute ? "cs_" : "ps_") + model);
+        } catch (const std::runtime_error& error) {
+            if (++refused <= 3)
+                std::printf("%s is refused: %s\n%s\n", name.c_str(), error.what(), text.c_str());
         }
-        static const Dxc dxc;
-        return dxc(text, std::wstring(profile.begin(), profile.end()).c_str(), error);
     };
-    std::string error;
-    if (compiles("uint main() : SV_Target { return x; }", Stage::fragment, error) || error.empty()) {
-        std::printf("%s accepts what is wrong\n", compiler.c_str());
+    std::printf("to be refused:\n");
+    compiles("a wrong text", "uint main() : SV_Target { return x; }", Stage::fragment);
+    if (refused != 1) {
+        std::printf("a wrong text is not refused\n");
         return 1;
     }
+    texts = refused = 0;
 
-    int texts = 0, refused = 0;
-    const auto list = every_reader(model == "5_0" ? lightbin::ShaderLanguage::hlsl_5_0
-                                                  : lightbin::ShaderLanguage::hlsl_5_1);
-    for (std::size_t i = part; i < list.size(); i += parts)
+    const auto readers = every_reader(model == "5_0" ? lightbin::ShaderLanguage::hlsl_5_0
+                                                     : lightbin::ShaderLanguage::hlsl_5_1);
+    for (std::size_t i = share.first; i < readers.size(); i += share.count)
         for (const Stage stage : {Stage::fragment, Stage::compute}) {
-            ++texts;
-            const auto snippet = lightbin::shader_snippet(list[i]);
-            const std::string text = snippet ? reader_text(list[i], *snippet, stage, 100, 100) : "";
-            if (snippet && compiles(text, stage, error)) continue;
-            if (++refused <= 5)
-                std::printf("%s is refused: %s\n%s\n", name_of(list[i]).c_str(), error.c_str(), text.c_str());
+            const auto snippet = lightbin::shader_snippet(readers[i]);
+            compiles(name_of(readers[i]), snippet ? reader_text(readers[i], *snippet, stage, 100, 100) : "",
+                     stage);
         }
-    std::printf("%s %s: %d texts, %d refused\n", compiler.c_str(), model.c_str(), texts, refused);
+    std::printf("%d texts, %d refused\n", texts, refused);
     return texts == 0 || refused > 0;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    if (count < 3) return 2;
+    const Share share = share_of(count - 2, arguments + 2);
+    return std::string(arguments[1]) == "fxc" ? compile_all<Fxc>(arguments[2], share)
+                                              : compile_all<Dxc>(arguments[2], share);
 }

@@ -3,12 +3,11 @@
 #pragma once
 
 #include "../job.hpp"
+#include "fxc.hpp"
 
 #include <d3d11.h>
 
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -43,17 +42,23 @@ public:
         check(D3D11CreateDevice(nullptr, D3D_DRIVER_TYPE_HARDWARE, nullptr, 0, &level, 1, D3D11_SDK_VERSION,
                                 device_.out(), nullptr, context_.out()),
               "a Direct3D 11 device of feature level 11_0");
+        vertex_ = fxc_(R"(
+float4 main(uint index : SV_VertexID) : SV_Position {  // clockwise, as the others are culled
+    return float4(float2(index >> 1, index & 1) * 4.0 - 1.0, 0.0, 1.0);
+}
+)",
+                       "vs_5_0");
     }
 
-    /// Returns what the job's shader, given as byte code, wrote: the words of its result buffer, or four
-    /// words a pixel of its picture.
-    std::vector<std::uint32_t> run(const Job& job, const std::vector<char>& code,
-                                   const std::vector<char>& vertex_code) {
+    /// Returns what the job's shader wrote: the words of its result buffer, or four words a pixel of its
+    /// picture. Throws std::runtime_error where fxc refuses the text.
+    std::vector<std::uint32_t> run(const Job& job) {
+        const std::vector<char> code = fxc_(job.text, job.stage == Stage::compute ? "cs_5_0" : "ps_5_0");
         context_->ClearState();
         std::vector<Com<ID3D11Buffer>> buffers(job.inputs.size());
         for (std::size_t i = 0; i < job.inputs.size(); ++i)
             bind(job.inputs[i], buffers[i]);
-        if (job.stage == Stage::fragment) return draw(job, code, vertex_code);
+        if (job.stage == Stage::fragment) return draw(job, code);
         Com<ID3D11ComputeShader> shader;
         check(device_->CreateComputeShader(code.data(), code.size(), nullptr, shader.out()),
               "compute shader");
@@ -174,8 +179,7 @@ private:
     }
 
     // A triangle over the viewport, which lies at job.corner in a picture that is as much larger.
-    std::vector<std::uint32_t> draw(const Job& job, const std::vector<char>& code,
-                                    const std::vector<char>& vertex_code) {
+    std::vector<std::uint32_t> draw(const Job& job, const std::vector<char>& code) {
         D3D11_TEXTURE2D_DESC info{};
         info.Width = job.width + job.corner[0];
         info.Height = job.height + job.corner[1];
@@ -189,7 +193,7 @@ private:
         ID3D11RenderTargetView* target = view.get();
         context_->OMSetRenderTargets(1, &target, nullptr);
         Com<ID3D11VertexShader> vertex;
-        check(device_->CreateVertexShader(vertex_code.data(), vertex_code.size(), nullptr, vertex.out()),
+        check(device_->CreateVertexShader(vertex_.data(), vertex_.size(), nullptr, vertex.out()),
               "vertex shader");
         Com<ID3D11PixelShader> pixel;
         check(device_->CreatePixelShader(code.data(), code.size(), nullptr, pixel.out()), "pixel shader");
@@ -222,6 +226,8 @@ private:
         return words;
     }
 
+    Fxc fxc_;
+    std::vector<char> vertex_;
     Com<ID3D11Device> device_;
     Com<ID3D11DeviceContext> context_;
 };

@@ -7,6 +7,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <stdexcept>
 #include <string>
 
 class Dxc {
@@ -29,30 +30,30 @@ public:
         compiler_ = static_cast<Compiler*>(made);
     }
 
-    /// Returns whether the text compiles, or the reason in `error`; a warning is an error.
-    bool operator()(const std::string& text, const wchar_t* profile, std::string& error) const {
-        constexpr IID result_interface = {
-            0xcedb484a, 0xd4e9, 0x445a, {0xb9, 0x91, 0xca, 0x21, 0xca, 0x15, 0x7d, 0xc2}};
+    /// Compiles, and throws std::runtime_error with what the compiler says; a warning is an error.
+    void operator()(const std::string& text, const std::string& profile) const {
+        const std::wstring target(profile.begin(), profile.end());
         const Text source = {text.data(), text.size(), 65001};  // UTF-8
-        const wchar_t* arguments[] = {L"-T", profile, L"-E", L"main", L"-WX"};
+        const wchar_t* arguments[] = {L"-T", target.c_str(), L"-E", L"main", L"-WX"};
         void* made = nullptr;
         HRESULT status = compiler_->compile(&source, arguments, 5, nullptr, result_interface, &made);
-        if (FAILED(status)) {
-            error = "the compiler itself failed";
-            return false;
-        }
+        if (FAILED(status)) throw std::runtime_error("the compiler itself failed");
         auto* const result = static_cast<Result*>(made);
         result->status(&status);
+        std::string said;
         Blob* messages = nullptr;
         if (SUCCEEDED(result->messages(&messages)) && messages) {
-            error.assign(static_cast<const char*>(messages->data()), messages->size());
+            said.assign(static_cast<const char*>(messages->data()), messages->size());
             messages->Release();
         }
         result->Release();
-        return SUCCEEDED(status);
+        if (FAILED(status)) throw std::runtime_error(said);
     }
 
 private:
+    static constexpr IID result_interface = {
+        0xcedb484a, 0xd4e9, 0x445a, {0xb9, 0x91, 0xca, 0x21, 0xca, 0x15, 0x7d, 0xc2}};
+
     struct Text {
         const void* data;
         SIZE_T size;

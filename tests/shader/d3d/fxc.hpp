@@ -7,6 +7,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -23,20 +24,17 @@ public:
         }
     }
 
-    /// Returns the byte code, or nothing with the reason in `error`; a warning is an error.
-    std::vector<char> operator()(const std::string& text, const char* profile, std::string& error) const {
+    /// Returns the byte code. Throws std::runtime_error with what the compiler says; a warning is an error.
+    std::vector<char> operator()(const std::string& text, const std::string& profile) const {
         ID3DBlob *code = nullptr, *messages = nullptr;
-        const HRESULT result =
-            compile_(text.data(), text.size(), "text", nullptr, nullptr, "main", profile,
-                     D3DCOMPILE_ENABLE_STRICTNESS | D3DCOMPILE_WARNINGS_ARE_ERRORS, 0, &code, &messages);
-        error = messages ? static_cast<const char*>(messages->GetBufferPointer()) : "";
-        std::vector<char> bytes;
-        if (SUCCEEDED(result)) {
-            const auto* begin = static_cast<const char*>(code->GetBufferPointer());
-            bytes.assign(begin, begin + code->GetBufferSize());
-        }
-        if (code) code->Release();
+        compile_(text.data(), text.size(), "text", nullptr, nullptr, "main", profile.c_str(),
+                 D3DCOMPILE_ENABLE_STRICTNESS | D3DCOMPILE_WARNINGS_ARE_ERRORS, 0, &code, &messages);
+        const std::string said = messages ? static_cast<const char*>(messages->GetBufferPointer()) : "";
         if (messages) messages->Release();
+        if (!code) throw std::runtime_error(said);
+        const auto* begin = static_cast<const char*>(code->GetBufferPointer());
+        std::vector<char> bytes(begin, begin + code->GetBufferSize());
+        code->Release();
         return bytes;
     }
 

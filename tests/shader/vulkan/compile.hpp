@@ -7,12 +7,12 @@
 #include <glslang/SPIRV/GlslangToSpv.h>
 
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-/// Returns SPIR-V for Vulkan 1.0, or nothing with the reason in `error`.
-inline std::vector<std::uint32_t> compile_spirv(const std::string& text, EShLanguage stage, bool hlsl,
-                                                std::string& error) {
+/// Returns SPIR-V for Vulkan 1.0, or throws std::runtime_error with what glslang says.
+inline std::vector<std::uint32_t> compile_spirv(const std::string& text, EShLanguage stage, bool hlsl) {
     static const bool ready = glslang::InitializeProcess();
     const auto language = hlsl ? glslang::EShSourceHlsl : glslang::EShSourceGlsl;
     glslang::TShader shader(stage);
@@ -29,6 +29,6 @@ inline std::vector<std::uint32_t> compile_spirv(const std::string& text, EShLang
     std::vector<std::uint32_t> spirv;
     if (ready && shader.parse(GetDefaultResources(), 100, false, rules) && program.link(rules))
         glslang::GlslangToSpv(*program.getIntermediate(stage), spirv);
-    error = std::string(shader.getInfoLog()) + program.getInfoLog();
+    if (spirv.empty()) throw std::runtime_error(std::string(shader.getInfoLog()) + program.getInfoLog());
     return spirv;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../job.hpp"
+#include "compile.hpp"
 
 #include <vulkan/vulkan.h>
 
@@ -48,6 +49,12 @@ public:
         VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr, 0, family_};
         check(vkCreateCommandPool(device_, &pool, nullptr, &pool_), "command pool");
         undo_.add([this] { vkDestroyCommandPool(device_, pool_, nullptr); });
+        vertex_ = compile_spirv(R"(#version 450
+void main() {
+    gl_Position = vec4(vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 4.0 - 1.0, 0.0, 1.0);
+}
+)",
+                                EShLangVertex, false);
     }
 
     const std::string& name() const { return name_; }
@@ -71,10 +78,11 @@ public:
         return complained;
     }
 
-    /// Returns what the job's shader, given as SPIR-V, wrote: `results` words of its result buffer, or four
-    /// words a pixel of its picture.
-    std::vector<std::uint32_t> run(const Job& job, std::span<const std::uint32_t> spirv,
-                                   std::span<const std::uint32_t> vertex_spirv) {
+    /// Returns what the job's shader wrote: the words of its result buffer, or four words a pixel of its
+    /// picture. Throws std::runtime_error where glslang refuses the text.
+    std::vector<std::uint32_t> run(const Job& job) {
+        const std::vector<std::uint32_t> spirv =
+            compile_spirv(job.text, job.stage == Stage::compute ? EShLangCompute : EShLangFragment, job.hlsl);
         Undo undo;
         VkCommandBuffer commands = begin(undo);
         const Descriptors descriptors = bind(job, commands, undo);
@@ -88,7 +96,7 @@ public:
             barrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                     VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
         } else {
-            result = draw(job, commands, module, make_module(vertex_spirv, undo), descriptors, undo);
+            result = draw(job, commands, module, make_module(vertex_, undo), descriptors, undo);
         }
         finish(commands);
         std::vector<std::uint32_t> words(result.bytes / 4);
@@ -604,6 +612,7 @@ private:
     VkCommandPool pool_ = nullptr;
     std::uint32_t family_ = 0;
     std::string name_;
+    std::vector<std::uint32_t> vertex_;
     Buffer result_;
     int messages_ = 0;
     bool expecting_ = false;
