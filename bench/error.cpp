@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Error against run time: what each rung of the ladder lists that no pixel needs, and what it takes to build,
-// by tile size. Writes error_vs_time.csv and one file of points a scene for error_vs_time.gp to draw.
+// by tile size. Writes error_vs_time.csv, which plot.gp draws.
 //
 // Columns of the table, a row for each scene (all views of it together), tile size and rung:
 //   misses          entries that the rung must have by exact arithmetic and lacks, in `verdicts` pairs of a tile
@@ -9,8 +9,8 @@
 //   excess          entries / exact - 1
 //   lit             pairs with a pixel whose point is in the sphere; excess_lit = entries / lit - 1
 //   margin          entries / entries of the same rung in exact arithmetic: what rounding outward adds
-//   evals           light evaluations a drawn pixel: the mean length of its list; evals_needed: the lights that
-//                   reach its point
+//   evals           light evaluations a drawn pixel: the mean length of its list; evals_beyond: those of lights
+//                   that do not reach its point
 //   index_bytes     of the light index list, 32-bit ids
 //   us, ratio       median time of a build, and as a part of the flat baseline's (with Z interval tests for every
 //                   rung with a depth test), on rotating light sets; Z bounds not included
@@ -115,10 +115,9 @@ void count(const SeenScene& seen, int tile_size, Report& report) {
             }
         }
 
-    for_each_rung([&]<std::size_t rung> {
-        constexpr Method method = ladder[rung];
+    Ladder().for_each([&](std::size_t rung, auto& bin) {
+        const Method& method = ladder[rung];
         Row& row = report.rows[rung];
-        Bin<method> bin;
         const auto grid = bin(view, lights);
         row.entries += grid.indices().size();
         for (std::size_t tile = 0; tile < truth.tiles.size(); ++tile) {
@@ -147,7 +146,7 @@ void time(const Case& scene, int tile_size, Report& report) {
 
     Flat<float> flat;
     std::vector<double> times[std::size(ladder)], flat_times[2];
-    std::tuple<Bin<ladder[0]>, Bin<ladder[1]>> bins;
+    Ladder bins;
     for (std::size_t turn = 0; turn < turns; ++turn) {
         const std::size_t place = turn % views.size();
         const TiledView& view = views[place];
@@ -156,9 +155,8 @@ void time(const Case& scene, int tile_size, Report& report) {
             seconds([&] { flat.build<false>(view.flat, set, view.min.data(), view.max.data()); }));
         flat_times[1].push_back(
             seconds([&] { flat.build<true>(view.flat, set, view.min.data(), view.max.data()); }));
-        for_each_rung([&]<std::size_t rung> {
-            times[rung].push_back(seconds([&] { std::get<rung>(bins)(view, set); }));
-        });
+        bins.for_each(
+            [&](std::size_t rung, auto& bin) { times[rung].push_back(seconds([&] { bin(view, set); })); });
     }
     for (std::size_t rung = 0; rung < std::size(ladder); ++rung) {
         Row& row = report.rows[rung];
@@ -171,19 +169,19 @@ void write(std::FILE* csv, const Case& scene, int tile_size, const Report& repor
     for (std::size_t rung = 0; rung < std::size(ladder); ++rung) {
         const Row& row = report.rows[rung];
         const auto part = [](auto a, auto b) { return static_cast<double>(a) / static_cast<double>(b); };
+        const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
         const double views = static_cast<double>(scene.views.size());
-        std::fprintf(
-            csv,
-            "%s,%zu,%d,%s,%s,%llu,%llu,%llu,%llu,%llu,%.4f,%llu,%.4f,%.6f,%.3f,%.3f,%.0f,%.1f,%.3f,%.0f\n",
-            scene.name.c_str(), scene.views.size(), tile_size, name_of(ladder[rung].footprint),
-            name_of(ladder[rung].depth_test), static_cast<unsigned long long>(row.misses),
-            static_cast<unsigned long long>(report.verdicts),
-            static_cast<unsigned long long>(report.by_rationals),
-            static_cast<unsigned long long>(row.entries), static_cast<unsigned long long>(report.exact),
-            part(row.entries, report.exact) - 1, static_cast<unsigned long long>(report.lit),
-            part(row.entries, report.lit) - 1, part(row.entries, row.unrounded),
-            row.evaluations / static_cast<double>(report.drawn), part(report.needed, report.drawn),
-            4 * static_cast<double>(row.entries) / views, row.us, row.ratio, report.reduce_us / views);
+        const double evaluations = row.evaluations / static_cast<double>(report.drawn);
+        std::fprintf(csv, "%s,%zu,%d,%s,%s,%llu,%llu,%llu,", scene.name.c_str(), scene.views.size(),
+                     tile_size, name_of(ladder[rung].footprint), name_of(ladder[rung].depth_test),
+                     number(row.misses), number(report.verdicts), number(report.by_rationals));
+        std::fprintf(csv, "%llu,%llu,%.5f,%llu,%.5f,%.6f,", number(row.entries), number(report.exact),
+                     part(row.entries, report.exact) - 1, number(report.lit),
+                     part(row.entries, report.lit) - 1, part(row.entries, row.unrounded));
+        std::fprintf(csv, "%.3f,%.3f,%.0f,%.1f,%.3f,%.0f\n", evaluations,
+                     evaluations - part(report.needed, report.drawn),
+                     4 * static_cast<double>(row.entries) / views, row.us, row.ratio,
+                     report.reduce_us / views);
     }
     std::fflush(csv);
 }
@@ -237,7 +235,7 @@ int main(int argc, char** argv) try {
     std::FILE* const csv =
         open_report("error_vs_time.csv", "scene,views,tile_px,footprint,depth_test,misses,verdicts,by_"
                                          "rationals,entries,exact,excess,lit,excess_lit,"
-                                         "margin,evals,evals_needed,index_bytes,us,ratio,reduce_us");
+                                         "margin,evals,evals_beyond,index_bytes,us,ratio,reduce_us");
     std::uint64_t misses = 0;
     for (const Case& scene : cases(paths))
         for (const int tile_size : {8, 16, 32, 64}) {

@@ -18,6 +18,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <stdexcept>
 #include <vector>
 
 /// What may be true of a tile and a light.
@@ -153,6 +155,26 @@ private:
 
     /// Whether the ball meets the cell between x[0] and x[1], y[0] and y[1] (null: that axis has no bounds).
     bool meets(const Edge* x, const Edge* y, const Range& range, const Ball& ball) {
+        return settle(proven_to_meet(x, y, range, ball), [&] {
+            oracle::Slabs slabs;
+            if (x != nullptr) slabs.x = {x[0].exact, x[1].exact};
+            if (y != nullptr) slabs.y = {y[0].exact, y[1].exact};
+            return oracle::meets(slabs, exact(range), exact(ball));
+        });
+    }
+
+    /// The answer in double precision, or where there is none, and now and then as a check, the exact one.
+    template <class Exact> bool settle(std::optional<bool> proven, Exact by_rationals) {
+        const bool checked = ++questions_ % 1009 == 0;
+        by_rationals_ += !proven;
+        if (proven && !checked) return *proven;
+        const bool truth = by_rationals();
+        if (proven && *proven != truth) throw std::logic_error("the exact set's two deciders disagree");
+        return truth;
+    }
+
+    std::optional<bool> proven_to_meet(const Edge* x, const Edge* y, const Range& range,
+                                       const Ball& ball) const {
         // The cell's nearest point lies at a depth where one of the pieces of the distance, a convex function of
         // depth, is least, or at an end (oracle.hpp). How well it is found decides nothing.
         double best = std::numeric_limits<double>::infinity(), depth = 0;
@@ -193,12 +215,7 @@ private:
         const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
         if (cell - centre - share * (sizes + std::fabs(cell)) > ball.radius * length * (1 + share))
             return false;
-
-        ++by_rationals_;
-        oracle::Slabs slabs;
-        if (x != nullptr) slabs.x = {x[0].exact, x[1].exact};
-        if (y != nullptr) slabs.y = {y[0].exact, y[1].exact};
-        return oracle::meets(slabs, exact(range), exact(ball));
+        return std::nullopt;
     }
 
     /// From the coordinate to the nearest one of the slab at a depth, with its sign.
@@ -211,7 +228,14 @@ private:
         return std::max(std::fabs(edges[0].slope), std::fabs(edges[1].slope));
     }
 
+    /// Whether the ball meets the view-space box around the part of tile (x, y) in this range.
     bool meets_box(std::size_t x, std::size_t y, const Range& range, const Ball& ball) {
+        return settle(proven_to_meet_box(x, y, range, ball),
+                      [&] { return exactly_meets_box(x, y, range, ball); });
+    }
+
+    std::optional<bool> proven_to_meet_box(std::size_t x, std::size_t y, const Range& range,
+                                           const Ball& ball) const {
         double least = 0, most = 0;  // squared distance, rounded either way
         const auto add = [&](double low, double high, double c) {
             const double gap = std::max({low - c, c - high, 0.0}),
@@ -229,8 +253,10 @@ private:
         const double reach = ball.radius * ball.radius;
         if (most * (1 + share) <= reach) return true;
         if (least > reach * (1 + share)) return false;
+        return std::nullopt;
+    }
 
-        ++by_rationals_;
+    bool exactly_meets_box(std::size_t x, std::size_t y, const Range& range, const Ball& ball) const {
         const oracle::Depths depths = exact(range);
         const oracle::CameraBall centre = exact(ball);
         Rational distance = 0;
@@ -261,5 +287,5 @@ private:
     oracle::Oracle oracle_;
     Range view_;
     std::vector<Edge> columns_, rows_;
-    std::uint64_t by_rationals_ = 0;
+    std::uint64_t questions_ = 0, by_rationals_ = 0;
 };

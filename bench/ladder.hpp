@@ -12,6 +12,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 using lightbin::DepthTest;
@@ -36,6 +38,8 @@ constexpr const char* name_of(DepthTest test) {
 inline constexpr Method ladder[] = {
     {Footprint::rectangle, DepthTest::none},
     {Footprint::rectangle, DepthTest::interval},
+    {Footprint::rectangle, DepthTest::box},
+    {Footprint::rectangle, DepthTest::split_box},
 };
 
 template <class Work> double seconds(Work work) {
@@ -65,17 +69,34 @@ struct TiledView {
             if (!lightbin::reduce_depth(view, {.depth = picture.depth, .skip_background = true}, min, max))
                 std::abort();
         });
+        find_gaps(picture);
     }
 
     lightbin::ZBounds bounds() const { return {min, max, gap_min, gap_max}; }
 
 private:
+    /// The depths around the middle of each tile's.
+    void find_gaps(const Picture& picture) {
+        gap_min = min, gap_max = max;
+        for (std::size_t i = 0; i < picture.view_depth.size(); ++i) {
+            if (picture.triangle[i] == Picture::nothing) continue;
+            const std::size_t width = static_cast<std::size_t>(picture.size.width),
+                              t = static_cast<std::size_t>(view.tile_size()),
+                              tile = i / width / t * static_cast<std::size_t>(view.tiles_x()) + i % width / t;
+            const float depth = picture.view_depth[i];
+            if (depth <= (min[tile] + max[tile]) / 2)
+                gap_min[tile] = std::max(gap_min[tile], depth);
+            else
+                gap_max[tile] = std::min(gap_max[tile], depth);
+        }
+    }
+
     static Lens lens_of(const Frustum& frustum, lightbin::Extent size) {
         return {frustum.y, frustum.near_depth, frustum.far_depth, size};
     }
 };
 
-/// Bins with some method; the grid is valid until the next call.
+/// Bins by one rung; the grid is valid until the next call.
 template <Method method, lightbin::Index index = lightbin::Index::u32> class Bin {
 public:
     auto operator()(const TiledView& view, const Lights& lights) {
@@ -91,13 +112,22 @@ private:
         binner_;
 };
 
-/// Calls visit.template operator()<i>() for each rung ladder[i].
-template <class Visit> void for_each_rung(Visit visit) {
-    [&]<std::size_t... i>(std::index_sequence<i...>) {
-        (visit.template operator()<i>(), ...);
+/// One binner for each rung. Calls visit(i, bin) for ladder[i] and its own Bin.
+class Ladder {
+public:
+    template <class Visit> void for_each(Visit visit) { visit_all(visit, std::make_index_sequence<rungs>{}); }
+
+private:
+    static constexpr std::size_t rungs = std::size(ladder);
+
+    template <std::size_t... i>
+    static auto bins_of(std::index_sequence<i...>) -> std::tuple<Bin<ladder[i]>...>;
+    template <class Visit, std::size_t... i> void visit_all(Visit& visit, std::index_sequence<i...>) {
+        (visit(i, std::get<i>(bins_)), ...);
     }
-    (std::make_index_sequence<std::size(ladder)>{});
-}
+
+    decltype(bins_of(std::make_index_sequence<rungs>{})) bins_;
+};
 
 inline std::FILE* open_report(const char* path, const char* header) {
     std::FILE* file = std::fopen(path, "w");

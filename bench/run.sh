@@ -7,6 +7,9 @@
 #   error [--quick] [SCENE.glb ...]
 #       What each rung of the ladder lists too much, against the exact set, and what it takes to build, on made scenes
 #       and real ones (those of the tests, or the named ones); writes build/bench/error_vs_time.csv, .svg and .png.
+#   cutoff [--quick] [SCENE.glb ...]
+#       What ending lights at a finite range does to the picture, and what it saves; writes build/bench/cutoff.csv, .svg
+#       and .png.
 set -eu
 me=bench/run.sh
 here=$(pwd)
@@ -15,7 +18,7 @@ cd "$(dirname "$0")/.."
 
 program=binning
 case ${1-} in
-binning | error)
+binning | error | cutoff)
     program=$1
     shift
     ;;
@@ -45,5 +48,6 @@ done
 cd build/bench
 ./bench/$program "$@"
 case $program in
-error) gnuplot ../../bench/error_vs_time.gp ;;
+error) gnuplot -e 'report="error_vs_time"' ../../bench/plot.gp ;;
+cutoff) gnuplot -e 'report="cutoff"' ../../bench/plot.gp ;;
 esac
