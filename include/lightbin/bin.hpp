@@ -139,7 +139,8 @@ private:
         for (std::size_t i = 0; i < 2; ++i) {
             const std::size_t room = static_cast<std::size_t>(axes[i]->tiles) + 8;  // vectors are read
             float *low = edges_[2 * i].room(room), *high = edges_[2 * i + 1].room(room);
-            detail::tile_edges(*axes[i], low, high);
+            for (int tile = 0; tile < axes[i]->tiles; ++tile)
+                detail::tile_edges(*axes[i], tile, low[tile], high[tile]);
             job.edges[2 * i] = low;
             job.edges[2 * i + 1] = high;
         }

@@ -76,6 +76,10 @@ double built(const View& fine, const Plan& plan, const std::vector<glm::vec4>& l
         switch (plan.depth_test) {
         case DepthTest::interval:
             return built<footprint, DepthTest::interval>(fine, plan.tile_size, lights, depth);
+        case DepthTest::box:
+            return built<footprint, DepthTest::box>(fine, plan.tile_size, lights, depth);
+        case DepthTest::split_box:
+            return built<footprint, DepthTest::split_box>(fine, plan.tile_size, lights, depth);
         default:
             return built<footprint, DepthTest::none>(fine, plan.tile_size, lights, depth);
         }

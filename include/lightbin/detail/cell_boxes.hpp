@@ -30,19 +30,16 @@ inline namespace LIGHTBIN_FLAVOUR {
 
 inline constexpr float flushed = 0x1p-120f;
 
-/// Writes each tile's two edges along an axis, as slopes or coordinates, `low` rounded down and `high` up.
-inline void tile_edges(const ImageAxis& axis, float* low, float* high) {
+/// Writes a tile's two edges along an axis, as slopes or coordinates, `low` rounded down and `high` up.
+inline void tile_edges(const ImageAxis& axis, int tile, float& low, float& high) {
     constexpr double most = FLT_MAX;
     const double error = 0x1p-48 * (std::fabs(axis.offset) + axis.tiles + 1);
-    for (int tile = 0; tile < axis.tiles; ++tile) {
-        const double end = (std::min)(tile + 1.0, static_cast<double>(axis.limit));
-        double from = (tile - axis.offset - error) / axis.scale,
-               to = (end - axis.offset + error) / axis.scale;
-        from -= std::fabs(from) * 0x1p-21 + 0x1p-100;
-        to += std::fabs(to) * 0x1p-21 + 0x1p-100;
-        low[tile] = from < -most ? -infinity : static_cast<float>((std::min)(from, most));
-        high[tile] = to > most ? infinity : static_cast<float>((std::max)(to, -most));
-    }
+    const double end = (std::min)(tile + 1.0, static_cast<double>(axis.limit));
+    double from = (tile - axis.offset - error) / axis.scale, to = (end - axis.offset + error) / axis.scale;
+    from -= std::fabs(from) * 0x1p-21 + 0x1p-100;
+    to += std::fabs(to) * 0x1p-21 + 0x1p-100;
+    low = from < -most ? -infinity : static_cast<float>((std::min)(from, most));
+    high = to > most ? infinity : static_cast<float>((std::max)(to, -most));
 }
 
 /// A light as the depth tests see it: the tile index grows with x and y, and z is the view depth.

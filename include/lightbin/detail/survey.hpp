@@ -6,6 +6,7 @@
 #include <lightbin/detail/cell_boxes.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/platform.hpp>
+#include <lightbin/detail/scalar.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/parallel.hpp>
@@ -152,12 +153,26 @@ inline bool in_silhouette(const FootprintArrays& lights, std::size_t i, int shif
     return false;
 }
 
-/// Whether a light meets a tile's bounds, by depth test.
-inline std::array<bool, 4> depth_tests_met(const View& view, const CellBounds& cell, const Sphere& light) {
-    const TestedLight tested(view.camera(), light);
-    const bool interval =
-        !(tested.farthest < cell.min) && !(tested.nearest > cell.max) && !(cell.min > cell.max);
-    return {true, interval, interval, interval};
+/// Whether a light meets the bounds of tile (x, y) of a view, by depth test: asks the tests that bin, the scalar
+/// tier's. Each finds no more than the one before it.
+inline std::array<bool, 4> depth_tests_met(const View& view, int x, int y, const CellBounds& cell,
+                                           const Sphere& sphere) {
+    std::array<bool, 4> met = {true, false, false, false};
+    const TestedLight light(view.camera(), sphere);
+    float cells[12 * 64] = {cell.min};  // planes of 64 tiles, of which the first is the one
+    cells[64] = cell.max;
+    met[1] = cell.drawn > 0 && scalar::tiles_met<DepthTest::interval>(cells, light, 1) != 0;
+    if (!met[1]) return met;
+    float x0, x1, y0, y1;
+    tile_edges(view.camera().x, x, x0, x1);
+    tile_edges(view.camera().y, y, y0, y1);
+    scalar::store_boxes<DepthTest::box>(view.camera(), cells, x0, x1, y0, y1, cell.min, cell.max, 0, 0);
+    met[2] = scalar::tiles_met<DepthTest::box>(cells, light, 1) != 0;
+    if (!met[2]) return met;
+    scalar::store_boxes<DepthTest::split_box>(view.camera(), cells, x0, x1, y0, y1, cell.min, cell.max,
+                                              cell.gap_min, cell.gap_max);
+    met[3] = scalar::tiles_met<DepthTest::split_box>(cells, light, 1) != 0;
+    return met;
 }
 
 /// How many pixels lie in tiles that have something to light, by a sample of the tiles.
@@ -218,7 +233,8 @@ Survey survey(Isa isa, const View& view, const Lights<Light, ToViewSphere>& ligh
                 pixels_in(rect.y0, rect.y1, grid.tile_size, screen.height);
         }
         for (const Footprint footprint : {Footprint::rectangle})
-            for (const DepthTest depth_test : {DepthTest::none, DepthTest::interval}) {
+            for (const DepthTest depth_test :
+                 {DepthTest::none, DepthTest::interval, DepthTest::box, DepthTest::split_box}) {
                 if (depth_test != DepthTest::none && z_bounds.min.empty() && z_bounds.max.empty()) continue;
                 if (depth_test == DepthTest::split_box && bounds.gap_min == nullptr) continue;
                 grid.rungs[grid.rung_count++] = {.footprint = footprint, .depth_test = depth_test};
@@ -250,7 +266,7 @@ Survey survey(Isa isa, const View& view, const Lights<Light, ToViewSphere>& ligh
             const CellBounds cell = merge_bounds(view, bounds, shift, x, y);
             const bool inside = in_silhouette(sample, light, shift, x, y);
             const std::array<bool, 4> met =
-                depth_tests_met(views[at], cell, sample.spheres[sample.ids[light]]);
+                depth_tests_met(views[at], x, y, cell, spheres[sample.ids[light]]);
             const double weight = rect.area() / drawn.area();
             const double pixels = weight * pixels_in(x, x, grids[at].tile_size, screen.width) *
                                   pixels_in(y, y, grids[at].tile_size, screen.height);

@@ -13,21 +13,40 @@ inline constexpr std::uint64_t every_lane = (std::uint64_t{1} << lanes) - 1;
 /// See cell_boxes.hpp.
 LIGHTBIN_TARGET inline void store_box(const Camera& camera, float* box, Floats x0, Floats x1, Floats y0,
                                       Floats y1, Floats z0, Floats z1) {
-    const Floats zero = all(0.0f), near = camera.orthographic ? all(1.0f) : z0,
-                 far = camera.orthographic ? all(1.0f) : z1;
+    const Floats zero = all(0.0f), front = camera.orthographic ? all(1.0f) : z0,
+                 back = camera.orthographic ? all(1.0f) : z1;
     store_floats(box, z0);
     store_floats(box + 64, z1);
-    store_floats(box + 128, mul(x0, select(less(x0, zero), far, near)) - all(flushed));
-    store_floats(box + 192, mul(x1, select(less(zero, x1), far, near)) + all(flushed));
-    store_floats(box + 256, mul(y0, select(less(y0, zero), far, near)) - all(flushed));
-    store_floats(box + 320, mul(y1, select(less(zero, y1), far, near)) + all(flushed));
+    store_floats(box + 128, mul(x0, select(less(x0, zero), back, front)) - all(flushed));
+    store_floats(box + 192, mul(x1, select(less(zero, x1), back, front)) + all(flushed));
+    store_floats(box + 256, mul(y0, select(less(y0, zero), back, front)) - all(flushed));
+    store_floats(box + 320, mul(y1, select(less(zero, y1), back, front)) + all(flushed));
+}
+
+/// Writes the box of a tile's cell, or for split_box the two before and behind its gap.
+///
+/// Boxes are clamped to the near and far plane: lights in view meet the clamped depths just as the given ones.
+template <DepthTest depth_test>
+LIGHTBIN_TARGET inline void store_boxes(const Camera& camera, float* boxes, Floats x0, Floats x1, Floats y0,
+                                        Floats y1, Floats min, Floats max, Floats gap_min, Floats gap_max) {
+    const Floats front = all(camera.near_depth), back = all(camera.far_depth);
+    const Floats largest = all(FLT_MAX);  // 0 * infinity is to be avoided
+    const Floats z0 = lesser(select(less(front, min), min, front), largest);
+    const Floats z1 = select(less(max, back), max, back);
+    if constexpr (depth_test == DepthTest::box) {
+        store_box(camera, boxes, x0, x1, y0, y1, z0, z1);
+    } else {
+        const auto gap = less(gap_min, gap_max);
+        const Floats end = select(both(gap, less(gap_min, z1)), gap_min, z1);
+        const Floats begin = lesser(select(both(gap, less(z0, gap_max)), gap_max, z0), largest);
+        store_box(camera, boxes, x0, x1, y0, y1, z0, end);
+        store_box(camera, boxes + 6 * 64, x0, x1, y0, y1, begin, z1);
+    }
 }
 
 /// Writes what a depth test needs to know of the tiles of supertile (x, y), in planes of 64 floats: the minimum
 /// and maximum depth, for boxes followed by the ends along x and y; split_box has a second box. Returns a bit
 /// for each tile that has anything to light.
-///
-/// Boxes are clamped to the near and far plane: lights in view meet the clamped depths just as the given ones.
 template <DepthTest depth_test, class Id>
 LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned y, float* cells) {
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
@@ -56,23 +75,15 @@ LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, u
                 store_floats(cells + place, min);
                 store_floats(cells + 64 + place, max);
             } else {
-                const Floats near = all(job.camera->near_depth), far = all(job.camera->far_depth);
-                const Floats largest = all(FLT_MAX);  // 0 * infinity is to be avoided
-                const Floats z0 = lesser(select(less(near, min), min, near), largest);
-                const Floats z1 = select(less(max, far), max, far);
                 const unsigned at_x = 8 * x + column, at_y = 8 * y + row;
-                const Floats x0 = load_floats(job.edges[0] + at_x), x1 = load_floats(job.edges[1] + at_x);
-                const Floats y0 = all(job.edges[2][at_y]), y1 = all(job.edges[3][at_y]);
-                if constexpr (depth_test == DepthTest::box) {
-                    store_box(*job.camera, cells + place, x0, x1, y0, y1, z0, z1);
-                } else {
-                    const Floats gap0 = load_floats(sides[2] + column), gap1 = load_floats(sides[3] + column);
-                    const auto gap = less(gap0, gap1);
-                    const Floats end = select(both(gap, less(gap0, z1)), gap0, z1);
-                    const Floats begin = lesser(select(both(gap, less(z0, gap1)), gap1, z0), largest);
-                    store_box(*job.camera, cells + place, x0, x1, y0, y1, z0, end);
-                    store_box(*job.camera, cells + 6 * 64 + place, x0, x1, y0, y1, begin, z1);
+                Floats gap_min = max, gap_max = min;
+                if constexpr (depth_test == DepthTest::split_box) {
+                    gap_min = load_floats(sides[2] + column);
+                    gap_max = load_floats(sides[3] + column);
                 }
+                store_boxes<depth_test>(*job.camera, cells + place, load_floats(job.edges[0] + at_x),
+                                        load_floats(job.edges[1] + at_x), all(job.edges[2][at_y]),
+                                        all(job.edges[3][at_y]), min, max, gap_min, gap_max);
             }
         }
     }
