@@ -95,7 +95,7 @@ std::vector<std::uint32_t> words(const Silhouettes& footprints) {
 /// (orthographic: coordinates), by the stationary points of a convex function of depth.
 long double distance2(bool orthographic, const std::array<long double, 3>& c,
                       const std::array<long double, 4>& window) {
-    const auto [u0, u1, v0, v1] = window;
+    const long double u0 = window[0], u1 = window[1], v0 = window[2], v1 = window[3];
     const auto outside = [](long double v, long double low, long double high) {
         return v < low ? low - v : v > high ? v - high : 0.0L;
     };
