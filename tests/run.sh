@@ -12,7 +12,7 @@ libraries="doctest-dev libglm-dev"
 oracle="libboost-dev libgmp-dev"
 examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
 opengl=libgl1-mesa-dri # Mesa draws where there is no GPU
-shaders="glslang-tools"
+shaders="glslang-dev spirv-tools"
 # shellcheck disable=SC2086  # one word a package
 install_packages $compilers $tools $libraries $oracle $examples $opengl $shaders
 

@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <stdexcept>
+#include <string>
 
 OffscreenContext::OffscreenContext(int wanted_glsl) {
     setenv("EGL_LOG_LEVEL", "fatal", 0);  // what goes wrong is said below, in one line
@@ -14,14 +15,15 @@ OffscreenContext::OffscreenContext(int wanted_glsl) {
     if (display_ == EGL_NO_DISPLAY || !eglInitialize(display_, nullptr, nullptr))
         throw std::runtime_error("no usable OpenGL: EGL does not start");
 
-    eglBindAPI(EGL_OPENGL_API);
-    for (const int glsl : {430, 330}) {
-        if (wanted_glsl != 0 && wanted_glsl != glsl) continue;
+    for (const int glsl : {430, 330, 310, 300}) {
+        const bool es = glsl < 330;
+        if (wanted_glsl != glsl && (wanted_glsl != 0 || es)) continue;
+        eglBindAPI(es ? EGL_OPENGL_ES_API : EGL_OPENGL_API);
         const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
                                      glsl / 100,
                                      EGL_CONTEXT_MINOR_VERSION,
                                      glsl / 10 % 10,
-                                     EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                     es ? EGL_NONE : EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                      EGL_NONE};
         context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
@@ -30,9 +32,11 @@ OffscreenContext::OffscreenContext(int wanted_glsl) {
     }
     if (context_ == EGL_NO_CONTEXT || !eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) {
         eglTerminate(display_);
-        throw std::runtime_error(wanted_glsl == 430
-                                     ? "no usable OpenGL: there is no OpenGL 4.3 core context here"
-                                     : "no usable OpenGL: there is no OpenGL 3.3 core context here");
+        const std::string wanted = wanted_glsl == 430   ? "4.3 core"
+                                   : wanted_glsl == 310 ? "ES 3.1"
+                                   : wanted_glsl == 300 ? "ES 3.0"
+                                                        : "3.3 core";
+        throw std::runtime_error("no usable OpenGL: there is no OpenGL " + wanted + " context here");
     }
 }
 

@@ -4,8 +4,8 @@
 
 #include <epoxy/egl.h>
 
-// What a context is asked for: 430 (storage buffers), 330 (texture buffers only), or 0: the better one there
-// is. Returns the GLSL version to write shaders in. Throws std::runtime_error with one line if there is no
+// What a context is asked for: 430 (storage buffers), 330 (texture buffers only), 310 or 300 (OpenGL ES), or
+// 0: the best one there is but ES. Returns the GLSL version to write shaders in. Throws std::runtime_error with one line if there is no
 // usable OpenGL.
 class OffscreenContext {
 public:

@@ -10,7 +10,7 @@ namespace {
     throw std::runtime_error("OpenGL refuses a shader: " + log.substr(0, log.find('\n')));
 }
 
-GLuint compile(GLenum stage, const std::string& text) {
+void attach(GLuint program, GLenum stage, const std::string& text) {
     const GLuint shader = glCreateShader(stage);
     const char* const lines = text.c_str();
     glShaderSource(shader, 1, &lines, nullptr);
@@ -22,15 +22,11 @@ GLuint compile(GLenum stage, const std::string& text) {
         glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
         fail(log.data());
     }
-    return shader;
+    glAttachShader(program, shader);
+    glDeleteShader(shader);  // when the program goes
 }
 
-}  // namespace
-
-GLuint link_program(const std::string& vertex_text, const std::string& fragment_text) {
-    const GLuint program = glCreateProgram();
-    glAttachShader(program, compile(GL_VERTEX_SHADER, vertex_text));
-    glAttachShader(program, compile(GL_FRAGMENT_SHADER, fragment_text));
+GLuint link(GLuint program) {
     glLinkProgram(program);
     GLint linked = 0;
     glGetProgramiv(program, GL_LINK_STATUS, &linked);
@@ -40,6 +36,21 @@ GLuint link_program(const std::string& vertex_text, const std::string& fragment_
         fail(log.data());
     }
     return program;
+}
+
+}  // namespace
+
+GLuint link_program(const std::string& vertex_text, const std::string& fragment_text) {
+    const GLuint program = glCreateProgram();
+    attach(program, GL_VERTEX_SHADER, vertex_text);
+    attach(program, GL_FRAGMENT_SHADER, fragment_text);
+    return link(program);
+}
+
+GLuint link_compute_program(const std::string& text) {
+    const GLuint program = glCreateProgram();
+    attach(program, GL_COMPUTE_SHADER, text);
+    return link(program);
 }
 
 GLint uniform(GLuint program, const char* name) {

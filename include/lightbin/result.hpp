@@ -51,6 +51,8 @@ enum class ErrorCode : std::uint8_t {
     no_byte_address_buffers,
     no_sets,
     no_push_constants,
+    no_multisample_textures,
+    no_split_box_shader,
     texture_width_out_of_range,
     bindings_overlap,
     not_a_prefix,
@@ -147,6 +149,10 @@ struct Error {
                    need;
         case ErrorCode::no_push_constants:
             return "push constants are Vulkan GLSL's: set ShaderOptions::push_constants to false";
+        case ErrorCode::no_multisample_textures:
+            return "GLSL ES 3.00 has no multisample textures: resolve the depth buffer first";
+        case ErrorCode::no_split_box_shader:
+            return "build_shader has the depth tests none, interval and box, not split_box";
         case ErrorCode::texture_width_out_of_range:
             return "ShaderOptions::texture_width must be 1 to " + have + " texels, and is " + need;
         case ErrorCode::bindings_overlap:

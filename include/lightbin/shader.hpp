@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lightbin {
 
@@ -87,10 +88,11 @@ inline bool is_prefix(std::string_view prefix) {
     return true;
 }
 
-/// What holds for every text: the name prefix and the slots.
+/// What holds for every text: the name prefix, the slots and the constants.
 inline std::optional<Error> refuse_names(const Dialect& dialect, std::string_view prefix,
-                                         std::initializer_list<ShaderSlot> slots) {
+                                         std::initializer_list<ShaderSlot> slots, bool push_constants) {
     if (!is_prefix(prefix)) return Error{ErrorCode::not_a_prefix};
+    if (push_constants && !dialect.vulkan) return Error{ErrorCode::no_push_constants};
     for (const ShaderSlot& slot : slots)
         if (slot.set != 0 && !dialect.spaces)
             return Error{ErrorCode::no_sets, static_cast<std::uint64_t>(slot.set)};
@@ -99,7 +101,8 @@ inline std::optional<Error> refuse_names(const Dialect& dialect, std::string_vie
 
 inline std::optional<Error> refuse(const ShaderOptions& options) {
     const Dialect dialect = detail::dialect(options.language);
-    if (auto error = refuse_names(dialect, options.prefix, {options.tiles, options.lists, options.grid}))
+    if (auto error = refuse_names(dialect, options.prefix, {options.tiles, options.lists, options.grid},
+                                  options.push_constants))
         return error;
     if (options.storage == ListStorage::storage_buffer && !dialect.storage_buffers)
         return Error{ErrorCode::no_storage_buffers};
@@ -107,7 +110,6 @@ inline std::optional<Error> refuse(const ShaderOptions& options) {
         return Error{ErrorCode::no_texel_buffers};
     if (options.storage == ListStorage::byte_address && !dialect.hlsl)
         return Error{ErrorCode::no_byte_address_buffers};
-    if (options.push_constants && !dialect.vulkan) return Error{ErrorCode::no_push_constants};
     if (options.tile_size < 0)
         return Error{ErrorCode::tile_size_out_of_range, static_cast<std::uint64_t>(options.tile_size)};
     if (options.storage == ListStorage::texture_2d &&
@@ -154,25 +156,6 @@ inline ShaderResource resource(ListStorage storage) {
         break;
     }
     return ShaderResource::byte_address;
-}
-
-/// The constants of the grid.
-inline void declare_grid(ShaderWriter& writer, ShaderSlot slot, bool corner, bool push) {
-    const Dialect& dialect = writer.dialect();
-    if (dialect.hlsl || dialect.vulkan) {
-        writer.declare_constants("grid", corner ? "uvec4 $grid;\n    ivec2 $corner;" : "uvec4 $grid;", slot,
-                                 push, corner ? 32 : 16);
-        return;
-    }
-    const auto bind = [&](const char* name, std::uint32_t bytes) {
-        writer.bind(
-            {writer.prefix() + name, ShaderResource::uniform_vector, {}, TexelFormat::none, bytes, bytes, 0});
-    };
-    writer.add("uniform uvec4 $grid;\n");
-    bind("grid", 16);
-    if (!corner) return;
-    writer.add("uniform ivec2 $corner;\n");
-    bind("corner", 8);
 }
 
 /// `tile`: the tile of a pixel.
@@ -237,7 +220,9 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
                                               : TexelFormat::r32ui,
         static_cast<std::uint32_t>((encoded_bytes(format, options.max_tiles, options.max_entries) + 15) / 16),
         options.texture_width};
-    declare_grid(writer, options.grid, options.viewport_corner, options.push_constants);
+    std::vector<ShaderConstant> constants = {{"uvec4", "grid"}};
+    if (options.viewport_corner) constants.push_back({"ivec2", "corner"});
+    writer.declare_constants(constants, options.grid, options.push_constants);
     if (table) writer.declare(tiles);
     writer.declare(lists);
     add_tile(writer, options);

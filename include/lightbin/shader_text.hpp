@@ -35,7 +35,7 @@ enum class ShaderResource : std::uint8_t {
 };
 
 /// Texel of a texture or buffer texture: GL_R8UI, VK_FORMAT_R8_UINT, DXGI_FORMAT_R8_UINT and so on.
-enum class TexelFormat : std::uint8_t { none, r8ui, r16ui, r32ui, rg32ui };
+enum class TexelFormat : std::uint8_t { none, r8ui, r16ui, r32ui, rg32ui, r32f };
 
 /// Where a resource is bound. GLSL: binding and set; HLSL: register number and space. OpenGL 3.3 and ES 3.0
 /// have no bindings in the text: set the sampler or block by its name.
@@ -96,8 +96,21 @@ inline Dialect dialect(ShaderLanguage language) {
 /// The word of HLSL for a word of GLSL.
 inline std::string_view hlsl_word(std::string_view word) {
     constexpr std::string_view words[][2] = {
-        {"uvec2", "uint2"}, {"uvec4", "uint4"}, {"ivec2", "int2"},          {"vec2", "float2"},
-        {"vec3", "float3"}, {"vec4", "float4"}, {"findLSB", "firstbitlow"}, {"floatBitsToUint", "asuint"},
+        {"uvec2", "uint2"},
+        {"uvec4", "uint4"},
+        {"ivec2", "int2"},
+        {"vec2", "float2"},
+        {"vec3", "float3"},
+        {"vec4", "float4"},
+        {"findLSB", "firstbitlow"},
+        {"bitCount", "countbits"},
+        {"floatBitsToUint", "asuint"},
+        {"uintBitsToFloat", "asfloat"},
+        {"shared", "groupshared"},
+        {"atomicMin", "InterlockedMin"},
+        {"atomicMax", "InterlockedMax"},
+        {"atomicOr", "InterlockedOr"},
+        {"sync_group", "GroupMemoryBarrierWithGroupSync"},
     };
     for (const auto& [glsl, hlsl] : words)
         if (word == glsl) return hlsl;
@@ -108,8 +121,8 @@ inline std::string_view hlsl_word(std::string_view word) {
 /// shader's integers have 16 bits there otherwise, and no default precision is set, as it would reach the
 /// user's code.
 inline std::string translate(const Dialect& dialect, std::string_view prefix, std::string_view glsl) {
-    constexpr std::string_view types[] = {"uint",  "uvec2", "uvec4", "ivec2",     "int",
-                                          "float", "vec2",  "vec3",  "usampler2D"};
+    constexpr std::string_view types[] = {"uint", "uvec2", "uvec4", "ivec2",      "int",       "float",
+                                          "vec2", "vec3",  "vec4",  "usampler2D", "sampler2D", "sampler2DMS"};
     const auto of_a_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
     std::string text;
     for (std::size_t at = 0; at < glsl.size();) {
@@ -132,7 +145,9 @@ inline std::string translate(const Dialect& dialect, std::string_view prefix, st
         if (dialect.es && declares)
             for (const std::string_view type : types)
                 if (word == type) text += "highp ";
-        text += dialect.hlsl ? hlsl_word(word) : word;
+        text += dialect.hlsl           ? hlsl_word(word)
+                : word == "sync_group" ? std::string_view("memoryBarrierShared();\n    barrier")
+                                       : word;
         at = end;
     }
     return text;
@@ -146,6 +161,12 @@ struct ShaderBuffer {
     TexelFormat format = TexelFormat::r32ui;  ///< rg32ui: elements are uvec2
     std::uint32_t vectors = 0;                ///< uniform_block: its size in uvec4
     std::uint32_t width = 0;                  ///< texture_2d
+};
+
+/// A vector that the CPU sets.
+struct ShaderConstant {
+    const char* type;
+    const char* name;
 };
 
 /// Puts a text together in one language.
@@ -173,18 +194,12 @@ public:
         const std::string at = dialect_.hlsl ? hlsl_register(buffer.slot, 't') : "";
         switch (buffer.resource) {
         case ShaderResource::uniform_block:
-            binding.bytes = buffer.vectors * 16;
-            add_block(name, "uvec4 " + name + "[" + vectors + "];", buffer.slot, binding);
+            add_block(std::string(buffer.name) + "_block", "    uvec4 " + name + "[" + vectors + "];\n",
+                      buffer.slot, false, buffer.vectors * 16);
             return;
         case ShaderResource::storage_buffer:
-            if (dialect_.hlsl) {
-                add("StructuredBuffer<" + type + "> " + name + at + ";\n");
-                break;
-            }
-            binding.name += "_block";
-            add(layout("std430", buffer.slot) + "readonly buffer " + name + "_block {\n    " + type + " " +
-                name + "[];\n};\n");
-            break;
+            declare_storage(std::string(buffer.name), type, "readonly", buffer.slot, binding.stride);
+            return;
         case ShaderResource::byte_address:
             add("ByteAddressBuffer " + name + at + ";\n");
             break;
@@ -240,24 +255,41 @@ public:
                swizzle;
     }
 
-    /// Declares constants that the CPU sets: lines of "type $name;".
-    void declare_constants(std::string_view name, const std::string& lines, ShaderSlot slot, bool push,
-                           std::uint32_t bytes) {
-        const std::string block = "$" + std::string(name);
-        ShaderBinding binding = {prefix_ + std::string(name),
-                                 ShaderResource::uniform_block,
-                                 slot,
-                                 TexelFormat::none,
-                                 bytes,
-                                 bytes,
-                                 0};
-        if (push) {
-            binding.resource = ShaderResource::push_constants;
-            add("layout(push_constant) uniform " + block + "_block {\n    " + lines + "\n};\n");
-            shader_.bindings.push_back(binding);
-        } else {
-            add_block(block, lines, slot, binding);
+    /// Declares constants that the CPU sets, each at the next multiple of 16 bytes: uniforms in OpenGL, one
+    /// block named after the first elsewhere.
+    void declare_constants(const std::vector<ShaderConstant>& constants, ShaderSlot slot, bool push) {
+        const bool block = dialect_.hlsl || dialect_.vulkan;
+        std::string lines;
+        for (const ShaderConstant& constant : constants) {
+            const std::string line = std::string(constant.type) + " $" + constant.name + ";";
+            if (block) {
+                lines += "    " + line + "\n";
+                continue;
+            }
+            add("uniform " + line + "\n");
+            const std::uint32_t bytes = constant.type == std::string_view("ivec2") ? 8 : 16;
+            shader_.bindings.push_back({prefix_ + constant.name, ShaderResource::uniform_vector, ShaderSlot{},
+                                        TexelFormat::none, bytes, bytes, 0});
         }
+        if (!block) return;
+        const std::string name = std::string(constants.front().name) + "_block";
+        const auto bytes = static_cast<std::uint32_t>(16 * constants.size());
+        add_block(name, lines, slot, push, bytes);
+    }
+
+    /// Declares a storage buffer of any element type: `access` is readonly, writeonly or nothing (both).
+    void declare_storage(const std::string& name, const std::string& type, std::string_view access,
+                         ShaderSlot slot, std::uint32_t stride) {
+        const bool writable = access != "readonly";
+        if (dialect_.hlsl)
+            add((writable ? "RWStructuredBuffer<" : "StructuredBuffer<") + type + "> $" + name +
+                hlsl_register(slot, writable ? 'u' : 't') + ";\n");
+        else
+            add(layout("std430", slot) + std::string(access) + (access.empty() ? "" : " ") + "buffer $" +
+                name + "_block {\n    " + type + " $" + name + "[];\n};\n");
+        bind({prefix_ + name + (dialect_.hlsl ? "" : "_block"),
+              writable ? ShaderResource::writable_buffer : ShaderResource::storage_buffer, slot,
+              TexelFormat::none, stride, 0, 0});
     }
 
     /// Lists a resource that add() declared.
@@ -298,13 +330,14 @@ private:
                                               : 8;
     }
 
-    void add_block(const std::string& name, const std::string& lines, ShaderSlot slot,
-                   ShaderBinding binding) {
-        binding.name += "_block";
-        add(dialect_.hlsl ? "cbuffer " + name + "_block" + hlsl_register(slot, 'b')
-                          : layout("std140", slot) + "uniform " + name + "_block");
-        add(" {\n    " + lines + "\n};\n");
-        shader_.bindings.push_back(std::move(binding));
+    void add_block(const std::string& name, const std::string& lines, ShaderSlot slot, bool push,
+                   std::uint32_t bytes) {
+        add(push            ? "layout(push_constant) uniform $" + name
+            : dialect_.hlsl ? "cbuffer $" + name + hlsl_register(slot, 'b')
+                            : layout("std140", slot) + "uniform $" + name);
+        add(" {\n" + lines + "};\n");
+        bind({prefix_ + name, push ? ShaderResource::push_constants : ShaderResource::uniform_block, slot,
+              TexelFormat::none, bytes, bytes, 0});
     }
 
     /// Vulkan has one row of bindings a set; elsewhere each kind has its own, and a text without bindings has

@@ -5,6 +5,7 @@
 #include <lightbin/shader_text.hpp>
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -16,6 +17,11 @@ struct Input {
     lightbin::ShaderBinding binding;
     std::vector<std::byte> bytes;
     std::uint32_t width = 0, height = 0;  // texture_2d
+    std::uint32_t samples = 1;            // texture_2d, those of a pixel side by side
+};
+
+struct FloatRange {
+    float low, high;
 };
 
 struct Job {
@@ -29,4 +35,15 @@ struct Job {
     std::uint32_t width = 0, height = 0;           // fragment: of the viewport
     std::array<std::uint32_t, 2> corner = {0, 0};  // fragment: where in the picture the viewport begins
     std::vector<std::uint32_t> expected;  // fragment: 4 words a pixel, rows as the shader counts them
+    std::vector<FloatRange> within;       // where not empty: the words are floats in these ranges
+
+    bool accepts(const std::vector<std::uint32_t>& words) const {
+        if (within.empty()) return words == expected;
+        bool all = words.size() == within.size();
+        for (std::size_t i = 0; all && i < words.size(); ++i) {
+            const float value = std::bit_cast<float>(words[i]);
+            all = value >= within[i].low && value <= within[i].high;
+        }
+        return all;
+    }
 };

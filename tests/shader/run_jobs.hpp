@@ -3,6 +3,7 @@
 // std::runtime_error where the text is refused.
 #pragma once
 
+#include "builders.hpp"
 #include "readers.hpp"
 
 #include <cstddef>
@@ -27,7 +28,7 @@ struct Tally {
     template <class Device> void run(Device& device, const Job& job) {
         ++runs;
         try {
-            if (device.run(job) == job.expected) return;
+            if (job.accepts(device.run(job))) return;
             std::printf("%s is wrong\n", job.name.c_str());
             ++wrong;
         } catch (const std::runtime_error& error) {
@@ -48,4 +49,18 @@ void run_readers(Device& device, lightbin::ShaderLanguage language, const Share&
     const std::vector<ReaderRun> runs = reader_runs(language);
     for (std::size_t i = share.first; i < runs.size(); i += share.count)
         tally.run(device, runs[i].job());
+}
+
+/// The build of the grid and the reduction of depth buffers; of multisample ones if the device has them.
+template <class Device>
+void run_builders(Device& device, lightbin::ShaderLanguage language, bool multisample, const Share& share,
+                  Tally& tally) {
+    std::size_t turn = 0;
+    const auto run = [&](const Job& job) {
+        if (turn++ % share.count == share.first) tally.run(device, job);
+    };
+    for (const Job& job : build_jobs(language))
+        run(job);
+    for (const Job& job : reduce_jobs(language, multisample))
+        run(job);
 }

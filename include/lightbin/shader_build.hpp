@@ -1,0 +1,463 @@
+// SPDX-License-Identifier: MIT
+// Stages 2b and 3 on the GPU: shader text that reduces a depth buffer to Z bounds, and that builds the light
+// grid. Each text is a whole shader but for `#version`.
+#pragma once
+
+#include <lightbin/detail/cell_boxes.hpp>
+#include <lightbin/lights.hpp>
+#include <lightbin/options.hpp>
+#include <lightbin/project.hpp>
+#include <lightbin/shader.hpp>
+#include <lightbin/shader_text.hpp>
+#include <lightbin/view.hpp>
+#include <lightbin/z_bounds.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lightbin {
+
+enum class ShaderStage : std::uint8_t { compute, fragment };
+
+/// What reduce_shader() makes.
+struct ReduceShaderOptions {
+    ShaderLanguage language = ShaderLanguage::glsl_430;
+    ShaderStage stage = ShaderStage::compute;
+    int samples = 1;            ///< samples a pixel of the depth texture, 1 to 8
+    bool reversed_z = false;    ///< as View::reversed_z()
+    bool orthographic = false;  ///< as View::orthographic()
+    DepthFormat format = DepthFormat::float32;
+    bool skip_background = false;  ///< as in DepthBuffer
+    bool flip_y = false;           ///< the texture's rows count against those of the view's WindowOrigin
+    bool viewport_corner = false;  ///< the viewport does not begin at the texture's first texel
+
+    ShaderSlot depth = {0}, z_bounds = {1}, grid = {2};
+    bool push_constants = false;
+    std::string_view prefix = "lightbin_";
+};
+
+/// The constants of reduce_shader(): `grid`, `planes` and `corner`. In a uniform block: this struct, 32 bytes
+/// of it without viewport_corner.
+struct ShaderReduce {
+    std::uint32_t tile_size, tiles_x, width, height;  ///< grid
+    float far_end, slope, margin, unused;             ///< planes
+    std::int32_t corner_x, corner_y;                  ///< corner
+    std::int32_t unused_corner[2];
+};
+static_assert(sizeof(ShaderReduce) == 48 && offsetof(ShaderReduce, far_end) == 16 &&
+              offsetof(ShaderReduce, slope) == 20 && offsetof(ShaderReduce, margin) == 24 &&
+              offsetof(ShaderReduce, corner_x) == 32);
+
+/// Returns the constants of a view; the corner is the texel at the viewport's first column and row.
+inline ShaderReduce shader_reduce(const View& view, int corner_x = 0, int corner_y = 0) {
+    const ShaderGrid grid = shader_grid(view);
+    // With e the distance of a window depth from the far plane's (1 - depth, or depth with reversed Z), view
+    // depth is  1 / (far_end + slope e)  or, orthographic,  far_end - slope e: terms of one sign.
+    const double from = static_cast<double>(view.near_depth()), to = static_cast<double>(view.far_depth());
+    const bool flat = view.orthographic();
+    const double far_end = flat ? to : 1 / to, slope = flat ? to - from : 1 / from - 1 / to;
+    return {grid.tile_size,
+            grid.tiles_x,
+            grid.width,
+            grid.height,
+            static_cast<float>(far_end),
+            static_cast<float>(slope),
+            static_cast<float>(0x1p-20 * (std::fabs(from) + std::fabs(to))),
+            0,
+            corner_x,
+            corner_y,
+            {}};
+}
+
+/// One of the three shaders that build a light grid, in the order of their dispatches.
+enum class BuildPass : std::uint8_t {
+    count,    ///< tiles_x * tiles_y groups: the lights of each tile
+    offsets,  ///< one group: where each list begins, and the length of the light index list
+    fill,     ///< tiles_x * tiles_y groups: the lists
+};
+
+/// What build_shader() makes. All passes take the same but for `pass`.
+struct BuildShaderOptions {
+    ShaderLanguage language = ShaderLanguage::glsl_430;
+    BuildPass pass = BuildPass::count;
+    DepthTest depth_test = DepthTest::none;  ///< none, interval or box
+    bool max_only = false;                   ///< Z bounds: no minimum is tested (transparency)
+    bool orthographic = false;               ///< box: as View::orthographic()
+
+    ShaderSlot footprints = {0}, z_bounds = {1}, edges = {2}, tiles = {3}, lists = {4}, total = {5};
+    ShaderSlot grid = {6};
+    bool push_constants = false;
+    std::string_view prefix = "lightbin_";
+};
+
+/// The constants of build_shader(): `grid` and, for box, `planes`. In a uniform block: this struct, 16 bytes
+/// of it without box.
+struct ShaderBuild {
+    std::uint32_t tiles_x, tiles_y, footprints, room;  ///< grid; room: ids that the buffer for lists holds
+    float near_depth, far_depth, unused[2];            ///< planes
+};
+static_assert(sizeof(ShaderBuild) == 32 && offsetof(ShaderBuild, footprints) == 8 &&
+              offsetof(ShaderBuild, near_depth) == 16);
+
+inline ShaderBuild shader_build(const View& view, std::uint32_t footprints, std::uint32_t room) {
+    return {static_cast<std::uint32_t>(view.tiles_x()),
+            static_cast<std::uint32_t>(view.tiles_y()),
+            footprints,
+            room,
+            view.near_depth(),
+            view.far_depth(),
+            {}};
+}
+
+/// A light in view, as build_shader() reads it: tiles x0..x1, y0..y1, both ends included, and the sphere with
+/// its axes turned so that the tile index grows with x and y, and z is the view depth.
+struct ShaderFootprint {
+    std::uint32_t id;
+    std::uint16_t x0, y0, x1, y1;
+    float reach2;  ///< the squared radius, rounded up
+    float x, y, z, radius;
+};
+static_assert(sizeof(ShaderFootprint) == 32 && offsetof(ShaderFootprint, x0) == 4 &&
+              offsetof(ShaderFootprint, x1) == 8 && offsetof(ShaderFootprint, reach2) == 12 &&
+              offsetof(ShaderFootprint, x) == 16);
+
+namespace detail {
+
+inline constexpr const char* shader_infinity = "uintBitsToFloat(0x7f800000u)";
+
+/// main() of a compute shader: hands its group's place and the thread's number to `$run`.
+inline void add_compute_main(ShaderWriter& writer, unsigned threads) {
+    const std::string count = std::to_string(threads);
+    writer.add(writer.dialect().hlsl
+                   ? "\n[numthreads(" + count +
+                         ", 1, 1)]\nvoid main(uint3 group : SV_GroupID, uint thread : SV_GroupIndex) {\n"
+                         "    $run(group.xy, thread);\n}\n"
+                   : "\nlayout(local_size_x = " + count +
+                         ") in;\nvoid main() {\n    $run(gl_WorkGroupID.xy, gl_LocalInvocationIndex);\n}\n");
+}
+
+inline void declare_depth(ShaderWriter& writer, const ReduceShaderOptions& options) {
+    const bool many = options.samples > 1;
+    if (writer.dialect().hlsl)
+        writer.add(
+            (many ? "Texture2DMS<float, " + std::to_string(options.samples) + ">" : "Texture2D<float>") +
+            " $depth" + writer.hlsl_register(options.depth, 't') + ";\n");
+    else
+        writer.add(writer.layout("", options.depth) +
+                   (many ? "uniform sampler2DMS $depth;\n" : "uniform sampler2D $depth;\n"));
+    writer.bind(
+        {writer.prefix() + "depth", ShaderResource::texture_2d, options.depth, TexelFormat::r32f, 4, 0, 0});
+}
+
+inline std::optional<Error> refuse(const ReduceShaderOptions& options) {
+    const Dialect dialect = detail::dialect(options.language);
+    if (auto error = refuse_names(dialect, options.prefix, {options.depth, options.z_bounds, options.grid},
+                                  options.push_constants))
+        return error;
+    if (options.stage == ShaderStage::compute && !dialect.storage_buffers)
+        return Error{ErrorCode::no_storage_buffers};
+    if (options.samples < 1 || options.samples > 8)
+        return Error{ErrorCode::samples_out_of_range, static_cast<std::uint64_t>(options.samples), 8};
+    if (options.samples > 1 && options.language == ShaderLanguage::essl_300)
+        return Error{ErrorCode::no_multisample_textures};
+    return std::nullopt;
+}
+
+inline std::optional<Error> refuse(const BuildShaderOptions& options) {
+    const Dialect dialect = detail::dialect(options.language);
+    if (auto error = refuse_names(dialect, options.prefix,
+                                  {options.footprints, options.z_bounds, options.edges, options.tiles,
+                                   options.lists, options.total, options.grid},
+                                  options.push_constants))
+        return error;
+    if (!dialect.storage_buffers) return Error{ErrorCode::no_storage_buffers};
+    if (options.depth_test == DepthTest::split_box) return Error{ErrorCode::no_split_box_shader};
+    return std::nullopt;
+}
+
+/// The depths of a texel widen what is known of a tile. In bits: depths in 0..1 order as their bits do.
+inline void add_depth_sample(ShaderWriter& writer, const ReduceShaderOptions& options) {
+    writer.add(std::string("\nvoid $sample(inout uvec2 range, float depth) {\n") +
+               "    uint bits = floatBitsToUint(depth);\n" +
+               (options.skip_background ? std::string("    if (bits == ") +
+                                              (options.reversed_z ? "0u" : "0x3f800000u") + ") return;\n"
+                                        : "") +
+               R"(    uint low = bits;
+    if ((bits & 0x7fffffffu) > 0x7f800000u) {
+        low = 0u;
+        bits = 0x3f800000u;
+    } else if (bits > 0x7f800000u) {
+        low = 0u;
+        bits = 0u;
+    }
+    range = uvec2(min(range.x, min(low, 0x3f800000u)), max(range.y, min(bits, 0x3f800000u)));
+}
+)");
+}
+
+/// View depths of a tile's range of window depths, rounded outward. Relative errors, u = 2^-24: `far_end` and
+/// `slope` 3u (View's depths are floats), their product and sum 2u more, e 1u (exact where it is small), a
+/// reciprocal up to 5u: 11u, and 2^-19 = 32u is allowed. Orthographic: 2^-20 of the two planes' depths.
+inline void add_view_depths(ShaderWriter& writer, const ReduceShaderOptions& options) {
+    writer.add("\nvec2 $view_depths(uvec2 range) {\n    if (range.x > range.y) return vec2(" +
+               std::string(shader_infinity) + ", -" + shader_infinity + ");\n");
+    if (options.format == DepthFormat::float32)  // two units in the last place: no less than reduce_depth()
+        writer.add("    vec2 ends = vec2(uintBitsToFloat(range.x < 2u ? 0u : range.x - 2u), "
+                   "uintBitsToFloat(min(range.y + 2u, 0x3f800000u)));\n");
+    else  // one step, and 2^-24 for the roundings of the texel and here
+        writer.add(std::string("    float step = ") +
+                   (options.format == DepthFormat::unorm24 ? "1.1920931e-7" : "1.5318642e-5") +
+                   ";\n    vec2 ends = vec2(max(uintBitsToFloat(range.x) - step, 0.0), "
+                   "min(uintBitsToFloat(range.y) + step, 1.0));\n");
+    writer.add(options.reversed_z ? "    vec2 e = ends.yx;\n"
+                                  : "    vec2 e = vec2(1.0 - ends.x, 1.0 - ends.y);\n");
+    if (options.orthographic)
+        writer.add("    return vec2($planes.x - $planes.y * e.x - $planes.z, $planes.x - $planes.y * e.y + "
+                   "$planes.z);\n}\n");
+    else
+        writer.add("    vec2 w = vec2($planes.x + $planes.y * e.x, $planes.x + $planes.y * e.y);\n"
+                   "    return vec2(1.0 / w.x * 0.999998, w.y > 0.0 ? 1.0 / w.y * 1.000002 : " +
+                   std::string(shader_infinity) + ");\n}\n");
+}
+
+}  // namespace detail
+
+/// Returns a shader that reduces a depth texture to Z bounds, minimum and maximum, or an Error that names the
+/// limit that the options break. What holds after it is what holds after reduce_depth(), the rounding being
+/// that of floats.
+///
+/// compute   one group of 64 threads a tile writes a vec2 to the storage buffer `z_bounds`: dispatch
+///           (tiles_x, tiles_y, 1)
+/// fragment  one fragment a tile, a loop over its pixels: draw a triangle over a tiles_x by tiles_y target of
+///           two 32-bit floats, whose row 0 is the tiles' row 0
+///
+/// Source: Tiled Shading, section 3.
+inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {}) {
+    using namespace detail;
+    if (const auto error = refuse(options)) return *error;
+    ShaderWriter writer(options.language, options.prefix);
+    std::vector<ShaderConstant> constants = {{"uvec4", "grid"}, {"vec4", "planes"}};
+    if (options.viewport_corner) constants.push_back({"ivec2", "corner"});
+    writer.declare_constants(constants, options.grid, options.push_constants);
+    declare_depth(writer, options);
+    const bool compute = options.stage == ShaderStage::compute;
+    if (compute) writer.declare_storage("z_bounds", "vec2", "writeonly", options.z_bounds, 8);
+    add_depth_sample(writer, options);
+    add_view_depths(writer, options);
+
+    // The samples of one pixel of a tile, in the order of rows.
+    const std::string samples = std::to_string(options.samples);
+    const bool hlsl = writer.dialect().hlsl, many = options.samples > 1;
+    writer.add("\nvoid $pixel(inout uvec2 range, uvec2 first, uvec2 size, uint i) {\n"
+               "    uvec2 pixel = first + uvec2(i % size.x, i / size.x);\n");
+    if (options.flip_y) writer.add("    pixel.y = $grid.w - 1u - pixel.y;\n");
+    writer.add(std::string("    ivec2 at = ivec2(int(pixel.x), int(pixel.y))") +
+               (options.viewport_corner ? " + $corner;\n" : ";\n"));
+    if (many) writer.add("    for (int s = 0; s < " + samples + "; ++s)\n    ");
+    writer.add(std::string("    $sample(range, ") +
+               (hlsl   ? many ? "$depth.Load(at, s)" : "$depth.Load(int3(at, 0))"
+                : many ? "texelFetch($depth, at, s).x"
+                       : "texelFetch($depth, at, 0).x") +
+               ");\n}\n");
+
+    const std::string area = "    uvec2 first = tile * $grid.x;\n"
+                             "    uvec2 size = min(uvec2($grid.x, $grid.x), $grid.zw - first);\n"
+                             "    uvec2 range = uvec2(0xffffffffu, 0u);\n";
+    if (compute) {
+        writer.add("\nshared uint $low;\nshared uint $high;\n\nvoid $run(uvec2 tile, uint thread) {\n" +
+                   area +
+                   R"(    if (thread == 0u) {
+        $low = range.x;
+        $high = range.y;
+    }
+    sync_group();
+    for (uint i = thread; i < size.x * size.y; i += 64u) $pixel(range, first, size, i);
+    atomicMin($low, range.x);
+    atomicMax($high, range.y);
+    sync_group();
+    if (thread == 0u) $z_bounds[tile.y * $grid.y + tile.x] = $view_depths(uvec2($low, $high));
+}
+)");
+        add_compute_main(writer, 64);
+    } else {
+        writer.add("\nvec2 $reduce(uvec2 tile) {\n" + area +
+                   "    for (uint i = 0u; i < size.x * size.y; i += 1u) $pixel(range, first, size, i);\n"
+                   "    return $view_depths(range);\n}\n\n");
+        writer.add(hlsl ? "float2 main(float4 position : SV_Position) : SV_Target {\n"
+                          "    return $reduce(uint2(position.xy));\n}\n"
+                        : std::string(writer.dialect().vulkan ? "layout(location = 0) " : "") +
+                              "out vec2 $z_bounds;\n\nvoid main() {\n"
+                              "    $z_bounds = $reduce(uvec2(gl_FragCoord.xy));\n}\n");
+    }
+    return writer.finish();
+}
+
+/// Returns the footprints of the lights in view, in ascending order of id: the input of build_shader().
+/// `lights` as for Binner::bin(). Errors as there.
+template <class LightRange>
+Result<std::vector<ShaderFootprint>> shader_footprints(const View& view, const LightRange& lights) {
+    const auto& source = detail::as_lights(lights);
+    if (!source.valid) return Error{ErrorCode::view_matrix_not_affine};
+    if (source.array.size() > 0xffffffff)
+        return Error{ErrorCode::too_many_lights, source.array.size(), 0xffffffff};
+    Footprints<Footprint::rectangle, true> footprints;
+    footprints.project(detail::machine_isa(detail::compiled_isa), view, source, Parallel{});
+    const detail::FootprintArrays& in = footprints.arrays();
+    std::vector<ShaderFootprint> out;
+    for (std::uint32_t i = 0; i < footprints.visible(); ++i) {
+        const Sphere& sphere = in.spheres[in.ids[i]];
+        const detail::TestedLight light(view.camera(), sphere);
+        out.push_back({in.ids[i], in.x0[i], in.y0[i], in.x1[i], in.y1[i], light.reach2, light.x, light.y,
+                       light.z, sphere.radius});
+    }
+    return out;
+}
+
+/// The two sides of a column or row of tiles, as slopes (perspective) or view-space coordinates.
+struct ShaderEdges {
+    float low, high;
+};
+
+/// Returns the sides of all columns and then of all rows: what build_shader() reads for box.
+inline std::vector<ShaderEdges> shader_edges(const View& view) {
+    std::vector<ShaderEdges> edges;
+    for (const detail::ImageAxis* axis : {&view.camera().x, &view.camera().y})
+        for (int tile = 0; tile < axis->tiles; ++tile) {
+            ShaderEdges sides;
+            detail::tile_edges(*axis, tile, sides.low, sides.high);
+            edges.push_back(sides);
+        }
+    return edges;
+}
+
+/// Returns one of the shaders that build the grid of the footprints, a group of 64 threads a tile testing
+/// every light, or an Error that names the limit that the options break. After the three passes, with a
+/// barrier between them, `tiles` and `lists` hold what Binner's grid has in tiles() and indices() (32-bit
+/// ids), and `total` the entries that there are. Where `room` is less than that, the tiles from the one that
+/// does not fit on have shorter lists or none: build again with more room.
+///
+/// interval  the same entries as the Binner's, the device's sums being correctly rounded
+/// box       the same but for the device's rounding of sums and products: no light of the exact set is
+///           missing, and none is listed whose distance from the box exceeds its radius by more than 2^-19 of it
+inline Result<ShaderText> build_shader(const BuildShaderOptions& options = {}) {
+    using namespace detail;
+    if (const auto error = refuse(options)) return *error;
+    ShaderWriter writer(options.language, options.prefix);
+    const bool depths = options.depth_test != DepthTest::none, box = options.depth_test == DepthTest::box,
+               fill = options.pass == BuildPass::fill;
+    std::vector<ShaderConstant> constants = {{"uvec4", "grid"}};
+    if (options.pass == BuildPass::offsets) {
+        writer.declare_constants(constants, options.grid, options.push_constants);
+        writer.declare_storage("tiles", "uvec2", "", options.tiles, 8);
+        writer.declare_storage("total", "uint", "writeonly", options.total, 4);
+        writer.add(R"(
+shared uint $sums[256];
+
+// Each thread sums a run of tiles; the sums of the runs before it are added up (Hillis, Steele 1986).
+void $run(uvec2 group, uint thread) {
+    uint tiles = $grid.x * $grid.y;
+    uint each = (tiles + 255u) / 256u;
+    uint first = min(thread * each, tiles);
+    uint last = min(first + each, tiles);
+    uint sum = 0u;
+    for (uint i = first; i < last; i += 1u) sum += $tiles[i].y;
+    $sums[thread] = sum;
+    sync_group();
+    for (uint distance = 1u; distance < 256u; distance *= 2u) {
+        uint before = thread >= distance ? $sums[thread - distance] : 0u;
+        sync_group();
+        $sums[thread] += before;
+        sync_group();
+    }
+    uint offset = $sums[thread] - sum;
+    for (uint i = first; i < last; i += 1u) {
+        uint count = $tiles[i].y;
+        uint begin = min(offset, $grid.w);
+        $tiles[i] = uvec2(begin, min(count, $grid.w - begin));
+        offset += count;
+    }
+    if (thread == 255u) $total[0] = offset;
+}
+)");
+        add_compute_main(writer, 256);
+        return writer.finish();
+    }
+
+    if (box) constants.push_back({"vec4", "planes"});
+    writer.declare_constants(constants, options.grid, options.push_constants);
+    writer.add(
+        "struct $footprint {\n    uint id;\n    uint low;\n    uint high;\n    float reach2;\n    vec4 "
+        "sphere;\n};\n");
+    writer.declare_storage("footprints", "$footprint", "readonly", options.footprints, 32);
+    if (depths) writer.declare_storage("z_bounds", "vec2", "readonly", options.z_bounds, 8);
+    if (box) writer.declare_storage("edges", "vec2", "readonly", options.edges, 8);
+    writer.declare_storage("tiles", "uvec2", fill ? "readonly" : "writeonly", options.tiles, 8);
+    if (fill) writer.declare_storage("lists", "uint", "writeonly", options.lists, 4);
+
+    // Whether a light may reach a tile's cell. A comparison with NaN is false, and tests nothing.
+    writer.add(std::string("\nbool $meets($footprint f, uvec2 tile") + (depths ? ", vec2 z" : "") +
+               (box ? ", vec4 cell" : "") + ") {\n" + R"(    uvec2 low = uvec2(f.low & 0xffffu, f.low >> 16u);
+    uvec2 high = uvec2(f.high & 0xffffu, f.high >> 16u);
+    if (tile.x < low.x || tile.x > high.x || tile.y < low.y || tile.y > high.y) return false;
+)");
+    if (depths)
+        writer.add(std::string("    if (f.sphere.z - f.sphere.w > z.y") +
+                   (options.max_only ? "" : " || f.sphere.z + f.sphere.w < z.x") + ") return false;\n");
+    if (box)
+        writer.add(R"(    float x = max(max(cell.x - f.sphere.x, f.sphere.x - cell.y), 0.0);
+    float y = max(max(cell.z - f.sphere.y, f.sphere.y - cell.w), 0.0);
+    float d = max(max(z.x - f.sphere.z, f.sphere.z - z.y), 0.0);
+    if (x * x + y * y + d * d > f.reach2) return false;
+)");
+    writer.add("    return true;\n}\n\nshared uint $hits[2];\n\nvoid $run(uvec2 tile, uint thread) {\n"
+               "    uint place = tile.y * $grid.x + tile.x;\n");
+    std::string arguments = "tile";
+    if (depths) {
+        writer.add("    vec2 z = $z_bounds[place];\n");
+        if (options.max_only) writer.add("    z.x = -" + std::string(shader_infinity) + ";\n");
+        writer.add("    bool lit = !(z.x > z.y);\n");
+        arguments += ", z";
+    }
+    if (box) {  // see detail/cell_boxes.hpp
+        writer.add(R"(    z.x = min(z.x > $planes.x ? z.x : $planes.x, 3.4028234e38);
+    z.y = z.y < $planes.y ? z.y : $planes.y;
+    vec4 cell = vec4($edges[tile.x], $edges[$grid.x + tile.y]);
+)");
+        if (!options.orthographic)
+            writer.add(R"(    cell.x = cell.x * (cell.x < 0.0 ? z.y : z.x) - 7.5231638e-37;
+    cell.y = cell.y * (cell.y > 0.0 ? z.y : z.x) + 7.5231638e-37;
+    cell.z = cell.z * (cell.z < 0.0 ? z.y : z.x) - 7.5231638e-37;
+    cell.w = cell.w * (cell.w > 0.0 ? z.y : z.x) + 7.5231638e-37;
+)");
+        arguments += ", cell";
+    }
+    if (fill) writer.add("    uvec2 list = $tiles[place];\n");
+    writer.add(
+        std::string("    uint count = 0u;\n    for (uint first = 0u; first < $grid.z; first += 64u) {\n") +
+        "        if (thread < 2u) $hits[thread] = 0u;\n        sync_group();\n"
+        "        uint i = first + thread;\n        bool hit = false;\n        if (" +
+        (depths ? "lit && " : "") + "i < $grid.z) hit = $meets($footprints[i], " + arguments + R"();
+        if (hit) atomicOr($hits[thread >> 5u], 1u << (thread & 31u));
+        sync_group();
+)");
+    if (fill)
+        writer.add(R"(        uint before = (1u << (thread & 31u)) - 1u;
+        uint rank = count + uint(bitCount($hits[thread >> 5u] & before));
+        if (thread >= 32u) rank += uint(bitCount($hits[0]));
+        if (hit && rank < list.y) $lists[list.x + rank] = $footprints[i].id;
+)");
+    writer.add("        count += uint(bitCount($hits[0])) + uint(bitCount($hits[1]));\n        "
+               "sync_group();\n    }\n");
+    if (!fill) writer.add("    if (thread == 0u) $tiles[place] = uvec2(0u, count);\n");
+    writer.add("}\n");
+    add_compute_main(writer, 64);
+    return writer.finish();
+}
+
+}  // namespace lightbin

@@ -1,0 +1,408 @@
+// SPDX-License-Identifier: MIT
+// Every form of the shaders of lightbin/shader_build.hpp, and runs of them: what the CPU makes is expected.
+#pragma once
+
+#include "job.hpp"
+
+#include <lightbin/lightbin.hpp>
+#include <lightbin/shader_build.hpp>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+inline std::string version_line(lightbin::ShaderLanguage language) {
+    constexpr const char* lines[] = {"#version 330 core\n",
+                                     "#version 430 core\n",
+                                     "#version 450\n",
+                                     "#version 300 es\n",
+                                     "#version 310 es\n",
+                                     "",
+                                     ""};
+    return lines[static_cast<int>(language)];
+}
+
+inline lightbin::ShaderLanguage glsl_language(int glsl) {
+    using lightbin::ShaderLanguage;
+    return glsl == 330   ? ShaderLanguage::glsl_330
+           : glsl == 300 ? ShaderLanguage::essl_300
+           : glsl == 310 ? ShaderLanguage::essl_310
+                         : ShaderLanguage::glsl_430;
+}
+
+inline std::vector<lightbin::ReduceShaderOptions> every_reduction(lightbin::ShaderLanguage language) {
+    using namespace lightbin;
+    std::vector<ReduceShaderOptions> every;
+    for (const ShaderStage stage : {ShaderStage::compute, ShaderStage::fragment})
+        for (const int samples : {1, 4})
+            for (const DepthFormat format :
+                 {DepthFormat::float32, DepthFormat::unorm24, DepthFormat::unorm16})
+                for (unsigned switches = 0; switches < 64; ++switches) {
+                    ReduceShaderOptions options;
+                    options.language = language;
+                    options.stage = stage;
+                    options.samples = samples;
+                    options.format = format;
+                    options.reversed_z = switches & 1;
+                    options.orthographic = switches & 2;
+                    options.skip_background = switches & 4;
+                    options.flip_y = switches & 8;
+                    options.viewport_corner = switches & 16;
+                    options.push_constants = switches & 32;
+                    if (switches & 1) options.prefix = "my_";
+                    if (reduce_shader(options)) every.push_back(options);
+                }
+    return every;
+}
+
+inline std::vector<lightbin::BuildShaderOptions> every_build(lightbin::ShaderLanguage language) {
+    using namespace lightbin;
+    std::vector<BuildShaderOptions> every;
+    for (const BuildPass pass : {BuildPass::count, BuildPass::offsets, BuildPass::fill})
+        for (const DepthTest depth_test : {DepthTest::none, DepthTest::interval, DepthTest::box})
+            for (unsigned switches = 0; switches < 8; ++switches) {
+                BuildShaderOptions options;
+                options.language = language;
+                options.pass = pass;
+                options.depth_test = depth_test;
+                options.max_only = switches & 1;
+                options.orthographic = switches & 2;
+                options.push_constants = switches & 4;
+                if (switches & 1) options.prefix = "my_";
+                if (build_shader(options)) every.push_back(options);
+            }
+    return every;
+}
+
+// Cameras: 0 perspective, 1 reversed and infinite, 2 orthographic.
+constexpr int camera_count = 3;
+
+inline lightbin::View builder_view(int camera, int width, int height, int tile_size, bool flip_y) {
+    using namespace lightbin;
+    constexpr float perspective[4][4] = {
+        {1.2f, 0, 0, 0}, {0, 1.7f, 0, 0}, {0.1f, -0.2f, -1.002f, -1}, {0, 0, -0.2002f, 0}};
+    constexpr float reversed[4][4] = {{1.2f, 0, 0, 0}, {0, -1.7f, 0, 0}, {0, 0, 0, -1}, {0, 0, 0.1f, 0}};
+    constexpr float orthographic[4][4] = {
+        {0.06f, 0, 0, 0}, {0, 0.08f, 0, 0}, {0, 0, -0.02f, 0}, {0.1f, 0, -1, 1}};
+    const auto& matrix = camera == 0 ? perspective : camera == 1 ? reversed : orthographic;
+    ViewOptions options{.tile_size = tile_size};
+    if (camera == 1) options.clip_depth = ClipDepth::zero_to_one;
+    if (flip_y) options.origin = WindowOrigin::upper_left;
+    return *View::from_projection(matrix, {width, height}, options);
+}
+
+class BuilderNumbers {
+public:
+    explicit BuilderNumbers(unsigned seed) : engine_(seed) {}
+    float operator()(float low, float high) {
+        return low + (high - low) * static_cast<float>(engine_() >> 8) / 16777216.0f;
+    }
+
+private:
+    std::mt19937 engine_;
+};
+
+/// The bytes of what a shader binds, by the names in its text.
+class BuilderData {
+public:
+    template <class T> void put(const char* name, std::span<const T> elements) {
+        const auto bytes = std::as_bytes(elements);
+        data_[name].assign(bytes.begin(), bytes.end());
+    }
+    template <class T> void put(const char* name, const std::vector<T>& elements) {
+        put(name, std::span<const T>(elements));
+    }
+
+    /// A struct of constants: as one block, and as vectors.
+    void put_constants(std::span<const std::byte> bytes, std::span<const char* const> names) {
+        data_["grid_block"].assign(bytes.begin(), bytes.end());
+        for (std::size_t i = 0; i < names.size(); ++i)
+            data_[names[i]].assign(bytes.begin() + static_cast<std::ptrdiff_t>(16 * i),
+                                   bytes.begin() + static_cast<std::ptrdiff_t>(16 * i + 16));
+    }
+
+    Input input(const lightbin::ShaderBinding& binding, std::string_view prefix) const {
+        std::string name = binding.name.substr(prefix.size());
+        const bool constants = binding.resource == lightbin::ShaderResource::uniform_block ||
+                               binding.resource == lightbin::ShaderResource::push_constants;
+        if (const auto end = name.find("_block"); end != name.npos && !constants) name.resize(end);
+        Input input;
+        input.binding = binding;
+        input.bytes = data_.at(name);
+        if (binding.bytes != 0) input.bytes.resize(binding.bytes);
+        if (input.bytes.empty()) input.bytes.resize(16);
+        return input;
+    }
+
+private:
+    std::map<std::string, std::vector<std::byte>> data_;
+};
+
+inline Job builder_job(const lightbin::ShaderText& shader, lightbin::ShaderLanguage language,
+                       std::string_view prefix, const BuilderData& data, std::string_view result) {
+    Job job;
+    job.hlsl = lightbin::detail::dialect(language).hlsl;
+    job.text = version_line(language) + shader.text;
+    for (const lightbin::ShaderBinding& binding : shader.bindings) {
+        if (binding.name.starts_with(std::string(prefix) + std::string(result)))
+            job.result = job.inputs.size();
+        job.inputs.push_back(data.input(binding, prefix));
+    }
+    return job;
+}
+
+/// The three passes of a build, and the offsets where the room is short. Lights: in view, across the near
+/// plane, of no and of endless radius; Z bounds: some empty, infinite or NaN.
+inline std::vector<Job> build_jobs(lightbin::BuildShaderOptions options, int camera, int width, int height,
+                                   int tile_size, std::size_t light_count) {
+    using namespace lightbin;
+    const View view = builder_view(camera, width, height, tile_size, false);
+    BuilderNumbers number(static_cast<unsigned>(width + tile_size));
+    std::vector<Sphere> lights;
+    for (std::size_t i = 0; i < light_count; ++i) {
+        const float z = number(0, 1) < 0.1f ? number(-3, 3) : -number(0.2f, 90);
+        const float wide = camera == 2 ? 15 : z;
+        lights.push_back({number(-1, 1) * wide, number(-0.8f, 0.8f) * wide, z, number(0, 1) * number(0, 9)});
+    }
+    lights.push_back({1, 1, -9, std::numeric_limits<float>::infinity()});
+    lights.push_back({0, 0, -9, 0});
+    lights.push_back({0, 0, -9, -1});
+
+    std::vector<float> min(view.tile_count()), max(view.tile_count()), both;
+    for (std::size_t tile = 0; tile < min.size(); ++tile) {
+        min[tile] = number(0.1f, 60);
+        max[tile] = min[tile] * number(1, 2);
+        if (tile % 11 == 3) max[tile] = std::numeric_limits<float>::infinity();
+        if (tile % 13 == 4) std::swap(min[tile], max[tile]);
+        if (tile % 17 == 5) min[tile] = std::numeric_limits<float>::quiet_NaN();
+        if (tile % 19 == 6) max[tile] = std::numeric_limits<float>::quiet_NaN();
+        if (tile % 23 == 7) max[tile] = 0;
+        both.insert(both.end(), {min[tile], max[tile]});
+    }
+    ZBounds bounds;
+    if (!options.max_only) bounds.min = min;
+    bounds.max = max;
+    Binner<> none;
+    Binner<Options{.depth_test = DepthTest::interval}> interval;
+    Binner<Options{.depth_test = DepthTest::box}> box;
+    const auto grid = options.depth_test == DepthTest::none       ? none.bin(view, lights)
+                      : options.depth_test == DepthTest::interval ? interval.bin(view, lights, bounds)
+                                                                  : box.bin(view, lights, bounds);
+    const std::vector<Tile> tiles(grid->tiles().begin(), grid->tiles().end());
+    const auto entries = static_cast<std::uint32_t>(grid->indices().size());
+
+    options.orthographic = view.orthographic();
+    const auto footprints = *shader_footprints(view, lights);
+    BuilderData data;
+    data.put("footprints", footprints);
+    data.put("z_bounds", both);
+    data.put("edges", shader_edges(view));
+    std::vector<Job> jobs;
+    const auto add = [&](BuildPass pass, std::string_view result, std::uint32_t room,
+                         std::span<const std::byte> expected) {
+        options.pass = pass;
+        const ShaderBuild constants = shader_build(view, static_cast<std::uint32_t>(footprints.size()), room);
+        constexpr const char* names[] = {"grid", "planes"};
+        data.put_constants(std::as_bytes(std::span(&constants, 1)), names);
+        Job job = builder_job(*build_shader(options), options.language, options.prefix, data, result);
+        job.name = "build, pass " + std::to_string(static_cast<int>(pass)) + ", test " +
+                   std::to_string(static_cast<int>(options.depth_test)) + ", camera " +
+                   std::to_string(camera) + (options.max_only ? ", max only, " : ", ") + std::string(result) +
+                   " " + std::to_string(width) + "x" + std::to_string(height) + ", tile " +
+                   std::to_string(tile_size);
+        if (pass != BuildPass::offsets)
+            job.groups = {static_cast<std::uint32_t>(view.tiles_x()),
+                          static_cast<std::uint32_t>(view.tiles_y())};
+        job.expected.resize((std::max)(expected.size(), std::size_t{16}) / 4);
+        std::memset(job.expected.data(), 0xee, job.expected.size() * 4);
+        std::memcpy(job.expected.data(), expected.data(), expected.size());
+        jobs.push_back(job);
+    };
+
+    // What is written is 0xee before, in the list too where it has room beyond its end.
+    std::vector<Tile> counts = tiles;
+    for (Tile& tile : counts)
+        tile.offset = 0;
+    const auto blank = [](std::size_t bytes) { return std::vector<std::byte>(bytes, std::byte{0xee}); };
+    data.put("tiles", blank((std::max)(tiles.size() * 8, std::size_t{16})));
+    add(BuildPass::count, "tiles", entries, std::as_bytes(std::span(counts)));
+    data.put("tiles", counts);
+    data.put("total", blank(16));
+    add(BuildPass::offsets, "total", entries, std::as_bytes(std::span(&entries, 1)));
+    if (tiles.size() > 1) {
+        add(BuildPass::offsets, "tiles", entries, std::as_bytes(std::span(tiles)));
+        std::vector<Tile> cut = tiles;
+        const std::uint32_t room = entries / 2;
+        for (Tile& tile : cut) {
+            tile.offset = (std::min)(tile.offset, room);
+            tile.count = (std::min)(tile.count, room - tile.offset);
+        }
+        add(BuildPass::offsets, "tiles", room, std::as_bytes(std::span(cut)));
+        data.put("tiles", cut);
+        data.put("lists", blank((std::max)(entries * std::size_t{4}, std::size_t{16})));
+        add(BuildPass::fill, "lists", room, std::as_bytes(grid->indices().first(room)));
+        jobs.back().expected.resize((std::max)(entries, 4u), 0xeeeeeeee);
+    }
+    data.put("tiles", tiles);
+    data.put("lists", blank((std::max)(entries * std::size_t{4}, std::size_t{16})));
+    add(BuildPass::fill, "lists", entries, std::as_bytes(grid->indices()));
+    return jobs;
+}
+
+/// What a language runs: nothing where it has no compute shaders.
+inline std::vector<Job> build_jobs(lightbin::ShaderLanguage language) {
+    using namespace lightbin;
+    std::vector<Job> jobs;
+    if (!detail::dialect(language).storage_buffers) return jobs;
+    for (const DepthTest depth_test : {DepthTest::none, DepthTest::interval, DepthTest::box})
+        for (int camera = 0; camera < camera_count; ++camera)
+            for (const bool max_only : {false, true}) {
+                if (max_only && depth_test == DepthTest::none) continue;
+                BuildShaderOptions options;
+                options.language = language;
+                options.depth_test = depth_test;
+                options.max_only = max_only;
+                struct Size {
+                    int width, height, tile_size;
+                    std::size_t lights;
+                };
+                for (const Size& size :
+                     {Size{1, 1, 32, 0}, Size{33, 17, 1, 40}, Size{333, 217, 16, 300}, Size{640, 360, 8, 64}})
+                    for (Job& job :
+                         build_jobs(options, camera, size.width, size.height, size.tile_size, size.lights))
+                        jobs.push_back(std::move(job));
+            }
+    return jobs;
+}
+
+/// A reduction of a random depth buffer. The result must hold what reduce_depth() allows for, and exceed it
+/// by no more than a few times the float's and the format's step.
+inline Job reduce_job(lightbin::ReduceShaderOptions options, int camera, int width, int height,
+                      int tile_size) {
+    using namespace lightbin;
+    const View view = builder_view(camera, width, height, tile_size, options.flip_y);
+    options.reversed_z = view.reversed_z();
+    options.orthographic = view.orthographic();
+    const int corner_x = options.viewport_corner ? 3 : 0, corner_y = options.viewport_corner ? 5 : 0;
+    const int full_width = width + corner_x, full_height = height + corner_y;
+    const auto samples = static_cast<std::size_t>(options.samples);
+
+    // Rows as the texture counts them, and as the view does.
+    BuilderNumbers number(static_cast<unsigned>(width + camera));
+    std::vector<float> texels(static_cast<std::size_t>(full_width) * static_cast<std::size_t>(full_height) *
+                                  samples,
+                              std::numeric_limits<float>::quiet_NaN());
+    std::vector<float> depth;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (std::size_t s = 0; s < samples; ++s) {
+                const int kind = (x / 7 * 5 + y / 5 * 3) % 8;
+                float value = kind == 0   ? (view.reversed_z() ? 0.0f : 1.0f)
+                              : kind == 1 ? number(0, 1)
+                              : kind == 2 ? 1 - number(0, 1e-4f)
+                                          : number(0, 1e-3f);
+                if (x == 20 && y == 9) value = std::numeric_limits<float>::quiet_NaN();
+                if (x == 22 && y == 3) value = -2;
+                if (x == 23 && y == 2) value = 7;
+                depth.push_back(value);
+                const int row = options.flip_y ? height - 1 - y : y;
+                texels[(static_cast<std::size_t>(row + corner_y) * static_cast<std::size_t>(full_width) +
+                        static_cast<std::size_t>(x + corner_x)) *
+                           samples +
+                       s] = value;
+            }
+    std::vector<float> min(view.tile_count()), max(view.tile_count());
+    const DepthBuffer buffer{.depth = depth,
+                             .samples = options.samples,
+                             .format = options.format,
+                             .skip_background = options.skip_background};
+    if (!reduce_depth(view, buffer, min, max)) return {};
+
+    BuilderData data;
+    data.put("depth", texels);
+    data.put("z_bounds", std::vector<float>(2 * (std::max)(min.size(), std::size_t{2}), -1.0f));
+    const ShaderReduce constants = shader_reduce(view, corner_x, corner_y);
+    constexpr const char* names[] = {"grid", "planes", "corner"};
+    data.put_constants(std::as_bytes(std::span(&constants, 1)), names);
+    Job job = builder_job(*reduce_shader(options), options.language, options.prefix, data, "z_bounds");
+    for (Input& input : job.inputs)
+        if (input.binding.format == TexelFormat::r32f) {
+            input.width = static_cast<std::uint32_t>(full_width);
+            input.height = static_cast<std::uint32_t>(full_height);
+            input.samples = static_cast<std::uint32_t>(samples);
+        }
+    job.name = "reduce, camera " + std::to_string(camera) + ", format " +
+               std::to_string(static_cast<int>(options.format)) + ", " + std::to_string(samples) +
+               " samples, " + std::to_string(width) + "x" + std::to_string(height) + ", tile " +
+               std::to_string(tile_size);
+    job.stage = options.stage == ShaderStage::compute ? Stage::compute : Stage::fragment;
+    job.groups = {static_cast<std::uint32_t>(view.tiles_x()), static_cast<std::uint32_t>(view.tiles_y())};
+    job.width = job.groups[0];
+    job.height = job.groups[1];
+
+    // The depths of the tile's samples, moved outward by a few steps of the format and of floats.
+    const double step = options.format == DepthFormat::unorm16 ? 0x1p-15 : 0x1p-22;
+    std::vector<double> lower(min.size(), 1), upper(min.size(), 0);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (std::size_t s = 0; s < samples; ++s) {
+                const float value = depth[static_cast<std::size_t>(y * width + x) * samples + s];
+                const auto tile = static_cast<std::size_t>(y / tile_size * view.tiles_x() + x / tile_size);
+                if (options.skip_background && value == (view.reversed_z() ? 0.0f : 1.0f)) continue;
+                const bool unknown = std::isnan(value);
+                lower[tile] = (std::min)(lower[tile], unknown ? 0.0 : static_cast<double>(value));
+                upper[tile] = (std::max)(upper[tile], unknown ? 1.0 : static_cast<double>(value));
+            }
+    for (std::size_t tile = 0; tile < min.size(); ++tile) {
+        if (min[tile] > max[tile]) {  // nothing is drawn
+            job.within.insert(job.within.end(), {{min[tile], min[tile]}, {max[tile], max[tile]}});
+            continue;
+        }
+        const auto widened =
+            view.view_depths((std::max)(lower[tile] - step, 0.0), (std::min)(upper[tile] + step, 1.0));
+        const float rounding = 0x1p-17f;
+        const float planes =
+            options.orthographic ? std::fabs(view.near_depth()) + std::fabs(view.far_depth()) : 0;
+        job.within.push_back({widened.min - rounding * (std::fabs(widened.min) + planes), min[tile]});
+        job.within.push_back({max[tile], widened.max + rounding * (std::fabs(widened.max) + planes)});
+    }
+    while (job.within.size() < 4 && job.stage == Stage::compute)
+        job.within.push_back({-1, -1});  // the buffer's end, not written
+    return job;
+}
+
+/// What a language runs. Multisample textures have 4 samples, or are left out.
+inline std::vector<Job> reduce_jobs(lightbin::ShaderLanguage language, bool multisample) {
+    using namespace lightbin;
+    std::vector<Job> jobs;
+    int turn = 0;
+    for (const ShaderStage stage : {ShaderStage::compute, ShaderStage::fragment})
+        for (const int samples : {1, 4})
+            for (const DepthFormat format :
+                 {DepthFormat::float32, DepthFormat::unorm24, DepthFormat::unorm16})
+                for (const bool skip : {false, true})
+                    for (int camera = 0; camera < camera_count; ++camera) {
+                        ReduceShaderOptions options;
+                        options.language = language;
+                        options.stage = stage;
+                        options.samples = samples;
+                        options.format = format;
+                        options.skip_background = skip;
+                        options.flip_y = ++turn & 1;
+                        options.viewport_corner = turn & 2;
+                        if ((samples > 1 && !multisample) || !reduce_shader(options)) continue;
+                        struct Size {
+                            int width, height, tile_size;
+                        };
+                        for (const Size& size : {Size{1, 1, 64}, Size{33, 17, 7}, Size{333, 217, 16}})
+                            jobs.push_back(
+                                reduce_job(options, camera, size.width, size.height, size.tile_size));
+                    }
+    return jobs;
+}
