@@ -22,7 +22,6 @@
 
 #include <cstring>
 #include <exception>
-#include <numeric>
 
 namespace {
 
@@ -113,18 +112,9 @@ Lights with_cutoff(Lights lights, double cutoff) {
 
 /// One scene: the reference, then each cutoff.
 void study(const BenchScene& scene, bool quick, std::FILE* csv) {
-    const Picture large_picture = rasterise(scene, screen), picture = rasterise(scene, small);
-    const TiledView large(scene, large_picture, 16), view(scene, picture, 4);
+    const Picture picture = rasterise(scene, small);
+    const TiledView large(scene, rasterise(scene, screen), 16), view(scene, picture, 4);
     const Surface surface(scene, picture);
-    std::vector<double> drawn(large.view.tile_count());
-    for (std::size_t i = 0; i < large_picture.triangle.size(); ++i) {
-        const std::size_t x = i % static_cast<std::size_t>(screen.width),
-                          y = i / static_cast<std::size_t>(screen.width);
-        if (large_picture.triangle[i] != Picture::nothing)
-            ++drawn[y / 16 * static_cast<std::size_t>(large.view.tiles_x()) + x / 16];
-    }
-    const double all_drawn = std::accumulate(drawn.begin(), drawn.end(), 0.0);
-
     const Lights lights = scene.lights(0);
     std::vector<float> intensity;
     for (const glm::vec4& light : lights)
@@ -143,10 +133,7 @@ void study(const BenchScene& scene, bool quick, std::FILE* csv) {
             const Lights set = with_cutoff(scene.lights(seed), white / k);
             builds.push_back(seconds([&] { bin(large, set); }));
         }
-        double evaluations = 0;
-        const auto large_grid = bin(large, ranged);
-        for (std::size_t tile = 0; tile < drawn.size(); ++tile)
-            evaluations += drawn[tile] * large_grid.tiles()[tile].count;
+        const double evaluations = large.evaluations(bin(large, ranged).tiles());
 
         const auto grid = bin(view, ranged);
         Difference differences[2];
@@ -163,11 +150,11 @@ void study(const BenchScene& scene, bool quick, std::FILE* csv) {
             const double build = 1e6 * median(builds), us = build + 1e6 * median(shadings[window]);
             std::fprintf(csv, "%s,%zu,%s,%.6f,%.1f,%.0f,%.6f,%.6f,%.6f,%.6f,%.3f\n", scene.name.c_str(),
                          lights.size(), window_names[window + 1], 1.0 / k, build, us, d.rmse, d.largest,
-                         d.lost, d.rmse_lifted, evaluations / all_drawn);
+                         d.lost, d.rmse_lifted, evaluations);
             std::printf("%-12s %-6s white/%-4d  rmse %.4f (lifted %.4f)  largest %.4f  evals %7.2f of %zu  "
                         "build %7.1f us, with shading %8.0f us\n",
                         scene.name.c_str(), window_names[window + 1], k, d.rmse, d.rmse_lifted, d.largest,
-                        evaluations / all_drawn, lights.size(), build, us);
+                        evaluations, lights.size(), build, us);
         }
         std::fflush(stdout);
     }

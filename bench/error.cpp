@@ -38,7 +38,7 @@ struct Case {
 
 struct Row {
     std::uint64_t misses = 0, entries = 0, unrounded = 0;
-    double evaluations = 0;  ///< over all drawn pixels
+    double evaluations = 0;  ///< of all drawn pixels
     double us = 0, ratio = 0;
 };
 
@@ -100,12 +100,10 @@ void count(const SeenScene& seen, int tile_size, Report& report) {
     report.by_rationals += truth.by_rationals;
     report.reduce_us += 1e6 * view.reduce_seconds;
 
-    std::vector<double> drawn;
+    report.drawn += view.all_drawn;
     for (int y = 0, tile = 0; y < view.view.tiles_y(); ++y)
         for (int x = 0; x < view.view.tiles_x(); ++x, ++tile) {
             const Points points(seen, view.view, x, y);
-            drawn.push_back(static_cast<double>(points.x.size()));
-            report.drawn += points.x.size();
             for (const Pair& pair : truth.tiles[static_cast<std::size_t>(tile)]) {
                 if ((pair.facts & in_split) == 0) continue;
                 const std::uint32_t inside = points.inside(lights[pair.id]);
@@ -120,9 +118,9 @@ void count(const SeenScene& seen, int tile_size, Report& report) {
         Row& row = report.rows[rung];
         const auto grid = bin(view, lights);
         row.entries += grid.indices().size();
+        row.evaluations += view.evaluations(grid.tiles()) * static_cast<double>(view.all_drawn);
         for (std::size_t tile = 0; tile < truth.tiles.size(); ++tile) {
             const lightbin::Tile list = grid.tiles()[tile];
-            row.evaluations += static_cast<double>(list.count) * drawn[tile];
             const std::uint32_t* id = grid.indices().data() + list.offset;
             const std::uint32_t* const end = id + list.count;
             for (const Pair& pair : truth.tiles[tile]) {

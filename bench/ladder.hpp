@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -54,22 +55,32 @@ inline double median(std::vector<double> values) {
     return *middle;
 }
 
-/// A view of a scene on a tile grid, with its Z bounds.
+/// A view of a scene on a tile grid, with its Z bounds and how much is drawn in its tiles.
 struct TiledView {
     lightbin::View view;
     FlatView flat;
     std::vector<float> min, max, gap_min, gap_max;
+    std::vector<std::uint32_t> drawn;  ///< pixels a tile that show something
+    std::uint64_t all_drawn = 0;
     double reduce_seconds = 0;  ///< what making the Z bounds took
 
     TiledView(const BenchScene& scene, const Picture& picture, int tile_size)
         : view(*lightbin::View::from_projection(scene.projection, picture.size, {.tile_size = tile_size})),
           flat(lens_of(Frustum(scene.projection), picture.size).flat_view(tile_size)), min(view.tile_count()),
-          max(view.tile_count()) {
+          max(view.tile_count()), drawn(view.tile_count()) {
         reduce_seconds = seconds([&] {
             if (!lightbin::reduce_depth(view, {.depth = picture.depth, .skip_background = true}, min, max))
                 std::abort();
         });
         find_gaps(picture);
+    }
+
+    /// Light evaluations a drawn pixel: the mean length of its list.
+    double evaluations(std::span<const lightbin::Tile> lists) const {
+        double sum = 0;
+        for (std::size_t tile = 0; tile < lists.size(); ++tile)
+            sum += static_cast<double>(drawn[tile]) * static_cast<double>(lists[tile].count);
+        return sum / static_cast<double>(all_drawn);
     }
 
     lightbin::ZBounds bounds() const { return {min, max, gap_min, gap_max}; }
@@ -83,6 +94,7 @@ private:
             const std::size_t width = static_cast<std::size_t>(picture.size.width),
                               t = static_cast<std::size_t>(view.tile_size()),
                               tile = i / width / t * static_cast<std::size_t>(view.tiles_x()) + i % width / t;
+            ++drawn[tile], ++all_drawn;
             const float depth = picture.view_depth[i];
             if (depth <= (min[tile] + max[tile]) / 2)
                 gap_min[tile] = std::max(gap_min[tile], depth);

@@ -10,6 +10,8 @@
 #   cutoff [--quick] [SCENE.glb ...]
 #       What ending lights at a finite range does to the picture, and what it saves; writes build/bench/cutoff.csv, .svg
 #       and .png.
+#   ablation [--quick] [SCENE.glb ...]
+#       What each part of the library costs and saves, by kind of scene; writes build/bench/ablation.csv.
 set -eu
 me=bench/run.sh
 here=$(pwd)
@@ -18,7 +20,7 @@ cd "$(dirname "$0")/.."
 
 program=binning
 case ${1-} in
-binning | error | cutoff)
+binning | error | cutoff | ablation)
     program=$1
     shift
     ;;

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+// Leaving out: what each part costs and saves, by kind of scene. Every row is one change against an earlier row.
+// Writes ablation.csv and prints it as a table.
+//
+// Columns: us: median time of a build on rotating light sets; evals: light evaluations a drawn pixel; bytes: of the
+// light index list; us_more, evals_less: against the row named; pays_ns: what one light evaluation must cost,
+// in nanoseconds of the same clock, for the change to save time as a whole; z_bounds_us: what
+// reduce_depth takes here for these tiles, in no other column (a GPU makes them where the depth buffer lies).
+#include "glb_scenes.hpp"
+#include "ladder.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <cstring>
+#include <exception>
+#include <functional>
+#include <memory>
+
+namespace {
+
+/// What a build gave: the lists' lengths and what an id takes.
+struct Built {
+    std::span<const lightbin::Tile> tiles;
+    std::size_t index_bytes;
+};
+
+/// One way to bin, and the row that it is compared with.
+struct Part {
+    const char* name;
+    int against;
+    int tile_size;
+    std::function<Built(const TiledView&, const Lights&)> build;
+};
+
+enum class Bounds { none, max, both };
+
+template <lightbin::Options options>
+auto build_with(Bounds sides, std::shared_ptr<tbb::task_arena> threads = nullptr) {
+    auto binner = std::make_shared<lightbin::Binner<options>>();
+    return [=](const TiledView& view, const Lights& lights) {
+        const auto loop = [&](std::size_t n, const auto& body) {
+            threads->execute([&] { tbb::parallel_for(std::size_t{0}, n, body); });
+        };
+        const lightbin::Parallel parallel =
+            threads == nullptr
+                ? lightbin::Parallel()
+                : lightbin::Parallel(static_cast<std::size_t>(threads->max_concurrency()), loop);
+        const auto grid = [&] {
+            if constexpr (options.depth_test == DepthTest::none) {
+                return *binner->bin(view.view, lights, parallel);
+            } else {
+                lightbin::ZBounds bounds = view.bounds();
+                if (sides == Bounds::max) bounds = {.min = {}, .max = bounds.max};
+                return *binner->bin(view.view, lights, bounds, parallel);
+            }
+        }();
+        return Built{grid.tiles(), grid.indices().size_bytes()};
+    };
+}
+
+std::vector<Part> parts() {
+    using lightbin::Index, lightbin::Options;
+    constexpr Options plain, interval = {.depth_test = DepthTest::interval},
+                             box = {.depth_test = DepthTest::box},
+                             split_box = {.depth_test = DepthTest::split_box},
+                             narrow = {.index = Index::u16, .depth_test = DepthTest::box};
+    const auto two = std::make_shared<tbb::task_arena>(2);
+    enum { everything, tiles, interval_both = 3, box_both = 4 };
+    return {
+        {"no tiling", everything, 0, nullptr},
+        {"16 px tiles, rectangles, no Z", everything, 16, build_with<plain>(Bounds::none)},
+        {"Z maximum alone, interval", tiles, 16, build_with<interval>(Bounds::max)},
+        {"Z minimum and maximum, interval", tiles, 16, build_with<interval>(Bounds::both)},
+        {"box", interval_both, 16, build_with<box>(Bounds::both)},
+        {"box with Z maximum alone", box_both, 16, build_with<box>(Bounds::max)},
+        {"split_box", box_both, 16, build_with<split_box>(Bounds::both)},
+        {"16-bit ids", box_both, 16, build_with<narrow>(Bounds::both)},
+        {"8 px tiles", box_both, 8, build_with<box>(Bounds::both)},
+        {"32 px tiles", box_both, 32, build_with<box>(Bounds::both)},
+        {"64 px tiles", box_both, 64, build_with<box>(Bounds::both)},
+        {"2 threads", box_both, 16, build_with<box>(Bounds::both, two)},
+        {"2 threads, no Z", tiles, 16, build_with<plain>(Bounds::none, two)},
+    };
+}
+
+struct Measured {
+    double us = 0, evaluations = 0, z_bounds_us = 0;
+    std::size_t bytes = 0;
+};
+
+std::vector<Measured> measure(const std::vector<Part>& parts, const BenchScene& scene, const Picture& picture,
+                              bool quick) {
+    std::vector<TiledView> views;
+    for (const int tile_size : {8, 16, 32, 64})
+        views.emplace_back(scene, picture, tile_size);
+    const auto view_of = [&](const Part& part) -> const TiledView& {
+        return *std::find_if(views.begin(), views.end(),
+                             [&](const TiledView& v) { return v.view.tile_size() == part.tile_size; });
+    };
+
+    const Lights lights = scene.lights(0);
+    std::vector<Measured> result(parts.size());
+    result[0].evaluations = static_cast<double>(lights.size());
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+        const TiledView& view = view_of(parts[i]);
+        const Built built = parts[i].build(view, lights);
+        result[i].evaluations = view.evaluations(built.tiles);
+        result[i].bytes = built.index_bytes;
+        result[i].z_bounds_us = 1e6 * view.reduce_seconds;
+    }
+
+    const std::size_t turns = quick ? 12 : std::min<std::size_t>(rotation(lights.size()), 200);
+    std::vector<std::vector<double>> times(parts.size());
+    for (std::size_t turn = 1; turn <= turns; ++turn) {
+        const Lights set = scene.lights(static_cast<std::uint32_t>(turn));
+        for (std::size_t i = 1; i < parts.size(); ++i)
+            times[i].push_back(seconds([&] { parts[i].build(view_of(parts[i]), set); }));
+    }
+    for (std::size_t i = 1; i < parts.size(); ++i)
+        result[i].us = 1e6 * median(times[i]);
+    return result;
+}
+
+/// What one light evaluation must cost for a change to be worth having, in nanoseconds of the same clock.
+std::string pays(double us_more, double evaluations_less, double pixels) {
+    if (us_more <= 0 && evaluations_less >= 0) return "always";
+    if (us_more >= 0 && evaluations_less <= 0) return "never";
+    char text[40];
+    std::snprintf(text, sizeof text, "%s %.5f", evaluations_less > 0 ? "over" : "under",
+                  1e3 * us_more / (evaluations_less * pixels));
+    return text;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    bool quick = false;
+    std::vector<BenchScene> scenes = scene_kinds();
+    for (int i = 1; i < argc; ++i)
+        if (std::strcmp(argv[i], "--quick") == 0)
+            quick = true;
+        else
+            scenes.push_back(glb_scenes(argv[i]).front());
+
+    std::FILE* const csv = open_report(
+        "ablation.csv",
+        "scene,lights,part,against,tile_px,us,evals,index_bytes,us_more,evals_less,pays_ns,z_bounds_us");
+    const std::vector<Part> all = parts();
+    std::vector<std::string> rows(all.size());
+    std::string head = "| part | against |", line = "| --- | --- |";
+    for (const BenchScene& scene : scenes) {
+        const Picture picture = rasterise(scene, screen);
+        const double pixels = static_cast<double>(
+            std::count_if(picture.triangle.begin(), picture.triangle.end(),
+                          [](std::uint32_t triangle) { return triangle != Picture::nothing; }));
+        const std::vector<Measured> measured = measure(all, scene, picture, quick);
+        head += " " + scene.name + " |";
+        line += " --- |";
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const Measured &now = measured[i], &before = measured[static_cast<std::size_t>(all[i].against)];
+            const double more = now.us - before.us, less = before.evaluations - now.evaluations,
+                         change = less == 0 ? 0 : -less;
+            std::fprintf(csv, "%s,%zu,\"%s\",\"%s\",%d,%.1f,%.3f,%zu,%.1f,%.3f,%s,%.0f\n", scene.name.c_str(),
+                         scene.lights(0).size(), all[i].name,
+                         all[static_cast<std::size_t>(all[i].against)].name, all[i].tile_size, now.us,
+                         now.evaluations, now.bytes, more, less, pays(more, less, pixels).c_str(),
+                         now.z_bounds_us);
+            char cell[64];
+            if (i == 0)
+                std::snprintf(cell, sizeof cell, " 0 us, %.0f |", now.evaluations);
+            else
+                std::snprintf(cell, sizeof cell, " %+.1f us, %+.2f |", more, change);
+            rows[i] += cell;
+        }
+        std::fprintf(stderr, "%s\n", scene.name.c_str());
+    }
+    std::fclose(csv);
+
+    std::printf("\nWhat each part changes: time of a build, light evaluations a pixel.\n\n%s\n%s\n",
+                head.c_str(), line.c_str());
+    for (std::size_t i = 0; i < all.size(); ++i)
+        std::printf("| %s | %s |%s\n", all[i].name,
+                    i == 0 ? "" : all[static_cast<std::size_t>(all[i].against)].name, rows[i].c_str());
+} catch (const std::exception& problem) {
+    std::fprintf(stderr, "ablation: %s\n", problem.what());
+    return EXIT_FAILURE;
+}
