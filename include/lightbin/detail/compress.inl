@@ -15,17 +15,38 @@
 
 inline constexpr unsigned panel_side = 31;  // in supertiles
 
-inline constexpr std::array<std::uint8_t, 64> every_byte = [] {
-    std::array<std::uint8_t, 64> bytes = {};
-    for (std::uint8_t i = 0; i < 64; ++i)
-        bytes[i] = i;
-    return bytes;
+/// 0, 1, 2 ...
+template <class T>
+inline constexpr std::array<T, 64 / sizeof(T)> counted = [] {
+    std::array<T, 64 / sizeof(T)> table = {};
+    for (unsigned i = 0; i < table.size(); ++i)
+        table[i] = static_cast<T>(i);
+    return table;
 }();
-inline constexpr std::array<std::uint16_t, 32> every_word = [] {
-    std::array<std::uint16_t, 32> words = {};
-    for (std::uint16_t i = 0; i < 32; ++i)
-        words[i] = i;
-    return words;
+
+/// 0 eight times, 1 eight times ...
+inline constexpr std::array<std::uint8_t, 64> eight_each = [] {
+    std::array<std::uint8_t, 64> table = {};
+    for (unsigned i = 0; i < 64; ++i)
+        table[i] = static_cast<std::uint8_t>(i / 8);
+    return table;
+}();
+
+/// Permutation of 64 bytes that turns 8x8 of them.
+inline constexpr std::array<std::uint8_t, 64> turned_bytes = [] {
+    std::array<std::uint8_t, 64> table = {};
+    for (unsigned i = 0; i < 64; ++i)
+        table[i] = static_cast<std::uint8_t>(i % 8 * 8 + i / 8);
+    return table;
+}();
+
+/// Permutation of two vectors that takes an element of each in turn, from the first half of both.
+template <class T>
+inline constexpr std::array<T, 64 / sizeof(T)> in_turn = [] {
+    std::array<T, 64 / sizeof(T)> table = {};
+    for (unsigned i = 0; i < table.size(); ++i)
+        table[i] = static_cast<T>(i / 2 + i % 2 * table.size());
+    return table;
 }();
 
 LIGHTBIN_TARGET inline __m512i load(const void* p) {
@@ -86,7 +107,7 @@ template <class Id> LIGHTBIN_TARGET inline void store_ids(Id* to, __m512i ids, s
 template <class Id>
 LIGHTBIN_TARGET inline std::uint32_t append(Id* to, std::uint64_t lit, __m512i low, __m512i high,
                                             std::uint32_t upper) {
-    const __m512i places = _mm512_maskz_compress_epi8(lit, load(every_byte.data()));
+    const __m512i places = _mm512_maskz_compress_epi8(lit, load(counted<std::uint8_t>.data()));
     const std::uint32_t count = static_cast<std::uint32_t>(std::popcount(lit));
     const __m512i first = _mm512_cvtepu8_epi16(_mm512_castsi512_si256(places));
     store_ids(to, _mm512_permutex2var_epi16(low, first, high), upper);
@@ -148,7 +169,7 @@ LIGHTBIN_TARGET BandLists fill_bands(const BinJob<Id>& job, Scratch& scratch, st
             const __mmask64 valid = first_lanes(blocks[block].end - i);
             __m512i low_ids, high_ids;
             if constexpr (with_words) {
-                low_ids = _mm512_add_epi16(load(every_word.data()),
+                low_ids = _mm512_add_epi16(load(counted<std::uint16_t>.data()),
                                            _mm512_set1_epi16(static_cast<short>(i - blocks[block].begin)));
                 high_ids = _mm512_add_epi16(low_ids, _mm512_set1_epi16(32));
             } else {
@@ -189,55 +210,115 @@ LIGHTBIN_TARGET BandLists fill_bands(const BinJob<Id>& job, Scratch& scratch, st
     return to;
 }
 
-/// The words of up to 8 lights: for each of 8 rows, 8 bytes (one a column) of 8 bits (one a light); after
-/// them, for each row, the running number of set bits up to and with each byte.
-LIGHTBIN_TARGET inline void store_small_words(std::uint64_t* words, __m512i lit) {
-    __m512i sums = _mm512_popcnt_epi8(lit);
+/// The bits of `mask` swapped with those `distance` above.
+template <unsigned distance> LIGHTBIN_TARGET inline __m512i swapped(__m512i v, long long mask) {
+    const __m512i t =
+        _mm512_and_si512(_mm512_xor_si512(v, _mm512_srli_epi64(v, distance)), _mm512_set1_epi64(mask));
+    return _mm512_xor_si512(v, _mm512_xor_si512(t, _mm512_slli_epi64(t, distance)));
+}
+
+/// Eight times 8x8 bits turned, see the scalar one.
+LIGHTBIN_TARGET inline __m512i turned(__m512i x) {
+    x = swapped<7>(x, 0x00aa00aa00aa00aa);
+    x = swapped<14>(x, 0x0000cccc0000cccc);
+    return swapped<28>(x, 0x00000000f0f0f0f0);
+}
+
+/// Short lists, of up to 8, 16 or 31 lights: `blocks` = 1, 2 or 4 vectors of 8 lights' words, a bit a tile. For
+/// each row of the supertile stores, after one another, the 8 tiles' bits, a bit a light: `blocks` words a row.
+/// Before them, for each row, 8 bytes: the running number of set bits up to and with each tile, at most 248.
+template <unsigned blocks>
+LIGHTBIN_TARGET inline void store_rows(__m512i (&lights)[blocks], std::uint64_t* to) {
+    for (__m512i& v : lights)  // a word a row, a byte a tile
+        v = turned(_mm512_permutexvar_epi8(load(turned_bytes.data()), v));
+    __m512i sums;
+    if constexpr (blocks == 1) {
+        store(to + 8, lights[0]);
+        sums = _mm512_popcnt_epi8(lights[0]);
+    } else {
+        const __m512i bytes = load(in_turn<std::uint8_t>.data()),
+                      more_bytes = _mm512_add_epi8(bytes, _mm512_set1_epi8(32));
+        const __m512i low = _mm512_permutex2var_epi8(lights[0], bytes, lights[1]),
+                      high = _mm512_permutex2var_epi8(lights[0], more_bytes, lights[1]);
+        if constexpr (blocks == 2) {
+            store(to + 8, low);
+            store(to + 16, high);
+            sums = halves(_mm512_cvtepi16_epi8(_mm512_popcnt_epi16(low)),
+                          _mm512_cvtepi16_epi8(_mm512_popcnt_epi16(high)));
+        } else {
+            const __m512i low2 = _mm512_permutex2var_epi8(lights[2], bytes, lights[3]),
+                          high2 = _mm512_permutex2var_epi8(lights[2], more_bytes, lights[3]);
+            const __m512i pairs = load(in_turn<std::uint16_t>.data()),
+                          more_pairs = _mm512_add_epi16(pairs, _mm512_set1_epi16(16));
+            const __m512i rows[] = {_mm512_permutex2var_epi16(low, pairs, low2),
+                                    _mm512_permutex2var_epi16(low, more_pairs, low2),
+                                    _mm512_permutex2var_epi16(high, pairs, high2),
+                                    _mm512_permutex2var_epi16(high, more_pairs, high2)};
+            __m128i sum[4];
+            for (unsigned i = 0; i < 4; ++i) {
+                store(to + 8 + 8 * i, rows[i]);
+                sum[i] = _mm512_cvtepi32_epi8(_mm512_popcnt_epi32(rows[i]));
+            }
+            sums = halves(_mm256_set_m128i(sum[1], sum[0]), _mm256_set_m128i(sum[3], sum[2]));
+        }
+    }
     sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 8));
     sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 16));
     sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 32));
-    store(words, lit);
-    store(words + 8, sums);
+    store(to, sums);
 }
 
-/// The same from bytes of columns and rows.
-LIGHTBIN_TARGET inline void small_words(const std::uint8_t* columns, const std::uint8_t* rows,
-                                        std::uint32_t count, std::uint64_t* words) {
-    const __m512i each_row =
-        _mm512_setr_epi64(0, 0x0101010101010101, 0x0202020202020202, 0x0303030303030303, 0x0404040404040404,
-                          0x0505050505050505, 0x0606060606060606, 0x0707070707070707);
-    std::uint64_t column_bytes, row_bytes;
-    std::memcpy(&column_bytes, columns, 8);
-    std::memcpy(&row_bytes, rows, 8);
-    if (count < 8) column_bytes &= (std::uint64_t{1} << 8 * count) - 1;
-    const __m512i by_column = _mm512_set1_epi64(static_cast<long long>(turned(column_bytes))),
-                  by_row = _mm512_set1_epi64(static_cast<long long>(turned(row_bytes)));
-    store_small_words(words, _mm512_and_si512(by_column, _mm512_shuffle_epi8(by_row, each_row)));
+/// The same for a list given by the words of its lights, or by their columns and rows.
+template <bool with_words, unsigned blocks>
+LIGHTBIN_TARGET inline void store_rows(const std::uint64_t* masks, const std::uint8_t* columns,
+                                       const std::uint8_t* rows, std::uint32_t count, std::uint64_t* to) {
+    __m512i lights[blocks];
+    for (unsigned i = 0; i < blocks; ++i) {
+        const std::uint32_t left = count > 8 * i ? count - 8 * i : 0;
+        if constexpr (with_words) {
+            lights[i] = _mm512_maskz_loadu_epi64(static_cast<__mmask8>(first_lanes(left)), masks + 8 * i);
+        } else {
+            // A light's byte of columns in each row it covers: its byte of rows is the mask.
+            std::uint64_t covered_rows;
+            std::memcpy(&covered_rows, rows + 8 * i, 8);
+            lights[i] = _mm512_maskz_permutexvar_epi8(
+                covered_rows & first_lanes(8 * left),
+                _mm512_add_epi8(load(eight_each.data()), _mm512_set1_epi8(static_cast<char>(8 * i))),
+                load(columns));
+        }
+    }
+    store_rows(lights, to);
 }
 
-/// Appends one row of a supertile of up to 8 lights, and the row's `columns` tiles. Returns how many ids.
-template <class Id>
-LIGHTBIN_TARGET inline std::uint32_t append_small(Id* to, Tile* tiles, __mmask8 columns, std::uint32_t at,
-                                                  const std::uint64_t* words, const std::uint16_t* ids,
-                                                  std::uint32_t upper) {
-    const std::uint64_t lit = words[0], sums = words[8];
-    const __m512i light = _mm512_and_si512(load(every_byte.data()), _mm512_set1_epi8(7));
-    const __m512i places = _mm512_maskz_compress_epi8(lit, light);
+/// Appends a row of a supertile with a short list, `words` from store_rows, and its `columns` tiles. Returns
+/// how many ids.
+template <unsigned blocks, class Id>
+LIGHTBIN_TARGET inline std::uint32_t append_row(Id* to, Tile* tiles, __mmask8 columns, std::uint32_t at,
+                                                const std::uint64_t* words, unsigned row, __m512i ids,
+                                                std::uint32_t upper) {
     // Tiles are pairs of 32 bits, offset and count: the difference of running sums.
+    const std::uint64_t sums = words[row];
     const __m512i ends = _mm512_cvtepu8_epi64(_mm_cvtsi64_si128(static_cast<long long>(sums))),
                   begins = _mm512_cvtepu8_epi64(_mm_cvtsi64_si128(static_cast<long long>(sums << 8)));
-    const __m512i pairs = _mm512_or_si512(_mm512_add_epi32(begins, _mm512_set1_epi64(at)),
-                                          _mm512_slli_epi64(_mm512_sub_epi64(ends, begins), 32));
-    _mm512_mask_storeu_epi64(tiles, columns, pairs);
-    const __m512i table = _mm512_castsi128_si512(_mm_loadu_si128(reinterpret_cast<const __m128i*>(ids)));
-    const std::uint32_t count = static_cast<std::uint32_t>(sums >> 56);
-    store_ids(to, _mm512_permutexvar_epi16(_mm512_cvtepu8_epi16(_mm512_castsi512_si256(places)), table),
-              upper);
-    if (count > 32)
-        store_ids(to + 32,
-                  _mm512_permutexvar_epi16(_mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64(places, 1)), table),
+    _mm512_mask_storeu_epi64(tiles, columns,
+                             _mm512_or_si512(_mm512_add_epi32(begins, _mm512_set1_epi64(at)),
+                                             _mm512_slli_epi64(_mm512_sub_epi64(ends, begins), 32)));
+    const __m512i light =
+        _mm512_and_si512(load(counted<std::uint8_t>.data()), _mm512_set1_epi8(8 * blocks - 1));
+    for (unsigned i = 0; i < blocks; ++i) {  // a word has 8 / blocks tiles
+        const std::uint64_t lit = words[8 + blocks * row + i];
+        const __m512i places = _mm512_maskz_compress_epi8(lit, light);
+        const unsigned count = static_cast<unsigned>(std::popcount(lit));
+        store_ids(to, _mm512_permutexvar_epi16(_mm512_cvtepu8_epi16(_mm512_castsi512_si256(places)), ids),
                   upper);
-    return count;
+        if (count > 32)
+            store_ids(
+                to + 32,
+                _mm512_permutexvar_epi16(_mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64(places, 1)), ids),
+                upper);
+        to += count;
+    }
+    return static_cast<std::uint32_t>(sums >> 56);
 }
 
 /// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
@@ -251,10 +332,7 @@ LIGHTBIN_TARGET inline void turn_64_words(const std::uint64_t* lights, std::uint
                                           std::uint64_t* tiles) {
     // Bytes first: in each vector of 8 lights, the bytes of one tile row side by side ...
     __m512i v[8], w[8];
-    const __m512i by_row =
-        _mm512_set_epi8(63, 55, 47, 39, 31, 23, 15, 7, 62, 54, 46, 38, 30, 22, 14, 6, 61, 53, 45, 37, 29, 21,
-                        13, 5, 60, 52, 44, 36, 28, 20, 12, 4, 59, 51, 43, 35, 27, 19, 11, 3, 58, 50, 42, 34,
-                        26, 18, 10, 2, 57, 49, 41, 33, 25, 17, 9, 1, 56, 48, 40, 32, 24, 16, 8, 0);
+    const __m512i by_row = load(turned_bytes.data());
     for (unsigned i = 0; i < 8; ++i)
         v[i] = _mm512_permutexvar_epi8(
             by_row,
@@ -354,16 +432,18 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
             size[x] = count;
             begin[x] = ids_used;
             first_word[x] = words_used;
-            const std::uint32_t needed = (count + 63) / 64 * group;
+            const std::uint32_t needed = count == 0 ? 0
+                                         : count < 32
+                                             ? 40
+                                             : (count + 63) / 64 * group;  // short lists: see store_rows
             std::uint64_t* words = scratch.words.room(words_used + needed, words_used) + words_used;
-            if (count > 0 && count <= 8) {
-                if constexpr (with_words) {
-                    alignas(64) std::uint8_t bytes[64];
-                    turn_words(masks, count, bytes);
-                    store_small_words(words, load(bytes));
-                } else {
-                    small_words(columns, rows, count, words);
-                }
+            if (count == 0) {
+            } else if (count <= 8) {
+                store_rows<with_words, 1>(masks, columns, rows, count, words);
+            } else if (count <= 16) {
+                store_rows<with_words, 2>(masks, columns, rows, count, words);
+            } else if (count < 32) {
+                store_rows<with_words, 4>(masks, columns, rows, count, words);
             } else {
                 for (std::uint32_t j = 0; j < count; j += 64, words += group) {
                     if constexpr (with_words) {
@@ -389,9 +469,15 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
                 const __mmask8 columns_mask = static_cast<__mmask8>(0xff >> (8 - columns));
                 if (count == 0) {
                     _mm512_mask_storeu_epi64(tiles, columns_mask, _mm512_set1_epi64(at));
-                } else if (count <= 8) {
-                    const std::uint32_t n =
-                        append_small(out, tiles, columns_mask, at, words + row % 8, ids, uppers[0]);
+                } else if (count < 32) {
+                    const __m512i table = load(ids);
+                    std::uint32_t n;
+                    if (count <= 8)
+                        n = append_row<1>(out, tiles, columns_mask, at, words, row % 8, table, uppers[0]);
+                    else if (count <= 16)
+                        n = append_row<2>(out, tiles, columns_mask, at, words, row % 8, table, uppers[0]);
+                    else
+                        n = append_row<4>(out, tiles, columns_mask, at, words, row % 8, table, uppers[0]);
                     out += n;
                     at += n;
                 } else if (count <= 64) {
