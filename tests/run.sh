@@ -8,13 +8,14 @@ cd "$(dirname "$0")/.."
 
 compilers="g++ clang-14 clang-19" # the last two to see that they have no warning to give either
 tools="cmake ninja-build"
+arm="g++-aarch64-linux-gnu qemu-user-static" # the NEON tier, in an emulator
 libraries="doctest-dev libglm-dev"
 oracle="libboost-dev libgmp-dev"
 examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
 opengl=libgl1-mesa-dri # Mesa draws where there is no GPU
 shaders="glslang-dev spirv-tools"
 # shellcheck disable=SC2086  # one word a package
-install_packages $compilers $tools $libraries $oracle $examples $opengl $shaders
+install_packages $compilers $tools $arm $libraries $oracle $examples $opengl $shaders
 
 echo "$me: configuring and building in build/dev"
 jobs=$(nproc)

@@ -42,13 +42,15 @@ BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint32_t lights, std::u
         // Nearly empty grids: a walk over all supertiles costs more than counting and scattering.
         if (area <= view.tile_count() / 4) return bin_scatter<Id>;
         // Without compress, putting a small light in its lists costs as much as scattering it.
-        if (isa == Isa::avx2 && area < std::uint64_t{16} * lights) return bin_scatter<Id>;
-        if (isa < Isa::avx2) return bin_scatter<Id>;
+        if (isa != Isa::avx512 && area < std::uint64_t{16} * lights) return bin_scatter<Id>;
+        if (isa == Isa::scalar || isa == Isa::sse2) return bin_scatter<Id>;
     }
 #if defined(LIGHTBIN_X86)
     if (isa == Isa::avx512) return avx512::bin_compress<footprint, depth_test, Id>;
     if (isa == Isa::avx2) return avx2::bin_supertiles<footprint, depth_test, Id>;
     if (isa == Isa::sse2) return sse2::bin_supertiles<footprint, depth_test, Id>;
+#elif defined(LIGHTBIN_NEON)
+    if (isa == Isa::neon) return neon::bin_supertiles<footprint, depth_test, Id>;
 #endif
     return scalar::bin_supertiles<footprint, depth_test, Id>;
 }

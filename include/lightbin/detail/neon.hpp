@@ -7,6 +7,8 @@
 #if defined(LIGHTBIN_NEON)
 
 #include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/scratch.hpp>
+#include <lightbin/detail/supertile.hpp>
 
 #include <arm_neon.h>
 #include <bit>
@@ -66,6 +68,10 @@ inline void store_tiles(std::uint16_t* tiles, Doubles values) {
 }
 
 #include <lightbin/detail/project.inl>
+
+#include <lightbin/detail/tile_masks.inl>
+
+#include <lightbin/detail/supertile.inl>
 
 }  // namespace neon
 }  // namespace LIGHTBIN_FLAVOUR

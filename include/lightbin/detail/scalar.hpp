@@ -56,13 +56,6 @@ template <class Real> void store_tiles(std::uint16_t* tiles, Real value) {
 
 #include <lightbin/detail/project.inl>
 
-/// Writes those of 8 ids whose bit is set, in order. Returns how many.
-template <class Id> std::uint32_t append(Id* out, const std::uint32_t* ids, unsigned mask) {
-    for (unsigned rest = mask; rest != 0; rest &= rest - 1)
-        *out++ = static_cast<Id>(ids[std::countr_zero(rest)]);
-    return static_cast<std::uint32_t>(std::popcount(mask));
-}
-
 #include <lightbin/detail/tile_masks.inl>
 
 #include <lightbin/detail/supertile.inl>

@@ -83,17 +83,6 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     }
 }
 
-/// Writes those of 8 ids whose bit is set, in order, then elements that mean nothing: every id is written, and
-/// the place moves on for those chosen. Returns how many.
-template <class Id> std::uint32_t append(Id* out, const std::uint32_t* ids, unsigned mask) {
-    std::uint32_t count = 0;
-    for (unsigned i = 0; i < 8; ++i, mask >>= 1) {
-        out[count] = static_cast<Id>(ids[i]);
-        count += mask & 1;
-    }
-    return count;
-}
-
 #include <lightbin/detail/tile_masks.inl>
 
 #include <lightbin/detail/supertile.inl>

@@ -62,6 +62,17 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     }
 }
 
+/// Writes those of 8 ids whose bit is set, in order, then elements that mean nothing: every id is written, and
+/// the place moves on for those chosen. Returns how many.
+template <class Id> std::uint32_t append(Id* out, const std::uint32_t* ids, unsigned mask) {
+    std::uint32_t count = 0;
+    for (unsigned i = 0; i < 8; ++i, mask >>= 1) {
+        out[count] = static_cast<Id>(ids[i]);
+        count += mask & 1;
+    }
+    return count;
+}
+
 /// Turns the words of up to 8 lights, a bit a tile, into a byte a tile, a bit a light.
 inline void turn_words(const std::uint64_t* words, std::uint32_t count, std::uint8_t* tiles) {
     for (unsigned row = 0; row < 8; ++row) {
