@@ -25,7 +25,7 @@ namespace lightbin {
 /// footprint     silhouette: with row spans
 /// with_spheres  keep the view-space spheres too, for a depth test
 template <Footprint footprint, bool with_spheres> class Footprints {
-    static_assert(footprint == Footprint::rectangle, "lightbin: silhouettes are not built yet");
+    static constexpr bool with_spans = footprint == Footprint::silhouette;
 
 public:
     /// Projects every light with the kernel of an instruction set. After it, a light's rectangle holds each
@@ -51,7 +51,7 @@ public:
                    .spheres = detail::as_they_are(lights)};
         const bool move = arrays_.spheres == nullptr;
         Sphere* kept = nullptr;
-        if constexpr (with_spheres)
+        if constexpr (with_spheres || with_spans)
             if (move) arrays_.spheres = kept = spheres_.room(lights_);
         detail::FootprintRun* runs = runs_.room(parts);
         detail::ProjectCounts* counts = part_counts_.room(parts);
@@ -71,12 +71,15 @@ public:
                 std::array<Sphere, detail::ChunkRects::size> block;
                 for (; first < end; first += block.size()) {
                     const std::size_t count = (std::min)(block.size(), end - first);
-                    Sphere* to = with_spheres ? kept + first : block.data();
+                    Sphere* to = with_spheres || with_spans ? kept + first : block.data();
                     for (std::size_t i = 0; i < count; ++i)
                         to[i] = std::invoke(lights.to_view_sphere, lights.array[first + i]);
                     consume(to, first, count);
                 }
             }
+            if constexpr (with_spans)
+                for (std::uint32_t i = 0; i < sum.visible; ++i)
+                    sum.rows += out.y1[i] - out.y0[i] + 1u;
             counts[part] = sum;
             const std::uint32_t begin = static_cast<std::uint32_t>(part * stride);
             runs[part] = {begin, begin + sum.visible};
@@ -87,7 +90,9 @@ public:
             counts_.visible += counts[part].visible;
             counts_.rejected += counts[part].rejected;
             counts_.area += counts[part].area;
+            counts_.rows += counts[part].rows;
         }
+        if constexpr (with_spans) add_spans(detail::row_span_kernel(isa), view, parallel);
     }
 
     std::size_t lights() const { return lights_; }
@@ -98,10 +103,31 @@ public:
     std::span<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
 
 private:
+    void add_spans(detail::RowSpanKernel kernel, const View& view, const Parallel& parallel) {
+        constexpr std::uint64_t padding = 8;  // a vector of rows
+        arrays_.span_begin = span_begin_.room(runs_.data()[run_count_ - 1].end);
+        // Later lights than 32 bits can number the spans of keep their rectangles.
+        const std::uint64_t room = (std::min)(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
+        detail::RowSpan* spans = spans_.room(static_cast<std::size_t>(room + padding));
+        arrays_.spans = spans;
+        std::uint64_t place = 0;
+        for (std::size_t part = 0; part < run_count_; ++part) {
+            detail::ProjectCounts& counts = part_counts_.data()[part];
+            const std::uint64_t rows = counts.rows;
+            counts.rows = place;  // now where its spans begin
+            place += rows + padding;
+        }
+        parallel.run(run_count_, [&](std::size_t part) {
+            kernel(view.camera(), arrays_, runs_.data()[part], spans, part_counts_.data()[part].rows);
+        });
+    }
+
     static constexpr std::size_t smallest_part = 4096;  ///< lights: less is not worth a thread's start
 
     detail::Buffer<std::uint32_t> ids_;
     detail::Buffer<std::uint16_t> x0_, y0_, x1_, y1_;
+    detail::Buffer<std::uint32_t> span_begin_;
+    detail::Buffer<detail::RowSpan> spans_;
     detail::Buffer<Sphere> spheres_;
     detail::Buffer<detail::FootprintRun> runs_;
     detail::Buffer<detail::ProjectCounts> part_counts_;

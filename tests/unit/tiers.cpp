@@ -175,6 +175,8 @@ TEST_CASE("all tiers give the same bytes, on any number of workers") {
     compare<Options{.index = Index::u16}>(50, 1000);
     compare<interval>(150, 2000);
     compare<box>(100, 4000);
+    compare<Options{.footprint = Footprint::silhouette}>(100, 6000);
+    compare<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>(50, 7000);
     compare<Options{.index = Index::u16, .depth_test = DepthTest::split_box}>(100, 5000);
 }
 

@@ -118,8 +118,15 @@ LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCo
     counts.area += static_cast<std::uint64_t>(_mm_cvtsi128_si64(sum)) +
                    static_cast<std::uint64_t>(_mm_extract_epi64(sum, 1));
 }
+LIGHTBIN_TARGET inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
+    const __m128i pairs =
+        _mm_or_si128(_mm256_cvttpd_epi32(first), _mm_slli_epi32(_mm256_cvttpd_epi32(last), 16));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(spans), pairs);
+}
 
 #include <lightbin/detail/project.inl>
+
+#include <lightbin/detail/silhouette.inl>
 
 /// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
 LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {

@@ -107,6 +107,12 @@ LIGHTBIN_TARGET inline void store_tiles(std::uint16_t* tiles, Doubles values) {
     _mm_storeu_si128(reinterpret_cast<__m128i*>(tiles), _mm256_cvtepi32_epi16(_mm512_cvttpd_epi32(values)));
 }
 
+LIGHTBIN_TARGET inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
+    const __m256i pairs =
+        _mm256_or_si256(_mm512_cvttpd_epi32(first), _mm256_slli_epi32(_mm512_cvttpd_epi32(last), 16));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(spans), pairs);
+}
+
 /// As the general append_visible, with compress instructions.
 LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCounts& counts,
                                            std::uint32_t first_id, unsigned visible, const ChunkRects& rects,
@@ -136,6 +142,8 @@ LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCo
 }
 
 #include <lightbin/detail/project.inl>
+
+#include <lightbin/detail/silhouette.inl>
 
 #include <lightbin/detail/tile_masks.inl>
 

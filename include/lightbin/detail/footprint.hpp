@@ -40,9 +40,9 @@ struct FootprintArrays {
     /// With a depth test, by id, of all lights: view space as the caller has it. To be read with load_sphere.
     const Sphere* spheres;
 
-    /// The same arrays with their first `begin` elements left out.
+    /// The same arrays with their first `begin` elements left out, for writing rectangles.
     FootprintArrays from(std::size_t begin) const {
-        return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin, span_begin, spans, spheres};
+        return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin, nullptr, nullptr, spheres};
     }
 };
 
@@ -50,6 +50,7 @@ struct FootprintArrays {
 struct ProjectCounts {
     std::uint32_t visible = 0, rejected = 0;
     std::uint64_t area = 0;  ///< sum of the rectangles' tiles: the most entries there can be
+    std::uint64_t rows = 0;  ///< sum of the rectangles' heights, counted for silhouettes only
 };
 
 /// The tiles of as many lights as are projected at a time, before those out of view are dropped.

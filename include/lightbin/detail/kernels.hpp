@@ -18,6 +18,7 @@
 namespace lightbin::detail {
 
 using ProjectKernel = decltype(&scalar::project);
+using RowSpanKernel = decltype(&scalar::row_spans);
 template <class Id>
 using BinKernel = std::uint64_t (*)(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands);
 
@@ -33,6 +34,18 @@ inline ProjectKernel project_kernel(Isa isa) {
 #endif
     static_cast<void>(isa);
     return scalar::project;
+}
+
+inline RowSpanKernel row_span_kernel(Isa isa) {
+#if defined(LIGHTBIN_X86)
+    if (isa == Isa::avx512) return avx512::row_spans;
+    if (isa == Isa::avx2) return avx2::row_spans;
+    if (isa == Isa::sse2) return sse2::row_spans;
+#elif defined(LIGHTBIN_NEON)
+    if (isa == Isa::neon) return neon::row_spans;
+#endif
+    static_cast<void>(isa);
+    return scalar::row_spans;
 }
 
 /// The fastest kernel for `lights` lights in view whose rectangles have `area` tiles in all.

@@ -14,6 +14,7 @@
 #include <bit>
 #include <cfloat>
 #include <cmath>
+#include <cstring>
 
 #define LIGHTBIN_TARGET
 
@@ -66,8 +67,14 @@ inline void store_tiles(std::uint16_t* tiles, Doubles values) {
     tiles[0] = static_cast<std::uint16_t>(values[0]);
     tiles[1] = static_cast<std::uint16_t>(values[1]);
 }
+inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
+    for (unsigned i = 0; i < double_lanes; ++i)
+        spans[i] = {static_cast<std::uint16_t>(first[i]), static_cast<std::uint16_t>(last[i])};
+}
 
 #include <lightbin/detail/project.inl>
+
+#include <lightbin/detail/silhouette.inl>
 
 #include <lightbin/detail/tile_masks.inl>
 

@@ -53,8 +53,13 @@ inline void load_spheres(const Sphere* spheres, float& x, float& y, float& z, fl
 template <class Real> void store_tiles(std::uint16_t* tiles, Real value) {
     *tiles = static_cast<std::uint16_t>(value);
 }
+inline void store_spans(RowSpan* spans, double first, double last) {
+    *spans = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(last)};
+}
 
 #include <lightbin/detail/project.inl>
+
+#include <lightbin/detail/silhouette.inl>
 
 #include <lightbin/detail/tile_masks.inl>
 

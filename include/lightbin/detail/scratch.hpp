@@ -14,7 +14,7 @@ struct IdBlock {
 };
 
 struct Scratch {
-    Buffer<std::int32_t> corners;   ///< difference array of rectangles, over tiles or supertiles
+    Buffer<std::uint32_t> corners;  ///< difference array of rectangles, over tiles or supertiles
     Buffer<std::uint32_t> cursors;  ///< one a supertile
 
     // Lists of the lights that reach a supertile: id, and which of its columns and rows.

@@ -66,8 +66,15 @@ inline void store_tiles(std::uint16_t* tiles, Doubles values) {
     const int both_tiles = _mm_cvtsi128_si32(_mm_packs_epi32(whole, whole));
     std::memcpy(tiles, &both_tiles, sizeof both_tiles);
 }
+/// Of two lights' or rows' tiles each.
+inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
+    const __m128i pairs = _mm_or_si128(_mm_cvttpd_epi32(first), _mm_slli_epi32(_mm_cvttpd_epi32(last), 16));
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(spans), pairs);
+}
 
 #include <lightbin/detail/project.inl>
+
+#include <lightbin/detail/silhouette.inl>
 
 /// As the AVX2 tier's, which see.
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {

@@ -20,7 +20,7 @@ LIGHTBIN_TARGET void fill_lists(const BinJob<Id>& job, Scratch& scratch, const B
                                 std::size_t pitch) {
     const FootprintArrays& lights = job.lights;
     const std::size_t count = pitch * (bands.end - bands.begin + 2);
-    std::int32_t* corners = scratch.corners.room(count);
+    std::uint32_t* corners = scratch.corners.room(count);
     std::memset(corners, 0, count * sizeof *corners);
     const unsigned first_row = 8 * bands.begin, last_row = 8 * bands.end - 1;
     for (const FootprintRun& run : job.runs)
@@ -40,7 +40,7 @@ LIGHTBIN_TARGET void fill_lists(const BinJob<Id>& job, Scratch& scratch, const B
     std::uint32_t* cursors = scratch.cursors.room(count);
     std::uint32_t total = 0;
     for (std::size_t list = 0; list < count; ++list) {
-        std::uint32_t here = static_cast<std::uint32_t>(corners[list]);  // sums wrap, and come out right
+        std::uint32_t here = corners[list];  // sums wrap, and come out right
         if (list > 0) here += size[list - 1];
         if (list >= pitch) here += size[list - pitch];
         if (list > pitch) here -= size[list - pitch - 1];

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// Row spans: where a sphere's projection, an ellipse, meets each tile row. Included once a tier, after its
+// vectors; in double.
+//
+// The plane  y = v z  through the eye cuts the sphere in a disc whose projection reaches over the slopes
+//     u(v) = (x g -+ t S) / A,  g = y v + z,  S^2 = r^2 (1 + v^2) - (y - v z)^2,  A = y^2 + z^2 - r^2,  t^2 = A + x^2
+// (the tangent cone, solved for u). The ellipse is convex, so within a row its right end is at the row slope v
+// nearest to that of its rightmost point, and so for the left: those two slopes are clamped to each row, once
+// a light and row, and u(v) is all there is. The rightmost point is where the plane x = u z touches the sphere:
+// with T^2 = x^2 + z^2 - r^2 and Q = z T + |x| r its slope v is  y Q / (T (z^2 - r^2)),  and that of the
+// point on the other side  y (x^2 + z^2) / (T Q).  Orthographic: g = 1, S^2 = r^2 - (y - v)^2, u = x -+ S, v = y.
+//
+// Rounding, with e = 2^-53, the rows' slopes within +-V, F = r (1 + V) >= r sqrt(1 + v^2), m = V z + |y| + F:
+// - A row's edge is within 14 e V of the truth by the camera's numbers, the extreme slope within 14 e V: in all
+//   v may be off by 2^-48 V. That and 6 e m F of rounding move S^2 by less than 2^-45 F m + 2^-94 m^2, for rows
+//   that the sphere meets, where |y - v z| <= F. Twice that is added to S^2.
+// - x g / A is within 13 e |x| (|y| V + z) / A and moves by 2^-48 |x y| V / A with v; t S / A within 18 e t F / A;
+//   the camera's offset within 9 e (|offset| + tiles). Twice these and more are added to both ends.
+
+struct RowTerms {  ///< of `lanes` lights
+    double y[lanes], y_v[lanes], z[lanes], r2[lanes],
+        r2_v[lanes];  ///< g = y_v v + z, S^2 = r2 + r2_v v^2 - ..
+    double middle[lanes], reach[lanes], low[lanes], high[lanes],
+        slack[lanes];  ///< tiles: middle g -+ reach S + low
+    double left_v[lanes], right_v[lanes];
+};
+
+template <class Reals> LIGHTBIN_TARGET inline void store(double* to, Reals values) {
+    std::memcpy(to, &values, sizeof values);
+}
+
+/// Writes the terms of the lights. Returns a bit for each whose silhouette is known: those wholly beyond the
+/// near plane.
+LIGHTBIN_TARGET inline unsigned row_terms(const Camera& camera, const Sphere (&spheres)[lanes],
+                                          RowTerms& terms) {
+    const double row_offset = camera.y.offset, scale = camera.x.scale, offset = camera.x.offset;
+    const double most = (std::fabs(row_offset) + camera.y.tiles) / camera.y.scale;  // V
+    const double margin = 0x1p-48 * (std::fabs(offset) + camera.x.tiles) + 0x1p-80 * scale;
+    Floats floats[4];
+    load_spheres(spheres, floats[0], floats[1], floats[2], floats[3]);
+    unsigned known = 0;
+    for (unsigned half = 0; half < lanes / double_lanes; ++half) {
+        const unsigned at = half * double_lanes;
+        const Doubles x = widened(floats[0], half) * static_cast<double>(camera.x.sign);
+        const Doubles y = widened(floats[1], half) * static_cast<double>(camera.y.sign);
+        const Doubles z = widened(floats[2], half) * static_cast<double>(camera.z_sign);
+        const Doubles r = widened(floats[3], half), r2 = mul(r, r), one = all(1.0), zero = all(0.0);
+        Doubles y_v = zero, g_z = one, r2_v = zero, middle = x * scale, reach = all(scale);
+        Doubles left_v = y, right_v = y, largest_f = r;
+        auto whole = less(r, all(HUGE_VAL));
+        if (!camera.orthographic) {
+            const Doubles a = abs(x), a2 = mul(x, x), e = mul(z - r, z + r), big_a = mul(y, y) + e;
+            const Doubles per_a = scale / big_a, side = sqrt(a2 + e), q = mul(z, side) + mul(a, r);
+            const Doubles outer_v = mul(y, q) / mul(side, e);
+            const Doubles inner_v = mul(y, a2 + mul(z, z)) / mul(side, q);
+            const auto negative = less(x, zero);
+            left_v = select(negative, outer_v, inner_v);
+            right_v = select(negative, inner_v, outer_v);
+            middle = mul(x, per_a);
+            reach = mul(sqrt(a2 + big_a), per_a);
+            y_v = y;
+            g_z = z;
+            r2_v = r2;
+            largest_f = mul(r, all(1 + most));
+            whole = less(all(static_cast<double>(camera.near_fast)), z - r);
+        }
+        const Doubles m = mul(g_z, all(most)) + abs(y) + largest_f;
+        const Doubles error =
+            (mul(abs(middle), mul(abs(y_v), all(most)) + g_z) + mul(reach, largest_f)) * 0x1p-46 + margin;
+        store(terms.y + at, y);
+        store(terms.y_v + at, y_v);
+        store(terms.z + at, g_z);
+        store(terms.r2 + at, r2);
+        store(terms.r2_v + at, r2_v);
+        store(terms.middle + at, middle);
+        store(terms.reach + at, reach);
+        store(terms.low + at, offset - error);
+        store(terms.high + at, offset + error);
+        store(terms.slack + at, mul(m, largest_f) * 0x1p-44 + mul(m, m) * 0x1p-93);
+        store(terms.left_v + at, left_v);
+        store(terms.right_v + at, right_v);
+        known |= bits(whole) << at;
+    }
+    return known;
+}
+
+/// Writes the row spans of the lights in view in a run, from spans[place] on; whole vectors are stored. Each
+/// row has at least one tile. A light gets none where they could drop nothing or can't be numbered.
+LIGHTBIN_TARGET inline void row_spans(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
+                                      RowSpan* spans, std::uint64_t place) {
+    static constexpr double count_up[] = {0, 1, 2, 3, 4, 5, 6, 7};
+    Doubles lane;
+    std::memcpy(&lane, count_up, sizeof lane);
+    const double row_offset = camera.y.offset, per_scale = 1 / camera.y.scale;
+    RowTerms terms;
+    Sphere spheres[lanes];
+    for (std::uint32_t begin = run.begin; begin < run.end; begin += lanes) {
+        const std::uint32_t used = run.end - begin < lanes ? run.end - begin : lanes;
+        for (std::uint32_t i = 0; i < lanes; ++i)
+            spheres[i] = load_sphere(lights.spheres + lights.ids[begin + (i < used ? i : 0)]);
+        const unsigned known = row_terms(camera, spheres, terms);
+        for (std::uint32_t i = 0; i < used; ++i) {
+            const unsigned x0 = lights.x0[begin + i], x1 = lights.x1[begin + i], y0 = lights.y0[begin + i],
+                           y1 = lights.y1[begin + i];
+            std::uint32_t& first = lights.span_begin[begin + i];
+            first = FootprintArrays::whole_rectangle;
+            if ((known >> i & 1) == 0 || x0 == x1 || y0 == y1 || place + (y1 - y0) >= first) continue;
+            first = static_cast<std::uint32_t>(place);
+            const Doubles y = all(terms.y[i]), y_v = all(terms.y_v[i]), z = all(terms.z[i]),
+                          r2 = all(terms.r2[i]), r2_v = all(terms.r2_v[i]), slack = all(terms.slack[i]),
+                          middle = all(terms.middle[i]), reach = all(terms.reach[i]),
+                          leftmost = all(static_cast<double>(x0)), rightmost = all(static_cast<double>(x1));
+            for (unsigned row = y0; row <= y1; row += double_lanes) {
+                const Doubles edge = lane + (static_cast<double>(row) - row_offset);
+                const Doubles v0 = edge * per_scale, v1 = (edge + 1.0) * per_scale;
+                const Doubles left_v = lesser(greater(all(terms.left_v[i]), v0), v1);
+                const Doubles right_v = lesser(greater(all(terms.right_v[i]), v0), v1);
+                const Doubles left_e = y - mul(left_v, z), right_e = y - mul(right_v, z);
+                const Doubles left_s2 = r2 + mul(r2_v, mul(left_v, left_v)) - mul(left_e, left_e);
+                const Doubles right_s2 = r2 + mul(r2_v, mul(right_v, right_v)) - mul(right_e, right_e);
+                const Doubles left_s = sqrt(greater(left_s2, all(0.0)) + slack);
+                const Doubles right_s = sqrt(greater(right_s2, all(0.0)) + slack);
+                const Doubles low =
+                    mul(middle, mul(y_v, left_v) + z) - mul(reach, left_s) + all(terms.low[i]);
+                const Doubles high =
+                    mul(middle, mul(y_v, right_v) + z) + mul(reach, right_s) + all(terms.high[i]);
+                store_spans(spans + place + (row - y0), lesser(greater(low, leftmost), rightmost),
+                            lesser(greater(high, leftmost), rightmost));
+            }
+            place += y1 - y0 + 1;
+        }
+    }
+}
