@@ -21,5 +21,6 @@
 #define small char
 
 #include <lightbin/lightbin.hpp>
+#include <lightbin/shader_build.hpp>
 
 lightbin::Binner<> binner;

@@ -1,6 +1,7 @@
 // Every public template instantiated with every kind of argument, in a function named by the macro UNIT:
 // compiled by several compilers with several flags for its warnings, and twice into one program.
 #include <lightbin/lightbin.hpp>
+#include <lightbin/shader_build.hpp>
 
 #include <glm/glm.hpp>
 
@@ -100,6 +101,26 @@ void use_lights(Hash& hash, const View& view, const auto& lights, const ZBounds&
     use_binner<Options{.depth_test = DepthTest::interval}>(hash, view, lights, bounds);
 }
 
+void use_encodings(Hash& hash, const auto& grid) {
+    for (const ListFormat& format :
+         {ListFormat{.ids = IdWidth::u8}, ListFormat{ListEncoding::sentinel, IdWidth::u16, 9},
+          ListFormat{.encoding = ListEncoding::bitmask, .max_lights = 200}}) {
+        std::vector<std::byte> bytes(encoded_bytes(format, grid.tiles().size(), grid.indices().size()));
+        hash.add(value_of(encode(grid, format, bytes)).entries_cut);
+        for (const std::byte byte : bytes)
+            hash.add(std::to_integer<std::uint64_t>(byte));
+    }
+}
+
+void use_shader_data(Hash& hash, const View& view, const std::vector<Sphere>& lights) {
+    const auto footprints = value_of(shader_footprints(view, lights));
+    for (const ShaderFootprint& footprint : footprints)
+        hash.add(footprint.id * 65536ull + footprint.x1);
+    hash.add(shader_edges(view).size());
+    hash.add(shader_reduce(view).height);
+    hash.add(shader_build(view, static_cast<std::uint32_t>(footprints.size()), 9).footprints);
+}
+
 void use_view(Hash& hash, const View& view) {
     hash.add(static_cast<std::uint64_t>(view.tile_size()));
     hash.add(static_cast<std::uint64_t>(view.viewport().width));
@@ -133,6 +154,9 @@ void use_view(Hash& hash, const View& view) {
     const glm::mat4 camera(0.8f, 0, 0.6f, 0, 0, 1, 0, 0, -0.6f, 0, 0.8f, 0, 1, 2, -3, 1);
     const double identity[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
 
+    Binner<> binner;
+    use_encodings(hash, value_of(binner.bin(view, spheres)));
+    use_shader_data(hash, view, spheres);
     use_all_options<DepthTest::none>(hash, view, spheres, bounds);
     use_all_options<DepthTest::interval>(hash, view, spheres, bounds);
     use_lights(hash, view, std::span<const glm::vec4>(vectors), bounds);
@@ -163,5 +187,7 @@ std::uint64_t UNIT() {
             for (const char letter : value_of(shader).text)
                 hash.add(static_cast<unsigned char>(letter));
         }
+    hash.add(value_of(reduce_shader()).text.size());
+    hash.add(value_of(build_shader()).text.size());
     return hash.value;
 }

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <lightbin/shader.hpp>
+#include <lightbin/shader_build.hpp>
 
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/mat4x4.hpp>
@@ -122,4 +123,31 @@ TEST_CASE("shader_grid") {
     CHECK(grid.height == 1079);
     CHECK(grid.corner_x == 3);
     CHECK(grid.corner_y == -5);
+}
+
+TEST_CASE("reduction and build shaders: what is off leaves no line, what can't be is refused") {
+    const auto reduction = [](const ReduceShaderOptions& options) { return reduce_shader(options); };
+    const std::string plain = reduction({})->text;
+    for (const char* absent : {"corner", "pixel.y =", "sampler2DMS", "== 0x3f800000u) return", "#version"})
+        CHECK(!has(plain, absent));
+    CHECK(has(reduction({.samples = 4})->text, "sampler2DMS"));
+    CHECK(has(reduction({.skip_background = true})->text, "== 0x3f800000u) return"));
+    CHECK(has(reduction({.reversed_z = true, .skip_background = true})->text, "== 0u) return"));
+    CHECK(has(reduction({.language = ShaderLanguage::glsl_330}).error().message(), "compute"));
+    CHECK(has(reduction({.samples = 9}).error().message(), "1 to 8"));
+    CHECK(has(reduction({.language = ShaderLanguage::essl_300, .stage = ShaderStage::fragment, .samples = 4})
+                  .error()
+                  .message(),
+              "multisample"));
+
+    const std::string none = build_shader({})->text, fill = build_shader({.pass = BuildPass::fill})->text;
+    for (const char* absent : {"z_bounds", "edges", "planes", "lists", "reach2 *"})
+        CHECK(!has(none, absent));
+    CHECK(has(fill, "lightbin_lists[list.x"));
+    CHECK(has(build_shader({.depth_test = DepthTest::interval})->text, "z_bounds"));
+    CHECK(!has(build_shader({.depth_test = DepthTest::interval})->text, "edges"));
+    CHECK(has(build_shader({.depth_test = DepthTest::box})->text, "edges"));
+    CHECK(has(build_shader({.depth_test = DepthTest::split_box}).error().message(), "split_box"));
+    CHECK(has(build_shader({.language = ShaderLanguage::essl_300}).error().message(), "compute"));
+    CHECK(has(build_shader({.pass = BuildPass::fill, .lists = {0}}).error().message(), "binding 0"));
 }

@@ -1,0 +1,123 @@
+// The encodings of a light grid against the grid itself, read back bit by bit.
+#include <doctest/doctest.h>
+
+#include <lightbin/encode.hpp>
+#include <lightbin/lightbin.hpp>
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace lightbin;
+
+namespace {
+
+// A grid that no binning made: `tiles` lists of up to `longest` ids below `lights`.
+struct MadeGrid {
+    std::vector<Tile> tiles;
+    std::vector<std::uint32_t> ids;
+
+    MadeGrid(std::size_t count, std::uint32_t longest, std::uint32_t lights) {
+        std::mt19937 engine(7);
+        const auto below = [&](std::uint32_t end) { return static_cast<std::uint32_t>(engine() % end); };
+        for (std::size_t tile = 0; tile < count; ++tile) {
+            std::vector<std::uint32_t> list;
+            for (std::uint32_t i = below(longest + 1); i > 0; --i)
+                list.push_back(below(lights));
+            std::sort(list.begin(), list.end());
+            list.erase(std::unique(list.begin(), list.end()), list.end());
+            tiles.push_back(
+                {static_cast<std::uint32_t>(ids.size()), static_cast<std::uint32_t>(list.size())});
+            ids.insert(ids.end(), list.begin(), list.end());
+        }
+    }
+
+    LightGrid<std::uint32_t> grid() const { return {static_cast<int>(tiles.size()), 1, tiles, ids, 0}; }
+};
+
+std::uint32_t number_at(const std::vector<std::byte>& bytes, std::size_t at, IdWidth width) {
+    std::uint32_t value = 0;
+    for (unsigned i = 0; i < static_cast<unsigned>(width); ++i)
+        value |= std::to_integer<std::uint32_t>(bytes.at(at * static_cast<unsigned>(width) + i)) << 8 * i;
+    return value;
+}
+
+std::vector<std::uint32_t> decoded(const std::vector<std::byte>& bytes, const ListFormat& format,
+                                   std::size_t index, Tile tile) {
+    std::vector<std::uint32_t> list;
+    if (format.encoding == ListEncoding::offset_count)
+        for (std::uint32_t i = 0; i < tile.count; ++i)
+            list.push_back(number_at(bytes, tile.offset + i, format.ids));
+    if (format.encoding == ListEncoding::sentinel)
+        for (std::uint32_t i = 0; i < format.capacity; ++i) {
+            const std::uint32_t id = number_at(bytes, index * format.capacity + i, format.ids);
+            if (id == (std::uint64_t{1} << 8 * static_cast<unsigned>(format.ids)) - 1) break;
+            list.push_back(id);
+        }
+    if (format.encoding == ListEncoding::bitmask)
+        for (std::uint32_t id = 0; id < format.max_lights; ++id)
+            if (number_at(bytes, index * ((format.max_lights + 31) / 32) + id / 32, IdWidth::u32) >> id % 32 &
+                1)
+                list.push_back(id);
+    return list;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "an encoded list is the grid's, or its lowest ids where the capacity cuts it, and the cut is counted") {
+    for (const std::uint32_t lights : {1u, 32u, 33u, 255u}) {
+        const MadeGrid made(41, 12, lights);
+        const auto grid = made.grid();
+        for (const ListEncoding encoding :
+             {ListEncoding::offset_count, ListEncoding::sentinel, ListEncoding::bitmask})
+            for (const IdWidth ids : {IdWidth::u8, IdWidth::u16, IdWidth::u32})
+                for (const std::uint32_t capacity : {1u, 7u, 12u, 13u}) {
+                    const ListFormat format{encoding, ids, capacity, lights};
+                    const std::uint64_t size = encoded_bytes(format, made.tiles.size(), made.ids.size());
+                    std::vector<std::byte> bytes(size + 4, std::byte{0xa5});
+                    const auto result = encode(grid, format, std::span(bytes).first(size));
+                    REQUIRE(result);
+                    CHECK(size % 4 == 0);
+                    CHECK(number_at(bytes, size / 4, IdWidth::u32) == 0xa5a5a5a5);
+                    std::uint64_t cut = 0;
+                    std::uint32_t cut_tiles = 0, longest = 0;
+                    for (std::size_t tile = 0; tile < made.tiles.size(); ++tile) {
+                        const auto list = grid.lights_in(static_cast<int>(tile), 0);
+                        const bool limited = encoding == ListEncoding::sentinel && list.size() > capacity;
+                        const std::vector<std::uint32_t> expected(
+                            list.begin(), limited ? list.begin() + capacity : list.end());
+                        CHECK(decoded(bytes, format, tile, made.tiles[tile]) == expected);
+                        cut += list.size() - expected.size();
+                        cut_tiles += limited;
+                        longest = (std::max)(longest, static_cast<std::uint32_t>(list.size()));
+                    }
+                    CHECK(result->entries_cut == cut);
+                    CHECK(result->tiles_cut == cut_tiles);
+                    CHECK(result->capacity_needed == longest);
+                }
+    }
+}
+
+TEST_CASE("what a format can't hold is an error, and nothing is written") {
+    const std::vector<Tile> tiles = {{0, 2}};
+    const auto with_last = [&](std::uint32_t last, ListFormat format, std::size_t size) {
+        const std::vector<std::uint32_t> ids = {0, last};
+        std::vector<std::byte> bytes(size, std::byte{0xa5});
+        const auto result = encode(LightGrid<std::uint32_t>(1, 1, tiles, ids, 0), format, bytes);
+        if (!result) CHECK(std::count(bytes.begin(), bytes.end(), std::byte{0xa5}) == static_cast<int>(size));
+        return result ? std::string() : result.error().message();
+    };
+    CHECK(with_last(255, {.ids = IdWidth::u8}, 4) == "");
+    CHECK(with_last(256, {.ids = IdWidth::u8}, 4).find("numbers 256 lights and 257") != std::string::npos);
+    CHECK(with_last(254, {ListEncoding::sentinel, IdWidth::u8, 4}, 4) == "");
+    CHECK(with_last(255, {ListEncoding::sentinel, IdWidth::u8, 4}, 4) != "");
+    CHECK(with_last(65535, {.ids = IdWidth::u16}, 4) == "");
+    CHECK(with_last(65536, {.ids = IdWidth::u16}, 4) != "");
+    CHECK(with_last(99, {ListEncoding::bitmask, IdWidth::u32, 0, 100}, 16) == "");
+    CHECK(with_last(100, {ListEncoding::bitmask, IdWidth::u32, 0, 100}, 16) != "");
+    CHECK(with_last(9, {ListEncoding::bitmask, IdWidth::u32, 0, 100}, 15).find("holds 15 bytes and 16") !=
+          std::string::npos);
+}
