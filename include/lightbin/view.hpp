@@ -135,6 +135,12 @@ public:
                 detail::float_above(depth_at(ndc(farther), +1))};
     }
 
+    /// Window depth of a view depth, give or take rounding. NaN for an infinite one.
+    float window_depth(double view_depth) const {
+        const double ndc = (z_scale_ * view_depth + z_offset_) / (w_scale_ * view_depth + w_offset_);
+        return static_cast<float>(clip_depth_ == ClipDepth::zero_to_one ? ndc : 0.5 * (ndc + 1));
+    }
+
     /// The constants in the form the projection stage reads.
     const detail::Camera& camera() const { return camera_; }
 

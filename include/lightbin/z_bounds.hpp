@@ -2,6 +2,8 @@
 // Stage 2b: depth buffer -> per-tile minimum and maximum view depth of what is drawn there.
 #pragma once
 
+#include <lightbin/detail/kernels.hpp>
+#include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/view.hpp>
@@ -10,7 +12,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <utility>
 
 namespace lightbin {
 
@@ -50,46 +54,87 @@ struct DepthBuffer {
 
 namespace detail {
 
-/// Smallest and largest of a tile's samples; lower > upper where no sample counts.
-struct DepthRange {
-    float lower = infinity, upper = -infinity;
-    bool unknown = false;  ///< a sample is NaN
-};
-
-inline void extend(DepthRange& range, std::span<const float> samples, bool skip, float background) {
-    for (const float depth : samples) {
-        if (skip && depth == background) continue;
-        range.lower = (std::min)(range.lower, depth);  // keeps its first argument when the second is NaN
-        range.upper = (std::max)(range.upper, depth);
-        range.unknown |= std::isnan(depth);
-    }
-}
-
-/// View depths of the samples in `range` and of the fragments that may have written them. In double: a float
-/// sum near 1 would be off by a step of its own.
-inline DepthInterval view_depths(const View& view, const DepthRange& range, DepthFormat format) {
-    if (range.unknown) return view.view_depths(0, 1);
-    if (range.lower > range.upper) return {infinity, -infinity};
+/// The view depths of fragments that may have left window depths `lower` and `upper` in a buffer, and all
+/// between. In double: a float sum near 1 would be off by a step of its own.
+inline DepthInterval fragment_depths(const View& view, float lower, float upper, DepthFormat format) {
     const double step = format == DepthFormat::unorm24   ? 0x1.000002p-24
                         : format == DepthFormat::unorm16 ? 0x1.0002p-16
                                                          : 0.0;
     const double ulp = format == DepthFormat::float32 ? 0x1p-23 : 0.0;
-    return view.view_depths(std::clamp(static_cast<double>(range.lower) * (1 - ulp) - step, 0.0, 1.0),
-                            std::clamp(static_cast<double>(range.upper) * (1 + ulp) + step, 0.0, 1.0));
+    return view.view_depths(std::clamp(static_cast<double>(lower) * (1 - ulp) - step, 0.0, 1.0),
+                            std::clamp(static_cast<double>(upper) * (1 + ulp) + step, 0.0, 1.0));
+}
+
+/// Smallest and largest of some numbers; lower > upper if there are none.
+struct Extremes {
+    float lower = infinity, upper = -infinity;
+};
+
+/// In four chains, so that they need not wait for each other.
+inline Extremes extremes(const float* lower, const float* upper, std::size_t count, Extremes so_far) {
+    Extremes chains[4] = {so_far, so_far, so_far, so_far};
+    std::size_t i = 0;
+    for (; i + 4 <= count; i += 4)
+        for (std::size_t chain = 0; chain < 4; ++chain) {
+            chains[chain].lower = (std::min)(chains[chain].lower, lower[i + chain]);
+            chains[chain].upper = (std::max)(chains[chain].upper, upper[i + chain]);
+        }
+    for (; i < count; ++i) {
+        chains[0].lower = (std::min)(chains[0].lower, lower[i]);
+        chains[0].upper = (std::max)(chains[0].upper, upper[i]);
+    }
+    for (std::size_t chain = 1; chain < 4; ++chain) {
+        chains[0].lower = (std::min)(chains[0].lower, chains[chain].lower);
+        chains[0].upper = (std::max)(chains[0].upper, chains[chain].upper);
+    }
+    return chains[0];
+}
+
+inline constexpr std::size_t most_columns = 512;
+
+/// Takes a row of tiles, `tile_columns` columns each, in blocks: calls reduce(first_column, count, lower, upper)
+/// for each, at most most_columns, which writes two numbers a column, and finish(tile, extremes) for each tile.
+template <class Reduce, class Finish>
+void reduce_tile_row(std::size_t columns, std::size_t tile_columns, Reduce reduce, Finish finish) {
+    const std::size_t block =
+        tile_columns < most_columns ? most_columns / tile_columns * tile_columns : most_columns;
+    float lower[most_columns], upper[most_columns];
+    Extremes tile;
+    for (std::size_t first = 0; first < columns; first += block) {
+        const std::size_t end = (std::min)(first + block, columns);
+        reduce(first, end - first, lower, upper);
+        for (std::size_t column = first; column < end;) {
+            const std::size_t index = column / tile_columns;
+            const std::size_t tile_end = (std::min)((index + 1) * tile_columns, columns);
+            const std::size_t stop = (std::min)(tile_end, end);
+            tile = extremes(lower + (column - first), upper + (column - first), stop - column, tile);
+            if (stop == tile_end) {
+                finish(index, tile);
+                tile = {};
+            }
+            column = stop;
+        }
+    }
 }
 
 }  // namespace detail
 
-/// Reduces a depth buffer to Z bounds in `min` and `max`, which the result then refers to. Either span may be
-/// empty where that side is not wanted; otherwise it takes view.tile_count() floats.
+/// Reduces a depth buffer to Z bounds in `min` and `max` and, if asked for, `gap_min` and `gap_max`, which the
+/// result then refers to. Any span may be empty where that side is not wanted; otherwise it takes
+/// view.tile_count() floats. Gaps are written both or not at all.
 ///
 /// After it, the view depth of every sample lies within its tile's bounds, which are rounded outward and
 /// widened by the format's step. A tile where nothing is drawn (see skip_background) has min = +inf, max =
 /// -inf. Samples outside 0..1 are clamped; a NaN sample makes its tile reach from the near to the far plane.
+/// A tile's gap is the one between its samples on either side of its middle view depth.
 ///
-/// Source: Tiled Shading, section 3 (minimum and maximum depth a tile).
+/// isa  use no wider instructions than these. The result is the same.
+///
+/// Source: Tiled Shading, section 3 (minimum and maximum depth a tile); Harada, "A 2.5D Culling for Forward+",
+/// SIGGRAPH Asia 2012 (depths with a gap).
 inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer, std::span<float> min,
-                                    std::span<float> max) {
+                                    std::span<float> max, std::span<float> gap_min = {},
+                                    std::span<float> gap_max = {}, Isa isa = detail::compiled_isa) {
     const Extent viewport = view.viewport();
     const std::size_t tiles = view.tile_count();
     if (buffer.samples < 1 || buffer.samples > 8)
@@ -101,30 +146,71 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
     const std::size_t needed = tiles == 0 ? 0 : pitch * static_cast<std::size_t>(viewport.height - 1) + row;
     if (buffer.depth.size() < needed)
         return Error{ErrorCode::depth_buffer_too_small, needed, buffer.depth.size()};
-    for (const std::span<float> side : {min, max})
+    for (const std::span<float> side : {min, max, gap_min, gap_max})
         if (!side.empty() && side.size() < tiles)
             return Error{ErrorCode::z_bounds_too_small, tiles, side.size()};
 
-    const float background = view.reversed_z() ? 0.0f : 1.0f;
-    std::size_t tile = 0;
-    for (int ty = 0; ty < view.tiles_y(); ++ty) {
-        const int y0 = ty * view.tile_size(), y1 = (std::min)(viewport.height - y0, view.tile_size()) + y0;
-        for (int tx = 0; tx < view.tiles_x(); ++tx, ++tile) {
-            const int x0 = tx * view.tile_size(), x1 = (std::min)(viewport.width - x0, view.tile_size()) + x0;
-            detail::DepthRange range;
-            for (int y = y0; y < y1; ++y)
-                detail::extend(range,
-                               buffer.depth.subspan(static_cast<std::size_t>(y) * pitch +
-                                                        static_cast<std::size_t>(x0) * samples,
-                                                    static_cast<std::size_t>(x1 - x0) * samples),
-                               buffer.skip_background, background);
-            const DepthInterval depths = detail::view_depths(view, range, buffer.format);
-            if (!min.empty()) min[tile] = depths.min;
-            if (!max.empty()) max[tile] = depths.max;
-        }
+    const float skipped = !buffer.skip_background ? std::numeric_limits<float>::quiet_NaN()
+                          : view.reversed_z()     ? 0.0f
+                                                  : 1.0f;
+    const bool gaps = !gap_min.empty() && !gap_max.empty();
+    const std::size_t size = static_cast<std::size_t>(view.tile_size());
+    const std::size_t tiles_x = static_cast<std::size_t>(view.tiles_x());
+    const std::size_t height = static_cast<std::size_t>(viewport.height);
+    isa = detail::machine_isa(isa);
+    for (std::size_t y = 0, first_tile = 0; first_tile < tiles; y += size, first_tile += tiles_x) {
+        const auto rows = [&](std::size_t first, std::size_t columns) {
+            return detail::DepthRows{buffer.depth.data() + y * pitch + first, pitch,
+                                     (std::min)(size, height - y), columns};
+        };
+        detail::reduce_tile_row(
+            row, size * samples,
+            [&](std::size_t first, std::size_t columns, float* lower, float* upper) {
+                detail::depth_kernels(isa, columns).extremes(rows(first, columns), skipped, lower, upper);
+            },
+            [&](std::size_t index, detail::Extremes range) {
+                const std::size_t tile = first_tile + index;
+                DepthInterval depths = {detail::infinity, -detail::infinity};
+                if (range.lower <= range.upper)
+                    depths = detail::fragment_depths(view, range.lower, range.upper, buffer.format);
+                if (!min.empty()) min[tile] = depths.min;
+                if (!max.empty()) max[tile] = depths.max;
+                if (gaps)  // for now, where to split the tile; NaN: nowhere, as a sample is NaN
+                    gap_min[tile] = range.lower > -detail::infinity
+                                        ? view.window_depth(0.5 * (static_cast<double>(depths.min) +
+                                                                   static_cast<double>(depths.max)))
+                                        : std::numeric_limits<float>::quiet_NaN();
+            });
+        if (!gaps) continue;
+        detail::reduce_tile_row(
+            row, size * samples,
+            [&](std::size_t first, std::size_t columns, float* lower, float* upper) {
+                float split[detail::most_columns];
+                for (std::size_t i = 0; i < columns;) {
+                    const std::size_t index = (first + i) / (size * samples);
+                    const std::size_t end = (std::min)((index + 1) * size * samples - first, columns);
+                    std::fill(split + i, split + end, gap_min[first_tile + index]);
+                    i = end;
+                }
+                detail::depth_kernels(isa, columns).gaps(rows(first, columns), skipped, split, upper, lower);
+            },
+            [&](std::size_t index, detail::Extremes range) {
+                // The fragments next to the gap, in window depth.
+                DepthInterval below = {-detail::infinity, detail::infinity}, above = below;  // no gap
+                if (range.upper > -detail::infinity && range.lower < detail::infinity) {
+                    below = detail::fragment_depths(view, range.upper, range.upper, buffer.format);
+                    above = detail::fragment_depths(view, range.lower, range.lower, buffer.format);
+                }
+                if (view.reversed_z()) std::swap(below, above);
+                gap_min[first_tile + index] = below.max;
+                gap_max[first_tile + index] = above.min;
+            });
     }
-    return ZBounds{min.empty() ? std::span<const float>{} : min.first(tiles),
-                   max.empty() ? std::span<const float>{} : max.first(tiles)};
+    const auto given = [&](std::span<float> side) {
+        return side.empty() ? std::span<const float>{} : std::span<const float>(side.first(tiles));
+    };
+    return ZBounds{given(min), given(max), gaps ? given(gap_min) : given({}),
+                   gaps ? given(gap_max) : given({})};
 }
 
 }  // namespace lightbin

@@ -128,6 +128,8 @@ LIGHTBIN_TARGET inline void store_spans(RowSpan* spans, Doubles first, Doubles l
 
 #include <lightbin/detail/silhouette.inl>
 
+#include <lightbin/detail/depth_columns.inl>
+
 /// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
 LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     __m256i low = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes));

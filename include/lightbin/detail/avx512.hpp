@@ -145,6 +145,8 @@ LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCo
 
 #include <lightbin/detail/silhouette.inl>
 
+#include <lightbin/detail/depth_columns.inl>
+
 #include <lightbin/detail/tile_masks.inl>
 
 #include <lightbin/detail/compress.inl>

@@ -46,6 +46,12 @@ struct FootprintArrays {
     }
 };
 
+/// Samples of a depth buffer, rows by columns.
+struct DepthRows {
+    const float* samples;
+    std::size_t pitch, rows, columns;
+};
+
 /// What the projection of some lights came to.
 struct ProjectCounts {
     std::uint32_t visible = 0, rejected = 0;

@@ -19,6 +19,10 @@ namespace lightbin::detail {
 
 using ProjectKernel = decltype(&scalar::project);
 using RowSpanKernel = decltype(&scalar::row_spans);
+struct DepthKernels {
+    decltype(&scalar::column_extremes) extremes;
+    decltype(&scalar::column_gaps) gaps;
+};
 template <class Id>
 using BinKernel = std::uint64_t (*)(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands);
 
@@ -46,6 +50,20 @@ inline RowSpanKernel row_span_kernel(Isa isa) {
 #endif
     static_cast<void>(isa);
     return scalar::row_spans;
+}
+
+/// For blocks of `columns` columns or more.
+inline DepthKernels depth_kernels(Isa isa, std::size_t columns) {
+#if defined(LIGHTBIN_X86)
+    if (isa == Isa::avx512 && columns >= avx512::lanes) return {avx512::column_extremes, avx512::column_gaps};
+    if (isa >= Isa::avx2 && columns >= avx2::lanes) return {avx2::column_extremes, avx2::column_gaps};
+    if (isa >= Isa::sse2 && columns >= sse2::lanes) return {sse2::column_extremes, sse2::column_gaps};
+#elif defined(LIGHTBIN_NEON)
+    if (isa == Isa::neon && columns >= neon::lanes) return {neon::column_extremes, neon::column_gaps};
+#endif
+    static_cast<void>(isa);
+    static_cast<void>(columns);
+    return {scalar::column_extremes, scalar::column_gaps};
 }
 
 /// The fastest kernel for `lights` lights in view whose rectangles have `area` tiles in all.

@@ -3,8 +3,10 @@
 // NaN.
 #pragma once
 
+#include <bit>
 #include <cfloat>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) ||                     \
@@ -20,12 +22,18 @@ static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<doubl
 
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
 
+/// Returns the largest float below a finite `value`. (std::nextafter is a call.)
+inline float next_below(float value) {
+    if (value == 0) return -FLT_TRUE_MIN;
+    return std::bit_cast<float>(std::bit_cast<std::int32_t>(value) + (value > 0 ? -1 : 1));
+}
+
 /// Returns the largest float that is not above `value`; -inf below the float range.
 inline float float_below(double value) {
     if (value > static_cast<double>(FLT_MAX)) return value > DBL_MAX ? infinity : FLT_MAX;
     if (value < -static_cast<double>(FLT_MAX)) return -infinity;
     const float nearest = static_cast<float>(value);
-    return static_cast<double>(nearest) > value ? std::nextafter(nearest, -infinity) : nearest;
+    return static_cast<double>(nearest) > value ? next_below(nearest) : nearest;
 }
 
 /// Returns the smallest float that is not below `value`; +inf above the float range.

@@ -61,6 +61,8 @@ inline void store_spans(RowSpan* spans, double first, double last) {
 
 #include <lightbin/detail/silhouette.inl>
 
+#include <lightbin/detail/depth_columns.inl>
+
 #include <lightbin/detail/tile_masks.inl>
 
 #include <lightbin/detail/supertile.inl>

@@ -76,6 +76,8 @@ inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
 
 #include <lightbin/detail/silhouette.inl>
 
+#include <lightbin/detail/depth_columns.inl>
+
 /// As the AVX2 tier's, which see.
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     __m128i quarter[4];
