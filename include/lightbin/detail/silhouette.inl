@@ -17,12 +17,11 @@
 // - x g / A is within 13 e |x| (|y| V + z) / A and moves by 2^-48 |x y| V / A with v; t S / A within 18 e t F / A;
 //   the camera's offset within 9 e (|offset| + tiles). Twice these and more are added to both ends.
 
-struct RowTerms {  ///< of `lanes` lights
-    double y[lanes], y_v[lanes], z[lanes], r2[lanes],
-        r2_v[lanes];  ///< g = y_v v + z, S^2 = r2 + r2_v v^2 - ..
-    double middle[lanes], reach[lanes], low[lanes], high[lanes],
-        slack[lanes];  ///< tiles: middle g -+ reach S + low
-    double left_v[lanes], right_v[lanes];
+/// Of `lanes` lights: g = y_v v + z and S^2 = r2 + r2_v v^2 - (y - v z)^2 + slack; in tiles, the ends are
+/// middle g - reach S + low and middle g + reach S + high, at the row slopes left_v and right_v clamped to a row.
+struct RowTerms {
+    double y[lanes], y_v[lanes], z[lanes], r2[lanes], r2_v[lanes], slack[lanes];
+    double middle[lanes], reach[lanes], low[lanes], high[lanes], left_v[lanes], right_v[lanes];
 };
 
 template <class Reals> LIGHTBIN_TARGET inline void store(double* to, Reals values) {
