@@ -1,6 +1,7 @@
 #!/bin/sh
 # Proves the generated shader text in what the normal test run lacks: `sh tests/shaders.sh` on Debian 12, as root
-# or with sudo. Vulkan under its validation layer, Microsoft's compilers (fxc, dxc) and Direct3D 11 under Wine.
+# or with sudo. Vulkan under its validation layer, WebGL 2 in a browser,
+# Microsoft's compilers (fxc, dxc) and Direct3D 11 under Wine.
 # Installs what is missing; what can't be had is skipped, and the summary says so. Takes about 10 minutes.
 set -eu
 me=tests/shaders.sh
@@ -78,41 +79,50 @@ if have Vulkan g++ glslang-dev libvulkan-dev mesa-vulkan-drivers vulkan-validati
         VK_ICD_FILENAMES=/usr/share/vulkan/icd.d/lvp_icd.x86_64.json "$out/run_vulkan"
 fi
 
-# Microsoft's compilers come with an npm package. Debian's npm is installed only where there is none.
-compilers=webgpu@0.6.2
-node=npm
-! command -v npm >/dev/null || node=
-# shellcheck disable=SC2086  # no word where npm is there
-if have Direct3D $node wine wine64 g++-mingw-w64-x86-64-posix xvfb libgl1-mesa-dri; then
+# npm_package PART PACKAGE: whether the package is in build/shaders/npm. Debian's npm is installed only where there
+# is none.
+npm_package() {
+    part=$1 package=$2
+    command -v npm >/dev/null || have "$part" npm || return 1
     # The prefix keeps it here: npm otherwise looks for a project in the folders above.
-    mkdir -p "$out/npm"
-    if npm install --prefix "$out/npm" --no-save --ignore-scripts --no-audit --no-fund $compilers \
-        >"$out/npm.log" 2>&1; then
-        cp "$out/npm/node_modules/webgpu/dist/win32-x64/d3dcompiler_47.dll" \
-            "$out/npm/node_modules/webgpu/dist/win32-x64/dxcompiler.dll" "$out"
-        echo "$me: building the Direct3D programs"
-        build x86_64-w64-mingw32-g++-posix d3d/compile.cpp compile.exe -static
-        build x86_64-w64-mingw32-g++-posix d3d/run_jobs.cpp run_d3d11.exe -static -ld3d11
+    mkdir -p "$out/npm" && echo '{"private": true}' >"$out/npm/package.json"
+    npm install --prefix "$out/npm" --ignore-scripts --no-audit --no-fund "$package" >"$out/npm.log" 2>&1 && return
+    note "$part" "SKIPPED, as npm could not install $package:" \
+        "$(sed -n 's/^npm \(ERR!\|error\) //p' "$out/npm.log" | head -n 1)"
+    return 1
+}
 
-        export WINEPREFIX="$out/wine" HOME="$out" WINEDEBUG=-all
-        # Wine's own d3dcompiler refuses most of HLSL.
-        export WINEDLLOVERRIDES="mscoree=;mshtml=;winemenubuilder.exe=;d3dcompiler_47=n"
-        wine_prefix=$WINEPREFIX
-        timeout 300 wine wineboot -i >"$out/wine.log" 2>&1 || fail "Wine does not start; its log is $out/wine.log"
-        run "fxc 5.0" wine "$out/compile.exe" fxc 5_0
-        run "fxc 5.1" wine "$out/compile.exe" fxc 5_1
-        run "dxc 6.0" wine "$out/compile.exe" dxc 6_0
-        run "dxc 6.6" wine "$out/compile.exe" dxc 6_6
+if have WebGL g++ chromium && npm_package WebGL playwright-core@1.65.1; then
+    echo "$me: building the writer of the jobs for WebGL"
+    build g++ webgl/write_jobs.cpp write_webgl_jobs
+    "$out/write_webgl_jobs" >"$out/webgl_jobs"
+    cp tests/shader/webgl/run_jobs.mjs "$out/npm"
+    run WebGL env HOME="$out" node "$out/npm/run_jobs.mjs" /usr/bin/chromium "$out/webgl_jobs"
+fi
 
-        rm -f "$out/display"
-        Xvfb -displayfd 3 -screen 0 640x480x24 3>"$out/display" 2>/dev/null &
-        display=$!
-        for _ in $(seq 50); do [ -s "$out/display" ] || sleep 0.2; done
-        run "Direct3D 11" env DISPLAY=:"$(cat "$out/display")" wine "$out/run_d3d11.exe"
-    else
-        note Direct3D "SKIPPED, as npm could not install $compilers:" \
-            "$(sed -n 's/^npm \(ERR!\|error\) //p' "$out/npm.log" | head -n 1)"
-    fi
+# An npm package brings Microsoft's compilers.
+if have Direct3D wine wine64 g++-mingw-w64-x86-64-posix xvfb libgl1-mesa-dri && npm_package Direct3D webgpu@0.6.2; then
+    dlls=$out/npm/node_modules/webgpu/dist/win32-x64
+    cp "$dlls/d3dcompiler_47.dll" "$dlls/dxcompiler.dll" "$out"
+    echo "$me: building the Direct3D programs"
+    build x86_64-w64-mingw32-g++-posix d3d/compile.cpp compile.exe -static
+    build x86_64-w64-mingw32-g++-posix d3d/run_jobs.cpp run_d3d11.exe -static -ld3d11
+
+    export WINEPREFIX="$out/wine" HOME="$out" WINEDEBUG=-all
+    # Wine's own d3dcompiler refuses most of HLSL.
+    export WINEDLLOVERRIDES="mscoree=;mshtml=;winemenubuilder.exe=;d3dcompiler_47=n"
+    wine_prefix=$WINEPREFIX
+    timeout 300 wine wineboot -i >"$out/wine.log" 2>&1 || fail "Wine does not start; its log is $out/wine.log"
+    run "fxc 5.0" wine "$out/compile.exe" fxc 5_0
+    run "fxc 5.1" wine "$out/compile.exe" fxc 5_1
+    run "dxc 6.0" wine "$out/compile.exe" dxc 6_0
+    run "dxc 6.6" wine "$out/compile.exe" dxc 6_6
+
+    rm -f "$out/display"
+    Xvfb -displayfd 3 -screen 0 640x480x24 3>"$out/display" 2>/dev/null &
+    display=$!
+    for _ in $(seq 50); do [ -s "$out/display" ] || sleep 0.2; done
+    run "Direct3D 11" env DISPLAY=:"$(cat "$out/display")" wine "$out/run_d3d11.exe"
 fi
 
 echo "$me: summary"

@@ -27,14 +27,24 @@ template <class Compiler> int compile_all(const std::string& model, const Share&
     }
     texts = refused = 0;
 
-    const auto readers = every_reader(model == "5_0" ? lightbin::ShaderLanguage::hlsl_5_0
-                                                     : lightbin::ShaderLanguage::hlsl_5_1);
+    const auto language =
+        model == "5_0" ? lightbin::ShaderLanguage::hlsl_5_0 : lightbin::ShaderLanguage::hlsl_5_1;
+    const auto readers = every_reader(language);
     for (std::size_t i = share.first; i < readers.size(); i += share.count)
         for (const Stage stage : {Stage::fragment, Stage::compute}) {
             const auto snippet = lightbin::shader_snippet(readers[i]);
             compiles(name_of(readers[i]), snippet ? reader_text(readers[i], *snippet, stage, 100, 100) : "",
                      stage);
         }
+    for (std::size_t i = share.first; const auto& options : every_reduction(language))
+        if (i++ % share.count == 0) {
+            const auto shader = lightbin::reduce_shader(options);
+            compiles("a reduction", shader->text,
+                     options.stage == lightbin::ShaderStage::compute ? Stage::compute : Stage::fragment);
+        }
+    for (std::size_t i = share.first; const auto& options : every_build(language))
+        if (i++ % share.count == 0)
+            compiles("a build", lightbin::build_shader(options)->text, Stage::compute);
     std::printf("%d texts, %d refused\n", texts, refused);
     return texts == 0 || refused > 0;
 }

@@ -79,6 +79,8 @@ private:
             return DXGI_FORMAT_R32_UINT;
         case TexelFormat::rg32ui:
             return DXGI_FORMAT_R32G32_UINT;
+        case TexelFormat::r32f:
+            return DXGI_FORMAT_R32_FLOAT;
         default:
             return DXGI_FORMAT_UNKNOWN;
         }
@@ -184,7 +186,8 @@ private:
         info.Width = job.width + job.corner[0];
         info.Height = job.height + job.corner[1];
         info.MipLevels = info.ArraySize = info.SampleDesc.Count = 1;
-        info.Format = DXGI_FORMAT_R32G32B32A32_UINT;
+        info.Format = job.within.empty() ? DXGI_FORMAT_R32G32B32A32_UINT : DXGI_FORMAT_R32G32_FLOAT;
+        const std::size_t pixel_bytes = job.within.empty() ? 16 : 8, row_bytes = pixel_bytes * job.width;
         info.BindFlags = D3D11_BIND_RENDER_TARGET;
         Com<ID3D11Texture2D> picture, copy;
         check(device_->CreateTexture2D(&info, nullptr, picture.out()), "picture");
@@ -216,12 +219,12 @@ private:
         context_->CopyResource(copy.get(), picture.get());
         D3D11_MAPPED_SUBRESOURCE mapped;
         check(context_->Map(copy.get(), 0, D3D11_MAP_READ, 0, &mapped), "map");
-        std::vector<std::uint32_t> words(std::size_t{4} * job.width * job.height);
+        std::vector<std::uint32_t> words(row_bytes / 4 * job.height);
         for (std::size_t y = 0; y < job.height; ++y)
-            std::memcpy(words.data() + 4 * job.width * y,
+            std::memcpy(words.data() + row_bytes / 4 * y,
                         static_cast<const char*>(mapped.pData) + (y + job.corner[1]) * mapped.RowPitch +
-                            std::size_t{16} * job.corner[0],
-                        std::size_t{16} * job.width);
+                            pixel_bytes * job.corner[0],
+                        row_bytes);
         context_->Unmap(copy.get(), 0);
         return words;
     }

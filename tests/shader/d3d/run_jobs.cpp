@@ -5,9 +5,12 @@
 #include "../run_jobs.hpp"
 
 int main(int count, char** arguments) {
+    const Share share = share_of(count, arguments);
+    constexpr auto language = lightbin::ShaderLanguage::hlsl_5_0;
     D3d11Device device;
     Tally tally;
-    run_readers(device, lightbin::ShaderLanguage::hlsl_5_0, share_of(count, arguments), tally);
+    run_readers(device, language, share, tally);
+    run_builders(device, language, false, share, tally);
     std::printf("%s\n", tally.text().c_str());
     return !tally.good();
 }

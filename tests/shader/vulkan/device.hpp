@@ -326,6 +326,8 @@ private:
             return VK_FORMAT_R32_UINT;
         case TexelFormat::rg32ui:
             return VK_FORMAT_R32G32_UINT;
+        case TexelFormat::r32f:
+            return VK_FORMAT_R32_SFLOAT;
         default:
             return VK_FORMAT_UNDEFINED;
         }
@@ -480,7 +482,7 @@ private:
     Buffer draw(const Job& job, VkCommandBuffer commands, VkShaderModule fragment, VkShaderModule vertex,
                 const Descriptors& descriptors, Undo& undo) {
         const std::uint32_t width = job.width + job.corner[0], height = job.height + job.corner[1];
-        const VkFormat format = VK_FORMAT_R32G32B32A32_UINT;
+        const VkFormat format = job.within.empty() ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_SFLOAT;
         const Image image =
             make_image(format, width, height,
                        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, undo);
@@ -548,7 +550,8 @@ private:
         vkCmdEndRenderPass(commands);
 
         const Buffer picture =
-            make_buffer({}, std::size_t{16} * job.width * job.height, VK_BUFFER_USAGE_TRANSFER_DST_BIT, undo);
+            make_buffer({}, std::size_t{job.within.empty() ? 16u : 8u} * job.width * job.height,
+                        VK_BUFFER_USAGE_TRANSFER_DST_BIT, undo);
         VkBufferImageCopy copy{};
         copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
         copy.imageOffset = {static_cast<std::int32_t>(job.corner[0]),

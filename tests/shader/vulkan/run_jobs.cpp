@@ -12,8 +12,10 @@ int main(int count, char** arguments) {
         return 1;
     }
     Tally tally;
-    for (const auto language : {lightbin::ShaderLanguage::glsl_vulkan, lightbin::ShaderLanguage::hlsl_5_1})
+    for (const auto language : {lightbin::ShaderLanguage::glsl_vulkan, lightbin::ShaderLanguage::hlsl_5_1}) {
         run_readers(device, language, share, tally);
+        run_builders(device, language, false, share, tally);
+    }
     std::printf("%s on %s, %d validation messages\n", tally.text().c_str(), device.name().c_str(),
                 device.messages());
     return !tally.good() || device.messages() > 0;

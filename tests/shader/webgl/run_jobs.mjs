@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// Runs what write_jobs wrote in the browser's WebGL 2: node run_jobs.mjs BROWSER JOBS [FIRST COUNT]
+import {readFileSync} from 'node:fs';
+import {chromium} from 'playwright-core';
+
+const [browserPath, jobsPath, first = '0', count = '1'] = process.argv.slice(2);
+
+// In the page. Returns what is wrong, or ''.
+function run(job) {
+    const unhex = text => Uint8Array.from(text.match(/../g) ?? [], pair => parseInt(pair, 16));
+    const gl = (globalThis.gl ??= document.createElement('canvas').getContext('webgl2'));
+    if (!gl) return 'there is no WebGL 2';
+    const program = gl.createProgram();
+    const vertex = `#version 300 es
+void main() {
+    gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 2.0 * float(gl_VertexID & 2) - 1.0, 0.0, 1.0);
+}`;
+    for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, job.text]]) {
+        const shader = gl.createShader(kind);
+        gl.shaderSource(shader, text);
+        gl.compileShader(shader);
+        if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) return 'refused: ' + gl.getShaderInfoLog(shader);
+        gl.attachShader(program, shader);
+        gl.deleteShader(shader);
+    }
+    gl.linkProgram(program);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) return 'not linked: ' + gl.getProgramInfoLog(program);
+    gl.useProgram(program);
+    const made = [() => gl.deleteProgram(program)];
+    const finish = verdict => {
+        made.forEach(undo => undo());
+        const error = gl.getError();
+        return error ? 'OpenGL error ' + error : verdict;
+    };
+    if (!job.expected) return finish('');
+
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+    job.inputs.forEach((input, unit) => {
+        const bytes = unhex(input.bytes);
+        const place = gl.getUniformLocation(program, input.name);
+        if (input.resource === 'vector') {
+            if (input.name.endsWith('corner')) gl.uniform2iv(place, new Int32Array(bytes.buffer, 0, 2));
+            else gl.uniform4uiv(place, new Uint32Array(bytes.buffer));
+        } else if (input.resource === 'block') {
+            const buffer = gl.createBuffer();
+            made.push(() => gl.deleteBuffer(buffer));
+            gl.bindBufferBase(gl.UNIFORM_BUFFER, unit, buffer);
+            gl.bufferData(gl.UNIFORM_BUFFER, bytes, gl.STATIC_DRAW);
+            gl.uniformBlockBinding(program, gl.getUniformBlockIndex(program, input.name), unit);
+        } else {
+            const [format, type, Texels] = {
+                R8UI: [gl.RED_INTEGER, gl.UNSIGNED_BYTE, Uint8Array],
+                R16UI: [gl.RED_INTEGER, gl.UNSIGNED_SHORT, Uint16Array],
+                R32UI: [gl.RED_INTEGER, gl.UNSIGNED_INT, Uint32Array],
+                RG32UI: [gl.RG_INTEGER, gl.UNSIGNED_INT, Uint32Array],
+            }[input.format];
+            const texture = gl.createTexture();
+            made.push(() => gl.deleteTexture(texture));
+            gl.activeTexture(gl.TEXTURE0 + unit);
+            gl.bindTexture(gl.TEXTURE_2D, texture);
+            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+            gl.texImage2D(gl.TEXTURE_2D, 0, gl[input.format], input.width, input.height, 0, format, type,
+                new Texels(bytes.buffer));
+            gl.uniform1i(place, unit);
+        }
+    });
+    const picture = gl.createTexture(), frame = gl.createFramebuffer();
+    made.push(() => gl.deleteTexture(picture), () => gl.deleteFramebuffer(frame));
+    gl.activeTexture(gl.TEXTURE15);
+    gl.bindTexture(gl.TEXTURE_2D, picture);
+    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA32UI, job.x + job.width, job.y + job.height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, picture, 0);
+    gl.viewport(job.x, job.y, job.width, job.height);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    const words = new Uint32Array(4 * job.width * job.height);
+    gl.readPixels(job.x, job.y, job.width, job.height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, words);
+    const expected = new Uint32Array(unhex(job.expected).buffer);
+    return finish(words.every((word, i) => word === expected[i]) ? '' : 'is wrong');
+}
+
+const browser = await chromium.launch({executablePath: browserPath, args: ['--no-sandbox']});
+const page = await browser.newPage();
+const jobs = readFileSync(jobsPath, 'utf8').trim().split('\n').filter((_, i) => i % count == first).map(JSON.parse);
+let bad = 0, runs = 0;
+for (const job of jobs) {
+    const problem = await page.evaluate(run, job);
+    if (job.expected) ++runs;
+    if (problem && ++bad <= 3) console.log(`${job.name}: ${problem}\n${job.text}`);
+}
+console.log(`${jobs.length - runs} texts compiled, ${runs} run, ${bad} refused or wrong`);
+await browser.close();
+process.exit(bad > 0 || runs === 0 ? 1 : 0);
