@@ -376,10 +376,10 @@ void $run(uvec2 group, uint thread) {
         sync_group();
     }
     uint offset = $sums[thread] - sum;
-    for (uint i = first; i < last; i += 1u) {
-        uint count = $tiles[i].y;
+    for (uint tile = first; tile < last; tile += 1u) {
+        uint count = $tiles[tile].y;
         uint begin = min(offset, $grid.w);
-        $tiles[i] = uvec2(begin, min(count, $grid.w - begin));
+        $tiles[tile] = uvec2(begin, min(count, $grid.w - begin));
         offset += count;
     }
     if (thread == 255u) $total[0] = offset;
@@ -400,7 +400,7 @@ void $run(uvec2 group, uint thread) {
     writer.declare_storage("tiles", "uvec2", fill ? "readonly" : "writeonly", options.tiles, 8);
     if (fill) writer.declare_storage("lists", "uint", "writeonly", options.lists, 4);
 
-    // Whether a light may reach a tile's cell. A comparison with NaN is false, and tests nothing.
+    // Whether a light may reach a tile's cell.
     writer.add(std::string("\nbool $meets($footprint f, uvec2 tile") + (depths ? ", vec2 z" : "") +
                (box ? ", vec4 cell" : "") + ") {\n" + R"(    uvec2 low = uvec2(f.low & 0xffffu, f.low >> 16u);
     uvec2 high = uvec2(f.high & 0xffffu, f.high >> 16u);
@@ -419,9 +419,12 @@ void $run(uvec2 group, uint thread) {
                "    uint place = tile.y * $grid.x + tile.x;\n");
     std::string arguments = "tile";
     if (depths) {
-        writer.add("    vec2 z = $z_bounds[place];\n");
-        if (options.max_only) writer.add("    z.x = -" + std::string(shader_infinity) + ";\n");
-        writer.add("    bool lit = !(z.x > z.y);\n");
+        // NaN tests nothing. It is told by its bits, as compilers may take it that no float is one.
+        const std::string endless = shader_infinity, if_nan = "if ((floatBitsToUint(z.",
+                          above = ") & 0x7fffffffu) > 0x7f800000u) ";
+        writer.add("    vec2 z = $z_bounds[place];\n    " + (options.max_only ? "" : if_nan + "x" + above) +
+                   "z.x = -" + endless + ";\n    " + if_nan + "y" + above + "z.y = " + endless +
+                   ";\n    bool lit = z.x <= z.y;\n");
         arguments += ", z";
     }
     if (box) {  // see detail/cell_boxes.hpp
