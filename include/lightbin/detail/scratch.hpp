@@ -23,6 +23,7 @@ struct Scratch {
     Buffer<std::uint64_t> masks;      ///< of a supertile: a word a light, a bit a tile
     Buffer<std::uint64_t> words;      ///< of a band of supertiles: a bit a light
     Buffer<std::uint8_t> tile_bytes;  ///< the same, a byte a tile for 8 lights
+    Buffer<std::uint8_t> packed_ids;  ///< of a band of supertiles: Packed, of the SSE2 tier
 
     // The same lists in the form of the AVX-512 kernel, and those of a band of supertiles.
     Buffer<std::uint8_t> band_x0, band_x1, band_rows;

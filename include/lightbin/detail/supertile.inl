@@ -109,6 +109,9 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
         std::uint64_t* words = scratch.words.room(room / 64 * 16);
         std::uint8_t* bytes = nullptr;
         if constexpr (with_words) bytes = scratch.tile_bytes.room(room * 8);
+        Packed<Id>* packed = nullptr;
+        if constexpr (packs_ids)
+            packed = reinterpret_cast<Packed<Id>*>(scratch.packed_ids.room(room * sizeof(Packed<Id>)));
         for (unsigned x = 0; x < width; ++x) {
             const std::uint32_t count = size[x], end = (count + 63) & ~63u;
             if (count == 0) continue;
@@ -134,6 +137,8 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
                     for (std::uint32_t i = 0; i < size[x]; i += 8, bytes += 64)
                         turn_words(masks + i, (std::min)(size[x] - i, 8u), bytes);
             }
+            if constexpr (packs_ids)
+                pack(scratch.list_ids.data() + begin[x], size[x], packed + (begin[x] - begin[0]));
         }
         if (out == nullptr) continue;
         for (unsigned row = 8 * y; row < 8 * y + 8 && row < tiles_y; ++row) {
@@ -143,17 +148,31 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
             const std::uint8_t* byte = scratch.tile_bytes.data() + row % 8 * 8;
             for (unsigned x = 0; x < width; ++x) {
                 const std::uint32_t count = size[x];
-                const std::uint32_t* ids = scratch.list_ids.data() + begin[x];
+                const Packed<Id>* ids;
+                if constexpr (packs_ids)
+                    ids = packed + (begin[x] - begin[0]);
+                else
+                    ids = scratch.list_ids.data() + begin[x];
                 const unsigned last_column = tiles_x - 8 * x < 8 ? tiles_x - 8 * x : 8;
                 for (unsigned column = 0; column < last_column; ++column) {
                     Id* const from = out;
+                    // The usual lengths of a list: no loop to predict.
                     if (count == 0) {
+                    } else if (count <= 16) {
+                        unsigned low, high = 0;
+                        if constexpr (with_words) {
+                            low = byte[column];
+                            if (count > 8) high = byte[64 + column];
+                        } else {
+                            const std::uint64_t lit = word[column] & word[8 + row % 8];
+                            low = lit & 0xff;
+                            high = static_cast<unsigned>(lit >> 8);
+                        }
+                        out += append(out, ids, low);
+                        if (count > 8) out += append(out, ids + 8, high);
                     } else if constexpr (with_words) {
                         for (std::uint32_t i = 0; i < count; i += 8)
                             out += append(out, ids + i, byte[i * 8 + column]);
-                    } else if (count <= 8) {  // the usual length of a list: no loop to predict
-                        out +=
-                            append(out, ids, static_cast<unsigned>(word[column] & word[8 + row % 8] & 0xff));
                     } else {
                         for (std::uint32_t i = 0; i < count; i += 64) {
                             const std::uint64_t* group = word + i / 4;
