@@ -21,13 +21,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace oracle {
 
 /// View depths in double, each end within 2^-52 of the true one; max may be +inf.
 struct FlatDepths {
-    double min, max;
+    double min = 0, max = 0;
+
+    explicit FlatDepths(const Depths& depths)
+        : min(depths.min->convert_to<double>()),
+          max(depths.max ? depths.max->convert_to<double>() : std::numeric_limits<double>::infinity()) {}
+    FlatDepths(double low, double high) : min(low), max(high) {}
+    FlatDepths() = default;
 
     /// Beyond doubt no depth lies between them.
     bool surely_empty() const { return min - max > 0x1p-50 * (std::abs(min) + std::abs(max)); }
@@ -52,6 +59,21 @@ public:
             for (const int side : {0, 1})
                 if (separates(of_planes(axis, side == 0 ? 1.0 : -1.0, cell), cell, depths, ball)) return true;
         return apart_at_edge(cell, depths, ball);
+    }
+
+    /// The squared distance of the ball's centre from the box around a tile's cell, give or take 2^-48 of the
+    /// box's sides and of itself.
+    double box_distance2(int x, int y, const FlatDepths& depths, const FlatBall& ball) {
+        const auto outside = [](double low, double high, double c) {
+            return std::max(std::max(low - c, c - high), 0.0);
+        };
+        const auto across = [&](const FlatLine& low, const FlatLine& high, double c) {
+            return outside(std::min(low.at(depths.min), low.at(depths.max)),
+                           std::max(high.at(depths.min), high.at(depths.max)), c);
+        };
+        const double u = across(column(x), column(x + 1), ball.x), v = across(row(y), row(y + 1), ball.y),
+                     w = outside(depths.min, depths.max, ball.depth);
+        return u * u + v * v + w * w;
     }
 
 private:

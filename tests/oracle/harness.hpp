@@ -2,10 +2,11 @@
 // From the library's lists to questions for the oracle, and the count of the answers.
 #pragma once
 
+#include "filter.hpp"
 #include "oracle.hpp"
 #include "spheres.hpp"
 
-#include <lightbin/lightbin.hpp>
+#include <lightbin/binner.hpp>
 
 #include <doctest/doctest.h>
 
@@ -112,7 +113,7 @@ struct Tally {
 /// All questions about one camera.
 class Examiner {
 public:
-    Examiner(const Camera& camera, Tally& counts) : oracle(camera), tally(counts) {
+    Examiner(const Camera& camera, Tally& counts) : oracle(camera), tally(counts), filter_(oracle) {
         for (int x = 0; x < oracle.tiles_x(); ++x)
             columns_.push_back(oracle.column_slab(oracle.columns(x, x + 1)));
         for (int y = 0; y < oracle.tiles_y(); ++y)
@@ -130,10 +131,13 @@ public:
     struct Subject {
         Ball ball;
         CameraBall seen;
+        FlatBall flat;
     };
     Subject subject(const Light& light) const {
         const Ball ball = exact_ball(light.x, light.y, light.z, light.w);
-        return {ball, oracle.in_camera(ball)};
+        const CameraBall seen = oracle.in_camera(ball);
+        const auto flat = [](const Rational& v) { return v.convert_to<double>(); };
+        return {ball, seen, {flat(seen.x), flat(seen.y), flat(seen.depth), static_cast<double>(light.w)}};
     }
 
     /// Exact, in three dimensions: does the light meet the block of tiles [x0, x1) x [y0, y1)?
@@ -146,7 +150,8 @@ public:
         }
         return verdict;
     }
-    bool meets_tile(const Subject& s, int x, int y, const Depths& depths) const {
+    bool meets_tile(const Subject& s, int x, int y, const Depths& depths) {
+        if (depths.empty || filter_.apart(x, x + 1, y, y + 1, FlatDepths(depths), s.flat)) return false;
         return meets({columns_[static_cast<std::size_t>(x)], rows_[static_cast<std::size_t>(y)]}, depths,
                      s.seen);
     }
@@ -237,6 +242,39 @@ public:
                (!max || s.seen.depth - s.seen.radius - rounding <= *max + abs(*max) / (1 << 22));
     }
 
+    /// The sphere meets the box around the tile's cell between these depths, give or take the margins that the
+    /// library states: 2^-21 of an edge and of a depth, 2^-20 of the squared radius. Twice those are allowed.
+    bool box_meets(const Subject& s, int x, int y, const Depths& depths) {
+        if (s.flat.radius > 0x1p63) return true;  // its square is infinite in float
+        if (depths.empty) return false;
+        // What double precision gets wrong is nothing beside the margins.
+        if (filter_.box_distance2(x, y, FlatDepths(depths), s.flat) <= s.flat.radius * s.flat.radius)
+            return true;
+        const auto grown = [](const Rational& end, int direction) {
+            return end + direction * (abs(end) / (1 << 20) + exact(0x1p-100));
+        };
+        const auto outside = [](const Rational& low, const Rational& high, const Rational& c) {
+            return std::max({Rational(low - c), Rational(c - high), Rational(0)});
+        };
+        // No maximum: far beyond the sphere a line can only have left it, or be there still.
+        const Rational near = grown(*depths.min, -1);
+        const Rational far = grown(depths.max ? *depths.max : Rational(*depths.min + exact(FLT_MAX)), 1);
+        Rational distance = square(outside(near, far, s.seen.depth));
+        const auto add = [&](const Slab& slab, const Rational& c, const Rational& slack) {
+            const Rational low = std::min(slab.low.at(near), slab.low.at(far)),
+                           high = std::max(slab.high.at(near), slab.high.at(far));
+            // The offset of the image is off by 2^-48 of its parts, wherever the edge is.
+            const Rational off =
+                slack * (oracle.orthographic() ? Rational(1) : std::max(abs(near), abs(far)));
+            distance += square(outside(grown(low, -1) - off, grown(high, 1) + off, c));
+        };
+        const Slab& column = columns_[static_cast<std::size_t>(x)];
+        const Slab& row = rows_[static_cast<std::size_t>(y)];
+        add(column, s.seen.x, slack(column, oracle.offset_x(), oracle.tiles_x()));
+        add(row, s.seen.y, slack(row, oracle.offset_y(), oracle.tiles_y()));
+        return distance <= square(s.seen.radius) * (1 + Rational(1) / (1 << 18)) + exact(0x1p-124);
+    }
+
     Oracle oracle;
     Tally& tally;
 
@@ -248,6 +286,14 @@ private:
         return !oracle.orthographic() && abs(squares - radius) * (1 << 29) < squares + radius;
     }
 
+    /// 2^-47 of the parts that the position of an edge in tiles is made from, in slopes or coordinates. The
+    /// column may be a partial one, then it is less than a tile.
+    static Rational slack(const Slab& slab, const Rational& offset, int tiles) {
+        const Rational size = abs(slab.high.slope - slab.low.slope) + abs(slab.high.offset - slab.low.offset);
+        return size * (abs(offset) + tiles + 1) / (std::int64_t{1} << 47);
+    }
+
+    Filter filter_;
     std::vector<Slab> columns_, rows_;
     Rational grow_x_, grow_y_;
     std::uint64_t asked_ = 0;

@@ -68,9 +68,7 @@ struct Range {
 class Judge::Impl {
 public:
     explicit Impl(const Scene& scene) : scene_(scene), oracle_(scene.camera), filter_(oracle_) {
-        const Depths& range = oracle_.range();
-        whole_ = {range.min->convert_to<double>(),
-                  range.max ? range.max->convert_to<double>() : std::numeric_limits<double>::infinity()};
+        whole_ = FlatDepths(oracle_.range());
         const CameraBall signs = oracle_.in_camera({{1, 1, 1}, 0});
         sign_[0] = signs.x.convert_to<double>(), sign_[1] = signs.y.convert_to<double>();
         sign_[2] = signs.depth.convert_to<double>();

@@ -177,7 +177,7 @@ void examine_rectangles(const Camera& camera, Tally& tally, std::uint64_t& seed)
                 image.radius += (image.radius + abs(c.x) + abs(c.y) + abs(c.z)) / (1 << 21) +
                                 terms / (std::int64_t{1} << 44) + exact(0x1p-125);
                 ++tally.explained;
-                if (!examiner.explained({image, oracle.in_camera(image)}, e))
+                if (!examiner.explained({image, oracle.in_camera(image), {}}, e))
                     tally.report(tally.unexplained, "unexplained", camera, matrix.name + ", " + set.name, i,
                                  lights[i], "");
             }
