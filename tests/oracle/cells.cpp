@@ -37,12 +37,12 @@ template <class Id> bool same(const lightbin::LightGrid<Id>& a, const lightbin::
 }
 
 /// What a tile has to light: one run of depths, or with split_box one on each side of its gap.
-std::vector<Depths> cells_of(const Oracle& oracle, std::optional<float> min, std::optional<float> max,
-                             float gap_min, float gap_max, bool split) {
-    if (!split || !(gap_min < gap_max)) return {oracle.depths(min, max)};
+std::vector<Examiner::Cell> cells_of(const Oracle& oracle, std::optional<float> min, std::optional<float> max,
+                                     float gap_min, float gap_max, bool split) {
+    if (!split || !(gap_min < gap_max)) return {Examiner::Cell(oracle.depths(min, max))};
     if (min && max && *min > *max) return {};
-    return {oracle.depths(min, std::min(gap_min, max.value_or(gap_min))),
-            oracle.depths(std::max(gap_max, min.value_or(gap_max)), max)};
+    return {Examiner::Cell(oracle.depths(min, std::min(gap_min, max.value_or(gap_min)))),
+            Examiner::Cell(oracle.depths(std::max(gap_max, min.value_or(gap_max)), max))};
 }
 
 /// Every pair that a Binner of these options lists or, of those that rectangles give, does not list.
@@ -89,36 +89,39 @@ void examine_depth_test(const Camera& camera, Tally& tally, std::uint64_t& seed)
                 std::optional<float> min, max;
                 if (sides & 1) min = bounds.min[tile];
                 if (sides & 2) max = bounds.max[tile];
-                const std::vector<Depths> cells =
+                const std::vector<Examiner::Cell> cells =
                     cells_of(oracle, min, max, bounds.gap_min[tile], bounds.gap_max[tile], split);
+                const auto finite = [](std::optional<float> bound) {
+                    return bound && std::isfinite(*bound) ? std::optional(exact(*bound)) : std::nullopt;
+                };
+                const std::optional<Rational> least = finite(min), most = finite(max);
+                const FlatDepths flat = {least ? static_cast<double>(*min) : -infinite,
+                                         most ? static_cast<double>(*max) : infinite};
                 for (std::size_t i = 0; i < lights.size(); ++i) {
                     const auto at = [&] { return "tile " + std::to_string(x) + ", " + std::to_string(y); };
                     if (in_list[tile][i]) {
                         // Only lights of the rectangle, and of these only those whose depths meet the bounds
                         // and whose sphere the box.
                         ++tally.explained;
-                        const auto finite = [](std::optional<float> bound) {
-                            return bound && std::isfinite(*bound) ? std::optional(exact(*bound))
-                                                                  : std::nullopt;
-                        };
                         const bool empty = (min && max && *min > *max) ||
                                            (min && std::isinf(*min) && *min > 0) ||
                                            (max && std::isinf(*max) && *max < 0);
-                        bool fits = examiner.depths_within(subjects[i], finite(min), finite(max));
+                        bool fits = examiner.depths_within(subjects[i], flat, least, most);
                         if (boxes && fits)
-                            fits = std::any_of(cells.begin(), cells.end(), [&](const Depths& depths) {
-                                return examiner.box_meets(subjects[i], x, y, depths);
+                            fits = std::any_of(cells.begin(), cells.end(), [&](const Examiner::Cell& cell) {
+                                return examiner.box_meets(subjects[i], x, y, cell);
                             });
                         // In float the depth interval of a light may reach infinity, and then meets a bound
-                        // that lies there.
-                        const bool endless = std::isinf(std::abs(lights[i].z) + lights[i].w);
+                        // that lies there; boxes end at FLT_MAX.
+                        const float end = std::abs(lights[i].z) + lights[i].w;
+                        const bool endless = boxes ? end >= FLT_MAX : std::isinf(end);
                         if (!in_rectangle[tile][i] || !fits || (empty && !endless))
                             tally.report(tally.unexplained, "unexplained", camera, set.name, i, lights[i],
                                          at());
                     } else if (in_rectangle[tile][i]) {
                         ++tally.verdicts;
-                        for (const Depths& depths : cells)
-                            if (examiner.meets_tile(subjects[i], x, y, depths))
+                        for (const Examiner::Cell& cell : cells)
+                            if (examiner.meets_tile(subjects[i], x, y, cell))
                                 tally.report(tally.misses, "MISS", camera, set.name, i, lights[i], at());
                     }
                 }

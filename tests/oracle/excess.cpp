@@ -89,7 +89,7 @@ Pairs count_pairs(const std::vector<Light>& lights, int tile, bool interval) {
                 const Depths& bounds = depths[static_cast<std::size_t>(y * nx + x)];
                 if (highest < *bounds.min || (bounds.max && lowest > *bounds.max)) continue;
                 ++pairs.rectangle;
-                pairs.exact += examiner.meets_tile(s, x, y, bounds);
+                pairs.exact += examiner.meets_tile(s, x, y, Examiner::Cell(bounds));
             }
     }
     return pairs;

@@ -140,6 +140,13 @@ public:
         return {ball, seen, {flat(seen.x), flat(seen.y), flat(seen.depth), static_cast<double>(light.w)}};
     }
 
+    /// A run of depths in both forms.
+    struct Cell {
+        explicit Cell(const Depths& exact) : depths(exact), flat(exact) {}
+        Depths depths;
+        FlatDepths flat;
+    };
+
     /// Exact, in three dimensions: does the light meet the block of tiles [x0, x1) x [y0, y1)?
     bool meets_block(const Subject& s, int x0, int x1, int y0, int y1, const Depths& depths) {
         const Edges columns = oracle.columns(x0, x1), rows = oracle.rows(y0, y1);
@@ -150,8 +157,9 @@ public:
         }
         return verdict;
     }
-    bool meets_tile(const Subject& s, int x, int y, const Depths& depths) {
-        if (depths.empty || filter_.apart(x, x + 1, y, y + 1, FlatDepths(depths), s.flat)) return false;
+    bool meets_tile(const Subject& s, int x, int y, const Cell& cell) {
+        const Depths& depths = cell.depths;
+        if (depths.empty || filter_.apart(x, x + 1, y, y + 1, cell.flat, s.flat)) return false;
         return meets({columns_[static_cast<std::size_t>(x)], rows_[static_cast<std::size_t>(y)]}, depths,
                      s.seen);
     }
@@ -236,6 +244,15 @@ public:
     /// z - r to z + r meets the bounds, the sums in float arithmetic.
     bool depths_within(const Subject& s, const std::optional<Rational>& min,
                        const std::optional<Rational>& max) const {
+        const auto flat = [](const std::optional<Rational>& bound, double none) {
+            return bound ? bound->convert_to<double>() : none;
+        };
+        return depths_within(s, {flat(min, -INFINITY), flat(max, INFINITY)}, min, max);
+    }
+    bool depths_within(const Subject& s, const FlatDepths& flat, const std::optional<Rational>& min,
+                       const std::optional<Rational>& max) const {
+        // What double precision gets wrong is nothing beside the allowance below.
+        if (s.flat.depth + s.flat.radius >= flat.min && s.flat.depth - s.flat.radius <= flat.max) return true;
         if (s.seen.all) return true;
         const Rational rounding = (abs(s.seen.depth) + s.seen.radius) / (1 << 23);
         return (!min || s.seen.depth + s.seen.radius + rounding >= *min - abs(*min) / (1 << 22)) &&
@@ -244,12 +261,12 @@ public:
 
     /// The sphere meets the box around the tile's cell between these depths, give or take the margins that the
     /// library states: 2^-21 of an edge and of a depth, 2^-20 of the squared radius. Twice those are allowed.
-    bool box_meets(const Subject& s, int x, int y, const Depths& depths) {
+    bool box_meets(const Subject& s, int x, int y, const Cell& cell) {
+        const Depths& depths = cell.depths;
         if (s.flat.radius > 0x1p63) return true;  // its square is infinite in float
         if (depths.empty) return false;
         // What double precision gets wrong is nothing beside the margins.
-        if (filter_.box_distance2(x, y, FlatDepths(depths), s.flat) <= s.flat.radius * s.flat.radius)
-            return true;
+        if (filter_.box_distance2(x, y, cell.flat, s.flat) <= s.flat.radius * s.flat.radius) return true;
         const auto grown = [](const Rational& end, int direction) {
             return end + direction * (abs(end) / (1 << 20) + exact(0x1p-100));
         };
