@@ -121,19 +121,24 @@ Lists Engine::lists(const Scene& scene, Rung rung, std::vector<std::string>& com
         complaints.push_back("the camera was refused: " + view.error().message());
         return {};
     }
-    using lightbin::DepthTest;
+    using lightbin::DepthTest, lightbin::Footprint;
+    const auto lists_of = [&]<Footprint footprint, DepthTest depth_test>() {
+        return on_all_tiers<lightbin::Options{.footprint = footprint, .depth_test = depth_test}>(
+            *view, scene, flush_, complaints);
+    };
     switch (rung) {
-    case Rung::rectangle:
-        return on_all_tiers<lightbin::Options{}>(*view, scene, flush_, complaints);
-    case Rung::rectangle_interval:
-        return on_all_tiers<lightbin::Options{.depth_test = DepthTest::interval}>(*view, scene, flush_,
-                                                                                  complaints);
-    case Rung::rectangle_box:
-        return on_all_tiers<lightbin::Options{.depth_test = DepthTest::box}>(*view, scene, flush_,
-                                                                             complaints);
-    case Rung::rectangle_split_box:
-        return on_all_tiers<lightbin::Options{.depth_test = DepthTest::split_box}>(*view, scene, flush_,
-                                                                                   complaints);
+#define RUNG(name, footprint, depth_test)                                                                    \
+    case Rung::name:                                                                                         \
+        return lists_of.operator()<Footprint::footprint, DepthTest::depth_test>();
+        RUNG(rectangle, rectangle, none)
+        RUNG(rectangle_interval, rectangle, interval)
+        RUNG(rectangle_box, rectangle, box)
+        RUNG(rectangle_split_box, rectangle, split_box)
+        RUNG(silhouette, silhouette, none)
+        RUNG(silhouette_interval, silhouette, interval)
+        RUNG(silhouette_box, silhouette, box)
+        RUNG(silhouette_split_box, silhouette, split_box)
+#undef RUNG
     }
     return {};
 }

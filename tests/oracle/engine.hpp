@@ -17,6 +17,10 @@ enum class Rung {
     rectangle_interval,
     rectangle_box,
     rectangle_split_box,
+    silhouette,
+    silhouette_interval,
+    silhouette_box,
+    silhouette_split_box,
 };
 
 struct RungInfo {
@@ -31,6 +35,10 @@ inline const std::vector<RungInfo>& all_rungs() {
         {Rung::rectangle_interval, "rectangle, interval", false},
         {Rung::rectangle_box, "rectangle, box", false},
         {Rung::rectangle_split_box, "rectangle, split box", true},
+        {Rung::silhouette, "silhouette", false},
+        {Rung::silhouette_interval, "silhouette, interval", false},
+        {Rung::silhouette_box, "silhouette, box", false},
+        {Rung::silhouette_split_box, "silhouette, split box", true},
     };
     return all;
 }

@@ -86,7 +86,7 @@ public:
         }
         TilesOfLights tiles(lists, scene_.lights.size());
         const bool first = rung == Rung::rectangle;
-        if (!first) gather_ranges(info(rung).split);
+        if (rung != Rung::rectangle && rung != Rung::silhouette) gather_ranges(info(rung).split);
         for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
             ++verdicts.cases;
             if (is_bad(scene_.lights[i])) {
@@ -169,6 +169,10 @@ private:
         for (const std::uint32_t tile : rectangle) {
             if (at < tiles.size() && tiles[at] == tile) {
                 ++at;
+                continue;
+            }
+            if (rung_ == Rung::silhouette) {
+                prove(i, one_tile(tile), {whole_, NAN, NAN}, verdicts);
                 continue;
             }
             for (const Range& range : ranges_of(tile))

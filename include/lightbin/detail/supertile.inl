@@ -145,7 +145,8 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
             if (row == bands.spare_row) out = bands.spare;
             Tile* tile = job.tiles + row * std::size_t{tiles_x};
             const std::uint64_t* word = scratch.words.data();
-            const std::uint8_t* byte = scratch.tile_bytes.data() + row % 8 * 8;
+            const std::uint8_t* byte = nullptr;
+            if constexpr (with_words) byte = scratch.tile_bytes.data() + row % 8 * 8;
             for (unsigned x = 0; x < width; ++x) {
                 const std::uint32_t count = size[x];
                 const Packed<Id>* ids;
@@ -186,8 +187,10 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
                     *tile++ = {bands.at + static_cast<std::uint32_t>(entries), length};
                     entries += length;
                 }
-                word += (count + 63) / 64 * 16;
-                byte += (count + 7) / 8 * 64;
+                if constexpr (with_words)
+                    byte += (count + 7) / 8 * 64;
+                else
+                    word += (count + 63) / 64 * 16;
             }
         }
     }
