@@ -212,7 +212,7 @@ private:
         axis.offset_f = static_cast<float>(axis.offset);
         axis.inside = static_cast<float>(axis.tiles) - 0.5f;
         axis.limit = detail::float_above(static_cast<double>(side) / tile_size_);
-        // A float slope is within 9u of the truth (u = 2^-24, see project.hpp), times scale_f 11u, plus u of
+        // A float slope is within 10u of the truth (u = 2^-24, see project.inl), times scale_f 12u, plus u of
         // offset_f and u of the sum; inside the viewport |scale * slope| <= |offset| + tiles. 16u leaves room
         // for the double steps above and for adding the margin itself; 2^-80 a scale is for a caller who
         // flushes denormal numbers to zero.

@@ -7,17 +7,18 @@
 // tangents (Mara and McGuire, "2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D Sphere", JCGT
 // 2(2), 2013).
 
-/// Slopes of the tangents from the origin to the discs (c, z, r), for z - r > 0, where `e` = (z - r)(z + r).
+/// Slopes of the tangents from the origin to the discs (c, z, r), for z - r > 0, where `e` = (z - r)(z + r) and
+/// `per_e` = 1 / e.
 ///
 /// Each sum is of terms of one sign, so errors only add up: with u the unit roundoff, e is within 3u, c^2 + e
-/// within 4u, its root 3u, q 5u, and both slopes 9u of the truth, each relative to itself. (The roots'
-/// product is (c^2 - r^2) / e.)
+/// within 4u, its root 3u, q 5u, the outer slope 10u and the inner 9u of the truth, each relative to itself.
+/// (The roots' product is (c^2 - r^2) / e.)
 template <class Reals>
-LIGHTBIN_TARGET inline void tangent_slopes(Reals c, Reals z, Reals r, Reals e, Reals& low, Reals& high) {
+LIGHTBIN_TARGET inline void tangent_slopes(Reals c, Reals z, Reals r, Reals e, Reals per_e, Reals& low,
+                                           Reals& high) {
     const Reals a = abs(c);
-    const Reals tangent_length = sqrt(mul(a, a) + e);
-    const Reals q = mul(a, z) + mul(r, tangent_length);
-    const Reals outer = q / e, inner = mul(a - r, a + r) / q;
+    const Reals q = mul(a, z) + mul(r, sqrt(mul(a, a) + e));
+    const Reals outer = mul(q, per_e), inner = mul(a - r, a + r) / q;
     const auto negative = less(c, Reals{});
     low = select(negative, -outer, inner);
     high = select(negative, -inner, outer);
@@ -111,13 +112,13 @@ LIGHTBIN_TARGET inline void project_carefully(const Camera& camera, const Sphere
         Doubles left = x - r, right = x + r, bottom = y - r, top = y + r;
         if (!camera.orthographic) {
             const auto whole = less(all(near_depth), nearest);
-            const Doubles e = mul(nearest, farthest);
+            const Doubles e = mul(nearest, farthest), per_e = 1.0 / e;
             Doubles low, high;
-            tangent_slopes(x, z, r, e, low, high);
+            tangent_slopes(x, z, r, e, per_e, low, high);
             clipped_slopes(x, z, r, near_depth, left, right);
             left = select(whole, low, left);
             right = select(whole, high, right);
-            tangent_slopes(y, z, r, e, low, high);
+            tangent_slopes(y, z, r, e, per_e, low, high);
             clipped_slopes(y, z, r, near_depth, bottom, top);
             bottom = select(whole, low, bottom);
             top = select(whole, high, top);
@@ -204,9 +205,9 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const Sphere* spheres,
             Floats left = x - r, right = x + r, bottom = y - r, top = y + r;
             if (!camera.orthographic) {
                 plain = both(plain, less(all(camera.near_fast), nearest));
-                const Floats e = mul(nearest, farthest);
-                tangent_slopes(x, z, r, e, left, right);
-                tangent_slopes(y, z, r, e, bottom, top);
+                const Floats e = mul(nearest, farthest), per_e = 1.0f / e;
+                tangent_slopes(x, z, r, e, per_e, left, right);
+                tangent_slopes(y, z, r, e, per_e, bottom, top);
             }
             for (unsigned rest = ~bits(either(plain, culled)) & valid; rest != 0; rest &= rest - 1)
                 careful[careful_count++] =
