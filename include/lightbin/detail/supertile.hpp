@@ -65,6 +65,7 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
 /// The form in which a tier's append() takes ids, one after another: as they are, unless the tier has its own.
 template <class Id> using Packed = std::uint32_t;
 inline constexpr bool packs_ids = false;
+void pack(const std::uint32_t* ids, std::uint32_t count, std::uint32_t* to);  // for name look-up alone
 
 /// Writes those of 8 ids whose bit is set, in order, then elements that mean nothing: every id is written, and
 /// the place moves on for those chosen. Returns how many.
