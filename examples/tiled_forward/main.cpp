@@ -52,9 +52,12 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
     app.add_option("--z-bounds", z_bounds, "Depth bounds of a tile: none, max or both")
         ->check(CLI::IsMember({"none", "max", "both"}))
         ->capture_default_str();
+    app.add_flag("--gpu-z-bounds", options.frame.gpu_reduction,
+                 "Reduce depth to Z bounds on the GPU (OpenGL ES does in any case)");
     app.add_option("--glsl", options.glsl,
-                   "330: texture buffers, 430: storage buffers (default: the newer that works)")
-        ->check(CLI::IsMember({330, 430}));
+                   "Lists in 330: texture buffers, 430: storage buffers; OpenGL ES, 300: textures, 310: "
+                   "storage buffers (default: 430, or else 330)")
+        ->check(CLI::IsMember({330, 430, 300, 310}));
     app.add_option("--exposure", options.stops, "Stops brighter (+) or darker (-) than the light meter says")
         ->check(CLI::Range(-20.0, 20.0));
     std::string size;

@@ -45,6 +45,29 @@ template <class T> T value_of(lightbin::Result<T> result) {
     return *result;
 }
 
+lightbin::ShaderResource resource_of(lightbin::ListStorage storage) {
+    return storage == lightbin::ListStorage::storage_buffer ? lightbin::ShaderResource::storage_buffer
+           : storage == lightbin::ListStorage::texel_buffer ? lightbin::ShaderResource::texel_buffer
+                                                            : lightbin::ShaderResource::texture_2d;
+}
+
+GLenum target_of(lightbin::ShaderResource resource) {
+    return resource == lightbin::ShaderResource::texture_2d ? GL_TEXTURE_2D : GL_TEXTURE_BUFFER;
+}
+
+// A texture that is drawn to and fetched from, in place of an older one.
+GLuint new_texture(GLuint old, GLenum format, int width, int height) {
+    glDeleteTextures(1, &old);
+    GLuint made = 0;
+    glGenTextures(1, &made);
+    glBindTexture(GL_TEXTURE_2D, made);
+    glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), width, height, 0,
+                 format == GL_RG32F ? GL_RG : GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    return made;
+}
+
 // Mesa's software renderer ends a shader's loops after 65,535 rounds, and says nothing.
 void check_loop(std::size_t lights) {
     if (lights > 65000)
@@ -70,7 +93,9 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
 
     // 2. Depth alone, and from it the depths between which each tile has anything to light.
     if (settings.pre_pass) draw_depth();
-    if (settings.z_bounds != ZBoundsUse::none) {
+    const bool bounded = settings.z_bounds != ZBoundsUse::none;
+    const bool on_gpu = settings.gpu_reduction || glsl_ < 330;
+    if (bounded && !on_gpu) {
         depth_buffer_.resize(static_cast<std::size_t>(settings.width) *
                              static_cast<std::size_t>(settings.height));
         glReadPixels(0, 0, settings.width, settings.height, GL_DEPTH_COMPONENT, GL_FLOAT,
@@ -79,11 +104,15 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     report.milliseconds.pre_pass = watch.lap();
 
     lightbin::ZBounds z_bounds;
-    if (settings.z_bounds != ZBoundsUse::none) {
+    if (bounded && on_gpu) reduce_on_gpu(view, camera.orthographic);
+    if (bounded) {
         min_depth_.resize(settings.z_bounds == ZBoundsUse::both ? view.tile_count() : 0);
-        max_depth_.resize(view.tile_count());
-        z_bounds = value_of(lightbin::reduce_depth(view, {.depth = depth_buffer_, .skip_background = true},
-                                                   min_depth_, max_depth_));
+        z_bounds = {.min = min_depth_, .max = max_depth_};
+        if (!on_gpu) {
+            max_depth_.resize(view.tile_count());
+            z_bounds = value_of(lightbin::reduce_depth(
+                view, {.depth = depth_buffer_, .skip_background = true}, min_depth_, max_depth_));
+        }
     }
     report.milliseconds.reduce = watch.lap();
 
@@ -99,10 +128,10 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
 
     // 4. To the GPU.
     grid_ = lightbin::shader_grid(view);
-    upload(lights_, gpu_lights_.data(), gpu_lights_.size() * sizeof(GpuLight), sizeof(glm::vec4), "lights");
-    upload(tiles_, lists.tiles().data(), lists.tiles().size_bytes(), sizeof(lightbin::Tile), "tiles");
-    upload(indices_, lists.indices().data(), lists.indices().size_bytes(), sizeof(std::uint32_t),
-           "light lists");
+    upload_lights();
+    upload(tiles_, lists.tiles().data(), lists.tiles().size_bytes(), view.tiles_x(), "tiles");
+    upload(indices_, lists.indices().data(), lists.indices().size_bytes(),
+           static_cast<int>(list_options(glsl_).texture_width), "light lists");
     report.milliseconds.upload = watch.lap();
 
     // 5. The picture.
@@ -137,7 +166,7 @@ void Renderer::draw_every_light(const Camera& camera, const FrameSettings& setti
     set_camera(camera);
     clear();
     if (settings.pre_pass) draw_depth();
-    upload(lights_, gpu_lights_.data(), gpu_lights_.size() * sizeof(GpuLight), sizeof(glm::vec4), "lights");
+    upload_lights();
     draw_triangles(brute_force_program_, settings);
 }
 
@@ -178,9 +207,11 @@ float Renderer::meter(const Camera& camera, const FrameSettings& settings) {
 
 Picture Renderer::read_picture() const {
     Picture picture{width_, height_, {}};
-    picture.rgb.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 3);
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, picture.rgb.data());
+    const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    std::vector<std::uint8_t> rgba(4 * pixels);  // OpenGL ES gives no RGB
+    glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    for (std::size_t i = 0; i < rgba.size(); ++i)
+        if (i % 4 != 3) picture.rgb.push_back(rgba[i]);
     return picture;
 }
 
@@ -189,7 +220,8 @@ void Renderer::show() const {
     glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
-Renderer::Renderer(const Scene& scene, int glsl) : scene_(scene), glsl_(glsl) {
+Renderer::Renderer(const Scene& scene, int glsl)
+    : scene_(scene), glsl_(glsl), list_resource_(resource_of(list_options(glsl).storage)) {
     const bool spots =
         std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return l.spot; });
     const std::string geometry = geometry_vertex_shader(glsl);
@@ -212,20 +244,18 @@ Renderer::Renderer(const Scene& scene, int glsl) : scene_(scene), glsl_(glsl) {
                               reinterpret_cast<const void*>(attribute * sizeof(glm::vec3)));
     }
 
-    const auto make_buffer = [](GLenum format, bool with_texture) {
-        GpuBuffer made;
-        made.format = format;
-        glGenBuffers(1, &made.buffer);
-        if (with_texture) glGenTextures(1, &made.texture);
-        return made;
-    };
-    lights_ = make_buffer(GL_RGBA32F, true);
-    tiles_ = make_buffer(GL_RG32UI, glsl < 430);
-    indices_ = make_buffer(GL_R32UI, glsl < 430);
+    lights_ = {lightbin::ShaderResource::texture_2d, GL_RGBA32F, GL_RGBA, GL_FLOAT, 16};
+    tiles_ = {list_resource_, GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, 8};
+    indices_ = {list_resource_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4};
+    for (GpuBuffer* made : {&lights_, &tiles_, &indices_}) {
+        glGenBuffers(1, &made->buffer);
+        glGenTextures(1, &made->texture);
+    }
 
     glGenFramebuffers(1, &framebuffer_);
+    glGenFramebuffers(1, &reduce_framebuffer_);
     glGenRenderbuffers(1, &colour_);
-    glGenRenderbuffers(1, &depth_);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
 }
 
 void Renderer::set_size(int width, int height, GLenum colour_format) {
@@ -239,9 +269,8 @@ void Renderer::set_size(int width, int height, GLenum colour_format) {
     glBindRenderbuffer(GL_RENDERBUFFER, colour_);
     glRenderbufferStorage(GL_RENDERBUFFER, colour_format, width, height);
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
-    glBindRenderbuffer(GL_RENDERBUFFER, depth_);
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, width, height);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
+    depth_ = new_texture(depth_, GL_DEPTH_COMPONENT32F, width, height);  // for reduce_on_gpu()
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_, 0);
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
         throw std::runtime_error("this OpenGL cannot draw a picture of " + std::to_string(width) + " x " +
                                  std::to_string(height) + " pixels");
@@ -300,9 +329,7 @@ void Renderer::draw_triangles(GLuint program, const FrameSettings& settings) con
     glUniform1f(uniform(program, "exposure"), settings.exposure);
     glUniform1i(uniform(program, "light_count"), static_cast<int>(scene_.lights.size()));
     glUniform1i(uniform(program, "sun_count"), static_cast<int>(scene_.suns.size()));
-    glActiveTexture(GL_TEXTURE2);
-    glBindTexture(GL_TEXTURE_BUFFER, lights_.texture);
-    glUniform1i(uniform(program, "lights"), 2);
+    bind_texture(program, 2, lights_, "lights");
     if (program == tiled_program_) bind_lists(program, grid_);
     glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(scene_.triangles.size()));
 }
@@ -310,36 +337,97 @@ void Renderer::draw_triangles(GLuint program, const FrameSettings& settings) con
 // Hands the lists to the text that lightbin/shader.hpp generates.
 void Renderer::bind_lists(GLuint program, const lightbin::ShaderGrid& grid) const {
     glUniform4uiv(uniform(program, "lightbin_grid"), 1, &grid.tile_size);
-    if (glsl_ >= 430) {
+    if (list_resource_ == lightbin::ShaderResource::storage_buffer) {
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, tiles_.buffer);
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, indices_.buffer);
     } else {
-        glActiveTexture(GL_TEXTURE0);
-        glBindTexture(GL_TEXTURE_BUFFER, tiles_.texture);
-        glUniform1i(uniform(program, "lightbin_tiles"), 0);
-        glActiveTexture(GL_TEXTURE1);
-        glBindTexture(GL_TEXTURE_BUFFER, indices_.texture);
-        // The heat map reads no ids, so its sampler is optimised away: -1 sets nothing.
-        glUniform1i(glGetUniformLocation(program, "lightbin_lists"), 1);
+        bind_texture(program, 0, tiles_, "lightbin_tiles");
+        bind_texture(program, 1, indices_, "lightbin_lists");
     }
 }
 
-void Renderer::upload(const GpuBuffer& target, const void* data, std::size_t bytes, std::size_t texel_size,
+void Renderer::bind_texture(GLuint program, int unit, const GpuBuffer& source, const char* name) const {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(target_of(source.resource), source.texture);
+    // A sampler that is not read is optimised away, as the heat map's for ids: -1 sets nothing.
+    glUniform1i(glGetUniformLocation(program, name), unit);
+}
+
+void Renderer::upload_lights() const {
+    upload(lights_, gpu_lights_.data(), gpu_lights_.size() * sizeof(GpuLight), lights_width, "lights");
+}
+
+// `width`: texels a row of a 2D texture
+void Renderer::upload(const GpuBuffer& target, const void* data, std::size_t bytes, int width,
                       const char* what) const {
+    using lightbin::ShaderResource;
+    const auto texel = static_cast<std::size_t>(target.texel_bytes),
+               row = static_cast<std::size_t>(width) * texel;
     GLint64 most = 0;
-    glGetInteger64v(target.texture ? GL_MAX_TEXTURE_BUFFER_SIZE : GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
-    if (target.texture) most *= static_cast<GLint64>(texel_size);
-    if (bytes > static_cast<std::size_t>(most))
+    glGetInteger64v(target.resource == ShaderResource::texture_2d     ? GL_MAX_TEXTURE_SIZE
+                    : target.resource == ShaderResource::texel_buffer ? GL_MAX_TEXTURE_BUFFER_SIZE
+                                                                      : GL_MAX_SHADER_STORAGE_BLOCK_SIZE,
+                    &most);
+    const std::size_t unit = target.resource == ShaderResource::texture_2d     ? row
+                             : target.resource == ShaderResource::texel_buffer ? texel
+                                                                               : 1;
+    if (bytes > static_cast<std::size_t>(most) * unit || (unit == row && width > most))
         throw std::runtime_error("the " + std::string(what) + " take " + std::to_string(bytes) +
-                                 " bytes and shaders here read at most " + std::to_string(most) +
+                                 " bytes and shaders here read at most " +
+                                 std::to_string(static_cast<std::size_t>(most) * unit) +
                                  ": use larger tiles or fewer lights");
-    glBindBuffer(GL_TEXTURE_BUFFER, target.buffer);
-    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max<std::size_t>(bytes, 16)), nullptr,
-                 GL_STREAM_DRAW);
-    glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
-    if (target.texture) {
-        glActiveTexture(GL_TEXTURE3);
-        glBindTexture(GL_TEXTURE_BUFFER, target.texture);
-        glTexBuffer(GL_TEXTURE_BUFFER, target.format, target.buffer);
+    glActiveTexture(GL_TEXTURE3);
+    glBindTexture(target_of(target.resource), target.texture);
+    if (target.resource == ShaderResource::texture_2d) {
+        const auto rows = static_cast<GLsizei>(bytes / row), rest = static_cast<GLsizei>(bytes % row / texel);
+        glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(target.format), width, std::max(rows + 1, 1), 0,
+                     target.layout, target.type, nullptr);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, rows, target.layout, target.type, data);
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, rows, rest, rest > 0 ? 1 : 0, target.layout, target.type,
+                        static_cast<const std::byte*>(data) + static_cast<std::size_t>(rows) * row);
+        return;
     }
+    glBindBuffer(GL_COPY_WRITE_BUFFER, target.buffer);
+    glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(std::max<std::size_t>(bytes, 16)), nullptr,
+                 GL_STREAM_DRAW);
+    glBufferSubData(GL_COPY_WRITE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
+    if (target.resource == ShaderResource::texel_buffer)
+        glTexBuffer(GL_TEXTURE_BUFFER, target.format, target.buffer);
+}
+
+// Z bounds in min_depth_ and max_depth_, without reading the depth buffer back: only a tile's two depths are.
+void Renderer::reduce_on_gpu(const lightbin::View& view, bool orthographic) {
+    GLuint& program = reduce_programs_[orthographic ? 1 : 0];
+    if (program == 0)
+        program = link_program(overlay_vertex_shader(glsl_), reduce_fragment_shader(glsl_, orthographic));
+    glUseProgram(program);
+    const lightbin::ShaderReduce constants = lightbin::shader_reduce(view);
+    glUniform4uiv(uniform(program, "lightbin_grid"), 1, &constants.tile_size);
+    glUniform4fv(uniform(program, "lightbin_planes"), 1, &constants.far_end);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, depth_);
+    glUniform1i(uniform(program, "lightbin_depth"), 0);
+
+    glBindFramebuffer(GL_FRAMEBUFFER, reduce_framebuffer_);
+    glActiveTexture(GL_TEXTURE3);
+    reduced_ = new_texture(reduced_, GL_RG32F, view.tiles_x(), view.tiles_y());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, reduced_, 0);
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        throw std::runtime_error("this OpenGL cannot draw to 32-bit floats, which Z bounds on the GPU need");
+    glViewport(0, 0, view.tiles_x(), view.tiles_y());
+    glDisable(GL_DEPTH_TEST);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glEnable(GL_DEPTH_TEST);
+    depth_buffer_.resize(2 * view.tile_count());
+    glReadPixels(0, 0, view.tiles_x(), view.tiles_y(), GL_RG, GL_FLOAT, depth_buffer_.data());
+    min_depth_.clear();
+    max_depth_.clear();
+    for (std::size_t tile = 0; tile < view.tile_count(); ++tile) {
+        min_depth_.push_back(depth_buffer_[2 * tile]);
+        max_depth_.push_back(depth_buffer_[2 * tile + 1]);
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    glViewport(0, 0, width_, height_);
 }

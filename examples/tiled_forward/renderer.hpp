@@ -19,6 +19,7 @@ struct FrameSettings {
     int width = 1280;
     int height = 720;
     int tile_size = 16;
+    bool gpu_reduction = false;              // Z bounds on the GPU; OpenGL ES has it so in any case
     bool pre_pass = true;                    // depth first, so that only what is seen is shaded
     ZBoundsUse z_bounds = ZBoundsUse::both;  // need the pre-pass
     float exposure = 1;                      // 0: linear radiance, see Renderer::meter
@@ -69,11 +70,15 @@ private:
             cone;  // angular falloff = (dot(cone.xyz, direction to the light) + cone.w) squared, in 0..1
     };
 
-    // A buffer that shaders read as a buffer texture or as a storage buffer.
+    // What shaders read as a storage buffer, a buffer texture or a 2D texture.
     struct GpuBuffer {
+        lightbin::ShaderResource resource = lightbin::ShaderResource::storage_buffer;
+        GLenum format = 0;  // of a texel
+        GLenum layout = 0;  // its parts
+        GLenum type = 0;    // of a part
+        int texel_bytes = 0;
         GLuint buffer = 0;
         GLuint texture = 0;
-        GLenum format = 0;
     };
 
     void set_size(int width, int height, GLenum colour_format);
@@ -82,15 +87,21 @@ private:
     void draw_depth() const;
     void draw_triangles(GLuint program, const FrameSettings& settings) const;
     void bind_lists(GLuint program, const lightbin::ShaderGrid& grid) const;
-    void upload(const GpuBuffer& target, const void* data, std::size_t bytes, std::size_t texel_size,
+    void bind_texture(GLuint program, int unit, const GpuBuffer& source, const char* name) const;
+    void upload(const GpuBuffer& target, const void* data, std::size_t bytes, int width,
                 const char* what) const;
+    void upload_lights() const;
+    void reduce_on_gpu(const lightbin::View& view, bool orthographic);
 
     const Scene& scene_;
     int glsl_;
 
+    lightbin::ShaderResource list_resource_;
     GLuint depth_program_, tiled_program_, brute_force_program_, heat_map_program_;
     GLuint vertex_array_ = 0;
+    GLuint reduce_programs_[2] = {};  // perspective, orthographic
     GLuint framebuffer_ = 0, colour_ = 0, depth_ = 0;
+    GLuint reduce_framebuffer_ = 0, reduced_ = 0;
     GpuBuffer lights_, tiles_, indices_;
 
     // Of the frame

@@ -5,24 +5,29 @@
 
 namespace {
 
+bool is_es(int glsl) {
+    return glsl < 330;
+}
+
 std::string version_line(int glsl) {
-    return "#version " + std::to_string(glsl) + " core\n";
+    const std::string version = "#version " + std::to_string(glsl);
+    return version + (is_es(glsl) ? " es\nprecision highp float;\nprecision highp int;\n" : " core\n");
 }
 
 // Declares lightbin_for_each_light() and what it reads.
 std::string tile_lists(int glsl, bool heat_map = false) {
-    lightbin::ShaderOptions options;
-    if (glsl < 430) {
-        options.language = lightbin::ShaderLanguage::glsl_330;
-        options.storage = lightbin::ListStorage::texel_buffer;
-    }
+    lightbin::ShaderOptions options = list_options(glsl);
     options.heat_map = heat_map;
     return lightbin::shader_snippet(options)->text;
 }
 
 // What light `id` sends to the surface at `position`, all in view space.
 const char* const lighting = R"(
-uniform samplerBuffer lights;  // three texels each, see GpuLight
+uniform highp sampler2D lights;  // three texels each, see GpuLight
+
+vec4 light_texel(int i) {
+    return texelFetch(lights, ivec2(i % LIGHTS_WIDTH, i / LIGHTS_WIDTH), 0);
+}
 
 // Inverse-square falloff, windowed to zero at the range, as KHR_lights_punctual recommends.
 float falloff(float square_distance, float inverse_square_range) {
@@ -31,15 +36,15 @@ float falloff(float square_distance, float inverse_square_range) {
 }
 
 vec3 irradiance(int id, vec3 position, vec3 normal) {
-    vec4 sphere = texelFetch(lights, 3 * id);
-    vec4 colour = texelFetch(lights, 3 * id + 1);
+    vec4 sphere = light_texel(3 * id);
+    vec4 colour = light_texel(3 * id + 1);
     vec3 to_light = sphere.xyz - position;
     float square_distance = dot(to_light, to_light);
     vec3 direction = to_light * inversesqrt(max(square_distance, 1e-20));
     float facing = max(dot(normal, direction), 0.0);
     float inverse_square_range = 1.0 / (sphere.w * sphere.w);
 #ifdef SPOTS
-    vec4 cone = texelFetch(lights, 3 * id + 2);
+    vec4 cone = light_texel(3 * id + 2);
     float angular = clamp(dot(cone.xyz, direction) + cone.w, 0.0, 1.0);
     facing *= angular * angular;
 #endif
@@ -75,7 +80,7 @@ void main() {
 
     vec3 light = vec3(0.0);
     for (int sun = light_count; sun < light_count + sun_count; ++sun)
-        light += texelFetch(lights, 3 * sun + 1).rgb * max(dot(normal, texelFetch(lights, 3 * sun).xyz), 0.0);
+        light += light_texel(3 * sun + 1).rgb * max(dot(normal, light_texel(3 * sun).xyz), 0.0);
 #ifdef EVERY_LIGHT
     for (int id = 0; id < light_count; ++id)
         light += irradiance(id, position, normal);
@@ -97,6 +102,28 @@ void main() {
 )";
 
 }  // namespace
+
+lightbin::ShaderOptions list_options(int glsl) {
+    using namespace lightbin;
+    ShaderOptions options;
+    options.language = glsl == 430   ? ShaderLanguage::glsl_430
+                       : glsl == 330 ? ShaderLanguage::glsl_330
+                       : glsl == 310 ? ShaderLanguage::essl_310
+                                     : ShaderLanguage::essl_300;
+    options.storage = glsl == 330   ? ListStorage::texel_buffer
+                      : glsl == 300 ? ListStorage::texture_2d
+                                    : ListStorage::storage_buffer;
+    return options;
+}
+
+std::string reduce_fragment_shader(int glsl, bool orthographic) {
+    lightbin::ReduceShaderOptions options;
+    options.language = list_options(glsl).language;
+    options.stage = lightbin::ShaderStage::fragment;
+    options.orthographic = orthographic;
+    options.skip_background = true;
+    return version_line(glsl) + lightbin::reduce_shader(options)->text;
+}
 
 std::string geometry_vertex_shader(int glsl) {
     return version_line(glsl) + R"(
@@ -122,7 +149,7 @@ std::string depth_fragment_shader(int glsl) {
 }
 
 std::string forward_fragment_shader(int glsl, LightLoop loop, bool has_spots) {
-    std::string text = version_line(glsl);
+    std::string text = version_line(glsl) + "#define LIGHTS_WIDTH " + std::to_string(lights_width) + "\n";
     if (has_spots) text += "#define SPOTS\n";
     if (loop == LightLoop::every_light)
         text += "#define EVERY_LIGHT\n";

@@ -1,11 +1,22 @@
 // SPDX-License-Identifier: MIT
-// The texts of the shaders, for GLSL 330 or 430.
+// The texts of the shaders, for GLSL 330 or 430, or GLSL ES 300 or 310.
 #pragma once
+
+#include <lightbin/shader_build.hpp>
 
 #include <string>
 
 std::string geometry_vertex_shader(int glsl);
 std::string depth_fragment_shader(int glsl);
+
+// Texels a row of the lights' texture: whole lights, and no more than every device has.
+constexpr int lights_width = 1536;
+
+// Where the lists lie: 330: buffer textures, 300: 2D textures, 430 and 310: storage buffers.
+lightbin::ShaderOptions list_options(int glsl);
+
+// Z bounds of the tiles from a depth texture: a fragment a tile.
+std::string reduce_fragment_shader(int glsl, bool orthographic);
 
 // How the lights of a fragment are found. Both call the same function for each of them, in ascending order of
 // their ids.

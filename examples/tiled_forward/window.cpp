@@ -26,17 +26,19 @@ struct Glfw {
 };
 
 GLFWwindow* open_window(const char* title, const FrameSettings& settings, int wanted_glsl, int& glsl) {
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-    for (const int version : {430, 330}) {
-        if (wanted_glsl != 0 && wanted_glsl != version) continue;
+    for (const int version : {430, 330, 310, 300}) {
+        const bool es = version < 330;
+        if (wanted_glsl != version && (wanted_glsl != 0 || es)) continue;
+        glfwWindowHint(GLFW_CLIENT_API, es ? GLFW_OPENGL_ES_API : GLFW_OPENGL_API);
+        glfwWindowHint(GLFW_OPENGL_PROFILE, es ? GLFW_OPENGL_ANY_PROFILE : GLFW_OPENGL_CORE_PROFILE);
+        glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, es ? GLFW_FALSE : GLFW_TRUE);
         glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, version / 100);
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, version / 10 % 10);
         glsl = version;
         if (GLFWwindow* window = glfwCreateWindow(settings.width, settings.height, title, nullptr, nullptr))
             return window;
     }
-    throw std::runtime_error("no usable OpenGL: no window with an OpenGL 3.3 core context can be opened");
+    throw std::runtime_error("no usable OpenGL: no window with such a context can be opened");
 }
 
 // W A S D and Q E move, a held mouse button turns, shift hurries.

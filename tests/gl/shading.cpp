@@ -106,7 +106,7 @@ TEST_CASE("a pixel has the light that the specification gives it") {
         scene.suns = {{glm::normalize(glm::vec3(1, 1, -1)), {0.5f, 0.5f, 0.8f}}};
     }
 
-    for (const int glsl : {330, 430}) {
+    for (const int glsl : {330, 430, 300, 310}) {
         CAPTURE(glsl);
         const OffscreenContext context(glsl);
         Renderer renderer(scene, glsl);

@@ -98,8 +98,10 @@ void compile_language(Compiler& compiler, ShaderLanguage language) {
 
 void compile_example(Compiler& compiler, int glsl) {
     const auto compile = [&](EShLanguage stage, const std::string& text) {
-        compiler.compile(glsl == 330 ? ShaderLanguage::glsl_330 : ShaderLanguage::glsl_430, stage, text);
+        compiler.compile(glsl_language(glsl), stage, text);
     };
+    for (const bool orthographic : {false, true})
+        compile(EShLangFragment, reduce_fragment_shader(glsl, orthographic));
     compile(EShLangVertex, geometry_vertex_shader(glsl));
     compile(EShLangFragment, depth_fragment_shader(glsl));
     compile(EShLangVertex, overlay_vertex_shader(glsl));
@@ -118,7 +120,7 @@ int main(int count, char** arguments) {
     for (int language = part; language < 7; language += parts)
         compile_language(compiler, static_cast<ShaderLanguage>(language));
     if (part == 0)
-        for (const int glsl : {330, 430})
+        for (const int glsl : {330, 430, 300, 310})
             compile_example(compiler, glsl);
     std::printf("%d texts, %d of them SPIR-V; %d refused\n", compiler.texts, compiler.valid,
                 compiler.refused);
