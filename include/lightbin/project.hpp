@@ -23,9 +23,9 @@ namespace lightbin {
 /// The footprints of the lights in view, in ascending order of id. Keeps its memory from call to call.
 ///
 /// footprint     silhouette: with row spans
-/// with_spheres  keep the view-space spheres too, for a depth test
+/// with_spheres  have the view-space spheres at hand, for a depth test; row spans need them anyway
 template <Footprint footprint, bool with_spheres> class Footprints {
-    static constexpr bool with_spans = footprint == Footprint::silhouette;
+    static constexpr bool with_spans = footprint == Footprint::silhouette, keep = with_spheres || with_spans;
 
 public:
     /// Projects every light with the kernel of an instruction set. After it, a light's rectangle holds each
@@ -35,10 +35,9 @@ public:
     void project(Isa isa, const View& view, const Lights<Light, ToViewSphere>& lights,
                  const Parallel& parallel) {
         lights_ = lights.array.size();
-        // A few parts a worker, so that a late one costs little; serial work is one part.
-        const std::size_t parts = parallel.workers() > 1 && lights_ >= 2 * smallest_part
-                                      ? (std::min)(lights_ / smallest_part, 4 * parallel.workers())
-                                      : 1;
+        // Some parts a worker, so that a late one costs little; serial work is one part.
+        const std::size_t most = lights_ / smallest_part, workers = parallel.workers();
+        const std::size_t parts = workers == 1 || most < 2 ? 1 : most / 4 < workers ? most : 4 * workers;
         const std::size_t size = lights_ / parts + 1, stride = size + detail::FootprintArrays::padding;
         const std::size_t room = parts * stride;
         arrays_ = {.ids = ids_.room(room),
@@ -51,7 +50,7 @@ public:
                    .spheres = detail::as_they_are(lights)};
         const bool move = arrays_.spheres == nullptr;
         Sphere* kept = nullptr;
-        if constexpr (with_spheres || with_spans)
+        if constexpr (keep)
             if (move) arrays_.spheres = kept = spheres_.room(lights_);
         detail::FootprintRun* runs = runs_.room(parts);
         detail::ProjectCounts* counts = part_counts_.room(parts);
@@ -71,7 +70,7 @@ public:
                 std::array<Sphere, detail::ChunkRects::size> block;
                 for (; first < end; first += block.size()) {
                     const std::size_t count = (std::min)(block.size(), end - first);
-                    Sphere* to = with_spheres || with_spans ? kept + first : block.data();
+                    Sphere* to = keep ? kept + first : block.data();
                     for (std::size_t i = 0; i < count; ++i)
                         to[i] = std::invoke(lights.to_view_sphere, lights.array[first + i]);
                     consume(to, first, count);

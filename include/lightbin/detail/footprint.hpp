@@ -37,7 +37,8 @@ struct FootprintArrays {
     std::uint32_t* span_begin;
     const RowSpan* spans;
 
-    /// With a depth test, by id, of all lights: view space as the caller has it. To be read with load_sphere.
+    /// With silhouettes or a depth test, by id, of all lights: view space as the caller has it. To be read with
+    /// load_sphere.
     const Sphere* spheres;
 
     /// The same arrays with their first `begin` elements left out, for writing rectangles.
