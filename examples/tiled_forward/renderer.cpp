@@ -45,12 +45,6 @@ template <class T> T value_of(lightbin::Result<T> result) {
     return *result;
 }
 
-lightbin::ShaderResource resource_of(lightbin::ListStorage storage) {
-    return storage == lightbin::ListStorage::storage_buffer ? lightbin::ShaderResource::storage_buffer
-           : storage == lightbin::ListStorage::texel_buffer ? lightbin::ShaderResource::texel_buffer
-                                                            : lightbin::ShaderResource::texture_2d;
-}
-
 GLenum target_of(lightbin::ShaderResource resource) {
     return resource == lightbin::ShaderResource::texture_2d ? GL_TEXTURE_2D : GL_TEXTURE_BUFFER;
 }
@@ -131,7 +125,7 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     upload_lights();
     upload(tiles_, lists.tiles().data(), lists.tiles().size_bytes(), view.tiles_x(), "tiles");
     upload(indices_, lists.indices().data(), lists.indices().size_bytes(),
-           static_cast<int>(list_options(glsl_).texture_width), "light lists");
+           static_cast<int>(list_binding_.width), "light lists");
     report.milliseconds.upload = watch.lap();
 
     // 5. The picture.
@@ -221,7 +215,7 @@ void Renderer::show() const {
 }
 
 Renderer::Renderer(const Scene& scene, int glsl)
-    : scene_(scene), glsl_(glsl), list_resource_(resource_of(list_options(glsl).storage)) {
+    : scene_(scene), glsl_(glsl), list_binding_(list_binding(glsl)) {
     const bool spots =
         std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return l.spot; });
     const std::string geometry = geometry_vertex_shader(glsl);
@@ -245,8 +239,8 @@ Renderer::Renderer(const Scene& scene, int glsl)
     }
 
     lights_ = {lightbin::ShaderResource::texture_2d, GL_RGBA32F, GL_RGBA, GL_FLOAT, 16};
-    tiles_ = {list_resource_, GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, 8};
-    indices_ = {list_resource_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4};
+    tiles_ = {list_binding_.resource, GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, 8};
+    indices_ = {list_binding_.resource, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4};
     for (GpuBuffer* made : {&lights_, &tiles_, &indices_}) {
         glGenBuffers(1, &made->buffer);
         glGenTextures(1, &made->texture);
@@ -337,7 +331,7 @@ void Renderer::draw_triangles(GLuint program, const FrameSettings& settings) con
 // Hands the lists to the text that lightbin/shader.hpp generates.
 void Renderer::bind_lists(GLuint program, const lightbin::ShaderGrid& grid) const {
     glUniform4uiv(uniform(program, "lightbin_grid"), 1, &grid.tile_size);
-    if (list_resource_ == lightbin::ShaderResource::storage_buffer) {
+    if (list_binding_.resource == lightbin::ShaderResource::storage_buffer) {
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, tiles_.buffer);
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, indices_.buffer);
     } else {

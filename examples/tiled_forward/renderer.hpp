@@ -96,7 +96,7 @@ private:
     const Scene& scene_;
     int glsl_;
 
-    lightbin::ShaderResource list_resource_;
+    lightbin::ShaderBinding list_binding_;
     GLuint depth_program_, tiled_program_, brute_force_program_, heat_map_program_;
     GLuint vertex_array_ = 0;
     GLuint reduce_programs_[2] = {};  // perspective, orthographic

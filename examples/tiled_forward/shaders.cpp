@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "shaders.hpp"
 
-#include <lightbin/shader.hpp>
-
 namespace {
 
 bool is_es(int glsl) {
@@ -12,6 +10,19 @@ bool is_es(int glsl) {
 std::string version_line(int glsl) {
     const std::string version = "#version " + std::to_string(glsl);
     return version + (is_es(glsl) ? " es\nprecision highp float;\nprecision highp int;\n" : " core\n");
+}
+
+lightbin::ShaderOptions list_options(int glsl) {
+    using namespace lightbin;
+    ShaderOptions options;
+    options.language = glsl == 430   ? ShaderLanguage::glsl_430
+                       : glsl == 330 ? ShaderLanguage::glsl_330
+                       : glsl == 310 ? ShaderLanguage::essl_310
+                                     : ShaderLanguage::essl_300;
+    options.storage = glsl == 330   ? ListStorage::texel_buffer
+                      : glsl == 300 ? ListStorage::texture_2d
+                                    : ListStorage::storage_buffer;
+    return options;
 }
 
 // Declares lightbin_for_each_light() and what it reads.
@@ -103,17 +114,8 @@ void main() {
 
 }  // namespace
 
-lightbin::ShaderOptions list_options(int glsl) {
-    using namespace lightbin;
-    ShaderOptions options;
-    options.language = glsl == 430   ? ShaderLanguage::glsl_430
-                       : glsl == 330 ? ShaderLanguage::glsl_330
-                       : glsl == 310 ? ShaderLanguage::essl_310
-                                     : ShaderLanguage::essl_300;
-    options.storage = glsl == 330   ? ListStorage::texel_buffer
-                      : glsl == 300 ? ListStorage::texture_2d
-                                    : ListStorage::storage_buffer;
-    return options;
+lightbin::ShaderBinding list_binding(int glsl) {
+    return lightbin::shader_snippet(list_options(glsl))->bindings.back();
 }
 
 std::string reduce_fragment_shader(int glsl, bool orthographic) {

@@ -12,8 +12,8 @@ std::string depth_fragment_shader(int glsl);
 // Texels a row of the lights' texture: whole lights, and no more than every device has.
 constexpr int lights_width = 1536;
 
-// Where the lists lie: 330: buffer textures, 300: 2D textures, 430 and 310: storage buffers.
-lightbin::ShaderOptions list_options(int glsl);
+// Where the light index list lies: 330: buffer textures, 300: 2D textures, 430 and 310: storage buffers.
+lightbin::ShaderBinding list_binding(int glsl);
 
 // Z bounds of the tiles from a depth texture: a fragment a tile.
 std::string reduce_fragment_shader(int glsl, bool orthographic);
