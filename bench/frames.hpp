@@ -23,6 +23,12 @@ struct Lens {
     double tan_half_height = double(tan_half_fov), near_depth = 0.1, far_depth = 1000;
     lightbin::Extent screen = {1920, 1080};
 
+    bool same(const Lens& other) const {
+        return tan_half_height == other.tan_half_height && near_depth == other.near_depth &&
+               far_depth == other.far_depth && screen.width == other.screen.width &&
+               screen.height == other.screen.height;
+    }
+
     lightbin::View view(int tile_size) const {
         const double aspect_ratio = double(screen.width) / screen.height;
         const glm::dmat4 projection =
