@@ -64,6 +64,8 @@ const char* name(Isa isa) {
         return "avx2";
     case Isa::avx512:
         return "avx512";
+    case Isa::neon:
+        return "neon";
     }
     return "?";
 }
@@ -109,9 +111,7 @@ struct MadeBounds {
         const lightbin::View view = Lens().view(tile_size);
         for (auto* side : {&min, &max, &gap_min, &gap_max})
             side->resize(view.tile_count());
-        bounds = *lightbin::reduce_depth(view, {.depth = depth}, min, max);
-        bounds.gap_min = gap_min;
-        bounds.gap_max = gap_max;
+        bounds = *lightbin::reduce_depth(view, {.depth = depth}, min, max, gap_min, gap_max);
     }
 };
 
@@ -263,7 +263,12 @@ template <Options options> void build(benchmark::State& state, const Case& which
 class Table : public benchmark::BenchmarkReporter {
 public:
     bool ReportContext(const Context&) override {
-        std::printf("this machine's tier: %s\n\n", name(lightbin::detail::machine_isa(Options{}.isa)));
+        std::printf(
+            "this machine's tier: %s\n"
+            "ratio: of the medians, to the flat baseline (interval: to its interval twin); spread: 10th to "
+            "90th\n"
+            "percentile of the turns' ratios; entries: a light; x store: to writing the index list once\n\n",
+            name(lightbin::detail::machine_isa(Options{}.isa)));
         std::printf("%-16s%8s%4s %-11s%-10s%-7s%2s%10s%10s%8s%8s%9s%9s\n", "set", "n", "px", "footprint",
                     "depth", "tier", "th", "ns/light", "ns/entry", "ratio", "spread", "entries", "x store");
         return true;
@@ -287,13 +292,21 @@ template <Options options> void add(const Case& which) {
     benchmark::RegisterBenchmark(label.c_str(), build<options>, which)->Iterations(1)->UseManualTime();
 }
 
+constexpr Options with(Options options, Isa isa) {
+    options.isa = isa;
+    return options;
+}
+
 template <DepthTest depth_test = DepthTest::none, Footprint footprint = Footprint::rectangle,
           Index index = Index::u32>
 void add_tiers(const Case& which) {
-    add<Options{.index = index, .footprint = footprint, .depth_test = depth_test, .isa = Isa::scalar}>(which);
-    add<Options{.index = index, .footprint = footprint, .depth_test = depth_test, .isa = Isa::sse2}>(which);
-    add<Options{.index = index, .footprint = footprint, .depth_test = depth_test, .isa = Isa::avx2}>(which);
-    add<Options{.index = index, .footprint = footprint, .depth_test = depth_test, .isa = Isa::avx512}>(which);
+    constexpr Options options = {.index = index, .footprint = footprint, .depth_test = depth_test};
+    add<with(options, Isa::scalar)>(which);
+#if defined(LIGHTBIN_X86)
+    add<with(options, Isa::sse2)>(which);
+    add<with(options, Isa::avx2)>(which);
+#endif
+    add<options>(which);  // the widest that was compiled in
 }
 
 void add_rungs(const Case& which) {
@@ -308,8 +321,10 @@ void add_rungs(const Case& which) {
 void add_threads(Case which) {
     const int most = int(std::thread::hardware_concurrency());
     for (which.threads = 2; which.threads <= most; which.threads *= 2) {
+#if defined(LIGHTBIN_X86)
         add<Options{.isa = Isa::avx2}>(which);
-        add<Options{.isa = Isa::avx512}>(which);
+#endif
+        add<Options{}>(which);
     }
 }
 
