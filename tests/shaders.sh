@@ -1,8 +1,8 @@
 #!/bin/sh
-# Proves the generated shader text in what the normal test run lacks: `sh tests/shaders.sh` on Debian 12, as root
-# or with sudo. Vulkan under its validation layer, WebGL 2 in a browser,
-# Microsoft's compilers (fxc, dxc) and Direct3D 11 under Wine.
-# Installs what is missing; what can't be had is skipped, and the summary says so. Takes about 10 minutes.
+# Proves the generated shader text where the normal test run does not: `sh tests/shaders.sh` on Debian 12, as root
+# or with sudo. Vulkan under its validation layer, WebGL 2 in a browser, Microsoft's compilers (fxc, dxc) and
+# Direct3D 11 under Wine. Installs what is missing; what can't be had is skipped, and the summary says so. Takes
+# about 10 minutes.
 set -eu
 me=tests/shaders.sh
 cd "$(dirname "$0")/.."
@@ -31,23 +31,27 @@ have() {
     return 1
 }
 
-# run PART PROGRAM ARGUMENTS: runs the program once a processor, each with its share of the work, and waits.
+# run PART PROGRAM ARGUMENTS: runs the program once a processor, each with its share of the work, and waits. The
+# last line of each tells what it did.
 run() {
     part=$1
     shift
     echo "$me: $part"
+    begin=$(date +%s)
     processes=
     for share in $(seq 0 $((jobs - 1))); do
         timeout 1200 "$@" "$share" "$jobs" >"$out/log.$share" 2>&1 &
         processes="$processes $!"
     done
     share=0
+    verdict=passed
+    said=
     for process in $processes; do
-        if wait "$process"; then verdict=ok; else verdict=FAILED failed=yes; fi
-        [ $verdict = ok ] || cat "$out/log.$share"
-        note "$part" "$verdict: $(tail -n 1 "$out/log.$share" | tr -d '\r')"
+        wait "$process" || { verdict=FAILED failed=yes && cat "$out/log.$share"; }
+        said="$said${said:+; }$(tail -n 1 "$out/log.$share" | tr -d '\r')"
         share=$((share + 1))
     done
+    note "$part" "$verdict: $said ($(($(date +%s) - begin)) s)"
 }
 
 # build COMPILER SOURCE PROGRAM LIBRARIES
