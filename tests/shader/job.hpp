@@ -47,3 +47,23 @@ struct Job {
         return all;
     }
 };
+
+/// What comes before a text.
+inline std::string version_line(lightbin::ShaderLanguage language) {
+    constexpr const char* lines[] = {"#version 330 core\n",
+                                     "#version 430 core\n",
+                                     "#version 450\n",
+                                     "#version 300 es\n",
+                                     "#version 310 es\n",
+                                     "",
+                                     ""};
+    return lines[static_cast<int>(language)];
+}
+
+inline lightbin::ShaderLanguage glsl_language(int glsl) {
+    using lightbin::ShaderLanguage;
+    return glsl == 330   ? ShaderLanguage::glsl_330
+           : glsl == 300 ? ShaderLanguage::essl_300
+           : glsl == 310 ? ShaderLanguage::essl_310
+                         : ShaderLanguage::glsl_430;
+}

@@ -80,38 +80,36 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions o
     return every;
 }
 
-/// Whole numbers that make up every set of options that are on or off.
-struct Switches {
-    static constexpr unsigned count = 16;
-    static lightbin::ShaderOptions set(lightbin::ShaderOptions options, unsigned switches) {
-        options.flip_y = switches & 1;
-        options.viewport_corner = switches & 2;
-        options.tile_size = switches & 4 ? 16 : 0;
-        options.heat_map = switches & 8;
-        return options;
-    }
-};
+constexpr unsigned switch_count = 16;  // sets of the options that are on or off
 
-/// Every set of options for a language, in which each is on and off. Bindings are numbered so that no two
-/// kinds share a number: glslang puts the registers t, u and b of HLSL in one row.
+/// Every set of options for a language: switch_count of each list, the two of `flip_y` side by side. Bindings
+/// are numbered so that no two kinds share a number: glslang puts the registers t, u and b of HLSL in one row.
 inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguage language) {
-    std::vector<lightbin::ShaderOptions> every;
     const lightbin::detail::Dialect dialect = lightbin::detail::dialect(language);
+    const int set = dialect.spaces ? 1 : 0;
+    lightbin::ShaderOptions options;
+    options.language = language;
+    options.texture_width = 37;  // no power of two
+    options.max_tiles = 100;
+    options.max_entries = 400;
+    options.uniform_block_bytes = 65536;
+    options.tiles = {3, set};
+    options.lists = {4, set};
+    options.grid = {5, 0};
+    if (set != 0) options.prefix = "my_";
+
+    std::vector<lightbin::ShaderOptions> every;
     for (const bool push : {false, true}) {
         if (push && !dialect.vulkan) continue;
-        const int set = dialect.spaces ? 1 : 0;
-        for (const lightbin::ShaderOptions& list : every_list({.language = language,
-                                                   .texture_width = 37,  // no power of two
-                                                               .max_tiles = 100,
-                                                   .max_entries = 400,
-                                                   .uniform_block_bytes = 65536,
-                                                   .tiles = {3, set},
-                                                   .lists = {4, set},
-                                                   .grid = {5, 0},
-                                                   .push_constants = push,
-                                                   .prefix = set ? "my_" : "lightbin_"}))
-            for (unsigned switches = 0; switches < Switches::count; ++switches)
-                every.push_back(Switches::set(list, switches));
+        options.push_constants = push;
+        for (lightbin::ShaderOptions list : every_list(options))
+            for (unsigned switches = 0; switches < switch_count; ++switches) {
+                list.flip_y = switches & 1;
+                list.viewport_corner = switches & 2;
+                list.tile_size = switches & 4 ? 16 : 0;
+                list.heat_map = switches & 8;
+                every.push_back(list);
+            }
     }
     return every;
 }
@@ -125,21 +123,12 @@ constexpr int result_binding = 2;  // compute
 /// ids that depend on their order.
 inline std::string reader_text(const lightbin::ShaderOptions& options, const lightbin::ShaderText& snippet,
                                Stage stage, std::uint32_t width, std::uint32_t height) {
-    using lightbin::ShaderLanguage;
     const lightbin::detail::Dialect dialect = lightbin::detail::dialect(options.language);
     const std::string prefix(options.prefix), binding = std::to_string(result_binding);
     const auto pair = [](auto x, auto y) {
         return "uvec2(" + std::to_string(x) + "u, " + std::to_string(y) + "u)";
     };
-    std::string text;
-    if (!dialect.hlsl) {
-        text += options.language == ShaderLanguage::glsl_330   ? "#version 330 core\n"
-                : options.language == ShaderLanguage::glsl_430 ? "#version 430 core\n"
-                : options.language == ShaderLanguage::essl_300 ? "#version 300 es\n"
-                : options.language == ShaderLanguage::essl_310 ? "#version 310 es\n"
-                                                               : "#version 450\n";
-    }
-    text += snippet.text + "\n";
+    std::string text = version_line(options.language) + snippet.text + "\n";
     if (dialect.hlsl) text += "#define highp\n#define uvec2 uint2\n#define uvec4 uint4\n";
     text += R"(
 uvec4 read_list(highp uvec2 pixel) {
@@ -311,12 +300,12 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language) {
     const auto every = every_reader(language);
     const bool computes = lightbin::detail::dialect(language).storage_buffers;
     unsigned turn = 0;
-    for (std::size_t list = 0; list < every.size(); list += Switches::count)
+    for (std::size_t list = 0; list < every.size(); list += switch_count)
         for (unsigned flip = 0; flip < 2; ++flip)
             for (const Stage stage : {Stage::fragment, Stage::compute}) {
                 if (stage == Stage::compute && !computes) continue;
                 const auto add = [&](const ScreenSize& screen) {
-                    turn = (turn + 1) % (Switches::count / 2);
+                    turn = (turn + 1) % (switch_count / 2);
                     runs.push_back({every[list + 2 * turn + flip], stage, screen});
                 };
                 for (const ScreenSize& screen : small)
