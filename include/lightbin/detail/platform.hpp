@@ -51,7 +51,9 @@ enum class Isa : std::uint8_t {
 
 namespace detail {
 
-#if defined(LIGHTBIN_X86)
+#if defined(LIGHTBIN_X86) && defined(__MINGW32__) && !defined(__clang__)
+inline constexpr Isa compiled_isa = Isa::sse2;  // wider vectors are misaligned on the stack: GCC bug 54412
+#elif defined(LIGHTBIN_X86)
 inline constexpr Isa compiled_isa = Isa::avx512;
 #elif defined(LIGHTBIN_NEON)
 inline constexpr Isa compiled_isa = Isa::neon;
