@@ -73,8 +73,10 @@ BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint32_t lights, std::u
         // Nearly empty grids: a walk over all supertiles costs more than counting and scattering.
         if (isa == Isa::scalar || area <= view.tile_count() / 4) return bin_scatter<Id>;
         // Without compress, putting a light in lists costs as much as scattering it to so many tiles.
-        const std::uint64_t few = isa == Isa::avx512 ? 0 : isa == Isa::sse2 ? (lights < 500 ? 100 : 48) : 16;
-        if (area < few * lights) return bin_scatter<Id>;
+        const std::uint64_t scattered = isa == Isa::avx512 ? 0
+                                        : isa == Isa::sse2 ? (lights < 500 ? 100 : 48)
+                                                           : 16;
+        if (area < scattered * lights) return bin_scatter<Id>;
     }
 #if defined(LIGHTBIN_X86)
     if (isa == Isa::avx512) return avx512::bin_compress<footprint, depth_test, Id>;
