@@ -182,7 +182,7 @@ public:
     /// Declares a read-only buffer and lists it among the bindings.
     void declare(const ShaderBuffer& buffer) {
         const bool pairs = buffer.format == TexelFormat::rg32ui;
-        const std::string name = "$" + std::string(buffer.name), type = pairs ? "uvec2" : "uint",
+        const std::string name = std::string("$").append(buffer.name), type = pairs ? "uvec2" : "uint",
                           vectors = std::to_string(buffer.vectors);
         ShaderBinding binding = {prefix_ + std::string(buffer.name),
                                  buffer.resource,
@@ -221,7 +221,7 @@ public:
     /// Returns the expression that reads an element: of a uvec2 buffer a uvec2, otherwise a uint.
     std::string read(const ShaderBuffer& buffer, const std::string& index) const {
         const bool pairs = buffer.format == TexelFormat::rg32ui;
-        const std::string name = "$" + std::string(buffer.name), swizzle = pairs ? ".xy" : ".x";
+        const std::string name = std::string("$").append(buffer.name), swizzle = pairs ? ".xy" : ".x";
         switch (buffer.resource) {
         case ShaderResource::uniform_block: {
             const auto word = [&](const std::string& i) {
@@ -248,7 +248,7 @@ public:
 
     /// The same of a texture_2d, at "x, y".
     std::string read_texel(const ShaderBuffer& buffer, const std::string& texel) const {
-        const std::string name = "$" + std::string(buffer.name),
+        const std::string name = std::string("$").append(buffer.name),
                           swizzle = buffer.format == TexelFormat::rg32ui ? ".xy" : ".x";
         return (dialect_.hlsl ? name + ".Load(int3(" + texel + ", 0))"
                               : "texelFetch(" + name + ", ivec2(" + texel + "), 0)") +
