@@ -363,9 +363,9 @@ void add_set(const std::string& set, float median, double footprint, bool quick)
         if (footprint <= 20 && (n == 256 || n == 10000))
             add_tiers({set + "-4k", n, 16, made_frames(n, uhd, make)});
     };
-    for (const std::size_t n : {256, 1000, 4096, 10000})
+    for (const std::size_t n : {256u, 1000u, 4096u, 10000u})
         if (!quick || n == 256 || n == 4096) add_number(n, true);
-    for (const std::size_t n : {0, 1, 100000, 1000000})
+    for (const std::size_t n : {0u, 1u, 100000u, 1000000u})
         if (!quick || n <= 1) add_number(n, false);
 }
 
