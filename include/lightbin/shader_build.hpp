@@ -181,7 +181,9 @@ inline std::optional<Error> refuse(const BuildShaderOptions& options) {
     return std::nullopt;
 }
 
-/// The depths of a texel widen what is known of a tile. In bits: depths in 0..1 order as their bits do.
+/// The depth of a sample widens what is known of a tile, as in reduce_depth(). In bits, as depths in 0..1
+/// order as their bits do, and compilers may take it that no float is NaN. 0x3f800000 is 1, 0x7f800000
+/// infinity; below 0 and above 1 is clamped, and NaN could be any depth.
 inline void add_depth_sample(ShaderWriter& writer, const ReduceShaderOptions& options) {
     writer.add(std::string("\nvoid $sample(inout uvec2 range, float depth) {\n") +
                "    uint bits = floatBitsToUint(depth);\n" +
