@@ -21,6 +21,8 @@
 //        To write to your own buffers instead: binner.count(...), then binner.emit(tiles, indices).
 //   4. Upload grid->tiles() and grid->indices().                                               light_grid.hpp
 //   5. Put shader_snippet({...})->text in your shader, and bind what its bindings list.        shader.hpp
+//        shader.md has it step by step. Narrow ids, sentinel lists, bitmasks: encode()         encode.hpp
+//        The same as stages 2 and 3 on the GPU, not included here                         shader_build.hpp
 // Which tile size and options? advise(view, lights, costs[, bounds]) weighs them for a scene      advise.hpp
 //
 // Building. No compiler flags are needed. On x86-64 with gcc or clang there are kernels for SSE2, AVX2 and
