@@ -109,7 +109,9 @@ private:
 };
 
 /// Bins by one rung; the grid is valid until the next call.
-template <Method method, lightbin::Index index = lightbin::Index::u32> class Bin {
+template <Method method, lightbin::Index index = lightbin::Index::u32,
+          lightbin::Isa isa = lightbin::Options{}.isa>
+class Bin {
 public:
     auto operator()(const TiledView& view, const Lights& lights) {
         if constexpr (method.depth_test == DepthTest::none)
@@ -120,7 +122,7 @@ public:
 
 private:
     lightbin::Binner<lightbin::Options{
-        .index = index, .footprint = method.footprint, .depth_test = method.depth_test}>
+        .index = index, .footprint = method.footprint, .depth_test = method.depth_test, .isa = isa}>
         binner_;
 };
 
