@@ -23,6 +23,12 @@ using lightbin::Index;
 using lightbin::Isa;
 using lightbin::Plan;
 
+constexpr Method methods[] = {
+    {Footprint::rectangle, DepthTest::none},  {Footprint::rectangle, DepthTest::interval},
+    {Footprint::rectangle, DepthTest::box},   {Footprint::rectangle, DepthTest::split_box},
+    {Footprint::silhouette, DepthTest::none}, {Footprint::silhouette, DepthTest::interval},
+    {Footprint::silhouette, DepthTest::box},  {Footprint::silhouette, DepthTest::split_box},
+};
 constexpr int tile_sizes[] = {8, 16, 32, 64};
 constexpr double evaluation_costs[] = {0.005, 0.02, 0.05, 0.2, 1};  ///< ns
 constexpr double model_factors[] = {1, 0.5, 0.67, 1.5, 2};
@@ -37,25 +43,25 @@ struct Candidate {
     double total_us(double evaluation_ns) const { return build_us + evaluations * evaluation_ns * 1e-3; }
 };
 
-/// Every rung, id width and tile size.
+/// Every method, id width and tile size.
 template <Isa isa> std::vector<Candidate> candidates() {
     std::vector<Candidate> all;
-    const auto add = [&]<std::size_t rung, Index index> {
-        const auto bin = std::make_shared<Bin<ladder[rung], index, isa>>();
+    const auto add = [&]<std::size_t method, Index index> {
+        const auto bin = std::make_shared<Bin<methods[method], index, isa>>();
         for (const int tile_size : tile_sizes)
-            all.push_back({.plan = {.footprint = ladder[rung].footprint,
-                                    .depth_test = ladder[rung].depth_test,
+            all.push_back({.plan = {.footprint = methods[method].footprint,
+                                    .depth_test = methods[method].depth_test,
                                     .index = index,
                                     .tile_size = tile_size},
                            .build = [bin](const TiledView& view, const Lights& lights) {
                                return (*bin)(view, lights).tiles();
                            }});
     };
-    [&]<std::size_t... rung>(std::index_sequence<rung...>) {
-        (add.template operator()<rung, Index::u16>(), ...);
-        (add.template operator()<rung, Index::u32>(), ...);
+    [&]<std::size_t... method>(std::index_sequence<method...>) {
+        (add.template operator()<method, Index::u16>(), ...);
+        (add.template operator()<method, Index::u32>(), ...);
     }
-    (std::make_index_sequence<std::size(ladder)>{});
+    (std::make_index_sequence<std::size(methods)>{});
     return all;
 }
 

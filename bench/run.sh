@@ -15,6 +15,9 @@
 #       and .png.
 #   ablation [--quick] [SCENE.glb ...]
 #       What each part of the library costs and saves, by kind of scene; writes build/bench/ablation.csv.
+#   advise [--quick] [--fit] [SCENE.glb ...]
+#       What advise() chooses against the best of all plans, and what asking costs; writes build/bench/advise.csv and
+#       advise_plans.csv. With --fit: fits the constants of its build model to this machine instead, and prints them.
 set -eu
 me=bench/run.sh
 here=$(pwd)
@@ -23,7 +26,7 @@ cd "$(dirname "$0")/.."
 
 program=binning
 case ${1-} in
-binning | error | cutoff | ablation)
+binning | error | cutoff | ablation | advise)
     program=$1
     shift
     ;;

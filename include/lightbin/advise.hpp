@@ -94,8 +94,8 @@ private:
 /// bounds  of the view's own tiles; larger tiles' bounds are merged from them. None: no depth test is weighed
 /// costs   the build model knows the machine that it was fitted on (detail/build_model.hpp)
 ///
-/// The lists' lengths are estimated from a sample: at most 256 lights, through the library's own projection,
-/// and 256 (light, tile) pairs a tile size, through its own depth tests. With no more lights than that the
+/// The lists' lengths are estimated from a sample: at most 1,024 lights, through the library's own projection,
+/// and 192 (light, tile) pairs a tile size, through its own depth tests. With no more lights than that the
 /// sums over rectangles are exact. Takes tens of microseconds and a little memory.
 template <class LightRange>
 Result<Advice> advise(const View& view, const LightRange& lights, const Costs& costs = {},

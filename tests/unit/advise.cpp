@@ -84,7 +84,8 @@ double built(const View& fine, const Plan& plan, const std::vector<glm::vec4>& l
             return built<footprint, DepthTest::none>(fine, plan.tile_size, lights, depth);
         }
     };
-    return of.operator()<Footprint::rectangle>();
+    return plan.footprint == Footprint::rectangle ? of.operator()<Footprint::rectangle>()
+                                                  : of.operator()<Footprint::silhouette>();
 }
 
 Advice advised(const View& view, const auto& lights, const Costs& costs = {}, const ZBounds& bounds = {}) {
@@ -133,8 +134,8 @@ TEST_CASE("the evaluations of lists with Z are near those of the built grids") {
             const double truth = built(view, plan, lights, depth);
             const double untested =
                 built<Footprint::rectangle, DepthTest::none>(view, plan.tile_size, lights, depth);
-            // Three times the standard error of a share of 256 pairs, 0.03; more than 1024 lights add theirs.
-            CHECK(std::fabs(plan.evaluations - truth) <= 0.1 * untested);
+            // Three times the standard error of a share of 192 pairs, 0.036; more than 1024 lights add theirs.
+            CHECK(std::fabs(plan.evaluations - truth) <= (count <= 1024 ? 0.11 : 0.16) * untested);
             squares += std::pow((plan.evaluations - truth) / untested, 2);
             ++plans;
         }
@@ -176,7 +177,7 @@ TEST_CASE("without Z bounds no depth test is weighed, and none is chosen that co
     for (glm::vec4& light : on_ground)
         light = {light.x * 0.5f, light.y * 0.5f, -ground, 2 + light.w};
     for (const Plan& plan : advised(view, on_ground, {}, Bounds(view, flat).reduced).plans())
-        if (plan.depth_test == DepthTest::interval)
+        if (plan.depth_test == DepthTest::interval && plan.footprint == Footprint::rectangle)
             CHECK(plan.evaluations == doctest::Approx(built(view, plan, on_ground, flat)).epsilon(0.01));
     CHECK(advised(view, on_ground, {}, Bounds(view, flat).reduced).best().depth_test != DepthTest::interval);
 }

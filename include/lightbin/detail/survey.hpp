@@ -82,34 +82,45 @@ struct BoundsReader {
     const float *gap_min, *gap_max;
 };
 
-/// Merges the bounds of the tiles that make up tile (x, y) of a grid of 2^shift times the view's tile size. What
-/// lies before or behind a tile's gap counts as drawn all over, so the merged tile's gap is at most as wide as
-/// reduce_depth() would find.
-inline CellBounds merge_bounds(const View& view, const BoundsReader& bounds, int shift, int x, int y) {
+/// Calls visit(tile, depths, drawn) for the tiles that make up tile (x, y) of a grid of 2^shift times the view's tile
+/// size; `drawn` is false for those with nothing to light. Returns how many tiles there are.
+template <class Visit>
+int each_tile(const View& view, const BoundsReader& bounds, int shift, int x, int y, Visit visit) {
     const int x0 = x << shift, x1 = (std::min)((x + 1) << shift, view.tiles_x());
     const int y0 = y << shift, y1 = (std::min)((y + 1) << shift, view.tiles_y());
-    const auto each_drawn_tile = [&](auto visit) {
-        for (int row = y0; row < y1; ++row) {
-            const std::size_t line = static_cast<std::size_t>(row) * static_cast<std::size_t>(view.tiles_x());
-            for (std::size_t tile = line + static_cast<std::size_t>(x0);
-                 tile < line + static_cast<std::size_t>(x1); ++tile) {
-                const DepthInterval depths = {bounds.lower[tile & bounds.lower_mask],
-                                              bounds.upper[tile & bounds.upper_mask]};
-                if (!(depths.min > depths.max)) visit(tile, depths);
-            }
+    for (int row = y0; row < y1; ++row) {
+        const std::size_t line = static_cast<std::size_t>(row) * static_cast<std::size_t>(view.tiles_x());
+        for (std::size_t tile = line + static_cast<std::size_t>(x0),
+                         end = line + static_cast<std::size_t>(x1);
+             tile < end; ++tile) {
+            const DepthInterval depths = {bounds.lower[tile & bounds.lower_mask],
+                                          bounds.upper[tile & bounds.upper_mask]};
+            visit(tile, depths, !(depths.min > depths.max));
         }
-    };
-    CellBounds cell;
-    int drawn = 0;
-    each_drawn_tile([&](std::size_t, DepthInterval depths) {
-        cell.min = (std::min)(cell.min, depths.min);
-        cell.max = (std::max)(cell.max, depths.max);
-        ++drawn;
-    });
-    cell.drawn = static_cast<double>(drawn) / ((x1 - x0) * (y1 - y0));
-    if (bounds.gap_min == nullptr) return cell;
+    }
+    return (x1 - x0) * (y1 - y0);
+}
+
+inline CellBounds merge_bounds(const View& view, const BoundsReader& bounds, int shift, int x, int y) {
+    float lowest = infinity, highest = -infinity;
+    int count = 0;
+    const int tiles =
+        each_tile(view, bounds, shift, x, y, [&](std::size_t, DepthInterval depths, bool drawn) {
+            const float low = drawn ? depths.min : infinity, high = drawn ? depths.max : -infinity;
+            lowest = low < lowest ? low : lowest;
+            highest = high > highest ? high : highest;
+            count += drawn;
+        });
+    return {.min = lowest, .max = highest, .drawn = static_cast<double>(count) / tiles};
+}
+
+/// Finds the gap around the middle of the cell's depths. What lies before or behind a tile's own gap counts as drawn
+/// all over, so this gap is at most as wide as reduce_depth() would find.
+inline void merge_gaps(const View& view, const BoundsReader& bounds, int shift, int x, int y,
+                       CellBounds& cell) {
     const float middle = cell.min / 2 + cell.max / 2;
-    each_drawn_tile([&](std::size_t tile, DepthInterval depths) {
+    each_tile(view, bounds, shift, x, y, [&](std::size_t tile, DepthInterval depths, bool drawn) {
+        if (!drawn) return;
         const bool gap = bounds.gap_min[tile] < bounds.gap_max[tile];
         const DepthInterval parts[] = {{depths.min, gap ? bounds.gap_min[tile] : depths.max},
                                        {gap ? bounds.gap_max[tile] : depths.min, depths.max}};
@@ -118,7 +129,6 @@ inline CellBounds merge_bounds(const View& view, const BoundsReader& bounds, int
             if (part.max >= middle) cell.gap_max = (std::min)(cell.gap_max, (std::max)(part.min, middle));
         }
     });
-    return cell;
 }
 
 /// How many pixels of an axis of `pixels` pixels lie in the tiles first..last.
@@ -143,7 +153,7 @@ struct ScaledRect {
 /// True where visible light i reaches tile (x, y) of a grid of 2^shift times the view's tile size: by the row
 /// spans of the view's own tiles, which bound those of larger ones.
 inline bool in_silhouette(const FootprintArrays& lights, std::size_t i, int shift, int x, int y) {
-    if (lights.span_begin == nullptr || lights.span_begin[i] == FootprintArrays::whole_rectangle) return true;
+    if (lights.span_begin[i] == FootprintArrays::whole_rectangle) return true;
     const int end = (std::min)((y + 1) << shift, lights.y1[i] + 1);
     for (int row = (std::max)(y << shift, int{lights.y0[i]}); row < end; ++row) {
         const RowSpan span =
@@ -153,24 +163,26 @@ inline bool in_silhouette(const FootprintArrays& lights, std::size_t i, int shif
     return false;
 }
 
-/// Whether a light meets the bounds of tile (x, y) of a view, by depth test: asks the tests that bin, the scalar
-/// tier's. Each finds no more than the one before it.
-inline std::array<bool, 4> depth_tests_met(const View& view, int x, int y, const CellBounds& cell,
-                                           const Sphere& sphere) {
+/// Whether a light meets the cell of tile (x, y) of a grid of 2^shift times the view's tile size, by depth test: asks
+/// the tests that bin, the scalar tier's. None finds more than the one before it.
+inline std::array<bool, 4> depth_tests_met(const View& view, const BoundsReader& bounds, const Camera& grid,
+                                           int shift, int x, int y, CellBounds cell, const Sphere& sphere) {
     std::array<bool, 4> met = {true, false, false, false};
-    const TestedLight light(view.camera(), sphere);
-    float cells[12 * 64] = {cell.min};  // planes of 64 tiles, of which the first is the one
+    const TestedLight light(grid, sphere);
+    float cells[12 * 64];  // planes of 64 tiles, of which the first is the one
+    cells[0] = cell.min;
     cells[64] = cell.max;
     met[1] = cell.drawn > 0 && scalar::tiles_met<DepthTest::interval>(cells, light, 1) != 0;
     if (!met[1]) return met;
     float x0, x1, y0, y1;
-    tile_edges(view.camera().x, x, x0, x1);
-    tile_edges(view.camera().y, y, y0, y1);
-    scalar::store_boxes<DepthTest::box>(view.camera(), cells, x0, x1, y0, y1, cell.min, cell.max, 0, 0);
+    tile_edges(grid.x, x, x0, x1);
+    tile_edges(grid.y, y, y0, y1);
+    scalar::store_boxes<DepthTest::box>(grid, cells, x0, x1, y0, y1, cell.min, cell.max, 0, 0);
     met[2] = scalar::tiles_met<DepthTest::box>(cells, light, 1) != 0;
-    if (!met[2]) return met;
-    scalar::store_boxes<DepthTest::split_box>(view.camera(), cells, x0, x1, y0, y1, cell.min, cell.max,
-                                              cell.gap_min, cell.gap_max);
+    if (!met[2] || bounds.gap_min == nullptr) return met;
+    merge_gaps(view, bounds, shift, x, y, cell);
+    scalar::store_boxes<DepthTest::split_box>(grid, cells, x0, x1, y0, y1, cell.min, cell.max, cell.gap_min,
+                                              cell.gap_max);
     met[3] = scalar::tiles_met<DepthTest::split_box>(cells, light, 1) != 0;
     return met;
 }
@@ -192,7 +204,7 @@ inline double lit_pixels(const View& view, const BoundsReader& bounds, std::size
 /// on the screen for every grid, so that comparisons are sharper than the numbers.
 template <class Light, class ToViewSphere>
 Survey survey(Isa isa, const View& view, const Lights<Light, ToViewSphere>& lights, const ZBounds& z_bounds,
-              std::size_t most_lights = 1024, std::size_t most_pairs = 256) {
+              std::size_t most_lights = 1024, std::size_t most_pairs = 192) {
     const std::size_t count = lights.array.size(), sampled = (std::min)(count, most_lights);
     Buffer<Sphere> buffer;
     Sphere* spheres = buffer.room(sampled);
@@ -201,17 +213,18 @@ Survey survey(Isa isa, const View& view, const Lights<Light, ToViewSphere>& ligh
             sampled == count ? i : static_cast<std::size_t>(spread(i, sampled, static_cast<double>(count)));
         spheres[i] = std::invoke(lights.to_view_sphere, lights.array[place]);
     }
-    Footprints<Footprint::rectangle, true> footprints;
+    Footprints<Footprint::rectangle, false> footprints;
     footprints.project(isa, view, view_space(std::span<const Sphere>(spheres, sampled)), Parallel());
     const FootprintArrays& sample = footprints.arrays();
     const std::size_t visible = footprints.visible();
     const double lights_each = sampled > 0 ? static_cast<double>(count) / static_cast<double>(sampled) : 0;
 
     const BoundsReader bounds(z_bounds);
+    const bool with_depth = !z_bounds.min.empty() || !z_bounds.max.empty();
     Survey result;
     result.lights = static_cast<double>(count);
     result.visible = static_cast<double>(visible) * lights_each;
-    result.pixels = lit_pixels(view, bounds, most_pairs);
+    result.pixels = lit_pixels(view, bounds, 64);
 
     // Grids, and sums over rectangles.
     const Extent screen = view.viewport();
@@ -232,42 +245,62 @@ Survey survey(Isa isa, const View& view, const Lights<Light, ToViewSphere>& ligh
                 pixels_in(rect.x0, rect.x1, grid.tile_size, screen.width) *
                 pixels_in(rect.y0, rect.y1, grid.tile_size, screen.height);
         }
-        for (const Footprint footprint : {Footprint::rectangle})
+        for (const Footprint footprint : {Footprint::rectangle, Footprint::silhouette})
             for (const DepthTest depth_test :
                  {DepthTest::none, DepthTest::interval, DepthTest::box, DepthTest::split_box}) {
-                if (depth_test != DepthTest::none && z_bounds.min.empty() && z_bounds.max.empty()) continue;
+                if (depth_test != DepthTest::none && !with_depth) continue;
                 if (depth_test == DepthTest::split_box && bounds.gap_min == nullptr) continue;
                 grid.rungs[grid.rung_count++] = {.footprint = footprint, .depth_test = depth_test};
             }
     }
     const std::span<GridSurvey> grids(result.grids.data(), result.grid_count);
 
-    // What is left of them.
-    std::array<double, Survey::most_grids> tried = {}, tried_pixels = {};
+    // The pairs: a light and a place in its rectangle.
     const int drawn_shift = grids.size() > 1 ? 1 : 0;
     const double area = grids[static_cast<std::size_t>(drawn_shift)].candidates;
     const std::size_t pairs = visible == 0 ? 0 : (std::clamp)(8 * visible, most_pairs / 8, most_pairs);
+    struct Pair {
+        std::size_t light;  ///< in the order of first use
+        double u, v;
+    };
+    Buffer<Pair> pair_buffer;
+    Buffer<Sphere> used_buffer;
+    Pair* const drawn_pairs = pair_buffer.room(pairs);
+    Sphere* const used = used_buffer.room(pairs);
+    std::size_t used_count = 0;
     double before = 0;  // area of the lights before this one
-    std::size_t light = 0;
-    for (std::size_t pair = 0; pair < pairs; ++pair) {
+    for (std::size_t pair = 0, light = 0, last = visible; pair < pairs; ++pair) {
         const double place = spread(pair, pairs, area);
-        ScaledRect drawn(sample, light, drawn_shift);
-        while (before + drawn.area() <= place && light + 1 < visible) {
-            before += drawn.area();
-            drawn = ScaledRect(sample, ++light, drawn_shift);
+        ScaledRect rect(sample, light, drawn_shift);
+        while (before + rect.area() <= place && light + 1 < visible) {
+            before += rect.area();
+            rect = ScaledRect(sample, ++light, drawn_shift);
         }
-        const int tile = static_cast<int>(place - before), row = tile / drawn.width(),
-                  column = tile % drawn.width();
+        if (light != last) used[used_count++] = spheres[sample.ids[light]];
+        last = light;
+        const int tile = static_cast<int>(place - before);
+        drawn_pairs[pair] = {used_count - 1, (tile % rect.width() + 0.5) / rect.width(),
+                             (tile / rect.width() + 0.5) / rect.height()};
+    }
+    Footprints<Footprint::silhouette, true> silhouettes;
+    silhouettes.project(isa, view, view_space(std::span<const Sphere>(used, used_count)), Parallel());
+
+    // What is left of them.
+    std::array<double, Survey::most_grids> tried = {}, tried_pixels = {};
+    for (const Pair& pair : std::span(drawn_pairs, pairs)) {
+        const std::size_t light = pair.light;
+        const double drawn_area = ScaledRect(silhouettes.arrays(), light, drawn_shift).area();
         for (int shift = 0; shift < static_cast<int>(grids.size()); ++shift) {
             const std::size_t at = static_cast<std::size_t>(shift);
-            const ScaledRect rect(sample, light, shift);
-            const int x = rect.x0 + (2 * column + 1) * rect.width() / (2 * drawn.width());
-            const int y = rect.y0 + (2 * row + 1) * rect.height() / (2 * drawn.height());
-            const CellBounds cell = merge_bounds(view, bounds, shift, x, y);
-            const bool inside = in_silhouette(sample, light, shift, x, y);
-            const std::array<bool, 4> met =
-                depth_tests_met(views[at], x, y, cell, spheres[sample.ids[light]]);
-            const double weight = rect.area() / drawn.area();
+            const ScaledRect rect(silhouettes.arrays(), light, shift);
+            const int x = rect.x0 + static_cast<int>(pair.u * rect.width());
+            const int y = rect.y0 + static_cast<int>(pair.v * rect.height());
+            const CellBounds cell = with_depth ? merge_bounds(view, bounds, shift, x, y) : CellBounds();
+            const bool inside = in_silhouette(silhouettes.arrays(), light, shift, x, y);
+            std::array<bool, 4> met = {true};
+            if (with_depth)
+                met = depth_tests_met(view, bounds, views[at].camera(), shift, x, y, cell, used[light]);
+            const double weight = rect.area() / drawn_area;
             const double pixels = weight * pixels_in(x, x, grids[at].tile_size, screen.width) *
                                   pixels_in(y, y, grids[at].tile_size, screen.height);
             tried[at] += weight;
