@@ -83,29 +83,27 @@ if have Vulkan g++ glslang-dev libvulkan-dev mesa-vulkan-drivers vulkan-validati
         VK_ICD_FILENAMES=/usr/share/vulkan/icd.d/lvp_icd.x86_64.json "$out/run_vulkan"
 fi
 
-# npm_package PART PACKAGE: whether the package is in build/shaders/npm. Debian's npm is installed only where there
-# is none.
-npm_package() {
-    part=$1 package=$2
-    command -v npm >/dev/null || have "$part" npm || return 1
+if have WebGL g++ chromium; then
+    echo "$me: building the writer of the pages for WebGL"
+    build g++ webgl/write_jobs.cpp write_webgl_jobs
+    run WebGL env HOME="$out" sh tests/shader/webgl/run_jobs.sh "$out"
+fi
+
+# Whether Microsoft's compilers, which come with an npm package, are in build/shaders/npm. Debian's npm is installed
+# only where there is none.
+have_compilers() {
+    package=webgpu@0.6.2
+    command -v npm >/dev/null || have Direct3D npm || return 1
+    mkdir -p "$out/npm"
     # The prefix keeps it here: npm otherwise looks for a project in the folders above.
-    mkdir -p "$out/npm" && echo '{"private": true}' >"$out/npm/package.json"
-    npm install --prefix "$out/npm" --ignore-scripts --no-audit --no-fund "$package" >"$out/npm.log" 2>&1 && return
-    note "$part" "SKIPPED, as npm could not install $package:" \
+    npm install --prefix "$out/npm" --no-save --ignore-scripts --no-audit --no-fund $package >"$out/npm.log" 2>&1 &&
+        return
+    note Direct3D "SKIPPED, as npm could not install $package:" \
         "$(sed -n 's/^npm \(ERR!\|error\) //p' "$out/npm.log" | head -n 1)"
     return 1
 }
 
-if have WebGL g++ chromium && npm_package WebGL playwright-core@1.65.1; then
-    echo "$me: building the writer of the jobs for WebGL"
-    build g++ webgl/write_jobs.cpp write_webgl_jobs
-    "$out/write_webgl_jobs" >"$out/webgl_jobs"
-    cp tests/shader/webgl/run_jobs.mjs "$out/npm"
-    run WebGL env HOME="$out" node "$out/npm/run_jobs.mjs" /usr/bin/chromium "$out/webgl_jobs"
-fi
-
-# An npm package brings Microsoft's compilers.
-if have Direct3D wine wine64 g++-mingw-w64-x86-64-posix xvfb libgl1-mesa-dri && npm_package Direct3D webgpu@0.6.2; then
+if have Direct3D wine wine64 g++-mingw-w64-x86-64-posix xvfb libgl1-mesa-dri && have_compilers; then
     dlls=$out/npm/node_modules/webgpu/dist/win32-x64
     cp "$dlls/d3dcompiler_47.dll" "$dlls/dxcompiler.dll" "$out"
     echo "$me: building the Direct3D programs"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Writes the jobs of GLSL ES 3.00 for run_jobs.mjs, one a line in JSON: every text to compile, and those of
-// the small screens to run. Bytes are written in hexadecimal.
-#include "../readers.hpp"
+// Writes a page that runs the jobs of GLSL ES 3.00: every text to compile, and those of the small screens to
+// run. Bytes are written in hexadecimal.  write_jobs [FIRST COUNT]: takes a share of them.
+#include "../run_jobs.hpp"
 
 #include <cstdio>
 #include <span>
@@ -47,21 +47,26 @@ void write(const Job& job) {
         number("height", input.height);
         line += ", \"bytes\": \"" + hex(input.bytes) + "\"}";
     }
-    std::printf("%s], \"expected\": \"%s\"}\n", line.c_str(),
+    std::printf("%s], \"expected\": \"%s\"},\n", line.c_str(),
                 hex(std::as_bytes(std::span(job.expected))).c_str());
 }
 
 }  // namespace
 
-int main() {
+int main(int count, char** arguments) {
     constexpr auto language = lightbin::ShaderLanguage::essl_300;
-    for (const lightbin::ShaderOptions& options : every_reader(language)) {
-        const auto snippet = lightbin::shader_snippet(options);
+    const Share share = share_of(count, arguments);
+    std::printf("<!DOCTYPE html><body><script src=\"run_jobs.js\"></script>\n<script>runAll([\n");
+    const auto readers = every_reader(language);
+    for (std::size_t i = share.first; i < readers.size(); i += share.count) {
+        const auto snippet = lightbin::shader_snippet(readers[i]);
         Job job;
-        job.name = name_of(options);
-        if (snippet) job.text = reader_text(options, *snippet, Stage::fragment, 100, 100);
+        job.name = name_of(readers[i]);
+        if (snippet) job.text = reader_text(readers[i], *snippet, Stage::fragment, 100, 100);
         write(job);
     }
-    for (const ReaderRun& run : reader_runs(language))
-        if (run.screen.width < 100) write(run.job());
+    const auto runs = reader_runs(language);
+    for (std::size_t i = share.first; i < runs.size(); i += share.count)
+        if (runs[i].screen.width < 100) write(runs[i].job());
+    std::printf("]);</script>\n");
 }
