@@ -96,7 +96,7 @@ have_compilers() {
     command -v npm >/dev/null || have Direct3D npm || return 1
     mkdir -p "$out/npm"
     # The prefix keeps it here: npm otherwise looks for a project in the folders above.
-    npm install --prefix "$out/npm" --no-save --ignore-scripts --no-audit --no-fund $package >"$out/npm.log" 2>&1 &&
+    npm install --prefix "$out/npm" --cache "$out/npm.cache" --no-save --ignore-scripts --no-audit --no-fund $package >"$out/npm.log" 2>&1 &&
         return
     note Direct3D "SKIPPED, as npm could not install $package:" \
         "$(sed -n 's/^npm \(ERR!\|error\) //p' "$out/npm.log" | head -n 1)"

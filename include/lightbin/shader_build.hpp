@@ -207,8 +207,8 @@ inline void add_depth_sample(ShaderWriter& writer, const ReduceShaderOptions& op
 /// `slope` 3u (View's depths are floats), their product and sum 2u more, e 1u (exact where it is small), a
 /// reciprocal up to 5u: 11u, and 2^-19 = 32u is allowed. Orthographic: 2^-20 of the two planes' depths.
 inline void add_view_depths(ShaderWriter& writer, const ReduceShaderOptions& options) {
-    writer.add("\nvec2 $view_depths(uvec2 range) {\n    if (range.x > range.y) return vec2(" +
-               std::string(shader_infinity) + ", -" + shader_infinity + ");\n");
+    const std::string endless = shader_infinity;
+    writer.add("\nvec2 $view_depths(uvec2 range) {\n");
     if (options.format == DepthFormat::float32)  // two units in the last place: no less than reduce_depth()
         writer.add("    vec2 ends = vec2(uintBitsToFloat(range.x < 2u ? 0u : range.x - 2u), "
                    "uintBitsToFloat(min(range.y + 2u, 0x3f800000u)));\n");
@@ -220,12 +220,16 @@ inline void add_view_depths(ShaderWriter& writer, const ReduceShaderOptions& opt
     writer.add(options.reversed_z ? "    vec2 e = ends.yx;\n"
                                   : "    vec2 e = vec2(1.0 - ends.x, 1.0 - ends.y);\n");
     if (options.orthographic)
-        writer.add("    return vec2($planes.x - $planes.y * e.x - $planes.z, $planes.x - $planes.y * e.y + "
-                   "$planes.z);\n}\n");
+        writer.add(
+            "    vec2 depths = vec2($planes.x - $planes.y * e.x - $planes.z, $planes.x - $planes.y * e.y + "
+            "$planes.z);\n");
     else
         writer.add("    vec2 w = vec2($planes.x + $planes.y * e.x, $planes.x + $planes.y * e.y);\n"
-                   "    return vec2(1.0 / w.x * 0.999998, w.y > 0.0 ? 1.0 / w.y * 1.000002 : " +
-                   std::string(shader_infinity) + ");\n}\n");
+                   "    vec2 depths = vec2(1.0 / w.x * 0.999998, w.y > 0.0 ? 1.0 / w.y * 1.000002 : " +
+                   endless + ");\n");
+    // One return, as in shader_snippet().
+    writer.add("    if (range.x > range.y) depths = vec2(" + endless + ", -" + endless +
+               ");\n    return depths;\n}\n");
 }
 
 }  // namespace detail
@@ -406,18 +410,18 @@ void $run(uvec2 group, uint thread) {
     writer.add(std::string("\nbool $meets($footprint f, uvec2 tile") + (depths ? ", vec2 z" : "") +
                (box ? ", vec4 cell" : "") + ") {\n" + R"(    uvec2 low = uvec2(f.low & 0xffffu, f.low >> 16u);
     uvec2 high = uvec2(f.high & 0xffffu, f.high >> 16u);
-    if (tile.x < low.x || tile.x > high.x || tile.y < low.y || tile.y > high.y) return false;
+    bool met = tile.x >= low.x && tile.x <= high.x && tile.y >= low.y && tile.y <= high.y;
 )");
     if (depths)
         writer.add(std::string("    if (f.sphere.z - f.sphere.w > z.y") +
-                   (options.max_only ? "" : " || f.sphere.z + f.sphere.w < z.x") + ") return false;\n");
+                   (options.max_only ? "" : " || f.sphere.z + f.sphere.w < z.x") + ") met = false;\n");
     if (box)
         writer.add(R"(    float x = max(max(cell.x - f.sphere.x, f.sphere.x - cell.y), 0.0);
     float y = max(max(cell.z - f.sphere.y, f.sphere.y - cell.w), 0.0);
     float d = max(max(z.x - f.sphere.z, f.sphere.z - z.y), 0.0);
-    if (x * x + y * y + d * d > f.reach2) return false;
+    if (x * x + y * y + d * d > f.reach2) met = false;
 )");
-    writer.add("    return true;\n}\n\nshared uint $hits[2];\n\nvoid $run(uvec2 tile, uint thread) {\n"
+    writer.add("    return met;\n}\n\nshared uint $hits[2];\n\nvoid $run(uvec2 tile, uint thread) {\n"
                "    uint place = tile.y * $grid.x + tile.x;\n");
     std::string arguments = "tile";
     if (depths) {
