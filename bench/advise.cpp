@@ -228,32 +228,49 @@ lightbin::detail::BuildTerms fit(const std::vector<lightbin::detail::BuildTerms>
     return constants;
 }
 
-/// Light sets of several sizes and densities over the depth of a made scene, and the made scenes' own.
-std::vector<BenchScene> training() {
-    std::vector<BenchScene> all = scene_kinds();
-    const BenchScene ground = scenes::field_with_depth();
+/// A scene to learn from.
+struct Lesson {
+    std::shared_ptr<const Picture> picture;
+    std::shared_ptr<const Views> views;
+    std::vector<Lights> sets;
+
+    Lesson(const BenchScene& scene, const Lesson* same_depth = nullptr) {
+        if (same_depth != nullptr) {
+            picture = same_depth->picture;
+            views = same_depth->views;
+        } else {
+            picture = std::make_shared<Picture>(rasterise(scene, screen));
+            views = std::make_shared<Views>(scene, *picture);
+        }
+        for (std::uint32_t seed = 0; seed < turns; ++seed)
+            sets.push_back(scene.lights(seed));
+    }
+};
+
+/// The made scenes, and light sets of several sizes and densities over the depth of one of them.
+std::vector<Lesson> lessons() {
+    std::vector<Lesson> all;
+    for (const BenchScene& scene : scene_kinds())
+        all.emplace_back(scene);
+    BenchScene set = scenes::field_with_depth();
+    const Lesson ground(set);
     for (const std::size_t count : {1u, 16u, 100u, 400u, 1500u, 6000u})
         for (const float radius : {field4_median, field20_median, field200_median, 0.0f}) {
-            BenchScene set = ground;
-            set.name = "set";
             set.lights = [=](std::uint32_t seed) {
                 return radius > 0 ? field(count, radius, seed) : near_eye(count, seed);
             };
-            all.push_back(set);
+            all.emplace_back(set, &ground);
         }
     return all;
 }
 
-template <Isa isa> void fit_tier() {
+template <Isa isa> void fit_tier(const std::vector<Lesson>& lessons) {
     if (lightbin::detail::machine_isa(isa) != isa) return;
     std::vector<lightbin::detail::BuildTerms> rows;
     std::vector<double> times;
-    for (const BenchScene& scene : training()) {
-        const Picture picture = rasterise(scene, screen);
-        const Views views(scene, picture);
-        std::vector<Lights> sets;
-        for (std::uint32_t seed = 0; seed < turns; ++seed)
-            sets.push_back(scene.lights(seed));
+    for (const Lesson& lesson : lessons) {
+        const Views& views = *lesson.views;
+        const std::vector<Lights>& sets = lesson.sets;
         std::vector<Candidate> sweep = candidates<isa>();
         std::erase_if(sweep, [](const Candidate& c) { return c.plan.index == Index::u32; });
         time(sweep, views, sets);
@@ -319,10 +336,11 @@ int main(int argc, char** argv) try {
             files.emplace_back(argv[i]);
     }
     if (fitting) {
-        fit_tier<Isa::scalar>();
-        fit_tier<Isa::sse2>();
-        fit_tier<Isa::avx2>();
-        fit_tier<Isa::avx512>();
+        const std::vector<Lesson> all = lessons();
+        fit_tier<Isa::scalar>(all);
+        fit_tier<Isa::sse2>(all);
+        fit_tier<Isa::avx2>(all);
+        fit_tier<Isa::avx512>(all);
         return EXIT_SUCCESS;
     }
     if (files.empty()) files = {LIGHTBIN_FIXTURES "/nova.glb", LIGHTBIN_FIXTURES "/darkness.glb"};
