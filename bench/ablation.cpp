@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Leaving out: what each part costs and saves, by kind of scene. Every row is one change against an earlier row.
-// Writes ablation.csv and prints it as a table.
+// Leaving out: what each part costs and saves, by kind of scene. Every row is one change against an earlier
+// row. Writes ablation.csv and prints it as a table.
 //
-// Columns: us: median time of a build on rotating light sets; evals: light evaluations a drawn pixel; index_bytes: of the
-// light index list; us_more, evals_less: against the row named; pays_ns: what one light evaluation must cost,
-// in nanoseconds of the same clock, for the change to save time as a whole; z_bounds_us: what
-// reduce_depth takes here for these tiles, in no other column (a GPU makes them where the depth buffer lies).
+// Columns: us: median time of a build on rotating light sets; evals: light evaluations a drawn pixel;
+// index_bytes: of the light index list; us_more, evals_less: against the row named; pays_ns: what one light
+// evaluation must cost, in nanoseconds of the same clock, for the change to save time as a whole;
+// z_bounds_us: what reduce_depth takes here for these tiles, in no other column (a GPU makes them where the
+// depth buffer lies).
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
 

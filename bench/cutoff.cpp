@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The other error of tiled shading: a light ends at its range, where inverse-square light never does. How much
-// picture is lost against what the shorter lists save, by the cutoff: the illuminance at which a light is ended,
-// so range = sqrt(intensity / cutoff). Writes cutoff.csv, which plot.gp
-// draws.
+// The other error of tiled shading: a light ends at its range, where inverse-square light never does. How
+// much picture is lost against what the shorter lists save, by the cutoff: the illuminance at which a light
+// is ended, so range = sqrt(intensity / cutoff). Writes cutoff.csv, which plot.gp draws.
 //
 // White surfaces (Lambert) under the scene's lights, their intensity the square of the scene's range, without
 // shadows, at 480 x 270. The reference sums every light everywhere, I cos / max(d^2, 0.01^2). Against it:
 //   hard     the same up to the range and nothing beyond it
-//   smooth   times (1 - (d / range)^4)^2, which ends without an edge (Karis, "Real Shading in Unreal Engine 4",
-//            2013; Lagarde and de Rousiers, "Moving Frostbite to PBR", 2014)
+//   smooth   times (1 - (d / range)^4)^2, which ends without an edge (Karis, "Real Shading in Unreal Engine
+//            4", 2013; Lagarde and de Rousiers, "Moving Frostbite to PBR", 2014)
 // Linear light; 1 is white, which 95 % of the drawn pixels of the reference do not exceed.
 //
 // Columns: cutoff as a part of white; rmse, largest: of the difference; lost: its mean, the picture's missing
@@ -16,14 +15,15 @@
 // pixel's list, of 16-pixel tiles at 1920 x 1080; build_us: of those lists; us: of them and of shading the
 // 480 x 270 picture from lists of the same cells, on one core.
 //
-// What to take. Where ranges are part of what an artist makes, there is no error; a cutoff is for lights that come
-// as intensities. The smooth window: the hard one is nearer to the reference by as much as half the cutoff, but each
-// of its edges is a step of the cutoff's size, seen from about a hundredth of white on. What is lost is not one
-// light's tail but those of hundreds, nearly the same everywhere, so halving the cutoff costs 1.5 to 2 times the
-// evaluations and takes off only 20 to 45 % of the error, while one constant takes off half. So: white / 64 with the
-// mean put back as ambient (17 to 26 evaluations in these scenes, rmse 0.05 to 0.13) is nearer to unbounded lights
-// than white / 256 without (50 to 92 evaluations, 0.10 to 0.18); white / 256 is where no single light's loss is more
-// than a step of 8 bits. Unbounded lights shine through walls, though, and much of what is lost should be.
+// What to take. Where ranges are part of what an artist makes, there is no error; a cutoff is for lights that
+// come as intensities. Take the smooth window: the hard one is as near to the reference with twice the
+// cutoff, but each of its edges is a step of the cutoff's size, to be seen from about a hundredth of white
+// on. What is lost is not one light's tail but those of hundreds, nearly the same everywhere, so halving the
+// cutoff costs 1.6 to 2.5 times the evaluations and takes off only 17 to 45 % of the error, while one
+// constant takes off more than half. So white / 64 with the mean put back as ambient (17 to 26 evaluations in
+// these scenes, rmse 0.05 to 0.13) is nearer to unbounded lights than white / 256 without (50 to 92
+// evaluations, 0.10 to 0.18); from white / 256 on no light's own loss is more than a step of 8 bits.
+// Unbounded lights shine through walls, though: much of what is lost should be.
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
 

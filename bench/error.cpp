@@ -3,17 +3,17 @@
 // by tile size. Writes error_vs_time.csv, which plot.gp draws.
 //
 // Columns of the table, a row for each scene (all views of it together), tile size and rung:
-//   misses          entries that the rung must have by exact arithmetic and lacks, in `verdicts` pairs of a tile
-//                   and a light (every pair there is; by_rationals of the questions took rational arithmetic)
+//   misses          entries that the rung must have by exact arithmetic and lacks, in `verdicts` pairs of a
+//                   tile and a light: every pair there is (by_rationals: questions left to the rationals)
 //   exact           pairs whose sphere meets the tile's cell between its Z bounds, its gap left out
 //   excess          entries / exact - 1
 //   lit             pairs with a pixel whose point is in the sphere; excess_lit = entries / lit - 1
 //   margin          entries / entries of the same rung in exact arithmetic: what rounding outward adds
-//   evals           light evaluations a drawn pixel: the mean length of its list; evals_beyond: those of lights
-//                   that do not reach its point
+//   evals           light evaluations a drawn pixel: the mean length of its list; evals_beyond: those of
+//                   lights that do not reach its point
 //   index_bytes     of the light index list, 32-bit ids
-//   us, ratio       median time of a build, and as a part of the flat baseline's (with Z interval tests for every
-//                   rung with a depth test), on rotating light sets; Z bounds not included
+//   us, ratio       median time of a build, and as a part of the flat baseline's (with Z interval tests for
+//                   every rung with a depth test), on rotating light sets; Z bounds not included
 //   reduce_us       what making the Z bounds of one view takes
 #include "exact.hpp"
 #include "glb_scenes.hpp"

@@ -3,8 +3,8 @@
 // meets the tile's cell, and whether each rung of the ladder would keep it if its numbers were never rounded.
 //
 // Decided in double precision where a bound on its rounding proves the answer, else by the rational oracle of
-// the tests. A slope or a plane's depth is rounded once, and at most six roundings follow, so each sum below is
-// within 2^-50 of its terms' sizes; 2^-48 is allowed for.
+// the tests. A slope or a plane's depth is rounded once, and at most six roundings follow, so each sum below
+// is within 2^-50 of its terms' sizes; 2^-48 is allowed for.
 #pragma once
 
 #include "raster.hpp"
@@ -175,8 +175,8 @@ private:
 
     std::optional<bool> proven_to_meet(const Edge* x, const Edge* y, const Range& range,
                                        const Ball& ball) const {
-        // The cell's nearest point lies at a depth where one of the pieces of the distance, a convex function of
-        // depth, is least, or at an end (oracle.hpp). How well it is found decides nothing.
+        // The cell's nearest point lies at a depth where one of the pieces of the distance, a convex function
+        // of depth, is least, or at an end (oracle.hpp). How well it is found decides nothing.
         double best = std::numeric_limits<double>::infinity(), depth = 0;
         const auto consider = [&](double d) {
             d = std::clamp(d, range.min, range.max);
@@ -203,8 +203,8 @@ private:
         if ((gx * gx + gy * gy + gz * gz) * (1 + share) <= reach) return true;
 
         // Else does the plane through it, square to the way from the centre, part the two? On the cell
-        // n.p = d (n_x s_x + n_y s_y + n_z), least at one end of the depths, with s the low edge for a positive
-        // component of n and the high edge for a negative one.
+        // n.p = d (n_x s_x + n_y s_y + n_z), least at one end of the depths, with s the low edge for a
+        // positive component of n and the high edge for a negative one.
         const double sx = x == nullptr ? 0 : nx * x[nx > 0 ? 0 : 1].slope;
         const double sy = y == nullptr ? 0 : ny * y[ny > 0 ? 0 : 1].slope;
         const double along =

@@ -45,8 +45,8 @@ do for [i = 1 : 4] {
 style(curve) = hue(curve) + 4 * (dash(curve) - 1)
 
 do for [kind in "png svg"] {
-    if (kind eq "png") { set terminal pngcairo size width, height font "sans,11" noenhanced background "white" }
-    if (kind eq "svg") { set terminal svg size width, height font "sans,13" noenhanced background "white" }
+    if (kind eq "png") { set terminal pngcairo noenhanced size width, height font "sans,11" }
+    if (kind eq "svg") { set terminal svg noenhanced size width, height font "sans,13" background "white" }
     set output report.".".kind
     set multiplot
     set logscale xy
@@ -68,10 +68,12 @@ do for [kind in "png svg"] {
         }
     }
     # The legend, as wide as the picture.
-    set lmargin at screen 0.03; set rmargin at screen 0.97; set bmargin at screen 0.01; set tmargin at screen 0.08
+    set lmargin at screen 0.03; set rmargin at screen 0.97
+    set bmargin at screen 0.01; set tmargin at screen 0.08
     unset border; unset tics; unset xlabel; unset ylabel; unset title; unset grid; unset logscale
     set key center center horizontal maxrows 2 samplen 3 width 2
-    plot [0 : 1] [0 : 1] for [curve in curves] NaN with linespoints linetype style(curve) title title_of(curve)
+    plot [0 : 1] [0 : 1] for [curve in curves] NaN \
+        with linespoints linetype style(curve) title title_of(curve)
     unset multiplot
     set border; set tics
 }
