@@ -65,17 +65,21 @@ std::vector<Part> parts() {
     constexpr Options plain, interval = {.depth_test = DepthTest::interval},
                              box = {.depth_test = DepthTest::box},
                              split_box = {.depth_test = DepthTest::split_box},
-                             narrow = {.index = Index::u16, .depth_test = DepthTest::box};
+                             narrow = {.index = Index::u16, .depth_test = DepthTest::box},
+                             outline = {.footprint = Footprint::silhouette},
+                             outline_box = {.footprint = Footprint::silhouette, .depth_test = DepthTest::box};
     const auto two = std::make_shared<tbb::task_arena>(2);
-    enum { everything, tiles, interval_both = 3, box_both = 4 };
+    enum { everything, tiles, interval_both = 4, box_both = 5 };  // places in the list
     return {
         {"no tiling", everything, 0, nullptr},
         {"16 px tiles, rectangles, no Z", everything, 16, build_with<plain>(Bounds::none)},
+        {"silhouettes, no Z", tiles, 16, build_with<outline>(Bounds::none)},
         {"Z maximum alone, interval", tiles, 16, build_with<interval>(Bounds::max)},
         {"Z minimum and maximum, interval", tiles, 16, build_with<interval>(Bounds::both)},
         {"box", interval_both, 16, build_with<box>(Bounds::both)},
         {"box with Z maximum alone", box_both, 16, build_with<box>(Bounds::max)},
         {"split_box", box_both, 16, build_with<split_box>(Bounds::both)},
+        {"box with silhouettes", box_both, 16, build_with<outline_box>(Bounds::both)},
         {"16-bit ids", box_both, 16, build_with<narrow>(Bounds::both)},
         {"8 px tiles", box_both, 8, build_with<box>(Bounds::both)},
         {"32 px tiles", box_both, 32, build_with<box>(Bounds::both)},

@@ -8,7 +8,8 @@
 //   exact           pairs whose sphere meets the tile's cell between its Z bounds, its gap left out
 //   excess          entries / exact - 1
 //   lit             pairs with a pixel whose point is in the sphere; excess_lit = entries / lit - 1
-//   margin          entries / entries of the same rung in exact arithmetic: what rounding outward adds
+//   margin          entries / entries of the same rung in exact arithmetic: what rounding outward adds; for
+//                   silhouettes, also what keeping some lights' rectangles adds
 //   evals           light evaluations a drawn pixel: the mean length of its list; evals_beyond: those of
 //                   lights that do not reach its point
 //   index_bytes     of the light index list, 32-bit ids

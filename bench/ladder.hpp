@@ -37,10 +37,10 @@ constexpr const char* name_of(DepthTest test) {
 }
 
 inline constexpr Method ladder[] = {
-    {Footprint::rectangle, DepthTest::none},
-    {Footprint::rectangle, DepthTest::interval},
-    {Footprint::rectangle, DepthTest::box},
-    {Footprint::rectangle, DepthTest::split_box},
+    {Footprint::rectangle, DepthTest::none},  {Footprint::rectangle, DepthTest::interval},
+    {Footprint::rectangle, DepthTest::box},   {Footprint::rectangle, DepthTest::split_box},
+    {Footprint::silhouette, DepthTest::none}, {Footprint::silhouette, DepthTest::interval},
+    {Footprint::silhouette, DepthTest::box},  {Footprint::silhouette, DepthTest::split_box},
 };
 
 template <class Work> double seconds(Work work) {
@@ -62,17 +62,17 @@ struct TiledView {
     std::vector<float> min, max, gap_min, gap_max;
     std::vector<std::uint32_t> drawn;  ///< pixels a tile that show something
     std::uint64_t all_drawn = 0;
-    double reduce_seconds = 0;  ///< what making the Z bounds took
+    double reduce_seconds = 0;  ///< what making minimum and maximum takes
 
     TiledView(const BenchScene& scene, const Picture& picture, int tile_size)
         : view(*lightbin::View::from_projection(scene.projection, picture.size, {.tile_size = tile_size})),
           flat(lens_of(Frustum(scene.projection), picture.size).flat_view(tile_size)), min(view.tile_count()),
-          max(view.tile_count()), drawn(view.tile_count()) {
-        reduce_seconds = seconds([&] {
-            if (!lightbin::reduce_depth(view, {.depth = picture.depth, .skip_background = true}, min, max))
-                std::abort();
-        });
-        find_gaps(picture);
+          max(min), gap_min(min), gap_max(min), drawn(view.tile_count()) {
+        const lightbin::DepthBuffer buffer = {.depth = picture.depth, .skip_background = true};
+        if (!lightbin::reduce_depth(view, buffer, min, max, gap_min, gap_max)) std::abort();
+        std::vector<float> again_min(min), again_max(max);
+        reduce_seconds = seconds([&] { (void)lightbin::reduce_depth(view, buffer, again_min, again_max); });
+        count_drawn(picture);
     }
 
     /// Light evaluations a drawn pixel: the mean length of its list.
@@ -86,20 +86,13 @@ struct TiledView {
     lightbin::ZBounds bounds() const { return {min, max, gap_min, gap_max}; }
 
 private:
-    /// The depths around the middle of each tile's.
-    void find_gaps(const Picture& picture) {
-        gap_min = min, gap_max = max;
-        for (std::size_t i = 0; i < picture.view_depth.size(); ++i) {
+    void count_drawn(const Picture& picture) {
+        const std::size_t width = static_cast<std::size_t>(picture.size.width),
+                          t = static_cast<std::size_t>(view.tile_size());
+        for (std::size_t i = 0; i < picture.triangle.size(); ++i) {
             if (picture.triangle[i] == Picture::nothing) continue;
-            const std::size_t width = static_cast<std::size_t>(picture.size.width),
-                              t = static_cast<std::size_t>(view.tile_size()),
-                              tile = i / width / t * static_cast<std::size_t>(view.tiles_x()) + i % width / t;
-            ++drawn[tile], ++all_drawn;
-            const float depth = picture.view_depth[i];
-            if (depth <= (min[tile] + max[tile]) / 2)
-                gap_min[tile] = std::max(gap_min[tile], depth);
-            else
-                gap_max[tile] = std::min(gap_max[tile], depth);
+            ++drawn[i / width / t * static_cast<std::size_t>(view.tiles_x()) + i % width / t];
+            ++all_drawn;
         }
     }
 

@@ -56,6 +56,9 @@ done
 cd build/bench
 ./bench/$program "$@"
 case $program in
-error) gnuplot -e 'report="error_vs_time"' ../../bench/plot.gp ;;
-cutoff) gnuplot -e 'report="cutoff"' ../../bench/plot.gp ;;
+error) report=error_vs_time ;;
+cutoff) report=cutoff ;;
+*) exit ;;
 esac
+gnuplot -e "report=\"$report\"" ../../bench/plot.gp
+echo "$me: wrote build/bench/$report.csv, .svg and .png"
