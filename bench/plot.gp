@@ -60,7 +60,7 @@ do for [kind in "png svg"] {
         do for [panel = 1 : panels] {
             scene = word(scenes, panel)
             set lmargin at screen (300 * (panel - 1) + 85) / width
-            set rmargin at screen (300 * panel + 35) / width
+            set rmargin at screen (300 * panel + 22) / width
             set title (row == 1 ? scene : "") offset 0, -0.6
             set ylabel (panel == 1 ? y_label(row) : "")
             plot for [curve in curves] rows_of(scene, curve) using x_column(row):y_column(row, curve) \
