@@ -1,8 +1,8 @@
 #!/bin/sh
-# Proves the generated shader text where the normal test run does not: `sh tests/shaders.sh` on Debian 12, as root
-# or with sudo. Vulkan under its validation layer, WebGL 2 in a browser, Microsoft's compilers (fxc, dxc) and
-# Direct3D 11 under Wine. Installs what is missing; what can't be had is skipped, and the summary says so. Takes
-# about 10 minutes.
+# Proves the generated shader text where the normal test run does not: `sh tests/shaders.sh` on Debian 12, as
+# root or with sudo. Vulkan under its validation layer, WebGL 2 in a browser, Microsoft's compilers (fxc, dxc)
+# and Direct3D 11 under Wine. Installs what is missing; what can't be had is skipped, and the summary says so.
+# Takes about 10 minutes.
 set -eu
 me=tests/shaders.sh
 cd "$(dirname "$0")/.."
@@ -31,8 +31,8 @@ have() {
     return 1
 }
 
-# run PART PROGRAM ARGUMENTS: runs the program once a processor, each with its share of the work, and waits. The
-# last line of each tells what it did.
+# run PART PROGRAM ARGUMENTS: runs the program once a processor, each with its share of the work, and waits.
+# The last line of each tells what it did.
 run() {
     part=$1
     shift
@@ -89,15 +89,15 @@ if have WebGL g++ chromium; then
     run WebGL env HOME="$out" sh tests/shader/webgl/run_jobs.sh "$out"
 fi
 
-# Whether Microsoft's compilers, which come with an npm package, are in build/shaders/npm. Debian's npm is installed
-# only where there is none.
+# Whether Microsoft's compilers, which come with an npm package, are in build/shaders/npm. Debian's npm is
+# installed only where there is none.
 have_compilers() {
     package=webgpu@0.6.2
     command -v npm >/dev/null || have Direct3D npm || return 1
     mkdir -p "$out/npm"
     # The prefix keeps it here: npm otherwise looks for a project in the folders above.
-    npm install --prefix "$out/npm" --cache "$out/npm.cache" --no-save --ignore-scripts --no-audit --no-fund $package >"$out/npm.log" 2>&1 &&
-        return
+    npm install --prefix "$out/npm" --cache "$out/npm.cache" --no-save --ignore-scripts --no-audit --no-fund \
+        $package >"$out/npm.log" 2>&1 && return
     note Direct3D "SKIPPED, as npm could not install $package:" \
         "$(sed -n 's/^npm \(ERR!\|error\) //p' "$out/npm.log" | head -n 1)"
     return 1
