@@ -179,8 +179,10 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
                             const std::uint64_t* group = word + i / 4;
                             std::uint64_t lit = group[column] & group[8 + row % 8];
                             const std::uint32_t used = count - i < 64 ? count - i : 64;
-                            for (std::uint32_t j = 0; j < used; j += 8, lit >>= 8)
+                            for (std::uint32_t j = 0; j < used; j += 16, lit >>= 16) {
                                 out += append(out, ids + i + j, static_cast<unsigned>(lit & 0xff));
+                                out += append(out, ids + i + j + 8, static_cast<unsigned>(lit >> 8 & 0xff));
+                            }
                         }
                     }
                     const std::uint32_t length = static_cast<std::uint32_t>(out - from);
