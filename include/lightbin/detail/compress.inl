@@ -366,9 +366,9 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
     const unsigned width = (tiles_x + 7) / 8, panels = (width + panel_side - 1) / panel_side;
     const std::size_t block_count = make_blocks(job, scratch);
     const IdBlock* blocks = scratch.blocks.data();
-    std::uint32_t* size = scratch.list_size.room(width);
-    std::uint32_t* begin = scratch.list_begin.room(width);
-    std::uint32_t* first_word = scratch.word_begin.room(width);
+    SupertileList* in_row = scratch.supertile_lists.room(width);
+
+    const unsigned last_columns = tiles_x - 8 * (width - 1);
 
     BandLists lists = {};
     unsigned listed = bands.begin, first_listed = bands.begin;  // the bands that `lists` has
@@ -429,9 +429,7 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
                     count = end;
                 }
             }
-            size[x] = count;
-            begin[x] = ids_used;
-            first_word[x] = words_used;
+            in_row[x] = {count, ids_used, words_used};
             const std::uint32_t needed = count == 0 ? 0
                                          : count < 32
                                              ? 40
@@ -459,13 +457,13 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
         }
         for (unsigned row = 8 * y; row < 8 * y + 8 && row < tiles_y; ++row) {  // step 3
             if (row == bands.spare_row) out = bands.spare;
-            for (unsigned x = 0; x < width; ++x) {
-                const std::uint32_t count = size[x];
-                const std::uint64_t* words = scratch.words.data() + first_word[x];
-                const std::uint16_t* ids = scratch.short_ids.data() + begin[x];
-                const std::uint32_t* uppers = scratch.uppers.data() + begin[x] / 64;
-                Tile* tiles = job.tiles + row * std::size_t{tiles_x} + 8 * x;
-                const unsigned columns = (std::min)(tiles_x - 8 * x, 8u);
+            Tile* tiles = job.tiles + row * std::size_t{tiles_x};
+            for (unsigned x = 0; x < width; ++x, tiles += 8) {
+                const std::uint32_t count = in_row[x].count;
+                const std::uint64_t* words = scratch.words.data() + in_row[x].words;
+                const std::uint16_t* ids = scratch.short_ids.data() + in_row[x].ids;
+                const std::uint32_t* uppers = scratch.uppers.data() + in_row[x].ids / 64;
+                const unsigned columns = x + 1 < width ? 8 : last_columns;
                 const __mmask8 columns_mask = static_cast<__mmask8>(0xff >> (8 - columns));
                 if (count == 0) {
                     _mm512_mask_storeu_epi64(tiles, columns_mask, _mm512_set1_epi64(at));

@@ -13,6 +13,11 @@ struct IdBlock {
     std::uint32_t begin, end, upper;
 };
 
+/// A supertile's list on AVX-512: how many lights, and the places of its ids and words.
+struct SupertileList {
+    std::uint32_t count, ids, words;
+};
+
 struct Scratch {
     Buffer<std::uint32_t> corners;  ///< difference array of rectangles, over tiles or supertiles
     Buffer<std::uint32_t> cursors;  ///< one a supertile
@@ -28,7 +33,8 @@ struct Scratch {
     // The same lists in the form of the AVX-512 kernel, and those of a band of supertiles.
     Buffer<std::uint8_t> band_x0, band_x1, band_rows;
     Buffer<std::uint16_t> band_ids, short_ids;
-    Buffer<std::uint32_t> band_size, word_begin;
+    Buffer<std::uint32_t> band_size;
+    Buffer<SupertileList> supertile_lists;
     Buffer<IdBlock> blocks;
     Buffer<std::uint32_t> block_ends, uppers;  ///< of a band's list; of 64 lights of a supertile's
 };
