@@ -8,6 +8,7 @@
 
 #include <lightbin/detail/avx2.hpp>
 #include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/supertile.hpp>
 

@@ -144,6 +144,16 @@ struct BandLists {
     std::uint32_t* ends;  ///< of each block, rounded up to 64 but for the last
 };
 
+/// 64 lights of such a list.
+struct Chunk {
+    __m512i x0, x1, rows, low_ids, high_ids;
+};
+
+LIGHTBIN_TARGET inline Chunk load_chunk(const BandLists& lists, std::size_t from) {
+    return {load(lists.x0 + from), load(lists.x1 + from), load(lists.rows + from), load(lists.ids + from),
+            load(lists.ids + from + 32)};
+}
+
 /// Step 1, for `bands` bands from `first_band` on. List (band, panel) is number band * panels + panel.
 template <bool with_words, class Id>
 LIGHTBIN_TARGET BandLists fill_bands(const BinJob<Id>& job, Scratch& scratch, std::size_t block_count,
@@ -380,31 +390,47 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
             listed = (std::min)(y + panel_side, bands.end);
             lists = fill_bands<with_words>(job, scratch, block_count, y, listed - y, panels);
         }
-        std::uint32_t ids_used = 0, words_used = 0;
+        std::uint32_t longest = 0;
+        for (std::size_t list = std::size_t{y - first_listed} * panels;
+             list < (y - first_listed + 1) * panels; ++list)
+            if (block_count > 0) longest = (std::max)(longest, lists.ends[(list + 1) * block_count - 1]);
+        if (longest == 0) {
+            fill_empty(job.tiles + 8 * y * std::size_t{tiles_x},
+                       (std::min)(8u, tiles_y - 8 * y) * std::size_t{tiles_x}, at);
+            if (bands.spare_row / 8 == y) out = bands.spare;
+            continue;
+        }
+        std::uint8_t* columns = scratch.list_columns.room(longest + 192);
+        std::uint8_t* rows = scratch.list_rows.room(longest + 192);
+        std::uint64_t* masks = nullptr;
+        if constexpr (with_words) masks = scratch.masks.room(longest + 64);
+        // Empty lists share the words of one without a bit.
+        std::uint32_t ids_used = 0, words_used = 16;
+        std::fill_n(scratch.words.room(words_used), words_used, 0u);
+        *scratch.uppers.room(1) = 0;
+        Chunk chunk = {};
         for (unsigned x = 0; x < width; ++x) {  // step 2
             const std::size_t list = std::size_t{y - first_listed} * panels + x / panel_side,
                               list_begin = list * lists.stride;
-            const std::uint32_t in_band = block_count == 0 ? 0 : lists.ends[(list + 1) * block_count - 1];
+            const std::uint32_t in_band = lists.ends[(list + 1) * block_count - 1];
+            const bool one_chunk = in_band <= 64;
+            if (one_chunk && x % panel_side == 0) chunk = load_chunk(lists, list_begin);
             std::uint16_t* ids = scratch.short_ids.room(ids_used + in_band + 192, ids_used) + ids_used;
-            std::uint8_t* columns = scratch.list_columns.room(in_band + 192);
-            std::uint8_t* rows = scratch.list_rows.room(in_band + 192);
-            std::uint64_t* masks = nullptr;
             float cells[cell_planes<depth_test> * 64];
             std::uint64_t lit = 0;
             bool arranged = false;
-            if constexpr (with_words) masks = scratch.masks.room(in_band + 64);
             std::uint32_t count = 0, i = 0;
             for (std::size_t block = 0; block < block_count; ++block) {
                 const std::uint32_t block_begin = count, in_block = lists.ends[list * block_count + block];
                 for (; i < in_block; i += 64) {
-                    const std::size_t from = list_begin + i;
-                    const __m512i here =
-                        covered_bytes(load(lists.x0 + from), load(lists.x1 + from), 8 * (x % panel_side));
+                    if (!one_chunk) chunk = load_chunk(lists, list_begin + i);
+                    const __m512i here = covered_bytes(chunk.x0, chunk.x1, 8 * (x % panel_side));
                     const __mmask64 chosen =
                         _mm512_mask_test_epi8_mask(first_lanes(in_block - i), here, here);
+                    if (chosen == 0) continue;
                     store(columns + count, _mm512_maskz_compress_epi8(chosen, here));
-                    store(rows + count, _mm512_maskz_compress_epi8(chosen, load(lists.rows + from)));
-                    append_ids(ids + count, chosen, load(lists.ids + from), load(lists.ids + from + 32));
+                    store(rows + count, _mm512_maskz_compress_epi8(chosen, chunk.rows));
+                    append_ids(ids + count, chosen, chunk.low_ids, chunk.high_ids);
                     count += static_cast<std::uint32_t>(std::popcount(chosen));
                 }
                 if constexpr (with_words)
@@ -429,14 +455,15 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
                     count = end;
                 }
             }
+            in_row[x] = {};
+            if (count == 0) continue;
             in_row[x] = {count, ids_used, words_used};
             const std::uint32_t needed = count == 0 ? 0
                                          : count < 32
                                              ? 40
                                              : (count + 63) / 64 * group;  // short lists: see store_rows
             std::uint64_t* words = scratch.words.room(words_used + needed, words_used) + words_used;
-            if (count == 0) {
-            } else if (count <= 8) {
+            if (count <= 8) {
                 store_rows<with_words, 1>(masks, columns, rows, count, words);
             } else if (count <= 16) {
                 store_rows<with_words, 2>(masks, columns, rows, count, words);
@@ -463,11 +490,9 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
                 const std::uint64_t* words = scratch.words.data() + in_row[x].words;
                 const std::uint16_t* ids = scratch.short_ids.data() + in_row[x].ids;
                 const std::uint32_t* uppers = scratch.uppers.data() + in_row[x].ids / 64;
-                const unsigned columns = x + 1 < width ? 8 : last_columns;
-                const __mmask8 columns_mask = static_cast<__mmask8>(0xff >> (8 - columns));
-                if (count == 0) {
-                    _mm512_mask_storeu_epi64(tiles, columns_mask, _mm512_set1_epi64(at));
-                } else if (count < 32) {
+                const unsigned here = x + 1 < width ? 8 : last_columns;
+                const __mmask8 columns_mask = static_cast<__mmask8>(0xff >> (8 - here));
+                if (count < 32) {
                     const __m512i table = load(ids);
                     std::uint32_t n;
                     if (count <= 8)
@@ -480,7 +505,7 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
                     at += n;
                 } else if (count <= 64) {
                     const __m512i low = load(ids), high = load(ids + 32);
-                    for (unsigned column = 0; column < columns; ++column) {
+                    for (unsigned column = 0; column < here; ++column) {
                         const std::uint64_t bits =
                             with_words ? words[row % 8 * 8 + column] : words[column] & words[8 + row % 8];
                         const std::uint32_t n = append(out, bits, low, high, uppers[0]);
@@ -489,7 +514,7 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
                         at += n;
                     }
                 } else {
-                    for (unsigned column = 0; column < columns; ++column) {
+                    for (unsigned column = 0; column < here; ++column) {
                         const std::uint32_t from = at;
                         for (std::uint32_t i = 0; i < count; i += 64) {
                             const std::uint64_t* w = words + i / 64 * group;
