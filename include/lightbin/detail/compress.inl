@@ -7,7 +7,7 @@
 //      the band's list.
 //   2. The same with the band's list and each supertile's 8 columns: the supertile's list, then its words.
 //   3. Tiles in row-major order: the lights of tile (row, column) are rows[row] & columns[column]; their ids
-//      are compressed onto the index list. A supertile of up to 8 lights takes one compress for 8 tiles.
+//      are compressed onto the index list. With up to 8, 16 or 31 lights a compress does 8, 4 or 2 tiles.
 //
 // Coordinates are bytes and ids 16 bits here. So lists are made for panels of 248 tiles a side, coordinates
 // counted from the panel; and lights are taken in blocks whose ids share their upper 16 bits: in every list a
@@ -379,6 +379,12 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
     SupertileList* in_row = scratch.supertile_lists.room(width);
 
     const unsigned last_columns = tiles_x - 8 * (width - 1);
+    // As many bands in one pass over the lights as a panel has, where their lists' room stays within reason.
+    std::size_t lights = 1;
+    for (const FootprintRun& run : job.runs)
+        lights += run.end - run.begin;
+    const unsigned together = static_cast<unsigned>(
+        std::clamp<std::size_t>((std::size_t{1} << 26) / (lights * panels + 1), 1, panel_side));
 
     BandLists lists = {};
     unsigned listed = bands.begin, first_listed = bands.begin;  // the bands that `lists` has
@@ -387,7 +393,7 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
     for (unsigned y = bands.begin; y < bands.end; ++y) {
         if (y == listed) {
             first_listed = y;
-            listed = (std::min)(y + panel_side, bands.end);
+            listed = (std::min)(y + together, bands.end);
             lists = fill_bands<with_words>(job, scratch, block_count, y, listed - y, panels);
         }
         std::uint32_t longest = 0;

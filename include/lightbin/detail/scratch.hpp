@@ -20,7 +20,7 @@ struct SupertileList {
 
 struct Scratch {
     Buffer<std::uint32_t> corners;  ///< difference array of rectangles, over tiles or supertiles
-    Buffer<std::uint32_t> cursors;  ///< one a supertile
+    Buffer<std::uint32_t> cursors;  ///< one a supertile, or row
 
     // Lists of the lights that reach a supertile: id, and which of its columns and rows.
     Buffer<std::uint32_t> list_begin, list_size, list_ids;
