@@ -331,15 +331,17 @@ LIGHTBIN_TARGET inline std::uint32_t append_row(Id* to, Tile* tiles, __mmask8 co
     return static_cast<std::uint32_t>(sums >> 56);
 }
 
-/// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
-LIGHTBIN_TARGET inline void split_bits(__m512i bytes, __mmask64 valid, std::uint64_t* words) {
-    for (int bit = 0; bit < 8; ++bit)
-        words[bit] = _mm512_mask_test_epi8_mask(valid, bytes, _mm512_set1_epi8(static_cast<char>(1 << bit)));
+/// For each of 8 bits, which of 64 bytes have it: words[bit * stride], one bit a byte.
+LIGHTBIN_TARGET inline void split_bits(__m512i bytes, __mmask64 valid, std::uint64_t* words,
+                                       std::size_t stride) {
+    for (unsigned bit = 0; bit < 8; ++bit)
+        words[bit * stride] =
+            _mm512_mask_test_epi8_mask(valid, bytes, _mm512_set1_epi8(static_cast<char>(1 << bit)));
 }
 
 /// Turns the words of 64 lights, a bit a tile, into a word a tile, a bit a light.
 LIGHTBIN_TARGET inline void turn_64_words(const std::uint64_t* lights, std::uint32_t count,
-                                          std::uint64_t* tiles) {
+                                          std::uint64_t* tiles, std::size_t stride) {
     // Bytes first: in each vector of 8 lights, the bytes of one tile row side by side ...
     __m512i v[8], w[8];
     const __m512i by_row = load(turned_bytes.data());
@@ -359,8 +361,9 @@ LIGHTBIN_TARGET inline void turn_64_words(const std::uint64_t* lights, std::uint
             v[i + odd + 2] = _mm512_shuffle_i64x2(w[i + odd], w[i + odd + 2], 0xdd);
         }
     for (unsigned i = 0; i < 4; ++i) {
-        split_bits(_mm512_shuffle_i64x2(v[i], v[i + 4], 0x88), ~__mmask64{0}, tiles + 8 * i);
-        split_bits(_mm512_shuffle_i64x2(v[i], v[i + 4], 0xdd), ~__mmask64{0}, tiles + 8 * (i + 4));
+        split_bits(_mm512_shuffle_i64x2(v[i], v[i + 4], 0x88), ~__mmask64{0}, tiles + 8 * i * stride, stride);
+        split_bits(_mm512_shuffle_i64x2(v[i], v[i + 4], 0xdd), ~__mmask64{0}, tiles + 8 * (i + 4) * stride,
+                   stride);
     }
 }
 
@@ -476,12 +479,14 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
             } else if (count < 32) {
                 store_rows<with_words, 4>(masks, columns, rows, count, words);
             } else {
-                for (std::uint32_t j = 0; j < count; j += 64, words += group) {
+                // A tile's, or column's or row's, words lie side by side.
+                const std::uint32_t groups = (count + 63) / 64;
+                for (std::uint32_t j = 0; j < count; j += 64, ++words) {
                     if constexpr (with_words) {
-                        turn_64_words(masks + j, count - j, words);
+                        turn_64_words(masks + j, count - j, words, groups);
                     } else {
-                        split_bits(load(columns + j), first_lanes(count - j), words);
-                        split_bits(load(rows + j), first_lanes(count - j), words + 8);
+                        split_bits(load(columns + j), first_lanes(count - j), words, groups);
+                        split_bits(load(rows + j), first_lanes(count - j), words + 8 * groups, groups);
                     }
                 }
             }
@@ -520,12 +525,14 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
                         at += n;
                     }
                 } else {
+                    const std::size_t groups = (count + 63) / 64;
                     for (unsigned column = 0; column < here; ++column) {
                         const std::uint32_t from = at;
                         for (std::uint32_t i = 0; i < count; i += 64) {
-                            const std::uint64_t* w = words + i / 64 * group;
-                            const std::uint64_t bits =
-                                with_words ? w[row % 8 * 8 + column] : w[column] & w[8 + row % 8];
+                            const std::uint64_t* w = words + i / 64;
+                            const std::uint64_t bits = with_words
+                                                           ? w[(row % 8 * 8 + column) * groups]
+                                                           : w[column * groups] & w[(8 + row % 8) * groups];
                             const std::uint32_t n =
                                 append(out, bits, load(ids + i), load(ids + i + 32), uppers[i / 64]);
                             out += n;
