@@ -2,6 +2,9 @@
 #include "engine.hpp"
 
 #include <lightbin/binner.hpp>
+#include <lightbin/z_bounds.hpp>
+
+#include <span>
 
 #if defined(__x86_64__)
 #include <xmmintrin.h>
@@ -55,7 +58,7 @@ lightbin::Result<lightbin::View> view_of(const Camera& camera) {
 template <lightbin::Options options>
 Lists built(const lightbin::View& view, const Scene& scene, bool flush, std::size_t workers = 1) {
     thread_local lightbin::Binner<options> binner;
-    thread_local std::vector<float> min, max;
+    thread_local std::vector<float> sides[4];
     const auto grid = [&] {
         const Flush flushing(flush);
         // The caller's threads at their least helpful: one of them, which takes the work from the end.
@@ -67,14 +70,18 @@ Lists built(const lightbin::View& view, const Scene& scene, bool flush, std::siz
         if constexpr (options.depth_test == lightbin::DepthTest::none) {
             return binner.bin(view, scene.lights, parallel);
         } else {
+            constexpr bool split = options.depth_test == lightbin::DepthTest::split_box;
             lightbin::ZBounds bounds{.min = scene.min, .max = scene.max};
-            if constexpr (options.depth_test == lightbin::DepthTest::split_box)
-                bounds.gap_min = scene.gap_min, bounds.gap_max = scene.gap_max;
+            if (split) bounds.gap_min = scene.gap_min, bounds.gap_max = scene.gap_max;
             if (!scene.depth.empty()) {
-                min.resize(view.tile_count());
-                max.resize(view.tile_count());
+                for (std::vector<float>& side : sides)
+                    side.resize(view.tile_count());
+                const auto gap = [&](std::size_t side) {
+                    return split ? std::span<float>(sides[side]) : std::span<float>{};
+                };
                 bounds = *lightbin::reduce_depth(
-                    view, {.depth = scene.depth, .skip_background = scene.skip_background}, min, max);
+                    view, {.depth = scene.depth, .skip_background = scene.skip_background}, sides[0],
+                    sides[1], gap(2), gap(3), options.isa);
             }
             return binner.bin(view, scene.lights, bounds, parallel);
         }

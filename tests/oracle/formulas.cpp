@@ -22,21 +22,15 @@ struct Slopes {
     double low, high;
 };
 
-/// Where an axis puts a slope, in tiles.
-struct Axis {
-    double c, near_depth;
-    const lightbin::detail::ImageAxis& image;
-};
-
 // In the (c, z) plane: a disc of centre (c, z) and radius r, z - r > near, or cut by z = near.
 
-/// The largest slope of the cut disc: the tangent's if it touches beyond the near plane, else the corner's.
-Quad true_slope(Quad c, Quad z, Quad r, Quad n) {
+/// The largest slope: the tangent's if the disc is whole or it touches beyond the near plane, else the corner's.
+Quad true_slope(Quad c, Quad z, Quad r, Quad n, bool cut) {
     const Quad t2 = (fabsq(c) - r) * (fabsq(c) + r) + z * z;
-    if (t2 > 0) {
+    if (t2 > 0 && (c < 0 || z > r)) {
         const Quad t = sqrtq(t2),
                    s = c >= 0 ? (c * z + r * t) / ((z - r) * (z + r)) : (r - c) * (r + c) / (r * t - c * z);
-        if (s * z >= c && z - r * s / sqrtq(1 + s * s) >= n) return s;
+        if (!cut || z - r * s / sqrtq(1 + s * s) >= n) return s;
     }
     const Quad w = n - z, h2 = (r - w) * (r + w);
     return (c + sqrtq(h2 > 0 ? h2 : 0)) / n;
@@ -159,7 +153,7 @@ void run(const Family& family, double lights) {
             const bool cut = !(static_cast<double>(z) - static_cast<double>(r) > static_cast<double>(n));
             for (const auto& [axis, v] : {std::pair(constants.x, light.x), std::pair(constants.y, light.y)}) {
                 const float c = axis.sign * v;
-                const Quad high = true_slope(c, z, r, n), low = -true_slope(-c, z, r, n);
+                const Quad high = true_slope(c, z, r, n, cut), low = -true_slope(-c, z, r, n, cut);
                 for (std::size_t i = 0; i < methods.size(); ++i) {
                     if (cut && !methods[i].cuts) continue;
                     const Slopes slopes = methods[i].slopes(c, z, r, n);
