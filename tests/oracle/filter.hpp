@@ -61,6 +61,12 @@ public:
         return apart_at_edge(cell, depths, ball);
     }
 
+    /// The squared distance of the ball's centre from a tile's cell, give or take 2^-48 of the sizes involved.
+    double cell_distance2(int x, int y, const FlatDepths& depths, const FlatBall& ball) {
+        double at = 0;
+        return nearest({{{column(x), column(x + 1)}, {row(y), row(y + 1)}}}, depths, ball, at);
+    }
+
     /// The squared distance of the ball's centre from the box around a tile's cell, give or take 2^-48 of the
     /// box's sides and of itself.
     double box_distance2(int x, int y, const FlatDepths& depths, const FlatBall& ball) {
@@ -129,13 +135,12 @@ private:
         return gap > 0x1p-800 && gap - 0x1p-47 * sizes > c.radius * length * (1 + 0x1p-47);
     }
 
-    /// From the nearest point, found as meets() of oracle.hpp does.
-    static bool apart_at_edge(const Cell& cell, const FlatDepths& depths, const FlatBall& c) {
+    static double clamped(double v, double low, double high) { return v < low ? low : v > high ? high : v; }
+
+    /// The squared distance from the cell, and the depth it is taken at; found as meets() of oracle.hpp does.
+    static double nearest(const Cell& cell, const FlatDepths& depths, const FlatBall& c, double& best_d) {
         const double centre[2] = {c.x, c.y};
-        double best = std::numeric_limits<double>::infinity(), best_d = 0;
-        const auto clamped = [](double v, double low, double high) {
-            return v < low ? low : v > high ? high : v;
-        };
+        double best = std::numeric_limits<double>::infinity();
         const auto distance = [&](double d) {
             double sum = (d - c.depth) * (d - c.depth);
             for (const int axis : {0, 1}) {
@@ -165,6 +170,13 @@ private:
             }
         consider(depths.min);
         if (std::isfinite(depths.max)) consider(depths.max);
+        return best;
+    }
+
+    static bool apart_at_edge(const Cell& cell, const FlatDepths& depths, const FlatBall& c) {
+        const double centre[2] = {c.x, c.y};
+        double best_d = 0;
+        nearest(cell, depths, c, best_d);
         double n[2];
         for (const int axis : {0, 1}) {
             const FlatLine(&lines)[2] = cell.side[axis];

@@ -43,13 +43,14 @@ Slopes ours(float c, float z, float r, float n) {
     const double c2 = static_cast<double>(c), z2 = static_cast<double>(z), r2 = static_cast<double>(r);
     if (size <= 0x1p40f && r >= 0x1p-40f && z - r > std::max(n, 0x1p-40f)) {
         float low, high;
-        scalar::tangent_slopes(c, z, r, (z - r) * (z + r), low, high);
+        const float e = (z - r) * (z + r);
+        scalar::tangent_slopes(c, z, r, e, 1 / e, low, high);
         return {static_cast<double>(low), static_cast<double>(high)};
     }
     Slopes slopes;
+    const double e = (z2 - r2) * (z2 + r2);
     if (z2 - r2 > static_cast<double>(n))
-        scalar::tangent_slopes(c2, z2, std::max(r2, 0x1p-400), (z2 - r2) * (z2 + r2), slopes.low,
-                               slopes.high);
+        scalar::tangent_slopes(c2, z2, std::max(r2, 0x1p-400), e, 1 / e, slopes.low, slopes.high);
     else
         scalar::clipped_slopes(c2, z2, std::max(r2, 0x1p-400), static_cast<double>(n), slopes.low,
                                slopes.high);

@@ -259,6 +259,44 @@ public:
                (!max || s.seen.depth - s.seen.radius - rounding <= *max + abs(*max) / (1 << 22));
     }
 
+    /// A tile of the silhouette of a sphere wholly beyond the near plane: the sphere meets it, give or take the
+    /// margins of the rectangle and, twice, those that silhouette.inl states: 2^-44 m F of the squared radius and
+    /// 2^-46 of what the ends are made of.
+    bool silhouette_meets(const Subject& s, int x, int y) {
+        const FlatBall& b = s.flat;
+        Depths beyond_near;
+        if (!oracle.orthographic()) beyond_near.min = oracle.range().min;
+        const double end = std::abs(b.depth) + b.radius;
+        const FlatDepths flat = {beyond_near.min ? beyond_near.min->convert_to<double>() : -2 * end, 2 * end};
+        if (filter_.cell_distance2(x, y, flat, b) <= b.radius * b.radius) return true;
+
+        const auto larger = [](const Slab& slab) {
+            return std::max(abs(slab.low.slope), abs(slab.high.slope)).convert_to<double>();
+        };
+        CameraBall ball = s.seen;
+        Rational grow = grow_x_;
+        if (oracle.orthographic()) {
+            ball.radius *= 1 + Rational(1) / (1 << 20);
+        } else {
+            const double v = std::max(larger(rows_.front()), larger(rows_.back()));
+            const double f = b.radius * (1 + v), m = v * b.depth + std::abs(b.y) + f;
+            const double a = b.y * b.y + (b.depth - b.radius) * (b.depth + b.radius),
+                         t = std::sqrt(a + b.x * b.x);
+            const Slab& column = columns_.front();
+            const double width = Rational(column.high.slope - column.low.slope).convert_to<double>();
+            const double pixels = (std::abs(b.x) * (std::abs(b.y) * v + b.depth) + t * f) / a / width *
+                                  std::min(oracle.camera().tile, oracle.camera().width);
+            grow += exact(pixels) / (std::int64_t{1} << 45);
+            // The root of r^2 + growth is below r + growth / 2r and below r + sqrt(growth).
+            const double growth = 0x1p-43 * m * f + 0x1p-92 * m * m;
+            ball.radius += exact(std::min(b.radius > 0 ? growth / b.radius : growth, 2 * std::sqrt(growth)));
+        }
+        const Edges columns = oracle.columns(x, x + 1), rows = oracle.rows(y, y + 1);
+        return meets({oracle.column_slab({columns.low - grow, columns.high + grow}),
+                      oracle.row_slab({rows.low - grow_y_, rows.high + grow_y_})},
+                     beyond_near, ball);
+    }
+
     /// The sphere meets the box around the tile's cell between these depths, give or take the margins that the
     /// library states: 2^-21 of an edge and of a depth, 2^-20 of the squared radius. Twice those are allowed.
     bool box_meets(const Subject& s, int x, int y, const Cell& cell) {
