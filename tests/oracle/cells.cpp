@@ -74,8 +74,8 @@ void examine_silhouettes(const Camera& camera, Tally& tally, std::uint64_t& seed
                 if (in_list[tile][i]) {
                     ++tally.explained;
                     // A row that the silhouette crosses beside the viewport has the tile next to it.
-                    const bool at_side = (x == 0 && !in_list[tile + 1][i]) ||
-                                         (x + 1 == oracle.tiles_x() && !in_list[tile - 1][i]);
+                    const bool at_side = (x == 0 && r.x1 > 0 && !in_list[tile + 1][i]) ||
+                                         (x > 0 && x + 1 == oracle.tiles_x() && !in_list[tile - 1][i]);
                     if (!in_rectangle[tile][i] ||
                         (!whole && !at_side && !examiner.silhouette_meets(subject, x, y)))
                         tally.report(tally.unexplained, "unexplained", camera, set.name, i, lights[i], at());

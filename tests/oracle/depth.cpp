@@ -294,7 +294,7 @@ void prove_depths(const std::string& kind, const Camera& camera) {
     CHECK(counts.loose == 0);
     CHECK(counts.samples > 50000);
     CHECK(counts.unknown > 100);
-    CHECK(counts.gaps > 1000);
+    CHECK(counts.gaps > 300);
     CHECK(counts.empty > 100);
 }
 

@@ -291,9 +291,11 @@ public:
             const double growth = 0x1p-43 * m * f + 0x1p-92 * m * m;
             ball.radius += exact(std::min(b.radius > 0 ? growth / b.radius : growth, 2 * std::sqrt(growth)));
         }
-        const Edges columns = oracle.columns(x, x + 1), rows = oracle.rows(y, y + 1);
+        // The last row counts as a whole one.
+        const Edges columns = oracle.columns(x, x + 1);
+        const Rational low = y * oracle.camera().tile, high = low + oracle.camera().tile;
         return meets({oracle.column_slab({columns.low - grow, columns.high + grow}),
-                      oracle.row_slab({rows.low - grow_y_, rows.high + grow_y_})},
+                      oracle.row_slab({low - grow_y_, high + grow_y_})},
                      beyond_near, ball);
     }
 
