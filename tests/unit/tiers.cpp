@@ -130,7 +130,7 @@ public:
         CHECK((sse2_.bytes(input) == expected));
         CHECK((avx2_.bytes(input) == expected));
         CHECK((avx512_.bytes(input) == expected));
-        for (const std::size_t workers : {2, 3, 7}) {
+        for (const std::size_t workers : {2u, 3u, 7u}) {
             const Parallel parallel(workers, shuffled);
             CHECK((scalar_.bytes(input, parallel) == expected));
             CHECK((sse2_.bytes(input, parallel) == expected));
@@ -141,7 +141,7 @@ public:
 
     void compare_on_threads(const Input& input) {
         const auto expected = avx512_.bytes(input);
-        for (const std::size_t workers : {1, 2, 3, 7})
+        for (const std::size_t workers : {1u, 2u, 3u, 7u})
             CHECK((avx512_.bytes(input, {workers, threads}) == expected));
     }
 
