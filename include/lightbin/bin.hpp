@@ -20,6 +20,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace lightbin {
@@ -32,9 +33,12 @@ template <class Id, Footprint footprint, DepthTest depth_test> class GridLists {
 public:
     /// Builds the grid of the footprints with a kernel of an instruction set. Returns an Error if Z bounds
     /// are shorter than the grid, or 32-bit offsets can't reach the list's end; then there is no grid.
+    ///
+    /// parallel  Serial or Parallel
+    template <class Threads>
     std::optional<Error> build(Isa isa, const View& view, const Footprints<footprint, with_depth>& footprints,
                                const ZBounds& bounds, std::vector<detail::Scratch>& scratch,
-                               const Parallel& parallel) {
+                               [[maybe_unused]] const Threads& parallel) {
         const std::size_t tiles = view.tile_count();
         Job job = {.camera = &view.camera(),
                    .lights = footprints.arrays(),
@@ -66,11 +70,14 @@ public:
         const auto kernel =
             detail::bin_kernel<footprint, depth_test, Id>(isa, view, footprints.visible(), footprints.area());
         Id* list = indices_.room(static_cast<std::size_t>(room) + slack);
-        const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), bands);
-        if (parts < 2 || room < worth_sharing || footprints.area() > most)
-            entries_ = static_cast<std::size_t>(kernel(job, scratch[0], {0, bands, list, 0}));
-        else
-            entries_ = build_parts(job, kernel, list, scratch, parallel, parts);
+        if constexpr (!std::is_same_v<Threads, Serial>) {
+            const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), bands);
+            if (parts > 1 && room >= worth_sharing && footprints.area() <= most) {
+                entries_ = build_parts(job, kernel, list, scratch, parallel, parts);
+                return std::nullopt;
+            }
+        }
+        entries_ = static_cast<std::size_t>(kernel(job, scratch[0], {0, bands, list, 0}));
         return std::nullopt;
     }
 

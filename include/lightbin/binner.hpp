@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -64,32 +65,32 @@ public:
     /// order. Errors: more lights than Id can number; more than 2^32 - 1 entries; a world_space() matrix that
     /// is not affine.
     ///
-    /// parallel  threads to share the work among. The grid is the same with any number of them.
-    template <class LightRange>
+    /// parallel  a Parallel: threads to share the work among. The grid is the same with any number of them.
+    template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     requires(!with_depth) Result<LightGrid<Id>> bin(const View& view, const LightRange& lights,
-                                                    const Parallel& parallel = {}) {
+                                                    const Threads& parallel = {}) {
         return bin_owned(view, lights, {}, parallel);
     }
 
     /// The same with Z bounds, minimum, maximum or both; also an error: a side is shorter than
     /// view.tile_count().
-    template <class LightRange>
+    template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     requires(with_depth) Result<LightGrid<Id>> bin(const View& view, const LightRange& lights,
-                                                   const ZBounds& bounds, const Parallel& parallel = {}) {
+                                                   const ZBounds& bounds, const Threads& parallel = {}) {
         return bin_owned(view, lights, bounds, parallel);
     }
 
     /// Builds the light grid in the Binner's memory and returns its sizes, ready for emit(). Errors as bin().
-    template <class LightRange>
+    template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     requires(!with_depth) Result<GridSize> count(const View& view, const LightRange& lights,
-                                                 const Parallel& parallel = {}) {
+                                                 const Threads& parallel = {}) {
         return count_all(view, lights, {}, parallel);
     }
 
     /// The same with Z bounds.
-    template <class LightRange>
+    template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     requires(with_depth) Result<GridSize> count(const View& view, const LightRange& lights,
-                                                const ZBounds& bounds, const Parallel& parallel = {}) {
+                                                const ZBounds& bounds, const Threads& parallel = {}) {
         return count_all(view, lights, bounds, parallel);
     }
 
@@ -114,11 +115,11 @@ public:
     /// next call. Errors as bin(). Statistics are those of the opaque grid.
     ///
     /// bounds  of the opaque geometry
-    template <class LightRange>
+    template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     requires(with_depth) Result<TransparencyGrids<Id>> bin_transparency(const View& view,
                                                                         const LightRange& lights,
                                                                         const ZBounds& bounds,
-                                                                        const Parallel& parallel = {}) {
+                                                                        const Threads& parallel = {}) {
         if (const auto error = project(view, lights, parallel)) return *error;
         const auto transparent = build(transparent_, view, ZBounds{.max = bounds.max}, parallel);
         if (!transparent) return transparent.error();
@@ -134,16 +135,16 @@ private:
     using Lists = GridLists<Id, options.footprint, options.depth_test>;
     struct Nothing {};
 
-    template <class LightRange>
+    template <class LightRange, class Threads>
     Result<LightGrid<Id>> bin_owned(const View& view, const LightRange& lights, const ZBounds& bounds,
-                                    const Parallel& parallel) {
+                                    const Threads& parallel) {
         if (const auto error = project(view, lights, parallel)) return *error;
         return build(lists_, view, bounds, parallel);
     }
 
-    template <class LightRange>
+    template <class LightRange, class Threads>
     Result<GridSize> count_all(const View& view, const LightRange& lights, const ZBounds& bounds,
-                               const Parallel& parallel) {
+                               const Threads& parallel) {
         const Result<LightGrid<Id>> grid = bin_owned(view, lights, bounds, parallel);
         if (!grid) return grid.error();
         counted_ = *grid;
@@ -163,8 +164,9 @@ private:
         return std::nullopt;
     }
 
+    template <class Threads>
     Result<LightGrid<Id>> build(Lists& lists, const View& view, const ZBounds& bounds,
-                                const Parallel& parallel) {
+                                const Threads& parallel) {
         if (const auto error = lists.build(isa_, view, footprints_, bounds, scratch_, parallel))
             return *error;
         const LightGrid<Id> grid(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(),

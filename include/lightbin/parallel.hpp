@@ -51,4 +51,9 @@ private:
     void (*start_)(void* run, std::size_t n, Body body) = nullptr;
 };
 
+/// No threads to share work among, known at compile time: leaves no code for it.
+struct Serial {
+    operator Parallel() const { return {}; }
+};
+
 }  // namespace lightbin

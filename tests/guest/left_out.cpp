@@ -1,0 +1,31 @@
+// One Binner: with every option off, or with ALL_OPTIONS on. left_out.sh compares the two.
+#include <lightbin/binner.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+std::uint64_t bin(const lightbin::View& view, std::span<const lightbin::Sphere> lights,
+                  const lightbin::ZBounds& bounds, void (*run)(std::size_t)) {
+#if defined(ALL_OPTIONS)
+    static_cast<void>(run);
+    const auto loop = [run](std::size_t n, const auto& body) {
+        for (std::size_t i = 0; i < n; ++i) {
+            run(i);
+            body(i);
+        }
+    };
+    lightbin::Binner<lightbin::Options{.footprint = lightbin::Footprint::silhouette,
+                                       .depth_test = lightbin::DepthTest::split_box,
+                                       .statistics = true}>
+        binner;
+    const auto grid = binner.bin(view, lights, bounds, lightbin::Parallel(4, loop));
+    return grid ? grid->indices().size() + binner.statistics().longest_list : 0;
+#else
+    static_cast<void>(bounds);
+    static_cast<void>(run);
+    lightbin::Binner<> binner;
+    const auto grid = binner.bin(view, lights);
+    return grid ? grid->indices().size() : 0;
+#endif
+}

@@ -1,0 +1,35 @@
+#!/bin/sh
+# left_out.sh COMPILER: what a Binner's options leave out is not in the program. Unoptimised, every function that
+# anything calls has a symbol; optimised, the sizes tell.
+set -eu
+compiler=$1
+here=$(cd "$(dirname "$0")" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+compile() {
+    "$compiler" -std=c++20 -I "$here/../../include" -c "$here/left_out.cpp" "$@"
+}
+compile -O0 -o "$work/off.o"
+compile -O0 -DALL_OPTIONS -o "$work/on.o"
+nm -C "$work/off.o" >"$work/off"
+nm -C "$work/on.o" >"$work/on"
+
+# Functions of the depth tests, of silhouettes, of statistics, of sharing work among threads. The Binner with all
+# options has each of them: a name that is nowhere would prove nothing.
+for function in tiles_met arrange_cells store_box tile_edges find_edges mask_lights row_spans row_terms \
+    silhouette_tiles gather_statistics build_parts make_parts; do
+    grep -qw "$function" "$work/on" || { echo "no $function with all options on" >&2; exit 1; }
+    if grep -w "$function" "$work/off"; then
+        echo "$function is there with all options off" >&2
+        exit 1
+    fi
+done
+
+compile -O2 -o "$work/off.o"
+compile -O2 -DALL_OPTIONS -o "$work/on.o"
+text() { size "$1" | awk 'NR == 2 { print $1 }'; }
+off=$(text "$work/off.o")
+on=$(text "$work/on.o")
+echo "$off bytes with all options off, $on with all on"
+[ $((100 * off)) -lt $((80 * on)) ]
