@@ -18,24 +18,35 @@ for part in judge campaign; do
     g++ $common -O2 -c tests/oracle/$part.cpp -o $work/$part.o || fail "$part.cpp does not compile"
 done
 
-# run NAME LIGHTS COMPILER FLAGS [flush]: the families with the library so built; a line a family in NAME.txt
-run() {
+# build NAME COMPILER FLAGS: the program with the library so built
+build() {
     # shellcheck disable=SC2086  # several flags
-    "$3" $common $4 -c tests/oracle/engine.cpp -o "$work/engine_$1.o" || fail "$1 does not compile"
+    "$2" $common $3 -c tests/oracle/engine.cpp -o "$work/engine_$1.o" || fail "$1 does not compile"
     g++ $work/judge.o $work/campaign.o "$work/engine_$1.o" -lgmp -o "$work/campaign_$1"
-    echo "$me: $3 $4 ${5:-}, $2 lights a family"
-    nice -n 19 "$work/campaign_$1" "$2" ${5:-} >"$work/$1.part" 2>"$work/$1.log" || echo "$me: see $work/$1.log"
-    mv "$work/$1.part" "$work/$1.txt"
-    echo "$3 $4${5:+, FTZ and DAZ set}" >"$work/$1.name"
+    echo "$2 $3" >"$work/$1.flags"
 }
-rm -f $work/*.txt $work/*.name
-run 1_gcc_O2 "$lights" g++ "-O2"
-run 2_gcc_O0 "$others" g++ "-O0"
-run 3_gcc_native "$others" g++ "-O3 -march=native"
-run 4_clang14_O2 "$others" clang++-14 "-O2"
-run 5_clang19_native "$others" clang++-19 "-O3 -march=native"
-run 6_gcc_O2_flush "$others" g++ "-O2" flush
-run 7_clang14_native_flush "$others" clang++-14 "-O3 -march=native" flush
+# run NAME LIGHTS [flush]: the families; a line each in NAME.txt
+run() {
+    name=$1${3:+_$3}
+    echo "$(cat "$work/$1.flags")${3:+, FTZ and DAZ set}" >"$work/$name.name"
+    echo "$me: $(cat "$work/$name.name"): $2 lights a family"
+    nice -n 19 "$work/campaign_$1" "$2" ${3:-} >"$work/$name.part" 2>"$work/$name.log" ||
+        echo "$me: see $work/$name.log"
+    mv "$work/$name.part" "$work/$name.txt"
+}
+rm -f $work/*.txt
+build 1_gcc_O2 g++ "-O2"
+build 2_gcc_O0 g++ "-O0"
+build 3_gcc_native g++ "-O3 -march=native"
+build 4_clang14_O2 clang++-14 "-O2"
+build 5_clang19_native clang++-19 "-O3 -march=native"
+run 1_gcc_O2 "$lights"
+run 1_gcc_O2 "$others" flush
+run 2_gcc_O0 "$others"
+run 3_gcc_native "$others"
+run 3_gcc_native "$others" flush
+run 4_clang14_O2 "$others"
+run 5_clang19_native "$others"
 
 g++ $common -O2 -ffp-contract=off tests/oracle/formulas.cpp -lquadmath -o $work/campaign_formulas
 echo "$me: formulas, $others lights a family"
