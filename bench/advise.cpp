@@ -6,7 +6,8 @@
 //   advise.csv         a row for each scene, cost of an evaluation and error of the build model (factor): the
 //                      choice, the best plan, and the regret, their ratio
 //
-// With --fit: fits the constants of detail/build_model.hpp on made scenes and light sets instead, and prints them.
+// With --fit: fits the constants of detail/build_model.hpp on made scenes and light sets instead, and prints
+// them.
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a scene can do without: the options and the tile size that cost least, to build and to shade, predicted
-// from a sample of the lights.
+// What a scene can do without: the options and the tile size that cost least, to build and to shade,
+// predicted from a sample of the lights.
 #pragma once
 
 #include <lightbin/detail/build_model.hpp>
@@ -22,7 +22,8 @@ namespace lightbin {
 
 /// What advise() can't know. Times in nanoseconds a frame, 0 or more.
 struct Costs {
-    /// One light evaluated at one pixel, as the whole device does it: about 0.005 to 0.05 on a GPU, 1 on a core.
+    /// One light evaluated at one pixel, as the whole device does it: about 0.005 to 0.05 on a GPU, 1 on a
+    /// core.
     double evaluation_ns = 0.02;
     /// The depth pre-pass and the reduction to Z bounds, unless the renderer has them anyway.
     double z_bounds_ns = 0;
@@ -94,9 +95,9 @@ private:
 /// bounds  of the view's own tiles; larger tiles' bounds are merged from them. None: no depth test is weighed
 /// costs   the build model knows the machine that it was fitted on (detail/build_model.hpp)
 ///
-/// The lists' lengths are estimated from a sample: at most 1,024 lights, through the library's own projection,
-/// and 192 (light, tile) pairs a tile size, through its own depth tests. With no more lights than that the
-/// sums over rectangles are exact. Takes tens of microseconds and a little memory.
+/// The lists' lengths are estimated from a sample: at most 1,024 lights, through the library's own
+/// projection, and 192 (light, tile) pairs a tile size, through its own depth tests. With no more lights
+/// than that the sums over rectangles are exact. Takes tens of microseconds and a little memory.
 template <class LightRange>
 Result<Advice> advise(const View& view, const LightRange& lights, const Costs& costs = {},
                       const ZBounds& bounds = {}) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How long a build takes: what the grid holds, times constants. They were fitted by `sh bench/run.sh advise --fit`
-// (bench/advise.cpp) on an AMD EPYC (Zen 5), g++ 12, one thread. Of its 1,024 builds nine in ten take 0.7 to 3.7 times
-// what is predicted. Another machine is brought in by one factor, Costs::machine.
+// How long a build takes: what the grid holds, times constants. They were fitted by `sh bench/run.sh advise
+// --fit` (bench/advise.cpp) on an AMD EPYC (Zen 5), g++ 12, one thread. Of its 1,024 builds nine in ten take
+// 0.7 to 3.7 times what is predicted. Another machine is brought in by one factor, Costs::machine.
 #pragma once
 
 #include <lightbin/detail/platform.hpp>

@@ -60,8 +60,8 @@ struct CellBounds {
 
 inline namespace LIGHTBIN_FLAVOUR {
 
-/// A place in part `i` of the `count` equal parts of 0..total, moved on by the golden ratio from part to part:
-/// a fixed step would see only one kind of light where the caller's array has them in turn.
+/// A place in part `i` of the `count` equal parts of 0..total, moved on by the golden ratio from part to
+/// part: a fixed step would see only one kind of light where the caller's array has them in turn.
 inline double spread(std::size_t i, std::size_t count, double total) {
     const double turn = 0.6180339887498949 * static_cast<double>(i);
     return (static_cast<double>(i) + turn - std::floor(turn)) * total / static_cast<double>(count);
@@ -82,8 +82,8 @@ struct BoundsReader {
     const float *gap_min, *gap_max;
 };
 
-/// Calls visit(tile, depths, drawn) for the tiles that make up tile (x, y) of a grid of 2^shift times the view's tile
-/// size; `drawn` is false for those with nothing to light. Returns how many tiles there are.
+/// Calls visit(tile, depths, drawn) for the tiles that make up tile (x, y) of a grid of 2^shift times the
+/// view's tile size; `drawn` is false for those with nothing to light. Returns how many tiles there are.
 template <class Visit>
 int each_tile(const View& view, const BoundsReader& bounds, int shift, int x, int y, Visit visit) {
     const int x0 = x << shift, x1 = (std::min)((x + 1) << shift, view.tiles_x());
@@ -114,8 +114,8 @@ inline CellBounds merge_bounds(const View& view, const BoundsReader& bounds, int
     return {.min = lowest, .max = highest, .drawn = static_cast<double>(count) / tiles};
 }
 
-/// Finds the gap around the middle of the cell's depths. What lies before or behind a tile's own gap counts as drawn
-/// all over, so this gap is at most as wide as reduce_depth() would find.
+/// Finds the gap around the middle of the cell's depths. What lies before or behind a tile's own gap counts
+/// as drawn all over, so this gap is at most as wide as reduce_depth() would find.
 inline void merge_gaps(const View& view, const BoundsReader& bounds, int shift, int x, int y,
                        CellBounds& cell) {
     const float middle = cell.min / 2 + cell.max / 2;
@@ -163,8 +163,8 @@ inline bool in_silhouette(const FootprintArrays& lights, std::size_t i, int shif
     return false;
 }
 
-/// Whether a light meets the cell of tile (x, y) of a grid of 2^shift times the view's tile size, by depth test: asks
-/// the tests that bin, the scalar tier's. None finds more than the one before it.
+/// Whether a light meets the cell of tile (x, y) of a grid of 2^shift times the view's tile size, by depth
+/// test: asks the tests that bin, the scalar tier's. None finds more than the one before it.
 inline std::array<bool, 4> depth_tests_met(const View& view, const BoundsReader& bounds, const Camera& grid,
                                            int shift, int x, int y, CellBounds cell, const Sphere& sphere) {
     std::array<bool, 4> met = {true, false, false, false};
@@ -198,10 +198,10 @@ inline double lit_pixels(const View& view, const BoundsReader& bounds, std::size
     return count == 0 ? 0 : lit / static_cast<double>(count) * view.viewport().width * view.viewport().height;
 }
 
-/// Surveys grids of the view's tile size, of 2, 4 and 8 times it, and of one tile. Sums over rectangles are exact
-/// for the sampled lights. What silhouettes and depth tests leave of them is estimated from (light, tile) pairs,
-/// drawn in proportion to the rectangles' areas: the same pairs for every option, and the same lights and places
-/// on the screen for every grid, so that comparisons are sharper than the numbers.
+/// Surveys grids of the view's tile size, of 2, 4 and 8 times it, and of one tile. Sums over rectangles are
+/// exact for the sampled lights. What silhouettes and depth tests leave of them is estimated from (light,
+/// tile) pairs, drawn in proportion to the rectangles' areas: the same pairs for every option, and the same
+/// lights and places on the screen for every grid, so that comparisons are sharper than the numbers.
 template <class Light, class ToViewSphere>
 Survey survey(Isa isa, const View& view, const Lights<Light, ToViewSphere>& lights, const ZBounds& z_bounds,
               std::size_t most_lights = 1024, std::size_t most_pairs = 192) {
