@@ -71,7 +71,7 @@ template <Footprint footprint, DepthTest depth_test, class Id>
 BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint32_t lights, std::uint64_t area) {
     if constexpr (!masked<footprint, depth_test>) {
         // Nearly empty grids: a walk over all supertiles costs more than counting and scattering.
-        const std::uint64_t few = view.tile_count() / (isa == Isa::avx512 ? 32 : 4);
+        const std::uint64_t few = view.tile_count() / 4;
         if (isa == Isa::scalar || area <= few) return bin_scatter<Id>;
         // Without compress, putting a light in lists costs as much as scattering it to so many tiles.
         const std::uint64_t scattered = isa == Isa::avx512 ? 0

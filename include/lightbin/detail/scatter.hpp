@@ -93,14 +93,11 @@ std::uint64_t bin_scatter(const BinJob<Id>& job, Scratch& scratch, const BandJob
         if (put[row]++ == 0) std::fill_n(corners + row * pitch, pitch, 0u);
         return corners + row * pitch;
     };
-    std::size_t left = width, right = 0;  // the columns that any light reaches
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i) {
             const std::size_t y0 = (std::max<std::size_t>)(lights.y0[i], first),
                               y1 = (std::min<std::size_t>)(lights.y1[i] + 1u, end);
             if (y0 >= y1) continue;
-            left = (std::min<std::size_t>)(left, lights.x0[i]);
-            right = (std::max<std::size_t>)(right, lights.x1[i] + 1u);
             std::uint32_t *top = corner_row(y0 - first), *bottom = corner_row(y1 - first);
             ++top[lights.x0[i]];
             --top[lights.x1[i] + 1u];
@@ -124,11 +121,9 @@ std::uint64_t bin_scatter(const BinJob<Id>& job, Scratch& scratch, const BandJob
             continue;
         }
         if (put[row] != 0)
-            for (std::size_t x = left; x < right; ++x)
+            for (std::size_t x = 0; x < width; ++x)
                 steps[x] += corners[row * pitch + x];
-        const std::uint32_t end_at = lay_out(steps + left, right - left, at, tile + left);
-        fill_empty(tile, left, at);
-        fill_empty(tile + right, width - right, end_at);
+        const std::uint32_t end_at = lay_out(steps, width, at, tile);
         empty = end_at == at;
         at = end_at;
         tile += width;
