@@ -13,7 +13,7 @@ libraries="doctest-dev libglm-dev"
 oracle="libboost-dev libgmp-dev"
 examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
 opengl=libgl1-mesa-dri # Mesa draws where there is no GPU
-shaders="glslang-dev spirv-tools"
+shaders="glslang-dev glslang-tools spirv-tools" # the first names files of the second
 # shellcheck disable=SC2086  # one word a package
 install_packages $compilers $tools $arm $libraries $oracle $examples $opengl $shaders
 
