@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 
 build="g++ cmake ninja-build"
 libraries="libglm-dev libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
-opengl=libgl1-mesa-dri # Mesa draws where there is no GPU
+opengl="libgl1-mesa-dri libgles2" # Mesa draws where there is no GPU
 # shellcheck disable=SC2086  # one word a package
 install_packages $build $libraries $opengl
 

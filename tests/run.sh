@@ -12,7 +12,7 @@ arm="g++-aarch64-linux-gnu qemu-user-static" # the NEON tier, in an emulator
 libraries="doctest-dev libglm-dev"
 oracle="libboost-dev libgmp-dev"
 examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
-opengl=libgl1-mesa-dri # Mesa draws where there is no GPU
+opengl="libgl1-mesa-dri libgles2" # Mesa draws where there is no GPU
 shaders="glslang-dev glslang-tools spirv-tools" # the first names files of the second
 # shellcheck disable=SC2086  # one word a package
 install_packages $compilers $tools $arm $libraries $oracle $examples $opengl $shaders

@@ -95,7 +95,7 @@ inline Dialect dialect(ShaderLanguage language) {
 
 /// The word of HLSL for a word of GLSL.
 inline std::string_view hlsl_word(std::string_view word) {
-    constexpr std::string_view words[][2] = {
+    static constexpr std::string_view words[][2] = {
         {"uvec2", "uint2"},
         {"uvec4", "uint4"},
         {"ivec2", "int2"},
