@@ -27,8 +27,9 @@
 //
 // Building. No compiler flags are needed. With gcc or clang there are kernels for SSE2, AVX2 and AVX-512 on
 // x86-64, of which the machine's own is picked at run time, and for NEON on 64-bit ARM; elsewhere the scalar
-// ones run. All give the same bytes. Define LIGHTBIN_NO_SIMD to leave them out, LIGHTBIN_ASSERT to take over the assertions. -ffast-math
-// is refused where the compiler tells of it; clang does not tell of -funsafe-math-optimizations alone: don't.
+// ones run. All give the same bytes. Define LIGHTBIN_NO_SIMD to leave them out, LIGHTBIN_ASSERT to take over the
+// assertions. -ffast-math is refused where the compiler tells of it; clang does not tell of
+// -funsafe-math-optimizations alone: don't.
 //
 // Sources: Olsson and Assarsson, "Tiled Shading", JGT 15(4), 2011. Billeter, Olsson and Assarsson, "Tiled
 // Forward Shading", GPU Pro 4, 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.
