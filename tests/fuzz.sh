@@ -34,7 +34,7 @@ fuzz() {
     tail -n 1 "$work/$1.log"
     rm -rf "$work/$1_small"
     mkdir "$work/$1_small"
-    "$work/fuzz_$1" -merge=1 -max_len="$2" "$work/$1_small" "$work/$1" >>"$work/$1.log" 2>&1 || true
+    "$work/fuzz_$1" -merge=1 -max_len="$2" -artifact_prefix="$work/$1_failures/" "$work/$1_small" "$work/$1" >>"$work/$1.log" 2>&1 || true
     "$work/pack" --pack "$work/$1_small" "$work/$1.corpus"
 }
 fuzz binning 700

@@ -116,7 +116,7 @@ void pack_four(const std::uint32_t* ids, Packed<Id>* to, std::index_sequence<mas
         (_mm_storeu_si128(choices + mask, _mm_shuffle_epi32(four, chosen_first<mask>)), ...);
     } else {
         const __m128i low = _mm_srai_epi32(_mm_slli_epi32(four, 16), 16), narrow = _mm_packs_epi32(low, low);
-        (_mm_storel_epi64(reinterpret_cast<__m128i*>(to->ids + 4 * mask),
+        (_mm_storel_epi64(reinterpret_cast<__m128i*>(reinterpret_cast<Id*>(to) + 4 * mask),
                           _mm_shufflelo_epi16(narrow, chosen_first<mask>)),
          ...);
     }
@@ -131,8 +131,9 @@ template <class Id> void pack(const std::uint32_t* ids, std::uint32_t count, Pac
 template <class Id> std::uint32_t append(Id* out, const Packed<Id>* ids, unsigned mask) {
     constexpr std::uint8_t set[] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
     const unsigned low = mask & 15, high = mask >> 4;
-    std::memcpy(out, ids[0].ids + 4 * low, 4 * sizeof(Id));
-    std::memcpy(out + set[low], ids[4].ids + 4 * high, 4 * sizeof(Id));
+    const Id* const choices = reinterpret_cast<const Id*>(ids);  // of four lights: 16 choices of 4 ids
+    std::memcpy(out, choices + 4 * low, 4 * sizeof(Id));
+    std::memcpy(out + set[low], choices + 64 + 4 * high, 4 * sizeof(Id));
     return set[low] + std::uint32_t{set[high]};
 }
 
