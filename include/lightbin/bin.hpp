@@ -55,14 +55,14 @@ public:
         }
         if constexpr (with_boxes) find_edges(job);
 
-        const unsigned bands = static_cast<unsigned>(view.tiles_y() + 7) / 8;
+        const unsigned rows = static_cast<unsigned>(view.tiles_y());
         constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
         std::uint64_t room = footprints.area();
         // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.
         if constexpr (detail::masked<footprint, depth_test>)
             if (room > most)
                 room = detail::scalar::bin_supertiles<footprint, depth_test>(job, scratch[0],
-                                                                             {0, bands, nullptr, 0});
+                                                                             {0, rows, nullptr, 0});
         if (room > most) return Error{ErrorCode::too_many_entries, room, most};
 
         tile_count_ = tiles;
@@ -71,13 +71,14 @@ public:
             detail::bin_kernel<footprint, depth_test, Id>(isa, view, footprints.visible(), footprints.area());
         Id* list = indices_.room(static_cast<std::size_t>(room) + slack);
         if constexpr (!std::is_same_v<Threads, Serial>) {
-            const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), bands);
-            if (parts > 1 && room >= worth_sharing && footprints.area() <= most) {
+            const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), rows);
+            if (parallel.worth(static_cast<double>(room) * ns_an_entry) && parts > 1 &&
+                footprints.area() <= most) {
                 entries_ = build_parts(job, kernel, list, scratch, parallel, parts);
                 return std::nullopt;
             }
         }
-        entries_ = static_cast<std::size_t>(kernel(job, scratch[0], {0, bands, list, 0}));
+        entries_ = static_cast<std::size_t>(kernel(job, scratch[0], {0, rows, list, 0}));
         return std::nullopt;
     }
 
@@ -87,7 +88,8 @@ public:
 private:
     using Job = detail::BinJob<Id>;
     static constexpr std::size_t slack = detail::BandJob<Id>::slack;
-    static constexpr std::uint64_t worth_sharing = 50000;  ///< entries: less is not worth a thread's start
+    /// On the fastest processors, so that no work is shared that is soon done.
+    static constexpr double ns_an_entry = detail::masked<footprint, depth_test> ? 0.6 : 0.2;
 
     /// Builds `count` parts on the caller's threads. Returns the number of entries.
     std::size_t build_parts(const Job& job, detail::BinKernel<Id> kernel, Id* list,
@@ -130,8 +132,7 @@ private:
             parallel.run(count - 1, [&](std::size_t previous) {
                 const detail::Part& part = parts[previous + 1];
                 const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
-                for (Tile *tile = job.tiles + 8 * width * part.begin,
-                          *end = job.tiles + (std::min)(8 * width * part.end, tile_count_);
+                for (Tile *tile = job.tiles + width * part.begin, *end = job.tiles + width * part.end;
                      tile < end; ++tile)
                     tile->offset += static_cast<std::uint32_t>(part.before);
                 std::copy_n(spares_[previous + 1].data(), static_cast<std::size_t>(part.area),

@@ -22,18 +22,26 @@ public:
     /// No threads: the work is done by the calling thread.
     Parallel() = default;
 
-    /// workers  how many threads `run` has; more or fewer change the speed, never the result
-    /// run      run(n, body) calls body(i), a std::size_t, once for each 0 <= i < n, in any order, on any
-    ///          threads, and returns when all calls have returned: tbb::parallel_for, a thread pool, OpenMP
+    /// workers   how many threads `run` has; more or fewer change the speed, never the result
+    /// run       run(n, body) calls body(i), a std::size_t, once for each 0 <= i < n, in any order, on any
+    ///           threads, and returns when all calls have returned: tbb::parallel_for, a thread pool, OpenMP
+    /// start_ns  about how long it takes until `run` has its threads at work. What would gain less is done by the
+    ///           calling thread alone. The default is that of threads asleep; 0 shares all that can be shared.
     template <class Run>
-    Parallel(std::size_t workers, Run&& run)
-        : workers_(workers > 1 ? workers : 1),
+    Parallel(std::size_t workers, Run&& run, double start_ns = 25000)
+        : workers_(workers > 1 ? workers : 1), start_ns_(start_ns),
           run_(const_cast<void*>(static_cast<const void*>(std::addressof(run)))),
           start_([](void* function, std::size_t n, Body body) {
               (*static_cast<std::remove_reference_t<Run>*>(function))(n, body);
           }) {}
 
     std::size_t workers() const { return workers_; }
+
+    /// Whether work that takes one thread so long is worth sharing: the gain is twice what the start costs.
+    bool worth(double ns) const {
+        const double workers = static_cast<double>(workers_);
+        return workers_ > 1 && ns * (workers - 1) >= 2 * start_ns_ * workers;
+    }
 
     /// Calls body(i) for each 0 <= i < n.
     template <class Function> void run(std::size_t n, const Function& body) const {
@@ -47,6 +55,7 @@ public:
 
 private:
     std::size_t workers_ = 1;
+    double start_ns_ = 0;
     void* run_ = nullptr;
     void (*start_)(void* run, std::size_t n, Body body) = nullptr;
 };

@@ -36,8 +36,9 @@ public:
                  const Parallel& parallel) {
         lights_ = lights.array.size();
         // Some parts a worker, so that a late one costs little; serial work is one part.
-        const std::size_t most = lights_ / smallest_part, workers = parallel.workers();
-        const std::size_t parts = workers == 1 || most < 2 ? 1 : most / 4 < workers ? most : 4 * workers;
+        const std::size_t parts = parallel.worth(static_cast<double>(lights_) * ns_a_light)
+                                      ? (std::min)(lights_ / 256 + 1, 4 * parallel.workers())
+                                      : 1;
         const std::size_t size = lights_ / parts + 1, stride = size + detail::FootprintArrays::padding;
         const std::size_t room = parts * stride;
         arrays_ = {.ids = ids_.room(room),
@@ -121,7 +122,7 @@ private:
         });
     }
 
-    static constexpr std::size_t smallest_part = 4096;  ///< lights: less is not worth a thread's start
+    static constexpr double ns_a_light = 2;  ///< on the fastest processors
 
     detail::Buffer<std::uint32_t> ids_;
     detail::Buffer<std::uint16_t> x0_, y0_, x1_, y1_;

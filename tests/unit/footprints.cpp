@@ -139,7 +139,7 @@ TEST_CASE("threads project to the same bytes") {
     CHECK(footprints.runs().size() == 1);
     const auto expected = words(footprints);
     for (const std::size_t workers : {2u, 3u, 64u}) {
-        footprints.project(isa, scene.view, view_space(scene.lights), {workers, backwards});
+        footprints.project(isa, scene.view, view_space(scene.lights), {workers, backwards, 0});
         CHECK(footprints.runs().size() > 1);
         CHECK((words(footprints) == expected));
     }

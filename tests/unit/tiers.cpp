@@ -131,7 +131,7 @@ public:
         CHECK((avx2_.bytes(input) == expected));
         CHECK((avx512_.bytes(input) == expected));
         for (const std::size_t workers : {2u, 3u, 7u}) {
-            const Parallel parallel(workers, shuffled);
+            const Parallel parallel(workers, shuffled, 0);
             CHECK((scalar_.bytes(input, parallel) == expected));
             CHECK((sse2_.bytes(input, parallel) == expected));
             CHECK((avx2_.bytes(input, parallel) == expected));
@@ -142,7 +142,7 @@ public:
     void compare_on_threads(const Input& input) {
         const auto expected = avx512_.bytes(input);
         for (const std::size_t workers : {1u, 2u, 3u, 7u})
-            CHECK((avx512_.bytes(input, {workers, threads}) == expected));
+            CHECK((avx512_.bytes(input, {workers, threads, 0}) == expected));
     }
 
 private:

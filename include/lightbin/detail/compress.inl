@@ -154,10 +154,10 @@ LIGHTBIN_TARGET inline Chunk load_chunk(const BandLists& lists, std::size_t from
             load(lists.ids + from + 32)};
 }
 
-/// Step 1, for `bands` bands from `first_band` on. List (band, panel) is number band * panels + panel.
+/// Step 1, for `bands` bands from tile row `first_row` on. List (band, panel) is number band * panels + panel.
 template <bool with_words, class Id>
 LIGHTBIN_TARGET BandLists fill_bands(const BinJob<Id>& job, Scratch& scratch, std::size_t block_count,
-                                     unsigned first_band, unsigned bands, unsigned panels) {
+                                     unsigned first_row, unsigned bands, unsigned panels) {
     const FootprintArrays& lights = job.lights;
     const IdBlock* blocks = scratch.blocks.data();
     const std::size_t lists = std::size_t{bands} * panels;
@@ -174,8 +174,8 @@ LIGHTBIN_TARGET BandLists fill_bands(const BinJob<Id>& job, Scratch& scratch, st
     std::memset(size, 0, lists * sizeof *size);
     for (std::size_t block = 0; block < block_count; ++block) {
         for (std::size_t i = blocks[block].begin; i < blocks[block].end; i += 64) {
-            const __m512i first_y = load_from(lights.y0 + i, 0, 8 * first_band),
-                          end_y = load_from(lights.y1 + i, 1, 8 * first_band);
+            const __m512i first_y = load_from(lights.y0 + i, 0, first_row),
+                          end_y = load_from(lights.y1 + i, 1, first_row);
             const __mmask64 valid = first_lanes(blocks[block].end - i);
             __m512i low_ids, high_ids;
             if constexpr (with_words) {
@@ -374,8 +374,7 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
     constexpr bool with_words = masked<footprint, depth_test>;
     constexpr std::uint32_t group =
         with_words ? 64 : 16;  // words for 64 lights: one a tile, or column and row
-    const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles),
-                   tiles_y = static_cast<unsigned>(job.camera->y.tiles);
+    const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles);
     const unsigned width = (tiles_x + 7) / 8, panels = (width + panel_side - 1) / panel_side;
     const std::size_t block_count = make_blocks(job, scratch);
     const IdBlock* blocks = scratch.blocks.data();
@@ -390,23 +389,24 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
         std::clamp<std::size_t>((std::size_t{1} << 26) / (lights * panels + 1), 1, panel_side));
 
     BandLists lists = {};
-    unsigned listed = bands.begin, first_listed = bands.begin;  // the bands that `lists` has
+    const unsigned band_count = (bands.end - bands.begin + 7) / 8;
+    unsigned listed = 0, first_listed = 0;  // the bands that `lists` has
     Id* out = bands.out;
     std::uint32_t at = bands.at;
-    for (unsigned y = bands.begin; y < bands.end; ++y) {
-        if (y == listed) {
-            first_listed = y;
-            listed = (std::min)(y + together, bands.end);
-            lists = fill_bands<with_words>(job, scratch, block_count, y, listed - y, panels);
+    for (unsigned band = 0; band < band_count; ++band) {
+        const unsigned top = bands.begin + 8 * band, rows_here = (std::min)(8u, bands.end - top);
+        if (band == listed) {
+            first_listed = band;
+            listed = (std::min)(band + together, band_count);
+            lists = fill_bands<with_words>(job, scratch, block_count, top, listed - band, panels);
         }
         std::uint32_t longest = 0;
-        for (std::size_t list = std::size_t{y - first_listed} * panels;
-             list < (y - first_listed + 1) * panels; ++list)
+        for (std::size_t list = std::size_t{band - first_listed} * panels;
+             list < (band - first_listed + 1) * panels; ++list)
             if (block_count > 0) longest = (std::max)(longest, lists.ends[(list + 1) * block_count - 1]);
         if (longest == 0) {
-            fill_empty(job.tiles + 8 * y * std::size_t{tiles_x},
-                       (std::min)(8u, tiles_y - 8 * y) * std::size_t{tiles_x}, at);
-            if (bands.spare_row / 8 == y) out = bands.spare;
+            fill_empty(job.tiles + top * std::size_t{tiles_x}, rows_here * std::size_t{tiles_x}, at);
+            if (bands.spare_row - top < 8) out = bands.spare;
             continue;
         }
         std::uint8_t* columns = scratch.list_columns.room(longest + 192);
@@ -419,7 +419,7 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
         *scratch.uppers.room(1) = 0;
         Chunk chunk = {};
         for (unsigned x = 0; x < width; ++x) {  // step 2
-            const std::size_t list = std::size_t{y - first_listed} * panels + x / panel_side,
+            const std::size_t list = std::size_t{band - first_listed} * panels + x / panel_side,
                               list_begin = list * lists.stride;
             const std::uint32_t in_band = lists.ends[(list + 1) * block_count - 1];
             const bool one_chunk = in_band <= 64;
@@ -445,10 +445,10 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
                 if constexpr (with_words)
                     if (count > block_begin) {
                         if (depth_test != DepthTest::none && !arranged)
-                            lit = avx2::arrange_cells<depth_test>(job, x, y, cells);
+                            lit = avx2::arrange_cells<depth_test>(job, x, top, cells);
                         arranged = true;
                         count = block_begin +
-                                mask_lights<footprint, depth_test>(job, x, y, cells, lit, ids + block_begin,
+                                mask_lights<footprint, depth_test>(job, x, top, cells, lit, ids + block_begin,
                                                                    blocks[block].begin, columns + block_begin,
                                                                    rows + block_begin, count - block_begin,
                                                                    masks + block_begin);
@@ -493,9 +493,9 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
             words_used += needed;
             ids_used += (count + 63) & ~63u;
         }
-        for (unsigned row = 8 * y; row < 8 * y + 8 && row < tiles_y; ++row) {  // step 3
-            if (row == bands.spare_row) out = bands.spare;
-            Tile* tiles = job.tiles + row * std::size_t{tiles_x};
+        for (unsigned row = 0; row < rows_here; ++row) {  // step 3
+            if (top + row == bands.spare_row) out = bands.spare;
+            Tile* tiles = job.tiles + (top + row) * std::size_t{tiles_x};
             for (unsigned x = 0; x < width; ++x, tiles += 8) {
                 const std::uint32_t count = in_row[x].count;
                 const std::uint64_t* words = scratch.words.data() + in_row[x].words;
@@ -507,18 +507,18 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
                     const __m512i table = load(ids);
                     std::uint32_t n;
                     if (count <= 8)
-                        n = append_row<1>(out, tiles, columns_mask, at, words, row % 8, table, uppers[0]);
+                        n = append_row<1>(out, tiles, columns_mask, at, words, row, table, uppers[0]);
                     else if (count <= 16)
-                        n = append_row<2>(out, tiles, columns_mask, at, words, row % 8, table, uppers[0]);
+                        n = append_row<2>(out, tiles, columns_mask, at, words, row, table, uppers[0]);
                     else
-                        n = append_row<4>(out, tiles, columns_mask, at, words, row % 8, table, uppers[0]);
+                        n = append_row<4>(out, tiles, columns_mask, at, words, row, table, uppers[0]);
                     out += n;
                     at += n;
                 } else if (count <= 64) {
                     const __m512i low = load(ids), high = load(ids + 32);
                     for (unsigned column = 0; column < here; ++column) {
                         const std::uint64_t bits =
-                            with_words ? words[row % 8 * 8 + column] : words[column] & words[8 + row % 8];
+                            with_words ? words[row * 8 + column] : words[column] & words[8 + row];
                         const std::uint32_t n = append(out, bits, low, high, uppers[0]);
                         tiles[column] = {at, n};
                         out += n;
@@ -531,8 +531,8 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
                         for (std::uint32_t i = 0; i < count; i += 64) {
                             const std::uint64_t* w = words + i / 64;
                             const std::uint64_t bits = with_words
-                                                           ? w[(row % 8 * 8 + column) * groups]
-                                                           : w[column * groups] & w[(8 + row % 8) * groups];
+                                                           ? w[(row * 8 + column) * groups]
+                                                           : w[column * groups] & w[(8 + row) * groups];
                             const std::uint32_t n =
                                 append(out, bits, load(ids + i), load(ids + i + 32), uppers[i / 64]);
                             out += n;

@@ -76,7 +76,7 @@ template <class Id> struct BinJob {
     Tile* tiles;             ///< the table to write
 };
 
-/// The part of it that one call of a kernel does: the tile rows 8 * begin to 8 * end - 1.
+/// The part of it that one call of a kernel does: the tile rows begin..end-1. Bands of 8 are counted from begin.
 template <class Id> struct BandJob {
     /// Elements that a kernel may write past the end of its index list: full vectors are stored.
     static constexpr std::size_t slack = 64;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How binning is shared among threads: each part is some bands of tile rows and everything in them, so parts
-// share nothing but the lights they read.
+// How binning is shared among threads: each part is some tile rows and everything in them, so parts share nothing
+// but the lights they read.
 #pragma once
 
 #include <lightbin/detail/buffer.hpp>
@@ -13,7 +13,7 @@
 
 namespace lightbin::detail {
 
-/// Bands begin..end-1, and the tiles of all rectangles in them.
+/// Tile rows begin..end-1, and the tiles of all rectangles in them.
 struct Part {
     unsigned begin, end;
     std::uint64_t before, area;  ///< of the parts before it, of its own
@@ -22,7 +22,7 @@ struct Part {
     std::uint64_t spare_area;
 };
 
-/// Writes `count` parts of about equal work. Needs no more than `count` bands.
+/// Writes `count` parts of about equal work, no more than there are tile rows.
 template <class Id>
 void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums, Part* parts,
                 std::size_t count) {
@@ -48,24 +48,19 @@ void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
         work += step_sum + row_work;
     }
 
-    const unsigned bands = static_cast<unsigned>(rows + 7) / 8;
     std::uint64_t before = 0, done = 0;
-    unsigned band = 0;
+    unsigned row = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        Part part = {band, band, before, 0, 0, 0};
+        Part part = {row, row, before, 0, 0, 0};
         const std::uint64_t goal = work / count * (i + 1);
-        const unsigned last =
-            bands - static_cast<unsigned>(count - 1 - i);  // leave a band for each later part
-        while (band < last && (band == part.begin || i + 1 == count || done < goal)) {
-            for (std::size_t row = 8 * band; row < (std::min)(8 * std::size_t{band} + 8, rows); ++row) {
-                part.area += row_area[row];
-                done += row_area[row] + row_work;
-            }
-            ++band;
+        const std::size_t last = rows - (count - 1 - i);  // leave a row for each later part
+        while (row < last && (row == part.begin || i + 1 == count || done < goal)) {
+            part.area += row_area[row];
+            done += row_area[row] + row_work;
+            ++row;
         }
-        part.end = band;
-        part.spare_row = static_cast<unsigned>((std::min)(8 * std::size_t{band}, rows));
-        while (part.spare_row > 8 * part.begin && part.spare_area < BandJob<Id>::slack)
+        part.end = part.spare_row = row;
+        while (part.spare_row > part.begin && part.spare_area < BandJob<Id>::slack)
             part.spare_area += row_area[--part.spare_row];
         before += part.area;
         parts[i] = part;

@@ -80,10 +80,7 @@ std::uint64_t bin_scatter(const BinJob<Id>& job, Scratch& scratch, const BandJob
     const FootprintArrays& lights = job.lights;
     Id* const list = bands.out - bands.at;  // the whole list
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles), pitch = width + 1;
-    const std::size_t first = 8 * std::size_t{bands.begin},
-                      end = (std::min)(8 * std::size_t{bands.end},
-                                       static_cast<std::size_t>(job.camera->y.tiles));
-    const std::size_t height = end - first;
+    const std::size_t first = bands.begin, end = bands.end, height = end - first;
 
     // A row's corners are cleared when the first is put there, so rows without are never touched.
     std::uint32_t* put = scratch.cursors.room(height + 1);  // corners in a row

@@ -19,17 +19,17 @@ template <bool with_words, class Id>
 LIGHTBIN_TARGET void fill_lists(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands,
                                 std::size_t pitch) {
     const FootprintArrays& lights = job.lights;
-    const std::size_t count = pitch * (bands.end - bands.begin + 2);
+    const std::size_t count = pitch * ((bands.end - bands.begin + 7) / 8 + 2);
     std::uint32_t* corners = scratch.corners.room(count);
     std::memset(corners, 0, count * sizeof *corners);
-    const unsigned first_row = 8 * bands.begin, last_row = 8 * bands.end - 1;
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i) {
-            const unsigned y0 = (std::max<unsigned>)(lights.y0[i], first_row),
-                           y1 = (std::min<unsigned>)(lights.y1[i], last_row);
+            const unsigned y0 = (std::max<unsigned>)(lights.y0[i], bands.begin),
+                           y1 = (std::min<unsigned>)(lights.y1[i], bands.end - 1);
             if (y0 > y1) continue;
             const std::size_t left = lights.x0[i] / 8u, right = lights.x1[i] / 8u + 1;
-            const std::size_t top = (y0 - first_row) / 8 * pitch, bottom = ((y1 - first_row) / 8 + 1) * pitch;
+            const std::size_t top = (y0 - bands.begin) / 8 * pitch,
+                              bottom = ((y1 - bands.begin) / 8 + 1) * pitch;
             ++corners[top + left];
             --corners[top + right];
             --corners[bottom + left];
@@ -59,12 +59,14 @@ LIGHTBIN_TARGET void fill_lists(const BinJob<Id>& job, Scratch& scratch, const B
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i) {
             const unsigned x0 = lights.x0[i], x1 = lights.x1[i];
-            const unsigned y0 = (std::max<unsigned>)(lights.y0[i], first_row),
-                           y1 = (std::min<unsigned>)(lights.y1[i], last_row);
+            unsigned y0 = (std::max<unsigned>)(lights.y0[i], bands.begin),
+                     y1 = (std::min<unsigned>)(lights.y1[i], bands.end - 1);
             if (y0 > y1) continue;
+            y0 -= bands.begin;
+            y1 -= bands.begin;
             const unsigned left = x0 / 8, top = y0 / 8, more_x = x1 / 8 - left, more_y = y1 / 8 - top;
             const std::uint32_t id = with_words ? i : lights.ids[i];
-            std::uint32_t* list = cursors + (top - bands.begin) * pitch + left;
+            std::uint32_t* list = cursors + top * pitch + left;
             if ((more_x | more_y) <= 1) {
                 // Most lights: written to all four supertiles, kept in those they meet, without a branch.
                 const unsigned column_bits = ((2u << (x1 - 8 * left)) - 1) & (~0u << x0 % 8);
@@ -90,8 +92,7 @@ template <Footprint footprint, DepthTest depth_test, class Id>
 LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scratch,
                                              const BandJob<Id>& bands) {
     constexpr bool with_words = masked<footprint, depth_test>;
-    const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles),
-                   tiles_y = static_cast<unsigned>(job.camera->y.tiles);
+    const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles);
     const unsigned width = (tiles_x + 7) / 8;
     // One more column and row: the difference array closes there, and branch-free writes may go there.
     const std::size_t pitch = width + 2;
@@ -101,9 +102,10 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
 
     Id* out = bands.out;
     std::uint64_t entries = 0;
-    for (unsigned y = bands.begin; y < bands.end; ++y) {
-        std::uint32_t* begin = scratch.list_begin.data() + (y - bands.begin) * pitch;
-        std::uint32_t* size = scratch.list_size.data() + (y - bands.begin) * pitch;
+    std::size_t list = 0;
+    for (unsigned top = bands.begin; top < bands.end; top += 8, list += pitch) {
+        std::uint32_t* begin = scratch.list_begin.data() + list;
+        std::uint32_t* size = scratch.list_size.data() + list;
         const std::uint32_t room = begin[width] - begin[0];
         // Per 64 lights 16 words, or a word a light and then 64 words.
         std::uint64_t* words = scratch.words.room(room / 64 * 16);
@@ -125,10 +127,10 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
                 float cells[cell_planes<depth_test> * 64];
                 std::uint64_t lit = ~std::uint64_t{0};
                 if constexpr (depth_test != DepthTest::none)
-                    lit = arrange_cells<depth_test>(job, x, y, cells);
+                    lit = arrange_cells<depth_test>(job, x, top, cells);
                 std::uint64_t* masks = scratch.masks.room(end);
                 size[x] = mask_lights<footprint, depth_test>(
-                    job, x, y, cells, lit, scratch.list_ids.data() + begin[x], 0, columns + begin[x],
+                    job, x, top, cells, lit, scratch.list_ids.data() + begin[x], 0, columns + begin[x],
                     rows + begin[x], count, masks);
                 if (out == nullptr)
                     for (std::uint32_t i = 0; i < size[x]; ++i)
@@ -141,12 +143,12 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
                 pack(scratch.list_ids.data() + begin[x], size[x], packed + (begin[x] - begin[0]));
         }
         if (out == nullptr) continue;
-        for (unsigned row = 8 * y; row < 8 * y + 8 && row < tiles_y; ++row) {
-            if (row == bands.spare_row) out = bands.spare;
-            Tile* tile = job.tiles + row * std::size_t{tiles_x};
+        for (unsigned row = 0; row < 8 && top + row < bands.end; ++row) {
+            if (top + row == bands.spare_row) out = bands.spare;
+            Tile* tile = job.tiles + (top + row) * std::size_t{tiles_x};
             const std::uint64_t* word = scratch.words.data();
             const std::uint8_t* byte = nullptr;
-            if constexpr (with_words) byte = scratch.tile_bytes.data() + row % 8 * 8;
+            if constexpr (with_words) byte = scratch.tile_bytes.data() + row * 8;
             for (unsigned x = 0; x < width; ++x) {
                 const std::uint32_t count = size[x];
                 const Packed<Id>* ids;
@@ -165,7 +167,7 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
                             low = byte[column];
                             if (count > 8) high = byte[64 + column];
                         } else {
-                            const std::uint64_t lit = word[column] & word[8 + row % 8];
+                            const std::uint64_t lit = word[column] & word[8 + row];
                             low = lit & 0xff;
                             high = static_cast<unsigned>(lit >> 8);
                         }
@@ -177,7 +179,7 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
                     } else {
                         for (std::uint32_t i = 0; i < count; i += 64) {
                             const std::uint64_t* group = word + i / 4;
-                            std::uint64_t lit = group[column] & group[8 + row % 8];
+                            std::uint64_t lit = group[column] & group[8 + row];
                             const std::uint32_t used = count - i < 64 ? count - i : 64;
                             for (std::uint32_t j = 0; j < used; j += 16, lit >>= 16) {
                                 out += append(out, ids + i + j, static_cast<unsigned>(lit & 0xff));

@@ -44,13 +44,14 @@ LIGHTBIN_TARGET inline void store_boxes(const Camera& camera, float* boxes, Floa
     }
 }
 
-/// Writes what a depth test needs to know of the tiles of supertile (x, y), in planes of 64 floats: the minimum
+/// Writes what a depth test needs to know of a supertile's tiles, from column 8 x and row `top` on, in planes of
+/// 64 floats: the minimum
 /// and maximum depth, for boxes followed by the ends along x and y; split_box has a second box. Returns a bit
 /// for each tile that has anything to light.
 template <DepthTest depth_test, class Id>
-LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned y, float* cells) {
+LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, float* cells) {
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
-    const unsigned rows = (std::min)(8u, static_cast<unsigned>(job.camera->y.tiles) - 8 * y);
+    const unsigned rows = (std::min)(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
     const unsigned columns = (std::min)(8u, static_cast<unsigned>(width) - 8 * x);
     constexpr float absent[] = {-infinity, infinity, infinity, -infinity};
     std::uint64_t lit = 0;
@@ -59,7 +60,7 @@ LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, u
         const float* sides[4];
         for (unsigned side = 0; side < (depth_test == DepthTest::split_box ? 4 : 2); ++side) {
             const float* given = job.bounds[side];
-            if (given != nullptr) given += (8 * y + row) * width + 8 * x;
+            if (given != nullptr) given += (top + row) * width + 8 * x;
             sides[side] = given;
             if (given != nullptr && columns == 8) continue;
             for (unsigned column = 0; column < 8; ++column)
@@ -75,7 +76,7 @@ LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, u
                 store_floats(cells + place, min);
                 store_floats(cells + 64 + place, max);
             } else {
-                const unsigned at_x = 8 * x + column, at_y = 8 * y + row;
+                const unsigned at_x = 8 * x + column, at_y = top + row;
                 Floats gap_min = max, gap_max = min;
                 if constexpr (depth_test == DepthTest::split_box) {
                     gap_min = load_floats(sides[2] + column);
@@ -119,15 +120,15 @@ LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedL
     return met & tiles;
 }
 
-/// Of the tiles of supertile (x, y), those within the row spans of visible light i.
+/// Of the tiles of a supertile, from column 8 x and row `top` on, those within the row spans of visible light i.
 LIGHTBIN_TARGET inline std::uint64_t silhouette_tiles(const FootprintArrays& lights, std::uint32_t i,
-                                                      unsigned x, unsigned y, std::uint64_t tiles) {
+                                                      unsigned x, unsigned top, std::uint64_t tiles) {
     if (lights.span_begin[i] == FootprintArrays::whole_rectangle) return tiles;
     std::uint64_t spanned = 0;
     for (unsigned row = static_cast<unsigned>(std::countr_zero(tiles)) / 8,
                   last = 7 - static_cast<unsigned>(std::countl_zero(tiles)) / 8;
          row <= last; ++row) {
-        const RowSpan span = lights.spans[lights.span_begin[i] + (8 * y + row - lights.y0[i])];
+        const RowSpan span = lights.spans[lights.span_begin[i] + (top + row - lights.y0[i])];
         const bool here = span.first <= span.last && span.first < 8 * x + 8 && span.last >= 8 * x;
         spanned |= std::uint64_t{here ? covered(span.first, span.last, 8 * x) & 0xff : 0} << 8 * row;
     }
@@ -138,7 +139,7 @@ LIGHTBIN_TARGET inline std::uint64_t silhouette_tiles(const FootprintArrays& lig
 /// columns and the rows that they cover. Lights that are in none of the tiles are dropped; `list` then holds
 /// the ids of the others. Returns how many are left.
 template <Footprint footprint, DepthTest depth_test, class Id, class Listed>
-LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, unsigned x, unsigned y, const float* cells,
+LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, unsigned x, unsigned top, const float* cells,
                                           std::uint64_t lit, Listed* list, std::uint32_t first,
                                           const std::uint8_t* columns, const std::uint8_t* rows,
                                           std::uint32_t count, std::uint64_t* words) {
@@ -147,7 +148,7 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, unsigned x, uns
         const std::uint32_t i = first + list[j], id = job.lights.ids[i];
         std::uint64_t tiles = spread_rows(rows[j]) & columns[j] * std::uint64_t{0x0101010101010101};
         if constexpr (footprint == Footprint::silhouette)
-            tiles = silhouette_tiles(job.lights, i, x, y, tiles);
+            tiles = silhouette_tiles(job.lights, i, x, top, tiles);
         if constexpr (depth_test != DepthTest::none)
             tiles = tiles_met<depth_test>(
                 cells, TestedLight(*job.camera, load_sphere(job.lights.spheres + id)), tiles & lit);
