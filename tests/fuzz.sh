@@ -1,5 +1,5 @@
 #!/bin/sh
-# sh tests/fuzz.sh [SECONDS]: fuzzes the binning and the shader generator for so long each (60 if not given), under
+# sh tests/fuzz.sh [SECONDS]: fuzzes the binning and the shader generators for so long each (60 if not given), under
 # AddressSanitizer and UndefinedBehaviorSanitizer. Starts from the corpus in tests/fuzz, which the normal tests replay,
 # and leaves what it found in build/fuzz: inputs that fail, and a minimised corpus to put in the old one's place.
 set -eu
@@ -38,6 +38,6 @@ fuzz() {
     "$work/pack" --pack "$work/$1_small" "$work/$1.corpus"
 }
 fuzz binning 700
-fuzz shader 120
+fuzz shader 160
 [ -z "$failed" ] || fail "failed:$failed; the inputs and logs are in $work"
 echo "$me: nothing found; $work/*.corpus are the minimised corpora"

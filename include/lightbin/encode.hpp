@@ -40,11 +40,13 @@ inline std::uint64_t countable_lights(const ListFormat& format) {
     return format.encoding == ListEncoding::sentinel ? values - 1 : values;
 }
 
-/// Returns the bytes that encode() writes for a grid of so many tiles and list entries, a multiple of 4.
+/// Returns the bytes that encode() writes for a grid of so many tiles (fewer than 2^32) and list entries, a
+/// multiple of 4. Where they are more than 64 bits count: 2^64 - 4.
 inline std::uint64_t encoded_bytes(const ListFormat& format, std::uint64_t tiles, std::uint64_t entries) {
     if (format.encoding == ListEncoding::bitmask) return tiles * 4 * ((format.max_lights + 31ull) / 32);
     const std::uint64_t ids = format.encoding == ListEncoding::sentinel ? tiles * format.capacity : entries;
-    return (ids * static_cast<unsigned>(format.ids) + 3) / 4 * 4;
+    constexpr std::uint64_t most = ~std::uint64_t{3};
+    return ids > most / 4 ? most : (ids * static_cast<unsigned>(format.ids) + 3) / 4 * 4;
 }
 
 /// What a sentinel list's capacity cut off.

@@ -130,9 +130,10 @@ inline std::optional<Error> refuse(const ShaderOptions& options) {
                lists_in_block = options.storage == ListStorage::uniform_block;
     if ((tiles_in_block && options.max_tiles == 0) || (lists_in_block && table && options.max_entries == 0))
         return Error{ErrorCode::block_size_unknown};
+    // Blocks are made of whole vectors of 16 bytes.
     const std::uint64_t most = options.uniform_block_bytes > 65536 && dialect.hlsl
                                    ? 65536
-                                   : options.uniform_block_bytes,
+                                   : options.uniform_block_bytes / 16 * 16,
                         tile_bytes = table && tiles_in_block ? 8ull * options.max_tiles : 0,
                         list_bytes = lists_in_block
                                          ? encoded_bytes(format, options.max_tiles, options.max_entries)

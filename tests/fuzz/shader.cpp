@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Bytes to the shader generator's options: refused with a text, or a text that is sound as far as can be told
-// without a compiler (tests/shader has those): brackets pair, and every name that others see has the prefix.
+// Bytes to the options of one of the shader generators: refused for a reason that the options have, and only then, or
+// a text that is sound as far as can be told without a compiler (tests/shader has those): brackets pair, every
+// name that others see has the prefix, and what is to be bound is what the options ask for, where they ask for it.
 #include "bytes.hpp"
 
 #include <lightbin/shader.hpp>
+#include <lightbin/shader_build.hpp>
 
+#include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <regex>
 #include <set>
 #include <string>
+#include <vector>
 
 using namespace lightbin;
 
@@ -25,41 +31,59 @@ template <class Enum> Enum take_enum(Bytes& bytes, Enum last) {
     return static_cast<Enum>(bytes.byte() % (static_cast<unsigned>(last) + 1));
 }
 
-/// Small numbers as often as any.
+/// Small numbers and powers of two as often as any.
 std::uint32_t take_size(Bytes& bytes) {
-    return bytes.flag() ? bytes.byte() : bytes.take<std::uint32_t>();
+    const unsigned kind = bytes.byte();
+    return (kind & 1) != 0   ? bytes.byte()
+           : (kind & 2) != 0 ? 1u << bytes.byte() % 32
+                             : bytes.take<std::uint32_t>();
 }
 
-ShaderOptions take_options(Bytes& bytes, std::string& prefix) {
-    ShaderOptions options;
-    options.language = take_enum(bytes, ShaderLanguage::hlsl_5_1);
-    options.storage = take_enum(bytes, ListStorage::byte_address);
-    options.format.encoding = take_enum(bytes, ListEncoding::bitmask);
-    options.format.ids = static_cast<IdWidth>(1u << bytes.byte() % 3);
-    options.format.capacity = take_size(bytes);
-    options.format.max_lights = take_size(bytes);
-    const unsigned flags = bytes.byte();
-    options.tiles_in_uniform_block = (flags & 1) != 0;
-    options.packed_ids = (flags & 2) != 0;
-    options.flip_y = (flags & 4) != 0;
-    options.viewport_corner = (flags & 8) != 0;
-    options.heat_map = (flags & 16) != 0;
-    options.push_constants = (flags & 32) != 0;
-    options.tile_size = static_cast<int>(take_size(bytes));
-    options.texture_width = take_size(bytes);
-    options.max_tiles = take_size(bytes);
-    options.max_entries = take_size(bytes);
-    if ((flags & 64) != 0) options.uniform_block_bytes = take_size(bytes);
-    for (ShaderSlot* slot : {&options.tiles, &options.lists, &options.grid})
-        *slot = {static_cast<int>(bytes.byte()), bytes.flag() ? static_cast<int>(bytes.byte()) : 0};
-    if ((flags & 128) != 0)
-        for (unsigned n = bytes.byte() % 20; n > 0; --n)
-            prefix += static_cast<char>(bytes.byte());
-    else
-        prefix = "lightbin_";
-    options.prefix = prefix;
-    return options;
+ShaderSlot take_slot(Bytes& bytes) {
+    const int binding = static_cast<int>(bytes.byte());
+    return {binding, bytes.flag() ? static_cast<int>(bytes.byte()) : 0};
 }
+
+std::string take_prefix(Bytes& bytes) {
+    if (!bytes.flag()) return "lightbin_";
+    std::string prefix;
+    for (unsigned n = bytes.byte() % 20; n > 0; --n)
+        prefix += static_cast<char>(bytes.byte());
+    return prefix;
+}
+
+/// What the languages have.
+struct Language {
+    explicit Language(ShaderLanguage language)
+        : hlsl(language >= ShaderLanguage::hlsl_5_0), vulkan(language == ShaderLanguage::glsl_vulkan),
+          old(language == ShaderLanguage::glsl_330 || language == ShaderLanguage::essl_300),
+          es(language == ShaderLanguage::essl_300 || language == ShaderLanguage::essl_310),
+          sets(vulkan || language == ShaderLanguage::hlsl_5_1) {}
+    bool hlsl, vulkan;
+    bool old;  ///< no compute shaders and storage buffers, and no bindings in the text
+    bool es, sets;
+};
+
+/// Something to bind, and what of it the options fix.
+struct Wanted {
+    std::string name;
+    ShaderSlot slot;
+    std::uint32_t bytes = 0;  ///< of a block; 0: it is none, or of any size up to the one allowed
+};
+
+/// What is asked of a generator, and what to expect of its answer.
+struct Question {
+    ShaderLanguage language = ShaderLanguage::glsl_430;
+    std::string prefix;
+    bool push_constants = false;
+    std::vector<ShaderSlot> slots;  ///< all, those of no use to the text too
+    std::set<ErrorCode> reasons;    ///< to refuse
+    std::vector<Wanted> wanted;     ///< in the order of the text, but for the constants before them
+    std::vector<std::string> constants;
+    ShaderSlot constants_slot;
+    std::uint32_t block_bytes = 0;   ///< the most of a block of other things than constants
+    std::vector<std::string> names;  ///< in the text, without the prefix
+};
 
 bool of_a_name(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
@@ -106,7 +130,20 @@ const std::set<std::string, std::less<>> language_words = {"uniform",
                                                            "ConstantBuffer",
                                                            "flat",
                                                            "precision",
-                                                           "mediump"};
+                                                           "mediump",
+                                                           "main",
+                                                           "shared",
+                                                           "groupshared",
+                                                           "writeonly",
+                                                           "vec2",
+                                                           "vec4",
+                                                           "float2",
+                                                           "float4",
+                                                           "sampler2D",
+                                                           "sampler2DMS",
+                                                           "Texture2DMS",
+                                                           "RWStructuredBuffer",
+                                                           "SV_Target"};
 
 /// Brackets pair; names at the outermost level, and those of members that blocks put there, have the prefix.
 void check_text(const std::string& text, const std::string& prefix) {
@@ -156,26 +193,232 @@ void check_text(const std::string& text, const std::string& prefix) {
     require(open.empty(), "a bracket is left open", text);
 }
 
+/// The bindings are those wanted; the line that declares each has its slot, and none has another's.
+void check_bindings(const ShaderText& made, const Question& question) {
+    const Language language(question.language);
+    const std::string& text = made.text;
+    std::vector<Wanted> wanted;
+    const auto bytes = static_cast<std::uint32_t>(16 * question.constants.size());
+    const bool block = language.hlsl || language.vulkan;
+    if (block) wanted.push_back({question.constants.front(), question.constants_slot, bytes});
+    for (std::size_t i = 0; i < question.constants.size() && !block; ++i)
+        wanted.push_back({question.constants[i], {}, question.constants[i] == "corner" ? 8u : 16u});
+    wanted.insert(wanted.end(), question.wanted.begin(), question.wanted.end());
+    require(made.bindings.size() == wanted.size(), "not the bindings wanted", text);
+
+    std::set<std::string> places;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        const ShaderBinding& binding = made.bindings[i];
+        const std::string name = question.prefix + wanted[i].name;
+        require(binding.name == name || binding.name == name + "_block", "another binding's name", text);
+        require(binding.slot.binding == wanted[i].slot.binding && binding.slot.set == wanted[i].slot.set,
+                "another slot", text);
+        const bool constant = i < wanted.size() - question.wanted.size(),
+                   push = constant && question.push_constants;
+        require(constant ? binding.bytes == wanted[i].bytes : binding.bytes <= question.block_bytes,
+                "a block of another size, or larger than allowed", text);
+
+        std::size_t at = text.find(binding.name);
+        while (at != std::string::npos &&
+               (of_a_name(text[at - 1]) || of_a_name(text[at + binding.name.size()])))
+            at = text.find(binding.name, at + 1);
+        require(at != std::string::npos, "a binding that is not in the text", text);
+        const std::size_t begin = text.rfind('\n', at) + 1;
+        const std::string line = text.substr(begin, text.find('\n', at) - begin),
+                          number = std::to_string(binding.slot.binding),
+                          set = std::to_string(binding.slot.set);
+        if (push) require(line.find("(push_constant)") != std::string::npos, "no push constants", text);
+        if (push || language.old || (constant && !block)) {
+            require(line.find("binding") == std::string::npos, "bound in vain", text);
+            continue;
+        }
+        const std::string place = language.hlsl     ? number + (language.sets ? ", space" + set : "") + ")"
+                                  : language.vulkan ? "set = " + set + ", binding = " + number + ")"
+                                                    : "binding = " + number + ")";
+        const std::size_t found = line.find(place);
+        require(found != std::string::npos, "bound elsewhere", text);
+        // A kind of its own: HLSL's letter before the number; OpenGL's kinds of objects.
+        const std::string kind = language.vulkan ? ""
+                                 : language.hlsl ? line.substr(found - 1, 1)
+                                                 : line.substr(0, line.find("binding"));
+        require(places.insert(kind + place).second, "two of them in one place", text);
+    }
+}
+
+void check(const Result<ShaderText>& made, Question question) {
+    static const std::regex name("[A-Za-z](_?[A-Za-z0-9])*_?");
+    const Language language(question.language);
+    if (!std::regex_match(question.prefix, name) || question.prefix.starts_with("gl_"))
+        question.reasons.insert(ErrorCode::not_a_prefix);
+    if (question.push_constants && !language.vulkan) question.reasons.insert(ErrorCode::no_push_constants);
+    for (const ShaderSlot slot : question.slots)
+        if (slot.set != 0 && !language.sets) question.reasons.insert(ErrorCode::no_sets);
+    if (!made) {
+        const ErrorCode code = made.error().code;
+        const std::string message = made.error().message();
+        require(message.size() > 10 && message != "unknown error", "refused without a text", "");
+        bool reason = question.reasons.contains(code);
+        if (code == ErrorCode::bindings_overlap)
+            for (const ShaderSlot& a : question.slots)
+                for (const ShaderSlot& b : question.slots)
+                    reason = reason || (&a < &b && a.binding == b.binding && a.set == b.set);
+        require(reason, "refused without reason", message);
+        return;
+    }
+    require(question.reasons.empty(), "not refused", made->text);
+    check_text(made->text, question.prefix);
+    check_bindings(*made, question);
+    for (const std::string& wanted : question.names)
+        require(made->text.find(question.prefix + wanted) != std::string::npos, "a name is missing",
+                made->text);
+}
+
+void fuzz_snippet(Bytes& bytes) {
+    ShaderOptions options;
+    Question question;
+    options.language = question.language = take_enum(bytes, ShaderLanguage::hlsl_5_1);
+    options.storage = take_enum(bytes, ListStorage::byte_address);
+    options.format.encoding = take_enum(bytes, ListEncoding::bitmask);
+    options.format.ids = static_cast<IdWidth>(1u << bytes.byte() % 3);
+    options.format.capacity = take_size(bytes);
+    options.format.max_lights = take_size(bytes);
+    const unsigned flags = bytes.byte();
+    options.tiles_in_uniform_block = (flags & 1) != 0;
+    options.packed_ids = (flags & 2) != 0;
+    options.flip_y = (flags & 4) != 0;
+    options.viewport_corner = (flags & 8) != 0;
+    options.heat_map = (flags & 16) != 0;
+    options.push_constants = question.push_constants = (flags & 32) != 0;
+    options.tile_size = static_cast<int>(take_size(bytes));
+    options.texture_width = take_size(bytes);
+    options.max_tiles = take_size(bytes);
+    options.max_entries = take_size(bytes);
+    if ((flags & 64) != 0) options.uniform_block_bytes = take_size(bytes);
+    for (ShaderSlot* slot : {&options.tiles, &options.lists, &options.grid})
+        *slot = take_slot(bytes);
+    question.prefix = take_prefix(bytes);
+    options.prefix = question.prefix;
+
+    const ListFormat& format = options.format;
+    const Language language(options.language);
+    const bool table = format.encoding == ListEncoding::offset_count,
+               bits = format.encoding == ListEncoding::bitmask,
+               lists_in_block = options.storage == ListStorage::uniform_block,
+               tiles_in_block = table && (lists_in_block || options.tiles_in_uniform_block);
+    const auto refuse_if = [&](bool condition, ErrorCode code) {
+        if (condition) question.reasons.insert(code);
+    };
+    refuse_if(options.storage == ListStorage::storage_buffer && language.old, ErrorCode::no_storage_buffers);
+    refuse_if(options.storage == ListStorage::texel_buffer && language.es, ErrorCode::no_texel_buffers);
+    refuse_if(options.storage == ListStorage::byte_address && !language.hlsl,
+              ErrorCode::no_byte_address_buffers);
+    refuse_if(options.tile_size < 0, ErrorCode::tile_size_out_of_range);
+    refuse_if(options.storage == ListStorage::texture_2d &&
+                  (options.texture_width == 0 || options.texture_width > 16384),
+              ErrorCode::texture_width_out_of_range);
+    // Sizes in double: those that it cannot hold are far too large anyway.
+    const double id_bytes = static_cast<double>(format.ids), tiles = options.max_tiles,
+                 ids = std::exp2(8 * id_bytes) - (table ? 0 : 1);
+    refuse_if(!bits && format.max_lights > ids, ErrorCode::ids_too_narrow);
+    refuse_if(format.encoding == ListEncoding::sentinel && format.capacity == 0, ErrorCode::capacity_unknown);
+    refuse_if(bits && format.max_lights == 0, ErrorCode::max_lights_unknown);
+    refuse_if((lists_in_block || tiles_in_block) && tiles == 0, ErrorCode::block_size_unknown);
+    refuse_if(lists_in_block && table && options.max_entries == 0, ErrorCode::block_size_unknown);
+    const double list_bytes = bits    ? tiles * 4 * std::ceil(format.max_lights / 32.0)
+                              : table ? options.max_entries * id_bytes
+                                      : tiles * format.capacity * id_bytes;
+    question.block_bytes =
+        language.hlsl ? std::min(options.uniform_block_bytes, 65536u) : options.uniform_block_bytes;
+    const auto too_large = [&](double size) { return std::ceil(size / 16) * 16 > question.block_bytes; };
+    refuse_if((tiles_in_block && too_large(8 * tiles)) || (lists_in_block && too_large(list_bytes)),
+              ErrorCode::uniform_block_too_small);
+
+    question.slots = {options.tiles, options.lists, options.grid};
+    question.constants = {"grid"};
+    if (options.viewport_corner) question.constants.push_back("corner");
+    question.constants_slot = options.grid;
+    if (table) question.wanted.push_back({"tiles", options.tiles});
+    question.wanted.push_back({"lists", options.lists});
+    question.names = {"tile", "cursor", "begin", "next", "for_each_light"};
+    if (options.heat_map) question.names.insert(question.names.end(), {"count", "heat"});
+    check(shader_snippet(options), question);
+}
+
+void fuzz_reduction(Bytes& bytes) {
+    ReduceShaderOptions options;
+    Question question;
+    options.language = question.language = take_enum(bytes, ShaderLanguage::hlsl_5_1);
+    options.stage = take_enum(bytes, ShaderStage::fragment);
+    options.format = take_enum(bytes, DepthFormat::unorm16);
+    options.samples = static_cast<int>(take_size(bytes));
+    const unsigned flags = bytes.byte();
+    options.reversed_z = (flags & 1) != 0;
+    options.orthographic = (flags & 2) != 0;
+    options.skip_background = (flags & 4) != 0;
+    options.flip_y = (flags & 8) != 0;
+    options.viewport_corner = (flags & 16) != 0;
+    options.push_constants = question.push_constants = (flags & 32) != 0;
+    for (ShaderSlot* slot : {&options.depth, &options.z_bounds, &options.grid})
+        *slot = take_slot(bytes);
+    question.prefix = take_prefix(bytes);
+    options.prefix = question.prefix;
+
+    const bool compute = options.stage == ShaderStage::compute;
+    if (compute && Language(options.language).old) question.reasons.insert(ErrorCode::no_storage_buffers);
+    if (options.samples < 1 || options.samples > 8) question.reasons.insert(ErrorCode::samples_out_of_range);
+    if (options.samples > 1 && options.language == ShaderLanguage::essl_300)
+        question.reasons.insert(ErrorCode::no_multisample_textures);
+    question.slots = {options.depth, options.z_bounds, options.grid};
+    question.constants = {"grid", "planes"};
+    if (options.viewport_corner) question.constants.push_back("corner");
+    question.constants_slot = options.grid;
+    question.wanted.push_back({"depth", options.depth});
+    if (compute) question.wanted.push_back({"z_bounds", options.z_bounds});
+    question.names = {"sample", "view_depths", "pixel", compute ? "run" : "reduce"};
+    check(reduce_shader(options), question);
+}
+
+void fuzz_build(Bytes& bytes) {
+    BuildShaderOptions options;
+    Question question;
+    options.language = question.language = take_enum(bytes, ShaderLanguage::hlsl_5_1);
+    options.pass = take_enum(bytes, BuildPass::fill);
+    options.depth_test = take_enum(bytes, DepthTest::split_box);
+    const unsigned flags = bytes.byte();
+    options.max_only = (flags & 1) != 0;
+    options.orthographic = (flags & 2) != 0;
+    options.push_constants = question.push_constants = (flags & 4) != 0;
+    for (ShaderSlot* slot : {&options.footprints, &options.z_bounds, &options.edges, &options.tiles,
+                             &options.lists, &options.total, &options.grid}) {
+        *slot = take_slot(bytes);
+        question.slots.push_back(*slot);
+    }
+    question.prefix = take_prefix(bytes);
+    options.prefix = question.prefix;
+
+    if (Language(options.language).old) question.reasons.insert(ErrorCode::no_storage_buffers);
+    if (options.depth_test == DepthTest::split_box) question.reasons.insert(ErrorCode::no_split_box_shader);
+    const bool offsets = options.pass == BuildPass::offsets,
+               box = !offsets && options.depth_test == DepthTest::box;
+    question.constants = {"grid"};
+    if (box) question.constants.push_back("planes");
+    question.constants_slot = options.grid;
+    if (!offsets) question.wanted.push_back({"footprints", options.footprints});
+    if (!offsets && options.depth_test != DepthTest::none)
+        question.wanted.push_back({"z_bounds", options.z_bounds});
+    if (box) question.wanted.push_back({"edges", options.edges});
+    question.wanted.push_back({"tiles", options.tiles});
+    if (offsets) question.wanted.push_back({"total", options.total});
+    if (options.pass == BuildPass::fill) question.wanted.push_back({"lists", options.lists});
+    question.names = {"run", offsets ? "sums" : "meets"};
+    check(build_shader(options), question);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Bytes bytes(data, size);
-    std::string prefix;
-    const ShaderOptions options = take_options(bytes, prefix);
-    const Result<ShaderText> made = shader_snippet(options);
-    if (!made) {
-        require(made.error().message().size() > 10, "refused without a text", "");
-        return 0;
-    }
-    check_text(made->text, prefix);
-    for (const ShaderBinding& binding : made->bindings) {
-        require(made->text.find(binding.name) != std::string::npos && binding.name.starts_with(prefix),
-                "a binding that is not in the text", made->text + binding.name);
-        if (binding.resource == ShaderResource::uniform_block)
-            require(binding.bytes <= std::max<std::uint64_t>(options.uniform_block_bytes + 15ull, 32),
-                    "a block larger than allowed", made->text);
-    }
-    for (const char* name : {"tile", "cursor", "begin", "next", "for_each_light"})
-        require(made->text.find(prefix + name) != std::string::npos, "a name is missing", made->text);
+    void (*const generators[])(Bytes&) = {fuzz_snippet, fuzz_reduction, fuzz_build};
+    generators[bytes.byte() % 3](bytes);
     return 0;
 }

@@ -88,6 +88,16 @@ TEST_CASE("a wrong option set is refused with a sentence that names the limit") 
     CHECK(has(block, "16392"));
     CHECK(has(block, "16384"));
     CHECK(has(refusal({.storage = ListStorage::uniform_block}), "max_tiles"));
+    // A block is whole vectors: 5 tiles are 40 bytes and take 48.
+    for (const std::uint32_t bytes : {40u, 47u})
+        CHECK(has(refusal({.tiles_in_uniform_block = true, .max_tiles = 5, .uniform_block_bytes = bytes}),
+                  "32"));
+    CHECK(has(text_of({.tiles_in_uniform_block = true, .max_tiles = 5, .uniform_block_bytes = 48}), "[3]"));
+    // 2^64 bytes, which 64 bits hold as 0
+    CHECK(has(refusal({.storage = ListStorage::uniform_block,
+                       .format = {.encoding = ListEncoding::sentinel, .capacity = 1u << 31},
+                       .max_tiles = 1u << 31}),
+              "uniform block"));
     CHECK(has(refusal({.language = ShaderLanguage::essl_300}), "storage"));
     CHECK(has(refusal({.language = ShaderLanguage::essl_310, .storage = ListStorage::texel_buffer}),
               "texture_2d"));
