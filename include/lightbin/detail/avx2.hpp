@@ -162,6 +162,8 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
 
 #include <lightbin/detail/tile_masks.inl>
 
+#include <lightbin/detail/scan.inl>
+
 #include <lightbin/detail/supertile.inl>
 
 }  // namespace avx2

@@ -77,7 +77,9 @@ BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint32_t lights, std::u
         const std::uint64_t scattered = isa == Isa::avx512 ? 0
                                         : isa == Isa::sse2 ? (lights < 500 ? 100 : 48)
                                                            : 16;
-        if (area < scattered * lights) return bin_scatter<Id>;
+        // By scanning it costs less, but a few steps for each supertile.
+        const bool sparse = isa != Isa::avx2 || area < 3 * view.tile_count();
+        if (sparse && area < scattered * lights) return bin_scatter<Id>;
     }
 #if defined(LIGHTBIN_X86)
     if (isa == Isa::avx512) return avx512::bin_compress<footprint, depth_test, Id>;

@@ -33,7 +33,7 @@ struct Scratch {
     // The same lists in the form of the AVX-512 kernel, and those of a band of supertiles.
     Buffer<std::uint8_t> band_x0, band_x1, band_rows;
     Buffer<std::uint16_t> band_ids, short_ids;
-    Buffer<std::uint32_t> band_size;
+    Buffer<std::uint32_t> band_size, band_light_ids;
     Buffer<SupertileList> supertile_lists;
     Buffer<IdBlock> blocks;
     Buffer<std::uint32_t> block_ends, uppers;  ///< of a band's list; of 64 lights of a supertile's

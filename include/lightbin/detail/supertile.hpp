@@ -67,6 +67,9 @@ template <class Id> using Packed = std::uint32_t;
 inline constexpr bool packs_ids = false;
 void pack(const std::uint32_t* ids, std::uint32_t count, std::uint32_t* to);  // for name look-up alone
 
+/// Whether the tier makes lists by scan.inl.
+inline constexpr bool scans_lists = false;
+
 /// Writes those of 8 ids whose bit is set, in order, then elements that mean nothing: every id is written, and
 /// the place moves on for those chosen. Returns how many.
 template <class Id> std::uint32_t append(Id* out, const std::uint32_t* ids, unsigned mask) {

@@ -3,7 +3,7 @@
 // vectors and tile_masks.inl.
 //
 //   1. Each light is put in the lists of the supertiles that its rectangle meets, with a byte of the columns
-//      and a byte of the rows it covers there. A difference array has sized the lists.
+//      and a byte of the rows it covers there. A difference array has sized the lists. (AVX2 scans: scan.inl.)
 //   2. A supertile's list is turned round, 64 lights at a time: for each column and each row a word with a
 //      bit a light.
 //   3. The lights of tile (row, column) are  rows[row] & columns[column].  Tiles are taken in row-major
@@ -96,16 +96,20 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
     const unsigned width = (tiles_x + 7) / 8;
     // One more column and row: the difference array closes there, and branch-free writes may go there.
     const std::size_t pitch = width + 2;
-    fill_lists<with_words>(job, scratch, bands, pitch);
-    std::uint8_t* columns = scratch.list_columns.data();
-    std::uint8_t* rows = scratch.list_rows.data();
+    const bool scan = scans_lists && tiles_x <= 240;  // a byte counts the columns
+    if (!scan) fill_lists<with_words>(job, scratch, bands, pitch);
 
     Id* out = bands.out;
     std::uint64_t entries = 0;
     std::size_t list = 0;
-    for (unsigned top = bands.begin; top < bands.end; top += 8, list += pitch) {
-        std::uint32_t* begin = scratch.list_begin.data() + list;
+    for (unsigned top = bands.begin; top < bands.end; top += 8) {
+        if constexpr (scans_lists)
+            if (scan) scan_lists<with_words>(job, scratch, top, (std::min)(top + 8, bands.end), width);
+        const std::uint32_t* begin = scratch.list_begin.data() + list;
         std::uint32_t* size = scratch.list_size.data() + list;
+        std::uint8_t* columns = scratch.list_columns.data();
+        std::uint8_t* rows = scratch.list_rows.data();
+        if (!scan) list += pitch;
         const std::uint32_t room = begin[width] - begin[0];
         // Per 64 lights 16 words, or a word a light and then 64 words.
         std::uint64_t* words = scratch.words.room(room / 64 * 16);
