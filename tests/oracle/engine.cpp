@@ -89,10 +89,12 @@ Lists built(const lightbin::View& view, const Scene& scene, bool flush, std::siz
     Lists lists;
     if (!grid) return lists;
     lists.rejected = grid->rejected();
+    lists.offsets.reserve(grid->tiles().size() + 1);
     for (const lightbin::Tile& tile : grid->tiles())
         lists.offsets.push_back(tile.offset);
     lists.offsets.push_back(static_cast<std::uint32_t>(grid->indices().size()));
     lists.ids.assign(grid->indices().begin(), grid->indices().end());
+    if (view.tile_count() > (1 << 24)) binner = lightbin::Binner<options>();  // gigabytes
     return lists;
 }
 
@@ -111,6 +113,8 @@ Lists on_all_tiers(const lightbin::View& view, const Scene& scene, bool flush,
     if (built<capped(Isa::sse2)>(view, scene, flush) != lists) complaints.push_back("SSE2 differs");
     if (built<capped(Isa::avx2)>(view, scene, flush) != lists) complaints.push_back("AVX2 differs");
     if (built<capped(Isa::avx512)>(view, scene, flush) != lists) complaints.push_back("AVX-512 differs");
+#elif defined(LIGHTBIN_NEON)
+    if (built<capped(Isa::neon)>(view, scene, flush) != lists) complaints.push_back("NEON differs");
 #endif
     if (built<options>(view, scene, flush, 3) != lists) complaints.push_back("with workers it differs");
     return lists;

@@ -292,6 +292,23 @@ inline Scene jitter(Random& random, std::size_t count) {
     return scene;
 }
 
+/// A light a few pixels wide, tangent to the edge of a one-pixel tile.
+inline Light pixel_light(const Aim& aim, Random& random, double most_pixels) {
+    const double d = aim.depth(random), at = std::max(d, aim.unit);
+    // The radius whose image is a pixel: far off the axis an image is longer.
+    double pixel = infinite, c[2], edge[2];
+    for (int axis = 0; axis < 2; ++axis) {
+        edge[axis] = aim.tile_edge(axis, random);
+        c[axis] = aim.at(axis, edge[axis], at);
+        pixel = std::min(pixel, (aim.at(axis, edge[axis] + 1, at) - c[axis]) /
+                                    std::hypot(1, aim.slope(axis, edge[axis])));
+    }
+    const int axis = random.integer(0, 1);
+    const double r = std::min(pixel * random.power_of_two(-8, std::log2(most_pixels)), at / 4);
+    c[axis] += random.sign() * r * std::hypot(1, aim.slope(axis, edge[axis]));
+    return nudged(aim.light(c[0], c[1], at, r), random);
+}
+
 /// One-pixel tiles, 16384 along one side. Few large lights: one may have a million entries.
 inline Scene one_pixel_tiles(Random& random, std::size_t count) {
     const bool wide = random.chance(0.5);
@@ -299,24 +316,31 @@ inline Scene one_pixel_tiles(Random& random, std::size_t count) {
     const double aspect = random.chance(0.5) ? 1 : aspect_of(screen);
     Scene scene{camera_of("", any_lens(aspect, random), screen), {}, {}, {}, {}, {}, {}, false};
     const Aim aim(scene.camera);
-    for (std::size_t i = 0; i < count; ++i) {
-        if (i % 5000 == 0) {
-            scene.lights.push_back(any_light(aim, random));
-            continue;
-        }
-        const double d = aim.depth(random), at = std::max(d, aim.unit);
-        double pixel = infinite, c[2], edge[2];
-        for (int axis = 0; axis < 2; ++axis) {
-            edge[axis] = aim.tile_edge(axis, random);
-            c[axis] = aim.at(axis, edge[axis], at);
-            pixel = std::min(pixel, aim.at(axis, edge[axis] + 1, at) - c[axis]);
-        }
-        const int axis = random.integer(0, 1);
-        const double r = pixel * random.power_of_two(-8, 3);
-        c[axis] += random.sign() * r * std::hypot(1, aim.slope(axis, edge[axis]));
-        scene.lights.push_back(nudged(aim.light(c[0], c[1], at, r), random));
-    }
+    for (std::size_t i = 0; i < count; ++i)
+        scene.lights.push_back(i % 5000 == 0 ? any_light(aim, random) : pixel_light(aim, random, 8));
     set_bounds(scene, aim, random);
+    return scene;
+}
+
+/// One-pixel tiles, 16384 along both sides: 2^28. The Z bounds are one of a few in each and have no gaps, for
+/// what memory there is. For the campaign only.
+inline Scene whole_16k(Random& random, std::size_t count) {
+    const Screen screen = {16384, 16384, 1, random.chance(0.5)};
+    Scene scene{camera_of("", perspective(1, random), screen), {}, {}, {}, {}, {}, {}, false};
+    const Aim aim(scene.camera);
+    for (std::size_t i = 0; i < count; ++i)
+        scene.lights.push_back(pixel_light(aim, random, i % 5000 == 0 ? 256 : 8));
+    float low[16], high[16];
+    for (int i = 0; i < 16; ++i) {
+        const double depth = aim.depth(random);
+        low[i] = static_cast<float>(depth), high[i] = static_cast<float>(depth * random.power_of_two(0, 2));
+    }
+    constexpr std::size_t tiles = std::size_t{1} << 28;
+    scene.min.resize(tiles), scene.max.resize(tiles);
+    for (std::size_t tile = 0; tile < tiles; ++tile) {
+        const std::size_t pick = random.bits() % 16;
+        scene.min[tile] = low[pick], scene.max[tile] = high[pick];
+    }
     return scene;
 }
 

@@ -225,25 +225,12 @@ private:
         verdicts.reports.push_back(what + " (" + info(rung_).name + "; " + text(scene_.camera) + ")");
     }
 
-    /// What each tile has to light. Bounds tile by tile, or every sample by itself.
+    /// What each tile has to light, for ranges_of(): every sample by itself; bounds as they are asked for, as there
+    /// may be very many.
     void gather_ranges(bool split) {
+        split_ = split;
         ranges_.clear();
-        range_starts_.assign(1, 0);
-        if (!scene_.depth.empty()) {
-            gather_samples();
-            return;
-        }
-        for (std::size_t tile = 0; tile < tile_count(); ++tile) {
-            const float min = scene_.min[tile], max = scene_.max[tile];
-            const float from = scene_.gap_min[tile], to = scene_.gap_max[tile];
-            if (!split || !(from < to)) {
-                add_range(min, max);
-            } else if (!(min > max)) {
-                add_range(min, max < from ? max : from);
-                add_range(min > to ? min : to, max);
-            }
-            range_starts_.push_back(ranges_.size());
-        }
+        if (!scene_.depth.empty()) gather_samples();
     }
 
     /// NaN is no bound.
@@ -256,6 +243,7 @@ private:
     }
 
     void gather_samples() {
+        range_starts_.assign(1, 0);
         std::map<float, std::optional<double>> view_depths;  // by window depth
         std::vector<std::vector<float>> seen(tile_count());
         const Camera& camera = scene_.camera;
@@ -292,8 +280,22 @@ private:
         return !at_0 || (at_1 && *at_0 > *at_1) ? 0.0f : 1.0f;
     }
 
-    std::span<const Range> ranges_of(std::size_t tile) const {
-        return std::span(ranges_).subspan(range_starts_[tile], range_starts_[tile + 1] - range_starts_[tile]);
+    /// Valid until the next call.
+    std::span<const Range> ranges_of(std::size_t tile) {
+        if (!scene_.depth.empty())
+            return std::span(ranges_).subspan(range_starts_[tile],
+                                              range_starts_[tile + 1] - range_starts_[tile]);
+        ranges_.clear();
+        const float min = scene_.min[tile], max = scene_.max[tile];
+        const bool gaps = split_ && !scene_.gap_min.empty();
+        const float from = gaps ? scene_.gap_min[tile] : NAN, to = gaps ? scene_.gap_max[tile] : NAN;
+        if (!(from < to)) {
+            add_range(min, max);
+        } else if (!(min > max)) {
+            add_range(min, max < from ? max : from);
+            add_range(min > to ? min : to, max);
+        }
+        return ranges_;
     }
 
     const Scene& scene_;
@@ -303,6 +305,7 @@ private:
     double sign_[3];  ///< view space to the camera's axes
     Rung rung_ = Rung::rectangle;
     std::unique_ptr<TilesOfLights> rectangles_;
+    bool split_ = false;
     std::vector<std::size_t> range_starts_;
     std::vector<Range> ranges_;
 };

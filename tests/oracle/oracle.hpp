@@ -20,7 +20,11 @@
 
 #include "cameras.hpp"
 
+#if defined(ORACLE_WITHOUT_GMP)  // for another machine, which has no such library installed here: slower
+#include <boost/multiprecision/cpp_int.hpp>
+#else
 #include <boost/multiprecision/gmp.hpp>
+#endif
 
 #include <cassert>
 #include <cmath>
@@ -31,9 +35,13 @@
 
 namespace oracle {
 
+#if defined(ORACLE_WITHOUT_GMP)
+using RationalBackend = boost::multiprecision::cpp_rational_backend;
+#else
+using RationalBackend = boost::multiprecision::gmp_rational;
+#endif
 // Expression templates off: auto and ?: then mean what they say.
-using Rational =
-    boost::multiprecision::number<boost::multiprecision::gmp_rational, boost::multiprecision::et_off>;
+using Rational = boost::multiprecision::number<RationalBackend, boost::multiprecision::et_off>;
 
 inline Rational exact(double value) {
     assert(std::isfinite(value));
