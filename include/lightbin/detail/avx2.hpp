@@ -14,6 +14,7 @@
 #include <bit>
 #include <cstring>
 #include <immintrin.h>
+#include <utility>
 
 #define LIGHTBIN_TARGET __attribute__((target("avx2,bmi,popcnt")))
 
@@ -163,6 +164,8 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
 #include <lightbin/detail/tile_masks.inl>
 
 #include <lightbin/detail/scan.inl>
+
+#include <lightbin/detail/scatter.inl>
 
 #include <lightbin/detail/supertile.inl>
 

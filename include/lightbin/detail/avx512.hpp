@@ -8,7 +8,6 @@
 
 #include <lightbin/detail/avx2.hpp>
 #include <lightbin/detail/footprint.hpp>
-#include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/supertile.hpp>
 
@@ -16,6 +15,7 @@
 #include <bit>
 #include <cstring>
 #include <immintrin.h>
+#include <utility>
 
 #define LIGHTBIN_TARGET                                                                                      \
     __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2,avx512bitalg,"          \
@@ -149,6 +149,8 @@ LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCo
 #include <lightbin/detail/depth_columns.inl>
 
 #include <lightbin/detail/tile_masks.inl>
+
+#include <lightbin/detail/scatter.inl>
 
 #include <lightbin/detail/compress.inl>
 

@@ -15,6 +15,7 @@
 #include <cfloat>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #define LIGHTBIN_TARGET
 
@@ -79,6 +80,8 @@ inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
 #include <lightbin/detail/depth_columns.inl>
 
 #include <lightbin/detail/tile_masks.inl>
+
+#include <lightbin/detail/scatter.inl>
 
 #include <lightbin/detail/supertile.inl>
 

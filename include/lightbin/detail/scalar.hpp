@@ -65,6 +65,10 @@ inline void store_spans(RowSpan* spans, double first, double last) {
 
 #include <lightbin/detail/tile_masks.inl>
 
+#if !defined(LIGHTBIN_X86) && !defined(LIGHTBIN_NEON)
+#include <lightbin/detail/scatter.inl>
+#endif
+
 #include <lightbin/detail/supertile.inl>
 
 #undef LIGHTBIN_TARGET

@@ -139,6 +139,8 @@ template <class Id> std::uint32_t append(Id* out, const Packed<Id>* ids, unsigne
 
 #include <lightbin/detail/tile_masks.inl>
 
+#include <lightbin/detail/scatter.inl>
+
 #include <lightbin/detail/supertile.inl>
 
 }  // namespace sse2
