@@ -185,15 +185,24 @@ void examine_rectangles(const Camera& camera, Tally& tally, std::uint64_t& seed)
     }
 }
 
-/// With Z bounds there is no margin in pixels to hide behind: what counts is where the image's depth ends.
-void examine_intervals(const Camera& camera, Tally& tally, std::uint64_t& seed) {
+/// A pair of depths, an absent end being none.
+struct DepthRange {
+    std::optional<float> min, max;
+};
+
+/// Every pair that rectangles give and a Binner of these options does not. With Z bounds there is no margin in
+/// pixels to hide behind: what counts is where the image ends.
+template <lightbin::Footprint footprint, lightbin::DepthTest depth_test>
+void examine_pairs(const Camera& camera, Tally& tally, std::uint64_t& seed) {
+    using lightbin::DepthTest;
+    constexpr bool with_depth = depth_test != DepthTest::none, split = depth_test == DepthTest::split_box;
     Examiner examiner(camera, tally);
     const Oracle& oracle = examiner.oracle;
     const lightbin::View view = view_of(camera);
     const Aim aim(camera);
     const std::size_t tiles = view.tile_count();
     lightbin::Binner<> rectangles;
-    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner;
+    lightbin::Binner<lightbin::Options{.footprint = footprint, .depth_test = depth_test}> binner;
     Random random(++seed);
     for (const ViewMatrix& matrix : view_matrices(random)) {
         const ExactView exact_view(matrix.m);
@@ -206,29 +215,48 @@ void examine_intervals(const Camera& camera, Tally& tally, std::uint64_t& seed) 
             const auto rectangle_grid = rectangles.bin(view, world);
             REQUIRE(rectangle_grid.has_value());
             const auto in_rectangle = membership(*rectangle_grid, lights.size());
-            for (const bool at_least : {true, false}) {
+            for (const int sides : {1, 2, 3}) {  // minimum, maximum, both
+                if ((sides == 3) == (depth_test == DepthTest::interval) || (!with_depth && sides != 3))
+                    continue;
                 lightbin::ZBounds given;
-                (at_least ? given.min : given.max) = at_least ? bounds.min : bounds.max;
-                const auto grid = binner.bin(view, world, given);
+                if (sides & 1) given.min = bounds.min;
+                if (sides & 2) given.max = bounds.max;
+                if (split) given.gap_min = bounds.gap_min, given.gap_max = bounds.gap_max;
+                const auto grid = [&] {
+                    if constexpr (with_depth)
+                        return binner.bin(view, world, given);
+                    else
+                        return binner.bin(view, world);
+                }();
                 REQUIRE(grid.has_value());
                 const auto in_list = membership(*grid, lights.size());
                 bool added = false;  // a pair that is not in the rectangles
                 for (std::size_t tile = 0; tile < tiles; ++tile) {
                     const int x = static_cast<int>(tile) % oracle.tiles_x(),
                               y = static_cast<int>(tile) / oracle.tiles_x();
-                    std::optional<float> min, max;
-                    (at_least ? min : max) = at_least ? bounds.min[tile] : bounds.max[tile];
+                    DepthRange all;
+                    if (with_depth && (sides & 1)) all.min = bounds.min[tile];
+                    if (with_depth && (sides & 2)) all.max = bounds.max[tile];
+                    std::vector<DepthRange> lit = {all};
+                    const float from = bounds.gap_min[tile], to = bounds.gap_max[tile];
+                    if (split && from < to && *all.min <= *all.max)
+                        lit = {{all.min, std::min(from, *all.max)}, {std::max(to, *all.min), all.max}};
                     for (std::size_t i = 0; i < lights.size(); ++i) {
-                        if (i % 8 != 0 && bounds.owner[tile] != i) continue;  // for time
+                        if (i % 16 != 0 && bounds.owner[tile] != i) continue;  // for time
                         added |= in_list[tile][i] && !in_rectangle[tile][i];
                         if (!in_rectangle[tile][i] || in_list[tile][i]) continue;
                         ++tally.verdicts;
                         const Ball ball = exact_ball(lights[i].x, lights[i].y, lights[i].z, lights[i].w);
-                        const auto cell = oracle.half_spaces(oracle.columns(x, x + 1), oracle.rows(y, y + 1),
-                                                             oracle.depths(min, max));
-                        if (image_meets(exact_view, cell, ball))
-                            tally.report(tally.misses, "MISS", camera, matrix.name + ", " + set.name, i,
-                                         lights[i], "tile " + std::to_string(x) + ", " + std::to_string(y));
+                        for (const DepthRange& range : lit) {
+                            const Depths depths = oracle.depths(range.min, range.max);
+                            if (depths.empty) continue;
+                            const auto cell =
+                                oracle.half_spaces(oracle.columns(x, x + 1), oracle.rows(y, y + 1), depths);
+                            if (image_meets(exact_view, cell, ball))
+                                tally.report(tally.misses, "MISS", camera, matrix.name + ", " + set.name, i,
+                                             lights[i],
+                                             "tile " + std::to_string(x) + ", " + std::to_string(y));
+                        }
                     }
                 }
                 CHECK(!added);
@@ -237,16 +265,30 @@ void examine_intervals(const Camera& camera, Tally& tally, std::uint64_t& seed) 
     }
 }
 
-}  // namespace
-
-TEST_CASE("world space with Z bounds") {
+template <lightbin::Footprint footprint, lightbin::DepthTest depth_test>
+void prove_pairs(std::uint64_t least_verdicts) {
     Tally tally;
     std::uint64_t seed = 6;
     for (const auto& cameras : {kinds::symmetric(), kinds::orthographic_off_centre()})
-        examine_intervals(cameras.front(), tally, seed);
+        examine_pairs<footprint, depth_test>(cameras.front(), tally, seed);
     MESSAGE(tally.verdicts << " exact verdicts");
     CHECK(tally.misses == 0);
-    CHECK(tally.verdicts >= 100000);
+    CHECK(tally.verdicts >= least_verdicts);
+}
+
+}  // namespace
+
+TEST_CASE("world space: interval") {
+    prove_pairs<lightbin::Footprint::rectangle, lightbin::DepthTest::interval>(100000);
+}
+TEST_CASE("world space: box") {
+    prove_pairs<lightbin::Footprint::rectangle, lightbin::DepthTest::box>(100000);
+}
+TEST_CASE("world space: split box, with silhouettes") {
+    prove_pairs<lightbin::Footprint::silhouette, lightbin::DepthTest::split_box>(100000);
+}
+TEST_CASE("world space: silhouettes") {
+    prove_pairs<lightbin::Footprint::silhouette, lightbin::DepthTest::none>(10000);
 }
 
 TEST_CASE("world space") {
