@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Bytes to the options of one of the shader generators: refused for a reason that the options have, and only then, or
-// a text that is sound as far as can be told without a compiler (tests/shader has those): brackets pair, every
-// name that others see has the prefix, and what is to be bound is what the options ask for, where they ask for it.
+// Bytes to the options of one of the shader generators: refused for a reason that the options have, and only
+// then, or a text that is sound as far as can be told without a compiler (tests/shader has those): brackets
+// pair, every name that others see has the prefix, and what is to be bound is what the options ask for.
 #include "bytes.hpp"
 
 #include <lightbin/shader.hpp>
@@ -39,9 +39,10 @@ std::uint32_t take_size(Bytes& bytes) {
                              : bytes.take<std::uint32_t>();
 }
 
-ShaderSlot take_slot(Bytes& bytes) {
-    const int binding = static_cast<int>(bytes.byte());
-    return {binding, bytes.flag() ? static_cast<int>(bytes.byte()) : 0};
+/// 0 leaves a slot at its default, where no other is.
+void take_slot(Bytes& bytes, ShaderSlot& slot) {
+    slot.binding ^= static_cast<int>(bytes.byte());
+    if (bytes.flag()) slot.set = static_cast<int>(bytes.byte());
 }
 
 std::string take_prefix(Bytes& bytes) {
@@ -295,7 +296,7 @@ void fuzz_snippet(Bytes& bytes) {
     options.max_entries = take_size(bytes);
     if ((flags & 64) != 0) options.uniform_block_bytes = take_size(bytes);
     for (ShaderSlot* slot : {&options.tiles, &options.lists, &options.grid})
-        *slot = take_slot(bytes);
+        take_slot(bytes, *slot);
     question.prefix = take_prefix(bytes);
     options.prefix = question.prefix;
 
@@ -350,7 +351,7 @@ void fuzz_reduction(Bytes& bytes) {
     options.language = question.language = take_enum(bytes, ShaderLanguage::hlsl_5_1);
     options.stage = take_enum(bytes, ShaderStage::fragment);
     options.format = take_enum(bytes, DepthFormat::unorm16);
-    options.samples = static_cast<int>(take_size(bytes));
+    options.samples = static_cast<int>(bytes.byte() % 12) - 1;
     const unsigned flags = bytes.byte();
     options.reversed_z = (flags & 1) != 0;
     options.orthographic = (flags & 2) != 0;
@@ -359,7 +360,7 @@ void fuzz_reduction(Bytes& bytes) {
     options.viewport_corner = (flags & 16) != 0;
     options.push_constants = question.push_constants = (flags & 32) != 0;
     for (ShaderSlot* slot : {&options.depth, &options.z_bounds, &options.grid})
-        *slot = take_slot(bytes);
+        take_slot(bytes, *slot);
     question.prefix = take_prefix(bytes);
     options.prefix = question.prefix;
 
@@ -390,7 +391,7 @@ void fuzz_build(Bytes& bytes) {
     options.push_constants = question.push_constants = (flags & 4) != 0;
     for (ShaderSlot* slot : {&options.footprints, &options.z_bounds, &options.edges, &options.tiles,
                              &options.lists, &options.total, &options.grid}) {
-        *slot = take_slot(bytes);
+        take_slot(bytes, *slot);
         question.slots.push_back(*slot);
     }
     question.prefix = take_prefix(bytes);
