@@ -58,6 +58,10 @@ public:
         const unsigned rows = static_cast<unsigned>(view.tiles_y());
         constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
         std::uint64_t room = footprints.area();
+        if (room > most / 8) {  // with fewer entries lists can't have that many places
+            const std::uint64_t places = detail::list_places(job);
+            if (places > most) return Error{ErrorCode::too_many_list_places, places, most};
+        }
         // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.
         if constexpr (detail::masked<footprint, depth_test>)
             if (room > most)

@@ -62,8 +62,8 @@ public:
     ///         world_space(...)
     ///
     /// After it, every tile lists every light whose sphere meets the tile's cell (no miss), in ascending
-    /// order. Errors: more lights than Id can number; more than 2^32 - 1 entries; a world_space() matrix that
-    /// is not affine.
+    /// order. Errors: more lights than Id can number; more than 2^32 - 1 entries, or pairs of a light
+    /// and a block of 8x8 tiles; a world_space() matrix that is not affine.
     ///
     /// parallel  a Parallel: threads to share the work among. The grid is the same with any number of them.
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>

@@ -32,6 +32,7 @@ enum class ErrorCode : std::uint8_t {
     too_many_lights,
     // light grid
     too_many_entries,
+    too_many_list_places,
     tile_buffer_too_small,
     index_buffer_too_small,
     // Z bounds
@@ -107,6 +108,9 @@ struct Error {
         case ErrorCode::too_many_entries:
             return "the light index list would need " + need + " entries, and 32-bit offsets reach " + have +
                    ": use larger tiles, or Z bounds";
+        case ErrorCode::too_many_list_places:
+            return "the lights' rectangles may meet blocks of 8x8 tiles " + need +
+                   " times, and binning counts to " + have + ": use larger tiles or fewer lights";
         case ErrorCode::tile_buffer_too_small:
             return "the tile buffer holds " + have + " tiles and " + need + " are needed";
         case ErrorCode::index_buffer_too_small:

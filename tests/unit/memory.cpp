@@ -100,6 +100,16 @@ TEST_CASE("more entries than 32-bit offsets reach") {
     CHECK(names(size.error(), std::uint64_t{1} << 32));
 }
 
+TEST_CASE("more lights in supertiles than kernels count to") {
+    const View view = test::view({16384, 16384}, 1);  // 2^22 supertiles
+    const std::vector<glm::vec4> lights(1024, glm::vec4(0, 0, 0, HUGE_VALF));
+    Binner<Options{.footprint = Footprint::silhouette}> binner;
+    const auto size = binner.count(view, lights);
+    REQUIRE(!size);
+    CHECK(size.error().code == ErrorCode::too_many_list_places);
+    CHECK(size.error().needed >= std::uint64_t{1} << 32);
+}
+
 TEST_CASE("Z bounds shorter than the grid are an error that names the size") {
     const View view = test::view({960, 540}, 16);
     const auto lights = test::random_lights(10, 32);

@@ -435,7 +435,8 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
             const std::uint32_t in_band = lists.ends[(list + 1) * block_count - 1];
             const bool one_chunk = in_band <= 64;
             if (one_chunk && x % panel_side == 0) chunk = load_chunk(lists, list_begin);
-            std::uint16_t* ids = scratch.short_ids.room(ids_used + in_band + 192, ids_used) + ids_used;
+            std::uint16_t* ids =
+                scratch.short_ids.room(std::size_t{ids_used} + in_band + 192, ids_used) + ids_used;
             float cells[cell_planes<depth_test> * 64];
             std::uint64_t lit = 0;
             bool arranged = false;

@@ -29,6 +29,21 @@ inline constexpr unsigned cell_planes = depth_test == DepthTest::split_box ? 12
 
 inline namespace LIGHTBIN_FLAVOUR {
 
+/// The most places that a kernel's lists can take, which it counts in 32 bits: one for each light and supertile that
+/// its rectangle meets, wherever the supertiles begin, and what fills up a list, or each of a band's blocks of ids.
+template <class Id> std::uint64_t list_places(const BinJob<Id>& job) {
+    const std::uint64_t width = static_cast<std::uint64_t>(job.camera->x.tiles) / 8 + 3,
+                        height = static_cast<std::uint64_t>(job.camera->y.tiles) / 8 + 3;
+    std::uint64_t places = 64 * width * height;
+    for (const FootprintRun& run : job.runs) {
+        places += 64 * width * ((run.end - run.begin) / 0x10000 + 2);
+        for (std::uint32_t i = run.begin; i < run.end; ++i)
+            places += (job.lights.x1[i] / 8u - job.lights.x0[i] / 8u + std::uint64_t{1}) *
+                      ((job.lights.y1[i] - job.lights.y0[i] + 7u) / 8 + 1);
+    }
+    return places;
+}
+
 /// Bits of the tiles first..last of an 8-tile span that begins at tile `begin`, for a light that meets it.
 inline unsigned covered(unsigned first, unsigned last, unsigned begin) {
     const unsigned low = first > begin ? first - begin : 0, high = last - begin < 7 ? last - begin : 7;

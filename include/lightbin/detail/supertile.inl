@@ -114,7 +114,7 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
         // Per 64 lights 16 words, or a word a light and then 64 words.
         std::uint64_t* words = scratch.words.room(room / 64 * 16);
         std::uint8_t* bytes = nullptr;
-        if constexpr (with_words) bytes = scratch.tile_bytes.room(room * 8);
+        if constexpr (with_words) bytes = scratch.tile_bytes.room(std::size_t{room} * 8);
         Packed<Id>* packed = nullptr;
         if constexpr (packs_ids)
             packed = reinterpret_cast<Packed<Id>*>(scratch.packed_ids.room(room * sizeof(Packed<Id>)));
@@ -178,7 +178,7 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
                         out += append(out, ids, low);
                         if (count > 8) out += append(out, ids + 8, high);
                     } else if constexpr (with_words) {
-                        for (std::uint32_t i = 0; i < count; i += 8)
+                        for (std::size_t i = 0; i < count; i += 8)
                             out += append(out, ids + i, byte[i * 8 + column]);
                     } else {
                         for (std::uint32_t i = 0; i < count; i += 64) {
