@@ -292,6 +292,39 @@ inline Scene jitter(Random& random, std::size_t count) {
     return scene;
 }
 
+/// Tile edges in the planes through the axis, up to rounding, and small spheres beside them: what an edge's position
+/// lost when the image's offset was taken from it, no relative error makes up for.
+inline Scene axis_edges(Random& random, std::size_t count) {
+    Scene scene = scene_of(random, 0, any_lens, spheres::field);
+    Camera& camera = scene.camera;
+    const int sides[] = {camera.width, camera.height};
+    double edge[2];
+    for (const int axis : {0, 1}) {
+        edge[axis] = random.integer(0, sides[axis] / camera.tile) * camera.tile;
+        const double ndc = 2 * edge[axis] / sides[axis] - 1, up = axis == 1 && camera.upper_left ? -1 : 1;
+        const int column = camera.m[2][3] == 0 ? 3 : 2, row = axis;
+        const double entry = up * ndc * camera.m[column][3];
+        camera.m[column][row] = camera.doubles ? entry : static_cast<double>(static_cast<float>(entry));
+    }
+    const Aim aim(camera);
+    for (std::size_t i = 0; i < count; ++i) {
+        const double d = aim.depth(random), at = std::max(std::abs(d), aim.unit);
+        const double r = at * random.power_of_two(-60, -8);
+        // Tangent to one edge, or to the corner where both meet.
+        const double angle = random.uniform(0, std::acos(0.0)), parts[] = {std::cos(angle), std::sin(angle)};
+        const int only = random.integer(-1, 1);
+        const double away = r * (1 + random.sign() * std::exp2(-random.integer(1, 40)));
+        double c[2];
+        for (const int axis : {0, 1})
+            c[axis] = only >= 0 && only != axis
+                          ? aim.at(axis, aim.pixel(axis, random), d)
+                          : aim.at(axis, edge[axis], d) + random.sign() * away * (only < 0 ? parts[axis] : 1);
+        scene.lights.push_back(nudged(aim.light(c[0], c[1], d, r), random));
+    }
+    set_bounds(scene, aim, random);
+    return scene;
+}
+
 /// A light a few pixels wide, tangent to the edge of a one-pixel tile.
 inline Light pixel_light(const Aim& aim, Random& random, double most_pixels) {
     const double d = aim.depth(random), at = std::max(d, aim.unit);
@@ -459,6 +492,7 @@ struct Family {
     X(fields_of_view, 500)                                                                                   \
     X(off_centre, 500)                                                                                       \
     X(jitter, 500)                                                                                           \
+    X(axis_edges, 500)                                                                                       \
     X(one_pixel_tiles, 20000)                                                                                \
     X(orthographic_edges, 500)                                                                               \
     X(depth_buffers, 500)
