@@ -165,7 +165,7 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
 
 #include <lightbin/detail/scan.inl>
 
-#include <lightbin/detail/scatter.inl>
+#include <lightbin/detail/lay_out.inl>
 
 #include <lightbin/detail/supertile.inl>
 

@@ -8,6 +8,7 @@
 #include <lightbin/detail/neon.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/scalar.hpp>
+#include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/sse2.hpp>
 
@@ -65,18 +66,17 @@ inline DepthKernels depth_kernels(Isa isa, std::size_t columns) {
     return {scalar::column_extremes, scalar::column_gaps};
 }
 
-/// Never writes past its entries.
-template <class Id> BinKernel<Id> scatter_kernel(Isa isa) {
+/// The scalar tier has the vectors of the platform too: the text is there, and the bytes are the same.
+inline LayOut lay_out_kernel(Isa isa) {
+    static_cast<void>(isa);
 #if defined(LIGHTBIN_X86)
-    if (isa == Isa::avx512) return avx512::bin_scatter<Id>;
-    if (isa == Isa::avx2) return avx2::bin_scatter<Id>;
-    return sse2::bin_scatter<Id>;  // which every machine has
+    if (isa == Isa::avx512) return avx512::lay_out;
+    if (isa == Isa::avx2) return avx2::lay_out;
+    return sse2::lay_out;
 #elif defined(LIGHTBIN_NEON)
-    static_cast<void>(isa);
-    return neon::bin_scatter<Id>;
+    return neon::lay_out;
 #else
-    static_cast<void>(isa);
-    return scalar::bin_scatter<Id>;
+    return scalar::lay_out;
 #endif
 }
 
@@ -86,14 +86,14 @@ BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint32_t lights, std::u
     if constexpr (!masked<footprint, depth_test>) {
         // Nearly empty grids: a walk over all supertiles costs more than counting and scattering.
         const std::uint64_t few = view.tile_count() / (isa == Isa::avx512 ? 4 : 1);
-        if (isa == Isa::scalar || area <= few) return scatter_kernel<Id>(isa);
+        if (isa == Isa::scalar || area <= few) return bin_scatter<Id>;
         // Without compress, putting a light in lists costs as much as scattering it to so many tiles.
         const std::uint64_t scattered = isa == Isa::avx512 ? 0
                                         : isa == Isa::sse2 ? (lights < 500 ? 100 : 48)
                                                            : 16;
         // By scanning it costs less, but a few steps for each supertile.
         const bool sparse = isa != Isa::avx2 || area < 3 * view.tile_count();
-        if (sparse && area < scattered * lights) return scatter_kernel<Id>(isa);
+        if (sparse && area < scattered * lights) return bin_scatter<Id>;
     }
 #if defined(LIGHTBIN_X86)
     if (isa == Isa::avx512) return avx512::bin_compress<footprint, depth_test, Id>;

@@ -81,7 +81,7 @@ inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
 
 #include <lightbin/detail/tile_masks.inl>
 
-#include <lightbin/detail/scatter.inl>
+#include <lightbin/detail/lay_out.inl>
 
 #include <lightbin/detail/supertile.inl>
 

@@ -65,9 +65,16 @@ inline void store_spans(RowSpan* spans, double first, double last) {
 
 #include <lightbin/detail/tile_masks.inl>
 
-#if !defined(LIGHTBIN_X86) && !defined(LIGHTBIN_NEON)
-#include <lightbin/detail/scatter.inl>
-#endif
+inline std::uint32_t lay_out(std::uint32_t* steps, const std::uint32_t* corners, std::size_t width,
+                             std::uint32_t at, Tile* tiles) {
+    std::uint32_t count = 0;
+    for (std::size_t x = 0; x < width; ++x) {
+        count += steps[x] += corners[x];
+        at += count;
+        tiles[x] = {at, count};
+    }
+    return at;
+}
 
 #include <lightbin/detail/supertile.inl>
 

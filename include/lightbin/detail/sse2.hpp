@@ -139,7 +139,7 @@ template <class Id> std::uint32_t append(Id* out, const Packed<Id>* ids, unsigne
 
 #include <lightbin/detail/tile_masks.inl>
 
-#include <lightbin/detail/scatter.inl>
+#include <lightbin/detail/lay_out.inl>
 
 #include <lightbin/detail/supertile.inl>
 
