@@ -292,8 +292,8 @@ inline Scene jitter(Random& random, std::size_t count) {
     return scene;
 }
 
-/// Tile edges in the planes through the axis, up to rounding, and small spheres beside them: what an edge's position
-/// lost when the image's offset was taken from it, no relative error makes up for.
+/// Tile edges in the planes through the axis, up to rounding, and small spheres beside them: what an edge's
+/// position lost when the image's offset was taken from it, no relative error makes up for.
 inline Scene axis_edges(Random& random, std::size_t count) {
     Scene scene = scene_of(random, 0, any_lens, spheres::field);
     Camera& camera = scene.camera;
