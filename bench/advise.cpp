@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: MIT
 // Is advise() right? For each scene every plan is measured (build time on rotating light sets, evaluations of
-// the first one counted over the drawn pixels), and what the chosen one costs is held against the cheapest.
+// the first one counted over the drawn pixels), and what the chosen one costs is held against the cheapest: with
+// Z bounds, and without any against those that need none.
 //
 //   advise_plans.csv   a row a plan: predicted and measured build time and evaluations
 //   advise.csv         a row for each scene, cost of an evaluation and error of the build model (factor): the
 //                      choice, the best plan, and the regret, their ratio
 //
 // With --fit: fits the constants of detail/build_model.hpp on made scenes and light sets instead, and prints
-// them.
+// its lines.
+#include "arguments.hpp"
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
 
 #include <cmath>
-#include <cstring>
 #include <exception>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <span>
 
 namespace {
@@ -24,12 +26,6 @@ using lightbin::Index;
 using lightbin::Isa;
 using lightbin::Plan;
 
-constexpr Method methods[] = {
-    {Footprint::rectangle, DepthTest::none},  {Footprint::rectangle, DepthTest::interval},
-    {Footprint::rectangle, DepthTest::box},   {Footprint::rectangle, DepthTest::split_box},
-    {Footprint::silhouette, DepthTest::none}, {Footprint::silhouette, DepthTest::interval},
-    {Footprint::silhouette, DepthTest::box},  {Footprint::silhouette, DepthTest::split_box},
-};
 constexpr int tile_sizes[] = {8, 16, 32, 64};
 constexpr double evaluation_costs[] = {0.005, 0.02, 0.05, 0.2, 1};  ///< ns
 constexpr double model_factors[] = {1, 0.5, 0.67, 1.5, 2};
@@ -48,10 +44,10 @@ struct Candidate {
 template <Isa isa> std::vector<Candidate> candidates() {
     std::vector<Candidate> all;
     const auto add = [&]<std::size_t method, Index index> {
-        const auto bin = std::make_shared<Bin<methods[method], index, isa>>();
+        const auto bin = std::make_shared<Bin<ladder[method], index, isa>>();
         for (const int tile_size : tile_sizes)
-            all.push_back({.plan = {.footprint = methods[method].footprint,
-                                    .depth_test = methods[method].depth_test,
+            all.push_back({.plan = {.footprint = ladder[method].footprint,
+                                    .depth_test = ladder[method].depth_test,
                                     .index = index,
                                     .tile_size = tile_size},
                            .build = [bin](const TiledView& view, const Lights& lights) {
@@ -62,16 +58,16 @@ template <Isa isa> std::vector<Candidate> candidates() {
         (add.template operator()<method, Index::u16>(), ...);
         (add.template operator()<method, Index::u32>(), ...);
     }
-    (std::make_index_sequence<std::size(methods)>{});
+    (std::make_index_sequence<std::size(ladder)>{});
     return all;
 }
 
 /// The views of all plans on a scene, by tile size.
 class Views {
 public:
-    Views(const BenchScene& scene, const Picture& picture) : picture_(&picture) {
+    explicit Views(const BenchScene& scene) : picture_(rasterise(scene, screen)) {
         for (const int tile_size : {8, 16, 32, 64, screen.width})
-            views_.emplace_back(scene, picture, tile_size);
+            views_.emplace_back(scene, picture_, tile_size);
     }
 
     const TiledView& of(int tile_size) const {
@@ -85,14 +81,14 @@ public:
         for (int y = 0; y < screen.height; ++y)
             for (int x = 0; x < screen.width; ++x) {
                 const int t = view.view.tile_size(), tile = y / t * view.view.tiles_x() + x / t;
-                if (picture_->triangle[static_cast<std::size_t>(y * screen.width + x)] != Picture::nothing)
+                if (picture_.triangle[static_cast<std::size_t>(y * screen.width + x)] != Picture::nothing)
                     sum += tiles[static_cast<std::size_t>(tile)].count;
             }
         return sum;
     }
 
 private:
-    const Picture* picture_;
+    Picture picture_;
     std::vector<TiledView> views_;
 };
 
@@ -134,14 +130,31 @@ struct Regrets {
     std::vector<double> asking;  ///< over the plain build at the view's tile size
 };
 
+/// Times asking and the plain build at the view's tile size in turns: both find what the other left in the
+/// caches.
+template <Isa isa> void time_asking(const TiledView& finest, std::span<const Lights> sets, Regrets& regrets) {
+    Bin<ladder[0], Index::u32, isa> bin;
+    std::vector<double> asking, building;
+    for (std::size_t turn = 0; turn < 20 * turns; ++turn) {
+        const Lights& lights = sets[turn % sets.size()];
+        building.push_back(seconds([&] { bin(finest, lights); }));
+        asking.push_back(seconds([&] {
+            if (!lightbin::advise(finest.view, lights, {.isa = isa}, finest.bounds())) std::abort();
+        }));
+    }
+    const double ask = 1e6 * median(asking), build = 1e6 * median(building);
+    regrets.asking.push_back(ask / build);
+    std::printf("asking %.1f us, %.2f of the plain build of %.1f us\n", ask, ask / build, build);
+}
+
+template <Isa isa>
 void judge(const BenchScene& scene, std::FILE* plans_csv, std::FILE* csv, Regrets& regrets) {
-    const Picture picture = rasterise(scene, screen);
-    const Views views(scene, picture);
+    const Views views(scene);
     std::vector<Lights> sets;
     for (std::uint32_t seed = 0; seed < turns; ++seed)
         sets.push_back(scene.lights(seed));
 
-    std::vector<Candidate> sweep = candidates<lightbin::Options{}.isa>();
+    std::vector<Candidate> sweep = candidates<isa>();
     for (const Index index : {Index::u16, Index::u32}) {  // one list for the whole screen
         Candidate whole = *std::ranges::find_if(sweep, [&](const Candidate& c) {
             return c.plan.index == index && c.plan.depth_test == DepthTest::none &&
@@ -157,17 +170,6 @@ void judge(const BenchScene& scene, std::FILE* plans_csv, std::FILE* csv, Regret
     }
     const std::vector<lightbin::Tile> one(1, {0, static_cast<std::uint32_t>(sets[0].size())});
     sweep.push_back({{.tiled = false}, {}, 0, views.evaluations(views.of(screen.width), one)});
-
-    const TiledView& finest = views.of(tile_sizes[0]);
-    std::vector<double> asking;
-    for (std::size_t turn = 0; turn < turns + 1; ++turn) {
-        const auto ask = [&] {
-            if (!lightbin::advise(finest.view, sets[turn % turns], {}, finest.bounds())) std::abort();
-        };
-        const double time = seconds(ask);
-        if (turn > 0) asking.push_back(time);
-    }
-    const double ask_us = 1e6 * median(asking);
     const auto measured = [&](const Plan& plan) -> const Candidate& {
         const auto found =
             std::ranges::find_if(sweep, [&](const Candidate& c) { return same(c.plan, plan); });
@@ -175,127 +177,132 @@ void judge(const BenchScene& scene, std::FILE* plans_csv, std::FILE* csv, Regret
             std::fprintf(stderr, "advise: no such plan: %s\n", words(plan).c_str()), std::abort();
         return *found;
     };
-    const double plain_us = measured({.index = Index::u32, .tile_size = tile_sizes[0]}).build_us;
-    regrets.asking.push_back(ask_us / plain_us);
-    std::printf("\n%s: %zu lights; asking %.1f us, %.2f of the plain build of %.1f us\n", scene.name.c_str(),
-                sets[0].size(), ask_us, ask_us / plain_us, plain_us);
 
-    for (const double cost : evaluation_costs)
-        for (const double factor : model_factors) {
-            const auto advice = *lightbin::advise(
-                finest.view, sets[0], {.evaluation_ns = cost, .machine = factor}, finest.bounds());
-            const Candidate& choice = measured(advice.best());
-            const Candidate& best = *std::ranges::min_element(
-                sweep, {}, [&](const Candidate& candidate) { return candidate.total_us(cost); });
-            const double regret = choice.total_us(cost) / best.total_us(cost);
-            regrets.by_factor[std::ranges::find(model_factors, factor) - model_factors].push_back(regret);
-            std::fprintf(csv, "%s,%g,%g,%s,%.2f,%s,%.2f,%.4f,%.2f,%.2f\n", scene.name.c_str(), cost, factor,
-                         words(choice.plan).c_str(), choice.total_us(cost), words(best.plan).c_str(),
-                         best.total_us(cost), regret, ask_us, choice.build_us);
-            if (factor != 1) continue;
-            std::printf("  %5g ns: %-28s %9.1f us  best %-28s %9.1f us  %.3f%s\n", cost,
-                        words(choice.plan).c_str(), choice.total_us(cost), words(best.plan).c_str(),
-                        best.total_us(cost), regret, regret > 1.15 ? "  OVER 1.15" : "");
-            if (cost != evaluation_costs[0]) continue;
-            for (const Plan& plan : advice.plans()) {
-                const Candidate& c = measured(plan);
-                std::fprintf(plans_csv, "%s,%s,%.2f,%.2f,%.0f,%.0f\n", scene.name.c_str(),
-                             words(plan).c_str(), plan.build_ns * 1e-3, c.build_us, plan.evaluations,
-                             c.evaluations);
+    std::printf("\n%s: %zu lights; ", scene.name.c_str(), sets[0].size());
+    const TiledView& finest = views.of(tile_sizes[0]);
+    time_asking<isa>(finest, sets, regrets);
+    for (const bool with_depth : {true, false})
+        for (const double cost : evaluation_costs)
+            for (const double factor : model_factors) {
+                const auto advice = *lightbin::advise(finest.view, sets[0],
+                                                      {.evaluation_ns = cost, .machine = factor, .isa = isa},
+                                                      with_depth ? finest.bounds() : lightbin::ZBounds{});
+                const Candidate& choice = measured(advice.best());
+                const Candidate& best = *std::ranges::min_element(sweep, {}, [&](const Candidate& candidate) {
+                    const bool allowed = with_depth || candidate.plan.depth_test == DepthTest::none;
+                    return allowed ? candidate.total_us(cost) : HUGE_VAL;
+                });
+                const double regret = choice.total_us(cost) / best.total_us(cost);
+                regrets.by_factor[std::ranges::find(model_factors, factor) - model_factors].push_back(regret);
+                std::fprintf(csv, "%s,%s,%g,%g,%s,%.2f,%s,%.2f,%.4f\n", scene.name.c_str(),
+                             with_depth ? "both" : "none", cost, factor, words(choice.plan).c_str(),
+                             choice.total_us(cost), words(best.plan).c_str(), best.total_us(cost), regret);
+                if (factor != 1) continue;
+                std::printf("  %5g ns%s: %-28s %9.1f us  best %-28s %9.1f us  %.3f%s\n", cost,
+                            with_depth ? "      " : ", no Z", words(choice.plan).c_str(),
+                            choice.total_us(cost), words(best.plan).c_str(), best.total_us(cost), regret,
+                            regret > 1.15 ? "  OVER 1.15" : "");
+                if (cost != evaluation_costs[0]) continue;
+                for (const Plan& plan : advice.plans()) {
+                    const Candidate& c = measured(plan);
+                    std::fprintf(plans_csv, "%s,%s,%s,%.2f,%.2f,%.0f,%.0f\n", scene.name.c_str(),
+                                 with_depth ? "both" : "none", words(plan).c_str(), plan.build_ns * 1e-3,
+                                 c.build_us, plan.evaluations, c.evaluations);
+                }
             }
-        }
     std::fflush(stdout);
 }
 
-/// Least squares of the relative error with no constant below zero, one constant after the other.
-lightbin::detail::BuildTerms fit(const std::vector<lightbin::detail::BuildTerms>& rows,
-                                 const std::vector<double>& times) {
-    lightbin::detail::BuildTerms constants = {};
-    std::vector<double> rest(rows.size(), 1);
-    for (int round = 0; round < 20000; ++round)
-        for (std::size_t k = 0; k < constants.size(); ++k) {
-            double product = 0, square = 0;
-            for (std::size_t i = 0; i < rows.size(); ++i) {
-                const double part = rows[i][k] / times[i];
-                product += part * rest[i];
-                square += part * part;
-            }
-            if (square == 0) continue;
-            const double better = std::max(0.0, constants[k] + product / square);
-            for (std::size_t i = 0; i < rows.size(); ++i)
-                rest[i] -= (better - constants[k]) * rows[i][k] / times[i];
-            constants[k] = better;
+using lightbin::detail::BuildTerms;
+
+double predicted(const BuildTerms& terms, const BuildTerms& constants) {
+    return std::inner_product(terms.begin(), terms.end(), constants.begin(), 0.0);
+}
+
+/// Least squares of the ratios' logarithms, as far as (p - t)^2 / (p t) is that, with no constant below zero:
+/// one constant after the other.
+BuildTerms fit(const std::vector<BuildTerms>& rows, const std::vector<double>& times) {
+    BuildTerms constants = {};
+    std::vector<double> scales = times, rest(rows.size());
+    for (int pass = 0; pass < 50; ++pass) {
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            const double now = predicted(rows[i], constants);
+            if (pass > 0) scales[i] = std::sqrt(times[i] * std::max(now, 1e-3 * times[i]));
+            rest[i] = (times[i] - now) / scales[i];
         }
+        for (int round = 0; round < 500; ++round)
+            for (std::size_t k = 0; k < constants.size(); ++k) {
+                double product = 0, square = 0;
+                for (std::size_t i = 0; i < rows.size(); ++i) {
+                    const double part = rows[i][k] / scales[i];
+                    product += part * rest[i];
+                    square += part * part;
+                }
+                const double better = square == 0 ? 0 : std::max(0.0, constants[k] + product / square);
+                for (std::size_t i = 0; i < rows.size(); ++i)
+                    rest[i] -= (better - constants[k]) * rows[i][k] / scales[i];
+                constants[k] = better;
+            }
+    }
     return constants;
 }
 
 /// A scene to learn from.
 struct Lesson {
-    std::shared_ptr<const Picture> picture;
     std::shared_ptr<const Views> views;
     std::vector<Lights> sets;
 
-    Lesson(const BenchScene& scene, const Lesson* same_depth = nullptr) {
-        if (same_depth != nullptr) {
-            picture = same_depth->picture;
-            views = same_depth->views;
-        } else {
-            picture = std::make_shared<Picture>(rasterise(scene, screen));
-            views = std::make_shared<Views>(scene, *picture);
-        }
+    Lesson(const BenchScene& scene, std::shared_ptr<const Views> seen) : views(std::move(seen)) {
         for (std::uint32_t seed = 0; seed < turns; ++seed)
             sets.push_back(scene.lights(seed));
     }
 };
 
-/// The made scenes, and light sets of several sizes and densities over the depth of one of them.
+/// The made scenes, and over the depth of each in turn light sets of several sizes and densities.
 std::vector<Lesson> lessons() {
     std::vector<Lesson> all;
-    for (const BenchScene& scene : scene_kinds())
-        all.emplace_back(scene);
-    BenchScene set = scenes::field_with_depth();
-    const Lesson ground(set);
+    const std::vector<BenchScene> kinds = scene_kinds();
+    for (const BenchScene& scene : kinds)
+        all.emplace_back(scene, std::make_shared<Views>(scene));
+    std::size_t kind = 0;
     for (const std::size_t count : {1u, 16u, 100u, 400u, 1500u, 6000u})
         for (const float radius : {field4_median, field20_median, field200_median, 0.0f}) {
-            set.lights = [=](std::uint32_t seed) {
+            BenchScene scene = kinds[kind];
+            scene.lights = [=](std::uint32_t seed) {
                 return radius > 0 ? field(count, radius, seed) : near_eye(count, seed);
             };
-            all.emplace_back(set, &ground);
+            all.emplace_back(scene, all[kind].views);
+            kind = (kind + 3) % kinds.size();
         }
     return all;
 }
 
 template <Isa isa> void fit_tier(const std::vector<Lesson>& lessons) {
-    if (lightbin::detail::machine_isa(isa) != isa) return;
-    std::vector<lightbin::detail::BuildTerms> rows;
+    std::vector<BuildTerms> rows;
     std::vector<double> times;
     for (const Lesson& lesson : lessons) {
-        const Views& views = *lesson.views;
-        const std::vector<Lights>& sets = lesson.sets;
         std::vector<Candidate> sweep = candidates<isa>();
         std::erase_if(sweep, [](const Candidate& c) { return c.plan.index == Index::u32; });
-        time(sweep, views, sets);
-        const TiledView& finest = views.of(tile_sizes[0]);
-        const auto survey = lightbin::detail::survey(isa, finest.view, lightbin::view_space(sets[0]),
-                                                     finest.bounds(), sets[0].size(), 8192);
+        time(sweep, *lesson.views, lesson.sets);
+        const TiledView& finest = lesson.views->of(tile_sizes[0]);
+        const auto lights = lightbin::view_space(lesson.sets[0]);
+        lightbin::detail::Survey survey = lightbin::detail::survey_rectangles(
+            isa, finest.view, lights, finest.bounds(), lesson.sets[0].size());
+        lightbin::detail::survey_pairs(finest.view, lights, finest.bounds(), 8192, survey);
         for (const Candidate& candidate : sweep)
-            for (const auto& grid : std::span(survey.grids).first(survey.grid_count))
-                for (const auto& rung : std::span(grid.rungs).first(grid.rung_count))
+            for (const auto& grid : survey.grids)
+                for (std::size_t rung = 0; rung < std::size(lightbin::detail::rungs); ++rung)
                     if (grid.tile_size == candidate.plan.tile_size &&
-                        rung.footprint == candidate.plan.footprint &&
-                        rung.depth_test == candidate.plan.depth_test) {
+                        lightbin::detail::rungs[rung].footprint == candidate.plan.footprint &&
+                        lightbin::detail::rungs[rung].depth_test == candidate.plan.depth_test) {
                         rows.push_back(lightbin::detail::build_terms(survey, grid, rung));
                         times.push_back(1e3 * candidate.build_us);
                     }
     }
-    const lightbin::detail::BuildTerms constants = fit(rows, times);
+    const BuildTerms constants = fit(rows, times);
     std::vector<double> ratios;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        double predicted = 0;
-        for (std::size_t k = 0; k < constants.size(); ++k)
-            predicted += rows[i][k] * constants[k];
-        ratios.push_back(predicted / times[i]);
-    }
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        ratios.push_back(predicted(rows[i], constants) / times[i]);
     std::ranges::sort(ratios);
     std::printf("    {");
     for (std::size_t k = 0; k < constants.size(); ++k)
@@ -303,8 +310,8 @@ template <Isa isa> void fit_tier(const std::vector<Lesson>& lessons) {
     const auto at = [&](double share) {
         return ratios[static_cast<std::size_t>(share * double(ratios.size() - 1))];
     };
-    std::printf("},  // %zu builds: predicted over measured %.2f (5 %%), %.2f (median), %.2f (95 %%)\n",
-                rows.size(), at(0.05), at(0.5), at(0.95));
+    std::printf("},  // %s: %zu builds, predicted over measured %.2f (5 %%), %.2f (median), %.2f (95 %%)\n",
+                name_of(isa), rows.size(), at(0.05), at(0.5), at(0.95));
     std::fflush(stdout);
 }
 
@@ -323,41 +330,47 @@ void print(const Regrets& regrets) {
                 *std::ranges::max_element(regrets.asking));
 }
 
+/// Calls visit.operator()<isa>() for one of the instruction sets with a build model.
+template <class Visit> void with_isa(Isa isa, Visit visit) {
+    switch (isa) {
+    case Isa::avx512:
+        return visit.template operator()<Isa::avx512>();
+    case Isa::avx2:
+        return visit.template operator()<Isa::avx2>();
+    case Isa::sse2:
+        return visit.template operator()<Isa::sse2>();
+    default:
+        return visit.template operator()<Isa::scalar>();
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
-    std::vector<std::string> files;
-    bool fitting = false;
-    for (int i = 1; i < argc; ++i) {
-        if (std::strcmp(argv[i], "--quick") == 0)
-            turns = 5;
-        else if (std::strcmp(argv[i], "--fit") == 0)
-            fitting = true;
-        else
-            files.emplace_back(argv[i]);
-    }
-    if (fitting) {
+    Arguments arguments(argc, argv);
+    if (arguments.take("--quick")) turns = 5;
+    if (arguments.take("--fit")) {
         const std::vector<Lesson> all = lessons();
-        fit_tier<Isa::scalar>(all);
-        fit_tier<Isa::sse2>(all);
-        fit_tier<Isa::avx2>(all);
-        fit_tier<Isa::avx512>(all);
+        for (const Isa isa : {Isa::scalar, Isa::sse2, Isa::avx2, Isa::avx512})
+            if (lightbin::detail::machine_isa(isa) == isa)
+                with_isa(isa, [&]<Isa tier> { fit_tier<tier>(all); });
         return EXIT_SUCCESS;
     }
-    if (files.empty()) files = {LIGHTBIN_FIXTURES "/nova.glb", LIGHTBIN_FIXTURES "/darkness.glb"};
+    Isa isa = lightbin::detail::machine_isa(lightbin::Options{}.isa);
+    for (const Isa named : {Isa::scalar, Isa::sse2, Isa::avx2})
+        if (arguments.take(std::string("--") + name_of(named))) isa = lightbin::detail::machine_isa(named);
+
     std::vector<BenchScene> all = scene_kinds();
-    for (const std::string& file : files)
+    for (const std::string& file : arguments.scenes_or_fixtures())
         for (BenchScene& scene : glb_scenes(file))
             all.push_back(std::move(scene));
-
-    std::FILE* const plans_csv =
-        open_report("advise_plans.csv", "scene,plan,predicted_us,us,predicted_evaluations,evaluations");
-    std::FILE* const csv =
-        open_report("advise.csv", "scene,evaluation_ns,model_factor,choice,choice_us,best,best_us,"
-                                  "regret,asking_us,choice_build_us");
+    std::FILE* const plans_csv = open_report(
+        "advise_plans.csv", "scene,bounds,plan,predicted_us,us,predicted_evaluations,evaluations");
+    std::FILE* const csv = open_report(
+        "advise.csv", "scene,bounds,evaluation_ns,model_factor,choice,choice_us,best,best_us,regret");
     Regrets regrets;
     for (const BenchScene& scene : all)
-        judge(scene, plans_csv, csv, regrets);
+        with_isa(isa, [&]<Isa tier> { judge<tier>(scene, plans_csv, csv, regrets); });
     print(regrets);
     std::fclose(plans_csv);
     std::fclose(csv);

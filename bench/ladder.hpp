@@ -3,13 +3,13 @@
 #pragma once
 
 #include "frames.hpp"
+#include "measure.hpp"
+#include "names.hpp"
 #include "raster.hpp"
 
 #include <lightbin/lightbin.hpp>
 
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <span>
 #include <string>
@@ -28,32 +28,12 @@ struct Method {
     DepthTest depth_test;
 };
 
-constexpr const char* name_of(Footprint footprint) {
-    return footprint == Footprint::rectangle ? "rectangle" : "silhouette";
-}
-constexpr const char* name_of(DepthTest test) {
-    constexpr const char* names[] = {"none", "interval", "box", "split_box"};
-    return names[static_cast<int>(test)];
-}
-
 inline constexpr Method ladder[] = {
     {Footprint::rectangle, DepthTest::none},  {Footprint::rectangle, DepthTest::interval},
     {Footprint::rectangle, DepthTest::box},   {Footprint::rectangle, DepthTest::split_box},
     {Footprint::silhouette, DepthTest::none}, {Footprint::silhouette, DepthTest::interval},
     {Footprint::silhouette, DepthTest::box},  {Footprint::silhouette, DepthTest::split_box},
 };
-
-template <class Work> double seconds(Work work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-inline double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// A view of a scene on a tile grid, with its Z bounds and how much is drawn in its tiles.
 struct TiledView {
@@ -135,13 +115,3 @@ private:
 
     decltype(bins_of(std::make_index_sequence<rungs>{})) bins_;
 };
-
-inline std::FILE* open_report(const char* path, const char* header) {
-    std::FILE* file = std::fopen(path, "w");
-    if (file == nullptr) {
-        std::perror(path);
-        std::exit(EXIT_FAILURE);
-    }
-    std::fprintf(file, "%s\n", header);
-    return file;
-}

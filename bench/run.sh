@@ -15,9 +15,11 @@
 #       and .png.
 #   ablation [--quick] [SCENE.glb ...]
 #       What each part of the library costs and saves, by kind of scene; writes build/bench/ablation.csv.
-#   advise [--quick] [--fit] [SCENE.glb ...]
-#       What advise() chooses against the best of all plans, and what asking costs; writes build/bench/advise.csv and
-#       advise_plans.csv. With --fit: fits the constants of its build model to this machine instead, and prints them.
+#   advise [--quick] [--avx2 | --sse2 | --scalar] [--fit] [SCENE.glb ...]
+#       What advise() chooses against the best of all plans, with Z bounds and without, and what asking costs beside a
+#       plain build; on the machine's widest instruction set or the named one. Writes build/bench/advise.csv and
+#       advise_plans.csv. With --fit: fits the constants of its build model to this machine instead, and prints the lines
+#       of detail/build_model.hpp (about a minute).
 set -eu
 me=bench/run.sh
 here=$(pwd)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a scene can do without: the options and the tile size that cost least, to build and to shade,
-// predicted from a sample of the lights.
+// predicted from the lights in view and a sample of the tiles they are in.
 #pragma once
 
 #include <lightbin/detail/build_model.hpp>
@@ -12,11 +12,12 @@
 #include <lightbin/z_bounds.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdio>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace lightbin {
 
@@ -48,8 +49,13 @@ struct Plan {
 /// Every plan that was weighed, the cheapest first.
 class Advice {
 public:
+    explicit Advice(std::vector<Plan> plans) : plans_(std::move(plans)) {
+        std::ranges::stable_sort(plans_, {}, &Plan::total_ns);
+    }
+
     const Plan& best() const { return plans_[0]; }
-    std::span<const Plan> plans() const { return {plans_.data(), count_}; }
+    std::span<const Plan> plans() const& { return plans_; }
+    std::span<const Plan> plans() && = delete;  // would dangle
 
     /// Returns a table of the plans for a person, a line each. Allocates.
     std::string text() const {
@@ -73,31 +79,22 @@ public:
         return lines;
     }
 
-    /// Adds a plan behind those that cost as much.
-    void add(const Plan& plan) {
-        const auto end = plans_.begin() + static_cast<std::ptrdiff_t>(count_++);
-        const auto place = std::upper_bound(plans_.begin(), end, plan.total_ns,
-                                            [](double total, const Plan& p) { return total < p.total_ns; });
-        std::move_backward(place, end, end + 1);
-        *place = plan;
-    }
-
 private:
-    std::array<Plan, 2 + detail::Survey::most_grids* 8> plans_ = {};
-    std::size_t count_ = 0;
+    std::vector<Plan> plans_;
 };
 
 /// Returns what the ways to light a view are predicted to cost: no tiling; one list for the whole screen (the
-/// lights in view); tiles of the view's size and of 2, 4 and 8 times it, with each footprint and each depth
-/// test that `bounds` allow. So give the view of the smallest tiles that you would use. Errors: as bin().
+/// lights in view); tiles of the view's size and of 2, 4 and 8 times it, with rectangles or silhouettes, and
+/// as far as `bounds` allow with box or split_box. So give the view of the smallest tiles that you would use.
+/// Errors: as bin().
 ///
 /// lights  as for Binner::bin
 /// bounds  of the view's own tiles; larger tiles' bounds are merged from them. None: no depth test is weighed
 /// costs   the build model knows the machine that it was fitted on (detail/build_model.hpp)
 ///
-/// The lists' lengths are estimated from a sample: at most 1,024 lights, through the library's own
-/// projection, and 192 (light, tile) pairs a tile size, through its own depth tests. With no more lights
-/// than that the sums over rectangles are exact. Takes tens of microseconds and a little memory.
+/// Projects all lights as a build does; the rest is estimated from at most 512 of those in view, and from 48 to
+/// 384 pairs of a light and a tile, the more the longer a build. So asking takes less than a build of the
+/// view's tiles without options. Allocates.
 template <class LightRange>
 Result<Advice> advise(const View& view, const LightRange& lights, const Costs& costs = {},
                       const ZBounds& bounds = {}) {
@@ -108,24 +105,42 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
             return Error{ErrorCode::z_bounds_too_small, view.tile_count(), side.size()};
 
     const Isa isa = detail::machine_isa(costs.isa);
-    const detail::Survey survey = detail::survey(isa, view, source, bounds);
-    Advice advice;
+    detail::Survey survey = detail::survey_rectangles(isa, view, source, bounds);
+    // A pair takes about half as long as this, so asking takes less than a build.
+    constexpr double ns_a_pair = 800, fewest = 48, most = 384;
+    const double plain_ns = detail::predicted_build_ns(isa, detail::build_terms(survey, survey.grids[0], 0));
+    const double pairs = std::clamp(plain_ns / ns_a_pair, fewest, most);
+    detail::survey_pairs(view, source, bounds, static_cast<std::size_t>(pairs), survey);
+
+    std::vector<Plan> plans;
+    plans.reserve(2 + std::size(detail::rungs) * survey.grids.size());
     const auto weigh = [&](Plan plan) {
+        plan.index = source.array.size() <= 0x10000 ? Index::u16 : Index::u32;
         plan.total_ns = plan.build_ns + plan.evaluations * costs.evaluation_ns;
-        advice.add(plan);
+        plans.push_back(plan);
     };
-    const Index index = source.array.size() <= 0x10000 ? Index::u16 : Index::u32;
+    const auto weigh_grid = [&](const detail::GridSurvey& grid, std::size_t rung) {
+        const auto [footprint, depth_test] = detail::rungs[rung];
+        const double ns = detail::predicted_build_ns(isa, detail::build_terms(survey, grid, rung));
+        weigh({.footprint = footprint,
+               .depth_test = depth_test,
+               .tile_size = grid.tile_size,
+               .build_ns = costs.machine * ns + (depth_test != DepthTest::none ? costs.z_bounds_ns : 0),
+               .evaluations = grid.evaluations[rung]});
+    };
     weigh({.tiled = false, .evaluations = survey.lights * survey.pixels});
-    for (const detail::GridSurvey& grid : std::span(survey.grids).first(survey.grid_count))
-        for (const detail::Rung& rung : std::span(grid.rungs).first(grid.rung_count))
-            weigh({.footprint = rung.footprint,
-                   .depth_test = rung.depth_test,
-                   .index = index,
-                   .tile_size = grid.tile_size,
-                   .build_ns = costs.machine * detail::predicted_build_ns(isa, survey, grid, rung) +
-                               (rung.depth_test != DepthTest::none ? costs.z_bounds_ns : 0),
-                   .evaluations = rung.evaluations});
-    return advice;
+    const int longest = (std::max)(view.viewport().width, view.viewport().height);
+    if (longest > survey.grids.back().tile_size)
+        weigh_grid({.tile_size = longest,
+                    .tiles = 1,
+                    .supertiles = survey.visible,
+                    .entries = {survey.visible},
+                    .evaluations = {survey.visible * survey.pixels}},
+                   0);
+    for (const detail::GridSurvey& grid : survey.grids)
+        for (std::size_t rung = 0; rung < std::size(detail::rungs); ++rung)
+            if (detail::weighed(detail::rungs[rung].depth_test, bounds, grid.shift)) weigh_grid(grid, rung);
+    return Advice(std::move(plans));
 }
 
 }  // namespace lightbin

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// A report's command line: options, and the .glb files to run on.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+class Arguments {
+public:
+    Arguments(int argc, char** argv) : words_(argv + 1, argv + argc) {}
+
+    /// Whether an option is there. Takes it away.
+    bool take(std::string_view option) { return std::erase(words_, option) > 0; }
+
+    /// What is left when all options are taken.
+    const std::vector<std::string>& scenes() const { return words_; }
+
+    /// The same, or those of the tests where none is named.
+    std::vector<std::string> scenes_or_fixtures() const {
+        return words_.empty() ? std::vector<std::string>{LIGHTBIN_FIXTURES "/nova.glb",
+                                                         LIGHTBIN_FIXTURES "/darkness.glb"}
+                              : words_;
+    }
+
+private:
+    std::vector<std::string> words_;
+};
