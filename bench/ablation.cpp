@@ -7,13 +7,13 @@
 // evaluation must cost, in nanoseconds of the same clock, for the change to save time as a whole;
 // z_bounds_us: what reduce_depth takes here for these tiles, in no other column (a GPU makes them where the
 // depth buffer lies).
+#include "arguments.hpp"
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include <cstring>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -140,13 +140,11 @@ std::string pays(double us_more, double evaluations_less, double pixels) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-    bool quick = false;
+    Arguments arguments(argc, argv);
+    const bool quick = arguments.take("--quick");
     std::vector<BenchScene> scenes = scene_kinds();
-    for (int i = 1; i < argc; ++i)
-        if (std::strcmp(argv[i], "--quick") == 0)
-            quick = true;
-        else
-            scenes.push_back(glb_scenes(argv[i]).front());
+    for (const std::string& path : arguments.scenes())
+        scenes.push_back(glb_scenes(path).front());
 
     std::FILE* const csv = open_report(
         "ablation.csv",

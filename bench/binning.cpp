@@ -5,6 +5,8 @@
 #include "flat.hpp"
 #include "frames.hpp"
 #include "goals.hpp"
+#include "measure.hpp"
+#include "names.hpp"
 #include "reference.hpp"
 
 #include <lightbin/binner.hpp>
@@ -13,7 +15,6 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -54,40 +55,6 @@ private:
     tbb::task_arena arena_;
 };
 
-const char* name(Isa isa) {
-    switch (isa) {
-    case Isa::scalar:
-        return "scalar";
-    case Isa::sse2:
-        return "sse2";
-    case Isa::avx2:
-        return "avx2";
-    case Isa::avx512:
-        return "avx512";
-    case Isa::neon:
-        return "neon";
-    }
-    return "?";
-}
-
-const char* name(DepthTest test) {
-    switch (test) {
-    case DepthTest::none:
-        return "none";
-    case DepthTest::interval:
-        return "interval";
-    case DepthTest::box:
-        return "box";
-    case DepthTest::split_box:
-        return "split_box";
-    }
-    return "?";
-}
-
-const char* name(Footprint footprint) {
-    return footprint == Footprint::rectangle ? "rectangle" : "silhouette";
-}
-
 /// The frames of a case, kept while the cases that follow have the same.
 const std::vector<Frame>& frames_of(const Case& which) {
     static std::vector<Frame> frames;
@@ -114,18 +81,6 @@ struct MadeBounds {
         bounds = *lightbin::reduce_depth(view, {.depth = depth}, min, max, gap_min, gap_max);
     }
 };
-
-template <class Work> double seconds(Work work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double percentile(std::vector<double>& values, double share) {
-    const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * double(values.size() - 1));
-    std::nth_element(values.begin(), place, values.end());
-    return *place;
-}
 
 /// Stops the run unless the lists hold what the double-precision two-pass finds, and next to nothing else.
 template <class Grid>
@@ -245,9 +200,9 @@ template <Options options> void build(benchmark::State& state, const Case& which
     const Result result = {.set = which.set,
                            .lights = n,
                            .tile_size = which.tile_size,
-                           .footprint = name(options.footprint),
-                           .depth_test = name(options.depth_test),
-                           .tier = name(options.isa),
+                           .footprint = name_of(options.footprint),
+                           .depth_test = name_of(options.depth_test),
+                           .tier = name_of(options.isa),
                            .threads = which.threads,
                            .ns_per_light = ns / lights,
                            .ns_per_entry = ns / std::max(entries, 1.0),
@@ -268,7 +223,7 @@ public:
             "ratio: of the medians, to the flat baseline (interval: to its interval twin); spread: 10th to "
             "90th\n"
             "percentile of the turns' ratios; entries: a light; x store: to writing the index list once\n\n",
-            name(lightbin::detail::machine_isa(Options{}.isa)));
+            name_of(lightbin::detail::machine_isa(Options{}.isa)));
         std::printf("%-16s%8s%4s %-11s%-10s%-7s%2s%10s%10s%8s%8s%9s%9s\n", "set", "n", "px", "footprint",
                     "depth", "tier", "th", "ns/light", "ns/entry", "ratio", "spread", "entries", "x store");
         return true;
@@ -286,8 +241,8 @@ public:
 template <Options options> void add(const Case& which) {
     if (lightbin::detail::machine_isa(options.isa) != options.isa) return;  // not on this machine
     const std::string label = which.set + "/" + std::to_string(which.lights) + "/" +
-                              std::to_string(which.tile_size) + "px/" + name(options.footprint) + "/" +
-                              name(options.depth_test) + "/" + name(options.isa) + "/" +
+                              std::to_string(which.tile_size) + "px/" + name_of(options.footprint) + "/" +
+                              name_of(options.depth_test) + "/" + name_of(options.isa) + "/" +
                               std::to_string(which.threads);
     benchmark::RegisterBenchmark(label.c_str(), build<options>, which)->Iterations(1)->UseManualTime();
 }

@@ -24,12 +24,12 @@
 // these scenes, rmse 0.05 to 0.13) is nearer to unbounded lights than white / 256 without (50 to 92
 // evaluations, 0.10 to 0.18); from white / 256 on no light's own loss is more than a step of 8 bits.
 // Unbounded lights shine through walls, though: much of what is lost should be.
+#include "arguments.hpp"
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
 
 #include <glm/geometric.hpp>
 
-#include <cstring>
 #include <exception>
 
 namespace {
@@ -174,20 +174,14 @@ void study(const BenchScene& scene, bool quick, std::FILE* csv) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-    bool quick = false;
-    std::vector<std::string> paths;
-    for (int i = 1; i < argc; ++i)
-        if (std::strcmp(argv[i], "--quick") == 0)
-            quick = true;
-        else
-            paths.push_back(argv[i]);
-    if (paths.empty()) paths = {LIGHTBIN_FIXTURES "/nova.glb", LIGHTBIN_FIXTURES "/darkness.glb"};
+    Arguments arguments(argc, argv);
+    const bool quick = arguments.take("--quick");
 
     std::FILE* const csv = open_report(
         "cutoff.csv", "scene,lights,window,cutoff,build_us,us,rmse,largest,lost,rmse_lifted,evals");
     for (const BenchScene& scene : {scenes::field_with_depth(), scenes::street(), scenes::corridor()})
         study(scene, quick, csv);
-    for (const std::string& path : paths)
+    for (const std::string& path : arguments.scenes_or_fixtures())
         study(glb_scenes(path).front(), quick, csv);
     std::fclose(csv);
 } catch (const std::exception& problem) {

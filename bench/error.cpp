@@ -16,11 +16,11 @@
 //   us, ratio       median time of a build, and as a part of the flat baseline's (with Z interval tests for
 //                   every rung with a depth test), on rotating light sets; Z bounds not included
 //   reduce_us       what making the Z bounds of one view takes
+#include "arguments.hpp"
 #include "exact.hpp"
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
 
-#include <cstring>
 #include <exception>
 #include <map>
 
@@ -223,20 +223,14 @@ std::vector<Case> cases(const std::vector<std::string>& paths) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-    std::vector<std::string> paths;
-    for (int i = 1; i < argc; ++i)
-        if (std::strcmp(argv[i], "--quick") == 0)
-            quick = true;
-        else
-            paths.push_back(argv[i]);
-    if (paths.empty()) paths = {LIGHTBIN_FIXTURES "/nova.glb", LIGHTBIN_FIXTURES "/darkness.glb"};
-
+    Arguments arguments(argc, argv);
+    quick = arguments.take("--quick");
     std::FILE* const csv =
         open_report("error_vs_time.csv", "scene,views,tile_px,footprint,depth_test,misses,verdicts,by_"
                                          "rationals,entries,exact,excess,lit,excess_lit,"
                                          "margin,evals,evals_beyond,index_bytes,us,ratio,reduce_us");
     std::uint64_t misses = 0;
-    for (const Case& scene : cases(paths))
+    for (const Case& scene : cases(arguments.scenes_or_fixtures()))
         for (const int tile_size : {8, 16, 32, 64}) {
             Report report;
             time(scene, tile_size, report);

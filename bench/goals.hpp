@@ -2,6 +2,8 @@
 // What was measured, as a file and held against the project's goals.
 #pragma once
 
+#include "measure.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -27,11 +29,9 @@ struct Result {
 };
 
 inline void write_csv(const std::vector<Result>& results, const char* path) {
-    std::FILE* csv = std::fopen(path, "w");
-    if (csv == nullptr) return std::perror(path), std::exit(EXIT_FAILURE);
-    std::fputs(
-        "set,n,tile_px,footprint,depth_test,tier,threads,ns_per_light,ns_per_entry,ratio_to_flat,spread\n",
-        csv);
+    std::FILE* const csv = open_report(
+        path,
+        "set,n,tile_px,footprint,depth_test,tier,threads,ns_per_light,ns_per_entry,ratio_to_flat,spread");
     for (const Result& r : results)
         std::fprintf(csv, "%s,%zu,%d,%s,%s,%s,%d,%.3f,%.4f,%.4f,%.4f\n", r.set.c_str(), r.lights, r.tile_size,
                      r.footprint.c_str(), r.depth_test.c_str(), r.tier.c_str(), r.threads, r.ns_per_light,
