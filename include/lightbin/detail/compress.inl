@@ -425,9 +425,11 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
         std::uint64_t* masks = nullptr;
         if constexpr (with_words) masks = scratch.masks.room(longest + 64);
         // Empty lists share the words of one without a bit.
-        std::uint32_t ids_used = 0, words_used = 16;
+        std::uint32_t ids_used = 0, words_used = 24;
         std::fill_n(scratch.words.room(words_used), words_used, 0u);
         *scratch.uppers.room(1) = 0;
+        // Lists of up to 8 have their own form where most are such: elsewhere it would be one more to mispredict.
+        const std::uint32_t up_to_8 = longest <= 32 ? 8 : 0;
         Chunk chunk = {};
         for (unsigned x = 0; x < width; ++x) {  // step 2
             const std::size_t list = std::size_t{band - first_listed} * panels + x / panel_side,
@@ -479,12 +481,10 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
             in_row[x] = {};
             if (count == 0) continue;
             in_row[x] = {count, ids_used, words_used};
-            const std::uint32_t needed = count == 0 ? 0
-                                         : count < 32
-                                             ? 40
-                                             : (count + 63) / 64 * group;  // short lists: see store_rows
+            const std::uint32_t needed =
+                count < 32 ? 40 : (count + 63) / 64 * group;  // short lists: see store_rows
             std::uint64_t* words = scratch.words.room(words_used + needed, words_used) + words_used;
-            if (count <= 8) {
+            if (count <= up_to_8) {
                 store_rows<with_words, 1>(masks, columns, rows, count, words);
             } else if (count <= 16) {
                 store_rows<with_words, 2>(masks, columns, rows, count, words);
@@ -518,7 +518,7 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
                 if (count < 32) {
                     const __m512i table = load(ids);
                     std::uint32_t n;
-                    if (count <= 8)
+                    if (count <= up_to_8)
                         n = append_row<1>(out, tiles, columns_mask, at, words, row, table, uppers[0]);
                     else if (count <= 16)
                         n = append_row<2>(out, tiles, columns_mask, at, words, row, table, uppers[0]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Step 1 of supertile.inl by scanning, on AVX2. Instead of each light being inserted in the lists it belongs to, a
-// band of 8 tile rows picks its lights out of all, and each of its supertiles out of the band's: 32 at a time and
-// without a branch on what a light covers. Where a row has very many supertiles, inserting is cheaper.
+// Step 1 of supertile.inl by scanning, on AVX2. Instead of each light being inserted in the lists it belongs
+// to, a band of 8 tile rows picks its lights out of all, and each of its supertiles out of the band's: 32 at a
+// time and without a branch on what a light covers. Where a row has very many supertiles, inserting is cheaper.
 
 inline constexpr bool scans_lists = true;
 
@@ -52,8 +52,8 @@ LIGHTBIN_TARGET inline void store_chosen(std::uint8_t* a_to, std::uint8_t* b_to,
     _mm_storel_epi64(reinterpret_cast<__m128i*>(b_to), _mm_unpackhi_epi64(first, first));
 }
 
-/// Picks the lights of the band of tile rows top..end_row-1 into scratch.band_*: the columns that they cover, first..end-1,
-/// their byte of rows, and id or, for words, visible index. Returns how many.
+/// Picks the lights of the band of tile rows top..end_row-1 into scratch.band_*: the columns that they cover,
+/// first..end-1, their byte of rows, and id or, for words, visible index. Returns how many.
 template <bool with_words, class Id>
 LIGHTBIN_TARGET std::uint32_t scan_band(const BinJob<Id>& job, Scratch& scratch, unsigned top,
                                         unsigned end_row) {
