@@ -14,6 +14,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <cmath>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -151,7 +152,8 @@ int main(int argc, char** argv) try {
         "scene,lights,part,against,tile_px,us,evals,index_bytes,us_more,evals_less,pays_ns,z_bounds_us");
     const std::vector<Part> all = parts();
     std::vector<std::string> rows(all.size());
-    std::string head = "| part | against |", line = "| --- | --- |";
+    std::string head = "| part | against |", line = "| --- | --- |",
+                z_bounds = "| making Z minimum and maximum of 16 px tiles here | none |";
     for (const BenchScene& scene : scenes) {
         const Picture picture = rasterise(scene, screen);
         const double pixels = static_cast<double>(
@@ -176,6 +178,7 @@ int main(int argc, char** argv) try {
                 std::snprintf(cell, sizeof cell, " %+.1f us, %+.2f |", more, change);
             rows[i] += cell;
         }
+        z_bounds += " +" + std::to_string(std::lround(measured[1].z_bounds_us)) + " us |";
         std::fprintf(stderr, "%s\n", scene.name.c_str());
     }
     std::fclose(csv);
@@ -185,6 +188,7 @@ int main(int argc, char** argv) try {
     for (std::size_t i = 0; i < all.size(); ++i)
         std::printf("| %s | %s |%s\n", all[i].name,
                     i == 0 ? "" : all[static_cast<std::size_t>(all[i].against)].name, rows[i].c_str());
+    std::printf("%s\n", z_bounds.c_str());
 } catch (const std::exception& problem) {
     std::fprintf(stderr, "ablation: %s\n", problem.what());
     return EXIT_FAILURE;

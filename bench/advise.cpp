@@ -65,9 +65,10 @@ template <Isa isa> std::vector<Candidate> candidates() {
 /// The views of all plans on a scene, by tile size.
 class Views {
 public:
-    explicit Views(const BenchScene& scene) : picture_(rasterise(scene, screen)) {
+    explicit Views(const BenchScene& scene) {
+        const Picture picture = rasterise(scene, screen);
         for (const int tile_size : {8, 16, 32, 64, screen.width})
-            views_.emplace_back(scene, picture_, tile_size);
+            views_.emplace_back(scene, picture, tile_size);
     }
 
     const TiledView& of(int tile_size) const {
@@ -75,20 +76,7 @@ public:
                                      [&](const TiledView& v) { return v.view.tile_size() == tile_size; });
     }
 
-    /// Sum over the drawn pixels of their tiles' counts.
-    double evaluations(const TiledView& view, std::span<const lightbin::Tile> tiles) const {
-        double sum = 0;
-        for (int y = 0; y < screen.height; ++y)
-            for (int x = 0; x < screen.width; ++x) {
-                const int t = view.view.tile_size(), tile = y / t * view.view.tiles_x() + x / t;
-                if (picture_.triangle[static_cast<std::size_t>(y * screen.width + x)] != Picture::nothing)
-                    sum += tiles[static_cast<std::size_t>(tile)].count;
-            }
-        return sum;
-    }
-
 private:
-    Picture picture_;
     std::vector<TiledView> views_;
 };
 
@@ -166,10 +154,10 @@ void judge(const BenchScene& scene, std::FILE* plans_csv, std::FILE* csv, Regret
     time(sweep, views, sets);
     for (Candidate& candidate : sweep) {
         const TiledView& view = views.of(candidate.plan.tile_size);
-        candidate.evaluations = views.evaluations(view, candidate.build(view, sets[0]));
+        candidate.evaluations = view.all_evaluations(candidate.build(view, sets[0]));
     }
     const std::vector<lightbin::Tile> one(1, {0, static_cast<std::uint32_t>(sets[0].size())});
-    sweep.push_back({{.tiled = false}, {}, 0, views.evaluations(views.of(screen.width), one)});
+    sweep.push_back({{.tiled = false}, {}, 0, views.of(screen.width).all_evaluations(one)});
     const auto measured = [&](const Plan& plan) -> const Candidate& {
         const auto found =
             std::ranges::find_if(sweep, [&](const Candidate& c) { return same(c.plan, plan); });
@@ -277,7 +265,8 @@ std::vector<Lesson> lessons() {
     return all;
 }
 
-template <Isa isa> void fit_tier(const std::vector<Lesson>& lessons) {
+/// Returns the tier's line of the build models.
+template <Isa isa> std::string fit_tier(const std::vector<Lesson>& lessons) {
     std::vector<BuildTerms> rows;
     std::vector<double> times;
     for (const Lesson& lesson : lessons) {
@@ -304,15 +293,18 @@ template <Isa isa> void fit_tier(const std::vector<Lesson>& lessons) {
     for (std::size_t i = 0; i < rows.size(); ++i)
         ratios.push_back(predicted(rows[i], constants) / times[i]);
     std::ranges::sort(ratios);
-    std::printf("    {");
-    for (std::size_t k = 0; k < constants.size(); ++k)
-        std::printf("%s%.3g", k == 0 ? "" : ", ", constants[k]);
     const auto at = [&](double share) {
         return ratios[static_cast<std::size_t>(share * double(ratios.size() - 1))];
     };
-    std::printf("},  // %s: %zu builds, predicted over measured %.2f (5 %%), %.2f (median), %.2f (95 %%)\n",
-                name_of(isa), rows.size(), at(0.05), at(0.5), at(0.95));
-    std::fflush(stdout);
+    std::fprintf(stderr, "%s: %zu builds, predicted over measured %.2f (5 %%), %.2f (median), %.2f (95 %%)\n",
+                 name_of(isa), rows.size(), at(0.05), at(0.5), at(0.95));
+    std::string line;
+    for (const double constant : constants) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%s%.3g", line.empty() ? "    {" : ", ", constant);
+        line += text;
+    }
+    return line + "},\n";
 }
 
 void print(const Regrets& regrets) {
@@ -351,9 +343,14 @@ int main(int argc, char** argv) try {
     if (arguments.take("--quick")) turns = 5;
     if (arguments.take("--fit")) {
         const std::vector<Lesson> all = lessons();
+        std::string lines, sse2;
         for (const Isa isa : {Isa::scalar, Isa::sse2, Isa::avx2, Isa::avx512})
-            if (lightbin::detail::machine_isa(isa) == isa)
-                with_isa(isa, [&]<Isa tier> { fit_tier<tier>(all); });
+            with_isa(isa, [&]<Isa tier> {
+                if (lightbin::detail::machine_isa(tier) != tier) return;
+                lines += fit_tier<tier>(all);
+                if (tier == Isa::sse2) sse2 = lines.substr(lines.find('\n') + 1);
+            });
+        std::printf("%s    // NEON: not measured, as SSE2\n%s", lines.c_str(), sse2.c_str());
         return EXIT_SUCCESS;
     }
     Isa isa = lightbin::detail::machine_isa(lightbin::Options{}.isa);

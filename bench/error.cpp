@@ -22,7 +22,6 @@
 #include "ladder.hpp"
 
 #include <exception>
-#include <map>
 
 namespace {
 
@@ -119,7 +118,7 @@ void count(const SeenScene& seen, int tile_size, Report& report) {
         Row& row = report.rows[rung];
         const auto grid = bin(view, lights);
         row.entries += grid.indices().size();
-        row.evaluations += view.evaluations(grid.tiles()) * static_cast<double>(view.all_drawn);
+        row.evaluations += view.all_evaluations(grid.tiles());
         for (std::size_t tile = 0; tile < truth.tiles.size(); ++tile) {
             const lightbin::Tile list = grid.tiles()[tile];
             const std::uint32_t* id = grid.indices().data() + list.offset;

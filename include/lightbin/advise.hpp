@@ -107,7 +107,7 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
     const Isa isa = detail::machine_isa(costs.isa);
     detail::Survey survey = detail::survey_rectangles(isa, view, source, bounds);
     // A pair takes about half as long as this, so asking takes less than a build.
-    constexpr double ns_a_pair = 800, fewest = 48, most = 384;
+    constexpr double ns_a_pair = 860, fewest = 48, most = 384;
     const double plain_ns = detail::predicted_build_ns(isa, detail::build_terms(survey, survey.grids[0], 0));
     const double pairs = std::clamp(plain_ns / ns_a_pair, fewest, most);
     detail::survey_pairs(view, source, bounds, static_cast<std::size_t>(pairs), survey);
@@ -139,7 +139,7 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
                    0);
     for (const detail::GridSurvey& grid : survey.grids)
         for (std::size_t rung = 0; rung < std::size(detail::rungs); ++rung)
-            if (detail::weighed(detail::rungs[rung].depth_test, bounds, grid.shift)) weigh_grid(grid, rung);
+            if (detail::weighed(detail::rungs[rung].depth_test, bounds)) weigh_grid(grid, rung);
     return Advice(std::move(plans));
 }
 

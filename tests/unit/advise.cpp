@@ -165,7 +165,7 @@ TEST_CASE("the evaluations of lists with Z are near those of the built grids") {
             ++plans;
         }
     }
-    CHECK(plans == 4 * (4 * 2 + 3));  // no split_box of 64 pixels
+    CHECK(plans == 4 * 4 * 3);
     CHECK(std::sqrt(squares / plans) < 0.1);
     CHECK(std::sqrt(surveyed_squares / plans) < 0.01);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // How long a build takes: what the grid holds, times constants. They were fitted by `sh bench/run.sh advise
 // --fit` (bench/advise.cpp) on an AMD EPYC (Zen 5), g++ 12, one thread. Nine in ten of 512 builds with AVX-512
-// take 0.7 to 2 times what is predicted. Another machine is brought in by one factor, Costs::machine.
+// take 0.7 to 1.8 times what is predicted. Another machine is brought in by one factor, Costs::machine.
 #pragma once
 
 #include <lightbin/detail/platform.hpp>
@@ -32,12 +32,12 @@ inline BuildTerms build_terms(const Survey& survey, const GridSurvey& grid, std:
 inline constexpr BuildTerms build_models[] = {
     // call, light, tile, supertile with any light, supertile of a light, entry, entry of a tested light,
     // silhouette row, then the two kinds of supertile again for box, and for split_box
-    {0, 3.48, 0.185, 29.4, 12.9, 0.388, 0.568, 36.3, 288, 67.6, 469, 108},
-    {49.2, 1.1, 0.261, 39.7, 12.1, 0.157, 0.467, 17.7, 120, 16.3, 190, 29.3},
-    {29.6, 0.647, 0.252, 42.7, 6.83, 0.0287, 0.326, 12.6, 83.3, 8.81, 128, 17.3},
-    {95.3, 0.441, 0.132, 35.4, 2.6, 0.0431, 0.238, 10.4, 69.8, 8.15, 115, 13.6},
+    {0, 3.39, 0.184, 31.3, 12.7, 0.399, 0.522, 35.5, 290, 69.2, 449, 115},
+    {58.3, 1.16, 0.229, 41.4, 12.1, 0.14, 0.439, 17.6, 108, 16.1, 173, 29.2},
+    {36.2, 0.665, 0.229, 43.7, 6.9, 0.0242, 0.324, 13.1, 92.1, 8.92, 111, 17.5},
+    {87, 0.338, 0.0926, 27.1, 2.65, 0.0337, 0.237, 10.2, 57.7, 8.84, 89.6, 13.3},
     // NEON: not measured, as SSE2
-    {49.2, 1.1, 0.261, 39.7, 12.1, 0.157, 0.467, 17.7, 120, 16.3, 190, 29.3},
+    {58.3, 1.16, 0.229, 41.4, 12.1, 0.14, 0.439, 17.6, 108, 16.1, 173, 29.2},
 };
 
 inline double predicted_build_ns(Isa isa, const BuildTerms& terms) {

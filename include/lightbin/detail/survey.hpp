@@ -36,9 +36,9 @@ inline constexpr Rung rungs[] = {{Footprint::rectangle, DepthTest::none},
                                  {Footprint::silhouette, DepthTest::none}};
 inline constexpr std::size_t silhouettes = 3;
 
-/// Whether Z bounds allow a depth test in a grid of 2^shift times their tiles. Few of the largest have a gap.
-inline bool weighed(DepthTest test, const ZBounds& bounds, int shift) {
-    if (test == DepthTest::split_box) return !bounds.gap_min.empty() && !bounds.gap_max.empty() && shift < 3;
+/// Whether Z bounds allow a depth test.
+inline bool weighed(DepthTest test, const ZBounds& bounds) {
+    if (test == DepthTest::split_box) return !bounds.gap_min.empty() && !bounds.gap_max.empty();
     return test == DepthTest::none || !bounds.min.empty() || !bounds.max.empty();
 }
 
@@ -156,7 +156,7 @@ inline std::size_t tests_passed(const View& view, const ZBounds& bounds, const C
     float cells[12 * 64];  // planes of 64 tiles, of which the first is the one
     scalar::store_boxes<DepthTest::box>(grid, cells, x0, x1, y0, y1, cell.min, cell.max, 0, 0);
     if (scalar::tiles_met<DepthTest::box>(cells, light, 1) == 0) return 0;
-    if (!weighed(DepthTest::split_box, bounds, shift)) return 1;
+    if (!weighed(DepthTest::split_box, bounds)) return 1;
     merge_gaps(view, bounds, shift, x, y, cell);
     scalar::store_boxes<DepthTest::split_box>(grid, cells, x0, x1, y0, y1, cell.min, cell.max, cell.gap_min,
                                               cell.gap_max);
@@ -253,7 +253,7 @@ inline void add_pair(const View& view, const ZBounds& bounds, const View& grid, 
 template <class Light, class ToViewSphere>
 void survey_pairs(const View& view, const Lights<Light, ToViewSphere>& lights, const ZBounds& bounds,
                   std::size_t count, Survey& survey) {
-    if (survey.visible == 0 || !weighed(DepthTest::box, bounds, 0)) return;
+    if (survey.visible == 0 || !weighed(DepthTest::box, bounds)) return;
     PairSums sums[4];
     const FootprintArrays& footprints = survey.footprints.arrays();
     const double area = survey.grids[0].entries[0] / survey.lights_each;
