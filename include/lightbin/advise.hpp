@@ -50,7 +50,7 @@ struct Plan {
 class Advice {
 public:
     explicit Advice(std::vector<Plan> plans) : plans_(std::move(plans)) {
-        std::ranges::stable_sort(plans_, {}, &Plan::total_ns);
+        std::ranges::sort(plans_, {}, &Plan::total_ns);
     }
 
     const Plan& best() const { return plans_[0]; }
