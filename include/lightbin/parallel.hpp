@@ -28,7 +28,7 @@ public:
     /// start_ns  about how long it takes until `run` has its threads at work. What would gain less is done by the
     ///           calling thread alone. The default is that of threads asleep; 0 shares all that can be shared.
     template <class Run>
-    Parallel(std::size_t workers, Run&& run, double start_ns = 25000)
+    Parallel(std::size_t workers, Run&& run, double start_ns = 50000)
         : workers_(workers > 1 ? workers : 1), start_ns_(start_ns),
           run_(const_cast<void*>(static_cast<const void*>(std::addressof(run)))),
           start_([](void* function, std::size_t n, Body body) {
