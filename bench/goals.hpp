@@ -154,11 +154,12 @@ inline void print_scale_goals(const std::vector<Result>& results) {
               false);
         print("field4, ns a light, 1,000,000 to 10,000", 1.5, 1.1,
               pick("field4", 1000000, 1, ns) / pick("field4", 10000, 1, ns), false);
-        for (const auto& [what, set, n] :
-             {std::tuple("2 threads, 10,000 of field200, times as fast", "field200", 10000),
-              std::tuple("2 threads, 10,000 of field20, times as fast", "field20", 10000),
-              std::tuple("2 threads, 256 of field4, times as fast (no goal)", "field4", 256)})
-            print(what, n == 256 ? 0 : 1.5, n == 256 ? 0 : 1.9,
-                  pick(set, std::size_t(n), 1, ratio) / pick(set, std::size_t(n), 2, ratio), true);
+        // Sharing must never make a build slower; a twentieth is what the clock can tell.
+        for (const auto& [what, set, n, must, aim] :
+             {std::tuple("2 threads, 10,000 of field200, times as fast", "field200", 10000, 1.5, 1.9),
+              std::tuple("2 threads, 10,000 of field20, no slower", "field20", 10000, 0.95, 1.0),
+              std::tuple("2 threads, 256 of field4, no slower", "field4", 256, 0.95, 1.0)})
+            print(what, must, aim, pick(set, std::size_t(n), 1, ratio) / pick(set, std::size_t(n), 2, ratio),
+                  true);
     }
 }
