@@ -37,6 +37,16 @@ inline double sqrt(double a) {
 
 #include <lightbin/detail/vectors.inl>
 
+#include <lightbin/detail/depth_columns.inl>
+
+/// From here on without a branch: nothing predicts which side of the view axis a light is on.
+inline float select(bool mask, float a, float b) {
+    const float either[] = {b, a};
+    return either[mask];
+}
+inline float abs(float a) {
+    return std::fabs(a);
+}
 inline unsigned bits(bool mask) {
     return mask;
 }
@@ -60,8 +70,6 @@ inline void store_spans(RowSpan* spans, double first, double last) {
 #include <lightbin/detail/project.inl>
 
 #include <lightbin/detail/silhouette.inl>
-
-#include <lightbin/detail/depth_columns.inl>
 
 #include <lightbin/detail/tile_masks.inl>
 
