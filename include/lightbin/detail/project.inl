@@ -159,6 +159,25 @@ LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCo
     }
 }
 
+/// Whether eight spheres are out of view beyond doubt, for the scalar tier: a loop that compilers make vectors of,
+/// and not inline, as within another they don't. They may fuse products and sums there, so it asks for twice the
+/// distance to a side plane that project does: what is out here is out there.
+LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline bool eight_out_of_view(const Camera& camera, const Sphere* spheres) {
+    Sphere eight[8];
+    std::memcpy(eight, spheres, sizeof eight);
+    int out = 1;
+    for (const Sphere& sphere : eight) {
+        const float a = std::fabs(sphere.x), b = std::fabs(sphere.y), z = sphere.z * camera.z_sign;
+        const float r = sphere.radius, size = a + b + std::fabs(z) + r;
+        const float aside_x = a * camera.x.side + z * camera.x.side_z - r;
+        const float aside_y = b * camera.y.side + z * camera.y.side_z - r;
+        out &= (size <= 0x1p40f) & (r >= 0x1p-40f) &
+               ((z + r < camera.near_depth) | (z - r > camera.far_depth) |
+                ((aside_x > aside_y ? aside_x : aside_y) > size * 0x1p-20f));
+    }
+    return out != 0;
+}
+
 /// Appends the footprints of those of the `count` spheres that are in view. The first sphere has id
 /// `first_id`.
 ///
@@ -171,9 +190,16 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const Sphere* spheres,
     unsigned visible[ChunkRects::size / lanes];
     std::uint8_t careful[ChunkRects::size];
     Sphere padded[lanes];
-    for (; count > 0; spheres += ChunkRects::size, first_id += ChunkRects::size) {
-        const std::uint32_t here = count < ChunkRects::size ? count : ChunkRects::size;
-        count -= here;
+    std::uint32_t most = lanes == 1 ? 8 : ChunkRects::size;
+    for (std::uint32_t here; count > 0; count -= here, spheres += here, first_id += here) {
+        here = count < most ? count : most;
+        if constexpr (lanes == 1) {
+            if (here >= 8 && eight_out_of_view(camera, spheres)) {
+                here = most = 8;
+                continue;
+            }
+            if (most < ChunkRects::size) most *= 2;  // ask less often where the answer is no
+        }
         std::uint32_t careful_count = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
             const Sphere* block = spheres + i;
