@@ -55,7 +55,8 @@ public:
             if (move) arrays_.spheres = kept = spheres_.room(lights_);
         detail::FootprintRun* runs = runs_.room(parts);
         detail::ProjectCounts* counts = part_counts_.room(parts);
-        const detail::ProjectKernel kernel = detail::project_kernel(isa);
+        // One light is done sooner than a vector is filled up with copies of it.
+        const detail::ProjectKernel kernel = detail::project_kernel(lights_ > 1 ? isa : Isa::scalar);
         parallel.run(parts, [&](std::size_t part) {
             const std::size_t end = (std::min)((part + 1) * size, lights_);
             const detail::FootprintArrays out = arrays_.from(part * stride);
