@@ -127,6 +127,31 @@ TEST_CASE("all tiers project to the same bytes") {
     }
 }
 
+TEST_CASE("all tiers project lights that all but touch the sides of the view to the same bytes") {
+    std::mt19937 random(5);
+    const auto between = [&](float low, float high) {
+        return std::uniform_real_distribution<float>(low, high)(random);
+    };
+    for (int camera = 0; camera < 40; ++camera) {
+        const float slope = std::exp(between(-2, 1)), slant = std::hypot(slope, 1.0f);
+        const auto projection = glm::perspective(2 * std::atan(slope), 1.0f, 0.1f, 1000.0f);
+        const View view = *View::from_projection(projection, {1000, 1000}, {.tile_size = 20});
+        std::vector<glm::vec4> lights(2000);
+        for (glm::vec4& light : lights) {
+            const float depth = std::exp(between(0, 6)), radius = depth * std::exp(between(-6, 0)),
+                        aside = depth * slope + radius * slant + depth * between(0, 0x1p-19f);
+            light = {camera % 2 == 0 ? aside : 0, camera % 2 == 0 ? 0 : -aside, -depth, radius};
+        }
+        Silhouettes footprints;
+        footprints.project(Isa::scalar, view, view_space(lights), {});
+        const auto expected = words(footprints);
+        for (const Isa isa : {Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon}) {
+            footprints.project(detail::machine_isa(isa), view, view_space(lights), {});
+            CHECK((words(footprints) == expected));
+        }
+    }
+}
+
 TEST_CASE("threads project to the same bytes") {
     const Scene scene = wild_scene(3, 40000);
     const auto backwards = [](std::size_t n, auto body) {
