@@ -29,7 +29,7 @@ fuzz() {
     mkdir -p "$work/$1" "$work/$1_failures"
     "$work/pack" --unpack "tests/fuzz/$1.corpus" "$work/$1"
     echo "$me: fuzzing $1 for $seconds s"
-    "$work/fuzz_$1" -max_len="$2" -timeout=30 -max_total_time="$seconds" -print_new=0 \
+    "$work/fuzz_$1" -max_len="$2" -timeout=30 -max_total_time="$seconds" \
         -artifact_prefix="$work/$1_failures/" "$work/$1" >"$work/$1.log" 2>&1 || failed="$failed $1"
     tail -n 1 "$work/$1.log"
     rm -rf "$work/$1_small"

@@ -230,7 +230,7 @@ void check_bindings(const ShaderText& made, const Question& question) {
                           set = std::to_string(binding.slot.set);
         if (push) require(line.find("(push_constant)") != std::string::npos, "no push constants", text);
         if (push || language.old || (constant && !block)) {
-            require(line.find("binding") == std::string::npos, "bound in vain", text);
+            require(line.find("binding =") == std::string::npos, "bound in vain", text);
             continue;
         }
         const std::string place = language.hlsl     ? number + (language.sets ? ", space" + set : "") + ")"
