@@ -45,8 +45,7 @@ public:
                    .runs = footprints.runs(),
                    .bounds = {},
                    .edges = {},
-                   .tiles = nullptr,
-                   .lay_out = detail::lay_out_kernel(isa)};
+                   .tiles = nullptr};
         const std::span<const float> sides[] = {bounds.min, bounds.max, bounds.gap_min, bounds.gap_max};
         for (std::size_t side = 0; side < 4; ++side) {
             if (sides[side].empty()) continue;
@@ -79,7 +78,7 @@ public:
             const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), rows);
             if (parallel.worth(static_cast<double>(room) * ns_an_entry) && parts > 1 &&
                 footprints.area() <= most) {
-                entries_ = build_parts(job, kernel, list, scratch, parallel, parts);
+                entries_ = build_parts(isa, job, kernel, list, scratch, parallel, parts);
                 return std::nullopt;
             }
         }
@@ -97,7 +96,7 @@ private:
     static constexpr double ns_an_entry = detail::masked<footprint, depth_test> ? 0.6 : 0.2;
 
     /// Builds `count` parts on the caller's threads. Returns the number of entries.
-    std::size_t build_parts(const Job& job, detail::BinKernel<Id> kernel, Id* list,
+    std::size_t build_parts(Isa isa, const Job& job, detail::BinKernel<Id> kernel, Id* list,
                             std::vector<detail::Scratch>& scratch, const Parallel& parallel,
                             std::size_t count) {
         if (scratch.size() < count) scratch.resize(count);
@@ -110,7 +109,8 @@ private:
             parallel.run(count, [&](std::size_t i) {
                 const detail::Part& part = parts[i];
                 Id* out = list + part.before;
-                if (i + 1 == count || kernel == detail::bin_scatter<Id>) {  // which writes nothing beyond
+                if (i + 1 == count ||
+                    kernel == detail::scatter_kernel<Id>(isa)) {  // which writes nothing beyond
                     kernel(job, scratch[i],
                            {part.begin, part.end, out, static_cast<std::uint32_t>(part.before)});
                     return;

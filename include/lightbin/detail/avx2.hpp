@@ -7,6 +7,7 @@
 #if defined(LIGHTBIN_X86)
 
 #include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/supertile.hpp>
 
@@ -165,7 +166,7 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
 
 #include <lightbin/detail/scan.inl>
 
-#include <lightbin/detail/lay_out.inl>
+#include <lightbin/detail/scatter.inl>
 
 #include <lightbin/detail/supertile.inl>
 

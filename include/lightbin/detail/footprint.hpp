@@ -66,12 +66,6 @@ struct ChunkRects {
     alignas(64) std::uint16_t x0[size], y0[size], x1[size], y1[size];
 };
 
-/// Writes a row of tiles, up to a multiple of row_step: how many lights each has, the sum of the steps up to it, and
-/// where its list ends. The steps are those of the row above and the row's corners. Returns where the last list ends.
-using LayOut = std::uint32_t (*)(std::uint32_t* steps, const std::uint32_t* corners, std::size_t width,
-                                 std::uint32_t at, Tile* tiles);
-inline constexpr std::size_t row_step = 16;  ///< the longest vector
-
 /// What binning works on and writes.
 template <class Id> struct BinJob {
     const Camera* camera;
@@ -80,7 +74,6 @@ template <class Id> struct BinJob {
     const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one
     const float* edges[4];   ///< of the tiles, for boxes: low x, high x, low y, high y; see cell_boxes.hpp
     Tile* tiles;             ///< the table to write
-    LayOut lay_out;          ///< of the tier, for bin_scatter
 };
 
 /// The part of it that one call of a kernel does: the tile rows begin..end-1. Bands of 8 are counted from begin.

@@ -67,16 +67,15 @@ inline DepthKernels depth_kernels(Isa isa, std::size_t columns) {
 }
 
 /// The scalar tier has the vectors of the platform too: the text is there, and the bytes are the same.
-inline LayOut lay_out_kernel(Isa isa) {
+template <class Id> BinKernel<Id> scatter_kernel(Isa isa) {
     static_cast<void>(isa);
 #if defined(LIGHTBIN_X86)
-    if (isa == Isa::avx512) return avx512::lay_out;
-    if (isa == Isa::avx2) return avx2::lay_out;
-    return sse2::lay_out;
+    if (isa >= Isa::avx2) return bin_scatter<Id, avx2::lay_out_rows<Id>>;
+    return bin_scatter<Id, sse2::lay_out_rows<Id>>;
 #elif defined(LIGHTBIN_NEON)
-    return neon::lay_out;
+    return bin_scatter<Id, neon::lay_out_rows<Id>>;
 #else
-    return scalar::lay_out;
+    return bin_scatter<Id, scalar::lay_out_rows<Id>>;
 #endif
 }
 
@@ -85,15 +84,14 @@ template <Footprint footprint, DepthTest depth_test, class Id>
 BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint32_t lights, std::uint64_t area) {
     if constexpr (!masked<footprint, depth_test>) {
         // Nearly empty grids: a walk over all supertiles costs more than counting and scattering.
-        const std::uint64_t few = view.tile_count() / (isa == Isa::avx512 ? 4 : 1);
-        if (isa == Isa::scalar || area <= few) return bin_scatter<Id>;
+        const std::uint64_t tiles = view.tile_count();
+        const bool few = area <= tiles && (isa != Isa::avx512 || lights < tiles / 16);
+        if (isa == Isa::scalar || few) return scatter_kernel<Id>(isa);
         // Without compress, putting a light in lists costs as much as scattering it to so many tiles.
-        const std::uint64_t scattered = isa == Isa::avx512 ? 0
-                                        : isa == Isa::sse2 ? (lights < 500 ? 100 : 48)
-                                                           : 16;
+        const std::uint64_t scattered = isa == Isa::avx512 ? 0 : lights < 500 ? 100 : 48;
         // By scanning it costs less, but a few steps for each supertile.
-        const bool sparse = isa != Isa::avx2 || area < 3 * view.tile_count();
-        if (sparse && area < scattered * lights) return bin_scatter<Id>;
+        const bool sparse = isa != Isa::avx2 || area < 3 * tiles;
+        if (sparse && area < scattered * lights) return scatter_kernel<Id>(isa);
     }
 #if defined(LIGHTBIN_X86)
     if (isa == Isa::avx512) return avx512::bin_compress<footprint, depth_test, Id>;

@@ -7,6 +7,7 @@
 #if defined(LIGHTBIN_NEON)
 
 #include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/supertile.hpp>
 
@@ -81,7 +82,7 @@ inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
 
 #include <lightbin/detail/tile_masks.inl>
 
-#include <lightbin/detail/lay_out.inl>
+#include <lightbin/detail/scatter.inl>
 
 #include <lightbin/detail/supertile.inl>
 

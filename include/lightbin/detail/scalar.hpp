@@ -4,6 +4,7 @@
 
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/platform.hpp>
+#include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/supertile.hpp>
 #include <lightbin/lights.hpp>
@@ -73,14 +74,27 @@ inline void store_spans(RowSpan* spans, double first, double last) {
 
 #include <lightbin/detail/tile_masks.inl>
 
-inline std::uint32_t lay_out(std::uint32_t* steps, const std::uint32_t* corners, std::size_t width,
-                             std::uint32_t at, Tile* tiles) {
-    std::uint32_t count = 0;
-    for (std::size_t x = 0; x < width; ++x) {
-        count += steps[x] += corners[x];
-        at += count;
-        tiles[x] = {at, count};
-    }
+/// See LayOutRows.
+template <class Id>
+std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, const TileBox& box, unsigned,
+                           std::uint32_t at) {
+    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles), pitch = width + 1;
+    std::uint32_t* steps = scratch.corners.room(pitch * (box.bottom - box.top));
+    std::memset(steps, 0, pitch * (box.bottom - box.top) * sizeof *steps);
+    for (const FootprintRun& run : job.runs)
+        for (std::uint32_t i = run.begin; i < run.end; ++i)
+            for (unsigned y = (std::max<unsigned>)(job.lights.y0[i], box.top);
+                 y < box.bottom && y <= job.lights.y1[i]; ++y) {
+                ++steps[(y - box.top) * pitch + job.lights.x0[i]];
+                --steps[(y - box.top) * pitch + job.lights.x1[i] + 1];
+            }
+    Tile* tile = job.tiles + box.top * width;
+    for (unsigned y = box.top; y < box.bottom; ++y, steps += pitch)
+        for (std::uint32_t x = 0, count = 0; x < width; ++x) {
+            count += steps[x];
+            at += count;
+            *tile++ = {at, count};
+        }
     return at;
 }
 

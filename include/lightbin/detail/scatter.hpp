@@ -13,6 +13,18 @@
 #include <cstring>
 
 namespace lightbin::detail {
+
+/// Tiles left..right of the rows top..bottom-1.
+struct TileBox {
+    unsigned left, right, top, bottom;
+};
+
+/// Writes the rows of a box, from the first column to the last, each tile with how many lights it has and where its
+/// list ends, the first one at `at`. Returns where the last one ends. May write more of the rows before `writable`.
+template <class Id>
+using LayOutRows = std::uint32_t (*)(const BinJob<Id>& job, Scratch& scratch, const TileBox& box,
+                                     unsigned writable, std::uint32_t at);
+
 inline namespace LIGHTBIN_FLAVOUR {
 
 /// Tiles without lights, at a place in the index list.
@@ -39,68 +51,49 @@ inline void put_id(Id* list, Tile* row, const Tile* end, std::size_t pitch, std:
             list[--row[x].offset] = id;
 }
 
-/// Bins the tile rows of `bands`. Returns the number of entries. Never writes past them.
-template <class Id>
-std::uint64_t bin_scatter(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands) {
-    const FootprintArrays lights = job.lights;  // a copy, that no store can change
-    Id* const list = bands.out - bands.at;      // the whole list
-    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
-    const std::size_t first = bands.begin, end = bands.end, height = end - first;
-    // One more column, where rectangles at the edge end, and whole vectors.
-    const std::size_t pitch = width / row_step * row_step + row_step;
-
-    // A row's corners are cleared when the first is put there, so rows without are never touched.
-    std::uint32_t* put = scratch.cursors.room(height + 1);  // corners in a row
-    std::fill_n(put, height + 1, 0u);
-    std::uint32_t* corners = scratch.corners.room(pitch * (height + 3));
-    const auto corner_row = [=](std::size_t row) {
-        if (put[row]++ == 0) std::memset(corners + row * pitch, 0, pitch * sizeof *corners);
-        return corners + row * pitch;
-    };
+/// The part of the tile rows begin..end-1 that has lights, if there are so few that it can be much smaller. Where
+/// there are none, top is not above bottom.
+template <class Id> TileBox lit_part(const BinJob<Id>& job, unsigned begin, unsigned end) {
+    const unsigned width = static_cast<unsigned>(job.camera->x.tiles);
+    std::uint32_t count = 0;
+    for (const FootprintRun& run : job.runs)
+        count += run.end - run.begin;
+    if (count >= 16) return {0, width - 1, begin, end};
+    TileBox box = {width - 1, 0, end, begin};
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i) {
-            const std::size_t y0 = (std::max<std::size_t>)(lights.y0[i], first),
-                              y1 = (std::min<std::size_t>)(lights.y1[i] + 1u, end);
-            if (y0 >= y1) continue;
-            std::uint32_t *top = corner_row(y0 - first), *bottom = corner_row(y1 - first);
-            ++top[lights.x0[i]];
-            --top[lights.x1[i] + 1u];
-            --bottom[lights.x0[i]];
-            ++bottom[lights.x1[i] + 1u];
+            if (job.lights.y1[i] < begin || job.lights.y0[i] >= end) continue;
+            box.left = (std::min<unsigned>)(box.left, job.lights.x0[i]);
+            box.right = (std::max<unsigned>)(box.right, job.lights.x1[i]);
+            box.top = (std::min)(box.top, (std::max<unsigned>)(job.lights.y0[i], begin));
+            box.bottom = (std::max)(box.bottom, (std::min)(job.lights.y1[i] + 1u, end));
         }
+    return box;
+}
 
-    // The counts of a row are the sums of the row's steps, which are the sums of the corners above.
-    std::uint32_t *steps = corners + pitch * (height + 1), *none = steps + pitch;
-    std::memset(steps, 0, 2 * pitch * sizeof *steps);
-    Tile* last_rows = scratch.last_rows.room(pitch);
+/// Bins the tile rows of `bands`. Returns the number of entries. Never writes past them.
+template <class Id, LayOutRows<Id> lay_out_rows>
+std::uint64_t bin_scatter(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands) {
+    const FootprintArrays lights = job.lights;  // a copy, that no store can change
+    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
     std::uint32_t at = bands.at;
-    Tile *tile = job.tiles + first * width, *const tiles_end = job.tiles + end * width;
-    bool empty = true;  // the row above
-    for (std::size_t row = 0; row < height;) {
-        if (empty && put[row] == 0) {
-            const std::size_t from = row;
-            while (row < height && put[row] == 0)
-                ++row;
-            fill_empty(tile, (row - from) * width, at);
-            tile += (row - from) * width;
-            continue;
-        }
-        // Beyond a row's end are the next ones, still to be written; beyond the last one's nothing.
-        Tile* to = static_cast<std::size_t>(tiles_end - tile) < pitch ? last_rows : tile;
-        const std::uint32_t end_at =
-            job.lay_out(steps, put[row] == 0 ? none : corners + row * pitch, width, at, to);
-        if (to != tile) std::copy_n(to, width, tile);
-        empty = end_at == at;
-        at = end_at;
-        tile += width;
-        ++row;
+    constexpr unsigned some = 512;  // rows at a time, for the memory that they take
+    for (unsigned begin = bands.begin; begin < bands.end; begin += some) {
+        const unsigned end = (std::min)(begin + some, bands.end);
+        const TileBox lit = lit_part(job, begin, end);
+        const bool none = lit.top >= lit.bottom;
+        fill_empty(job.tiles + begin * width, ((none ? end : lit.top) - begin) * width, at);
+        if (none) continue;
+        at = lay_out_rows(job, scratch, lit, end, at);
+        fill_empty(job.tiles + lit.bottom * width, (end - lit.bottom) * width, at);
     }
 
     // Backward, so that each offset walks from its list's end to its begin.
+    Id* const list = bands.out - bands.at;  // the whole list
     for (std::size_t run = job.runs.size(); run-- > 0;)
         for (std::uint32_t i = job.runs[run].end; i-- > job.runs[run].begin;) {
-            const std::size_t y0 = (std::max<std::size_t>)(lights.y0[i], first),
-                              y1 = (std::min<std::size_t>)(lights.y1[i] + 1u, end);
+            const std::size_t y0 = (std::max<std::size_t>)(lights.y0[i], bands.begin),
+                              y1 = (std::min<std::size_t>)(lights.y1[i] + 1u, bands.end);
             if (y0 < y1)
                 put_id(list, job.tiles + y0 * width + lights.x0[i], job.tiles + y1 * width, width,
                        lights.x1[i] - lights.x0[i] + std::size_t{1}, static_cast<Id>(lights.ids[i]));

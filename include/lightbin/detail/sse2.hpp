@@ -7,12 +7,14 @@
 #if defined(LIGHTBIN_X86)
 
 #include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/supertile.hpp>
 
 #include <bit>
 #include <cstddef>
 #include <cstring>
+#include <array>
 #include <emmintrin.h>
 #include <utility>
 
@@ -139,7 +141,7 @@ template <class Id> std::uint32_t append(Id* out, const Packed<Id>* ids, unsigne
 
 #include <lightbin/detail/tile_masks.inl>
 
-#include <lightbin/detail/lay_out.inl>
+#include <lightbin/detail/scatter.inl>
 
 #include <lightbin/detail/supertile.inl>
 

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+// The counts and prefix sums of scatter.hpp in vectors whose lanes are tile rows, so that a sum along a row is
+// one addition a tile. Included once a tier of vectors, after its Floats.
+
+using Rows = std::uint32_t __attribute__((vector_size(sizeof(Floats))));
+using Tiles = std::uint64_t __attribute__((vector_size(sizeof(Rows))));
+inline constexpr unsigned band_rows = sizeof(Rows) / 4, tiles_stored = band_rows / 2;
+using EachRow = std::make_integer_sequence<int, band_rows>;
+using EachTile = std::make_integer_sequence<int, tiles_stored>;
+
+/// The row of pair i of paired<half>: pairs are made within 128 bits, where that is one instruction.
+constexpr int row_of(int i, int half) {
+    return i / 2 * 4 + i % 2 + 2 * half;
+}
+/// Half of the rows as tiles: of each where its list ends, and its count.
+template <int half, int... i>
+LIGHTBIN_TARGET inline Tiles paired(Rows ends, Rows counts, std::integer_sequence<int, i...>) {
+    return reinterpret_cast<Tiles>(
+        __builtin_shufflevector(ends, counts, (row_of(i / 2, half) + i % 2 * band_rows)...));
+}
+
+/// A step of turning a square of tiles: swaps the upper right part of 2x2 parts, of `by` tiles each way, with the
+/// lower left.
+template <int by, int... i>
+LIGHTBIN_TARGET inline void swap_parts(Tiles& a, Tiles& b, std::integer_sequence<int, i...>) {
+    const Tiles low = __builtin_shufflevector(a, b, (i & by ? tiles_stored + i - by : i)...);
+    b = __builtin_shufflevector(a, b, (i & by ? tiles_stored + i : i + by)...);
+    a = low;
+}
+LIGHTBIN_TARGET inline void turn(Tiles* columns) {
+    swap_parts<1>(columns[0], columns[1], EachTile{});
+    if constexpr (tiles_stored == 4) {
+        swap_parts<1>(columns[2], columns[3], EachTile{});
+        swap_parts<2>(columns[0], columns[2], EachTile{});
+        swap_parts<2>(columns[1], columns[3], EachTile{});
+    }
+}
+
+LIGHTBIN_TARGET inline Rows load_rows(const std::uint32_t* from) {
+    Rows rows;
+    std::memcpy(&rows, from, sizeof rows);
+    return rows;
+}
+LIGHTBIN_TARGET inline void store_rows(std::uint32_t* to, Rows rows) {
+    std::memcpy(to, &rows, sizeof rows);
+}
+
+LIGHTBIN_TARGET inline void add(std::uint32_t* to, Rows rows) {
+    store_rows(to, load_rows(to) + rows);
+}
+
+/// The last row in all of them.
+template <int... i> LIGHTBIN_TARGET inline Rows last(Rows rows, std::integer_sequence<int, i...>) {
+    return __builtin_shufflevector(rows, rows, (band_rows - 1 + 0 * i)...);
+}
+
+/// For each row of a band, ones from it on.
+inline constexpr auto ones_from = [] {
+    std::array<std::array<std::uint32_t, band_rows>, band_rows> rows = {};
+    for (unsigned from = 0; from < band_rows; ++from)
+        for (unsigned row = from; row < band_rows; ++row)
+            rows[from][row] = 1;
+    return rows;
+}();
+
+/// Rows of a band as they are stored: `tiles_stored` tiles of each.
+struct BandTiles {
+    Tiles low[tiles_stored], high[tiles_stored];  ///< of half the rows each, see row_of
+};
+
+/// Turns columns and stores them, row after row: so what is beyond a row's end is overwritten by the next row.
+template <int... i>
+LIGHTBIN_TARGET inline void store(const BandTiles& tiles, Tile* const* rows, std::size_t x,
+                                  std::integer_sequence<int, i...>) {
+    (std::memcpy(static_cast<void*>(rows[i] + x),
+                 &(i / 2 % 2 == 0 ? tiles.low : tiles.high)[i / 4 * 2 + i % 2], sizeof(Tiles)),
+     ...);
+}
+
+/// The tiles of a column. Then `ends` is where those of the next column to the left end, and `above` what the next
+/// band's steps are on top of.
+LIGHTBIN_TARGET inline void take_column(const std::uint32_t* steps, std::uint32_t* above, Rows& counts,
+                                        Rows& ends, Tiles& low, Tiles& high) {
+    const Rows step = load_rows(steps) + load_rows(above);
+    store_rows(above, last(step, EachRow{}));
+    counts += step;
+    low = paired<0>(ends, counts, EachRow{});
+    high = paired<1>(ends, counts, EachRow{});
+    ends -= counts;
+}
+
+/// Stores the tiles of columns from..to-1 without lights.
+template <int... i>
+LIGHTBIN_TARGET inline void lay_out_empty(Rows ends, Tile* const* rows, std::size_t from, std::size_t to,
+                                          std::integer_sequence<int, i...>) {
+    BandTiles tiles;
+    ((tiles.low[i] = paired<0>(ends, Rows{}, EachRow{}), tiles.high[i] = paired<1>(ends, Rows{}, EachRow{})),
+     ...);
+    turn(tiles.low);
+    turn(tiles.high);
+    for (std::size_t x = to; x > from;)
+        store(tiles, rows, x -= tiles_stored, EachRow{});
+}
+
+/// Writes a band's tiles from right to left, up to a multiple of tiles_stored a row.
+///
+/// steps     of each column from..to-1, what its counts have more than the next one's, less `above`
+/// row_ends  where the list of each row ends
+template <int... i>
+LIGHTBIN_TARGET inline void lay_out(const std::uint32_t* steps, std::uint32_t* above, Rows ends,
+                                    std::size_t from, std::size_t to, std::size_t end, Tile* const* rows,
+                                    std::integer_sequence<int, i...>) {
+    constexpr int most = tiles_stored - 1;
+    lay_out_empty(ends, rows, to, end, EachTile{});
+    Rows counts = {};
+    for (std::size_t x = to - from; x > 0;) {
+        x -= tiles_stored;
+        BandTiles tiles;
+        (take_column(steps + (x + most - i) * band_rows, above + (x + most - i) * band_rows, counts, ends,
+                     tiles.low[most - i], tiles.high[most - i]),
+         ...);
+        turn(tiles.low);
+        turn(tiles.high);
+        store(tiles, rows, from + x, EachRow{});
+    }
+    lay_out_empty(ends, rows, 0, from, EachTile{});
+}
+
+/// See LayOutRows.
+template <class Id>
+LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, const TileBox& box,
+                                           unsigned writable, std::uint32_t at) {
+    const FootprintArrays lights = job.lights;  // a copy, that no store can change
+    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
+    const std::size_t from = box.left / tiles_stored * tiles_stored,
+                      to = (box.right / tiles_stored + std::size_t{1}) * tiles_stored;
+    const std::size_t height = box.bottom - box.top, band_count = height / band_rows + 1;
+
+    // A rectangle is four corners: rows from its first on, less those below its last, in its last column; and the
+    // same less in the one before its first.
+    const std::size_t pitch = (to - from + 1) * band_rows;  // from the column before the first
+    std::uint32_t* steps = scratch.corners.room(pitch * (band_count + 1) + 16);
+    steps += -reinterpret_cast<std::uintptr_t>(steps) % 64 / sizeof *steps;
+    std::memset(steps, 0, pitch * (band_count + 1) * sizeof *steps);
+    std::uint32_t* row_ends =
+        scratch.cursors.room(band_count * band_rows);  // at first, sizes less the row above's
+    std::memset(row_ends, 0, band_count * band_rows * sizeof *row_ends);
+    for (const FootprintRun& run : job.runs)
+        for (std::uint32_t i = run.begin; i < run.end; ++i) {
+            unsigned y0 = (std::max<unsigned>)(lights.y0[i], box.top),
+                     y1 = (std::min)(lights.y1[i] + 1u, box.bottom);
+            if (y0 >= y1) continue;
+            y0 -= box.top;
+            y1 -= box.top;
+            const std::uint32_t columns = lights.x1[i] - lights.x0[i] + 1u;
+            row_ends[y0] += columns;
+            row_ends[y1] -= columns;
+            std::uint32_t* column = steps + (lights.x0[i] - from) * band_rows;
+            std::uint32_t *first = column + pitch * (y0 / band_rows),
+                          *last = column + pitch * (y1 / band_rows);
+            const Rows within = load_rows(ones_from[y0 % band_rows].data()),
+                       below = load_rows(ones_from[y1 % band_rows].data());
+            add(first, Rows{} - within);
+            add(first + columns * band_rows, within);
+            add(last, below);
+            add(last + columns * band_rows, Rows{} - below);
+        }
+    std::uint32_t size = 0;
+    for (std::size_t row = 0; row < band_count * band_rows; ++row)
+        row_ends[row] = at += size += row_ends[row];
+
+    const std::size_t stored = (width + tiles_stored - 1) / tiles_stored * tiles_stored;  // tiles of a row
+    Tile *tile = job.tiles + box.top * width, *const end = job.tiles + writable * width;
+    Tile* last_rows = scratch.last_rows.room(stored * band_rows);
+    std::uint32_t* above = steps + pitch * band_count;
+    for (std::size_t row = 0; row < height; row += band_rows, steps += pitch) {
+        // Beyond a row's end are the next ones, still to be written; beyond the last one's nothing.
+        const std::size_t here = (std::min<std::size_t>)(band_rows, height - row);
+        Tile* rows[band_rows];
+        for (std::size_t i = 0; i < band_rows; ++i)
+            rows[i] = i < here && i * width + stored <= static_cast<std::size_t>(end - tile)
+                          ? tile + i * width
+                          : last_rows + i * stored;
+        lay_out(steps + band_rows, above, load_rows(row_ends + row), from, to, stored, rows, EachTile{});
+        for (std::size_t i = 0; i < here; ++i, tile += width)
+            if (rows[i] == last_rows + i * stored) std::copy_n(rows[i], width, tile);
+    }
+    return at;
+}
