@@ -92,9 +92,9 @@ private:
 /// bounds  of the view's own tiles; larger tiles' bounds are merged from them. None: no depth test is weighed
 /// costs   the build model knows the machine that it was fitted on (detail/build_model.hpp)
 ///
-/// Projects all lights as a build does; the rest is estimated from at most 512 of those in view, and from 48 to
-/// 384 pairs of a light and a tile, the more the longer a build. So asking takes less than a build of the
-/// view's tiles without options. Allocates.
+/// Projects all lights as a build does; the rest is estimated from at most 512 of those in view, and from 12 to
+/// 384 pairs of a light and a tile, the more the longer a build, but at most 12 a light. So asking takes less
+/// than a build of the view's tiles without options. Allocates.
 template <class LightRange>
 Result<Advice> advise(const View& view, const LightRange& lights, const Costs& costs = {},
                       const ZBounds& bounds = {}) {
@@ -106,8 +106,9 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
 
     const Isa isa = detail::machine_isa(costs.isa);
     detail::Survey survey = detail::survey_rectangles(isa, view, source, bounds);
-    // A pair takes about half as long as this, so asking takes less than a build.
-    constexpr double ns_a_pair = 860, fewest = 48, most = 384;
+    // A pair takes half to two thirds as long as this, so asking takes less than a build.
+    constexpr double ns_a_pair = 1300, fewest = 12;
+    const double most = (std::min)(384.0, fewest * (std::max)(survey.visible, 1.0));
     const double plain_ns = detail::predicted_build_ns(isa, detail::build_terms(survey, survey.grids[0], 0));
     const double pairs = std::clamp(plain_ns / ns_a_pair, fewest, most);
     detail::survey_pairs(view, source, bounds, static_cast<std::size_t>(pairs), survey);

@@ -33,11 +33,11 @@ inline constexpr BuildTerms build_models[] = {
     // call, light, tile, supertile with any light, supertile of a light, entry, entry of a tested light,
     // silhouette row, then the two kinds of supertile again for box, and for split_box
     {0, 3.39, 0.184, 31.3, 12.7, 0.399, 0.522, 35.5, 290, 69.2, 449, 115},
-    {58.3, 1.16, 0.229, 41.4, 12.1, 0.14, 0.439, 17.6, 108, 16.1, 173, 29.2},
+    {0, 1.7, 0.254, 49.9, 13.6, 0.282, 0.716, 25.4, 216, 24, 367, 40.3},
     {36.2, 0.665, 0.229, 43.7, 6.9, 0.0242, 0.324, 13.1, 92.1, 8.92, 111, 17.5},
     {87, 0.338, 0.0926, 27.1, 2.65, 0.0337, 0.237, 10.2, 57.7, 8.84, 89.6, 13.3},
     // NEON: not measured, as SSE2
-    {58.3, 1.16, 0.229, 41.4, 12.1, 0.14, 0.439, 17.6, 108, 16.1, 173, 29.2},
+    {0, 1.7, 0.254, 49.9, 13.6, 0.282, 0.716, 25.4, 216, 24, 367, 40.3},
 };
 
 inline double predicted_build_ns(Isa isa, const BuildTerms& terms) {
