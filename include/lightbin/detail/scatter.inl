@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The counts and prefix sums of scatter.hpp in vectors whose lanes are tile rows, so that a sum along a row is
-// one addition a tile. Included once a tier of vectors, after its Floats.
+// The counts and prefix sums of scatter.hpp. A vector is a column of a band, a lane a tile row: sums along rows are
+// then plain additions, where lanes along a row would have to be shuffled up for each. What is shuffled instead is
+// the result, a square of tiles at a time. Included once a tier of vectors, after its Floats.
 
 using Rows = std::uint32_t __attribute__((vector_size(sizeof(Floats))));
 using Tiles = std::uint64_t __attribute__((vector_size(sizeof(Rows))));
@@ -102,10 +103,12 @@ LIGHTBIN_TARGET inline void lay_out_empty(Rows ends, Tile* const* rows, std::siz
         store(tiles, rows, x -= tiles_stored, EachRow{});
 }
 
-/// Writes a band's tiles from right to left, up to a multiple of tiles_stored a row.
+/// Writes a band's tiles from right to left: columns 0..end-1, of which from..to-1 have lights; each bound a multiple
+/// of tiles_stored.
 ///
-/// steps     of each column from..to-1, what its counts have more than the next one's, less `above`
-/// row_ends  where the list of each row ends
+/// steps  of each column from..to-1, what its counts have more than the next one's, less `above`
+/// above  of each of them, the steps of the row above in every lane; then those of the band's last row
+/// ends   where the list of each row ends
 template <int... i>
 LIGHTBIN_TARGET inline void lay_out(const std::uint32_t* steps, std::uint32_t* above, Rows ends,
                                     std::size_t from, std::size_t to, std::size_t end, Tile* const* rows,
@@ -136,14 +139,14 @@ LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scrat
                       to = (box.right / tiles_stored + std::size_t{1}) * tiles_stored;
     const std::size_t height = box.bottom - box.top, band_count = height / band_rows + 1;
 
-    // A rectangle is four corners: rows from its first on, less those below its last, in its last column; and the
-    // same less in the one before its first.
+    // A rectangle is four corners: in its last column one more from its first row on, one less below its last; in the
+    // column before its first the opposite.
     const std::size_t pitch = (to - from + 1) * band_rows;  // from the column before the first
     std::uint32_t* steps = scratch.corners.room(pitch * (band_count + 1) + 16);
     steps += -reinterpret_cast<std::uintptr_t>(steps) % 64 / sizeof *steps;
     std::memset(steps, 0, pitch * (band_count + 1) * sizeof *steps);
-    std::uint32_t* row_ends =
-        scratch.cursors.room(band_count * band_rows);  // at first, sizes less the row above's
+    // At first how many entries a row has more than the one above.
+    std::uint32_t* row_ends = scratch.cursors.room(band_count * band_rows);
     std::memset(row_ends, 0, band_count * band_rows * sizeof *row_ends);
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i) {
