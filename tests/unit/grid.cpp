@@ -47,6 +47,69 @@ TEST_CASE("offsets leave no gap and ids ascend within a tile") {
     CHECK(next > 3000);
 }
 
+namespace {
+
+/// Lights whose rectangles are known: a picture of 2-pixel tiles seen straight on, a unit a pixel, and no edge of a
+/// light within a quarter of a pixel of a tile's.
+struct Plain {
+    Plain(int tiles_x, int tiles_y, std::size_t count, std::uint32_t seed)
+        : view(*View::from_projection(glm::ortho(0.0f, 2 * static_cast<float>(tiles_x), 0.0f,
+                                                 2 * static_cast<float>(tiles_y), 0.1f, 100.0f),
+                                      {2 * tiles_x, 2 * tiles_y}, {.tile_size = 2})) {
+        std::mt19937 random(seed);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const float x = static_cast<float>(random() % (2u * static_cast<unsigned>(tiles_x))) + 0.25f;
+            const float y = static_cast<float>(random() % (2u * static_cast<unsigned>(tiles_y))) + 0.25f;
+            const float radius =
+                static_cast<float>(random() % 4 == 0 ? random() % 80 : random() % 12 + 1) / 2;
+            spheres.emplace_back(x, y, -50.0f, radius);
+        }
+        for (int tile_y = 0; tile_y < tiles_y; ++tile_y)
+            for (int tile_x = 0; tile_x < tiles_x; ++tile_x) {
+                const float left = 2 * static_cast<float>(tile_x), bottom = 2 * static_cast<float>(tile_y);
+                std::vector<std::uint32_t>& list = expected.emplace_back();
+                for (std::uint32_t i = 0; i < count; ++i) {
+                    const glm::vec4 s = spheres[i];
+                    if (s.x - s.w < left + 2 && s.x + s.w > left && s.y - s.w < bottom + 2 &&
+                        s.y + s.w > bottom)
+                        list.push_back(i);
+                }
+            }
+    }
+
+    View view;
+    std::vector<glm::vec4> spheres;
+    test::Lists expected;
+};
+
+template <Isa isa> void check_plain(const Plain& plain) {
+    static Binner<Options{.isa = isa}> binner;
+    const auto one_by_one = [](std::size_t n, auto body) {
+        for (std::size_t i = n; i-- > 0;)
+            body(i);
+    };
+    for (const std::size_t workers : {1u, 2u, 5u}) {
+        const auto grid = binner.bin(plain.view, plain.spheres, Parallel(workers, one_by_one, 0));
+        REQUIRE(grid);
+        CHECK((test::to_lists(*grid) == plain.expected));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("lights straight on are listed where they are, in grids of any shape, however few") {
+    std::uint32_t seed = 0;
+    for (const int tiles_x : {1, 2, 3, 4, 5, 7, 8, 9, 61})
+        for (const int tiles_y : {1, 2, 7, 8, 9, 70, 513, 1040})
+            for (const std::size_t count : {0u, 1u, 2u, 15u, 16u, 60u}) {
+                const Plain plain(tiles_x, tiles_y, count, ++seed);
+                check_plain<Isa::scalar>(plain);
+                check_plain<Isa::sse2>(plain);
+                check_plain<Isa::avx2>(plain);
+                check_plain<Isa::avx512>(plain);
+            }
+}
+
 TEST_CASE("the same input gives the same bytes, whatever the Binner did before") {
     const View view = test::view({800, 600}, 16), other = test::view({3840, 2160}, 8);
     const auto lights = test::random_lights(1000, 11);
