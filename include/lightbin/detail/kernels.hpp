@@ -83,15 +83,13 @@ template <class Id> BinKernel<Id> scatter_kernel(Isa isa) {
 template <Footprint footprint, DepthTest depth_test, class Id>
 BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint32_t lights, std::uint64_t area) {
     if constexpr (!masked<footprint, depth_test>) {
-        // Nearly empty grids: a walk over all supertiles costs more than counting and scattering.
+        // A walk over all supertiles costs as much as scattering some entries a tile; putting a light in their lists,
+        // where neither compress nor scanning does it, as scattering it to 48 tiles.
         const std::uint64_t tiles = view.tile_count();
-        const bool few = area <= tiles && (isa != Isa::avx512 || lights < tiles / 16);
-        if (isa == Isa::scalar || few) return scatter_kernel<Id>(isa);
-        // Without compress, putting a light in lists costs as much as scattering it to so many tiles.
-        const std::uint64_t scattered = isa == Isa::avx512 ? 0 : lights < 500 ? 100 : 48;
-        // By scanning it costs less, but a few steps for each supertile.
-        const bool sparse = isa != Isa::avx2 || area < 3 * tiles;
-        if (sparse && area < scattered * lights) return scatter_kernel<Id>(isa);
+        const bool scatter = isa == Isa::avx512 ? area <= tiles && lights < tiles / 16
+                             : isa == Isa::avx2 ? area < 3 * tiles
+                                                : area < 6 * tiles + std::uint64_t{48} * lights;
+        if (isa == Isa::scalar || scatter) return scatter_kernel<Id>(isa);
     }
 #if defined(LIGHTBIN_X86)
     if (isa == Isa::avx512) return avx512::bin_compress<footprint, depth_test, Id>;
