@@ -9,7 +9,6 @@
 #include <lightbin/detail/avx2.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/scatter.hpp>
-#include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/supertile.hpp>
 
@@ -151,7 +150,6 @@ LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCo
 #include <lightbin/detail/depth_columns.inl>
 
 #include <lightbin/detail/tile_masks.inl>
-
 
 #include <lightbin/detail/compress.inl>
 

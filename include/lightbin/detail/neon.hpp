@@ -12,6 +12,7 @@
 #include <lightbin/detail/supertile.hpp>
 
 #include <arm_neon.h>
+#include <array>
 #include <bit>
 #include <cfloat>
 #include <cmath>

@@ -64,12 +64,12 @@ inline constexpr auto ones_from = [] {
     return rows;
 }();
 
-/// Rows of a band as they are stored: `tiles_stored` tiles of each.
+/// `tiles_stored` tiles of each of a band's rows: vectors are columns, and then, turned, rows.
 struct BandTiles {
     Tiles low[tiles_stored], high[tiles_stored];  ///< of half the rows each, see row_of
 };
 
-/// Turns columns and stores them, row after row: so what is beyond a row's end is overwritten by the next row.
+/// Stores turned tiles, row after row: so what is beyond a row's end is overwritten by the next row.
 template <int... i>
 LIGHTBIN_TARGET inline void store(const BandTiles& tiles, Tile* const* rows, std::size_t x,
                                   std::integer_sequence<int, i...>) {

@@ -11,10 +11,10 @@
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/supertile.hpp>
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstring>
-#include <array>
 #include <emmintrin.h>
 #include <utility>
 
