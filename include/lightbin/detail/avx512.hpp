@@ -149,6 +149,13 @@ LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCo
 
 #include <lightbin/detail/depth_columns.inl>
 
+/// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
+LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
+    const __m512i all_bytes = _mm512_loadu_si512(bytes);
+    for (unsigned bit = 0; bit < 8; ++bit)
+        words[bit] = _mm512_test_epi8_mask(all_bytes, _mm512_set1_epi8(static_cast<char>(1 << bit)));
+}
+
 #include <lightbin/detail/tile_masks.inl>
 
 #include <lightbin/detail/compress.inl>

@@ -44,6 +44,7 @@ inline void tile_edges(const ImageAxis& axis, int tile, float& low, float& high)
 
 /// A light as the depth tests see it: the tile index grows with x and y, and z is the view depth.
 struct TestedLight {
+    TestedLight() = default;
     TestedLight(const Camera& camera, const Sphere& light)
         : x(camera.x.sign * light.x), y(camera.y.sign * light.y), z(camera.z_sign * light.z),
           nearest(z - light.radius), farthest(z + light.radius),

@@ -155,12 +155,12 @@ inline std::size_t tests_passed(const View& view, const ZBounds& bounds, const C
     tile_edges(grid.y, y, y0, y1);
     float cells[12 * 64];  // planes of 64 tiles, of which the first is the one
     scalar::store_boxes<DepthTest::box>(grid, cells, x0, x1, y0, y1, cell.min, cell.max, 0, 0);
-    if (scalar::tiles_met<DepthTest::box>(cells, light, 1) == 0) return 0;
+    if (scalar::tiles_met<DepthTest::box>(cells, light) == 0) return 0;
     if (!weighed(DepthTest::split_box, bounds)) return 1;
     merge_gaps(view, bounds, shift, x, y, cell);
     scalar::store_boxes<DepthTest::split_box>(grid, cells, x0, x1, y0, y1, cell.min, cell.max, cell.gap_min,
                                               cell.gap_max);
-    return scalar::tiles_met<DepthTest::split_box>(cells, light, 1) != 0 ? 2 : 1;
+    return scalar::tiles_met<DepthTest::split_box>(cells, light) != 0 ? 2 : 1;
 }
 
 /// How many pixels lie in tiles that have something to light, by a sample of the tiles.

@@ -96,28 +96,47 @@ LIGHTBIN_TARGET inline Floats distance(Floats c, const float* ends) {
     return greater(greater(load_floats(ends) - c, c - load_floats(ends + 64)), all(0.0f));
 }
 
-/// Of the given tiles, those whose Z bounds or boxes the light meets. NaN tests nothing.
+/// Of the first `lanes` tiles of `cells`, those whose Z bounds or boxes the light meets. NaN tests nothing.
 template <DepthTest depth_test>
-LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedLight& light,
-                                               std::uint64_t tiles) {
+LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedLight& light) {
     const Floats nearest = all(light.nearest), farthest = all(light.farthest);
     std::uint64_t met = 0;
-    for (std::uint64_t rest = tiles; rest != 0;) {  // only the vectors that hold any of the tiles
-        const unsigned place = static_cast<unsigned>(std::countr_zero(rest)) & ~(lanes - 1);
-        rest &= ~(every_lane << place);
-        for (const float* cell = cells + place;; cell += 6 * 64) {
-            auto missed = either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest));
-            if constexpr (depth_test != DepthTest::interval) {
-                const Floats z = distance(all(light.z), cell), x = distance(all(light.x), cell + 128),
-                             y = distance(all(light.y), cell + 256);
-                const Floats distance2 = mul(x, x) + mul(y, y) + mul(z, z);
-                missed = either(missed, less(all(light.reach2), distance2));
-            }
-            met |= (~std::uint64_t{bits(missed)} & every_lane) << place;
-            if (depth_test != DepthTest::split_box || cell != cells + place) break;
+    for (const float* cell = cells; cell < cells + 64 * cell_planes<depth_test>; cell += 64 * 6) {
+        auto missed = either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest));
+        if constexpr (depth_test != DepthTest::interval) {
+            const Floats z = distance(all(light.z), cell), x = distance(all(light.x), cell + 128),
+                         y = distance(all(light.y), cell + 256);
+            const Floats distance2 = mul(x, x) + mul(y, y) + mul(z, z);
+            missed = either(missed, less(all(light.reach2), distance2));
+        }
+        met |= ~bits(missed) & every_lane;
+    }
+    return met;
+}
+
+/// Adds the tiles that they meet to the words of 1 to 64 lights with these bytes of columns and rows; the tiles of a
+/// vector count if any of them is in the rectangle. A vector of tiles stays in registers while its lights pass: loops
+/// over a light's few vectors would be mispredicted once a light.
+template <DepthTest depth_test>
+LIGHTBIN_TARGET inline void meet_tiles(const float* cells, std::uint64_t lit, const TestedLight* lights,
+                                       const std::uint8_t* columns, const std::uint8_t* rows,
+                                       std::uint32_t count, std::uint64_t* met) {
+    std::uint64_t in_column[8], in_row[8];
+    split_bits(columns, in_column);
+    split_bits(rows, in_row);
+    const std::uint64_t valid = ~std::uint64_t{0} >> (64 - count);
+    for (unsigned place = 0; place < 64; place += lanes) {
+        if ((lit >> place & every_lane) == 0) continue;
+        std::uint64_t in_rows = 0, in_columns = 0;
+        for (unsigned lane = 0; lane < lanes; lane += 8)
+            in_rows |= in_row[(place + lane) / 8];
+        for (unsigned lane = 0; lane < lanes && lane < 8; ++lane)
+            in_columns |= in_column[place % 8 + lane];
+        for (std::uint64_t rest = in_rows & in_columns & valid; rest != 0; rest &= rest - 1) {
+            const unsigned light = static_cast<unsigned>(std::countr_zero(rest));
+            met[light] |= tiles_met<depth_test>(cells + place, lights[light]) << place;
         }
     }
-    return met & tiles;
 }
 
 /// Of the tiles of a supertile, from column 8 x and row `top` on, those within the row spans of visible light i.
@@ -144,17 +163,28 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, unsigned x, uns
                                           const std::uint8_t* columns, const std::uint8_t* rows,
                                           std::uint32_t count, std::uint64_t* words) {
     std::uint32_t left = 0;
-    for (std::uint32_t j = 0; j < count; ++j) {
-        const std::uint32_t i = first + list[j], id = job.lights.ids[i];
-        std::uint64_t tiles = spread_rows(rows[j]) & columns[j] * std::uint64_t{0x0101010101010101};
-        if constexpr (footprint == Footprint::silhouette)
-            tiles = silhouette_tiles(job.lights, i, x, top, tiles);
-        if constexpr (depth_test != DepthTest::none)
-            tiles = tiles_met<depth_test>(
-                cells, TestedLight(*job.camera, load_sphere(job.lights.spheres + id)), tiles & lit);
-        list[left] = static_cast<Listed>(id);
-        words[left] = tiles;
-        left += tiles != 0;
+    for (std::uint32_t begin = 0; begin < count; begin += 64) {
+        const std::uint32_t end = (std::min)(begin + 64, count);
+        std::uint64_t met[64];
+        if constexpr (depth_test != DepthTest::none) {
+            TestedLight lights[64];
+            for (std::uint32_t j = begin; j < end; ++j) {
+                lights[j - begin] = TestedLight(
+                    *job.camera, load_sphere(job.lights.spheres + job.lights.ids[first + list[j]]));
+                met[j - begin] = 0;
+            }
+            meet_tiles<depth_test>(cells, lit, lights, columns + begin, rows + begin, end - begin, met);
+        }
+        for (std::uint32_t j = begin; j < end; ++j) {
+            const std::uint32_t i = first + list[j];
+            std::uint64_t tiles = spread_rows(rows[j]) & columns[j] * std::uint64_t{0x0101010101010101};
+            if constexpr (footprint == Footprint::silhouette)
+                tiles = silhouette_tiles(job.lights, i, x, top, tiles);
+            if constexpr (depth_test != DepthTest::none) tiles &= met[j - begin] & lit;
+            list[left] = static_cast<Listed>(job.lights.ids[i]);
+            words[left] = tiles;
+            left += tiles != 0;
+        }
     }
     return left;
 }
