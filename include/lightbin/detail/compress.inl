@@ -15,39 +15,22 @@
 
 inline constexpr unsigned panel_side = 31;  // in supertiles
 
-/// 0, 1, 2 ...
-template <class T>
-inline constexpr std::array<T, 64 / sizeof(T)> counted = [] {
+/// A vector's worth of place(0), place(1) ...
+template <class T, class Place> constexpr std::array<T, 64 / sizeof(T)> table_of(Place place) {
     std::array<T, 64 / sizeof(T)> table = {};
     for (unsigned i = 0; i < table.size(); ++i)
-        table[i] = static_cast<T>(i);
+        table[i] = static_cast<T>(place(i));
     return table;
-}();
-
+}
+/// 0, 1, 2 ...
+template <class T> inline constexpr auto counted = table_of<T>([](unsigned i) { return i; });
 /// 0 eight times, 1 eight times ...
-inline constexpr std::array<std::uint8_t, 64> eight_each = [] {
-    std::array<std::uint8_t, 64> table = {};
-    for (unsigned i = 0; i < 64; ++i)
-        table[i] = static_cast<std::uint8_t>(i / 8);
-    return table;
-}();
-
+inline constexpr auto eight_each = table_of<std::uint8_t>([](unsigned i) { return i / 8; });
 /// Permutation of 64 bytes that turns 8x8 of them.
-inline constexpr std::array<std::uint8_t, 64> turned_bytes = [] {
-    std::array<std::uint8_t, 64> table = {};
-    for (unsigned i = 0; i < 64; ++i)
-        table[i] = static_cast<std::uint8_t>(i % 8 * 8 + i / 8);
-    return table;
-}();
-
+inline constexpr auto turned_bytes = table_of<std::uint8_t>([](unsigned i) { return i % 8 * 8 + i / 8; });
 /// Permutation of two vectors that takes an element of each in turn, from the first half of both.
 template <class T>
-inline constexpr std::array<T, 64 / sizeof(T)> in_turn = [] {
-    std::array<T, 64 / sizeof(T)> table = {};
-    for (unsigned i = 0; i < table.size(); ++i)
-        table[i] = static_cast<T>(i / 2 + i % 2 * table.size());
-    return table;
-}();
+inline constexpr auto in_turn = table_of<T>([](unsigned i) { return i / 2 + i % 2 * (64 / sizeof(T)); });
 
 LIGHTBIN_TARGET inline __m512i load(const void* p) {
     return _mm512_loadu_si512(p);
@@ -55,17 +38,19 @@ LIGHTBIN_TARGET inline __m512i load(const void* p) {
 LIGHTBIN_TARGET inline void store(void* p, __m512i v) {
     _mm512_storeu_si512(p, v);
 }
-/// Those of the chosen elements, then zeros. On Zen 5 the form of the instruction that zeroes the rest waits for what
-/// its register held before, which makes a chain of one iteration and the next: it is given fresh zeros.
+/// On Zen 5 the form of a compress instruction that zeroes the rest waits for what its register held before, which
+/// makes a chain of one iteration and the next: it is given fresh zeros.
+LIGHTBIN_TARGET inline __m512i fresh_zeros() {
+    __m512i zeros = _mm512_setzero_si512();
+    __asm__("" : "+v"(zeros));  // or the compiler picks that form
+    return zeros;
+}
+/// Those of the chosen elements, then zeros.
 LIGHTBIN_TARGET inline __m512i compressed_bytes(__mmask64 chosen, __m512i from) {
-    __m512i rest = _mm512_setzero_si512();
-    __asm__("" : "+v"(rest));  // or the compiler picks that form
-    return _mm512_mask_compress_epi8(rest, chosen, from);
+    return _mm512_mask_compress_epi8(fresh_zeros(), chosen, from);
 }
 LIGHTBIN_TARGET inline __m512i compressed_words(__mmask32 chosen, __m512i from) {
-    __m512i rest = _mm512_setzero_si512();
-    __asm__("" : "+v"(rest));
-    return _mm512_mask_compress_epi16(rest, chosen, from);
+    return _mm512_mask_compress_epi16(fresh_zeros(), chosen, from);
 }
 LIGHTBIN_TARGET inline __m512i halves(__m256i low, __m256i high) {
     return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
@@ -429,7 +414,7 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
         std::fill_n(scratch.words.room(words_used), words_used, 0u);
         *scratch.uppers.room(1) = 0;
         // Lists of up to 8 have their own form where most are such: elsewhere it would be one more to mispredict.
-        const std::uint32_t up_to_8 = longest <= 32 ? 8 : 0;
+        const std::uint32_t up_to_8 = longest <= 64 ? 8 : 0;
         Chunk chunk = {};
         for (unsigned x = 0; x < width; ++x) {  // step 2
             const std::size_t list = std::size_t{band - first_listed} * panels + x / panel_side,
