@@ -28,6 +28,7 @@ namespace lightbin {
 /// A light grid in memory of its own, kept from call to call.
 template <class Id, Footprint footprint, DepthTest depth_test> class GridLists {
     static constexpr bool with_depth = depth_test != DepthTest::none,
+                          masked = detail::masked<footprint, depth_test>,
                           with_boxes = depth_test == DepthTest::box || depth_test == DepthTest::split_box;
 
 public:
@@ -63,7 +64,7 @@ public:
             if (places > most) return Error{ErrorCode::too_many_list_places, places, most};
         }
         // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.
-        if constexpr (detail::masked<footprint, depth_test>)
+        if constexpr (masked)
             if (room > most)
                 room = detail::scalar::bin_supertiles<footprint, depth_test>(job, scratch[0],
                                                                              {0, rows, nullptr, 0});
@@ -76,9 +77,9 @@ public:
         Id* list = indices_.room(static_cast<std::size_t>(room) + slack);
         if constexpr (!std::is_same_v<Threads, Serial>) {
             const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), rows);
-            if (parallel.worth(static_cast<double>(room) * ns_an_entry) && parts > 1 &&
-                footprints.area() <= most) {
-                entries_ = build_parts(isa, job, kernel, list, scratch, parallel, parts);
+            const double ns = estimate(isa, kernel, footprints.visible(), static_cast<double>(room));
+            if (parallel.worth(ns) && parts > 1 && footprints.area() <= most) {
+                entries_ = build_parts(isa, job, kernel, list, scratch, parallel, parts, parallel.lead(ns));
                 return std::nullopt;
             }
         }
@@ -92,18 +93,25 @@ public:
 private:
     using Job = detail::BinJob<Id>;
     static constexpr std::size_t slack = detail::BandJob<Id>::slack;
-    /// On the fastest processors, so that no work is shared that is soon done.
-    static constexpr double ns_an_entry = detail::masked<footprint, depth_test> ? 0.6 : 0.2;
 
-    /// Builds `count` parts on the caller's threads. Returns the number of entries.
+    /// About how many ns one thread of a fast processor takes.
+    static double estimate(Isa isa, detail::BinKernel<Id> kernel, double lights, double entries) {
+        // What scattering does for each light it does again in each part, where it can't predict which lights are in
+        // it: what sharing the rest gains has to make up for that.
+        if (kernel == detail::scatter_kernel<Id>(isa)) return (std::max)(0.6 * entries - 8 * lights, 0.0);
+        const double slower = isa == Isa::avx512 ? 1 : isa == Isa::avx2 ? 1.5 : 2;
+        return slower * (masked ? 9 * lights + 0.35 * entries : 3 * lights + 0.1 * entries);
+    }
+
+    /// Builds `count` parts on the caller's threads, see make_parts(). Returns the number of entries.
     std::size_t build_parts(Isa isa, const Job& job, detail::BinKernel<Id> kernel, Id* list,
                             std::vector<detail::Scratch>& scratch, const Parallel& parallel,
-                            std::size_t count) {
+                            std::size_t count, double lead) {
         if (scratch.size() < count) scratch.resize(count);
         if (spares_.size() < count) spares_.resize(count);
         detail::Part* parts = parts_.room(count);
-        detail::make_parts(job, parallel, row_sums_, parts, count);
-        if constexpr (!detail::masked<footprint, depth_test>) {
+        detail::make_parts(job, parallel, row_sums_, parts, count, lead);
+        if constexpr (!masked) {
             // Rectangles: a part's place in the list is known. Its last entries go there by way of spare room,
             // as a kernel writes beyond its end, where the next part is at work.
             parallel.run(count, [&](std::size_t i) {

@@ -35,6 +35,7 @@ public:
     void project(Isa isa, const View& view, const Lights<Light, ToViewSphere>& lights,
                  const Parallel& parallel) {
         lights_ = lights.array.size();
+        const double ns_a_light = isa >= Isa::avx2 ? 0.5 : 1;  // out of view: those in view take longer
         // Some parts a worker, so that a late one costs little; serial work is one part.
         const std::size_t parts = parallel.worth(static_cast<double>(lights_) * ns_a_light)
                                       ? (std::min)(lights_ / 256 + 1, 4 * parallel.workers())
@@ -122,8 +123,6 @@ private:
             kernel(view.camera(), arrays_, runs_.data()[part], spans, part_counts_.data()[part].rows);
         });
     }
-
-    static constexpr double ns_a_light = 2;  ///< on the fastest processors
 
     detail::Buffer<std::uint32_t> ids_;
     detail::Buffer<std::uint16_t> x0_, y0_, x1_, y1_;
