@@ -71,7 +71,7 @@ public:
         if (room > most) return Error{ErrorCode::too_many_entries, room, most};
 
         tile_count_ = tiles;
-        job.tiles = tiles_.room(tiles);
+        job.tiles = tiles_.room(tiles + Job::slack(static_cast<std::size_t>(view.tiles_x())));
         const auto kernel =
             detail::bin_kernel<footprint, depth_test, Id>(isa, view, footprints.visible(), footprints.area());
         Id* list = indices_.room(static_cast<std::size_t>(room) + slack);

@@ -73,7 +73,10 @@ template <class Id> struct BinJob {
     std::span<const FootprintRun> runs;
     const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one
     const float* edges[4];   ///< of the tiles, for boxes: low x, high x, low y, high y; see cell_boxes.hpp
-    Tile* tiles;             ///< the table to write
+    Tile* tiles;             ///< the table to write, and `slack` tiles more
+
+    /// Whole vectors of columns are stored, of up to 8 rows.
+    static constexpr std::size_t slack(std::size_t width) { return 8 * width + 4; }
 };
 
 /// The part of it that one call of a kernel does: the tile rows begin..end-1. Bands of 8 are counted from begin.

@@ -76,7 +76,7 @@ inline void store_spans(RowSpan* spans, double first, double last) {
 
 /// See LayOutRows.
 template <class Id>
-std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, const TileBox& box, unsigned,
+std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, const TileBox& box, const Tile*,
                            std::uint32_t at) {
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles), pitch = width + 1;
     std::uint32_t* steps = scratch.corners.room(pitch * (box.bottom - box.top));

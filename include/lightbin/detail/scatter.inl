@@ -71,9 +71,9 @@ struct BandTiles {
 
 /// Stores turned tiles, row after row: so what is beyond a row's end is overwritten by the next row.
 template <int... i>
-LIGHTBIN_TARGET inline void store(const BandTiles& tiles, Tile* const* rows, std::size_t x,
+LIGHTBIN_TARGET inline void store(const BandTiles& tiles, Tile* column, std::size_t width,
                                   std::integer_sequence<int, i...>) {
-    (std::memcpy(static_cast<void*>(rows[i] + x),
+    (std::memcpy(static_cast<void*>(column + i * width),
                  &(i / 2 % 2 == 0 ? tiles.low : tiles.high)[i / 4 * 2 + i % 2], sizeof(Tiles)),
      ...);
 }
@@ -90,64 +90,55 @@ LIGHTBIN_TARGET inline void take_column(const std::uint32_t* steps, std::uint32_
     ends -= counts;
 }
 
-/// Stores the tiles of columns from..to-1 without lights.
+/// Writes a band's tiles: columns from..to-1, and those without lights after them, up to column `from` of the next row.
+/// Stores may go on for less than a vector.
+///
+/// steps     of each column from..to-1, what its counts have more than the next one's, less `above`
+/// above     of each of them, the steps of the row above in every lane; then those of the band's last row
+/// row_ends  where the list of each row ends; no vector, as GCC 12 leaves the registers' upper halves set after a call
+///           that takes one, which slows down what comes next
 template <int... i>
-LIGHTBIN_TARGET inline void lay_out_empty(Rows ends, Tile* const* rows, std::size_t from, std::size_t to,
-                                          std::integer_sequence<int, i...>) {
+LIGHTBIN_TARGET inline void lay_out(const std::uint32_t* steps, std::uint32_t* above,
+                                    const std::uint32_t* row_ends, std::size_t from, std::size_t to,
+                                    std::size_t width, Tile* rows, std::integer_sequence<int, i...>) {
+    constexpr int most = tiles_stored - 1;
+    Rows ends = load_rows(row_ends);
     BandTiles tiles;
     ((tiles.low[i] = paired<0>(ends, Rows{}, EachRow{}), tiles.high[i] = paired<1>(ends, Rows{}, EachRow{})),
      ...);
     turn(tiles.low);
     turn(tiles.high);
-    for (std::size_t x = to; x > from;)
-        store(tiles, rows, x -= tiles_stored, EachRow{});
-}
-
-/// Writes a band's tiles from right to left: columns 0..end-1, of which from..to-1 have lights; each bound a multiple
-/// of tiles_stored.
-///
-/// steps  of each column from..to-1, what its counts have more than the next one's, less `above`
-/// above  of each of them, the steps of the row above in every lane; then those of the band's last row
-/// ends   where the list of each row ends
-template <int... i>
-LIGHTBIN_TARGET inline void lay_out(const std::uint32_t* steps, std::uint32_t* above, Rows ends,
-                                    std::size_t from, std::size_t to, std::size_t end, Tile* const* rows,
-                                    std::integer_sequence<int, i...>) {
-    constexpr int most = tiles_stored - 1;
-    lay_out_empty(ends, rows, to, end, EachTile{});
+    for (std::size_t x = to; x < from + width; x += tiles_stored)
+        store(tiles, rows + x, width, EachRow{});
     Rows counts = {};
     for (std::size_t x = to - from; x > 0;) {
         x -= tiles_stored;
-        BandTiles tiles;
         (take_column(steps + (x + most - i) * band_rows, above + (x + most - i) * band_rows, counts, ends,
                      tiles.low[most - i], tiles.high[most - i]),
          ...);
         turn(tiles.low);
         turn(tiles.high);
-        store(tiles, rows, from + x, EachRow{});
+        store(tiles, rows + from + x, width, EachRow{});
     }
-    lay_out_empty(ends, rows, 0, from, EachTile{});
 }
 
 /// See LayOutRows.
 template <class Id>
 LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, const TileBox& box,
-                                           unsigned writable, std::uint32_t at) {
+                                           const Tile* writable, std::uint32_t at) {
     const FootprintArrays lights = job.lights;  // a copy, that no store can change
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
-    const std::size_t from = box.left / tiles_stored * tiles_stored,
-                      to = (box.right / tiles_stored + std::size_t{1}) * tiles_stored;
+    const std::size_t from = box.left, to = box.right;
     const std::size_t height = box.bottom - box.top, band_count = height / band_rows + 1;
 
     // A rectangle is four corners: in its last column one more from its first row on, one less below its last; in the
     // column before its first the opposite.
     const std::size_t pitch = (to - from + 1) * band_rows;  // from the column before the first
-    std::uint32_t* steps = scratch.corners.room(pitch * (band_count + 1) + 16);
+    const std::size_t size = pitch * (band_count + 1) + band_count * band_rows;
+    std::uint32_t* steps = scratch.corners.room(size + 16);
     steps += -reinterpret_cast<std::uintptr_t>(steps) % 64 / sizeof *steps;
-    std::memset(steps, 0, pitch * (band_count + 1) * sizeof *steps);
-    // At first how many entries a row has more than the one above.
-    std::uint32_t* row_ends = scratch.cursors.room(band_count * band_rows);
-    std::memset(row_ends, 0, band_count * band_rows * sizeof *row_ends);
+    std::memset(steps, 0, size * sizeof *steps);
+    std::uint32_t *above = steps + pitch * band_count, *row_ends = above + pitch;
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i) {
             unsigned y0 = (std::max<unsigned>)(lights.y0[i], box.top),
@@ -168,25 +159,18 @@ LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scrat
             add(last, below);
             add(last + columns * band_rows, Rows{} - below);
         }
-    std::uint32_t size = 0;
+    std::uint32_t entries = 0;  // of a row: so far row_ends has how many it has more than the one above
     for (std::size_t row = 0; row < band_count * band_rows; ++row)
-        row_ends[row] = at += size += row_ends[row];
+        row_ends[row] = at += entries += row_ends[row];
 
-    const std::size_t stored = (width + tiles_stored - 1) / tiles_stored * tiles_stored;  // tiles of a row
-    Tile *tile = job.tiles + box.top * width, *const end = job.tiles + writable * width;
-    Tile* last_rows = scratch.last_rows.room(stored * band_rows);
-    std::uint32_t* above = steps + pitch * band_count;
-    for (std::size_t row = 0; row < height; row += band_rows, steps += pitch) {
-        // Beyond a row's end are the next ones, still to be written; beyond the last one's nothing.
-        const std::size_t here = (std::min<std::size_t>)(band_rows, height - row);
-        Tile* rows[band_rows];
-        for (std::size_t i = 0; i < band_rows; ++i)
-            rows[i] = i < here && i * width + stored <= static_cast<std::size_t>(end - tile)
-                          ? tile + i * width
-                          : last_rows + i * stored;
-        lay_out(steps + band_rows, above, load_rows(row_ends + row), from, to, stored, rows, EachTile{});
-        for (std::size_t i = 0; i < here; ++i, tile += width)
-            if (rows[i] == last_rows + i * stored) std::copy_n(rows[i], width, tile);
+    Tile* tile = job.tiles + box.top * width;
+    for (std::size_t row = 0; row < height; row += band_rows, steps += pitch, tile += band_rows * width) {
+        // Beyond a band's tiles there are others still to be written, or another thread's.
+        const std::size_t own = static_cast<std::size_t>(writable - tile),
+                          stored = band_rows * width + from + 4;
+        Tile* rows = own < stored ? scratch.last_rows.room(stored) : tile;
+        lay_out(steps + band_rows, above, row_ends + row, from, to, width, rows, EachTile{});
+        if (rows != tile) std::copy(rows + from, rows + own, tile + from);
     }
     return at;
 }

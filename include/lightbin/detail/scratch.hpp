@@ -21,8 +21,8 @@ struct SupertileList {
 
 struct Scratch {
     Buffer<std::uint32_t> corners;  ///< difference array of rectangles, over tiles or supertiles
-    Buffer<std::uint32_t> cursors;  ///< one a supertile, or row
-    Buffer<Tile> last_rows;         ///< where whole vectors of them have room
+    Buffer<std::uint32_t> cursors;  ///< one a supertile
+    Buffer<Tile> last_rows;         ///< of a part, where whole vectors of them have room
 
     // Lists of the lights that reach a supertile: id, and which of its columns and rows.
     Buffer<std::uint32_t> list_begin, list_size, list_ids;
