@@ -86,6 +86,16 @@ LIGHTBIN_TARGET void fill_lists(const BinJob<Id>& job, Scratch& scratch, const B
         }
 }
 
+/// Appends those of `count` ids, up to 64, whose bit is set. Returns the end.
+template <class Id, class Ids>
+LIGHTBIN_TARGET inline Id* append_lit(Id* out, const Ids* ids, std::uint64_t lit, std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; i += 16, lit >>= 16) {
+        out += append(out, ids + i, static_cast<unsigned>(lit & 0xff));
+        out += append(out, ids + i + 8, static_cast<unsigned>(lit >> 8 & 0xff));
+    }
+    return out;
+}
+
 /// Bins the tile rows of `bands`. Returns the number of entries. May write BandJob::slack elements past them.
 /// Without an index list (bands.out null) it counts the entries only.
 template <Footprint footprint, DepthTest depth_test, class Id>
@@ -180,15 +190,13 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
                     } else if constexpr (with_words) {
                         for (std::size_t i = 0; i < count; i += 8)
                             out += append(out, ids + i, byte[i * 8 + column]);
+                    } else if (count <= 64) {
+                        out = append_lit(out, ids, word[column] & word[8 + row], count);
                     } else {
                         for (std::uint32_t i = 0; i < count; i += 64) {
                             const std::uint64_t* group = word + i / 4;
-                            std::uint64_t lit = group[column] & group[8 + row];
-                            const std::uint32_t used = count - i < 64 ? count - i : 64;
-                            for (std::uint32_t j = 0; j < used; j += 16, lit >>= 16) {
-                                out += append(out, ids + i + j, static_cast<unsigned>(lit & 0xff));
-                                out += append(out, ids + i + j + 8, static_cast<unsigned>(lit >> 8 & 0xff));
-                            }
+                            out = append_lit(out, ids + i, group[column] & group[8 + row],
+                                             (std::min)(count - i, 64u));
                         }
                     }
                     const std::uint32_t length = static_cast<std::uint32_t>(out - from);
