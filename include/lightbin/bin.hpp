@@ -94,13 +94,12 @@ private:
     using Job = detail::BinJob<Id>;
     static constexpr std::size_t slack = detail::BandJob<Id>::slack;
 
-    /// About how many ns one thread of a fast processor takes.
+    /// About how many ns one thread of a fast processor takes, apart from what each part does again.
     static double estimate(Isa isa, detail::BinKernel<Id> kernel, double lights, double entries) {
-        // What scattering does for each light it does again in each part, where it can't predict which lights are in
-        // it: what sharing the rest gains has to make up for that.
+        // Scattering does more for each light in parts, where it can't predict which lights are in one.
         if (kernel == detail::scatter_kernel<Id>(isa)) return (std::max)(0.6 * entries - 8 * lights, 0.0);
         const double slower = isa == Isa::avx512 ? 1 : isa == Isa::avx2 ? 1.5 : 2;
-        return slower * (masked ? 9 * lights + 0.35 * entries : 3 * lights + 0.1 * entries);
+        return slower * (masked ? 9 * lights + 0.35 * entries : 1.5 * lights + 0.1 * entries);
     }
 
     /// Builds `count` parts on the caller's threads, see make_parts(). Returns the number of entries.
