@@ -277,7 +277,7 @@ template <Isa isa> std::string fit_tier(const std::vector<Lesson>& lessons) {
         const auto lights = lightbin::view_space(lesson.sets[0]);
         lightbin::detail::Survey survey = lightbin::detail::survey_rectangles(
             isa, finest.view, lights, finest.bounds(), lesson.sets[0].size());
-        lightbin::detail::survey_pairs(finest.view, lights, finest.bounds(), 8192, survey);
+        lightbin::detail::survey_blocks(isa, finest.view, lights, finest.bounds(), 2048, survey);
         for (const Candidate& candidate : sweep)
             for (const auto& grid : survey.grids)
                 for (std::size_t rung = 0; rung < std::size(lightbin::detail::rungs); ++rung)

@@ -111,7 +111,7 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
     const double most = (std::min)(384.0, fewest * (std::max)(survey.visible, 1.0));
     const double plain_ns = detail::predicted_build_ns(isa, detail::build_terms(survey, survey.grids[0], 0));
     const double pairs = std::clamp(plain_ns / ns_a_pair, fewest, most);
-    detail::survey_pairs(view, source, bounds, static_cast<std::size_t>(pairs), survey);
+    detail::survey_blocks(isa, view, source, bounds, static_cast<std::size_t>(pairs), survey);
 
     std::vector<Plan> plans;
     plans.reserve(2 + std::size(detail::rungs) * survey.grids.size());

@@ -10,6 +10,7 @@
 #include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/supertile.hpp>
+#include <lightbin/detail/survey_block.hpp>
 
 #include <array>
 #include <bit>
@@ -163,6 +164,8 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
 }
 
 #include <lightbin/detail/tile_masks.inl>
+
+#include <lightbin/detail/survey.inl>
 
 #include <lightbin/detail/scan.inl>
 

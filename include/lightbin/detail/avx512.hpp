@@ -11,6 +11,7 @@
 #include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/supertile.hpp>
+#include <lightbin/detail/survey_block.hpp>
 
 #include <array>
 #include <bit>
@@ -157,6 +158,8 @@ LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t*
 }
 
 #include <lightbin/detail/tile_masks.inl>
+
+#include <lightbin/detail/survey.inl>
 
 #include <lightbin/detail/compress.inl>
 

@@ -10,6 +10,7 @@
 #include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/supertile.hpp>
+#include <lightbin/detail/survey_block.hpp>
 
 #include <arm_neon.h>
 #include <array>
@@ -82,6 +83,8 @@ inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
 #include <lightbin/detail/depth_columns.inl>
 
 #include <lightbin/detail/tile_masks.inl>
+
+#include <lightbin/detail/survey.inl>
 
 #include <lightbin/detail/scatter.inl>
 

@@ -7,6 +7,7 @@
 #include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/supertile.hpp>
+#include <lightbin/detail/survey_block.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/view.hpp>
 
@@ -73,6 +74,8 @@ inline void store_spans(RowSpan* spans, double first, double last) {
 #include <lightbin/detail/silhouette.inl>
 
 #include <lightbin/detail/tile_masks.inl>
+
+#include <lightbin/detail/survey.inl>
 
 /// See LayOutRows.
 template <class Id>

@@ -10,6 +10,7 @@
 #include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/supertile.hpp>
+#include <lightbin/detail/survey_block.hpp>
 
 #include <array>
 #include <bit>
@@ -140,6 +141,8 @@ template <class Id> std::uint32_t append(Id* out, const Packed<Id>* ids, unsigne
 }
 
 #include <lightbin/detail/tile_masks.inl>
+
+#include <lightbin/detail/survey.inl>
 
 #include <lightbin/detail/scatter.inl>
 

@@ -5,7 +5,8 @@
 #include <lightbin/detail/cell_boxes.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/platform.hpp>
-#include <lightbin/detail/scalar.hpp>
+#include <lightbin/detail/kernels.hpp>
+#include <lightbin/detail/survey_block.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/parallel.hpp>
@@ -90,88 +91,15 @@ inline TileRect rect_of(const FootprintArrays& lights, std::size_t i, int shift)
     return {lights.x0[i] >> shift, lights.y0[i] >> shift, lights.x1[i] >> shift, lights.y1[i] >> shift};
 }
 
-/// Calls visit(tile, min, max) for those of the view's tiles in tile (x, y) of a grid of 2^shift times their
-/// size that have something to light. Returns their share of all.
-template <class Visit>
-double each_drawn(const View& view, const ZBounds& bounds, int shift, int x, int y, Visit visit) {
-    const int x0 = x << shift, x1 = (std::min)((x + 1) << shift, view.tiles_x());
-    const int y0 = y << shift, y1 = (std::min)((y + 1) << shift, view.tiles_y());
-    int drawn = 0;
-    for (int row = y0; row < y1; ++row)
-        for (int column = x0; column < x1; ++column) {
-            const std::size_t tile =
-                static_cast<std::size_t>(row) * static_cast<std::size_t>(view.tiles_x()) +
-                static_cast<std::size_t>(column);
-            const float min = bounds.min.empty() ? -infinity : bounds.min[tile];
-            const float max = bounds.max.empty() ? infinity : bounds.max[tile];
-            if (min > max) continue;
-            visit(tile, min, max);
-            ++drawn;
-        }
-    return static_cast<double>(drawn) / ((x1 - x0) * (y1 - y0));
-}
-
-/// The depths of a tile's cell, and how much of it has something to light.
-struct Cell {
-    float min = infinity, max = -infinity, gap_min = -infinity, gap_max = infinity;
-    double drawn = 1;  ///< share of its pixels
-};
-
-inline Cell merge_bounds(const View& view, const ZBounds& bounds, int shift, int x, int y) {
-    Cell cell;
-    cell.drawn = each_drawn(view, bounds, shift, x, y, [&](std::size_t, float min, float max) {
-        cell.min = min < cell.min ? min : cell.min;
-        cell.max = max > cell.max ? max : cell.max;
-    });
-    return cell;
-}
-
-/// Finds the gap around the middle of the cell's depths. What lies before or behind a tile's own gap counts
-/// as drawn all over, so this gap is at most as wide as reduce_depth() would find.
-inline void merge_gaps(const View& view, const ZBounds& bounds, int shift, int x, int y, Cell& cell) {
-    const float middle = cell.min / 2 + cell.max / 2;
-    const auto draw = [&](float from, float to) {
-        const float below = from <= middle ? (std::min)(to, middle) : -infinity;
-        const float above = to >= middle ? (std::max)(from, middle) : infinity;
-        cell.gap_min = (std::max)(cell.gap_min, below);
-        cell.gap_max = (std::min)(cell.gap_max, above);
-    };
-    each_drawn(view, bounds, shift, x, y, [&](std::size_t tile, float min, float max) {
-        if (!(cell.gap_min < cell.gap_max)) return;
-        const bool gap = bounds.gap_min[tile] < bounds.gap_max[tile];
-        draw(min, gap ? bounds.gap_min[tile] : max);
-        draw(gap ? bounds.gap_max[tile] : min, max);
-    });
-}
-
-/// How many of the depth tests box and split_box, in this order, a light passes in the cell of tile (x, y) of a
-/// grid. Asks the tests that bin, the scalar tier's.
-inline std::size_t tests_passed(const View& view, const ZBounds& bounds, const Camera& grid, int shift, int x,
-                                int y, Cell& cell, const Sphere& sphere) {
-    const TestedLight light(grid, sphere);
-    if (cell.drawn == 0 || light.farthest < cell.min || light.nearest > cell.max) return 0;
-    float x0, x1, y0, y1;
-    tile_edges(grid.x, x, x0, x1);
-    tile_edges(grid.y, y, y0, y1);
-    float cells[12 * 64];  // planes of 64 tiles, of which the first is the one
-    scalar::store_boxes<DepthTest::box>(grid, cells, x0, x1, y0, y1, cell.min, cell.max, 0, 0);
-    if (scalar::tiles_met<DepthTest::box>(cells, light) == 0) return 0;
-    if (!weighed(DepthTest::split_box, bounds)) return 1;
-    merge_gaps(view, bounds, shift, x, y, cell);
-    scalar::store_boxes<DepthTest::split_box>(grid, cells, x0, x1, y0, y1, cell.min, cell.max, cell.gap_min,
-                                              cell.gap_max);
-    return scalar::tiles_met<DepthTest::split_box>(cells, light) != 0 ? 2 : 1;
-}
-
 /// How many pixels lie in tiles that have something to light, by a sample of the tiles.
 inline double lit_pixels(const View& view, const ZBounds& bounds) {
-    const std::size_t count = (std::min)(view.tile_count(), std::size_t{32});
-    double lit = 0;
+    constexpr std::size_t count = 128;
+    std::size_t lit = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        const int tile = static_cast<int>(spread(i, count, static_cast<double>(view.tile_count())));
-        lit += merge_bounds(view, bounds, 0, tile % view.tiles_x(), tile / view.tiles_x()).drawn;
+        const std::size_t tile = spread(i, count, static_cast<double>(view.tile_count()));
+        lit += bounds.min.empty() || bounds.max.empty() || !(bounds.min[tile] > bounds.max[tile]);
     }
-    return count == 0 ? 0 : lit / static_cast<double>(count) * view.viewport().width * view.viewport().height;
+    return static_cast<double>(lit) / count * view.viewport().width * view.viewport().height;
 }
 
 /// Sums over the rectangles of the sampled lights into a grid, as if all pixels had something to light.
@@ -228,62 +156,104 @@ Survey survey_rectangles(Isa isa, const View& view, const Lights<Light, ToViewSp
     return survey;
 }
 
-/// Sums over pairs of a light and a tile of one grid: all of them, and by rung what is listed and lit.
-struct PairSums {
-    double tiles = 0, pixels = 0, listed[silhouettes] = {}, lit[silhouettes] = {};
-};
-
-/// Adds the pair of a light and tile (x, y) of a grid of 2^shift times the view's tile size, `weight` times.
-inline void add_pair(const View& view, const ZBounds& bounds, const View& grid, int shift, int x, int y,
-                     const Sphere& sphere, double weight, PairSums& sums) {
-    const double pixels = weight * static_cast<double>(TileRect{x, y, x, y}.pixels(grid));
-    Cell cell = merge_bounds(view, bounds, shift, x, y);
-    const std::size_t passed = tests_passed(view, bounds, grid.camera(), shift, x, y, cell, sphere);
-    sums.tiles += weight;
-    sums.pixels += pixels;
-    for (std::size_t rung = 0; rung <= passed; ++rung) {
-        sums.listed[rung] += weight;
-        sums.lit[rung] += pixels * cell.drawn;
+/// Reads the finest tiles of block (x, y).
+inline void read_block(const View& view, const ZBounds& bounds, int x, int y, SurveyBlock& block) {
+    const std::size_t width = static_cast<std::size_t>(view.tiles_x());
+    const unsigned columns = static_cast<unsigned>((std::min)(8, view.tiles_x() - 8 * x));
+    const unsigned rows = static_cast<unsigned>((std::min)(8, view.tiles_y() - 8 * y));
+    if (columns < 8 || rows < 8) {
+        for (float* const least : {block.x0, block.y0, block.min})
+            std::fill_n(least, 64, infinity);
+        for (float* const most : {block.x1, block.y1, block.max})
+            std::fill_n(most, 64, -infinity);
+    }
+    const bool gaps = weighed(DepthTest::split_box, bounds);
+    block.drawn = 0;
+    float left[8], right[8], top, bottom;
+    for (unsigned column = 0; column < columns; ++column)
+        tile_edges(view.camera().x, 8 * x + static_cast<int>(column), left[column], right[column]);
+    for (unsigned row = 0; row < rows; ++row) {
+        tile_edges(view.camera().y, 8 * y + static_cast<int>(row), top, bottom);
+        std::size_t tile = (8 * static_cast<std::size_t>(y) + row) * width + 8 * static_cast<std::size_t>(x);
+        for (unsigned column = 0; column < columns; ++column, ++tile) {
+            const unsigned place = block_place(column, row);
+            block.x0[place] = left[column];
+            block.x1[place] = right[column];
+            block.y0[place] = top;
+            block.y1[place] = bottom;
+            const float min = bounds.min.empty() ? -infinity : bounds.min[tile];
+            const float max = bounds.max.empty() ? infinity : bounds.max[tile];
+            const bool drawn = !(min > max);
+            block.drawn |= std::uint64_t{drawn} << place;
+            block.min[place] = drawn ? min : infinity;
+            block.max[place] = drawn ? max : -infinity;
+            if (!gaps) continue;
+            block.gap_min[place] = bounds.gap_min[tile];
+            block.gap_max[place] = bounds.gap_max[tile];
+        }
     }
 }
 
-/// Estimates what depth tests leave, and what has something to light, from `count` pairs of a sampled light and
-/// a tile, drawn in proportion to the rectangles' areas: the same pairs for every rung, and the same lights and
-/// places on the screen for every grid, so that comparisons are sharper than the numbers.
+/// Estimates what depth tests leave, and what has something to light, from `count` blocks of tiles and up to
+/// 8 lights in each: those of a light drawn evenly from pairs of a sampled light and a block. All rungs and grids are asked of the same
+/// ones, so that comparisons are sharper than the numbers.
 template <class Light, class ToViewSphere>
-void survey_pairs(const View& view, const Lights<Light, ToViewSphere>& lights, const ZBounds& bounds,
-                  std::size_t count, Survey& survey) {
+void survey_blocks(Isa isa, const View& view, const Lights<Light, ToViewSphere>& lights, const ZBounds& bounds,
+                   std::size_t count, Survey& survey) {
     if (survey.visible == 0 || !weighed(DepthTest::box, bounds)) return;
-    PairSums sums[4];
     const FootprintArrays& footprints = survey.footprints.arrays();
-    const double area = survey.grids[0].entries[0] / survey.lights_each;
+    const std::size_t sampled = survey.sample.size(), room = sampled + 16;
+    std::vector<float> sides(4 * room, infinity);
+    std::int64_t area = 0;
+    for (std::size_t i = 0; i < sampled; ++i) {
+        const TileRect blocks = rect_of(footprints, survey.sample[i], 3);
+        sides[i] = static_cast<float>(blocks.x0);
+        sides[room + i] = static_cast<float>(blocks.x1);
+        sides[2 * room + i] = static_cast<float>(blocks.y0);
+        sides[3 * room + i] = static_cast<float>(blocks.y1);
+        area += blocks.area();
+    }
+    std::vector<std::uint16_t> numbers(room);
+    SurveyBlock block = {};
+    double tiles[3][4] = {}, lit[3][4] = {};
     std::int64_t before = 0;  // area of the lights before this one
-    std::size_t pair = 0;
+    std::size_t done = 0;
     for (const std::uint32_t light : survey.sample) {
-        const TileRect drawn = rect_of(footprints, light, 0);
-        for (; pair < count; ++pair) {
-            const std::int64_t place = static_cast<std::int64_t>(spread(pair, count, area)) - before;
-            if (place >= drawn.area()) break;
-            const double u = (static_cast<double>(place % drawn.width()) + 0.5) / drawn.width();
-            const double v = (static_cast<double>(place / drawn.width()) + 0.5) / drawn.height();
-            const Sphere sphere = std::invoke(lights.to_view_sphere, lights.array[footprints.ids[light]]);
-            for (std::size_t at = 0; at < survey.grids.size(); ++at) {
-                const int shift = survey.grids[at].shift;
-                const TileRect rect = rect_of(footprints, light, shift);
-                const int x = rect.x0 + static_cast<int>(u * rect.width());
-                const int y = rect.y0 + static_cast<int>(v * rect.height());
-                const double weight = static_cast<double>(rect.area()) / static_cast<double>(drawn.area());
-                add_pair(view, bounds, survey.views[at], shift, x, y, sphere, weight, sums[at]);
+        const TileRect blocks = rect_of(footprints, light, 3);
+        for (; done < count; ++done) {
+            const std::int64_t place = static_cast<std::int64_t>(spread(done, count, static_cast<double>(area))) - before;
+            if (place >= blocks.area()) break;
+            const int x = blocks.x0 + static_cast<int>(place % blocks.width()), y = blocks.y0 + static_cast<int>(place / blocks.width());
+            read_block(view, bounds, x, y, block);
+            const SurveyKernels kernels = survey_kernels(isa);
+            const std::uint32_t found = kernels.lights_of_block(sides.data(), sides.data() + room, sides.data() + 2 * room, sides.data() + 3 * room, static_cast<std::uint32_t>(sampled), static_cast<float>(x), static_cast<float>(y), numbers.data());
+            const std::uint32_t tested = (std::min)(found, BlockLight::most);
+            BlockLight some[BlockLight::most];
+            for (std::uint32_t i = 0; i < tested; ++i) {
+                const std::uint32_t chosen = survey.sample[numbers[spread(i, tested, found)]];
+                const TileRect rect = rect_of(footprints, chosen, 0);
+                const auto covered = [](const auto& before_tile, int first, int last) {
+                    return before_tile[static_cast<std::size_t>((std::min)(last, 7) + 1)] & ~before_tile[static_cast<std::size_t>((std::max)(first, 0))];
+                };
+                some[i] = {std::invoke(lights.to_view_sphere, lights.array[footprints.ids[chosen]]),
+                           covered(block_columns, rect.x0 - 8 * x, rect.x1 - 8 * x) & covered(block_rows, rect.y0 - 8 * y, rect.y1 - 8 * y)};
             }
+            BlockSums sums;
+            kernels.survey_block(view.camera(), block, weighed(DepthTest::split_box, bounds), some, tested, sums);
+            for (std::size_t rung = 0; rung < 3; ++rung)
+                for (std::size_t grid = 0; grid < 4; ++grid) {
+                    tiles[rung][grid] += sums.tiles[rung][grid] / static_cast<double>(tested);
+                    lit[rung][grid] += sums.lit[rung][grid] / static_cast<double>(tested);
+                }
         }
-        before += drawn.area();
+        before += blocks.area();
     }
     for (std::size_t at = 0; at < survey.grids.size(); ++at) {
         GridSurvey& grid = survey.grids[at];
         const double all_pixels = grid.evaluations[0];
         for (std::size_t rung = 0; rung < silhouettes; ++rung) {
-            grid.entries[rung] = grid.entries[0] * sums[at].listed[rung] / sums[at].tiles;
-            grid.evaluations[rung] = all_pixels * sums[at].lit[rung] / sums[at].pixels;
+            grid.entries[rung] = grid.entries[0] * tiles[rung][at] / tiles[0][at];
+            grid.evaluations[rung] = all_pixels * lit[rung][at] / (tiles[0][at] * static_cast<double>(1 << 2 * at));
         }
         grid.evaluations[silhouettes] *= grid.evaluations[0] / all_pixels;
     }
