@@ -106,12 +106,14 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
 
     const Isa isa = detail::machine_isa(costs.isa);
     detail::Survey survey = detail::survey_rectangles(isa, view, source, bounds);
-    // A pair takes half to two thirds as long as this, so asking takes less than a build.
-    constexpr double ns_a_pair = 1300, fewest = 12;
-    const double most = (std::min)(384.0, fewest * (std::max)(survey.visible, 1.0));
+    // Asking takes less than a build: what is left of one when the lights are projected and sampled goes to blocks.
     const double plain_ns = detail::predicted_build_ns(isa, detail::build_terms(survey, survey.grids[0], 0));
-    const double pairs = std::clamp(plain_ns / ns_a_pair, fewest, most);
-    detail::survey_blocks(isa, view, source, bounds, static_cast<std::size_t>(pairs), survey);
+    const double spare_ns = 0.75 * plain_ns -
+                            detail::build_models[static_cast<std::size_t>(isa)][1] * survey.lights -
+                            25.0 * static_cast<double>(survey.rects.size());
+    const double blocks =
+        std::clamp(spare_ns / detail::survey_block_ns[static_cast<std::size_t>(isa)], 4.0, 384.0);
+    detail::survey_blocks(isa, view, source, bounds, static_cast<std::size_t>(blocks), survey);
 
     std::vector<Plan> plans;
     plans.reserve(2 + std::size(detail::rungs) * survey.grids.size());

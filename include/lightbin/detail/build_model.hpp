@@ -40,6 +40,9 @@ inline constexpr BuildTerms build_models[] = {
     {0, 1.7, 0.254, 49.9, 13.6, 0.282, 0.716, 25.4, 216, 24, 367, 40.3},
 };
 
+/// A block of a survey.
+inline constexpr double survey_block_ns[] = {6000, 2600, 1000, 900, 2600};
+
 inline double predicted_build_ns(Isa isa, const BuildTerms& terms) {
     double ns = 0;
     for (std::size_t i = 0; i < terms.size(); ++i)

@@ -19,13 +19,10 @@ namespace lightbin::detail {
 
 using ProjectKernel = decltype(&scalar::project);
 using RowSpanKernel = decltype(&scalar::row_spans);
+using SurveyKernel = decltype(&scalar::survey_block);
 struct DepthKernels {
     decltype(&scalar::column_extremes) extremes;
     decltype(&scalar::column_gaps) gaps;
-};
-struct SurveyKernels {
-    decltype(&scalar::lights_of_block) lights_of_block;
-    decltype(&scalar::survey_block) survey_block;
 };
 template <class Id>
 using BinKernel = std::uint64_t (*)(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands);
@@ -70,16 +67,16 @@ inline DepthKernels depth_kernels(Isa isa, std::size_t columns) {
     return {scalar::column_extremes, scalar::column_gaps};
 }
 
-inline SurveyKernels survey_kernels(Isa isa) {
+inline SurveyKernel survey_kernel(Isa isa) {
 #if defined(LIGHTBIN_X86)
-    if (isa == Isa::avx512) return {avx512::lights_of_block, avx512::survey_block};
-    if (isa == Isa::avx2) return {avx2::lights_of_block, avx2::survey_block};
-    if (isa == Isa::sse2) return {sse2::lights_of_block, sse2::survey_block};
+    if (isa == Isa::avx512) return avx512::survey_block;
+    if (isa == Isa::avx2) return avx2::survey_block;
+    if (isa == Isa::sse2) return sse2::survey_block;
 #elif defined(LIGHTBIN_NEON)
-    if (isa == Isa::neon) return {neon::lights_of_block, neon::survey_block};
+    if (isa == Isa::neon) return neon::survey_block;
 #endif
     static_cast<void>(isa);
-    return {scalar::lights_of_block, scalar::survey_block};
+    return scalar::survey_block;
 }
 
 /// The scalar tier has the vectors of the platform too: the text is there, and the bytes are the same.
