@@ -92,9 +92,9 @@ private:
 /// bounds  of the view's own tiles; larger tiles' bounds are merged from them. None: no depth test is weighed
 /// costs   the build model knows the machine that it was fitted on (detail/build_model.hpp)
 ///
-/// Projects all lights as a build does; the rest is estimated from at most 512 of those in view, and from 12 to
-/// 384 pairs of a light and a tile, the more the longer a build, but at most 12 a light. So asking takes less
-/// than a build of the view's tiles without options. Allocates.
+/// Projects all lights as a build does; the rest is estimated from at most 512 of those in view, and from 4 to 384
+/// blocks of 8x8 tiles and up to 8 lights in each, the more the longer a build. So asking takes less than a build of
+/// the view's tiles without options, but for the shortest. Allocates.
 template <class LightRange>
 Result<Advice> advise(const View& view, const LightRange& lights, const Costs& costs = {},
                       const ZBounds& bounds = {}) {
@@ -108,7 +108,7 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
     detail::Survey survey = detail::survey_rectangles(isa, view, source, bounds);
     // Asking takes less than a build: what is left of one when the lights are projected and sampled goes to blocks.
     const double plain_ns = detail::predicted_build_ns(isa, detail::build_terms(survey, survey.grids[0], 0));
-    const double spare_ns = 0.75 * plain_ns -
+    const double spare_ns = 0.65 * plain_ns -
                             detail::build_models[static_cast<std::size_t>(isa)][1] * survey.lights -
                             25.0 * static_cast<double>(survey.rects.size());
     const double blocks =

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <random>
 #include <string>
 #include <utility>
 
@@ -139,10 +140,11 @@ TEST_CASE("the evaluations of lists with Z are near those of the built grids") {
     int plans = 0;
     for (const std::size_t count : {20u, 300u, 1000u, 5000u}) {
         const auto lights = test::random_lights(count, 7);
-        // As advise() does, with more lights and pairs than it takes time for.
+        // As advise() does, with more lights and blocks than it takes time for.
         detail::Survey survey = detail::survey_rectangles(detail::compiled_isa, view,
                                                           detail::as_lights(lights), bounds.reduced, count);
-        detail::survey_pairs(view, detail::as_lights(lights), bounds.reduced, 4096, survey);
+        detail::survey_blocks(detail::compiled_isa, view, detail::as_lights(lights), bounds.reduced, 4096,
+                              survey);
         const Advice advice = advised(view, lights, {}, bounds.reduced);
         for (const Plan& plan : advice.plans()) {
             if (!plan.tiled || plan.tile_size > 64 || plan.footprint == Footprint::silhouette) continue;
@@ -157,7 +159,7 @@ TEST_CASE("the evaluations of lists with Z are near those of the built grids") {
                                      : plan.depth_test == DepthTest::box ? 1
                                                                          : 2;
             const double surveyed = survey.grids[grid].evaluations[rung];
-            // Standard error of a share: 0.08 of the fewest, 40 pairs, 0.008 of 4096 at worst.
+            // Standard error of a share: 0.07 of some 40 blocks, 0.007 of 4096 at worst.
             CHECK(std::fabs(plan.evaluations - truth) <= 0.24 * untested);
             CHECK(std::fabs(surveyed - truth) <= 0.024 * untested);
             squares += std::pow((plan.evaluations - truth) / untested, 2);
@@ -168,6 +170,94 @@ TEST_CASE("the evaluations of lists with Z are near those of the built grids") {
     CHECK(plans == 4 * 4 * 3);
     CHECK(std::sqrt(squares / plans) < 0.1);
     CHECK(std::sqrt(surveyed_squares / plans) < 0.01);
+}
+
+TEST_CASE("all tiers survey alike; bounds that leave out nothing are as none") {
+    const View view = test::view({1000, 700}, 8);  // its last blocks are not whole
+    const std::vector<float> depth = ground_depth({1000, 700});
+    const Bounds bounds(view, depth);
+    const auto lights = test::random_lights(300, 9);
+    const auto surveyed = [&](Isa isa, const ZBounds& given) {
+        const auto source = detail::as_lights(lights);
+        detail::Survey survey = detail::survey_rectangles(isa, view, source, given);
+        detail::survey_blocks(isa, view, source, given, 100, survey);
+        return survey;
+    };
+    const detail::Survey scalar = surveyed(Isa::scalar, bounds.reduced);
+    for (const Isa isa : {Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon}) {
+        if (detail::machine_isa(isa) != isa) continue;
+        const detail::Survey other = surveyed(isa, bounds.reduced);
+        for (std::size_t grid = 0; grid < 4; ++grid)
+            for (std::size_t rung = 0; rung < std::size(detail::rungs); ++rung) {
+                CHECK(other.grids[grid].entries[rung] == scalar.grids[grid].entries[rung]);
+                CHECK(other.grids[grid].evaluations[rung] == scalar.grids[grid].evaluations[rung]);
+            }
+    }
+    const std::vector<float> from_eye(view.tile_count(), 0.0f), to_sky(view.tile_count(), unbounded);
+    const detail::Survey open = surveyed(detail::compiled_isa, {.min = from_eye, .max = to_sky}),
+                         blind = surveyed(detail::compiled_isa, {});
+    for (std::size_t grid = 0; grid < 4; ++grid)
+        CHECK(open.grids[grid].evaluations[0] == doctest::Approx(blind.grids[grid].evaluations[0]));
+}
+
+TEST_CASE("a block's coarser tiles are those of the coarser grids; gaps are no wider, and as wide between "
+          "two depths") {
+    const Extent size = {200, 150};  // its last blocks are not whole
+    const View view = test::view(size, 4);
+    for (const int depths : {2, 1000}) {
+        // The finest tiles have one depth each, or nothing to light.
+        std::mt19937 random(static_cast<unsigned>(depths));
+        std::vector<float> of_tile(view.tile_count()), depth;
+        for (float& value : of_tile)
+            value = random() % 8 == 0
+                        ? 1.0f
+                        : 0.99f + 0.009f * static_cast<float>(random() % depths) / static_cast<float>(depths);
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x)
+                depth.push_back(of_tile[static_cast<std::size_t>(y / 4 * view.tiles_x() + x / 4)]);
+        const Bounds finest(view, depth);
+        int gaps = 0;
+        for (int shift = 1; shift <= 3; ++shift) {
+            const View coarse = *view.with_tile_size(4 << shift);
+            const Bounds wanted(coarse, depth);
+            for (std::size_t tile = 0; tile < coarse.tile_count(); ++tile) {
+                const int x = static_cast<int>(tile) % coarse.tiles_x(),
+                          y = static_cast<int>(tile) / coarse.tiles_x();
+                const int blocks = 3 - shift;
+                detail::SurveyBlock block = {};
+                detail::read_block(view, finest.reduced, x >> blocks, y >> blocks, block);
+                detail::scalar::merge_tiles(block, 0, 64, 16);
+                detail::scalar::merge_tiles(block, 64, 80, 4);
+                detail::scalar::merge_tiles(block, 80, 84, 1);
+                const unsigned in_block = (1u << blocks) - 1;
+                const unsigned place = (shift == 1   ? 64
+                                        : shift == 2 ? 80
+                                                     : 84) +
+                                       detail::block_place((static_cast<unsigned>(x) & in_block) << shift,
+                                                           (static_cast<unsigned>(y) & in_block) << shift);
+                float low, high;
+                detail::tile_edges(coarse.camera().x, x, low, high);
+                CHECK(block.low[0][place] == doctest::Approx(low));
+                CHECK(block.high[0][place] == doctest::Approx(high));
+                detail::tile_edges(coarse.camera().y, y, low, high);
+                CHECK(block.low[1][place] == doctest::Approx(low));
+                CHECK(block.high[1][place] == doctest::Approx(high));
+                CHECK(block.low[2][place] == wanted.min[tile]);
+                CHECK(block.high[2][place] == wanted.max[tile]);
+                if (wanted.min[tile] > wanted.max[tile]) continue;
+                const bool gap = block.gap_min[place] < block.gap_max[place];
+                if (depths == 2) CHECK(gap == (wanted.gap_min[tile] < wanted.gap_max[tile]));
+                if (!gap) continue;
+                ++gaps;
+                CHECK(block.gap_min[place] >= wanted.gap_min[tile]);
+                CHECK(block.gap_max[place] <= wanted.gap_max[tile]);
+                if (depths > 2) continue;
+                CHECK(block.gap_min[place] == wanted.gap_min[tile]);
+                CHECK(block.gap_max[place] == wanted.gap_max[tile]);
+            }
+        }
+        CHECK(gaps > 100);
+    }
 }
 
 TEST_CASE("kinds of light in turn are all seen by the sample") {

@@ -70,8 +70,8 @@ LIGHTBIN_TARGET inline BlockSums survey_block(const Camera& camera, SurveyBlock&
         const TestedLight light(camera, lights[i].sphere);
         fine[0][i] = fine[1][i] = lights[i].tiles;
         coarse[0][i] = coarse[1][i] = coarser_tiles(lights[i].tiles);
-        fine[2][i] = tiles_met<DepthTest::box>(cells[0], light, fine[1][i] & block.drawn);
-        coarse[2][i] = tiles_met<DepthTest::box>(cells[1], light, coarse[1][i] & coarser_tiles(block.drawn));
+        fine[2][i] = tiles_met<DepthTest::box>(cells[0], light, fine[1][i]);
+        coarse[2][i] = tiles_met<DepthTest::box>(cells[1], light, coarse[1][i]);
         if (!gaps) continue;
         fine[3][i] = tiles_met<DepthTest::split_box>(cells[0] + 6 * 64, light, fine[2][i]);
         coarse[3][i] = tiles_met<DepthTest::split_box>(cells[1] + 6 * 64, light, coarse[2][i]);
