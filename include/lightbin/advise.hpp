@@ -108,7 +108,7 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
     detail::Survey survey = detail::survey_rectangles(isa, view, source, bounds);
     // Asking takes less than a build: what is left of one when the lights are projected and sampled goes to blocks.
     const double plain_ns = detail::predicted_build_ns(isa, detail::build_terms(survey, survey.grids[0], 0));
-    const double spare_ns = 0.65 * plain_ns -
+    const double spare_ns = 0.7 * plain_ns -
                             detail::build_models[static_cast<std::size_t>(isa)][1] * survey.lights -
                             25.0 * static_cast<double>(survey.rects.size());
     const double blocks =

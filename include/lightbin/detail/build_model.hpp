@@ -15,33 +15,43 @@
 namespace lightbin::detail {
 
 /// Amounts that a build's time is made of, or nanoseconds for each.
-using BuildTerms = std::array<double, 12>;
+using BuildTerms = std::array<double, 15>;
 
 inline BuildTerms build_terms(const Survey& survey, const GridSurvey& grid, std::size_t rung) {
     const auto [footprint, depth_test] = rungs[rung];
     const double occupied = (std::min)(grid.supertiles, grid.tiles / 64);  // supertiles with any light
-    BuildTerms terms = {1, survey.lights, grid.tiles, occupied, grid.supertiles};
-    terms[rung == 0 ? 5 : 6] = grid.entries[rung];
-    if (footprint == Footprint::silhouette) terms[7] = grid.rows;
-    if (depth_test == DepthTest::box) terms[8] = occupied, terms[9] = grid.supertiles;
-    if (depth_test == DepthTest::split_box) terms[10] = occupied, terms[11] = grid.supertiles;
+    BuildTerms terms = {1, survey.lights, grid.tiles, 0, occupied, grid.supertiles};
+    if (rung == 0) {
+        terms[6] = grid.entries[rung];
+    } else {
+        terms[3] = grid.tiles;
+        terms[7] = grid.entries[rung];
+    }
+    if (footprint == Footprint::silhouette) terms[8] = grid.rows;
+    if (depth_test != DepthTest::none) {
+        const std::size_t first = depth_test == DepthTest::box ? 9 : 12;
+        terms[first] = occupied;
+        terms[first + 1] = grid.supertiles;
+        terms[first + 2] = grid.entries[0];
+    }
     return terms;
 }
 
 /// By Isa.
 inline constexpr BuildTerms build_models[] = {
-    // call, light, tile, supertile with any light, supertile of a light, entry, entry of a tested light,
-    // silhouette row, then the two kinds of supertile again for box, and for split_box
-    {0, 3.39, 0.184, 31.3, 12.7, 0.399, 0.522, 35.5, 290, 69.2, 449, 115},
-    {0, 1.7, 0.254, 49.9, 13.6, 0.282, 0.716, 25.4, 216, 24, 367, 40.3},
-    {36.2, 0.665, 0.229, 43.7, 6.9, 0.0242, 0.324, 13.1, 92.1, 8.92, 111, 17.5},
-    {87, 0.338, 0.0926, 27.1, 2.65, 0.0337, 0.237, 10.2, 57.7, 8.84, 89.6, 13.3},
+    // call, light, tile, tile again where lights are tested, supertile with any light, supertile of a light, entry,
+    // entry of a tested light, silhouette row, then for box the two kinds of supertile again and each test, and the
+    // same for split_box
+    {23.3, 1.15, 0.0459, 0.816, 16.8, 17.3, 0.264, 0.482, 41.2, 346, 33.2, 2.44, 470, 36.7, 4.43},
+    {24.8, 0.972, 0.0449, 0.674, 19.8, 13.4, 0.143, 0.355, 18.4, 150, 10, 0.345, 182, 13, 0.768},
+    {36.8, 0.536, 0.0432, 0.689, 26.5, 7.64, 0.00869, 0.301, 13.3, 66.4, 5.55, 0.117, 112, 8.62, 0.343},
+    {65.4, 0.352, 0.0398, 0.0705, 29.1, 2.8, 0.0306, 0.22, 10.1, 83.7, 5.61, 0.0145, 115, 8.09, 0.0874},
     // NEON: not measured, as SSE2
-    {0, 1.7, 0.254, 49.9, 13.6, 0.282, 0.716, 25.4, 216, 24, 367, 40.3},
+    {24.8, 0.972, 0.0449, 0.674, 19.8, 13.4, 0.143, 0.355, 18.4, 150, 10, 0.345, 182, 13, 0.768},
 };
 
 /// A block of a survey.
-inline constexpr double survey_block_ns[] = {6000, 2600, 1000, 900, 2600};
+inline constexpr double survey_block_ns[] = {6000, 2400, 1200, 950, 2400};
 
 inline double predicted_build_ns(Isa isa, const BuildTerms& terms) {
     double ns = 0;
