@@ -17,7 +17,6 @@
 #include <exception>
 #include <functional>
 #include <memory>
-#include <numeric>
 #include <span>
 
 namespace {
@@ -201,11 +200,7 @@ void judge(const BenchScene& scene, std::FILE* plans_csv, std::FILE* csv, Regret
     std::fflush(stdout);
 }
 
-using lightbin::detail::BuildTerms;
-
-double predicted(const BuildTerms& terms, const BuildTerms& constants) {
-    return std::inner_product(terms.begin(), terms.end(), constants.begin(), 0.0);
-}
+using lightbin::detail::BuildTerms, lightbin::detail::predicted_ns;
 
 /// Least squares of the ratios' logarithms, as far as (p - t)^2 / (p t) is that, with no constant below zero:
 /// one constant after the other.
@@ -214,7 +209,7 @@ BuildTerms fit(const std::vector<BuildTerms>& rows, const std::vector<double>& t
     std::vector<double> scales = times, rest(rows.size());
     for (int pass = 0; pass < 50; ++pass) {
         for (std::size_t i = 0; i < rows.size(); ++i) {
-            const double now = predicted(rows[i], constants);
+            const double now = predicted_ns(rows[i], constants);
             if (pass > 0) scales[i] = std::sqrt(times[i] * std::max(now, 1e-3 * times[i]));
             rest[i] = (times[i] - now) / scales[i];
         }
@@ -291,7 +286,7 @@ template <Isa isa> std::string fit_tier(const std::vector<Lesson>& lessons) {
     const BuildTerms constants = fit(rows, times);
     std::vector<double> ratios;
     for (std::size_t i = 0; i < rows.size(); ++i)
-        ratios.push_back(predicted(rows[i], constants) / times[i]);
+        ratios.push_back(predicted_ns(rows[i], constants) / times[i]);
     std::ranges::sort(ratios);
     const auto at = [&](double share) {
         return ratios[static_cast<std::size_t>(share * double(ratios.size() - 1))];
@@ -343,14 +338,12 @@ int main(int argc, char** argv) try {
     if (arguments.take("--quick")) turns = 5;
     if (arguments.take("--fit")) {
         const std::vector<Lesson> all = lessons();
-        std::string lines, sse2;
+        std::string lines;
         for (const Isa isa : {Isa::scalar, Isa::sse2, Isa::avx2, Isa::avx512})
             with_isa(isa, [&]<Isa tier> {
-                if (lightbin::detail::machine_isa(tier) != tier) return;
-                lines += fit_tier<tier>(all);
-                if (tier == Isa::sse2) sse2 = lines.substr(lines.find('\n') + 1);
+                if (lightbin::detail::machine_isa(tier) == tier) lines += fit_tier<tier>(all);
             });
-        std::printf("%s    // NEON: not measured, as SSE2\n%s", lines.c_str(), sse2.c_str());
+        std::fputs(lines.c_str(), stdout);
         return EXIT_SUCCESS;
     }
     Isa isa = lightbin::detail::machine_isa(lightbin::Options{}.isa);

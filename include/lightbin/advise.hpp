@@ -35,8 +35,7 @@ struct Costs {
 
 /// One way to light a view, and what it is predicted to cost a frame.
 struct Plan {
-    bool tiled =
-        true;  ///< false: no grid; every pixel evaluates every light. The rest is then without meaning
+    bool tiled = true;  ///< false: every pixel evaluates every light; the next four are without meaning
     Footprint footprint = Footprint::rectangle;
     DepthTest depth_test = DepthTest::none;
     Index index = Index::u32;  ///< the narrowest that counts the lights
@@ -105,14 +104,13 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
             return Error{ErrorCode::z_bounds_too_small, view.tile_count(), side.size()};
 
     const Isa isa = detail::machine_isa(costs.isa);
+    const detail::BuildTerms& model = detail::of_tier(detail::build_models, isa);
     detail::Survey survey = detail::survey_rectangles(isa, view, source, bounds);
     // Asking takes less than a build: what is left of one when the lights are projected and sampled goes to blocks.
-    const double plain_ns = detail::predicted_build_ns(isa, detail::build_terms(survey, survey.grids[0], 0));
-    const double spare_ns = 0.7 * plain_ns -
-                            detail::build_models[static_cast<std::size_t>(isa)][1] * survey.lights -
-                            25.0 * static_cast<double>(survey.rects.size());
-    const double blocks =
-        std::clamp(spare_ns / detail::survey_block_ns[static_cast<std::size_t>(isa)], 4.0, 384.0);
+    const double plain_ns = detail::predicted_ns(detail::build_terms(survey, survey.grids[0], 0), model);
+    const double spare_ns =
+        0.7 * plain_ns - model[1] * survey.lights - 25.0 * static_cast<double>(survey.rects.size());
+    const double blocks = std::clamp(spare_ns / detail::of_tier(detail::survey_block_ns, isa), 4.0, 384.0);
     detail::survey_blocks(isa, view, source, bounds, static_cast<std::size_t>(blocks), survey);
 
     std::vector<Plan> plans;
@@ -124,7 +122,7 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
     };
     const auto weigh_grid = [&](const detail::GridSurvey& grid, std::size_t rung) {
         const auto [footprint, depth_test] = detail::rungs[rung];
-        const double ns = detail::predicted_build_ns(isa, detail::build_terms(survey, grid, rung));
+        const double ns = detail::predicted_ns(detail::build_terms(survey, grid, rung), model);
         weigh({.footprint = footprint,
                .depth_test = depth_test,
                .tile_size = grid.tile_size,

@@ -226,9 +226,7 @@ TEST_CASE("a block's coarser tiles are those of the coarser grids; gaps are no w
                 const int blocks = 3 - shift;
                 detail::SurveyBlock block = {};
                 detail::read_block(view, finest.reduced, x >> blocks, y >> blocks, block);
-                detail::scalar::merge_tiles(block, 0, 64, 16);
-                detail::scalar::merge_tiles(block, 64, 80, 4);
-                detail::scalar::merge_tiles(block, 80, 84, 1);
+                detail::scalar::merge_tiles(block);
                 const unsigned in_block = (1u << blocks) - 1;
                 const unsigned place = (shift == 1   ? 64
                                         : shift == 2 ? 80

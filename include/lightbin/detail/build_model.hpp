@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // How long a build takes: what the grid holds, times constants. They were fitted by `sh bench/run.sh advise
 // --fit` (bench/advise.cpp) on an AMD EPYC (Zen 5), g++ 12, one thread. Nine in ten of 512 builds with AVX-512
-// take 0.7 to 1.8 times what is predicted. Another machine is brought in by one factor, Costs::machine.
+// take 0.74 to 1.7 times what is predicted. Another machine is brought in by one factor, Costs::machine.
 #pragma once
 
 #include <lightbin/detail/platform.hpp>
@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <numeric>
 
 namespace lightbin::detail {
 
@@ -20,13 +21,9 @@ using BuildTerms = std::array<double, 15>;
 inline BuildTerms build_terms(const Survey& survey, const GridSurvey& grid, std::size_t rung) {
     const auto [footprint, depth_test] = rungs[rung];
     const double occupied = (std::min)(grid.supertiles, grid.tiles / 64);  // supertiles with any light
-    BuildTerms terms = {1, survey.lights, grid.tiles, 0, occupied, grid.supertiles};
-    if (rung == 0) {
-        terms[6] = grid.entries[rung];
-    } else {
-        terms[3] = grid.tiles;
-        terms[7] = grid.entries[rung];
-    }
+    const bool tested = rung != 0;
+    BuildTerms terms = {1, survey.lights, grid.tiles, tested ? grid.tiles : 0, occupied, grid.supertiles};
+    terms[tested ? 7 : 6] = grid.entries[rung];
     if (footprint == Footprint::silhouette) terms[8] = grid.rows;
     if (depth_test != DepthTest::none) {
         const std::size_t first = depth_test == DepthTest::box ? 9 : 12;
@@ -46,18 +43,18 @@ inline constexpr BuildTerms build_models[] = {
     {24.8, 0.972, 0.0449, 0.674, 19.8, 13.4, 0.143, 0.355, 18.4, 150, 10, 0.345, 182, 13, 0.768},
     {36.8, 0.536, 0.0432, 0.689, 26.5, 7.64, 0.00869, 0.301, 13.3, 66.4, 5.55, 0.117, 112, 8.62, 0.343},
     {65.4, 0.352, 0.0398, 0.0705, 29.1, 2.8, 0.0306, 0.22, 10.1, 83.7, 5.61, 0.0145, 115, 8.09, 0.0874},
-    // NEON: not measured, as SSE2
-    {24.8, 0.972, 0.0449, 0.674, 19.8, 13.4, 0.143, 0.355, 18.4, 150, 10, 0.345, 182, 13, 0.768},
 };
 
-/// A block of a survey.
-inline constexpr double survey_block_ns[] = {6000, 2400, 1200, 950, 2400};
+/// A block of a survey, by Isa.
+inline constexpr double survey_block_ns[] = {6000, 2400, 1200, 950};
 
-inline double predicted_build_ns(Isa isa, const BuildTerms& terms) {
-    double ns = 0;
-    for (std::size_t i = 0; i < terms.size(); ++i)
-        ns += terms[i] * build_models[static_cast<std::size_t>(isa)][i];
-    return ns;
+/// NEON is not measured: it has SSE2's.
+template <class Value> const Value& of_tier(const Value (&tiers)[4], Isa isa) {
+    return tiers[static_cast<std::size_t>(isa == Isa::neon ? Isa::sse2 : isa)];
+}
+
+inline double predicted_ns(const BuildTerms& terms, const BuildTerms& model) {
+    return std::inner_product(terms.begin(), terms.end(), model.begin(), 0.0);
 }
 
 }  // namespace lightbin::detail

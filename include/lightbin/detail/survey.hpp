@@ -111,19 +111,20 @@ inline GridSurvey sum_rectangles(const Survey& survey, const View& tiled, int sh
         pixels += std::int64_t{(std::min)((rect.x1 + 1) * size, tiled.viewport().width) - rect.x0 * size} *
                   ((std::min)((rect.y1 + 1) * size, tiled.viewport().height) - rect.y0 * size);
         rows += rect.height();
-        supertiles += (rect.x1 / 8 - rect.x0 / 8 + 1) * (rect.y1 / 8 - rect.y0 / 8 + 1);
+        supertiles += rect.coarser(3).area();
     }
     const double left =
         tiles == 0 ? 1
                    : 1 - (1 - std::numbers::pi / 4) * static_cast<double>(cut) / static_cast<double>(tiles);
-    GridSurvey grid = {.tile_size = size, .tiles = static_cast<double>(tiled.tile_count())};
-    grid.entries[0] = survey.lights_each * static_cast<double>(tiles);
-    grid.entries[silhouettes] = left * grid.entries[0];
-    grid.evaluations[0] = survey.lights_each * static_cast<double>(pixels);
-    grid.evaluations[silhouettes] = left * grid.evaluations[0];
-    grid.rows = survey.lights_each * static_cast<double>(rows);
-    grid.supertiles = survey.lights_each * static_cast<double>(supertiles);
-    return grid;
+    const auto of_all = [&](std::int64_t sampled) {
+        return survey.lights_each * static_cast<double>(sampled);
+    };
+    return {.tile_size = size,
+            .tiles = static_cast<double>(tiled.tile_count()),
+            .rows = of_all(rows),
+            .supertiles = of_all(supertiles),
+            .entries = {of_all(tiles), 0, 0, left * of_all(tiles)},
+            .evaluations = {of_all(pixels), 0, 0, left * of_all(pixels)}};
 }
 
 /// Projects the lights and surveys grids of the view's tile size and of 2, 4 and 8 times it, by their

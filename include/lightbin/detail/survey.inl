@@ -2,40 +2,41 @@
 // What depth tests leave of some lights in a block of tiles of four sizes, asked of the tests that bin. Included once
 // a tier, after tile_masks.inl.
 
-/// Makes `count` tiles from place `to` on of four times as many, of half their size, from place `from` on; and after
-/// them what means nothing. What lies before or behind a tile's gap counts as drawn all over, so the gaps around the
-/// middle of the depths are at most as wide as reduce_depth() would find.
-LIGHTBIN_TARGET inline void merge_tiles(SurveyBlock& block, unsigned from, unsigned to, unsigned count) {
+/// Makes a block's coarser tiles, each of four of half its size, and after the last of a grid what means nothing. What
+/// lies before or behind a tile's gap counts as drawn all over, so the gaps around the middle of the depths are at
+/// most as wide as reduce_depth() would find.
+LIGHTBIN_TARGET inline void merge_tiles(SurveyBlock& block) {
     const Floats endless = all(infinity);
-    for (unsigned i = 0; i < count; i += lanes) {
-        Floats least = endless, most = -endless;
-        for (unsigned side = 0; side < 3; ++side) {
-            least = endless, most = -endless;
-            for (unsigned tile = from + i; tile < to; tile += count) {
-                least = lesser(load_floats(block.low[side] + tile), least);
-                most = greater(load_floats(block.high[side] + tile), most);
+    for (unsigned from = 0, to = 64, count = 16; count > 0; from = to, to += count, count /= 4)
+        for (unsigned i = 0; i < count; i += lanes) {
+            Floats least = endless, most = -endless;
+            for (unsigned side = 0; side < 3; ++side) {
+                least = endless, most = -endless;
+                for (unsigned tile = from + i; tile < to; tile += count) {
+                    least = lesser(load_floats(block.low[side] + tile), least);
+                    most = greater(load_floats(block.high[side] + tile), most);
+                }
+                store_floats(block.low[side] + to + i, least);
+                store_floats(block.high[side] + to + i, most);
             }
-            store_floats(block.low[side] + to + i, least);
-            store_floats(block.high[side] + to + i, most);
+            const Floats middle = mul(least, all(0.5f)) + mul(most, all(0.5f));
+            Floats gap_min = -endless, gap_max = endless;
+            for (unsigned tile = from + i; tile < to; tile += count) {
+                const Floats min = load_floats(block.low[2] + tile), max = load_floats(block.high[2] + tile),
+                             before = load_floats(block.gap_min + tile),
+                             behind = load_floats(block.gap_max + tile);
+                const auto gap = less(before, behind);
+                const Floats end = select(gap, before, max), begin = select(gap, behind, min);
+                const Floats nearer = select(less_equal(begin, middle), max,
+                                             select(less_equal(min, middle), end, -endless)),
+                             farther = select(less_equal(middle, end), min,
+                                              select(less_equal(middle, max), begin, endless));
+                gap_min = greater(lesser(nearer, middle), gap_min);
+                gap_max = lesser(greater(farther, middle), gap_max);
+            }
+            store_floats(block.gap_min + to + i, gap_min);
+            store_floats(block.gap_max + to + i, gap_max);
         }
-        const Floats middle = mul(least, all(0.5f)) + mul(most, all(0.5f));
-        Floats gap_min = -endless, gap_max = endless;
-        for (unsigned tile = from + i; tile < to; tile += count) {
-            const Floats min = load_floats(block.low[2] + tile), max = load_floats(block.high[2] + tile),
-                         before = load_floats(block.gap_min + tile),
-                         behind = load_floats(block.gap_max + tile);
-            const auto gap = less(before, behind);
-            const Floats end = select(gap, before, max), begin = select(gap, behind, min);
-            const Floats nearer = select(less_equal(begin, middle), max,
-                                         select(less_equal(min, middle), end, -endless)),
-                         farther = select(less_equal(middle, end), min,
-                                          select(less_equal(middle, max), begin, endless));
-            gap_min = greater(lesser(nearer, middle), gap_min);
-            gap_max = lesser(greater(farther, middle), gap_max);
-        }
-        store_floats(block.gap_min + to + i, gap_min);
-        store_floats(block.gap_max + to + i, gap_max);
-    }
 }
 
 /// Of some of 64 tiles, those whose boxes the light meets.
@@ -48,12 +49,10 @@ LIGHTBIN_TARGET std::uint64_t tiles_met(const float* cells, const TestedLight& l
 }
 
 /// Sums what 1 to BlockLight::most lights' rectangles list in a block, and what box and, with gaps, split_box leave
-/// of it. Makes the block's coarser tiles.
+/// of it.
 LIGHTBIN_TARGET inline BlockSums survey_block(const Camera& camera, SurveyBlock& block, bool gaps,
                                               const BlockLight* lights, std::uint32_t count) {
-    merge_tiles(block, 0, 64, 16);
-    merge_tiles(block, 64, 80, 4);
-    merge_tiles(block, 80, 84, 1);
+    merge_tiles(block);
     float cells[2][(6 + 12) * 64];  // of the finest tiles; of the others
     for (unsigned i = 0; i < 96; i += lanes) {
         float* const cell = cells[i / 64] + i % 64;
@@ -65,16 +64,17 @@ LIGHTBIN_TARGET inline BlockSums survey_block(const Camera& camera, SurveyBlock&
             store_boxes<DepthTest::split_box>(camera, cell + 6 * 64, x0, x1, y0, y1, min, max,
                                               load_floats(block.gap_min + i), load_floats(block.gap_max + i));
     }
-    std::uint64_t fine[4][BlockLight::most], coarse[4][BlockLight::most];
+    std::uint64_t listed[2][4][BlockLight::most];
     for (std::uint32_t i = 0; i < count; ++i) {
         const TestedLight light(camera, lights[i].sphere);
-        fine[0][i] = fine[1][i] = lights[i].tiles;
-        coarse[0][i] = coarse[1][i] = coarser_tiles(lights[i].tiles);
-        fine[2][i] = tiles_met<DepthTest::box>(cells[0], light, fine[1][i]);
-        coarse[2][i] = tiles_met<DepthTest::box>(cells[1], light, coarse[1][i]);
-        if (!gaps) continue;
-        fine[3][i] = tiles_met<DepthTest::split_box>(cells[0] + 6 * 64, light, fine[2][i]);
-        coarse[3][i] = tiles_met<DepthTest::split_box>(cells[1] + 6 * 64, light, coarse[2][i]);
+        for (unsigned coarser = 0; coarser < 2; ++coarser) {
+            const float* const boxes = cells[coarser];
+            const std::uint64_t tiles = coarser == 0 ? lights[i].tiles : coarser_tiles(lights[i].tiles);
+            const std::uint64_t box = tiles_met<DepthTest::box>(boxes, light, tiles);
+            listed[coarser][0][i] = listed[coarser][1][i] = tiles;
+            listed[coarser][2][i] = box;
+            if (gaps) listed[coarser][3][i] = tiles_met<DepthTest::split_box>(boxes + 6 * 64, light, box);
+        }
     }
     constexpr unsigned shift[] = {0, 0, 16, 20};
     constexpr std::uint64_t all_tiles[] = {~std::uint64_t{0}, 0xffff, 0xf, 1};
@@ -82,10 +82,9 @@ LIGHTBIN_TARGET inline BlockSums survey_block(const Camera& camera, SurveyBlock&
     BlockSums sums;
     for (unsigned sum = 0; sum < (gaps ? 4 : 3); ++sum)
         for (unsigned grid = 0; grid < 4; ++grid) {
-            const std::uint64_t* words = grid == 0 ? fine[sum] : coarse[sum];
             const std::uint64_t counted = sum == 0 ? block.in_grid : block.drawn;
             for (std::uint32_t i = 0; i < count; ++i) {
-                const std::uint64_t tiles = words[i] >> shift[grid] & all_tiles[grid];
+                const std::uint64_t tiles = listed[grid != 0][sum][i] >> shift[grid] & all_tiles[grid];
                 sums.tiles[sum][grid] += static_cast<std::uint32_t>(std::popcount(tiles));
                 sums.finest[sum][grid] +=
                     static_cast<std::uint32_t>(std::popcount(tiles * finest_in_each[grid] & counted));
