@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <initializer_list>
 #include <regex>
 #include <set>
 #include <string>
@@ -80,71 +81,37 @@ struct Question {
     std::vector<ShaderSlot> slots;  ///< all, those of no use to the text too
     std::set<ErrorCode> reasons;    ///< to refuse
     std::vector<Wanted> wanted;     ///< in the order of the text, but for the constants before them
-    std::vector<std::string> constants;
+    std::vector<std::string> constants = {"grid"};
     ShaderSlot constants_slot;
     std::uint32_t block_bytes = 0;   ///< the most of a block of other things than constants
     std::vector<std::string> names;  ///< in the text, without the prefix
 };
 
+/// Takes what all generators' options have at last, and notes what all questions have of them.
+template <class Options>
+void take_rest(Bytes& bytes, Options& options, std::initializer_list<ShaderSlot*> slots, Question& question) {
+    for (ShaderSlot* slot : slots) {
+        take_slot(bytes, *slot);
+        question.slots.push_back(*slot);
+    }
+    question.prefix = take_prefix(bytes);
+    options.prefix = question.prefix;
+    question.language = options.language;
+    question.push_constants = options.push_constants;
+    question.constants_slot = options.grid;
+}
+
 bool of_a_name(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
-/// Words of the languages that may stand outside of functions.
-const std::set<std::string, std::less<>> language_words = {"uniform",
-                                                           "layout",
-                                                           "buffer",
-                                                           "readonly",
-                                                           "restrict",
-                                                           "struct",
-                                                           "highp",
-                                                           "const",
-                                                           "uint",
-                                                           "uvec2",
-                                                           "uvec4",
-                                                           "ivec2",
-                                                           "int",
-                                                           "bool",
-                                                           "float",
-                                                           "vec3",
-                                                           "void",
-                                                           "uint2",
-                                                           "uint4",
-                                                           "int2",
-                                                           "float3",
-                                                           "cbuffer",
-                                                           "register",
-                                                           "StructuredBuffer",
-                                                           "Texture2D",
-                                                           "inout",
-                                                           "static",
-                                                           "Buffer",
-                                                           "in",
-                                                           "out",
-                                                           "usampler2D",
-                                                           "usamplerBuffer",
-                                                           "utextureBuffer",
-                                                           "ByteAddressBuffer",
-                                                           "utexture2D",
-                                                           "vk",
-                                                           "push_constant",
-                                                           "ConstantBuffer",
-                                                           "flat",
-                                                           "precision",
-                                                           "mediump",
-                                                           "main",
-                                                           "shared",
-                                                           "groupshared",
-                                                           "writeonly",
-                                                           "vec2",
-                                                           "vec4",
-                                                           "float2",
-                                                           "float4",
-                                                           "sampler2D",
-                                                           "sampler2DMS",
-                                                           "Texture2DMS",
-                                                           "RWStructuredBuffer",
-                                                           "SV_Target"};
+/// Words of the languages that may stand outside of functions, a space around each.
+const std::string language_words =
+    " uniform layout buffer readonly restrict struct highp const uint uvec2 uvec4 ivec2 int bool"
+    " float vec3 void uint2 uint4 int2 float3 cbuffer register StructuredBuffer Texture2D inout"
+    " static Buffer in out usampler2D usamplerBuffer utextureBuffer ByteAddressBuffer utexture2D vk"
+    " push_constant ConstantBuffer flat precision mediump main shared groupshared writeonly vec2"
+    " vec4 float2 float4 sampler2D sampler2DMS Texture2DMS RWStructuredBuffer SV_Target ";
 
 /// Brackets pair; names at the outermost level, and those of members that blocks put there, have the prefix.
 void check_text(const std::string& text, const std::string& prefix) {
@@ -173,7 +140,7 @@ void check_text(const std::string& text, const std::string& prefix) {
         if (!word.empty()) {
             const bool outer = open.empty() || (in_block && open == "{");
             const bool number = std::isdigit(static_cast<unsigned char>(word.front())) != 0;
-            if (outer && !number && !language_words.contains(word))
+            if (outer && !number && language_words.find(" " + word + " ") == std::string::npos)
                 require(word.compare(0, prefix.size(), prefix) == 0, ("no prefix: " + word).c_str(), text);
             if (open.empty()) {
                 if (word == "buffer" || word == "uniform" || word == "cbuffer") in_block = true;
@@ -277,7 +244,7 @@ void check(const Result<ShaderText>& made, Question question) {
 void fuzz_snippet(Bytes& bytes) {
     ShaderOptions options;
     Question question;
-    options.language = question.language = take_enum(bytes, ShaderLanguage::hlsl_5_1);
+    options.language = take_enum(bytes, ShaderLanguage::hlsl_5_1);
     options.storage = take_enum(bytes, ListStorage::byte_address);
     options.format.encoding = take_enum(bytes, ListEncoding::bitmask);
     options.format.ids = static_cast<IdWidth>(1u << bytes.byte() % 3);
@@ -289,16 +256,13 @@ void fuzz_snippet(Bytes& bytes) {
     options.flip_y = (flags & 4) != 0;
     options.viewport_corner = (flags & 8) != 0;
     options.heat_map = (flags & 16) != 0;
-    options.push_constants = question.push_constants = (flags & 32) != 0;
+    options.push_constants = (flags & 32) != 0;
     options.tile_size = static_cast<int>(take_size(bytes));
     options.texture_width = take_size(bytes);
     options.max_tiles = take_size(bytes);
     options.max_entries = take_size(bytes);
     if ((flags & 64) != 0) options.uniform_block_bytes = take_size(bytes);
-    for (ShaderSlot* slot : {&options.tiles, &options.lists, &options.grid})
-        take_slot(bytes, *slot);
-    question.prefix = take_prefix(bytes);
-    options.prefix = question.prefix;
+    take_rest(bytes, options, {&options.tiles, &options.lists, &options.grid}, question);
 
     const ListFormat& format = options.format;
     const Language language(options.language);
@@ -334,10 +298,7 @@ void fuzz_snippet(Bytes& bytes) {
     refuse_if((tiles_in_block && too_large(8 * tiles)) || (lists_in_block && too_large(list_bytes)),
               ErrorCode::uniform_block_too_small);
 
-    question.slots = {options.tiles, options.lists, options.grid};
-    question.constants = {"grid"};
     if (options.viewport_corner) question.constants.push_back("corner");
-    question.constants_slot = options.grid;
     if (table) question.wanted.push_back({"tiles", options.tiles});
     question.wanted.push_back({"lists", options.lists});
     question.names = {"tile", "cursor", "begin", "next", "for_each_light"};
@@ -348,7 +309,7 @@ void fuzz_snippet(Bytes& bytes) {
 void fuzz_reduction(Bytes& bytes) {
     ReduceShaderOptions options;
     Question question;
-    options.language = question.language = take_enum(bytes, ShaderLanguage::hlsl_5_1);
+    options.language = take_enum(bytes, ShaderLanguage::hlsl_5_1);
     options.stage = take_enum(bytes, ShaderStage::fragment);
     options.format = take_enum(bytes, DepthFormat::unorm16);
     options.samples = static_cast<int>(bytes.byte() % 12) - 1;
@@ -358,21 +319,16 @@ void fuzz_reduction(Bytes& bytes) {
     options.skip_background = (flags & 4) != 0;
     options.flip_y = (flags & 8) != 0;
     options.viewport_corner = (flags & 16) != 0;
-    options.push_constants = question.push_constants = (flags & 32) != 0;
-    for (ShaderSlot* slot : {&options.depth, &options.z_bounds, &options.grid})
-        take_slot(bytes, *slot);
-    question.prefix = take_prefix(bytes);
-    options.prefix = question.prefix;
+    options.push_constants = (flags & 32) != 0;
+    take_rest(bytes, options, {&options.depth, &options.z_bounds, &options.grid}, question);
 
     const bool compute = options.stage == ShaderStage::compute;
     if (compute && Language(options.language).old) question.reasons.insert(ErrorCode::no_storage_buffers);
     if (options.samples < 1 || options.samples > 8) question.reasons.insert(ErrorCode::samples_out_of_range);
     if (options.samples > 1 && options.language == ShaderLanguage::essl_300)
         question.reasons.insert(ErrorCode::no_multisample_textures);
-    question.slots = {options.depth, options.z_bounds, options.grid};
-    question.constants = {"grid", "planes"};
+    question.constants.push_back("planes");
     if (options.viewport_corner) question.constants.push_back("corner");
-    question.constants_slot = options.grid;
     question.wanted.push_back({"depth", options.depth});
     if (compute) question.wanted.push_back({"z_bounds", options.z_bounds});
     question.names = {"sample", "view_depths", "pixel", compute ? "run" : "reduce"};
@@ -382,28 +338,23 @@ void fuzz_reduction(Bytes& bytes) {
 void fuzz_build(Bytes& bytes) {
     BuildShaderOptions options;
     Question question;
-    options.language = question.language = take_enum(bytes, ShaderLanguage::hlsl_5_1);
+    options.language = take_enum(bytes, ShaderLanguage::hlsl_5_1);
     options.pass = take_enum(bytes, BuildPass::fill);
     options.depth_test = take_enum(bytes, DepthTest::split_box);
     const unsigned flags = bytes.byte();
     options.max_only = (flags & 1) != 0;
     options.orthographic = (flags & 2) != 0;
-    options.push_constants = question.push_constants = (flags & 4) != 0;
-    for (ShaderSlot* slot : {&options.footprints, &options.z_bounds, &options.edges, &options.tiles,
-                             &options.lists, &options.total, &options.grid}) {
-        take_slot(bytes, *slot);
-        question.slots.push_back(*slot);
-    }
-    question.prefix = take_prefix(bytes);
-    options.prefix = question.prefix;
+    options.push_constants = (flags & 4) != 0;
+    take_rest(bytes, options,
+              {&options.footprints, &options.z_bounds, &options.edges, &options.tiles, &options.lists,
+               &options.total, &options.grid},
+              question);
 
     if (Language(options.language).old) question.reasons.insert(ErrorCode::no_storage_buffers);
     if (options.depth_test == DepthTest::split_box) question.reasons.insert(ErrorCode::no_split_box_shader);
     const bool offsets = options.pass == BuildPass::offsets,
                box = !offsets && options.depth_test == DepthTest::box;
-    question.constants = {"grid"};
     if (box) question.constants.push_back("planes");
-    question.constants_slot = options.grid;
     if (!offsets) question.wanted.push_back({"footprints", options.footprints});
     if (!offsets && options.depth_test != DepthTest::none)
         question.wanted.push_back({"z_bounds", options.z_bounds});
