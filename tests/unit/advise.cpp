@@ -204,9 +204,9 @@ TEST_CASE("a block's coarser tiles are those of the coarser grids; gaps are no w
           "two depths") {
     const Extent size = {200, 150};  // its last blocks are not whole
     const View view = test::view(size, 4);
-    for (const int depths : {2, 1000}) {
+    for (const unsigned depths : {2u, 1000u}) {
         // The finest tiles have one depth each, or nothing to light.
-        std::mt19937 random(static_cast<unsigned>(depths));
+        std::mt19937 random(depths);
         std::vector<float> of_tile(view.tile_count()), depth;
         for (float& value : of_tile)
             value = random() % 8 == 0
