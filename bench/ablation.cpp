@@ -97,19 +97,12 @@ struct Measured {
 
 std::vector<Measured> measure(const std::vector<Part>& parts, const BenchScene& scene, const Picture& picture,
                               bool quick) {
-    std::vector<TiledView> views;
-    for (const int tile_size : {8, 16, 32, 64})
-        views.emplace_back(scene, picture, tile_size);
-    const auto view_of = [&](const Part& part) -> const TiledView& {
-        return *std::find_if(views.begin(), views.end(),
-                             [&](const TiledView& v) { return v.view.tile_size() == part.tile_size; });
-    };
-
+    const Views views(scene, picture);
     const Lights lights = scene.lights(0);
     std::vector<Measured> result(parts.size());
     result[0].evaluations = static_cast<double>(lights.size());
     for (std::size_t i = 1; i < parts.size(); ++i) {
-        const TiledView& view = view_of(parts[i]);
+        const TiledView& view = views.of(parts[i].tile_size);
         const Built built = parts[i].build(view, lights);
         result[i].evaluations = view.evaluations(built.tiles);
         result[i].bytes = built.index_bytes;
@@ -121,7 +114,7 @@ std::vector<Measured> measure(const std::vector<Part>& parts, const BenchScene& 
     for (std::size_t turn = 1; turn <= turns; ++turn) {
         const Lights set = scene.lights(static_cast<std::uint32_t>(turn));
         for (std::size_t i = 1; i < parts.size(); ++i)
-            times[i].push_back(seconds([&] { parts[i].build(view_of(parts[i]), set); }));
+            times[i].push_back(seconds([&] { parts[i].build(views.of(parts[i].tile_size), set); }));
     }
     for (std::size_t i = 1; i < parts.size(); ++i)
         result[i].us = 1e6 * median(times[i]);

@@ -61,24 +61,6 @@ template <Isa isa> std::vector<Candidate> candidates() {
     return all;
 }
 
-/// The views of all plans on a scene, by tile size.
-class Views {
-public:
-    explicit Views(const BenchScene& scene) {
-        const Picture picture = rasterise(scene, screen);
-        for (const int tile_size : {8, 16, 32, 64, screen.width})
-            views_.emplace_back(scene, picture, tile_size);
-    }
-
-    const TiledView& of(int tile_size) const {
-        return *std::ranges::find_if(views_,
-                                     [&](const TiledView& v) { return v.view.tile_size() == tile_size; });
-    }
-
-private:
-    std::vector<TiledView> views_;
-};
-
 /// Times all candidates in turns, each turn with another light set.
 void time(std::vector<Candidate>& candidates, const Views& views, std::span<const Lights> sets) {
     std::vector<std::vector<double>> times(candidates.size());
@@ -107,11 +89,6 @@ std::string words(const Plan& plan) {
            name_of(plan.depth_test) + (plan.index == Index::u16 ? " u16" : " u32");
 }
 
-bool same(const Plan& a, const Plan& b) {
-    return a.tiled == b.tiled && (!a.tiled || (a.footprint == b.footprint && a.depth_test == b.depth_test &&
-                                               a.index == b.index && a.tile_size == b.tile_size));
-}
-
 struct Regrets {
     std::vector<double> by_factor[std::size(model_factors)];
     std::vector<double> asking;  ///< over the plain build at the view's tile size
@@ -136,7 +113,7 @@ template <Isa isa> void time_asking(const TiledView& finest, std::span<const Lig
 
 template <Isa isa>
 void judge(const BenchScene& scene, std::FILE* plans_csv, std::FILE* csv, Regrets& regrets) {
-    const Views views(scene);
+    const Views views(scene, rasterise(scene, screen));
     std::vector<Lights> sets;
     for (std::uint32_t seed = 0; seed < turns; ++seed)
         sets.push_back(scene.lights(seed));
@@ -159,7 +136,7 @@ void judge(const BenchScene& scene, std::FILE* plans_csv, std::FILE* csv, Regret
     sweep.push_back({{.tiled = false}, {}, 0, views.of(screen.width).all_evaluations(one)});
     const auto measured = [&](const Plan& plan) -> const Candidate& {
         const auto found =
-            std::ranges::find_if(sweep, [&](const Candidate& c) { return same(c.plan, plan); });
+            std::ranges::find_if(sweep, [&](const Candidate& c) { return words(c.plan) == words(plan); });
         if (found == sweep.end())
             std::fprintf(stderr, "advise: no such plan: %s\n", words(plan).c_str()), std::abort();
         return *found;
@@ -246,7 +223,7 @@ std::vector<Lesson> lessons() {
     std::vector<Lesson> all;
     const std::vector<BenchScene> kinds = scene_kinds();
     for (const BenchScene& scene : kinds)
-        all.emplace_back(scene, std::make_shared<Views>(scene));
+        all.emplace_back(scene, std::make_shared<Views>(scene, rasterise(scene, screen)));
     std::size_t kind = 0;
     for (const std::size_t count : {1u, 16u, 100u, 400u, 1500u, 6000u})
         for (const float radius : {field4_median, field20_median, field200_median, 0.0f}) {

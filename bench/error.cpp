@@ -180,20 +180,12 @@ void write(std::FILE* csv, const Case& scene, int tile_size, const Report& repor
                      evaluations - part(report.needed, report.drawn),
                      4 * static_cast<double>(row.entries) / views, row.us, row.ratio,
                      report.reduce_us / views);
-    }
-    std::fflush(csv);
-}
-
-void print(const Case& scene, int tile_size, const Report& report) {
-    for (std::size_t rung = 0; rung < std::size(ladder); ++rung) {
-        const Row& row = report.rows[rung];
         std::printf(
             "%-12s %2d px  %-10s %-9s  %llu misses  excess %7.1f %%  evals %6.2f  %8.1f us  %.2f of flat\n",
             scene.name.c_str(), tile_size, name_of(ladder[rung].footprint), name_of(ladder[rung].depth_test),
-            static_cast<unsigned long long>(row.misses),
-            100 * (static_cast<double>(row.entries) / static_cast<double>(report.exact) - 1),
-            row.evaluations / static_cast<double>(report.drawn), row.us, row.ratio);
+            number(row.misses), 100 * (part(row.entries, report.exact) - 1), evaluations, row.us, row.ratio);
     }
+    std::fflush(csv);
     std::fflush(stdout);
 }
 
@@ -236,7 +228,6 @@ int main(int argc, char** argv) try {
             for (const SeenScene& seen : scene.views)
                 count(seen, tile_size, report);
             write(csv, scene, tile_size, report);
-            print(scene, tile_size, report);
             for (const Row& row : report.rows)
                 misses += row.misses;
         }

@@ -36,7 +36,6 @@ enum Fact : std::uint32_t {
 struct Pair {
     std::uint32_t id;
     std::uint32_t facts;
-    std::uint32_t lit_pixels = 0;  ///< drawn pixels of the tile whose point is in the sphere
 };
 
 struct ExactPairs {

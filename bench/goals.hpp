@@ -6,12 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
-#include <cstdlib>
-#include <functional>
+#include <iterator>
 #include <string>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 struct Result {
@@ -45,62 +44,48 @@ struct Goal {
     double must, aim;
 };
 
+inline constexpr const char* goal_tiers[] = {"avx512", "avx2", "sse2", "scalar"};
+
 struct GoalRow {
     const char* name;
-    std::function<bool(const Result&)> covers;
-    std::vector<std::pair<const char*, Goal>> tiers;
+    const char* set;  ///< null: any real scene
+    int tile_size;
+    const char* depth_test;
+    Goal goals[std::size(goal_tiers)];  ///< by tier; all 0 where there is none
+
+    bool covers(const Result& r) const {
+        const bool made = r.set.starts_with("field") || r.set.starts_with("near");
+        return (set == nullptr ? !made : r.set == set) && r.tile_size == tile_size &&
+               r.depth_test == depth_test && r.footprint == "rectangle" && r.threads == 1;
+    }
 };
 
-inline std::vector<GoalRow> goal_rows() {
-    const auto plain = [](const Result& r) {
-        return r.depth_test == "none" && r.footprint == "rectangle" && r.threads == 1;
-    };
-    const auto is_made = [](const Result& r) {
-        return r.set.starts_with("field") || r.set.starts_with("near");
-    };
-    return {
-        {"field20, 32 px",
-         [=](const Result& r) { return plain(r) && r.set == "field20" && r.tile_size == 32; },
-         {{"avx512", {0.16, 0.09}}, {"avx2", {0.34, 0.20}}, {"sse2", {0.48, 0.35}}, {"scalar", {1.0, 0.6}}}},
-        {"field20, 16 px",
-         [=](const Result& r) { return plain(r) && r.set == "field20" && r.tile_size == 16; },
-         {{"avx512", {0.20, 0.11}}, {"avx2", {0.42, 0.22}}, {"sse2", {0.55, 0.40}}, {"scalar", {1.0, 0.7}}}},
-        {"field200",
-         [=](const Result& r) { return plain(r) && r.set == "field200" && r.tile_size == 32; },
-         {{"avx512", {0.17, 0.10}}, {"avx2", {0.36, 0.18}}, {"sse2", {0.50, 0.32}}, {"scalar", {1.0, 0.7}}}},
-        {"real scenes",
-         [=](const Result& r) { return plain(r) && !is_made(r) && r.tile_size == 32; },
-         {{"avx512", {0.17, 0.10}}, {"avx2", {0.36, 0.18}}, {"sse2", {0.50, 0.32}}, {"scalar", {1.0, 0.7}}}},
-        {"field4",
-         [=](const Result& r) { return plain(r) && r.set == "field4" && r.tile_size == 32; },
-         {{"avx512", {0.20, 0.11}}, {"avx2", {0.42, 0.25}}, {"sse2", {0.50, 0.38}}, {"scalar", {1.0, 0.6}}}},
-        {"box, field20, 32 px",
-         [](const Result& r) {
-             return r.depth_test == "box" && r.footprint == "rectangle" && r.threads == 1 &&
-                    r.set == "field20" && r.tile_size == 32;
-         },
-         {{"avx512", {0.50, 0.25}}, {"avx2", {1.0, 0.5}}}},
-        {"near",
-         [=](const Result& r) { return plain(r) && r.set == "near" && r.tile_size == 32; },
-         {{"avx512", {0.25, 0.12}}, {"avx2", {0.50, 0.25}}}},
-    };
-}
+inline constexpr GoalRow goal_rows[] = {
+    {"field20, 32 px", "field20", 32, "none", {{0.16, 0.09}, {0.34, 0.20}, {0.48, 0.35}, {1.0, 0.6}}},
+    {"field20, 16 px", "field20", 16, "none", {{0.20, 0.11}, {0.42, 0.22}, {0.55, 0.40}, {1.0, 0.7}}},
+    {"field200", "field200", 32, "none", {{0.17, 0.10}, {0.36, 0.18}, {0.50, 0.32}, {1.0, 0.7}}},
+    {"real scenes", nullptr, 32, "none", {{0.17, 0.10}, {0.36, 0.18}, {0.50, 0.32}, {1.0, 0.7}}},
+    {"field4", "field4", 32, "none", {{0.20, 0.11}, {0.42, 0.25}, {0.50, 0.38}, {1.0, 0.6}}},
+    {"box, field20, 32 px", "field20", 32, "box", {{0.50, 0.25}, {1.0, 0.5}}},
+    {"near", "near", 32, "none", {{0.25, 0.12}, {0.50, 0.25}}},
+};
 
 /// The worst ratio of each row and tier, beside what it must be and what is aimed at.
 inline void print_goals(const std::vector<Result>& results) {
     std::printf("\nworst ratio to the flat baseline, one thread       1,000 to 10,000 lights          fewer\n"
                 "%-24s %-8s %24s %24s\n",
                 "case", "tier", "must   aim  measured", "must   aim  measured");
-    for (const GoalRow& row : goal_rows())
-        for (const auto& [tier, goal] : row.tiers) {
+    for (const GoalRow& row : goal_rows)
+        for (std::size_t tier = 0; tier < std::size(goal_tiers); ++tier) {
+            const Goal& goal = row.goals[tier];
             double worst[2] = {0, 0};
             for (const Result& r : results)
-                if (row.covers(r) && r.tier == tier && r.lights >= 200 && r.lights <= 10000) {
+                if (row.covers(r) && r.tier == goal_tiers[tier] && r.lights >= 200 && r.lights <= 10000) {
                     double& of_size = worst[r.lights < 900 ? 1 : 0];
                     of_size = std::max(of_size, r.ratio);
                 }
-            if (worst[0] == 0 && worst[1] == 0) continue;
-            std::printf("%-24s %-8s", row.name, tier);
+            if (goal.must == 0 || (worst[0] == 0 && worst[1] == 0)) continue;
+            std::printf("%-24s %-8s", row.name, goal_tiers[tier]);
             for (const int few : {0, 1}) {
                 const double scale = few != 0 ? 1.5 : 1.0;
                 if (worst[few] == 0)
@@ -113,33 +98,23 @@ inline void print_goals(const std::vector<Result>& results) {
         }
 }
 
-/// Worst over the results that `covers` picks; 0 where there is none.
-inline double worst(const std::vector<Result>& results, const std::function<bool(const Result&)>& covers,
-                    const std::function<double(const Result&)>& figure) {
-    double most = 0;
-    for (const Result& r : results)
-        if (covers(r)) most = std::max(most, figure(r));
-    return most;
-}
-
 /// The goals that are not a ratio to the baseline at equal work, tier by tier.
 inline void print_scale_goals(const std::vector<Result>& results) {
     std::printf("\n%-56s %-8s %6s %6s %9s\n", "scale", "tier", "must", "aim", "measured");
-    for (const std::string tier : {"avx512", "avx2", "sse2", "scalar"}) {
+    for (const char* const tier : goal_tiers) {
         const auto pick = [&](const char* set, std::size_t n, int threads, auto figure) {
-            return worst(
-                results,
-                [&](const Result& r) {
-                    return r.set == set && r.lights == n && r.threads == threads && r.tier == tier &&
-                           r.tile_size == (r.set.ends_with("4k") ? 16 : 32) && r.depth_test == "none" &&
-                           r.footprint == "rectangle";
-                },
-                figure);
+            double worst = 0;  // where there is none
+            for (const Result& r : results)
+                if (r.set == set && r.lights == n && r.threads == threads && r.tier == tier &&
+                    r.tile_size == (r.set.ends_with("4k") ? 16 : 32) && r.depth_test == "none" &&
+                    r.footprint == "rectangle")
+                    worst = std::max(worst, figure(r));
+            return worst;
         };
         const auto print = [&](const char* what, double must, double aim, double measured,
                                bool more_is_better) {
             if (!(measured > 0) || std::isinf(measured)) return;
-            std::printf("%-56s %-8s %6.2f %6.2f %9.2f %s\n", what, tier.c_str(), must, aim, measured,
+            std::printf("%-56s %-8s %6.2f %6.2f %9.2f %s\n", what, tier, must, aim, measured,
                         (more_is_better ? measured < must : measured > must) ? "MISS" : "");
         };
         const auto clears = [](const Result& r) { return r.clear_ratio; };

@@ -8,6 +8,7 @@
 
 #include <lightbin/lightbin.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -69,4 +70,21 @@ private:
     static Lens lens_of(const Frustum& frustum, lightbin::Extent size) {
         return {frustum.y, frustum.near_depth, frustum.far_depth, size};
     }
+};
+
+/// A scene's views by tile size; the last is one tile for the whole screen.
+class Views {
+public:
+    Views(const BenchScene& scene, const Picture& picture) {
+        for (const int tile_size : {8, 16, 32, 64, screen.width})
+            views_.emplace_back(scene, picture, tile_size);
+    }
+
+    const TiledView& of(int tile_size) const {
+        return *std::ranges::find_if(views_,
+                                     [&](const TiledView& v) { return v.view.tile_size() == tile_size; });
+    }
+
+private:
+    std::vector<TiledView> views_;
 };
