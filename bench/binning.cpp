@@ -4,6 +4,7 @@
 // binning.csv.
 #include "flat.hpp"
 #include "frames.hpp"
+#include "glb_scenes.hpp"
 #include "goals.hpp"
 #include "measure.hpp"
 #include "names.hpp"

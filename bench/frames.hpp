@@ -3,7 +3,6 @@
 #pragma once
 
 #include "flat.hpp"
-#include "glb_scenes.hpp"
 #include "raster.hpp"
 #include "scenes.hpp"
 #include "sets.hpp"

@@ -50,7 +50,7 @@ struct GridSurvey {
     double rows = 0;        ///< tile rows in the lights' rectangles
     double supertiles = 0;  ///< supertiles there, 8x8 tiles each
     /// By rung: the lists' lengths, summed over the tiles, and over the pixels that have something to light.
-    double entries[4] = {}, evaluations[4] = {};
+    double entries[std::size(rungs)] = {}, evaluations[std::size(rungs)] = {};
 };
 
 /// Tiles x0..x1, y0..y1 of a grid, both ends included.
