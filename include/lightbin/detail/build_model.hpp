@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <numeric>
 
 namespace lightbin::detail {
 
@@ -54,7 +53,10 @@ template <class Value> const Value& of_tier(const Value (&tiers)[4], Isa isa) {
 }
 
 inline double predicted_ns(const BuildTerms& terms, const BuildTerms& model) {
-    return std::inner_product(terms.begin(), terms.end(), model.begin(), 0.0);
+    double ns = 0;
+    for (std::size_t i = 0; i < terms.size(); ++i)
+        ns += terms[i] * model[i];
+    return ns;
 }
 
 }  // namespace lightbin::detail
