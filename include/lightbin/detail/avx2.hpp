@@ -127,11 +127,9 @@ LIGHTBIN_TARGET inline void store_spans(RowSpan* spans, Doubles first, Doubles l
     _mm_storeu_si128(reinterpret_cast<__m128i*>(spans), pairs);
 }
 
-#include <lightbin/detail/project.inl>
-
-#include <lightbin/detail/silhouette.inl>
-
 #include <lightbin/detail/depth_columns.inl>
+#include <lightbin/detail/project.inl>
+#include <lightbin/detail/silhouette.inl>
 
 /// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
 LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
@@ -165,13 +163,10 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
 
 #include <lightbin/detail/tile_masks.inl>
 
-#include <lightbin/detail/survey.inl>
-
 #include <lightbin/detail/scan.inl>
-
 #include <lightbin/detail/scatter.inl>
-
 #include <lightbin/detail/supertile.inl>
+#include <lightbin/detail/survey.inl>
 
 }  // namespace avx2
 }  // namespace LIGHTBIN_FLAVOUR

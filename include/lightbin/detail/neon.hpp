@@ -76,19 +76,14 @@ inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
         spans[i] = {static_cast<std::uint16_t>(first[i]), static_cast<std::uint16_t>(last[i])};
 }
 
-#include <lightbin/detail/project.inl>
-
-#include <lightbin/detail/silhouette.inl>
-
 #include <lightbin/detail/depth_columns.inl>
-
+#include <lightbin/detail/project.inl>
+#include <lightbin/detail/silhouette.inl>
 #include <lightbin/detail/tile_masks.inl>
 
-#include <lightbin/detail/survey.inl>
-
 #include <lightbin/detail/scatter.inl>
-
 #include <lightbin/detail/supertile.inl>
+#include <lightbin/detail/survey.inl>
 
 }  // namespace neon
 }  // namespace LIGHTBIN_FLAVOUR

@@ -70,9 +70,7 @@ inline void store_spans(RowSpan* spans, double first, double last) {
 }
 
 #include <lightbin/detail/project.inl>
-
 #include <lightbin/detail/silhouette.inl>
-
 #include <lightbin/detail/tile_masks.inl>
 
 #include <lightbin/detail/survey.inl>

@@ -77,11 +77,9 @@ inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
     _mm_storel_epi64(reinterpret_cast<__m128i*>(spans), pairs);
 }
 
-#include <lightbin/detail/project.inl>
-
-#include <lightbin/detail/silhouette.inl>
-
 #include <lightbin/detail/depth_columns.inl>
+#include <lightbin/detail/project.inl>
+#include <lightbin/detail/silhouette.inl>
 
 /// As the AVX2 tier's, which see.
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
@@ -142,11 +140,9 @@ template <class Id> std::uint32_t append(Id* out, const Packed<Id>* ids, unsigne
 
 #include <lightbin/detail/tile_masks.inl>
 
-#include <lightbin/detail/survey.inl>
-
 #include <lightbin/detail/scatter.inl>
-
 #include <lightbin/detail/supertile.inl>
+#include <lightbin/detail/survey.inl>
 
 }  // namespace sse2
 }  // namespace LIGHTBIN_FLAVOUR
