@@ -27,8 +27,8 @@ enum class ListStorage : std::uint8_t {
 struct ShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     ListStorage storage = ListStorage::storage_buffer;
-    ListFormat format =
-        {};  ///< as given to encode(). offset_count with the Binner's own ids needs no encode().
+    /// As given to encode(), which offset_count with the Binner's own ids doesn't need.
+    ListFormat format = {};
     /// offset_count: the table of tiles in a uniform block, whatever `storage` is for the ids.
     bool tiles_in_uniform_block = false;
     /// texel_buffer, texture_2d: narrow ids in 32-bit texels, as the other storages have them, not in texels
@@ -55,24 +55,16 @@ struct ShaderOptions {
 struct ShaderGrid {
     std::uint32_t tile_size, tiles_x, width, height;  ///< grid
     std::int32_t corner_x, corner_y;                  ///< corner
-    std::int32_t unused[2];
+    std::int32_t unused[2] = {};
 };
-static_assert(sizeof(ShaderGrid) == 32 && offsetof(ShaderGrid, tile_size) == 0 &&
-              offsetof(ShaderGrid, tiles_x) == 4 && offsetof(ShaderGrid, width) == 8 &&
-              offsetof(ShaderGrid, height) == 12 && offsetof(ShaderGrid, corner_x) == 16 &&
-              offsetof(ShaderGrid, corner_y) == 20);
-static_assert(sizeof(Tile) == 8 && offsetof(Tile, offset) == 0 && offsetof(Tile, count) == 4);
+static_assert(sizeof(ShaderGrid) == 32 && sizeof(Tile) == 8);  // so nothing lies between their members
 
 /// Returns the constants of a view. The corner is the window pixel at the viewport's first column and row, as
 /// the shader counts pixels; it is read with viewport_corner only.
 inline ShaderGrid shader_grid(const View& view, int corner_x = 0, int corner_y = 0) {
-    return {static_cast<std::uint32_t>(view.tile_size()),
-            static_cast<std::uint32_t>(view.tiles_x()),
-            static_cast<std::uint32_t>(view.viewport().width),
-            static_cast<std::uint32_t>(view.viewport().height),
-            corner_x,
-            corner_y,
-            {}};
+    const Extent size = view.viewport();
+    const auto u = [](int n) { return static_cast<std::uint32_t>(n); };
+    return {u(view.tile_size()), u(view.tiles_x()), u(size.width), u(size.height), corner_x, corner_y};
 }
 
 namespace detail {
@@ -106,8 +98,7 @@ inline std::optional<Error> refuse(const ShaderOptions& options) {
         return error;
     if (options.storage == ListStorage::storage_buffer && !dialect.storage_buffers)
         return Error{ErrorCode::no_storage_buffers};
-    if (options.storage == ListStorage::texel_buffer && !dialect.texel_buffers)
-        return Error{ErrorCode::no_texel_buffers};
+    if (options.storage == ListStorage::texel_buffer && dialect.es) return Error{ErrorCode::no_texel_buffers};
     if (options.storage == ListStorage::byte_address && !dialect.hlsl)
         return Error{ErrorCode::no_byte_address_buffers};
     if (options.tile_size < 0)
@@ -144,19 +135,10 @@ inline std::optional<Error> refuse(const ShaderOptions& options) {
 }
 
 inline ShaderResource resource(ListStorage storage) {
-    switch (storage) {
-    case ListStorage::storage_buffer:
-        return ShaderResource::storage_buffer;
-    case ListStorage::texel_buffer:
-        return ShaderResource::texel_buffer;
-    case ListStorage::texture_2d:
-        return ShaderResource::texture_2d;
-    case ListStorage::uniform_block:
-        return ShaderResource::uniform_block;
-    case ListStorage::byte_address:
-        break;
-    }
-    return ShaderResource::byte_address;
+    using enum ShaderResource;
+    constexpr ShaderResource by_storage[] = {storage_buffer, texel_buffer, texture_2d, uniform_block,
+                                             byte_address};
+    return by_storage[static_cast<std::size_t>(storage)];
 }
 
 /// `tile`: the tile of a pixel.
@@ -205,22 +187,17 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
         !options.packed_ids && !bits &&
         (options.storage == ListStorage::texel_buffer || options.storage == ListStorage::texture_2d);
 
-    ShaderBuffer tiles = {
-        "tiles",
-        resource(options.tiles_in_uniform_block ? ListStorage::uniform_block : options.storage),
-        options.tiles,
-        TexelFormat::rg32ui,
-        (options.max_tiles + 1) / 2,
-        0};
-    ShaderBuffer lists = {
-        "lists",
-        resource(options.storage),
-        options.lists,
-        typed && format.ids == IdWidth::u8    ? TexelFormat::r8ui
-        : typed && format.ids == IdWidth::u16 ? TexelFormat::r16ui
-                                              : TexelFormat::r32ui,
-        static_cast<std::uint32_t>((encoded_bytes(format, options.max_tiles, options.max_entries) + 15) / 16),
-        options.texture_width};
+    const ListStorage tile_storage =
+        options.tiles_in_uniform_block ? ListStorage::uniform_block : options.storage;
+    const TexelFormat texels = typed && format.ids == IdWidth::u8    ? TexelFormat::r8ui
+                               : typed && format.ids == IdWidth::u16 ? TexelFormat::r16ui
+                                                                     : TexelFormat::r32ui;
+    const std::uint64_t bytes = encoded_bytes(format, options.max_tiles, options.max_entries);
+    const std::uint32_t vectors = static_cast<std::uint32_t>((bytes + 15) / 16);
+    const ShaderBuffer tiles = {
+        "tiles", resource(tile_storage), options.tiles, TexelFormat::rg32ui, (options.max_tiles + 1) / 2, 0};
+    const ShaderBuffer lists = {"lists", resource(options.storage), options.lists, texels,
+                                vectors, options.texture_width};
     std::vector<ShaderConstant> constants = {{"uvec4", "grid"}};
     if (options.viewport_corner) constants.push_back({"ivec2", "corner"});
     writer.declare_constants(constants, options.grid, options.push_constants);
@@ -253,7 +230,7 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
                    writer.read(lists, "c.at") +
                    ";\n        c.at += 1u;\n        c.id += 32u;\n    }\n"
                    "    bool more = c.bits != 0u;\n    if (more) {\n        c.id += " +
-                   (writer.dialect().finds_bits
+                   (writer.dialect().storage_buffers
                         ? "uint(findLSB(c.bits))"
                         : "(floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u") +
                    ";\n        c.bits &= c.bits - 1u;\n    }\n    return more;\n}\n");

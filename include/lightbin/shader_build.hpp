@@ -13,10 +13,8 @@
 #include <lightbin/z_bounds.hpp>
 
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,11 +46,9 @@ struct ShaderReduce {
     std::uint32_t tile_size, tiles_x, width, height;  ///< grid
     float far_end, slope, margin, unused;             ///< planes
     std::int32_t corner_x, corner_y;                  ///< corner
-    std::int32_t unused_corner[2];
+    std::int32_t unused_corner[2] = {};
 };
-static_assert(sizeof(ShaderReduce) == 48 && offsetof(ShaderReduce, far_end) == 16 &&
-              offsetof(ShaderReduce, slope) == 20 && offsetof(ShaderReduce, margin) == 24 &&
-              offsetof(ShaderReduce, corner_x) == 32);
+static_assert(sizeof(ShaderReduce) == 48);
 
 /// Returns the constants of a view; the corner is the texel at the viewport's first column and row.
 inline ShaderReduce shader_reduce(const View& view, int corner_x = 0, int corner_y = 0) {
@@ -61,18 +57,11 @@ inline ShaderReduce shader_reduce(const View& view, int corner_x = 0, int corner
     // depth is  1 / (far_end + slope e)  or, orthographic,  far_end - slope e: terms of one sign.
     const double from = static_cast<double>(view.near_depth()), to = static_cast<double>(view.far_depth());
     const bool flat = view.orthographic();
-    const double far_end = flat ? to : 1 / to, slope = flat ? to - from : 1 / from - 1 / to;
-    return {grid.tile_size,
-            grid.tiles_x,
-            grid.width,
-            grid.height,
-            static_cast<float>(far_end),
-            static_cast<float>(slope),
-            static_cast<float>(0x1p-20 * (std::fabs(from) + std::fabs(to))),
-            0,
-            corner_x,
-            corner_y,
-            {}};
+    const float far_end = static_cast<float>(flat ? to : 1 / to),
+                slope = static_cast<float>(flat ? to - from : 1 / from - 1 / to),
+                margin = static_cast<float>(0x1p-20 * (std::fabs(from) + std::fabs(to)));
+    return {grid.tile_size, grid.tiles_x, grid.width, grid.height, far_end,
+            slope,          margin,       0,          corner_x,    corner_y};
 }
 
 /// One of the three shaders that build a light grid, in the order of their dispatches.
@@ -100,19 +89,14 @@ struct BuildShaderOptions {
 /// of it without box.
 struct ShaderBuild {
     std::uint32_t tiles_x, tiles_y, footprints, room;  ///< grid; room: ids that the buffer for lists holds
-    float near_depth, far_depth, unused[2];            ///< planes
+    float near_depth, far_depth, unused[2] = {};       ///< planes
 };
-static_assert(sizeof(ShaderBuild) == 32 && offsetof(ShaderBuild, footprints) == 8 &&
-              offsetof(ShaderBuild, near_depth) == 16);
+static_assert(sizeof(ShaderBuild) == 32);
 
 inline ShaderBuild shader_build(const View& view, std::uint32_t footprints, std::uint32_t room) {
-    return {static_cast<std::uint32_t>(view.tiles_x()),
-            static_cast<std::uint32_t>(view.tiles_y()),
-            footprints,
-            room,
-            view.near_depth(),
-            view.far_depth(),
-            {}};
+    const std::uint32_t columns = static_cast<std::uint32_t>(view.tiles_x()),
+                        rows = static_cast<std::uint32_t>(view.tiles_y());
+    return {columns, rows, footprints, room, view.near_depth(), view.far_depth()};
 }
 
 /// A light in view, as build_shader() reads it: tiles x0..x1, y0..y1, both ends included, and the sphere with
@@ -123,9 +107,7 @@ struct ShaderFootprint {
     float reach2;  ///< the squared radius, rounded up
     float x, y, z, radius;
 };
-static_assert(sizeof(ShaderFootprint) == 32 && offsetof(ShaderFootprint, x0) == 4 &&
-              offsetof(ShaderFootprint, x1) == 8 && offsetof(ShaderFootprint, reach2) == 12 &&
-              offsetof(ShaderFootprint, x) == 16);
+static_assert(sizeof(ShaderFootprint) == 32);
 
 namespace detail {
 
@@ -151,8 +133,7 @@ inline void declare_depth(ShaderWriter& writer, const ReduceShaderOptions& optio
     else
         writer.add(writer.layout("", options.depth) +
                    (many ? "uniform sampler2DMS $depth;\n" : "uniform sampler2D $depth;\n"));
-    writer.bind(
-        {writer.prefix() + "depth", ShaderResource::texture_2d, options.depth, TexelFormat::r32f, 4, 0, 0});
+    writer.bind({writer.prefix() + "depth", ShaderResource::texture_2d, options.depth, TexelFormat::r32f, 4});
 }
 
 inline std::optional<Error> refuse(const ReduceShaderOptions& options) {

@@ -66,31 +66,15 @@ namespace detail {
 /// What a language has.
 struct Dialect {
     bool hlsl, es, vulkan;
-    bool binds;            ///< bindings in the text
     bool spaces;           ///< sets or register spaces
-    bool storage_buffers;  ///< and compute shaders
-    bool texel_buffers;
-    bool finds_bits;  ///< findLSB
+    bool storage_buffers;  ///< and with them compute shaders, bindings in the text, findLSB
 };
 
 inline Dialect dialect(ShaderLanguage language) {
-    switch (language) {
-    case ShaderLanguage::glsl_330:
-        return {false, false, false, false, false, false, true, false};
-    case ShaderLanguage::glsl_430:
-        return {false, false, false, true, false, true, true, true};
-    case ShaderLanguage::glsl_vulkan:
-        return {false, false, true, true, true, true, true, true};
-    case ShaderLanguage::essl_300:
-        return {false, true, false, false, false, false, false, false};
-    case ShaderLanguage::essl_310:
-        return {false, true, false, true, false, true, false, true};
-    case ShaderLanguage::hlsl_5_0:
-        return {true, false, false, true, false, true, true, true};
-    case ShaderLanguage::hlsl_5_1:
-        break;
-    }
-    return {true, false, false, true, true, true, true, true};
+    using enum ShaderLanguage;
+    const bool hlsl = language == hlsl_5_0 || language == hlsl_5_1, vulkan = language == glsl_vulkan;
+    return {hlsl, language == essl_300 || language == essl_310, vulkan, vulkan || language == hlsl_5_1,
+            language != glsl_330 && language != essl_300};
 }
 
 /// The word of HLSL for a word of GLSL.
@@ -155,12 +139,12 @@ inline std::string translate(const Dialect& dialect, std::string_view prefix, st
 
 /// A buffer of uint or uvec2 that a shader reads.
 struct ShaderBuffer {
-    std::string_view name;
-    ShaderResource resource = ShaderResource::storage_buffer;
-    ShaderSlot slot = {};
-    TexelFormat format = TexelFormat::r32ui;  ///< rg32ui: elements are uvec2
-    std::uint32_t vectors = 0;                ///< uniform_block: its size in uvec4
-    std::uint32_t width = 0;                  ///< texture_2d
+    std::string name;
+    ShaderResource resource;
+    ShaderSlot slot;
+    TexelFormat format;     ///< rg32ui: elements are uvec2
+    std::uint32_t vectors;  ///< uniform_block: its size in uvec4
+    std::uint32_t width;    ///< texture_2d
 };
 
 /// A vector that the CPU sets.
@@ -182,63 +166,50 @@ public:
     /// Declares a read-only buffer and lists it among the bindings.
     void declare(const ShaderBuffer& buffer) {
         const bool pairs = buffer.format == TexelFormat::rg32ui;
-        const std::string name = std::string("$").append(buffer.name), type = pairs ? "uvec2" : "uint",
-                          vectors = std::to_string(buffer.vectors);
-        ShaderBinding binding = {prefix_ + std::string(buffer.name),
-                                 buffer.resource,
-                                 buffer.slot,
-                                 TexelFormat::none,
-                                 pairs ? 8u : 4u,
-                                 0,
-                                 0};
+        const std::string name = "$" + buffer.name, type = pairs ? "uvec2" : "uint";
+        const std::uint32_t stride = pairs ? 8 : 4;
+        if (buffer.resource == ShaderResource::uniform_block)
+            return add_block(buffer.name + "_block",
+                             "    uvec4 " + name + "[" + std::to_string(buffer.vectors) + "];\n", buffer.slot,
+                             false, buffer.vectors * 16);
+        if (buffer.resource == ShaderResource::storage_buffer)
+            return declare_storage(buffer.name, type, "readonly", buffer.slot, stride);
+        ShaderBinding binding = {prefix_ + buffer.name, buffer.resource, buffer.slot};
         const std::string at = dialect_.hlsl ? hlsl_register(buffer.slot, 't') : "";
-        switch (buffer.resource) {
-        case ShaderResource::uniform_block:
-            add_block(std::string(buffer.name) + "_block", "    uvec4 " + name + "[" + vectors + "];\n",
-                      buffer.slot, false, buffer.vectors * 16);
-            return;
-        case ShaderResource::storage_buffer:
-            declare_storage(std::string(buffer.name), type, "readonly", buffer.slot, binding.stride);
-            return;
-        case ShaderResource::byte_address:
+        if (buffer.resource == ShaderResource::byte_address) {
+            binding.stride = stride;
             add("ByteAddressBuffer " + name + at + ";\n");
-            break;
-        default: {
+        } else {
             const bool texture = buffer.resource == ShaderResource::texture_2d;
             binding.format = buffer.format;
             binding.stride = texel_bytes(buffer.format);
             binding.width = buffer.width;
-            if (dialect_.hlsl)
-                add((texture ? "Texture2D<" : "Buffer<") + type + "> " + name + at + ";\n");
-            else
-                add(layout("", buffer.slot) + (texture ? "uniform usampler2D " : "uniform usamplerBuffer ") +
-                    name + ";\n");
+            add(dialect_.hlsl ? (texture ? "Texture2D<" : "Buffer<") + type + "> " + name + at + ";\n"
+                              : layout("", buffer.slot) + "uniform usampler" + (texture ? "2D " : "Buffer ") +
+                                    name + ";\n");
         }
-        }
-        shader_.bindings.push_back(binding);
+        bind(binding);
     }
 
     /// Returns the expression that reads an element: of a uvec2 buffer a uvec2, otherwise a uint.
     std::string read(const ShaderBuffer& buffer, const std::string& index) const {
         const bool pairs = buffer.format == TexelFormat::rg32ui;
-        const std::string name = std::string("$").append(buffer.name), swizzle = pairs ? ".xy" : ".x";
+        const std::string name = "$" + buffer.name;
+        const auto word = [&](const std::string& i) {
+            return name + "[(" + i + ") >> 2u][(" + i + ") & 3u]";
+        };
         switch (buffer.resource) {
-        case ShaderResource::uniform_block: {
-            const auto word = [&](const std::string& i) {
-                return name + "[(" + i + ") >> 2u][(" + i + ") & 3u]";
-            };
+        case ShaderResource::uniform_block:
             if (!pairs) return word(index);
             return "uvec2(" + word("2u * " + index) + ", " + word("2u * " + index + " + 1u") + ")";
-        }
         case ShaderResource::byte_address:
             return name + (pairs ? ".Load2(8u * (" : ".Load(4u * (") + index + "))";
         case ShaderResource::texel_buffer:
             if (dialect_.hlsl) break;
-            return "texelFetch(" + name + ", int(" + index + "))" + swizzle;
+            return "texelFetch(" + name + ", int(" + index + "))" + (pairs ? ".xy" : ".x");
         case ShaderResource::texture_2d: {
-            const std::string texel = "int((" + index + ") % " + std::to_string(buffer.width) + "u), int((" +
-                                      index + ") / " + std::to_string(buffer.width) + "u)";
-            return read_texel(buffer, texel);
+            const std::string width = std::to_string(buffer.width) + "u)";
+            return read_texel(buffer, "int((" + index + ") % " + width + ", int((" + index + ") / " + width);
         }
         default:
             break;
@@ -248,11 +219,9 @@ public:
 
     /// The same of a texture_2d, at "x, y".
     std::string read_texel(const ShaderBuffer& buffer, const std::string& texel) const {
-        const std::string name = std::string("$").append(buffer.name),
-                          swizzle = buffer.format == TexelFormat::rg32ui ? ".xy" : ".x";
-        return (dialect_.hlsl ? name + ".Load(int3(" + texel + ", 0))"
-                              : "texelFetch(" + name + ", ivec2(" + texel + "), 0)") +
-               swizzle;
+        return (dialect_.hlsl ? "$" + buffer.name + ".Load(int3(" + texel + ", 0))"
+                              : "texelFetch($" + buffer.name + ", ivec2(" + texel + "), 0)") +
+               (buffer.format == TexelFormat::rg32ui ? ".xy" : ".x");
     }
 
     /// Declares constants that the CPU sets, each at the next multiple of 16 bytes: uniforms in OpenGL, one
@@ -268,8 +237,7 @@ public:
             }
             add("uniform " + line + "\n");
             const std::uint32_t bytes = constant.type == std::string_view("ivec2") ? 8 : 16;
-            shader_.bindings.push_back({prefix_ + constant.name, ShaderResource::uniform_vector, ShaderSlot{},
-                                        TexelFormat::none, bytes, bytes, 0});
+            bind({.name = prefix_ + constant.name, .stride = bytes, .bytes = bytes});
         }
         if (!block) return;
         const std::string name = std::string(constants.front().name) + "_block";
@@ -289,7 +257,7 @@ public:
                 name + "_block {\n    " + type + " $" + name + "[];\n};\n");
         bind({prefix_ + name + (dialect_.hlsl ? "" : "_block"),
               writable ? ShaderResource::writable_buffer : ShaderResource::storage_buffer, slot,
-              TexelFormat::none, stride, 0, 0});
+              TexelFormat::none, stride});
     }
 
     /// Lists a resource that add() declared.
@@ -313,7 +281,7 @@ public:
             inside += (inside.empty() ? "" : ", ") + std::string(key) + " = " + std::to_string(value);
         };
         if (dialect_.spaces) item("set", slot.set);
-        if (dialect_.binds) item("binding", slot.binding);
+        if (dialect_.storage_buffers) item("binding", slot.binding);
         return inside.empty() ? "" : "layout(" + inside + ") ";
     }
 
@@ -337,7 +305,7 @@ private:
                             : layout("std140", slot) + "uniform $" + name);
         add(" {\n" + lines + "};\n");
         bind({prefix_ + name, push ? ShaderResource::push_constants : ShaderResource::uniform_block, slot,
-              TexelFormat::none, bytes, bytes, 0});
+              TexelFormat::none, bytes, bytes});
     }
 
     /// Vulkan has one row of bindings a set; elsewhere each kind has its own, and a text without bindings has
@@ -359,8 +327,9 @@ private:
             }
         };
         const int kind_a = kind(a), kind_b = kind(b);
-        return dialect_.binds && kind_a != 0 && kind_b != 0 && (dialect_.vulkan || kind_a == kind_b) &&
-               a.slot.binding == b.slot.binding && a.slot.set == b.slot.set;
+        return dialect_.storage_buffers && kind_a != 0 && kind_b != 0 &&
+               (dialect_.vulkan || kind_a == kind_b) && a.slot.binding == b.slot.binding &&
+               a.slot.set == b.slot.set;
     }
 
     Dialect dialect_;

@@ -54,7 +54,7 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions o
          {ListStorage::storage_buffer, ListStorage::texel_buffer, ListStorage::texture_2d,
           ListStorage::uniform_block, ListStorage::byte_address}) {
         if ((storage == ListStorage::storage_buffer && !dialect.storage_buffers) ||
-            (storage == ListStorage::texel_buffer && !dialect.texel_buffers) ||
+            (storage == ListStorage::texel_buffer && dialect.es) ||
             (storage == ListStorage::byte_address && !dialect.hlsl))
             continue;
         options.storage = storage;
