@@ -59,10 +59,7 @@ class WorldToView {
 public:
     template <class Matrix> explicit WorldToView(const Matrix& matrix) {
         copy_matrix(matrix, m_);
-        affine_ = m_[0][3] == 0 && m_[1][3] == 0 && m_[2][3] == 0 && m_[3][3] == 1;
-        for (const auto& column : m_)
-            for (const double entry : column)
-                affine_ = affine_ && std::isfinite(entry);
+        affine_ = finite(m_) && m_[0][3] == 0 && m_[1][3] == 0 && m_[2][3] == 0 && m_[3][3] == 1;
         // The largest singular value is at most the root of the largest row sum of M^T M.
         double square = 0;
         for (int i = 0; i < 3; ++i) {
@@ -97,9 +94,9 @@ public:
     }
 
 private:
-    double m_[4][4] = {};
-    double stretch_ = 0;
-    bool affine_ = true;
+    double m_[4][4];
+    double stretch_;  ///< the most that it makes a length longer
+    bool affine_;
 };
 
 }  // namespace detail

@@ -38,8 +38,7 @@ struct ViewOptions {
     int tile_size = 32;  ///< side of a tile in pixels, 1 or more
     ClipDepth clip_depth = ClipDepth::minus_one_to_one;
     WindowOrigin origin = WindowOrigin::lower_left;
-    bool reversed_z =
-        false;  ///< near has the larger depth. For orthographic matrices: a perspective one tells
+    bool reversed_z = false;  ///< near has the larger depth; read for orthographic ones, as others tell
 };
 
 /// View depths from min to max, both included.
@@ -74,8 +73,7 @@ struct Camera {
     float z_sign = 1;      ///< view depth = z_sign * z
     float near_depth = 0;  ///< rounded down
     float far_depth = 0;   ///< rounded up, may be +inf
-    float near_fast =
-        0;  ///< spheres beyond it are projected in float: the near plane, or 2^-40 where it is nearer
+    float near_fast = 0;   ///< near_depth, 2^-40 or more: spheres beyond it are projected in float
     bool orthographic = false;
 };
 
@@ -145,13 +143,6 @@ public:
     const detail::Camera& camera() const { return camera_; }
 
 private:
-    static bool finite(const double (&m)[4][4]) {
-        for (const auto& column : m)
-            for (const double entry : column)
-                if (!std::isfinite(entry)) return false;
-        return true;
-    }
-
     static Result<View> from_rows(const double (&m)[4][4], Extent viewport, const ViewOptions& options) {
         const auto error = [](ErrorCode code, int value = 0, int available = 0) {
             return Error{code, static_cast<std::uint64_t>(value), static_cast<std::uint64_t>(available)};
@@ -159,7 +150,7 @@ private:
         for (const int side : {viewport.width, viewport.height})
             if (side < 0 || side > max_side) return error(ErrorCode::viewport_out_of_range, side, max_side);
         if (options.tile_size < 1) return error(ErrorCode::tile_size_out_of_range, options.tile_size);
-        if (!finite(m)) return error(ErrorCode::matrix_not_finite);
+        if (!detail::finite(m)) return error(ErrorCode::matrix_not_finite);
 
         const double w_x = m[0][3], w_y = m[1][3], w_z = m[2][3], w_1 = m[3][3];
         const bool perspective = w_x == 0 && w_y == 0 && w_z != 0 && w_1 == 0;
@@ -203,15 +194,15 @@ private:
 
     /// ndc = (p / w) * c + q / w; pixels 0..side are ndc -1..1.
     bool set_axis(detail::ImageAxis& axis, double p, double q, double w, int side) const {
-        const double tiles_per_ndc = static_cast<double>(side) / (2.0 * tile_size_);
+        const double tiles = static_cast<double>(side) / tile_size_;
         axis.tiles = side / tile_size_ + (side % tile_size_ != 0 ? 1 : 0);
         axis.sign = p < 0 ? -1.0f : 1.0f;
-        axis.scale = std::fabs(p) / w * tiles_per_ndc;
-        axis.offset = (q / w + 1.0) * tiles_per_ndc;
+        axis.scale = std::fabs(p) / w * (0.5 * tiles);
+        axis.offset = (q / w + 1.0) * (0.5 * tiles);
         axis.scale_f = static_cast<float>(axis.scale);
         axis.offset_f = static_cast<float>(axis.offset);
         axis.inside = static_cast<float>(axis.tiles) - 0.5f;
-        axis.limit = detail::float_above(static_cast<double>(side) / tile_size_);
+        axis.limit = detail::float_above(tiles);
         // A float slope is within 10u of the truth (u = 2^-24, see project.inl), times scale_f 12u, plus u of
         // offset_f and u of the sum; inside the viewport |scale * slope| <= |offset| + tiles. 16u leaves room
         // for the double steps above and for adding the margin itself; 2^-80 a scale is for a caller who
@@ -219,8 +210,7 @@ private:
         axis.margin =
             detail::float_above(0x1p-20 * (std::fabs(axis.offset) + axis.tiles) + 0x1p-80 * axis.scale);
         if (!camera_.orthographic && axis.scale > 0) {
-            const double slope =
-                (std::fmax)(axis.offset, side / double(tile_size_) - axis.offset) / axis.scale;
+            const double slope = (std::fmax)(axis.offset, tiles - axis.offset) / axis.scale;
             const double length = std::sqrt(1 + slope * slope);
             axis.side = static_cast<float>(1 / length);
             axis.side_z = static_cast<float>(-slope / length);

@@ -2,6 +2,8 @@
 // The caller's matrix type ends here.
 #pragma once
 
+#include <cmath>
+
 namespace lightbin::detail {
 
 /// Copies any matrix[column][row]. Indices are constants, which no type of index warns of.
@@ -16,6 +18,13 @@ template <class Matrix> void copy_matrix(const Matrix& matrix, double (&m)[4][4]
     copy_column(matrix[1], m[1]);
     copy_column(matrix[2], m[2]);
     copy_column(matrix[3], m[3]);
+}
+
+inline bool finite(const double (&m)[4][4]) {
+    for (const auto& column : m)
+        for (const double entry : column)
+            if (!std::isfinite(entry)) return false;
+    return true;
 }
 
 }  // namespace lightbin::detail

@@ -26,6 +26,7 @@ template <DepthTest depth_test>
 inline constexpr unsigned cell_planes = depth_test == DepthTest::split_box ? 12
                                         : depth_test == DepthTest::box     ? 6
                                                                            : 2;
+inline constexpr unsigned next_box = 64 * cell_planes<DepthTest::box>;  ///< floats from a box to the next
 
 inline namespace LIGHTBIN_FLAVOUR {
 

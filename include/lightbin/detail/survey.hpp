@@ -60,6 +60,8 @@ struct TileRect {
     int width() const { return x1 - x0 + 1; }
     int height() const { return y1 - y0 + 1; }
     std::int64_t area() const { return std::int64_t{width()} * height(); }
+    /// Without a branch: no difference is negative.
+    bool holds(int x, int y) const { return ((x - x0) | (x1 - x) | (y - y0) | (y1 - y)) >= 0; }
 
     /// The same in a grid of 2^shift times the tile size.
     TileRect coarser(int shift) const { return {x0 >> shift, y0 >> shift, x1 >> shift, y1 >> shift}; }
@@ -69,7 +71,6 @@ struct Survey {
     /// Some of the lights in view: tiles of the view's size, and ids.
     std::vector<TileRect> rects;
     std::vector<std::uint32_t> ids;
-    double lights_each = 0;  ///< lights in view for each of these
     double lights = 0, visible = 0;
     double pixels = 0;              ///< those with something to light, as far as the Z bounds tell
     std::vector<GridSurvey> grids;  ///< of the view's tile size, twice, 4 and 8 times that
@@ -116,9 +117,9 @@ inline GridSurvey sum_rectangles(const Survey& survey, const View& tiled, int sh
     const double left =
         tiles == 0 ? 1
                    : 1 - (1 - std::numbers::pi / 4) * static_cast<double>(cut) / static_cast<double>(tiles);
-    const auto of_all = [&](std::int64_t sampled) {
-        return survey.lights_each * static_cast<double>(sampled);
-    };
+    const double lights_each =
+        survey.visible / static_cast<double>((std::max<std::size_t>)(survey.rects.size(), 1));
+    const auto of_all = [&](std::int64_t sampled) { return lights_each * static_cast<double>(sampled); };
     return {.tile_size = size,
             .tiles = static_cast<double>(tiled.tile_count()),
             .rows = of_all(rows),
@@ -145,7 +146,6 @@ Survey survey_rectangles(Isa isa, const View& view, const Lights<Light, ToViewSp
         survey.rects.push_back({arrays.x0[light], arrays.y0[light], arrays.x1[light], arrays.y1[light]});
         survey.ids.push_back(arrays.ids[light]);
     }
-    survey.lights_each = sampled == 0 ? 0 : survey.visible / static_cast<double>(sampled);
     const int longest = (std::max)(view.viewport().width, view.viewport().height);
     for (int shift = 0; shift == 0 || (shift <= 3 && view.tile_size() <= (longest - 1) >> shift); ++shift)
         survey.grids.push_back(
@@ -160,10 +160,11 @@ inline void read_block(const View& view, const ZBounds& bounds, int x, int y, Su
     const unsigned rows = static_cast<unsigned>((std::min)(8, view.tiles_y() - 8 * y));
     block.in_grid = columns_before[columns] & rows_before[rows];
     block.drawn = 0;
-    for (unsigned side = 0; side < 3 && columns * rows < 64; ++side) {
-        std::fill_n(block.low[side], 64, infinity);
-        std::fill_n(block.high[side], 64, -infinity);
-    }
+    if (columns * rows < 64)
+        for (unsigned side = 0; side < 3; ++side) {
+            std::fill_n(block.low[side], 64, infinity);
+            std::fill_n(block.high[side], 64, -infinity);
+        }
     const bool gaps = weighed(DepthTest::split_box, bounds);
     float left[8], right[8], top, bottom;
     for (unsigned column = 0; column < columns; ++column)
@@ -190,37 +191,6 @@ inline void read_block(const View& view, const ZBounds& bounds, int x, int y, Su
     }
 }
 
-/// Finds the sampled lights whose rectangles meet a block. Four coordinates are compared at once.
-class BlockSearch {
-public:
-    explicit BlockSearch(std::span<const TileRect> rects) : found_(rects.size()) {
-        for (const TileRect& rect : rects)
-            reaches_.push_back(word(rect.x1 >> 3, rect.y1 >> 3, rect.x0 >> 3, rect.y0 >> 3) | signs);
-    }
-
-    /// Returns their numbers, in order, until the next call.
-    std::span<const std::uint32_t> lights_of(int x, int y) {
-        const std::uint64_t block = word(x, y, x, y);
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < reaches_.size(); ++i) {
-            found_[count] = static_cast<std::uint32_t>(i);
-            count += ((reaches_[i] - block) & signs) == signs;
-        }
-        return {found_.data(), count};
-    }
-
-private:
-    static constexpr std::uint64_t signs = 0x8000800080008000;
-    static std::uint64_t word(int x1, int y1, int x0, int y0) {
-        const auto at_most = [](int coordinate) { return static_cast<std::uint64_t>(0x7fff - coordinate); };
-        return static_cast<std::uint64_t>(x1) | static_cast<std::uint64_t>(y1) << 16 | at_most(x0) << 32 |
-               at_most(y0) << 48;
-    }
-
-    std::vector<std::uint64_t> reaches_;
-    std::vector<std::uint32_t> found_;
-};
-
 /// The part of a rectangle in block (x, y).
 inline std::uint64_t tiles_in_block(const TileRect& rect, int x, int y) {
     const auto before = [](int tile, int block) {
@@ -238,37 +208,46 @@ void survey_blocks(Isa isa, const View& view, const Lights<Light, ToViewSphere>&
                    const ZBounds& bounds, std::size_t count, Survey& survey) {
     if (survey.visible == 0 || !weighed(DepthTest::box, bounds)) return;
     const SurveyKernel kernel = survey_kernel(isa);
-    BlockSearch search(survey.rects);
+    std::vector<TileRect> in_blocks;
     double area = 0;
-    for (const TileRect& rect : survey.rects)
-        area += static_cast<double>(rect.coarser(3).area());
-    double tiles[4][4] = {}, finest[4][4] = {};
+    for (const TileRect& rect : survey.rects) {
+        in_blocks.push_back(rect.coarser(3));
+        area += static_cast<double>(in_blocks.back().area());
+    }
+    std::vector<std::uint32_t> found(survey.rects.size());
+    double tiles[3][4] = {}, drawn[3][4] = {}, finest[4] = {};
     SurveyBlock block = {};
     std::size_t done = 0;
     std::int64_t before = 0;  // blocks of the lights before this one
-    for (const TileRect& rect : survey.rects) {
-        const TileRect blocks = rect.coarser(3);
+    for (const TileRect& blocks : in_blocks) {
         for (; done < count; ++done) {
             const std::int64_t place = static_cast<std::int64_t>(spread(done, count, area)) - before;
             if (place >= blocks.area()) break;
             const int x = blocks.x0 + static_cast<int>(place % blocks.width());
             const int y = blocks.y0 + static_cast<int>(place / blocks.width());
-            const std::span<const std::uint32_t> found = search.lights_of(x, y);
-            const std::size_t tested = (std::min<std::size_t>)(found.size(), BlockLight::most);
+            std::size_t here = 0;
+            for (std::size_t i = 0; i < in_blocks.size(); ++i) {
+                found[here] = static_cast<std::uint32_t>(i);
+                here += in_blocks[i].holds(x, y);
+            }
+            const std::size_t tested = (std::min<std::size_t>)(here, BlockLight::most);
             BlockLight some[BlockLight::most];
             for (std::size_t i = 0; i < tested; ++i) {
-                const std::size_t light = found[spread(i, tested, static_cast<double>(found.size()))];
+                const std::size_t light = found[spread(i, tested, static_cast<double>(here))];
                 some[i] = {std::invoke(lights.to_view_sphere, lights.array[survey.ids[light]]),
                            tiles_in_block(survey.rects[light], x, y)};
             }
             read_block(view, bounds, x, y, block);
             const BlockSums sums = kernel(view.camera(), block, weighed(DepthTest::split_box, bounds), some,
                                           static_cast<std::uint32_t>(tested));
-            for (std::size_t sum = 0; sum < 4; ++sum)
-                for (std::size_t grid = 0; grid < 4; ++grid) {
-                    tiles[sum][grid] += sums.tiles[sum][grid] / static_cast<double>(tested);
-                    finest[sum][grid] += sums.finest[sum][grid] / static_cast<double>(tested);
+            const double share = 1 / static_cast<double>(tested);
+            for (std::size_t grid = 0; grid < 4; ++grid) {
+                for (std::size_t test = 0; test < silhouettes; ++test) {
+                    tiles[test][grid] += share * sums.tiles[test][grid];
+                    drawn[test][grid] += share * sums.drawn[test][grid];
                 }
+                finest[grid] += share * sums.finest[grid];
+            }
         }
         before += blocks.area();
     }
@@ -276,8 +255,8 @@ void survey_blocks(Isa isa, const View& view, const Lights<Light, ToViewSphere>&
         GridSurvey& grid = survey.grids[at];
         const double all_pixels = grid.evaluations[0];
         for (std::size_t rung = 0; rung < silhouettes; ++rung) {
-            grid.entries[rung] = grid.entries[0] * tiles[1 + rung][at] / tiles[0][at];
-            grid.evaluations[rung] = all_pixels * finest[1 + rung][at] / finest[0][at];
+            grid.entries[rung] = grid.entries[0] * tiles[rung][at] / tiles[0][at];
+            grid.evaluations[rung] = all_pixels * drawn[rung][at] / finest[at];
         }
         grid.evaluations[silhouettes] *= grid.evaluations[0] / all_pixels;
     }

@@ -53,42 +53,41 @@ LIGHTBIN_TARGET std::uint64_t tiles_met(const float* cells, const TestedLight& l
 LIGHTBIN_TARGET inline BlockSums survey_block(const Camera& camera, SurveyBlock& block, bool gaps,
                                               const BlockLight* lights, std::uint32_t count) {
     merge_tiles(block);
-    float cells[2][(6 + 12) * 64];  // of the finest tiles; of the others
+    // Of the finest tiles, and of the others: a box each, then two boxes each.
+    float cells[2][3 * next_box];
+    const float* const bounds[] = {block.low[2], block.high[2], block.gap_min, block.gap_max};
     for (unsigned i = 0; i < 96; i += lanes) {
         float* const cell = cells[i / 64] + i % 64;
         const Floats x0 = load_floats(block.low[0] + i), x1 = load_floats(block.high[0] + i),
-                     y0 = load_floats(block.low[1] + i), y1 = load_floats(block.high[1] + i),
-                     min = load_floats(block.low[2] + i), max = load_floats(block.high[2] + i);
-        store_boxes<DepthTest::box>(camera, cell, x0, x1, y0, y1, min, max, min, max);
-        if (gaps)
-            store_boxes<DepthTest::split_box>(camera, cell + 6 * 64, x0, x1, y0, y1, min, max,
-                                              load_floats(block.gap_min + i), load_floats(block.gap_max + i));
+                     y0 = load_floats(block.low[1] + i), y1 = load_floats(block.high[1] + i);
+        store_boxes<DepthTest::box>(camera, cell, x0, x1, y0, y1, bounds, i);
+        if (gaps) store_boxes<DepthTest::split_box>(camera, cell + next_box, x0, x1, y0, y1, bounds, i);
     }
-    std::uint64_t listed[2][4][BlockLight::most];
+    std::uint64_t listed[2][3][BlockLight::most];
     for (std::uint32_t i = 0; i < count; ++i) {
         const TestedLight light(camera, lights[i].sphere);
         for (unsigned coarser = 0; coarser < 2; ++coarser) {
             const float* const boxes = cells[coarser];
             const std::uint64_t tiles = coarser == 0 ? lights[i].tiles : coarser_tiles(lights[i].tiles);
             const std::uint64_t box = tiles_met<DepthTest::box>(boxes, light, tiles);
-            listed[coarser][0][i] = listed[coarser][1][i] = tiles;
-            listed[coarser][2][i] = box;
-            if (gaps) listed[coarser][3][i] = tiles_met<DepthTest::split_box>(boxes + 6 * 64, light, box);
+            listed[coarser][0][i] = tiles;
+            listed[coarser][1][i] = box;
+            if (gaps) listed[coarser][2][i] = tiles_met<DepthTest::split_box>(boxes + next_box, light, box);
         }
     }
     constexpr unsigned shift[] = {0, 0, 16, 20};
     constexpr std::uint64_t all_tiles[] = {~std::uint64_t{0}, 0xffff, 0xf, 1};
     constexpr std::uint64_t finest_in_each[] = {1, 0x0001000100010001, 0x1111111111111111, ~std::uint64_t{0}};
     BlockSums sums;
-    for (unsigned sum = 0; sum < (gaps ? 4 : 3); ++sum)
-        for (unsigned grid = 0; grid < 4; ++grid) {
-            const std::uint64_t counted = sum == 0 ? block.in_grid : block.drawn;
+    for (unsigned test = 0; test < (gaps ? 3 : 2); ++test)
+        for (unsigned grid = 0; grid < 4; ++grid)
             for (std::uint32_t i = 0; i < count; ++i) {
-                const std::uint64_t tiles = listed[grid != 0][sum][i] >> shift[grid] & all_tiles[grid];
-                sums.tiles[sum][grid] += static_cast<std::uint32_t>(std::popcount(tiles));
-                sums.finest[sum][grid] +=
-                    static_cast<std::uint32_t>(std::popcount(tiles * finest_in_each[grid] & counted));
+                const std::uint64_t tiles = listed[grid != 0][test][i] >> shift[grid] & all_tiles[grid],
+                                    finest = tiles * finest_in_each[grid];
+                sums.tiles[test][grid] += static_cast<std::uint32_t>(std::popcount(tiles));
+                sums.drawn[test][grid] += static_cast<std::uint32_t>(std::popcount(finest & block.drawn));
+                if (test == 0)
+                    sums.finest[grid] += static_cast<std::uint32_t>(std::popcount(finest & block.in_grid));
             }
-        }
     return sums;
 }

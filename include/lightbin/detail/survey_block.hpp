@@ -53,10 +53,11 @@ struct BlockLight {
     std::uint64_t tiles;
 };
 
-/// Sums over lights, first of all tiles in their rectangles, then by rung (no depth test, box, split_box); by grid.
+/// Sums over lights, by depth test (none, box, split_box) and grid.
 struct BlockSums {
-    std::uint32_t tiles[4][4] = {};   ///< that list a light
-    std::uint32_t finest[4][4] = {};  ///< the finest tiles in these, past the first sum those that are drawn
+    std::uint32_t tiles[3][4] = {};  ///< that list a light
+    std::uint32_t drawn[3][4] = {};  ///< the finest tiles in these that have something to light
+    std::uint32_t finest[4] = {};    ///< without a depth test, all the finest tiles in them
 };
 
 }  // namespace lightbin::detail

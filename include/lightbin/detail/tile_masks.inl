@@ -23,31 +23,33 @@ LIGHTBIN_TARGET inline void store_box(const Camera& camera, float* box, Floats x
     store_floats(box + 320, mul(y1, select(less(zero, y1), back, front)) + all(flushed));
 }
 
-/// Writes the box of a tile's cell, or for split_box the two before and behind its gap.
+/// Writes the boxes of some tiles' cells, or for split_box the two before and behind each one's gap. The tiles' Z
+/// bounds (minima, maxima, gap_min, gap_max) lie at place `at`.
 ///
 /// Boxes are clamped to the near and far plane: lights in view meet the clamped depths just as the given ones.
 template <DepthTest depth_test>
 LIGHTBIN_TARGET inline void store_boxes(const Camera& camera, float* boxes, Floats x0, Floats x1, Floats y0,
-                                        Floats y1, Floats min, Floats max, Floats gap_min, Floats gap_max) {
+                                        Floats y1, const float* const (&bounds)[4], std::size_t at) {
     const Floats front = all(camera.near_depth), back = all(camera.far_depth);
+    const Floats min = load_floats(bounds[0] + at), max = load_floats(bounds[1] + at);
     const Floats largest = all(FLT_MAX);  // 0 * infinity is to be avoided
     const Floats z0 = lesser(select(less(front, min), min, front), largest);
     const Floats z1 = select(less(max, back), max, back);
     if constexpr (depth_test == DepthTest::box) {
         store_box(camera, boxes, x0, x1, y0, y1, z0, z1);
     } else {
+        const Floats gap_min = load_floats(bounds[2] + at), gap_max = load_floats(bounds[3] + at);
         const auto gap = less(gap_min, gap_max);
         const Floats end = select(both(gap, less(gap_min, z1)), gap_min, z1);
         const Floats begin = lesser(select(both(gap, less(z0, gap_max)), gap_max, z0), largest);
         store_box(camera, boxes, x0, x1, y0, y1, z0, end);
-        store_box(camera, boxes + 6 * 64, x0, x1, y0, y1, begin, z1);
+        store_box(camera, boxes + next_box, x0, x1, y0, y1, begin, z1);
     }
 }
 
-/// Writes what a depth test needs to know of a supertile's tiles, from column 8 x and row `top` on, in planes of
-/// 64 floats: the minimum
-/// and maximum depth, for boxes followed by the ends along x and y; split_box has a second box. Returns a bit
-/// for each tile that has anything to light.
+/// Writes what a depth test needs to know of a supertile's tiles, from column 8 x and row `top` on, in planes
+/// of 64 floats: the minimum and maximum depth, for boxes followed by the ends along x and y; split_box has a
+/// second box. Returns a bit for each tile that has anything to light.
 template <DepthTest depth_test, class Id>
 LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, float* cells) {
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
@@ -77,14 +79,9 @@ LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, u
                 store_floats(cells + 64 + place, max);
             } else {
                 const unsigned at_x = 8 * x + column, at_y = top + row;
-                Floats gap_min = max, gap_max = min;
-                if constexpr (depth_test == DepthTest::split_box) {
-                    gap_min = load_floats(sides[2] + column);
-                    gap_max = load_floats(sides[3] + column);
-                }
                 store_boxes<depth_test>(*job.camera, cells + place, load_floats(job.edges[0] + at_x),
                                         load_floats(job.edges[1] + at_x), all(job.edges[2][at_y]),
-                                        all(job.edges[3][at_y]), min, max, gap_min, gap_max);
+                                        all(job.edges[3][at_y]), sides, column);
             }
         }
     }
@@ -101,7 +98,7 @@ template <DepthTest depth_test>
 LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedLight& light) {
     const Floats nearest = all(light.nearest), farthest = all(light.farthest);
     std::uint64_t met = 0;
-    for (const float* cell = cells; cell < cells + 64 * cell_planes<depth_test>; cell += 64 * 6) {
+    for (const float* cell = cells; cell < cells + 64 * cell_planes<depth_test>; cell += next_box) {
         auto missed = either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest));
         if constexpr (depth_test != DepthTest::interval) {
             const Floats z = distance(all(light.z), cell), x = distance(all(light.x), cell + 128),
