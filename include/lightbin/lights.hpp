@@ -7,9 +7,8 @@
 #include <lightbin/result.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <functional>
 #include <ranges>

@@ -9,7 +9,6 @@
 #include <lightbin/view.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>

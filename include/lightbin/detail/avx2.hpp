@@ -2,21 +2,11 @@
 // The AVX2 tier's vectors: most desktop machines and consoles. Eight lights at a time.
 #pragma once
 
-#include <lightbin/detail/platform.hpp>
+#include <lightbin/detail/tier.hpp>
 
 #if defined(LIGHTBIN_X86)
 
-#include <lightbin/detail/footprint.hpp>
-#include <lightbin/detail/scatter.hpp>
-#include <lightbin/detail/scratch.hpp>
-#include <lightbin/detail/supertile.hpp>
-#include <lightbin/detail/survey_block.hpp>
-
-#include <array>
-#include <bit>
-#include <cstring>
 #include <immintrin.h>
-#include <utility>
 
 #define LIGHTBIN_TARGET __attribute__((target("avx2,bmi,popcnt")))
 

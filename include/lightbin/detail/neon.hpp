@@ -2,23 +2,11 @@
 // The NEON tier's vectors: phones and Apple's machines, every 64-bit ARM. Four lights at a time.
 #pragma once
 
-#include <lightbin/detail/platform.hpp>
+#include <lightbin/detail/tier.hpp>
 
 #if defined(LIGHTBIN_NEON)
 
-#include <lightbin/detail/footprint.hpp>
-#include <lightbin/detail/scatter.hpp>
-#include <lightbin/detail/scratch.hpp>
-#include <lightbin/detail/supertile.hpp>
-#include <lightbin/detail/survey_block.hpp>
-
 #include <arm_neon.h>
-#include <array>
-#include <bit>
-#include <cfloat>
-#include <cmath>
-#include <cstring>
-#include <utility>
 
 #define LIGHTBIN_TARGET
 

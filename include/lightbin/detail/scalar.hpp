@@ -2,22 +2,7 @@
 // The scalar tier: what every other tier must equal, byte for byte.
 #pragma once
 
-#include <lightbin/detail/footprint.hpp>
-#include <lightbin/detail/platform.hpp>
-#include <lightbin/detail/scatter.hpp>
-#include <lightbin/detail/scratch.hpp>
-#include <lightbin/detail/supertile.hpp>
-#include <lightbin/detail/survey_block.hpp>
-#include <lightbin/lights.hpp>
-#include <lightbin/view.hpp>
-
-#include <algorithm>
-#include <bit>
-#include <cfloat>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
+#include <lightbin/detail/tier.hpp>
 
 namespace lightbin::detail {
 inline namespace LIGHTBIN_FLAVOUR {

@@ -2,22 +2,11 @@
 // The SSE2 tier's vectors: what every x86-64 machine has. Four lights at a time.
 #pragma once
 
-#include <lightbin/detail/platform.hpp>
+#include <lightbin/detail/tier.hpp>
 
 #if defined(LIGHTBIN_X86)
 
-#include <lightbin/detail/footprint.hpp>
-#include <lightbin/detail/scatter.hpp>
-#include <lightbin/detail/scratch.hpp>
-#include <lightbin/detail/supertile.hpp>
-#include <lightbin/detail/survey_block.hpp>
-
-#include <array>
-#include <bit>
-#include <cstddef>
-#include <cstring>
 #include <emmintrin.h>
-#include <utility>
 
 #define LIGHTBIN_TARGET
 

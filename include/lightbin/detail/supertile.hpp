@@ -5,13 +5,8 @@
 #include <lightbin/detail/cell_boxes.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/platform.hpp>
-#include <lightbin/detail/scratch.hpp>
 #include <lightbin/options.hpp>
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstddef>
 #include <cstdint>
 #include <cstring>
 

@@ -20,7 +20,6 @@
 #include <functional>
 #include <iterator>
 #include <numbers>
-#include <span>
 #include <vector>
 
 namespace lightbin::detail {
