@@ -124,9 +124,18 @@ void fill(char* memory, std::size_t size) {
     benchmark::ClobberMemory();
 }
 
-/// Times one case. In turns: the baseline, ours, storing the list once, clearing the tile table; each time a
-/// few frames together where one is too short for the clock. Whether ours comes first alternates, as the
-/// second finds the lights in the cache.
+/// Arithmetic in registers, for the given number of steps.
+void churn(std::size_t steps) {
+    std::uint32_t sums[32] = {};
+    for (std::size_t i = 0; i < steps; ++i)
+        for (std::uint32_t& sum : sums)
+            sum += (sum << 1) + 1;
+    benchmark::DoNotOptimize(sums);
+}
+
+/// Times one case. In turns: the baseline, ours, storing the list once, clearing the tile table, and with threads
+/// one thread alone, arithmetic shared, and not; each time a few frames together where one is too short for the
+/// clock. Whether ours comes first alternates, as the second finds the lights in the cache.
 template <Options options> void build(benchmark::State& state, const Case& which) {
     constexpr bool with_depth = options.depth_test != DepthTest::none;
     constexpr bool twin = options.depth_test == DepthTest::interval;  // the baseline has this depth test too
@@ -153,51 +162,73 @@ template <Options options> void build(benchmark::State& state, const Case& which
     TbbLoop loop(which.threads);
     const lightbin::Parallel parallel =
         which.threads > 1 ? lightbin::Parallel(std::size_t(which.threads), loop) : lightbin::Parallel();
-    const auto bin = [&](std::size_t frame) {
+    const auto bin = [&](const lightbin::Parallel& threads, std::size_t frame) {
         if constexpr (with_depth)
-            return *binner.bin(views[seen[frame].view], seen[frame].lights, made.bounds, parallel);
+            return *binner.bin(views[seen[frame].view], seen[frame].lights, made.bounds, threads);
         else
-            return *binner.bin(views[seen[frame].view], seen[frame].lights, parallel);
+            return *binner.bin(views[seen[frame].view], seen[frame].lights, threads);
     };
     const auto bin_flat = [&](std::size_t frame) {
         flat.build<twin>(flat_views[seen[frame].view], seen[frame].lights, made.min.data(), made.max.data());
     };
-    verify(flat_views[0], frames[0].lights, bin(0), options, made.bounds);
+    verify(flat_views[0], frames[0].lights, bin(parallel, 0), options, made.bounds);
 
-    std::vector<double> theirs, ours, stores, clears, ratios;
+    struct Times {
+        std::vector<double> builds, stores, sums;
+    };
+    Times ours, alone;  // with all threads; with one, where there are more
+    std::vector<double> theirs, clears, ratios;
     std::vector<char> list, table(sizeof(lightbin::Tile) * views[0].tile_count());
     double entries = 0, spent = 0;
-    std::size_t turn = 0;
+    std::size_t turn = 0, steps = 0;
     const std::size_t n = which.lights,
                       together = std::max<std::size_t>(1, 256 / std::max<std::size_t>(n, 1));
     for (auto _ : state) {
-        while (spent < seconds_a_case || ours.size() < 5) {
+        while (spent < seconds_a_case || ours.builds.size() < 5 ||
+               (which.threads > 1 && alone.builds.size() < 5)) {
             const std::size_t first = turn++ * together;
             std::size_t written = 0;
             const auto each = [&](auto work) {
                 for (std::size_t i = 0; i < together; ++i)
                     work((first + i) % frames.size());
             };
+            // With threads, a few turns with one alone and a few with all.
+            const bool shared = which.threads == 1 || turn / 8 % 2 == 0;
+            Times& times = shared ? ours : alone;
+            const lightbin::Parallel threads = shared ? parallel : lightbin::Parallel();
             const auto time_ours = [&] {
-                ours.push_back(seconds(
-                    [&] { each([&](std::size_t frame) { written += bin(frame).indices().size(); }); }));
+                times.builds.push_back(seconds([&] {
+                    each([&](std::size_t frame) { written += bin(threads, frame).indices().size(); });
+                }));
             };
             if (turn % 2 == 0) time_ours();
             theirs.push_back(seconds([&] { each(bin_flat); }));
             if (turn % 2 == 1) time_ours();
+            if (which.threads > 1) {
+                if (steps == 0) steps = std::size_t(ours.builds[0] / seconds([] { churn(10000); }) * 10000);
+                times.sums.push_back(seconds([&] {
+                    threads.run(threads.workers(), [&](std::size_t) { churn(steps / threads.workers()); });
+                }));
+            }
             written *= sizeof(typename lightbin::Binner<options>::Id);
             list.resize(std::max(list.size(), written));
-            stores.push_back(seconds([&] { fill(list.data(), written); }));
+            times.stores.push_back(seconds([&] {
+                const std::size_t share = written / threads.workers();
+                threads.run(threads.workers(), [&](std::size_t i) { fill(list.data() + i * share, share); });
+            }));
             clears.push_back(seconds([&] { each([&](std::size_t) { fill(table.data(), table.size()); }); }));
-            ratios.push_back(ours.back() / theirs.back());
+            if (shared) ratios.push_back(ours.builds.back() / theirs.back());
             entries += double(written / sizeof(typename lightbin::Binner<options>::Id));
-            spent += ours.back() + theirs.back() + stores.back();
+            spent += times.builds.back() + theirs.back() + times.stores.back();
         }
-        state.SetIterationTime(percentile(ours, 0.5) / double(together));
+        state.SetIterationTime(median(ours.builds) / double(together));
     }
 
-    const double lights = double(std::max<std::size_t>(n, 1) * together), ns = 1e9 * percentile(ours, 0.5);
-    entries /= double(ours.size());
+    const double lights = double(std::max<std::size_t>(n, 1) * together), ns = 1e9 * median(ours.builds);
+    entries /= double(turn);
+    const auto gain = [&](std::vector<double> Times::*what) {
+        return which.threads > 1 ? median(alone.*what) / median(ours.*what) : 1;
+    };
     const Result result = {.set = which.set,
                            .lights = n,
                            .tile_size = which.tile_size,
@@ -207,11 +238,14 @@ template <Options options> void build(benchmark::State& state, const Case& which
                            .threads = which.threads,
                            .ns_per_light = ns / lights,
                            .ns_per_entry = ns / std::max(entries, 1.0),
-                           .ratio = ns / (1e9 * percentile(theirs, 0.5)),
+                           .ratio = ns / (1e9 * median(theirs)),
                            .spread = percentile(ratios, 0.9) - percentile(ratios, 0.1),
                            .entries_per_light = entries / lights,
-                           .store_ratio = ns / (1e9 * percentile(stores, 0.5)),
-                           .clear_ratio = ns / (1e9 * percentile(clears, 0.5))};
+                           .store_ratio = ns / (1e9 * median(ours.stores)),
+                           .clear_ratio = ns / (1e9 * median(clears)),
+                           .gain = gain(&Times::builds),
+                           .gain_of_stores = gain(&Times::stores),
+                           .gain_of_sums = gain(&Times::sums)};
     results.push_back(result);
 }
 
@@ -370,6 +404,7 @@ int run(int argc, char** argv) {
     write_csv(results, "binning.csv");
     print_goals(results);
     print_scale_goals(results);
+    print_threads(results);
     std::puts("\nwrote binning.csv");
     return EXIT_SUCCESS;
 }
