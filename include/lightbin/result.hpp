@@ -74,24 +74,21 @@ struct Error {
             return "the projection matrix has a NaN or infinite entry";
         case ErrorCode::not_a_projection:
             return "the matrix is neither a perspective nor an orthographic projection: its w row must read "
-                   "z alone, "
-                   "or be a positive constant alone";
+                   "z alone, or be a positive constant alone";
         case ErrorCode::eye_not_at_origin:
             return "the perspective matrix does not have its eye at the origin of view space: pass the "
-                   "projection alone, "
-                   "not projection times view (lights in world space go through world_space())";
+                   "projection alone, not projection times view (lights in world space go through "
+                   "world_space())";
         case ErrorCode::image_axes_rotated:
             return "the projection rotates or shears the image (its x row reads y, its y row reads x, or an "
-                   "orthographic "
-                   "row reads z): pass the projection without that rotation and apply it to the pixels";
+                   "orthographic row reads z): pass the projection without that rotation and apply it to the "
+                   "pixels";
         case ErrorCode::oblique_depth:
             return "the projection has an oblique near plane (its z row reads x or y): pass the projection "
-                   "without it; "
-                   "its tiles are the same and its near plane misses no light";
+                   "without it; its tiles are the same and its near plane misses no light";
         case ErrorCode::no_near_plane:
             return "the projection has no near and far plane in front of the eye: check "
-                   "ViewOptions::clip_depth and the "
-                   "matrix's z row";
+                   "ViewOptions::clip_depth and the matrix's z row";
         case ErrorCode::degenerate_scale:
             return "the projection scales x or y by zero, or by more than 2^80 or less than 2^-80 tiles a "
                    "unit";

@@ -45,7 +45,7 @@ inline constexpr BuildTerms build_models[] = {
 };
 
 /// A block of a survey, by Isa.
-inline constexpr double survey_block_ns[] = {6000, 2400, 1200, 950};
+inline constexpr double survey_block_ns[] = {6100, 2550, 1350, 1100};
 
 /// NEON is not measured: it has SSE2's.
 template <class Value> const Value& of_tier(const Value (&tiers)[4], Isa isa) {
