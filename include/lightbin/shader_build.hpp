@@ -124,18 +124,6 @@ inline void add_compute_main(ShaderWriter& writer, unsigned threads) {
                          ") in;\nvoid main() {\n    $run(gl_WorkGroupID.xy, gl_LocalInvocationIndex);\n}\n");
 }
 
-inline void declare_depth(ShaderWriter& writer, const ReduceShaderOptions& options) {
-    const bool many = options.samples > 1;
-    if (writer.dialect().hlsl)
-        writer.add(
-            (many ? "Texture2DMS<float, " + std::to_string(options.samples) + ">" : "Texture2D<float>") +
-            " $depth" + writer.hlsl_register(options.depth, 't') + ";\n");
-    else
-        writer.add(writer.layout("", options.depth) +
-                   (many ? "uniform sampler2DMS $depth;\n" : "uniform sampler2D $depth;\n"));
-    writer.bind({writer.prefix() + "depth", ShaderResource::texture_2d, options.depth, TexelFormat::r32f, 4});
-}
-
 inline std::optional<Error> refuse(const ReduceShaderOptions& options) {
     const Dialect dialect = detail::dialect(options.language);
     if (auto error = refuse_names(dialect, options.prefix, {options.depth, options.z_bounds, options.grid},
@@ -232,15 +220,17 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {})
     std::vector<ShaderConstant> constants = {{"uvec4", "grid"}, {"vec4", "planes"}};
     if (options.viewport_corner) constants.push_back({"ivec2", "corner"});
     writer.declare_constants(constants, options.grid, options.push_constants);
-    declare_depth(writer, options);
-    const bool compute = options.stage == ShaderStage::compute;
+    const std::string samples = std::to_string(options.samples);
+    const bool compute = options.stage == ShaderStage::compute, many = options.samples > 1;
+    writer.declare_opaque({"depth", ShaderResource::texture_2d, options.depth, TexelFormat::r32f, 4},
+                          many ? "Texture2DMS<float, " + samples + ">" : "Texture2D<float>",
+                          many ? "sampler2DMS" : "sampler2D");
     if (compute) writer.declare_storage("z_bounds", "vec2", "writeonly", options.z_bounds, 8);
     add_depth_sample(writer, options);
     add_view_depths(writer, options);
 
     // The samples of one pixel of a tile, in the order of rows.
-    const std::string samples = std::to_string(options.samples);
-    const bool hlsl = writer.dialect().hlsl, many = options.samples > 1;
+    const bool hlsl = writer.dialect().hlsl;
     writer.add("\nvoid $pixel(inout uvec2 range, uvec2 first, uvec2 size, uint i) {\n"
                "    uvec2 pixel = first + uvec2(i % size.x, i / size.x);\n");
     if (options.flip_y) writer.add("    pixel.y = $grid.w - 1u - pixel.y;\n");

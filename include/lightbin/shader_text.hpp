@@ -174,21 +174,22 @@ public:
                              false, buffer.vectors * 16);
         if (buffer.resource == ShaderResource::storage_buffer)
             return declare_storage(buffer.name, type, "readonly", buffer.slot, stride);
-        ShaderBinding binding = {prefix_ + buffer.name, buffer.resource, buffer.slot};
-        const std::string at = dialect_.hlsl ? hlsl_register(buffer.slot, 't') : "";
-        if (buffer.resource == ShaderResource::byte_address) {
-            binding.stride = stride;
-            add("ByteAddressBuffer " + name + at + ";\n");
-        } else {
-            const bool texture = buffer.resource == ShaderResource::texture_2d;
-            binding.format = buffer.format;
-            binding.stride = texel_bytes(buffer.format);
-            binding.width = buffer.width;
-            add(dialect_.hlsl ? (texture ? "Texture2D<" : "Buffer<") + type + "> " + name + at + ";\n"
-                              : layout("", buffer.slot) + "uniform usampler" + (texture ? "2D " : "Buffer ") +
-                                    name + ";\n");
-        }
-        bind(binding);
+        if (buffer.resource == ShaderResource::byte_address)
+            return declare_opaque({buffer.name, buffer.resource, buffer.slot, TexelFormat::none, stride},
+                                  "ByteAddressBuffer", "");
+        const bool texture = buffer.resource == ShaderResource::texture_2d;
+        declare_opaque({buffer.name, buffer.resource, buffer.slot, buffer.format, texel_bytes(buffer.format),
+                        0, buffer.width},
+                       (texture ? "Texture2D<" : "Buffer<") + type + ">",
+                       texture ? "usampler2D" : "usamplerBuffer");
+    }
+
+    /// Declares a read-only resource of a type that each language has its own name for. `binding` has its name
+    /// without the prefix.
+    void declare_opaque(ShaderBinding binding, const std::string& hlsl, const std::string& glsl) {
+        add(dialect_.hlsl ? hlsl + " $" + binding.name + hlsl_register(binding.slot, 't') + ";\n"
+                          : layout("", binding.slot) + "uniform " + glsl + " $" + binding.name + ";\n");
+        bind(std::move(binding));
     }
 
     /// Returns the expression that reads an element: of a uvec2 buffer a uvec2, otherwise a uint.
@@ -237,7 +238,7 @@ public:
             }
             add("uniform " + line + "\n");
             const std::uint32_t bytes = constant.type == std::string_view("ivec2") ? 8 : 16;
-            bind({.name = prefix_ + constant.name, .stride = bytes, .bytes = bytes});
+            bind({.name = constant.name, .stride = bytes, .bytes = bytes});
         }
         if (!block) return;
         const std::string name = std::string(constants.front().name) + "_block";
@@ -255,15 +256,10 @@ public:
         else
             add(layout("std430", slot) + std::string(access) + (access.empty() ? "" : " ") + "buffer $" +
                 name + "_block {\n    " + type + " $" + name + "[];\n};\n");
-        bind({prefix_ + name + (dialect_.hlsl ? "" : "_block"),
+        bind({name + (dialect_.hlsl ? "" : "_block"),
               writable ? ShaderResource::writable_buffer : ShaderResource::storage_buffer, slot,
               TexelFormat::none, stride});
     }
-
-    /// Lists a resource that add() declared.
-    void bind(ShaderBinding binding) { shader_.bindings.push_back(std::move(binding)); }
-
-    const std::string& prefix() const { return prefix_; }
 
     /// Returns the text, or an Error if two of its resources are bound to one slot.
     Result<ShaderText> finish() {
@@ -275,6 +271,7 @@ public:
         return shader_;
     }
 
+private:
     std::string layout(const std::string& packing, ShaderSlot slot) const {
         std::string inside = packing;
         const auto item = [&](const char* key, int value) {
@@ -290,7 +287,12 @@ public:
                (dialect_.spaces ? ", space" + std::to_string(slot.set) : "") + ")";
     }
 
-private:
+    /// Lists a resource that add() declared; its name is given without the prefix.
+    void bind(ShaderBinding binding) {
+        binding.name.insert(0, prefix_);
+        shader_.bindings.push_back(std::move(binding));
+    }
+
     static std::uint32_t texel_bytes(TexelFormat format) {
         return format == TexelFormat::r8ui    ? 1
                : format == TexelFormat::r16ui ? 2
@@ -304,7 +306,7 @@ private:
             : dialect_.hlsl ? "cbuffer $" + name + hlsl_register(slot, 'b')
                             : layout("std140", slot) + "uniform $" + name);
         add(" {\n" + lines + "};\n");
-        bind({prefix_ + name, push ? ShaderResource::push_constants : ShaderResource::uniform_block, slot,
+        bind({name, push ? ShaderResource::push_constants : ShaderResource::uniform_block, slot,
               TexelFormat::none, bytes, bytes});
     }
 
