@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "engine.hpp"
+#include "library_view.hpp"
 
 #include <lightbin/binner.hpp>
 #include <lightbin/z_bounds.hpp>
@@ -42,18 +43,6 @@ private:
 #endif
     unsigned before_;
 };
-
-lightbin::Result<lightbin::View> view_of(const Camera& camera) {
-    lightbin::ViewOptions options;
-    options.tile_size = camera.tile;
-    options.clip_depth =
-        camera.zero_to_one ? lightbin::ClipDepth::zero_to_one : lightbin::ClipDepth::minus_one_to_one;
-    options.origin =
-        camera.upper_left ? lightbin::WindowOrigin::upper_left : lightbin::WindowOrigin::lower_left;
-    options.reversed_z = camera.reversed;
-    // The entries are floats unless the camera says otherwise, so nothing changes on the way to double.
-    return lightbin::View::from_projection(camera.m, {camera.width, camera.height}, options);
-}
 
 template <lightbin::Options options>
 Lists built(const lightbin::View& view, const Scene& scene, bool flush, std::size_t workers = 1) {
@@ -123,11 +112,11 @@ Lists on_all_tiers(const lightbin::View& view, const Scene& scene, bool flush,
 }  // namespace
 
 bool Engine::accepts(const Camera& camera) const {
-    return view_of(camera).has_value();
+    return library_view(camera).has_value();
 }
 
 Lists Engine::lists(const Scene& scene, Rung rung, std::vector<std::string>& complaints) const {
-    const auto view = view_of(scene.camera);
+    const auto view = library_view(scene.camera);
     if (!view) {
         complaints.push_back("the camera was refused: " + view.error().message());
         return {};

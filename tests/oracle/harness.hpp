@@ -3,6 +3,7 @@
 #pragma once
 
 #include "filter.hpp"
+#include "library_view.hpp"
 #include "oracle.hpp"
 #include "spheres.hpp"
 
@@ -19,24 +20,7 @@
 namespace oracle {
 
 inline lightbin::View view_of(const Camera& camera) {
-    lightbin::ViewOptions options;
-    options.tile_size = camera.tile;
-    options.clip_depth =
-        camera.zero_to_one ? lightbin::ClipDepth::zero_to_one : lightbin::ClipDepth::minus_one_to_one;
-    options.origin =
-        camera.upper_left ? lightbin::WindowOrigin::upper_left : lightbin::WindowOrigin::lower_left;
-    options.reversed_z = camera.reversed;
-    const lightbin::Extent viewport{camera.width, camera.height};
-    if (camera.doubles) {
-        auto view = lightbin::View::from_projection(camera.m, viewport, options);
-        REQUIRE_MESSAGE(view.has_value(), camera.name);
-        return *view;
-    }
-    Matrix4<float> m;
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row)
-            m[column][row] = static_cast<float>(camera.m[column][row]);
-    auto view = lightbin::View::from_projection(m, viewport, options);
+    const auto view = library_view(camera);
     REQUIRE_MESSAGE(view.has_value(), camera.name);
     return *view;
 }

@@ -88,10 +88,10 @@ LIGHTBIN_TARGET void fill_lists(const BinJob<Id>& job, Scratch& scratch, const B
 
 /// Appends those of `count` ids, up to 64, whose bit is set. Returns the end.
 template <class Id, class Ids>
-LIGHTBIN_TARGET inline Id* append_lit(Id* out, const Ids* ids, std::uint64_t lit, std::uint32_t count) {
-    for (std::uint32_t i = 0; i < count; i += 16, lit >>= 16) {
-        out += append(out, ids + i, static_cast<unsigned>(lit & 0xff));
-        out += append(out, ids + i + 8, static_cast<unsigned>(lit >> 8 & 0xff));
+LIGHTBIN_TARGET inline Id* append_64(Id* out, const Ids* ids, std::uint64_t chosen, std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; i += 16, chosen >>= 16) {
+        out += append(out, ids + i, static_cast<unsigned>(chosen & 0xff));
+        out += append(out, ids + i + 8, static_cast<unsigned>(chosen >> 8 & 0xff));
     }
     return out;
 }
@@ -181,9 +181,9 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
                             low = byte[column];
                             if (count > 8) high = byte[64 + column];
                         } else {
-                            const std::uint64_t lit = word[column] & word[8 + row];
-                            low = lit & 0xff;
-                            high = static_cast<unsigned>(lit >> 8);
+                            const std::uint64_t chosen = word[column] & word[8 + row];
+                            low = chosen & 0xff;
+                            high = static_cast<unsigned>(chosen >> 8);
                         }
                         out += append(out, ids, low);
                         if (count > 8) out += append(out, ids + 8, high);
@@ -191,12 +191,12 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
                         for (std::size_t i = 0; i < count; i += 8)
                             out += append(out, ids + i, byte[i * 8 + column]);
                     } else if (count <= 64) {
-                        out = append_lit(out, ids, word[column] & word[8 + row], count);
+                        out = append_64(out, ids, word[column] & word[8 + row], count);
                     } else {
                         for (std::uint32_t i = 0; i < count; i += 64) {
                             const std::uint64_t* group = word + i / 4;
-                            out = append_lit(out, ids + i, group[column] & group[8 + row],
-                                             (std::min)(count - i, 64u));
+                            out = append_64(out, ids + i, group[column] & group[8 + row],
+                                            (std::min)(count - i, 64u));
                         }
                     }
                     const std::uint32_t length = static_cast<std::uint32_t>(out - from);
