@@ -119,43 +119,27 @@ Scene scene_of(Random& random, std::size_t count, const MakeLens& make_lens, con
     return scene;
 }
 
+template <auto make_lens, auto make_light> Scene of_kind(Random& random, std::size_t count) {
+    return scene_of(random, count, make_lens, make_light);
+}
+
 // The spheres are stiff.
 
-inline Scene eye_plane(Random& random, std::size_t count) {
-    return scene_of(random, count, perspective, spheres::eye_plane);
-}
-inline Scene eye_on_surface(Random& random, std::size_t count) {
-    return scene_of(random, count, any_lens, spheres::eye_surface);
-}
-inline Scene poke_from_behind(Random& random, std::size_t count) {
-    return scene_of(random, count, any_lens, spheres::poke_from_behind);
-}
-inline Scene touch_from_front(Random& random, std::size_t count) {
-    return scene_of(random, count, any_lens, spheres::touch_from_front);
-}
-inline Scene near_corners(Random& random, std::size_t count) {
-    return scene_of(random, count, perspective, spheres::near_corner);
-}
-inline Scene centre_at_radius(Random& random, std::size_t count) {
-    return scene_of(random, count, perspective, spheres::axis_tangent);
-}
+inline constexpr auto eye_plane = of_kind<perspective, spheres::eye_plane>;
+inline constexpr auto eye_on_surface = of_kind<any_lens, spheres::eye_surface>;
+inline constexpr auto poke_from_behind = of_kind<any_lens, spheres::poke_from_behind>;
+inline constexpr auto touch_from_front = of_kind<any_lens, spheres::touch_from_front>;
+inline constexpr auto near_corners = of_kind<perspective, spheres::near_corner>;
+inline constexpr auto centre_at_radius = of_kind<perspective, spheres::axis_tangent>;
 inline Scene tile_edges(Random& random, std::size_t count) {
     return scene_of(random, count, any_lens, [](const Aim& aim, Random& r) {
         return r.chance(0.2) ? spheres::tile_edge_exact(aim, r) : spheres::tile_edge(aim, r);
     });
 }
-inline Scene tile_corners(Random& random, std::size_t count) {
-    return scene_of(random, count, any_lens, spheres::tile_corner);
-}
-inline Scene tiny_and_far(Random& random, std::size_t count) {
-    return scene_of(random, count, any_lens, spheres::tiny_far);
-}
-inline Scene huge(Random& random, std::size_t count) {
-    return scene_of(random, count, any_lens, spheres::huge);
-}
-inline Scene beyond_far(Random& random, std::size_t count) {
-    return scene_of(random, count, any_lens, spheres::beyond_far);
-}
+inline constexpr auto tile_corners = of_kind<any_lens, spheres::tile_corner>;
+inline constexpr auto tiny_and_far = of_kind<any_lens, spheres::tiny_far>;
+inline constexpr auto huge = of_kind<any_lens, spheres::huge>;
+inline constexpr auto beyond_far = of_kind<any_lens, spheres::beyond_far>;
 inline Scene specials(Random& random, std::size_t count) {
     return scene_of(random, count, any_lens, spheres::special, 0.3);
 }
