@@ -32,7 +32,7 @@ struct Scratch {
     Buffer<std::uint8_t> tile_bytes;  ///< the same, a byte a tile for 8 lights
     Buffer<std::uint8_t> packed_ids;  ///< of a band of supertiles: Packed, of the SSE2 tier
 
-    // The same lists in the form of the AVX-512 kernel, and those of a band of supertiles.
+    // The same lists in the form of the AVX-512 kernel, and those of a band of supertiles (also AVX2's).
     Buffer<std::uint8_t> band_x0, band_x1, band_rows;
     Buffer<std::uint16_t> band_ids, short_ids;
     Buffer<std::uint32_t> band_size, band_light_ids;
