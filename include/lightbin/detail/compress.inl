@@ -363,6 +363,64 @@ LIGHTBIN_TARGET inline void turn_64_words(const std::uint64_t* lights, std::uint
     }
 }
 
+/// Step 3 for one row of tiles, `row` of its supertiles; lists of up to `up_to_8` lights have the form of one block.
+/// Returns how many ids. A function of its own, as in a longer one compilers keep what it needs on the stack.
+template <bool with_words, class Id>
+LIGHTBIN_TARGET std::uint32_t append_tiles(Id* out, Tile* tiles, unsigned tiles_x, std::uint32_t at,
+                                           const Scratch& scratch, unsigned row, std::uint32_t up_to_8) {
+    const std::uint64_t* const all_words = scratch.words.data();
+    const std::uint16_t* const all_ids = scratch.short_ids.data();
+    const std::uint32_t* const all_uppers = scratch.uppers.data();
+    const Id* const begin = out;
+    const SupertileList* list = scratch.supertile_lists.data();
+    for (const Tile* const end = tiles + tiles_x; tiles < end; tiles += 8, ++list) {
+        const std::uint32_t count = list->count;
+        const std::uint64_t* words = all_words + list->words;
+        const std::uint16_t* ids = all_ids + list->ids;
+        const std::uint32_t* uppers = all_uppers + list->ids / 64;
+        const unsigned here = static_cast<unsigned>((std::min<std::ptrdiff_t>)(end - tiles, 8));
+        if (count < 32) {
+            const __mmask8 columns = static_cast<__mmask8>(0xff >> (8 - here));
+            const __m512i table = load(ids);
+            std::uint32_t n;
+            if (count <= up_to_8)
+                n = append_row<1>(out, tiles, columns, at, words, row, table, uppers[0]);
+            else if (count <= 16)
+                n = append_row<2>(out, tiles, columns, at, words, row, table, uppers[0]);
+            else
+                n = append_row<4>(out, tiles, columns, at, words, row, table, uppers[0]);
+            out += n;
+            at += n;
+        } else if (count <= 64) {
+            const __m512i low = load(ids), high = load(ids + 32);
+            for (unsigned column = 0; column < here; ++column) {
+                const std::uint64_t bits =
+                    with_words ? words[row * 8 + column] : words[column] & words[8 + row];
+                const std::uint32_t n = append(out, bits, low, high, uppers[0]);
+                tiles[column] = {at, n};
+                out += n;
+                at += n;
+            }
+        } else {
+            const std::size_t groups = (count + 63) / 64;
+            for (unsigned column = 0; column < here; ++column) {
+                const std::uint32_t from = at;
+                for (std::uint32_t i = 0; i < count; i += 64) {
+                    const std::uint64_t* w = words + i / 64;
+                    const std::uint64_t bits = with_words ? w[(row * 8 + column) * groups]
+                                                          : w[column * groups] & w[(8 + row) * groups];
+                    const std::uint32_t n =
+                        append(out, bits, load(ids + i), load(ids + i + 32), uppers[i / 64]);
+                    out += n;
+                    at += n;
+                }
+                tiles[column] = {from, at - from};
+            }
+        }
+    }
+    return static_cast<std::uint32_t>(out - begin);
+}
+
 /// Bins the tile rows of `bands`. Returns the number of entries. May write BandJob::slack ids past them.
 template <Footprint footprint, DepthTest depth_test, class Id>
 LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scratch,
@@ -376,7 +434,6 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
     const IdBlock* blocks = scratch.blocks.data();
     SupertileList* in_row = scratch.supertile_lists.room(width);
 
-    const unsigned last_columns = tiles_x - 8 * (width - 1);
     // As many bands in one pass over the lights as a panel has, where their lists' room stays within reason.
     std::size_t lights = 1;
     for (const FootprintRun& run : job.runs)
@@ -492,53 +549,10 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
         }
         for (unsigned row = 0; row < rows_here; ++row) {  // step 3
             if (top + row == bands.spare_row) out = bands.spare;
-            Tile* tiles = job.tiles + (top + row) * std::size_t{tiles_x};
-            for (unsigned x = 0; x < width; ++x, tiles += 8) {
-                const std::uint32_t count = in_row[x].count;
-                const std::uint64_t* words = scratch.words.data() + in_row[x].words;
-                const std::uint16_t* ids = scratch.short_ids.data() + in_row[x].ids;
-                const std::uint32_t* uppers = scratch.uppers.data() + in_row[x].ids / 64;
-                const unsigned here = x + 1 < width ? 8 : last_columns;
-                const __mmask8 columns_mask = static_cast<__mmask8>(0xff >> (8 - here));
-                if (count < 32) {
-                    const __m512i table = load(ids);
-                    std::uint32_t n;
-                    if (count <= up_to_8)
-                        n = append_row<1>(out, tiles, columns_mask, at, words, row, table, uppers[0]);
-                    else if (count <= 16)
-                        n = append_row<2>(out, tiles, columns_mask, at, words, row, table, uppers[0]);
-                    else
-                        n = append_row<4>(out, tiles, columns_mask, at, words, row, table, uppers[0]);
-                    out += n;
-                    at += n;
-                } else if (count <= 64) {
-                    const __m512i low = load(ids), high = load(ids + 32);
-                    for (unsigned column = 0; column < here; ++column) {
-                        const std::uint64_t bits =
-                            with_words ? words[row * 8 + column] : words[column] & words[8 + row];
-                        const std::uint32_t n = append(out, bits, low, high, uppers[0]);
-                        tiles[column] = {at, n};
-                        out += n;
-                        at += n;
-                    }
-                } else {
-                    const std::size_t groups = (count + 63) / 64;
-                    for (unsigned column = 0; column < here; ++column) {
-                        const std::uint32_t from = at;
-                        for (std::uint32_t i = 0; i < count; i += 64) {
-                            const std::uint64_t* w = words + i / 64;
-                            const std::uint64_t bits = with_words
-                                                           ? w[(row * 8 + column) * groups]
-                                                           : w[column * groups] & w[(8 + row) * groups];
-                            const std::uint32_t n =
-                                append(out, bits, load(ids + i), load(ids + i + 32), uppers[i / 64]);
-                            out += n;
-                            at += n;
-                        }
-                        tiles[column] = {from, at - from};
-                    }
-                }
-            }
+            const std::uint32_t n = append_tiles<with_words>(
+                out, job.tiles + (top + row) * std::size_t{tiles_x}, tiles_x, at, scratch, row, up_to_8);
+            out += n;
+            at += n;
         }
     }
     return at - bands.at;
