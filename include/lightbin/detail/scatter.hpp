@@ -87,17 +87,24 @@ std::uint64_t bin_scatter(const BinJob<Id>& job, Scratch& scratch, const BandJob
         fill_empty(job.tiles + lit.bottom * width, (end - lit.bottom) * width, at);
     }
 
-    // Backward, so that each offset walks from its list's end to its begin.
+    // Long lists have cache lines and pages of their own, and of all tiles at once too many: then some rows at a time.
+    const std::size_t height = bands.end - bands.begin, entries = at - bands.at;
+    const std::size_t step =
+        entries > 256 * height * width + std::size_t{8} * job.runs.back().end ? 512 / width + 1 : height;
     Id* const list = bands.out - bands.at;  // the whole list
-    for (std::size_t run = job.runs.size(); run-- > 0;)
-        for (std::uint32_t i = job.runs[run].end; i-- > job.runs[run].begin;) {
-            const std::size_t y0 = (std::max<std::size_t>)(lights.y0[i], bands.begin),
-                              y1 = (std::min<std::size_t>)(lights.y1[i] + 1u, bands.end);
-            if (y0 < y1)
-                put_id(list, job.tiles + y0 * width + lights.x0[i], job.tiles + y1 * width, width,
-                       lights.x1[i] - lights.x0[i] + std::size_t{1}, static_cast<Id>(lights.ids[i]));
-        }
-    return at - bands.at;
+    for (std::size_t begin = bands.begin; begin < bands.end; begin += step) {
+        const std::size_t end = (std::min<std::size_t>)(begin + step, bands.end);
+        // Backward, so that each offset walks from its list's end to its begin.
+        for (std::size_t run = job.runs.size(); run-- > 0;)
+            for (std::uint32_t i = job.runs[run].end; i-- > job.runs[run].begin;) {
+                const std::size_t y0 = (std::max<std::size_t>)(lights.y0[i], begin),
+                                  y1 = (std::min<std::size_t>)(lights.y1[i] + 1u, end);
+                if (y0 < y1)
+                    put_id(list, job.tiles + y0 * width + lights.x0[i], job.tiles + y1 * width, width,
+                           lights.x1[i] - lights.x0[i] + std::size_t{1}, static_cast<Id>(lights.ids[i]));
+            }
+    }
+    return entries;
 }
 
 }  // namespace LIGHTBIN_FLAVOUR
