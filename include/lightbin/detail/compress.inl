@@ -458,7 +458,7 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
              list < (band - first_listed + 1) * panels; ++list)
             if (block_count > 0) longest = (std::max)(longest, lists.ends[(list + 1) * block_count - 1]);
         if (longest == 0) {
-            fill_empty(job.tiles + top * std::size_t{tiles_x}, rows_here * std::size_t{tiles_x}, at);
+            avx2::fill_empty(job.tiles + top * std::size_t{tiles_x}, rows_here * std::size_t{tiles_x}, at);
             if (bands.spare_row - top < 8) out = bands.spare;
             continue;
         }

@@ -83,10 +83,10 @@ inline SurveyKernel survey_kernel(Isa isa) {
 template <class Id> BinKernel<Id> scatter_kernel(Isa isa) {
     static_cast<void>(isa);
 #if defined(LIGHTBIN_X86)
-    if (isa >= Isa::avx2) return bin_scatter<Id, avx2::lay_out_rows<Id>>;
-    return bin_scatter<Id, sse2::lay_out_rows<Id>>;
+    if (isa >= Isa::avx2) return avx2::bin_rectangles<Id>;
+    return sse2::bin_rectangles<Id>;
 #elif defined(LIGHTBIN_NEON)
-    return bin_scatter<Id, neon::lay_out_rows<Id>>;
+    return neon::bin_rectangles<Id>;
 #else
     return bin_scatter<Id, scalar::lay_out_rows<Id>>;
 #endif

@@ -62,20 +62,20 @@ inline void store_spans(RowSpan* spans, double first, double last) {
 
 /// See LayOutRows.
 template <class Id>
-std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, const TileBox& box, const Tile*,
+std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end, const Tile*,
                            std::uint32_t at) {
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles), pitch = width + 1;
-    std::uint32_t* steps = scratch.corners.room(pitch * (box.bottom - box.top));
-    std::memset(steps, 0, pitch * (box.bottom - box.top) * sizeof *steps);
+    std::uint32_t* steps = scratch.corners.room(pitch * (end - begin));
+    std::memset(steps, 0, pitch * (end - begin) * sizeof *steps);
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i)
-            for (unsigned y = (std::max<unsigned>)(job.lights.y0[i], box.top);
-                 y < box.bottom && y <= job.lights.y1[i]; ++y) {
-                ++steps[(y - box.top) * pitch + job.lights.x0[i]];
-                --steps[(y - box.top) * pitch + job.lights.x1[i] + 1];
+            for (unsigned y = (std::max<unsigned>)(job.lights.y0[i], begin); y < end && y <= job.lights.y1[i];
+                 ++y) {
+                ++steps[(y - begin) * pitch + job.lights.x0[i]];
+                --steps[(y - begin) * pitch + job.lights.x1[i] + 1];
             }
-    Tile* tile = job.tiles + box.top * width;
-    for (unsigned y = box.top; y < box.bottom; ++y, steps += pitch)
+    Tile* tile = job.tiles + begin * width;
+    for (unsigned y = begin; y < end; ++y, steps += pitch)
         for (std::uint32_t x = 0, count = 0; x < width; ++x) {
             count += steps[x];
             at += count;

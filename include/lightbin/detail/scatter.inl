@@ -90,50 +90,42 @@ LIGHTBIN_TARGET inline void take_column(const std::uint32_t* steps, std::uint32_
     ends -= counts;
 }
 
-/// Writes a band's tiles: columns from..to-1, and those without lights after them, up to column `from` of the next row.
-/// Stores may go on for less than a vector.
+/// Writes a band's tiles, `columns` of each row. Stores may go on for less than a vector.
 ///
-/// steps     of each column from..to-1, what its counts have more than the next one's, less `above`
-/// above     of each of them, the steps of the row above in every lane; then those of the band's last row
+/// steps     of each column, what its counts have more than the next one's, less `above`
+/// above     of each column, the steps of the row above in every lane; then those of the band's last row
 /// row_ends  where the list of each row ends; no vector, as GCC 12 leaves the registers' upper halves set after a call
 ///           that takes one, which slows down what comes next
 template <int... i>
 LIGHTBIN_TARGET inline void lay_out(const std::uint32_t* steps, std::uint32_t* above,
-                                    const std::uint32_t* row_ends, std::size_t from, std::size_t to,
-                                    std::size_t width, Tile* rows, std::integer_sequence<int, i...>) {
+                                    const std::uint32_t* row_ends, std::size_t columns, std::size_t width,
+                                    Tile* rows, std::integer_sequence<int, i...>) {
     constexpr int most = tiles_stored - 1;
-    Rows ends = load_rows(row_ends);
+    Rows ends = load_rows(row_ends), counts = {};
     BandTiles tiles;
-    ((tiles.low[i] = paired<0>(ends, Rows{}, EachRow{}), tiles.high[i] = paired<1>(ends, Rows{}, EachRow{})),
-     ...);
-    turn(tiles.low);
-    turn(tiles.high);
-    for (std::size_t x = to; x < from + width; x += tiles_stored)
-        store(tiles, rows + x, width, EachRow{});
-    Rows counts = {};
-    for (std::size_t x = to - from; x > 0;) {
+    for (std::size_t x = columns; x > 0;) {
         x -= tiles_stored;
         (take_column(steps + (x + most - i) * band_rows, above + (x + most - i) * band_rows, counts, ends,
                      tiles.low[most - i], tiles.high[most - i]),
          ...);
         turn(tiles.low);
         turn(tiles.high);
-        store(tiles, rows + from + x, width, EachRow{});
+        store(tiles, rows + x, width, EachRow{});
     }
 }
 
 /// See LayOutRows.
 template <class Id>
-LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, const TileBox& box,
-                                           const Tile* writable, std::uint32_t at) {
+LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned begin,
+                                           unsigned end, const Tile* writable, std::uint32_t at) {
     const FootprintArrays lights = job.lights;  // a copy, that no store can change
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
-    const std::size_t from = box.left, to = box.right;
-    const std::size_t height = box.bottom - box.top, band_count = height / band_rows + 1;
+    const std::size_t columns = (width + 3) / 4 * 4;  // in whole vectors
+    const std::size_t height = end - begin, band_count = height / band_rows + 1;
 
     // A rectangle is four corners: in its last column one more from its first row on, one less below its last; in the
     // column before its first the opposite.
-    const std::size_t pitch = (to - from + 1) * band_rows;  // from the column before the first
+    const std::size_t pitch = (columns + 1) * band_rows;  // from the column before the first
     const std::size_t size = pitch * (band_count + 1) + band_count * band_rows;
     std::uint32_t* steps = scratch.corners.room(size + 16);
     steps += -reinterpret_cast<std::uintptr_t>(steps) % 64 / sizeof *steps;
@@ -141,36 +133,79 @@ LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scrat
     std::uint32_t *above = steps + pitch * band_count, *row_ends = above + pitch;
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i) {
-            unsigned y0 = (std::max<unsigned>)(lights.y0[i], box.top),
-                     y1 = (std::min)(lights.y1[i] + 1u, box.bottom);
+            unsigned y0 = (std::max<unsigned>)(lights.y0[i], begin), y1 = (std::min)(lights.y1[i] + 1u, end);
             if (y0 >= y1) continue;
-            y0 -= box.top;
-            y1 -= box.top;
-            const std::uint32_t columns = lights.x1[i] - lights.x0[i] + 1u;
-            row_ends[y0] += columns;
-            row_ends[y1] -= columns;
-            std::uint32_t* column = steps + (lights.x0[i] - from) * band_rows;
+            y0 -= begin;
+            y1 -= begin;
+            const std::uint32_t reach = lights.x1[i] - lights.x0[i] + 1u;
+            row_ends[y0] += reach;
+            row_ends[y1] -= reach;
+            std::uint32_t* column = steps + lights.x0[i] * band_rows;
             std::uint32_t *first = column + pitch * (y0 / band_rows),
                           *last = column + pitch * (y1 / band_rows);
             const Rows within = load_rows(ones_from[y0 % band_rows].data()),
                        below = load_rows(ones_from[y1 % band_rows].data());
             add(first, Rows{} - within);
-            add(first + columns * band_rows, within);
+            add(first + reach * band_rows, within);
             add(last, below);
-            add(last + columns * band_rows, Rows{} - below);
+            add(last + reach * band_rows, Rows{} - below);
         }
     std::uint32_t entries = 0;  // of a row: so far row_ends has how many it has more than the one above
     for (std::size_t row = 0; row < band_count * band_rows; ++row)
         row_ends[row] = at += entries += row_ends[row];
 
-    Tile* tile = job.tiles + box.top * width;
+    Tile* tile = job.tiles + begin * width;
     for (std::size_t row = 0; row < height; row += band_rows, steps += pitch, tile += band_rows * width) {
         // Beyond a band's tiles there are others still to be written, or another thread's.
-        const std::size_t own = static_cast<std::size_t>(writable - tile),
-                          stored = band_rows * width + from + 4;
+        const std::size_t own = static_cast<std::size_t>(writable - tile), stored = band_rows * width + 4;
         Tile* rows = own < stored ? scratch.last_rows.room(stored) : tile;
-        lay_out(steps + band_rows, above, row_ends + row, from, to, width, rows, EachTile{});
-        if (rows != tile) std::copy(rows + from, rows + own, tile + from);
+        lay_out(steps + band_rows, above, row_ends + row, columns, width, rows, EachTile{});
+        if (rows != tile) std::copy_n(rows, own, tile);
     }
     return at;
+}
+
+/// Stores eight tiles, a cache line if aligned.
+LIGHTBIN_TARGET inline void fill_line(Tile* tiles, const Tiles& value) {
+    for (std::size_t i = 0; i < 8; i += tiles_stored)
+        std::memcpy(static_cast<void*>(tiles + i), &value, sizeof value);
+}
+
+/// Tiles without lights, at a place in the index list. Narrow vectors are slower than memset, others faster.
+LIGHTBIN_TARGET inline void fill_empty(Tile* tiles, std::size_t count, std::uint32_t at) {
+    if (tiles_stored == 2 && at == 0)
+        return static_cast<void>(std::memset(static_cast<void*>(tiles), 0, count * sizeof *tiles));
+    if (count < 8) return static_cast<void>(std::fill_n(tiles, count, Tile{at, 0}));
+    const Tiles empty = paired<0>(Rows{} + at, Rows{}, EachRow{});
+    Tile* const last = tiles + count - 8;
+    fill_line(tiles, empty);
+    tiles += 8 - reinterpret_cast<std::uintptr_t>(tiles) / sizeof *tiles % 8;
+    for (; tiles < last; tiles += 8)
+        fill_line(tiles, empty);
+    fill_line(last, empty);
+}
+
+/// Bins as bin_scatter does. A light that is alone in view, or none, needs no sums, and its list is only its id.
+template <class Id>
+LIGHTBIN_TARGET std::uint64_t bin_rectangles(const BinJob<Id>& job, Scratch& scratch,
+                                             const BandJob<Id>& bands) {
+    const FootprintRun run = job.runs.front();
+    if (job.runs.size() > 1 || run.end - run.begin > 1)
+        return bin_scatter<Id, lay_out_rows<Id>>(job, scratch, bands);
+    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
+    Tile *tile = job.tiles + bands.begin * width, *const end = job.tiles + bands.end * width;
+    std::uint32_t at = bands.at;
+    if (run.begin < run.end) {
+        const std::size_t x0 = job.lights.x0[run.begin], x1 = job.lights.x1[run.begin] + std::size_t{1};
+        const unsigned y1 = (std::min)(job.lights.y1[run.begin] + 1u, bands.end);
+        for (unsigned y = (std::max<unsigned>)(job.lights.y0[run.begin], bands.begin); y < y1; ++y) {
+            Tile* const row = job.tiles + y * width;
+            fill_empty(tile, static_cast<std::size_t>(row + x0 - tile), at);
+            for (tile = row + x0; tile < row + x1; ++tile)
+                *tile = {at++, 1};
+        }
+        std::fill_n(bands.out, at - bands.at, static_cast<Id>(job.lights.ids[run.begin]));
+    }
+    fill_empty(tile, static_cast<std::size_t>(end - tile), at);
+    return at - bands.at;
 }
