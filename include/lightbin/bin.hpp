@@ -77,11 +77,13 @@ public:
         Id* list = indices_.room(static_cast<std::size_t>(room) + slack);
         if constexpr (!std::is_same_v<Threads, Serial>) {
             const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), rows);
-            const double ns =
-                parts > 1 ? estimate(isa, kernel, footprints.visible(), static_cast<double>(room)) : 0;
-            if (parallel.worth(ns) && parts > 1 && footprints.area() <= most) {
-                entries_ = build_parts(isa, job, kernel, list, scratch, parallel, parts, parallel.lead(ns));
-                return std::nullopt;
+            if (parts > 1 && footprints.area() <= most) {
+                const double ns = estimate(isa, kernel, footprints.visible(), static_cast<double>(room));
+                if (parallel.worth(ns)) {
+                    entries_ =
+                        build_parts(isa, job, kernel, list, scratch, parallel, parts, parallel.lead(ns));
+                    return std::nullopt;
+                }
             }
         }
         entries_ = static_cast<std::size_t>(kernel(job, scratch[0], {0, rows, list, 0}));

@@ -2,22 +2,13 @@
 // The AVX-512 tier: vectors of 16 lights, and a binning kernel of its own built on compress instructions.
 #pragma once
 
-#include <lightbin/detail/platform.hpp>
+#include <lightbin/detail/tier.hpp>
 
 #if defined(LIGHTBIN_X86)
 
 #include <lightbin/detail/avx2.hpp>
-#include <lightbin/detail/footprint.hpp>
-#include <lightbin/detail/scatter.hpp>
-#include <lightbin/detail/scratch.hpp>
-#include <lightbin/detail/supertile.hpp>
-#include <lightbin/detail/survey_block.hpp>
 
-#include <array>
-#include <bit>
-#include <cstring>
 #include <immintrin.h>
-#include <utility>
 
 #define LIGHTBIN_TARGET                                                                                      \
     __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2,avx512bitalg,"          \
