@@ -133,9 +133,9 @@ void churn(std::size_t steps) {
     benchmark::DoNotOptimize(sums);
 }
 
-/// Times one case. In turns: the baseline, ours, storing the list once, clearing the tile table, and with threads
-/// one thread alone, arithmetic shared, and not; each time a few frames together where one is too short for the
-/// clock. Whether ours comes first alternates, as the second finds the lights in the cache.
+/// Times one case. In turns: the baseline, ours, storing the list once, clearing the tile table; with threads also
+/// arithmetic, and every few turns ours, storing and arithmetic by one thread alone. Each time a few frames together where
+/// one is too short for the clock. Whether ours comes first alternates, as the second finds the lights in the cache.
 template <Options options> void build(benchmark::State& state, const Case& which) {
     constexpr bool with_depth = options.depth_test != DepthTest::none;
     constexpr bool twin = options.depth_test == DepthTest::interval;  // the baseline has this depth test too
@@ -192,8 +192,8 @@ template <Options options> void build(benchmark::State& state, const Case& which
                 for (std::size_t i = 0; i < together; ++i)
                     work((first + i) % frames.size());
             };
-            // With threads, a few turns with one alone and a few with all.
-            const bool shared = which.threads == 1 || turn / 8 % 2 == 0;
+            // With threads, a few turns with one alone, then a few with all: 14, which do not divide the 48 frames.
+            const bool shared = which.threads == 1 || turn / 7 % 2 == 1;
             Times& times = shared ? ours : alone;
             const lightbin::Parallel threads = shared ? parallel : lightbin::Parallel();
             const auto time_ours = [&] {
@@ -205,7 +205,7 @@ template <Options options> void build(benchmark::State& state, const Case& which
             theirs.push_back(seconds([&] { each(bin_flat); }));
             if (turn % 2 == 1) time_ours();
             if (which.threads > 1) {
-                if (steps == 0) steps = std::size_t(ours.builds[0] / seconds([] { churn(10000); }) * 10000);
+                if (steps == 0) steps = std::size_t(alone.builds[0] / seconds([] { churn(10000); }) * 10000);
                 times.sums.push_back(seconds([&] {
                     threads.run(threads.workers(), [&](std::size_t) { churn(steps / threads.workers()); });
                 }));
@@ -257,7 +257,9 @@ public:
             "this machine's tier: %s\n"
             "ratio: of the medians, to the flat baseline (interval: to its interval twin); spread: 10th to "
             "90th\n"
-            "percentile of the turns' ratios; entries: a light; x store: to writing the index list once\n\n",
+            "percentile of the turns' ratios; entries: a light; x store: to writing the index list once, "
+            "with as\n"
+            "many threads\n\n",
             name_of(lightbin::detail::machine_isa(Options{}.isa)));
         std::printf("%-16s%8s%4s %-11s%-10s%-7s%2s%10s%10s%8s%8s%9s%9s\n", "set", "n", "px", "footprint",
                     "depth", "tier", "th", "ns/light", "ns/entry", "ratio", "spread", "entries", "x store");

@@ -23,7 +23,7 @@ struct Result {
     double ratio;   ///< of the medians, to the flat baseline
     double spread;  ///< 10th to 90th percentile of the turns' own ratios
     double entries_per_light;
-    double store_ratio;     ///< to storing the light index list once
+    double store_ratio;     ///< to storing the light index list once, by as many threads
     double clear_ratio;     ///< to clearing the tile table
     double gain;            ///< how much longer one thread took, in turns with these
     double gain_of_stores;  ///< the same for storing the light index list

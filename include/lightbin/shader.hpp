@@ -57,7 +57,7 @@ struct ShaderGrid {
     std::int32_t corner_x, corner_y;                  ///< corner
     std::int32_t unused[2] = {};
 };
-static_assert(sizeof(ShaderGrid) == 32 && sizeof(Tile) == 8);  // so nothing lies between their members
+static_assert(sizeof(ShaderGrid) == 32 && sizeof(Tile) == 8);  // so there is no padding
 
 /// Returns the constants of a view. The corner is the window pixel at the viewport's first column and row, as
 /// the shader counts pixels; it is read with viewport_corner only.

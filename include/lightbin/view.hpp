@@ -38,7 +38,7 @@ struct ViewOptions {
     int tile_size = 32;  ///< side of a tile in pixels, 1 or more
     ClipDepth clip_depth = ClipDepth::minus_one_to_one;
     WindowOrigin origin = WindowOrigin::lower_left;
-    bool reversed_z = false;  ///< near has the larger depth; read for orthographic ones, as others tell
+    bool reversed_z = false;  ///< near has the larger depth; read for orthographic matrices alone
 };
 
 /// View depths from min to max, both included.
@@ -73,7 +73,7 @@ struct Camera {
     float z_sign = 1;      ///< view depth = z_sign * z
     float near_depth = 0;  ///< rounded down
     float far_depth = 0;   ///< rounded up, may be +inf
-    float near_fast = 0;   ///< near_depth, 2^-40 or more: spheres beyond it are projected in float
+    float near_fast = 0;   ///< spheres beyond it are projected in float: near_depth, but at least 2^-40
     bool orthographic = false;
 };
 

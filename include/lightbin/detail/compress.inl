@@ -167,7 +167,7 @@ LIGHTBIN_TARGET BandLists fill_bands(const BinJob<Id>& job, Scratch& scratch, st
     to.ids = scratch.band_ids.room(lists * to.stride);
     to.ends = scratch.block_ends.room(lists * block_count);
     std::uint32_t* size = scratch.band_size.room(lists);
-    std::memset(size, 0, lists * sizeof *size);
+    std::fill_n(size, lists, 0u);
     for (std::size_t block = 0; block < block_count; ++block) {
         for (std::size_t i = blocks[block].begin; i < blocks[block].end; i += 64) {
             const __m512i first_y = load_from(lights.y0 + i, 0, first_row),

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The counts and prefix sums of scatter.hpp. A vector is a column of a band, a lane a tile row: sums along rows are
 // then plain additions, where lanes along a row would have to be shuffled up for each. What is shuffled instead is
-// the result, a square of tiles at a time. Included once a tier of vectors, after its Floats.
+// the result, a square of tiles at a time. Also the stores of empty tiles, and the kernel that scatter_kernel() gives.
+// Included once a tier of vectors, after its Floats.
 
 using Rows = std::uint32_t __attribute__((vector_size(sizeof(Floats))));
 using Tiles = std::uint64_t __attribute__((vector_size(sizeof(Rows))));
@@ -160,7 +161,7 @@ LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scrat
         const std::size_t own = static_cast<std::size_t>(writable - tile), stored = band_rows * width + 4;
         Tile* rows = own < stored ? scratch.last_rows.room(stored) : tile;
         lay_out(steps + band_rows, above, row_ends + row, columns, width, rows, EachTile{});
-        if (rows != tile) std::copy_n(rows, own, tile);
+        if (rows != tile) std::copy_n(rows, (std::min)(own, band_rows * width), tile);
     }
     return at;
 }
@@ -171,10 +172,13 @@ LIGHTBIN_TARGET inline void fill_line(Tile* tiles, const Tiles& value) {
         std::memcpy(static_cast<void*>(tiles + i), &value, sizeof value);
 }
 
-/// Tiles without lights, at a place in the index list. Narrow vectors are slower than memset, others faster.
+/// Tiles without lights, at a place in the index list. Narrow vectors are slower than memset, which can write place 0
+/// alone; others are faster. The lines between the first and the last, which may overlap others, are aligned as far as
+/// the table's address allows.
 LIGHTBIN_TARGET inline void fill_empty(Tile* tiles, std::size_t count, std::uint32_t at) {
-    if (tiles_stored == 2 && at == 0)
-        return static_cast<void>(std::memset(static_cast<void*>(tiles), 0, count * sizeof *tiles));
+    if constexpr (tiles_stored == 2)
+        if (at == 0)
+            return static_cast<void>(std::memset(static_cast<void*>(tiles), 0, count * sizeof *tiles));
     if (count < 8) return static_cast<void>(std::fill_n(tiles, count, Tile{at, 0}));
     const Tiles empty = paired<0>(Rows{} + at, Rows{}, EachRow{});
     Tile* const last = tiles + count - 8;
