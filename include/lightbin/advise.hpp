@@ -91,7 +91,7 @@ private:
 /// bounds  of the view's own tiles; larger tiles' bounds are merged from them. None: no depth test is weighed
 /// costs   the build model knows the machine that it was fitted on (detail/build_model.hpp)
 ///
-/// Projects all lights as a build does; the rest is estimated from at most 512 of those in view, and from 4 to 384
+/// Projects all lights as a build does; the rest is estimated from at most 512 of those in view, and from 1 to 384
 /// blocks of 8x8 tiles and up to 8 lights in each, the more the longer a build. So asking takes less than a build of
 /// the view's tiles without options, but for the shortest. Allocates.
 template <class LightRange>
@@ -108,11 +108,13 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
     detail::Survey survey = detail::survey_rectangles(isa, view, source, bounds);
     // Asking is to take less than a build, which may be predicted to take 1.4 times what it does: 0.7 of that. What
     // is left when the lights are projected and sampled, 25 ns each, goes to blocks: more than 384 would tell little,
-    // as the standard error of a test's share is 0.02 then, fewer than 4 nothing.
+    // as the standard error of a test's share is 0.02 then. A light that is alone is binned faster than predicted, so no
+    // more than there are lights in view.
     const double plain_ns = detail::predicted_ns(detail::build_terms(survey, survey.grids[0], 0), model);
     const double spare_ns =
         0.7 * plain_ns - model[1] * survey.lights - 25.0 * static_cast<double>(survey.rects.size());
-    const double blocks = std::clamp(spare_ns / detail::of_tier(detail::survey_block_ns, isa), 4.0, 384.0);
+    const double most = std::clamp(survey.visible, 1.0, 384.0);
+    const double blocks = std::clamp(spare_ns / detail::of_tier(detail::survey_block_ns, isa), 1.0, most);
     detail::survey_blocks(isa, view, source, bounds, static_cast<std::size_t>(blocks), survey);
 
     std::vector<Plan> plans;
