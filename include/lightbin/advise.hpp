@@ -108,8 +108,8 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
     detail::Survey survey = detail::survey_rectangles(isa, view, source, bounds);
     // Asking is to take less than a build, which may be predicted to take 1.4 times what it does: 0.7 of that. What
     // is left when the lights are projected and sampled, 25 ns each, goes to blocks: more than 384 would tell little,
-    // as the standard error of a test's share is 0.02 then. A light that is alone is binned faster than predicted, so no
-    // more than there are lights in view.
+    // as the standard error of a test's share is 0.02 then. No more than there are lights in view, either: one that is
+    // alone is binned faster than predicted.
     const double plain_ns = detail::predicted_ns(detail::build_terms(survey, survey.grids[0], 0), model);
     const double spare_ns =
         0.7 * plain_ns - model[1] * survey.lights - 25.0 * static_cast<double>(survey.rects.size());
