@@ -97,6 +97,16 @@ TEST_CASE("an empty viewport") {
         CHECK(grid->rejected() == 1);
         CHECK(binner.statistics().culled == 201);
 
+        // Projected in several parts, and binned by the kernel that scatters.
+        const auto one_by_one = [](std::size_t n, const auto& body) {
+            for (std::size_t i = 0; i < n; ++i)
+                body(i);
+        };
+        Binner<Options{.isa = Isa::scalar}> shared;
+        const auto none = shared.bin(view, test::random_lights(1000, 43), Parallel(3, one_by_one, 0));
+        REQUIRE(none);
+        CHECK(none->indices().empty());
+
         Binner<Options{.depth_test = DepthTest::interval}> pruned;
         const auto bounds = reduce_depth(view, {}, {}, {});
         REQUIRE(bounds);

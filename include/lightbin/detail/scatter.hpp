@@ -59,6 +59,8 @@ std::uint64_t bin_scatter(const BinJob<Id>& job, Scratch& scratch, const BandJob
     for (unsigned begin = bands.begin; begin < bands.end; begin += some)
         at = lay_out_rows(job, scratch, begin, (std::min)(begin + some, bands.end), writable, at);
 
+    if (at == bands.at) return 0;  // the rows may have no tiles, too
+
     // Long lists have cache lines and pages of their own, and of all tiles at once too many. Then rows of some 512 tiles
     // at a time are faster, as was measured, unless reading all lights each time takes longer than putting their ids.
     const std::size_t height = bands.end - bands.begin, entries = at - bands.at, lights = job.runs.back().end;
