@@ -75,11 +75,13 @@ public:
         const auto kernel =
             detail::bin_kernel<footprint, depth_test, Id>(isa, view, footprints.visible(), footprints.area());
         Id* list = indices_.room(static_cast<std::size_t>(room) + slack);
+        shared_ = false;
         if constexpr (!std::is_same_v<Threads, Serial>) {
             const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), rows);
             if (parts > 1 && footprints.area() <= most) {
                 const double ns = estimate(isa, kernel, footprints.visible(), static_cast<double>(room));
-                if (parallel.worth(ns)) {
+                shared_ = parallel.worth(ns);
+                if (shared_) {
                     entries_ =
                         build_parts(isa, job, kernel, list, scratch, parallel, parts, parallel.lead(ns));
                     return std::nullopt;
@@ -92,6 +94,9 @@ public:
 
     std::span<const Tile> tiles() const { return {tiles_.data(), tile_count_}; }
     std::span<const Id> indices() const { return {indices_.data(), entries_}; }
+
+    /// Whether the last grid was built on several threads.
+    bool shared() const { return shared_; }
 
 private:
     using Job = detail::BinJob<Id>;
@@ -176,6 +181,7 @@ private:
     std::vector<detail::Buffer<Id>> spares_;  ///< one a part: what it can't put in its place at once
     detail::Buffer<std::uint64_t> row_sums_;
     std::size_t tile_count_ = 0, entries_ = 0;
+    bool shared_ = false;
 };
 
 }  // namespace lightbin

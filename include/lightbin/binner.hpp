@@ -160,7 +160,7 @@ private:
                             most = options.index == Index::u16 ? 0x10000 : 0xffffffff;
         if (count > most) return Error{ErrorCode::too_many_lights, count, most};
         isa_ = detail::machine_isa(options.isa);
-        footprints_.project(isa_, view, source, parallel);
+        footprints_.project(isa_, view, source, parallel, lists_.shared());
         return std::nullopt;
     }
 

@@ -44,8 +44,8 @@ public:
         return workers_ > 1 && ns * (workers - 1) >= 2 * start_ns_ * workers;
     }
 
-    /// What share of such work the calling thread has done before the others are there.
-    double lead(double ns) const { return start_ns_ > 0 ? start_ns_ / ns : 0; }
+    /// What share of such work the calling thread has done before the others are there, woken some time ago.
+    double lead(double ns) const { return start_ns_ > 0 ? 0.4 * start_ns_ / ns : 0; }
 
     /// Calls body(i) for each 0 <= i < n.
     template <class Function> void run(std::size_t n, const Function& body) const {

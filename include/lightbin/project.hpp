@@ -31,15 +31,17 @@ public:
     /// Projects every light with the kernel of an instruction set. After it, a light's rectangle holds each
     /// tile that the part of its sphere beyond the near plane projects to; it is the smallest such rectangle
     /// but for the rounding margin of the view.
+    ///
+    /// wake  share even what is soon done: there will be more to share, and by then the threads are awake
     template <class Light, class ToViewSphere>
     void project(Isa isa, const View& view, const Lights<Light, ToViewSphere>& lights,
-                 const Parallel& parallel) {
+                 const Parallel& parallel, bool wake = false) {
         lights_ = lights.array.size();
-        const double ns_a_light = isa >= Isa::avx2 ? 0.5 : 1;  // out of view: those in view take longer
+        const double ns_a_light = isa == Isa::avx512 ? 2 : isa == Isa::avx2 ? 3 : 7;  // in view
+        const bool share = wake || parallel.worth(static_cast<double>(lights_) * ns_a_light);
         // Some parts a worker, so that a late one costs little; serial work is one part.
-        const std::size_t parts = parallel.worth(static_cast<double>(lights_) * ns_a_light)
-                                      ? (std::min)(lights_ / 256 + 1, 4 * parallel.workers())
-                                      : 1;
+        const std::size_t parts =
+            share && parallel.workers() > 1 ? (std::min)(lights_ / 256 + 1, 4 * parallel.workers()) : 1;
         const std::size_t size = lights_ / parts + 1, stride = size + detail::FootprintArrays::padding;
         const std::size_t room = parts * stride;
         arrays_ = {.ids = ids_.room(room),

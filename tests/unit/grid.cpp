@@ -82,14 +82,20 @@ struct Plain {
     test::Lists expected;
 };
 
-template <Isa isa> void check_plain(const Plain& plain) {
-    static Binner<Options{.isa = isa}> binner;
+template <Isa isa, DepthTest depth_test = DepthTest::none> void check_plain(const Plain& plain) {
+    static Binner<Options{.depth_test = depth_test, .isa = isa}> binner;
     const auto one_by_one = [](std::size_t n, auto body) {
         for (std::size_t i = n; i-- > 0;)
             body(i);
     };
     for (const std::size_t workers : {1u, 2u, 5u}) {
-        const auto grid = binner.bin(plain.view, plain.spheres, Parallel(workers, one_by_one, 0));
+        const Parallel parallel(workers, one_by_one, 0);
+        const auto grid = [&] {
+            if constexpr (depth_test == DepthTest::none)
+                return binner.bin(plain.view, plain.spheres, parallel);
+            else
+                return binner.bin(plain.view, plain.spheres, ZBounds{}, parallel);
+        }();
         REQUIRE(grid);
         CHECK((test::to_lists(*grid) == plain.expected));
     }
@@ -108,6 +114,30 @@ TEST_CASE("lights straight on are listed where they are, in grids of any shape, 
                 check_plain<Isa::avx2>(plain);
                 check_plain<Isa::avx512>(plain);
             }
+}
+
+TEST_CASE("lights straight on are listed where they are, more than 16 bits number and projected in parts") {
+    for (const std::uint32_t seed : {1, 2}) {
+        Plain plain(9, 11, 0, seed);
+        const Plain few(9, 11, 400, seed);
+        // In view are each 500th, or the first and the last 200.
+        constexpr std::uint32_t count = 200000;
+        plain.spheres.assign(count, glm::vec4(0, 0, 50, 1));
+        std::vector<std::uint32_t> ids;
+        for (std::uint32_t i = 0; i < few.spheres.size(); ++i) {
+            ids.push_back(seed == 1 ? 500 * i : i < 200 ? i : 199800 + (i - 200));
+            plain.spheres[ids[i]] = few.spheres[i];
+        }
+        plain.expected = few.expected;
+        for (std::vector<std::uint32_t>& list : plain.expected)
+            for (std::uint32_t& id : list)
+                id = ids[id];
+        check_plain<Isa::scalar>(plain);
+        check_plain<Isa::sse2>(plain);
+        check_plain<Isa::avx2>(plain);
+        check_plain<Isa::avx512>(plain);
+        check_plain<Isa::avx512, DepthTest::interval>(plain);
+    }
 }
 
 TEST_CASE("the same input gives the same bytes, whatever the Binner did before") {

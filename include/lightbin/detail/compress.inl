@@ -118,15 +118,17 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* to, std::uint64_t lit, __m512i l
 template <class Id> std::size_t make_blocks(const BinJob<Id>& job, Scratch& scratch) {
     std::size_t count = 0;
     for (const FootprintRun& run : job.runs)
-        for (std::uint32_t i = run.begin; i < run.end; ++count) {
+        for (std::uint32_t i = run.begin, end; i < run.end; i = end) {
             const std::uint32_t* ids = job.lights.ids;
             const std::uint32_t upper = ids[i] & 0xffff0000, last = upper | 0xffff;
-            const std::uint32_t end =
-                ids[run.end - 1] <= last
-                    ? run.end
-                    : static_cast<std::uint32_t>(std::upper_bound(ids + i, ids + run.end, last) - ids);
-            scratch.blocks.room(count + 1, count)[count] = {i, end, upper};
-            i = end;
+            end = ids[run.end - 1] <= last
+                      ? run.end
+                      : static_cast<std::uint32_t>(std::upper_bound(ids + i, ids + run.end, last) - ids);
+            IdBlock* const blocks = scratch.blocks.room(count + 1, count);
+            if (count > 0 && blocks[count - 1].upper == upper && end - blocks[count - 1].begin <= 0x10000)
+                blocks[count - 1].end = end;
+            else
+                blocks[count++] = {i, end, upper};
         }
     return count;
 }
@@ -153,14 +155,13 @@ LIGHTBIN_TARGET inline Chunk load_chunk(const BandLists& lists, std::size_t from
 /// Step 1, for `bands` bands from tile row `first_row` on. List (band, panel) is number band * panels + panel.
 template <bool with_words, class Id>
 LIGHTBIN_TARGET BandLists fill_bands(const BinJob<Id>& job, Scratch& scratch, std::size_t block_count,
-                                     unsigned first_row, unsigned bands, unsigned panels) {
+                                     std::size_t light_count, unsigned first_row, unsigned bands,
+                                     unsigned panels) {
     const FootprintArrays& lights = job.lights;
     const IdBlock* blocks = scratch.blocks.data();
     const std::size_t lists = std::size_t{bands} * panels;
     BandLists to = {};
-    for (std::size_t block = 0; block < block_count; ++block)
-        to.stride += (blocks[block].end - blocks[block].begin + 63) & ~63u;
-    to.stride += 192;  // whole vectors are stored and read
+    to.stride = light_count + 64 * block_count + 192;  // whole vectors are stored and read
     to.x0 = scratch.band_x0.room(lists * to.stride);
     to.x1 = scratch.band_x1.room(lists * to.stride);
     to.rows = scratch.band_rows.room(lists * to.stride);
@@ -169,38 +170,42 @@ LIGHTBIN_TARGET BandLists fill_bands(const BinJob<Id>& job, Scratch& scratch, st
     std::uint32_t* size = scratch.band_size.room(lists);
     std::fill_n(size, lists, 0u);
     for (std::size_t block = 0; block < block_count; ++block) {
-        for (std::size_t i = blocks[block].begin; i < blocks[block].end; i += 64) {
-            const __m512i first_y = load_from(lights.y0 + i, 0, first_row),
-                          end_y = load_from(lights.y1 + i, 1, first_row);
-            const __mmask64 valid = first_lanes(blocks[block].end - i);
-            __m512i low_ids, high_ids;
-            if constexpr (with_words) {
-                low_ids = _mm512_add_epi16(load(counted<std::uint16_t>.data()),
-                                           _mm512_set1_epi16(static_cast<short>(i - blocks[block].begin)));
-                high_ids = _mm512_add_epi16(low_ids, _mm512_set1_epi16(32));
-            } else {
-                low_ids = load_low_halves(lights.ids + i);
-                high_ids = load_low_halves(lights.ids + i + 32);
-            }
-            for (unsigned panel = 0; panel < panels; ++panel) {
-                const __m512i first_x = load_from(lights.x0 + i, 0, 8 * panel_side * panel),
-                              end_x = load_from(lights.x1 + i, 1, 8 * panel_side * panel);
-                __mmask64 in_panel = valid;
-                if (panels > 1)
-                    in_panel =
-                        _mm512_mask_cmplt_epu8_mask(_mm512_mask_test_epi8_mask(valid, end_x, end_x), first_x,
-                                                    _mm512_set1_epi8(static_cast<char>(8 * panel_side)));
-                if (in_panel == 0) continue;
-                for (unsigned band = 0; band < bands; ++band) {
-                    const __m512i here = covered_bytes(first_y, end_y, 8 * band);
-                    const __mmask64 chosen = _mm512_mask_test_epi8_mask(in_panel, here, here);
-                    const std::size_t list = std::size_t{band} * panels + panel,
-                                      at = list * to.stride + size[list];
-                    store(to.x0 + at, compressed_bytes(chosen, first_x));
-                    store(to.x1 + at, compressed_bytes(chosen, end_x));
-                    store(to.rows + at, compressed_bytes(chosen, here));
-                    append_ids(to.ids + at, chosen, low_ids, high_ids);
-                    size[list] += static_cast<std::uint32_t>(std::popcount(chosen));
+        for (const FootprintRun& run : job.runs) {
+            const std::size_t end = (std::min)(run.end, blocks[block].end);
+            for (std::size_t i = (std::max)(run.begin, blocks[block].begin); i < end; i += 64) {
+                const __m512i first_y = load_from(lights.y0 + i, 0, first_row),
+                              end_y = load_from(lights.y1 + i, 1, first_row);
+                const __mmask64 valid = first_lanes(end - i);
+                __m512i low_ids, high_ids;
+                if constexpr (with_words) {
+                    low_ids =
+                        _mm512_add_epi16(load(counted<std::uint16_t>.data()),
+                                         _mm512_set1_epi16(static_cast<short>(i - blocks[block].begin)));
+                    high_ids = _mm512_add_epi16(low_ids, _mm512_set1_epi16(32));
+                } else {
+                    low_ids = load_low_halves(lights.ids + i);
+                    high_ids = load_low_halves(lights.ids + i + 32);
+                }
+                for (unsigned panel = 0; panel < panels; ++panel) {
+                    const __m512i first_x = load_from(lights.x0 + i, 0, 8 * panel_side * panel),
+                                  end_x = load_from(lights.x1 + i, 1, 8 * panel_side * panel);
+                    __mmask64 in_panel = valid;
+                    if (panels > 1)
+                        in_panel = _mm512_mask_cmplt_epu8_mask(
+                            _mm512_mask_test_epi8_mask(valid, end_x, end_x), first_x,
+                            _mm512_set1_epi8(static_cast<char>(8 * panel_side)));
+                    if (in_panel == 0) continue;
+                    for (unsigned band = 0; band < bands; ++band) {
+                        const __m512i here = covered_bytes(first_y, end_y, 8 * band);
+                        const __mmask64 chosen = _mm512_mask_test_epi8_mask(in_panel, here, here);
+                        const std::size_t list = std::size_t{band} * panels + panel,
+                                          at = list * to.stride + size[list];
+                        store(to.x0 + at, compressed_bytes(chosen, first_x));
+                        store(to.x1 + at, compressed_bytes(chosen, end_x));
+                        store(to.rows + at, compressed_bytes(chosen, here));
+                        append_ids(to.ids + at, chosen, low_ids, high_ids);
+                        size[list] += static_cast<std::uint32_t>(std::popcount(chosen));
+                    }
                 }
             }
         }
@@ -451,7 +456,7 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
         if (band == listed) {
             first_listed = band;
             listed = (std::min)(band + together, band_count);
-            lists = fill_bands<with_words>(job, scratch, block_count, top, listed - band, panels);
+            lists = fill_bands<with_words>(job, scratch, block_count, lights, top, listed - band, panels);
         }
         std::uint32_t longest = 0;
         for (std::size_t list = std::size_t{band - first_listed} * panels;

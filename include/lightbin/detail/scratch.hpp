@@ -9,7 +9,7 @@
 
 namespace lightbin::detail {
 
-/// Lights begin..end-1, of one run, whose ids share their upper 16 bits, `upper`.
+/// The lights of all runs at begin..end-1, no more than 2^16 places: their ids share their upper 16 bits, `upper`.
 struct IdBlock {
     std::uint32_t begin, end, upper;
 };
