@@ -39,10 +39,12 @@ public:
         lights_ = lights.array.size();
         const double ns_a_light = isa == Isa::avx512 ? 2 : isa == Isa::avx2 ? 3 : 7;  // in view
         const bool share = wake || parallel.worth(static_cast<double>(lights_) * ns_a_light);
-        // Some parts a worker, so that a late one costs little; serial work is one part.
-        const std::size_t parts =
-            share && parallel.workers() > 1 ? (std::min)(lights_ / 256 + 1, 4 * parallel.workers()) : 1;
-        const std::size_t size = lights_ / parts + 1, stride = size + detail::FootprintArrays::padding;
+        const Parallel threads = share ? parallel : Parallel();
+        // Some parts a worker, so that a late one costs little; no fewer where they are not shared, as more take more room.
+        constexpr std::size_t chunk = detail::ChunkRects::size;
+        const std::size_t most = parallel.workers() > 1 ? 4 * parallel.workers() : 1;
+        const std::size_t size = (lights_ / (most * chunk) + 1) * chunk, parts = lights_ / size + 1;
+        const std::size_t stride = size + detail::FootprintArrays::padding;
         const std::size_t room = parts * stride;
         arrays_ = {.ids = ids_.room(room),
                    .x0 = x0_.room(room),
@@ -60,7 +62,7 @@ public:
         detail::ProjectCounts* counts = part_counts_.room(parts);
         // One light is done sooner than a vector is filled up with copies of it.
         const detail::ProjectKernel kernel = detail::project_kernel(lights_ > 1 ? isa : Isa::scalar);
-        parallel.run(parts, [&](std::size_t part) {
+        threads.run(parts, [&](std::size_t part) {
             const std::size_t end = (std::min)((part + 1) * size, lights_);
             const detail::FootprintArrays out = arrays_.from(part * stride);
             detail::ProjectCounts sum;
@@ -96,7 +98,7 @@ public:
             counts_.area += counts[part].area;
             counts_.rows += counts[part].rows;
         }
-        if constexpr (with_spans) add_spans(detail::row_span_kernel(isa), view, parallel);
+        if constexpr (with_spans) add_spans(detail::row_span_kernel(isa), view, threads);
     }
 
     std::size_t lights() const { return lights_; }
@@ -107,7 +109,7 @@ public:
     std::span<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
 
 private:
-    void add_spans(detail::RowSpanKernel kernel, const View& view, const Parallel& parallel) {
+    void add_spans(detail::RowSpanKernel kernel, const View& view, const Parallel& threads) {
         constexpr std::uint64_t padding = 8;  // a vector of rows
         arrays_.span_begin = span_begin_.room(runs_.data()[run_count_ - 1].end);
         // Later lights than 32 bits can number the spans of keep their rectangles.
@@ -121,7 +123,7 @@ private:
             counts.rows = place;  // now where its spans begin
             place += rows + padding;
         }
-        parallel.run(run_count_, [&](std::size_t part) {
+        threads.run(run_count_, [&](std::size_t part) {
             kernel(view.camera(), arrays_, runs_.data()[part], spans, part_counts_.data()[part].rows);
         });
     }

@@ -150,6 +150,25 @@ TEST_CASE("a warm Binner does not allocate") {
     check_options<Options{.index = Index::u32, .depth_test = DepthTest::interval}>();
 }
 
+TEST_CASE("nor does one that shares more of the same work the second time") {
+    Scene scene(1280, 720, 2000);
+    for (glm::vec4& light : scene.lights)
+        light.w = 20;
+    Binner<> binner;
+    std::size_t calls = 0;
+    const auto run = [&](std::size_t n, auto body) {
+        ++calls;
+        for (std::size_t i = 0; i < n; ++i)
+            body(i);
+    };
+    // Threads that take so long to start that the projection alone would not be worth it, but binning is.
+    const Parallel parallel(4, run, 7500);
+    CHECK(allocations_in([&] { (void)*binner.bin(scene.view, scene.lights, parallel); }) > 0);
+    const std::size_t calls_at_first = calls;
+    CHECK(allocations_in([&] { (void)*binner.bin(scene.view, scene.lights, parallel); }) == 0);
+    CHECK(calls > 2 * calls_at_first);
+}
+
 TEST_CASE("making a view and reducing a depth buffer never allocate") {
     Scene scene(640, 360, 1);
     CHECK(allocations_in([&] { scene.view = make_view(500, 300, 16); }) == 0);
