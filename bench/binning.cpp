@@ -16,6 +16,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -125,6 +126,7 @@ void fill(char* memory, std::size_t size) {
 }
 
 /// Arithmetic in registers, for the given number of steps.
+constexpr std::size_t steps_a_ms = 400000;  // about
 void churn(std::size_t steps) {
     std::uint32_t sums[32] = {};
     for (std::size_t i = 0; i < steps; ++i)
@@ -133,9 +135,44 @@ void churn(std::size_t steps) {
     benchmark::DoNotOptimize(sums);
 }
 
-/// Times one case. In turns: the baseline, ours, storing the list once, clearing the tile table; with threads also
-/// arithmetic, and every few turns ours, storing and arithmetic by one thread alone. Each time a few frames together where
-/// one is too short for the clock. Whether ours comes first alternates, as the second finds the lights in the cache.
+/// What threads gain: in turns, the same by one thread alone and by all. `bin(threads, turn)` builds and returns how many
+/// bytes the list has.
+template <class Bin> Gains measure_gains(const lightbin::Parallel& parallel, Bin bin) {
+    double alone = 0;
+    const auto gain = [&](bool asleep, auto work) {
+        std::vector<double> times[2];
+        const double end = time_now() + seconds_a_case / 2;
+        for (std::size_t turn = 0; time_now() < end || times[1].size() < 5; ++turn) {
+            // A few turns each: 14 in all, which do not divide the 48 frames.
+            const bool sharing = turn / 7 % 2 == 1;
+            const lightbin::Parallel threads = sharing ? parallel : lightbin::Parallel();
+            // Threads come from other work, as in a frame they would, or they have slept.
+            if (asleep)
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            else
+                threads.run(threads.workers(), [](std::size_t) { churn(steps_a_ms); });
+            times[sharing].push_back(seconds([&] { work(threads, turn); }));
+        }
+        alone = median(times[0]);
+        return alone / median(times[1]);
+    };
+    Gains gains = {.awake = gain(false, bin), .asleep = gain(true, bin), .stores = 0, .sums = 0};
+    const double steps = alone / seconds([] { churn(steps_a_ms); }) * steps_a_ms;
+    gains.sums = gain(false, [&](const lightbin::Parallel& threads, std::size_t) {
+        const std::size_t share = std::size_t(steps) / threads.workers();
+        threads.run(threads.workers(), [&](std::size_t) { churn(share); });
+    });
+    std::vector<char> list(bin(parallel, 0));
+    gains.stores = gain(false, [&](const lightbin::Parallel& threads, std::size_t) {
+        const std::size_t share = list.size() / threads.workers();
+        threads.run(threads.workers(), [&](std::size_t i) { fill(list.data() + i * share, share); });
+    });
+    return gains;
+}
+
+/// Times one case. In turns: the baseline, ours, storing the list once, clearing the tile table. Each time a few frames
+/// together where one is too short for the clock. Whether ours comes first alternates, as the second finds the lights in
+/// the cache.
 template <Options options> void build(benchmark::State& state, const Case& which) {
     constexpr bool with_depth = options.depth_test != DepthTest::none;
     constexpr bool twin = options.depth_test == DepthTest::interval;  // the baseline has this depth test too
@@ -159,6 +196,7 @@ template <Options options> void build(benchmark::State& state, const Case& which
     }
     Flat<float> flat;
     lightbin::Binner<options> binner;
+    constexpr std::size_t id_size = sizeof(typename lightbin::Binner<options>::Id);
     TbbLoop loop(which.threads);
     const lightbin::Parallel parallel =
         which.threads > 1 ? lightbin::Parallel(std::size_t(which.threads), loop) : lightbin::Parallel();
@@ -173,79 +211,64 @@ template <Options options> void build(benchmark::State& state, const Case& which
     };
     verify(flat_views[0], frames[0].lights, bin(parallel, 0), options, made.bounds);
 
-    struct Times {
-        std::vector<double> builds, stores, sums;
-    };
-    Times ours, alone;  // with all threads; with one, where there are more
-    std::vector<double> theirs, clears, ratios;
+    std::vector<double> ours, theirs, stores, clears, ratios;
     std::vector<char> list, table(sizeof(lightbin::Tile) * views[0].tile_count());
     double entries = 0, spent = 0;
-    std::size_t turn = 0, steps = 0;
+    std::size_t turn = 0;
     const std::size_t n = which.lights,
                       together = std::max<std::size_t>(1, 256 / std::max<std::size_t>(n, 1));
     for (auto _ : state) {
-        while (spent < seconds_a_case || ours.builds.size() < 5 ||
-               (which.threads > 1 && alone.builds.size() < 5)) {
+        while (spent < seconds_a_case || ours.size() < 5) {
             const std::size_t first = turn++ * together;
             std::size_t written = 0;
             const auto each = [&](auto work) {
                 for (std::size_t i = 0; i < together; ++i)
                     work((first + i) % frames.size());
             };
-            // With threads, a few turns with one alone, then a few with all: 14, which do not divide the 48 frames.
-            const bool shared = which.threads == 1 || turn / 7 % 2 == 1;
-            Times& times = shared ? ours : alone;
-            const lightbin::Parallel threads = shared ? parallel : lightbin::Parallel();
             const auto time_ours = [&] {
-                times.builds.push_back(seconds([&] {
-                    each([&](std::size_t frame) { written += bin(threads, frame).indices().size(); });
+                ours.push_back(seconds([&] {
+                    each([&](std::size_t frame) { written += bin(parallel, frame).indices().size(); });
                 }));
             };
             if (turn % 2 == 0) time_ours();
             theirs.push_back(seconds([&] { each(bin_flat); }));
             if (turn % 2 == 1) time_ours();
-            if (which.threads > 1) {
-                if (steps == 0) steps = std::size_t(alone.builds[0] / seconds([] { churn(10000); }) * 10000);
-                times.sums.push_back(seconds([&] {
-                    threads.run(threads.workers(), [&](std::size_t) { churn(steps / threads.workers()); });
-                }));
-            }
-            written *= sizeof(typename lightbin::Binner<options>::Id);
+            written *= id_size;
             list.resize(std::max(list.size(), written));
-            times.stores.push_back(seconds([&] {
-                const std::size_t share = written / threads.workers();
-                threads.run(threads.workers(), [&](std::size_t i) { fill(list.data() + i * share, share); });
+            stores.push_back(seconds([&] {
+                const std::size_t share = written / parallel.workers();
+                parallel.run(parallel.workers(),
+                             [&](std::size_t i) { fill(list.data() + i * share, share); });
             }));
             clears.push_back(seconds([&] { each([&](std::size_t) { fill(table.data(), table.size()); }); }));
-            if (shared) ratios.push_back(ours.builds.back() / theirs.back());
-            entries += double(written / sizeof(typename lightbin::Binner<options>::Id));
-            spent += times.builds.back() + theirs.back() + times.stores.back();
+            ratios.push_back(ours.back() / theirs.back());
+            entries += double(written / id_size);
+            spent += ours.back() + theirs.back() + stores.back();
         }
-        state.SetIterationTime(median(ours.builds) / double(together));
+        state.SetIterationTime(median(ours) / double(together));
     }
 
-    const double lights = double(std::max<std::size_t>(n, 1) * together), ns = 1e9 * median(ours.builds);
+    const double lights = double(std::max<std::size_t>(n, 1) * together), ns = 1e9 * median(ours);
     entries /= double(turn);
-    const auto gain = [&](std::vector<double> Times::*what) {
-        return which.threads > 1 ? median(alone.*what) / median(ours.*what) : 1;
-    };
-    const Result result = {.set = which.set,
-                           .lights = n,
-                           .tile_size = which.tile_size,
-                           .footprint = name_of(options.footprint),
-                           .depth_test = name_of(options.depth_test),
-                           .tier = name_of(options.isa),
-                           .threads = which.threads,
-                           .ns_per_light = ns / lights,
-                           .ns_per_entry = ns / std::max(entries, 1.0),
-                           .ratio = ns / (1e9 * median(theirs)),
-                           .spread = percentile(ratios, 0.9) - percentile(ratios, 0.1),
-                           .entries_per_light = entries / lights,
-                           .store_ratio = ns / (1e9 * median(ours.stores)),
-                           .clear_ratio = ns / (1e9 * median(clears)),
-                           .gain = gain(&Times::builds),
-                           .gain_of_stores = gain(&Times::stores),
-                           .gain_of_sums = gain(&Times::sums)};
+    Result result = {.set = which.set,
+                     .lights = n,
+                     .tile_size = which.tile_size,
+                     .footprint = name_of(options.footprint),
+                     .depth_test = name_of(options.depth_test),
+                     .tier = name_of(options.isa),
+                     .threads = which.threads,
+                     .ns_per_light = ns / lights,
+                     .ns_per_entry = ns / std::max(entries, 1.0),
+                     .ratio = ns / (1e9 * median(theirs)),
+                     .spread = percentile(ratios, 0.9) - percentile(ratios, 0.1),
+                     .entries_per_light = entries / lights,
+                     .store_ratio = ns / (1e9 * median(stores)),
+                     .clear_ratio = ns / (1e9 * median(clears)),
+                     .gains = {}};
+    if (which.threads > 1)
+        result.gains = measure_gains(parallel, [&](const lightbin::Parallel& threads, std::size_t turn) {
+            return bin(threads, turn % frames.size()).indices().size_bytes();
+        });
     results.push_back(result);
 }
 

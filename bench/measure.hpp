@@ -10,10 +10,15 @@
 #include <utility>
 #include <vector>
 
+/// In seconds, from some point on.
+inline double time_now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 template <class Work> double seconds(Work work) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = time_now();
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return time_now() - start;
 }
 
 inline double percentile(std::vector<double> values, double share) {

@@ -79,11 +79,10 @@ public:
         if constexpr (!std::is_same_v<Threads, Serial>) {
             const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), rows);
             if (parts > 1 && footprints.area() <= most) {
-                const double ns = estimate(isa, kernel, footprints.visible(), static_cast<double>(room));
-                shared_ = parallel.worth(ns);
+                shared_ =
+                    parallel.worth(estimate(isa, kernel, footprints.visible(), static_cast<double>(room)));
                 if (shared_) {
-                    entries_ =
-                        build_parts(isa, job, kernel, list, scratch, parallel, parts, parallel.lead(ns));
+                    entries_ = build_parts(isa, job, kernel, list, scratch, parallel, parts);
                     return std::nullopt;
                 }
             }
@@ -113,11 +112,11 @@ private:
     /// Builds `count` parts on the caller's threads, see make_parts(). Returns the number of entries.
     std::size_t build_parts(Isa isa, const Job& job, detail::BinKernel<Id> kernel, Id* list,
                             std::vector<detail::Scratch>& scratch, const Parallel& parallel,
-                            std::size_t count, double lead) {
+                            std::size_t count) {
         if (scratch.size() < count) scratch.resize(count);
         if (spares_.size() < count) spares_.resize(count);
         detail::Part* parts = parts_.room(count);
-        detail::make_parts(job, parallel, row_sums_, parts, count, lead);
+        detail::make_parts(job, parallel, row_sums_, parts, count);
         if constexpr (!masked) {
             // Rectangles: a part's place in the list is known. Its last entries go there by way of spare room,
             // as a kernel writes beyond its end, where the next part is at work.

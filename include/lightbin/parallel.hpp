@@ -25,7 +25,6 @@ public:
     /// workers   how many threads `run` has; more or fewer change the speed, never the result
     /// run       run(n, body) calls body(i), a std::size_t, once for each 0 <= i < n, in any order, on any
     ///           threads, and returns when all calls have returned: tbb::parallel_for, a thread pool, OpenMP.
-    ///           Quickest if the calling thread begins, with body(0), while the others wake
     /// start_ns  about how long it takes until `run` has its threads at work. What would gain less is done by the
     ///           calling thread alone. The default is that of threads asleep; 0 shares all that can be shared.
     template <class Run>
@@ -43,9 +42,6 @@ public:
         const double workers = static_cast<double>(workers_);
         return workers_ > 1 && ns * (workers - 1) >= 2 * start_ns_ * workers;
     }
-
-    /// What share of such work the calling thread has done before the others are there, woken some time ago.
-    double lead(double ns) const { return start_ns_ > 0 ? 0.4 * start_ns_ / ns : 0; }
 
     /// Calls body(i) for each 0 <= i < n.
     template <class Function> void run(std::size_t n, const Function& body) const {

@@ -22,11 +22,10 @@ struct Part {
     std::uint64_t spare_area;
 };
 
-/// Writes `count` parts, no more than there are tile rows. The first, which the calling thread begins with, has `lead`
-/// of all the work more than the others, which are about equal.
+/// Writes `count` parts of about equal work, no more than there are tile rows.
 template <class Id>
 void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums, Part* parts,
-                std::size_t count, double lead) {
+                std::size_t count) {
     // Each run of lights adds its widths to the steps between rows, in a column of its own.
     const std::size_t rows = static_cast<std::size_t>(job.camera->y.tiles), pitch = rows + 1;
     std::uint64_t* row_area = sums.room(pitch * job.runs.size());
@@ -49,12 +48,11 @@ void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
         work += step_sum + row_work;
     }
 
-    const std::uint64_t first = static_cast<std::uint64_t>(static_cast<double>(work) * lead);
     std::uint64_t before = 0, done = 0;
     unsigned row = 0;
     for (std::size_t i = 0; i < count; ++i) {
         Part part = {row, row, before, 0, 0, 0};
-        const std::uint64_t goal = first + (work - first) / count * (i + 1);
+        const std::uint64_t goal = work / count * (i + 1);
         const std::size_t last = rows - (count - 1 - i);  // leave a row for each later part
         while (row < last && (row == part.begin || i + 1 == count || done < goal)) {
             part.area += row_area[row];
