@@ -125,8 +125,9 @@ void fill(char* memory, std::size_t size) {
     benchmark::ClobberMemory();
 }
 
+constexpr std::size_t steps_a_ms = 400000;  // of churn, about
+
 /// Arithmetic in registers, for the given number of steps.
-constexpr std::size_t steps_a_ms = 400000;  // about
 void churn(std::size_t steps) {
     std::uint32_t sums[32] = {};
     for (std::size_t i = 0; i < steps; ++i)

@@ -44,6 +44,7 @@ public:
         Job job = {.camera = &view.camera(),
                    .lights = footprints.arrays(),
                    .runs = footprints.runs(),
+                   .visible = footprints.visible(),
                    .bounds = {},
                    .edges = {},
                    .tiles = nullptr};
@@ -78,13 +79,11 @@ public:
         shared_ = false;
         if constexpr (!std::is_same_v<Threads, Serial>) {
             const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), rows);
-            if (parts > 1 && footprints.area() <= most) {
-                shared_ =
-                    parallel.worth(estimate(isa, kernel, footprints.visible(), static_cast<double>(room)));
-                if (shared_) {
-                    entries_ = build_parts(isa, job, kernel, list, scratch, parallel, parts);
-                    return std::nullopt;
-                }
+            shared_ = parts > 1 && footprints.area() <= most &&
+                      parallel.worth(estimate(isa, kernel, footprints.visible(), static_cast<double>(room)));
+            if (shared_) {
+                entries_ = build_parts(isa, job, kernel, list, scratch, parallel, parts);
+                return std::nullopt;
             }
         }
         entries_ = static_cast<std::size_t>(kernel(job, scratch[0], {0, rows, list, 0}));

@@ -26,7 +26,8 @@ public:
     /// run       run(n, body) calls body(i), a std::size_t, once for each 0 <= i < n, in any order, on any
     ///           threads, and returns when all calls have returned: tbb::parallel_for, a thread pool, OpenMP.
     /// start_ns  about how long it takes until `run` has its threads at work. What would gain less is done by the
-    ///           calling thread alone. The default is that of threads asleep; 0 shares all that can be shared.
+    ///           calling thread alone, unless it wakes the threads for what follows. The default is that of
+    ///           threads asleep; 0 shares all that can be shared.
     template <class Run>
     Parallel(std::size_t workers, Run&& run, double start_ns = 50000)
         : workers_(workers > 1 ? workers : 1), start_ns_(start_ns),

@@ -40,18 +40,21 @@ public:
         const double ns_a_light = isa == Isa::avx512 ? 2 : isa == Isa::avx2 ? 3 : 7;  // in view
         const bool share = wake || parallel.worth(static_cast<double>(lights_) * ns_a_light);
         const Parallel threads = share ? parallel : Parallel();
-        // Some parts a worker, so that a late one costs little; no fewer where they are not shared, as more take more room.
-        constexpr std::size_t chunk = detail::ChunkRects::size;
-        const std::size_t most = parallel.workers() > 1 ? 4 * parallel.workers() : 1;
-        const std::size_t size = (lights_ / (most * chunk) + 1) * chunk, parts = lights_ / size + 1;
-        const std::size_t stride = size + detail::FootprintArrays::padding;
-        const std::size_t room = parts * stride;
+        // Some parts a worker, so that a late one costs little; as many where they are not shared, as more take
+        // more room; one where 32 bits might not number their places.
+        constexpr std::size_t chunk = detail::ChunkRects::size, padding = detail::FootprintArrays::padding;
+        const std::size_t most = parallel.workers() > 1 && lights_ >> 31 == 0 ? 4 * parallel.workers() : 1;
+        const std::size_t chunks = lights_ / chunk + 1, parts = (std::min)(chunks, most);
+        const auto first_of = [&](std::size_t part) {
+            return (std::min)(chunks * part / parts * chunk, lights_);
+        };
+        const std::size_t room = lights_ + parts * padding;
         arrays_ = {.ids = ids_.room(room),
                    .x0 = x0_.room(room),
                    .y0 = y0_.room(room),
                    .x1 = x1_.room(room),
                    .y1 = y1_.room(room),
-                   .span_begin = nullptr,
+                   .span_begin = with_spans ? span_begin_.room(room) : nullptr,
                    .spans = nullptr,
                    .spheres = detail::as_they_are(lights)};
         const bool move = arrays_.spheres == nullptr;
@@ -63,14 +66,14 @@ public:
         // One light is done sooner than a vector is filled up with copies of it.
         const detail::ProjectKernel kernel = detail::project_kernel(lights_ > 1 ? isa : Isa::scalar);
         threads.run(parts, [&](std::size_t part) {
-            const std::size_t end = (std::min)((part + 1) * size, lights_);
-            const detail::FootprintArrays out = arrays_.from(part * stride);
+            std::size_t first = first_of(part);
+            const std::size_t end = first_of(part + 1), place = first + part * padding;
+            const detail::FootprintArrays out = arrays_.from(place);
             detail::ProjectCounts sum;
-            const auto consume = [&](const Sphere* spheres, std::size_t first, std::size_t count) {
+            const auto consume = [&](const Sphere* spheres, std::size_t first_id, std::size_t count) {
                 kernel(view.camera(), spheres, static_cast<std::uint32_t>(count),
-                       static_cast<std::uint32_t>(first), out, sum);
+                       static_cast<std::uint32_t>(first_id), out, sum);
             };
-            std::size_t first = (std::min)(part * size, lights_);
             if (!move) {
                 consume(arrays_.spheres + first, first, end - first);
             } else {
@@ -87,7 +90,7 @@ public:
                 for (std::uint32_t i = 0; i < sum.visible; ++i)
                     sum.rows += out.y1[i] - out.y0[i] + 1u;
             counts[part] = sum;
-            const std::uint32_t begin = static_cast<std::uint32_t>(part * stride);
+            const std::uint32_t begin = static_cast<std::uint32_t>(place);
             runs[part] = {begin, begin + sum.visible};
         });
         run_count_ = parts;
@@ -111,7 +114,6 @@ public:
 private:
     void add_spans(detail::RowSpanKernel kernel, const View& view, const Parallel& threads) {
         constexpr std::uint64_t padding = 8;  // a vector of rows
-        arrays_.span_begin = span_begin_.room(runs_.data()[run_count_ - 1].end);
         // Later lights than 32 bits can number the spans of keep their rectangles.
         const std::uint64_t room = (std::min)(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
         detail::RowSpan* spans = spans_.room(static_cast<std::size_t>(room + padding));

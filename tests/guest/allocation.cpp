@@ -169,6 +169,22 @@ TEST_CASE("nor does one that shares more of the same work the second time") {
     CHECK(calls > 2 * calls_at_first);
 }
 
+TEST_CASE("nor does one that has threads and fewer lights the second time") {
+    const auto run = [](std::size_t n, auto body) {
+        for (std::size_t i = 0; i < n; ++i)
+            body(i);
+    };
+    for (const std::size_t workers : {2u, 5u}) {
+        // Shares nothing, but has room for it; one less than makes a number of even parts.
+        Scene scene(640, 360, workers * 1024);
+        const Parallel parallel(workers, run, 1e12);
+        Binner<> binner;
+        (void)*binner.bin(scene.view, scene.lights, parallel);
+        scene.lights.pop_back();
+        CHECK(allocations_in([&] { (void)*binner.bin(scene.view, scene.lights, parallel); }) == 0);
+    }
+}
+
 TEST_CASE("making a view and reducing a depth buffer never allocate") {
     Scene scene(640, 360, 1);
     CHECK(allocations_in([&] { scene.view = make_view(500, 300, 16); }) == 0);

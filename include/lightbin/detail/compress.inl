@@ -155,13 +155,12 @@ LIGHTBIN_TARGET inline Chunk load_chunk(const BandLists& lists, std::size_t from
 /// Step 1, for `bands` bands from tile row `first_row` on. List (band, panel) is number band * panels + panel.
 template <bool with_words, class Id>
 LIGHTBIN_TARGET BandLists fill_bands(const BinJob<Id>& job, Scratch& scratch, std::size_t block_count,
-                                     std::size_t light_count, unsigned first_row, unsigned bands,
-                                     unsigned panels) {
+                                     unsigned first_row, unsigned bands, unsigned panels) {
     const FootprintArrays& lights = job.lights;
     const IdBlock* blocks = scratch.blocks.data();
     const std::size_t lists = std::size_t{bands} * panels;
     BandLists to = {};
-    to.stride = light_count + 64 * block_count + 192;  // whole vectors are stored and read
+    to.stride = std::size_t{job.visible} + 64 * block_count + 192;  // whole vectors are stored and read
     to.x0 = scratch.band_x0.room(lists * to.stride);
     to.x1 = scratch.band_x1.room(lists * to.stride);
     to.rows = scratch.band_rows.room(lists * to.stride);
@@ -440,11 +439,8 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
     SupertileList* in_row = scratch.supertile_lists.room(width);
 
     // As many bands in one pass over the lights as a panel has, where their lists' room stays within reason.
-    std::size_t lights = 1;
-    for (const FootprintRun& run : job.runs)
-        lights += run.end - run.begin;
-    const unsigned together = static_cast<unsigned>(
-        std::clamp<std::size_t>((std::size_t{1} << 26) / (lights * panels + 1), 1, panel_side));
+    const unsigned together = static_cast<unsigned>(std::clamp<std::uint64_t>(
+        (std::uint64_t{1} << 26) / (std::uint64_t{job.visible} * panels + 1), 1, panel_side));
 
     BandLists lists = {};
     const unsigned band_count = (bands.end - bands.begin + 7) / 8;
@@ -456,7 +452,7 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
         if (band == listed) {
             first_listed = band;
             listed = (std::min)(band + together, band_count);
-            lists = fill_bands<with_words>(job, scratch, block_count, lights, top, listed - band, panels);
+            lists = fill_bands<with_words>(job, scratch, block_count, top, listed - band, panels);
         }
         std::uint32_t longest = 0;
         for (std::size_t list = std::size_t{band - first_listed} * panels;

@@ -71,6 +71,7 @@ template <class Id> struct BinJob {
     const Camera* camera;
     FootprintArrays lights;
     std::span<const FootprintRun> runs;
+    std::uint32_t visible;   ///< lights in all runs
     const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one
     const float* edges[4];   ///< of the tiles, for boxes: low x, high x, low y, high y; see cell_boxes.hpp
     Tile* tiles;             ///< the table to write, and `slack` tiles more

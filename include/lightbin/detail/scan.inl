@@ -58,9 +58,7 @@ template <bool with_words, class Id>
 LIGHTBIN_TARGET std::uint32_t scan_band(const BinJob<Id>& job, Scratch& scratch, unsigned top,
                                         unsigned end_row) {
     const FootprintArrays& lights = job.lights;
-    std::size_t room = 64;
-    for (const FootprintRun& run : job.runs)
-        room += run.end - run.begin;
+    const std::size_t room = std::size_t{job.visible} + 64;
     std::uint8_t* first = scratch.band_x0.room(room);
     std::uint8_t* end = scratch.band_x1.room(room);
     std::uint8_t* rows = scratch.band_rows.room(room);
