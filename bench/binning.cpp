@@ -267,8 +267,8 @@ template <Options options> void build(benchmark::State& state, const Case& which
                      .clear_ratio = ns / (1e9 * median(clears)),
                      .gains = {}};
     if (which.threads > 1)
-        result.gains = measure_gains(parallel, [&](const lightbin::Parallel& threads, std::size_t turn) {
-            return bin(threads, turn % frames.size()).indices().size_bytes();
+        result.gains = measure_gains(parallel, [&](const lightbin::Parallel& threads, std::size_t frame) {
+            return bin(threads, frame % frames.size()).indices().size_bytes();
         });
     results.push_back(result);
 }

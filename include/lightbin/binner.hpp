@@ -48,8 +48,9 @@ struct Statistics {
     std::array<std::uint64_t, 33> histogram = {};
 };
 
-/// Bins lights into screen tiles. Allocates only when the input outgrows every earlier one, or is shared among
-/// another number of threads. Not thread-safe: one Binner a thread.
+/// Bins lights into screen tiles. Keeps its memory: the same input again allocates nothing, another one only where
+/// it outgrows the earlier ones, or where another kernel or number of threads takes it. Not thread-safe: one Binner
+/// a thread.
 template <Options options = Options{}> class Binner {
     static constexpr bool with_depth = options.depth_test != DepthTest::none;
 

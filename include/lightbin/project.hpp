@@ -43,8 +43,10 @@ public:
         // Some parts a worker, so that a late one costs little; as many where they are not shared, as more take
         // more room; one where 32 bits might not number their places.
         constexpr std::size_t chunk = detail::ChunkRects::size, padding = detail::FootprintArrays::padding;
-        const std::size_t most = parallel.workers() > 1 && lights_ >> 31 == 0 ? 4 * parallel.workers() : 1;
-        const std::size_t chunks = lights_ / chunk + 1, parts = (std::min)(chunks, most);
+        const std::size_t chunks = lights_ / chunk + 1;
+        const std::size_t parts = parallel.workers() > 1 && lights_ >> 31 == 0
+                                      ? (std::min)(chunks, 4 * (std::min)(chunks, parallel.workers()))
+                                      : 1;
         const auto first_of = [&](std::size_t part) {
             return (std::min)(chunks * part / parts * chunk, lights_);
         };

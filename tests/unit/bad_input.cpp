@@ -118,6 +118,22 @@ TEST_CASE("an empty viewport") {
     }
 }
 
+TEST_CASE("any number of workers") {
+    const View view = test::view({320, 240}, 16);
+    const auto lights = test::random_lights(1000, 44);
+    const auto run = [](std::size_t n, const auto& body) {
+        for (std::size_t i = 0; i < n; ++i)
+            body(i);
+    };
+    for (const std::size_t workers :
+         {std::size_t{1} << (std::numeric_limits<std::size_t>::digits - 10),
+          (std::numeric_limits<std::size_t>::max)() / 4 + 1, (std::numeric_limits<std::size_t>::max)()}) {
+        Binner<> binner;
+        CHECK(test::to_lists(*binner.bin(view, lights, Parallel(workers, run, 0))) ==
+              test::lists(view, lights));
+    }
+}
+
 TEST_CASE("one pixel, and a tile larger than the screen") {
     const auto lights = test::random_lights(300, 42);
     Binner<Options{.statistics = true}> binner;

@@ -117,7 +117,7 @@ TEST_CASE("lights straight on are listed where they are, in grids of any shape, 
 }
 
 TEST_CASE("lights straight on are listed where they are, more than 16 bits number and projected in parts") {
-    for (const std::uint32_t seed : {1, 2}) {
+    for (const std::uint32_t seed : {1u, 2u}) {
         Plain plain(9, 11, 0, seed);
         const Plain few(9, 11, 400, seed);
         // In view are each 500th, or the first and the last 200.
