@@ -98,12 +98,8 @@ TEST_CASE("an empty viewport") {
         CHECK(binner.statistics().culled == 201);
 
         // Projected in several parts, and binned by the kernel that scatters.
-        const auto one_by_one = [](std::size_t n, const auto& body) {
-            for (std::size_t i = 0; i < n; ++i)
-                body(i);
-        };
         Binner<Options{.isa = Isa::scalar}> shared;
-        const auto none = shared.bin(view, test::random_lights(1000, 43), Parallel(3, one_by_one, 0));
+        const auto none = shared.bin(view, test::random_lights(1000, 43), Parallel(3, test::backwards, 0));
         REQUIRE(none);
         CHECK(none->indices().empty());
 
@@ -121,15 +117,11 @@ TEST_CASE("an empty viewport") {
 TEST_CASE("any number of workers") {
     const View view = test::view({320, 240}, 16);
     const auto lights = test::random_lights(1000, 44);
-    const auto run = [](std::size_t n, const auto& body) {
-        for (std::size_t i = 0; i < n; ++i)
-            body(i);
-    };
     for (const std::size_t workers :
          {std::size_t{1} << (std::numeric_limits<std::size_t>::digits - 10),
           (std::numeric_limits<std::size_t>::max)() / 4 + 1, (std::numeric_limits<std::size_t>::max)()}) {
         Binner<> binner;
-        CHECK(test::to_lists(*binner.bin(view, lights, Parallel(workers, run, 0))) ==
+        CHECK(test::to_lists(*binner.bin(view, lights, Parallel(workers, test::backwards, 0))) ==
               test::lists(view, lights));
     }
 }

@@ -154,17 +154,13 @@ TEST_CASE("all tiers project lights that all but touch the sides of the view to 
 
 TEST_CASE("threads project to the same bytes") {
     const Scene scene = wild_scene(3, 40000);
-    const auto backwards = [](std::size_t n, auto body) {
-        while (n > 0)
-            body(--n);
-    };
     Silhouettes footprints;
     const Isa isa = detail::machine_isa(Isa::avx512);
     footprints.project(isa, scene.view, view_space(scene.lights), {});
     CHECK(footprints.runs().size() == 1);
     const auto expected = words(footprints);
     for (const std::size_t workers : {2u, 3u, 64u}) {
-        footprints.project(isa, scene.view, view_space(scene.lights), {workers, backwards, 0});
+        footprints.project(isa, scene.view, view_space(scene.lights), {workers, test::backwards, 0});
         CHECK(footprints.runs().size() > 1);
         CHECK((words(footprints) == expected));
     }

@@ -84,12 +84,8 @@ struct Plain {
 
 template <Isa isa, DepthTest depth_test = DepthTest::none> void check_plain(const Plain& plain) {
     static Binner<Options{.depth_test = depth_test, .isa = isa}> binner;
-    const auto one_by_one = [](std::size_t n, auto body) {
-        for (std::size_t i = n; i-- > 0;)
-            body(i);
-    };
     for (const std::size_t workers : {1u, 2u, 5u}) {
-        const Parallel parallel(workers, one_by_one, 0);
+        const Parallel parallel(workers, test::backwards, 0);
         const auto grid = [&] {
             if constexpr (depth_test == DepthTest::none)
                 return binner.bin(plain.view, plain.spheres, parallel);

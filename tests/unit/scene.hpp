@@ -77,4 +77,10 @@ inline bool is_superset(const Lists& outer, const Lists& inner) {
     return true;
 }
 
+/// A loop for lightbin::Parallel, of threads at their least helpful: one, which takes the work from the end.
+inline constexpr auto backwards = [](std::size_t n, const auto& body) {
+    while (n > 0)
+        body(--n);
+};
+
 }  // namespace test
