@@ -4,6 +4,7 @@
 #pragma once
 
 #include <lightbin/detail/build_model.hpp>
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/survey.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/options.hpp>
@@ -19,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-namespace lightbin {
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// What advise() can't know. Times in nanoseconds a frame, 0 or more.
 struct Costs {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/buffer.hpp>
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/kernels.hpp>
 #include <lightbin/detail/parts.hpp>
 #include <lightbin/detail/scratch.hpp>
@@ -23,7 +24,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace lightbin {
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// A light grid in memory of its own, kept from call to call.
 template <class Id, Footprint footprint, DepthTest depth_test> class GridLists {

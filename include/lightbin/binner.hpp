@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/bin.hpp>
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/light_grid.hpp>
@@ -25,7 +26,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace lightbin {
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// Number of elements that Binner::emit writes.
 struct GridSize {

@@ -2,6 +2,7 @@
 // Stage 4a: the light grid in other forms: narrow ids, sentinel-terminated lists, a bitmask a tile.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/result.hpp>
 
@@ -11,7 +12,7 @@
 #include <cstring>
 #include <span>
 
-namespace lightbin {
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// How the lights of a tile are written down.
 enum class ListEncoding : std::uint8_t {

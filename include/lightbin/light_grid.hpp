@@ -2,13 +2,14 @@
 // The output: the light grid of Tiled Shading, Figure 1 - offset and count a tile, and one light index list.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/result.hpp>
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
-namespace lightbin {
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// Type of a light id.
 enum class Index : std::uint8_t {

@@ -2,6 +2,7 @@
 // The lights as the caller has them: vec4 arrays or the caller's own structs, in view space or world space.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/matrix.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/result.hpp>
@@ -15,7 +16,7 @@
 #include <span>
 #include <type_traits>
 
-namespace lightbin {
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// A light's sphere of influence: centre and radius (the papers' range).
 ///

@@ -2,12 +2,13 @@
 // What a Binner does, fixed at compile time: an option that is off leaves no code.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/light_grid.hpp>
 
 #include <cstdint>
 
-namespace lightbin {
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// The tiles that a light's projection is taken to cover.
 enum class Footprint : std::uint8_t {

@@ -2,11 +2,13 @@
 // The caller's threads, lent for the time of a call: lightbin has none of its own.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
+
 #include <cstddef>
 #include <memory>
 #include <type_traits>
 
-namespace lightbin {
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// A worker count and the caller's way to run a loop on several threads. Refers to the caller's callable,
 /// which must outlive the call that it is given to.

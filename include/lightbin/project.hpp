@@ -4,6 +4,7 @@
 #pragma once
 
 #include <lightbin/detail/buffer.hpp>
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/kernels.hpp>
 #include <lightbin/lights.hpp>
@@ -18,7 +19,7 @@
 #include <functional>
 #include <span>
 
-namespace lightbin {
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// The footprints of the lights in view, in ascending order of id. Keeps its memory from call to call.
 ///

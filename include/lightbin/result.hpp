@@ -2,6 +2,8 @@
 // Errors a program can meet come back as values with a text; programmer errors assert.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
+
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -14,7 +16,7 @@
 #define LIGHTBIN_ASSERT(condition) assert(condition)
 #endif
 
-namespace lightbin {
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 enum class ErrorCode : std::uint8_t {
     // View::from_projection

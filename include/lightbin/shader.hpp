@@ -2,6 +2,7 @@
 // Stage 4b: the shader text that reads a light grid. shader.md beside it shows its use.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/encode.hpp>
 #include <lightbin/shader_text.hpp>
 #include <lightbin/view.hpp>
@@ -13,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lightbin {
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// Where the lists lie.
 enum class ListStorage : std::uint8_t {

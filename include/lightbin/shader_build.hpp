@@ -4,6 +4,7 @@
 #pragma once
 
 #include <lightbin/detail/cell_boxes.hpp>
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/project.hpp>
@@ -19,7 +20,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lightbin {
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 enum class ShaderStage : std::uint8_t { compute, fragment };
 

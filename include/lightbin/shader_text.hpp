@@ -2,6 +2,7 @@
 // Shader languages: one text, written in GLSL, becomes each of them.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/result.hpp>
 
 #include <cctype>
@@ -10,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lightbin {
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 enum class ShaderLanguage : std::uint8_t {
     glsl_330,     ///< OpenGL 3.3 to 4.2

@@ -2,6 +2,7 @@
 // Stage 1: projection matrix + viewport + tile size -> the few constants that all other stages use.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/matrix.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/result.hpp>
@@ -11,7 +12,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace lightbin {
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// Range of clip-space depth. It is a setting of the graphics API and cannot be read from the matrix.
 /// Given wrongly, minus_one_to_one puts the near plane too near (safe); zero_to_one puts it too far (not

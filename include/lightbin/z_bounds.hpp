@@ -2,6 +2,7 @@
 // Stage 2b: depth buffer -> per-tile minimum and maximum view depth of what is drawn there.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/kernels.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/rounding.hpp>
@@ -15,7 +16,7 @@
 #include <span>
 #include <utility>
 
-namespace lightbin {
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// Z bounds: the view depths between which a tile has anything to light. One float a tile, row-major, at
 /// least View::tile_count() of them; each side from its own source, and an empty span for a side that is not

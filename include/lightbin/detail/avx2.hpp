@@ -2,6 +2,7 @@
 // The AVX2 tier's vectors: most desktop machines and consoles. Eight lights at a time.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/tier.hpp>
 
 #if defined(LIGHTBIN_X86)
@@ -10,8 +11,7 @@
 
 #define LIGHTBIN_TARGET __attribute__((target("avx2,bmi,popcnt")))
 
-namespace lightbin::detail {
-inline namespace LIGHTBIN_FLAVOUR {
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace avx2 {
 
 using Floats = __m256;
@@ -159,7 +159,6 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
 #include <lightbin/detail/survey.inl>
 
 }  // namespace avx2
-}  // namespace LIGHTBIN_FLAVOUR
 }  // namespace lightbin::detail
 
 #undef LIGHTBIN_TARGET

@@ -2,6 +2,7 @@
 // The AVX-512 tier: vectors of 16 lights, and a binning kernel of its own built on compress instructions.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/tier.hpp>
 
 #if defined(LIGHTBIN_X86)
@@ -21,8 +22,7 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 
-namespace lightbin::detail {
-inline namespace LIGHTBIN_FLAVOUR {
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace avx512 {
 
 using Floats = __m512;
@@ -155,7 +155,6 @@ LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t*
 #include <lightbin/detail/compress.inl>
 
 }  // namespace avx512
-}  // namespace LIGHTBIN_FLAVOUR
 }  // namespace lightbin::detail
 
 #undef LIGHTBIN_TARGET

@@ -2,12 +2,14 @@
 // Scratch memory that is kept from call to call and not cleared.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
+
 #include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <type_traits>
 
-namespace lightbin::detail {
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 template <class T> class Buffer {
     static_assert(std::is_trivially_copyable_v<T>);

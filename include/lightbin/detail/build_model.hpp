@@ -4,6 +4,7 @@
 // take 0.74 to 1.7 times what is predicted. Another machine is brought in by one factor, Costs::machine.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/survey.hpp>
 #include <lightbin/options.hpp>
@@ -12,7 +13,7 @@
 #include <array>
 #include <cstddef>
 
-namespace lightbin::detail {
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 /// Amounts that a build's time is made of, or nanoseconds for each.
 using BuildTerms = std::array<double, 15>;

@@ -17,6 +17,7 @@
 //   roundings are monotone; infinity is not beyond infinity.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/lights.hpp>
@@ -25,9 +26,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lightbin::detail {
-inline namespace LIGHTBIN_FLAVOUR {
-
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 inline constexpr float flushed = 0x1p-120f;
 
 /// Writes a tile's two edges along an axis, as slopes or coordinates, `low` rounded down and `high` up.
@@ -54,6 +53,4 @@ struct TestedLight {
     float nearest, farthest;  ///< rounding is monotone: comparing them with float bounds never loses a light
     float reach2;             ///< the squared radius, rounded up
 };
-
-}  // namespace LIGHTBIN_FLAVOUR
 }  // namespace lightbin::detail

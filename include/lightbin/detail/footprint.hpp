@@ -2,6 +2,7 @@
 // The types that pass between the stages' kernels, apart from the kernels themselves.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/view.hpp>
@@ -10,7 +11,7 @@
 #include <cstdint>
 #include <span>
 
-namespace lightbin::detail {
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 /// The tiles first..last of one tile row that a light's silhouette reaches; none if first > last.
 struct RowSpan {

@@ -4,6 +4,7 @@
 
 #include <lightbin/detail/avx2.hpp>
 #include <lightbin/detail/avx512.hpp>
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/neon.hpp>
 #include <lightbin/detail/platform.hpp>
@@ -15,7 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace lightbin::detail {
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 using ProjectKernel = decltype(&scalar::project);
 using RowSpanKernel = decltype(&scalar::row_spans);
@@ -26,8 +27,6 @@ struct DepthKernels {
 };
 template <class Id>
 using BinKernel = std::uint64_t (*)(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands);
-
-inline namespace LIGHTBIN_FLAVOUR {
 
 inline ProjectKernel project_kernel(Isa isa) {
 #if defined(LIGHTBIN_X86)
@@ -114,5 +113,4 @@ BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint32_t lights, std::u
     return scalar::bin_supertiles<footprint, depth_test, Id>;
 }
 
-}  // namespace LIGHTBIN_FLAVOUR
 }  // namespace lightbin::detail

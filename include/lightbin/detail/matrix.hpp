@@ -2,9 +2,11 @@
 // The caller's matrix type ends here.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
+
 #include <cmath>
 
-namespace lightbin::detail {
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 /// Copies any matrix[column][row]. Indices are constants, which no type of index warns of.
 template <class Matrix> void copy_matrix(const Matrix& matrix, double (&m)[4][4]) {

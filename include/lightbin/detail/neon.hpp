@@ -2,6 +2,7 @@
 // The NEON tier's vectors: phones and Apple's machines, every 64-bit ARM. Four lights at a time.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/tier.hpp>
 
 #if defined(LIGHTBIN_NEON)
@@ -10,8 +11,7 @@
 
 #define LIGHTBIN_TARGET
 
-namespace lightbin::detail {
-inline namespace LIGHTBIN_FLAVOUR {
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace neon {
 
 // Not float32x4_t: clang gives that type no ?: operator.
@@ -74,7 +74,6 @@ inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
 #include <lightbin/detail/survey.inl>
 
 }  // namespace neon
-}  // namespace LIGHTBIN_FLAVOUR
 }  // namespace lightbin::detail
 
 #undef LIGHTBIN_TARGET

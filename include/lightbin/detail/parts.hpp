@@ -4,6 +4,7 @@
 #pragma once
 
 #include <lightbin/detail/buffer.hpp>
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/parallel.hpp>
 
@@ -11,7 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace lightbin::detail {
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 /// Tile rows begin..end-1, and the tiles of all rectangles in them.
 struct Part {

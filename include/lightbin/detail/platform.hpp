@@ -3,24 +3,14 @@
 // LIGHTBIN_NO_SIMD to have the scalar kernels alone.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
+
 #include <cstdint>
 
 #if !defined(LIGHTBIN_NO_SIMD) && defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
 #define LIGHTBIN_X86 1
 #elif !defined(LIGHTBIN_NO_SIMD) && defined(__aarch64__) && (defined(__GNUC__) || defined(__clang__))
 #define LIGHTBIN_NEON 1
-#endif
-
-// Names functions after the flags they are compiled with, so that two translation units with different flags
-// never share one: the linker would pick either, and its instructions might not exist on the machine.
-#if defined(__AVX512F__)
-#define LIGHTBIN_FLAVOUR built_for_avx512
-#elif defined(__AVX2__)
-#define LIGHTBIN_FLAVOUR built_for_avx2
-#elif defined(__AVX__)
-#define LIGHTBIN_FLAVOUR built_for_avx
-#else
-#define LIGHTBIN_FLAVOUR built_for_baseline
 #endif
 
 #if defined(_MSC_VER) && !defined(__clang__)
@@ -38,7 +28,7 @@
 #define LIGHTBIN_ROUND(product) static_cast<void>(product)
 #endif
 
-namespace lightbin {
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// Instruction sets with kernels of their own. All give the same bytes.
 enum class Isa : std::uint8_t {
@@ -83,8 +73,6 @@ inline Isa machine_isa(Isa cap) {
 #endif
 }
 
-inline namespace LIGHTBIN_FLAVOUR {
-
 /// A product that is rounded before it is added to anything: keeps compilers from fusing the two, which would
 /// make the result depend on the instruction set.
 template <class Real> inline Real rounded(Real product) {
@@ -92,6 +80,5 @@ template <class Real> inline Real rounded(Real product) {
     return product;
 }
 
-}  // namespace LIGHTBIN_FLAVOUR
 }  // namespace detail
 }  // namespace lightbin

@@ -3,6 +3,8 @@
 // NaN.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
+
 #include <bit>
 #include <cfloat>
 #include <cstdint>
@@ -15,7 +17,7 @@
 keep lights from being missed. Compile the files that include lightbin without them."
 #endif
 
-namespace lightbin::detail {
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<double>::is_iec559);
 

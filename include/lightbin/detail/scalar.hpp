@@ -2,11 +2,10 @@
 // The scalar tier: what every other tier must equal, byte for byte.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/tier.hpp>
 
-namespace lightbin::detail {
-inline namespace LIGHTBIN_FLAVOUR {
-
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace scalar {
 
 #define LIGHTBIN_TARGET
@@ -89,6 +88,4 @@ std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned beg
 #undef LIGHTBIN_TARGET
 
 }  // namespace scalar
-
-}  // namespace LIGHTBIN_FLAVOUR
 }  // namespace lightbin::detail

@@ -3,6 +3,7 @@
 // A rectangle costs four corners of a difference array, whose sums along both axes are the counts.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/scratch.hpp>
@@ -11,15 +12,13 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace lightbin::detail {
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 /// Writes the tile rows begin..end-1, each tile with how many lights it has and where its list ends, the first one at
 /// `at`. Returns where the last one ends. May write more up to `writable`.
 template <class Id>
 using LayOutRows = std::uint32_t (*)(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end,
                                      const Tile* writable, std::uint32_t at);
-
-inline namespace LIGHTBIN_FLAVOUR {
 
 /// Puts an id in front of what the lists of `columns` tiles in each row have so far. One branch for all rows
 /// on the usual numbers of columns mispredicts less than a loop's end in each row.
@@ -72,5 +71,4 @@ std::uint64_t bin_scatter(const BinJob<Id>& job, Scratch& scratch, const BandJob
     return entries;
 }
 
-}  // namespace LIGHTBIN_FLAVOUR
 }  // namespace lightbin::detail

@@ -3,11 +3,12 @@
 #pragma once
 
 #include <lightbin/detail/buffer.hpp>
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/light_grid.hpp>
 
 #include <cstdint>
 
-namespace lightbin::detail {
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 /// The lights of all runs at begin..end-1, no more than 2^16 places: their ids share their upper 16 bits, `upper`.
 struct IdBlock {

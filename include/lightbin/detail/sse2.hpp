@@ -2,6 +2,7 @@
 // The SSE2 tier's vectors: what every x86-64 machine has. Four lights at a time.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/tier.hpp>
 
 #if defined(LIGHTBIN_X86)
@@ -10,8 +11,7 @@
 
 #define LIGHTBIN_TARGET
 
-namespace lightbin::detail {
-inline namespace LIGHTBIN_FLAVOUR {
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace sse2 {
 
 using Floats = __m128;
@@ -134,7 +134,6 @@ template <class Id> std::uint32_t append(Id* out, const Packed<Id>* ids, unsigne
 #include <lightbin/detail/survey.inl>
 
 }  // namespace sse2
-}  // namespace LIGHTBIN_FLAVOUR
 }  // namespace lightbin::detail
 
 #undef LIGHTBIN_TARGET

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/cell_boxes.hpp>
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/options.hpp>
@@ -10,7 +11,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace lightbin::detail {
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 /// Lights have a word with a bit a tile in each supertile, rather than a byte of columns and one of rows.
 template <Footprint footprint, DepthTest depth_test>
@@ -22,8 +23,6 @@ inline constexpr unsigned cell_planes = depth_test == DepthTest::split_box ? 12
                                         : depth_test == DepthTest::box     ? 6
                                                                            : 2;
 inline constexpr unsigned next_box = 64 * cell_planes<DepthTest::box>;  ///< floats from a box to the next
-
-inline namespace LIGHTBIN_FLAVOUR {
 
 /// The most places that a kernel's lists can take, which it counts in 32 bits: one for each light and supertile that
 /// its rectangle meets, wherever the supertiles begin, and what fills up a list, or each of a band's blocks of ids.
@@ -104,5 +103,4 @@ inline void turn_words(const std::uint64_t* words, std::uint32_t count, std::uin
     }
 }
 
-}  // namespace LIGHTBIN_FLAVOUR
 }  // namespace lightbin::detail

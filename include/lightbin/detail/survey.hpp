@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/cell_boxes.hpp>
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/kernels.hpp>
 #include <lightbin/detail/platform.hpp>
@@ -22,7 +23,7 @@
 #include <numbers>
 #include <vector>
 
-namespace lightbin::detail {
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 /// What is weighed. An interval test, and silhouettes beside a depth test, were the cheapest in no scene that was
 /// measured with vectors: a box takes about as long and leaves less. (The scalar tier has the interval sooner.)
@@ -74,8 +75,6 @@ struct Survey {
     double pixels = 0;              ///< those with something to light, as far as the Z bounds tell
     std::vector<GridSurvey> grids;  ///< of the view's tile size, twice, 4 and 8 times that
 };
-
-inline namespace LIGHTBIN_FLAVOUR {
 
 /// A place in part `i` of the `count` equal parts of 0..total, moved on by the golden ratio from part to
 /// part: a fixed step would see only one kind of light where the caller's array has them in turn.
@@ -261,5 +260,4 @@ void survey_blocks(Isa isa, const View& view, const Lights<Light, ToViewSphere>&
     }
 }
 
-}  // namespace LIGHTBIN_FLAVOUR
 }  // namespace lightbin::detail

@@ -3,12 +3,13 @@
 // some lights against.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/lights.hpp>
 
 #include <array>
 #include <cstdint>
 
-namespace lightbin::detail {
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 /// The place of a block's tile: x and y turn by turn, lowest bits first. So the quarters of the n tiles of a coarser
 /// grid lie n places apart, and whole words and vectors go from a grid to the next.
