@@ -15,10 +15,12 @@ LIGHTBIN_TARGET inline void store(void* p, __m256i v) {
 /// 32 coordinates (plus `more`) counted from `begin`, as bytes: 0 if before, 255 if far beyond.
 LIGHTBIN_TARGET inline __m256i load_from(const std::uint16_t* p, unsigned more, unsigned begin) {
     const __m256i add = _mm256_set1_epi16(static_cast<short>(more)),
-                  start = _mm256_set1_epi16(static_cast<short>(begin));
+                  start = _mm256_set1_epi16(static_cast<short>(begin)), most = _mm256_set1_epi16(255);
     const __m256i low = _mm256_subs_epu16(_mm256_add_epi16(load(p), add), start),
                   high = _mm256_subs_epu16(_mm256_add_epi16(load(p + 16), add), start);
-    return _mm256_permute4x64_epi64(_mm256_packus_epi16(low, high), 0xd8);
+    // Packing takes words as signed, and the end of the last of 32768 rows is 0x8000.
+    return _mm256_permute4x64_epi64(
+        _mm256_packus_epi16(_mm256_min_epu16(low, most), _mm256_min_epu16(high, most)), 0xd8);
 }
 
 /// Of each light first..end-1 (bytes), which of the 8 tiles from `begin` on it covers, a bit a tile.
