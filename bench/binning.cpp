@@ -80,7 +80,7 @@ struct MadeBounds {
         const lightbin::View view = Lens().view(tile_size);
         for (auto* side : {&min, &max, &gap_min, &gap_max})
             side->resize(view.tile_count());
-        bounds = *lightbin::reduce_depth(view, {.depth = depth}, min, max, gap_min, gap_max);
+        bounds = *lightbin::reduce_depth(view, {.depth = depth}, {min, max, gap_min, gap_max});
     }
 };
 

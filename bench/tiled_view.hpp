@@ -31,12 +31,12 @@ struct TiledView {
           flat(lens_of(Frustum(scene.projection), picture.size).flat_view(tile_size)), min(view.tile_count()),
           max(min), gap_min(min), gap_max(min), drawn(view.tile_count()) {
         const lightbin::DepthBuffer buffer = {.depth = picture.depth, .skip_background = true};
-        if (!lightbin::reduce_depth(view, buffer, min, max, gap_min, gap_max)) std::abort();
+        if (!lightbin::reduce_depth(view, buffer, {min, max, gap_min, gap_max})) std::abort();
         std::vector<float> again_min(min), again_max(max);
         std::vector<double> times;
         for (int turn = 0; turn < 5; ++turn)
-            times.push_back(
-                seconds([&] { (void)lightbin::reduce_depth(view, buffer, again_min, again_max); }));
+            times.push_back(seconds(
+                [&] { (void)lightbin::reduce_depth(view, buffer, {.min = again_min, .max = again_max}); }));
         reduce_seconds = median(times);
         count_drawn(picture);
     }

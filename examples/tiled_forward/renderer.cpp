@@ -104,8 +104,9 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
         z_bounds = {.min = min_depth_, .max = max_depth_};
         if (!on_gpu) {
             max_depth_.resize(view.tile_count());
-            z_bounds = value_of(lightbin::reduce_depth(
-                view, {.depth = depth_buffer_, .skip_background = true}, min_depth_, max_depth_));
+            z_bounds =
+                value_of(lightbin::reduce_depth(view, {.depth = depth_buffer_, .skip_background = true},
+                                                {.min = min_depth_, .max = max_depth_}));
         }
     }
     report.milliseconds.reduce = watch.lap();

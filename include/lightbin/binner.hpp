@@ -24,6 +24,7 @@
 #include <optional>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
@@ -57,6 +58,14 @@ template <Options options = Options{}> class Binner {
 
 public:
     using Id = std::conditional_t<options.index == Index::u16, std::uint16_t, std::uint32_t>;
+
+    Binner() = default;
+    /// Takes over the other's memory and grid. The other is as new.
+    Binner(Binner&& other) noexcept { swap(other); }
+    Binner& operator=(Binner&& other) noexcept {
+        Binner(std::move(other)).swap(*this);
+        return *this;
+    }
 
     /// Returns the light grid of `lights` in `view`, in the Binner's memory: valid until its next call.
     ///
@@ -97,10 +106,10 @@ public:
     }
 
     /// Writes the grid that count() sized to the caller's memory, once after each count(). Only writes there,
-    /// in order, so it may be a mapped GPU buffer. Error: a buffer is smaller than GridSize says; then
-    /// nothing is written, and emit() may be called again.
+    /// in order, so it may be a mapped GPU buffer. Errors: a buffer is smaller than GridSize says; then
+    /// nothing is written, and emit() may be called again. No count() came before, or another call between.
     Result<LightGrid<Id>> emit(std::span<Tile> tiles, std::span<Id> indices) {
-        LIGHTBIN_ASSERT(counted_);
+        if (!counted_) return Error{ErrorCode::nothing_counted};
         const LightGrid<Id> grid = *counted_;
         if (tiles.size() < grid.tiles().size())
             return Error{ErrorCode::tile_buffer_too_small, grid.tiles().size(), tiles.size()};
@@ -114,19 +123,25 @@ public:
     }
 
     /// Returns both grids of a scene with transparent geometry from one projection, valid until the Binner's
-    /// next call. Errors as bin(). Statistics are those of the opaque grid.
+    /// next call. Errors as bin(), and bounds that leave out the background without a transparent_max. Statistics are
+    /// those of the opaque grid.
     ///
-    /// bounds  of the opaque geometry
+    /// bounds  of the opaque geometry; transparent lights are pruned by transparent_max or, without it, by max
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     requires(with_depth) Result<TransparencyGrids<Id>> bin_transparency(const View& view,
                                                                         const LightRange& lights,
                                                                         const ZBounds& bounds,
                                                                         const Threads& parallel = {}) {
+        const bool own_max = !bounds.transparent_max.empty();
+        if (bounds.background_skipped && !bounds.max.empty() && !own_max)
+            return Error{ErrorCode::no_transparent_max};
         if (const auto error = project(view, lights, parallel)) return *error;
-        const auto transparent = build(transparent_, view, ZBounds{.max = bounds.max}, parallel);
+        const ZBounds in_front = {.max = own_max ? bounds.transparent_max : bounds.max};
+        const auto transparent = build(transparent_, view, in_front, parallel);
         if (!transparent) return transparent.error();
         const auto opaque = build(lists_, view, bounds, parallel);
         if (!opaque) return opaque.error();
+        if constexpr (options.statistics) gather_statistics(*opaque);
         return TransparencyGrids<Id>{*opaque, *transparent};
     }
 
@@ -141,7 +156,10 @@ private:
     Result<LightGrid<Id>> bin_owned(const View& view, const LightRange& lights, const ZBounds& bounds,
                                     const Threads& parallel) {
         if (const auto error = project(view, lights, parallel)) return *error;
-        return build(lists_, view, bounds, parallel);
+        const auto grid = build(lists_, view, bounds, parallel);
+        if constexpr (options.statistics)
+            if (grid) gather_statistics(*grid);
+        return grid;
     }
 
     template <class LightRange, class Threads>
@@ -161,6 +179,7 @@ private:
         const std::uint64_t count = source.array.size(),
                             most = options.index == Index::u16 ? 0x10000 : 0xffffffff;
         if (count > most) return Error{ErrorCode::too_many_lights, count, most};
+        if (scratch_.empty()) scratch_.resize(1);
         isa_ = detail::machine_isa(options.isa);
         footprints_.project(isa_, view, source, parallel, lists_.shared());
         return std::nullopt;
@@ -171,10 +190,18 @@ private:
                                 const Threads& parallel) {
         if (const auto error = lists.build(isa_, view, footprints_, bounds, scratch_, parallel))
             return *error;
-        const LightGrid<Id> grid(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(),
-                                 footprints_.rejected());
-        if constexpr (options.statistics) gather_statistics(grid);
-        return grid;
+        return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(),
+                             footprints_.rejected());
+    }
+
+    void swap(Binner& other) noexcept {
+        std::swap(isa_, other.isa_);
+        scratch_.swap(other.scratch_);
+        std::swap(footprints_, other.footprints_);
+        std::swap(lists_, other.lists_);
+        std::swap(transparent_, other.transparent_);
+        std::swap(statistics_, other.statistics_);
+        counted_.swap(other.counted_);
     }
 
     void gather_statistics(const LightGrid<Id>& grid) {
@@ -190,7 +217,7 @@ private:
     }
 
     Isa isa_ = Isa::scalar;
-    std::vector<detail::Scratch> scratch_ = std::vector<detail::Scratch>(1);  ///< one a worker
+    std::vector<detail::Scratch> scratch_;  ///< one a worker
     Footprints<options.footprint, with_depth> footprints_;
     Lists lists_;
     std::conditional_t<with_depth, Lists, Nothing> transparent_;
@@ -198,4 +225,4 @@ private:
     std::optional<LightGrid<Id>> counted_;  ///< what emit() has to write, in lists_
 };
 
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR

@@ -40,15 +40,50 @@ inline float light_range(float intensity, float cutoff) {
                                (1 + 0x1p-50));
 }
 
-/// How a light becomes a Sphere by default: a vec4's x, y, z and w, or a Sphere as it is.
-struct AsSphere {
-    constexpr Sphere operator()(const Sphere& light) const { return light; }
+namespace detail {
 
-    template <class Vec4>
-    requires requires(const Vec4& v) {
-        { v.w } -> std::convertible_to<float>;
+/// Returns the smallest sphere found around one of doubles: exact where floats hold it. A centre out of their range gives
+/// one that covers everything; bad input stays bad.
+inline Sphere sphere_around(double x, double y, double z, double radius) {
+    if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z) || !(radius >= 0)) return {0, 0, 0, -1};
+    constexpr double most = FLT_MAX;
+    if (std::fabs(x) > most || std::fabs(y) > most || std::fabs(z) > most) return {0, 0, 0, infinity};
+    const Sphere nearest = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 0};
+    const double error = std::fabs(x - static_cast<double>(nearest.x)) +
+                         std::fabs(y - static_cast<double>(nearest.y)) +
+                         std::fabs(z - static_cast<double>(nearest.z));
+    const double reach = error > 0 ? (radius + error) * (1 + 0x1p-50) : radius;
+    return {nearest.x, nearest.y, nearest.z, float_above(reach)};
+}
+
+template <class Light, class Number>
+concept Vec4Of = requires(const Light& light) {
+    requires std::same_as<std::remove_cvref_t<decltype(light.x)>, Number>;
+    requires std::same_as<std::remove_cvref_t<decltype(light.y)>, Number>;
+    requires std::same_as<std::remove_cvref_t<decltype(light.z)>, Number>;
+    requires std::same_as<std::remove_cvref_t<decltype(light.w)>, Number>;
+};
+
+}  // namespace detail
+
+/// How a light becomes a Sphere by default: what is one, derives from one or converts to one, as it is; else the x, y, z
+/// and w of a vec4 of floats, or of doubles, which are rounded outward.
+struct AsSphere {
+    template <class Light> constexpr Sphere operator()(const Light& light) const {
+        if constexpr (std::convertible_to<const Light&, Sphere>) {
+            return light;
+        } else if constexpr (detail::Vec4Of<Light, float>) {
+            return {light.x, light.y, light.z, light.w};
+        } else {
+            static_assert(detail::Vec4Of<Light, double>,
+                          "lightbin: this light is no Sphere and has no float or double x, y, z and w (the "
+                          "radius): pass "
+                          "view_space(lights, to_sphere) or world_space(lights, view_matrix, to_sphere), "
+                          "where to_sphere "
+                          "makes a lightbin::Sphere of a light");
+            return detail::sphere_around(light.x, light.y, light.z, light.w);
+        }
     }
-    constexpr Sphere operator()(const Vec4& v) const { return {v.x, v.y, v.z, v.w}; }
 };
 
 namespace detail {
@@ -152,10 +187,10 @@ const Sphere* as_they_are(const Lights<Light, ToViewSphere>& lights) {
     if constexpr (std::is_same_v<ToViewSphere, AsSphere> && sizeof(Light) == sizeof(Sphere) &&
                   std::is_trivially_copyable_v<Light>) {
         if (lights.array.empty()) return nullptr;
-        const void* const array = lights.array.data();
-        if constexpr (std::is_same_v<Light, Sphere>) {
+        if constexpr (std::is_base_of_v<Sphere, Light>) {
             return lights.array.data();
-        } else if constexpr (std::is_same_v<decltype(Light::x), float>) {
+        } else if constexpr (!std::convertible_to<const Light&, Sphere> && Vec4Of<Light, float>) {
+            const void* const array = lights.array.data();
             const Light& first = lights.array.front();
             const auto at = [&](const auto& member) {
                 return static_cast<const char*>(static_cast<const void*>(&member)) -
@@ -176,4 +211,4 @@ inline Sphere load_sphere(const Sphere* from) {
 }
 
 }  // namespace detail
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR

@@ -10,14 +10,18 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
-/// A worker count and the caller's way to run a loop on several threads. Refers to the caller's callable,
-/// which must outlive the call that it is given to.
+/// A worker count and the caller's way to run a loop on several threads. Refers to the caller's callable, an object or
+/// a function, which must outlive the call that it is given to.
 class Parallel {
     struct Body {
         void operator()(std::size_t i) const { call(context, i); }
 
         const void* context;
         void (*call)(const void* context, std::size_t i);
+    };
+    union CallersRun {
+        void* object;
+        void (*function)();
     };
 
 public:
@@ -32,11 +36,20 @@ public:
     ///           threads asleep; 0 shares all that can be shared.
     template <class Run>
     Parallel(std::size_t workers, Run&& run, double start_ns = 50000)
-        : workers_(workers > 1 ? workers : 1), start_ns_(start_ns),
-          run_(const_cast<void*>(static_cast<const void*>(std::addressof(run)))),
-          start_([](void* function, std::size_t n, Body body) {
-              (*static_cast<std::remove_reference_t<Run>*>(function))(n, body);
-          }) {}
+        : workers_(workers > 1 ? workers : 1), start_ns_(start_ns) {
+        using Callable = std::remove_reference_t<Run>;
+        if constexpr (std::is_function_v<Callable>) {
+            run_.function = reinterpret_cast<void (*)()>(&run);
+            start_ = [](CallersRun callers, std::size_t n, Body body) {
+                reinterpret_cast<Callable*>(callers.function)(n, body);
+            };
+        } else {
+            run_.object = const_cast<void*>(static_cast<const void*>(std::addressof(run)));
+            start_ = [](CallersRun callers, std::size_t n, Body body) {
+                (*static_cast<Callable*>(callers.object))(n, body);
+            };
+        }
+    }
 
     std::size_t workers() const { return workers_; }
 
@@ -59,8 +72,8 @@ public:
 private:
     std::size_t workers_ = 1;
     double start_ns_ = 0;
-    void* run_ = nullptr;
-    void (*start_)(void* run, std::size_t n, Body body) = nullptr;
+    CallersRun run_ = {};
+    void (*start_)(CallersRun callers, std::size_t n, Body body) = nullptr;
 };
 
 /// No threads to share work among, known at compile time: leaves no code for it.
@@ -68,4 +81,4 @@ struct Serial {
     operator Parallel() const { return {}; }
 };
 
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR

@@ -37,11 +37,13 @@ enum class ErrorCode : std::uint8_t {
     too_many_list_places,
     tile_buffer_too_small,
     index_buffer_too_small,
+    nothing_counted,
     // Z bounds
     z_bounds_too_small,
     depth_buffer_too_small,
     samples_out_of_range,
     row_pitch_too_small,
+    no_transparent_max,
     // encodings and shader text
     ids_too_narrow,
     list_buffer_too_small,
@@ -114,6 +116,9 @@ struct Error {
             return "the tile buffer holds " + have + " tiles and " + need + " are needed";
         case ErrorCode::index_buffer_too_small:
             return "the index buffer holds " + have + " light ids and " + need + " are needed";
+        case ErrorCode::nothing_counted:
+            return "emit() has nothing to write: call count() before each emit(), and nothing else of the Binner in "
+                   "between";
         case ErrorCode::z_bounds_too_small:
             return "a Z bounds buffer holds " + have + " tiles and " + need + " are needed";
         case ErrorCode::depth_buffer_too_small:
@@ -122,6 +127,9 @@ struct Error {
             return "a depth buffer has 1 to 8 samples a pixel, not " + signed_text(needed);
         case ErrorCode::row_pitch_too_small:
             return "the depth buffer's row pitch is " + have + " samples and a row of pixels has " + need;
+        case ErrorCode::no_transparent_max:
+            return "the Z bounds leave out the background, before which transparent geometry is seen too: have "
+                   "reduce_depth() write ZBoundsBuffers::transparent_max, or count the background";
         case ErrorCode::ids_too_narrow:
             return "the lists' format numbers " + have + " lights and " + need +
                    " are needed: use wider ids, or a larger ListFormat::max_lights";

@@ -144,6 +144,8 @@ public:
     const detail::Camera& camera() const { return camera_; }
 
 private:
+    View() = default;  // from_projection() alone makes one
+
     static Result<View> from_rows(const double (&m)[4][4], Extent viewport, const ViewOptions& options) {
         const auto error = [](ErrorCode code, int value = 0, int available = 0) {
             return Error{code, static_cast<std::uint64_t>(value), static_cast<std::uint64_t>(available)};
@@ -265,4 +267,4 @@ private:
     double z_scale_ = 0, z_offset_ = 0, w_scale_ = 0, w_offset_ = 0;
 };
 
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR

@@ -30,6 +30,19 @@ struct ZBounds {
     /// gap_min and gap_max. A tile with gap_min >= gap_max, or NaN, has no gap.
     std::span<const float> gap_min = {};
     std::span<const float> gap_max = {};
+    /// For Binner::bin_transparency(): the maximum with the background counted in, so the far plane wherever a pixel
+    /// of the tile shows it. What is transparent is seen before the background too. Empty: `max` is it.
+    std::span<const float> transparent_max = {};
+    /// The other sides leave out the background. bin_transparency() then wants transparent_max.
+    bool background_skipped = false;
+};
+
+/// Where reduce_depth() writes Z bounds: View::tile_count() floats a side, or none where a side is not wanted. Gaps are
+/// written both or not at all.
+struct ZBoundsBuffers {
+    std::span<float> min = {}, max = {};
+    std::span<float> gap_min = {}, gap_max = {};
+    std::span<float> transparent_max = {};
 };
 
 /// How a depth buffer stores depth: how far the stored value can be from that of the fragment that wrote it.
@@ -47,8 +60,8 @@ struct DepthBuffer {
     std::size_t row_pitch = 0;  ///< floats from one row to the next; 0: viewport width * samples
     DepthFormat format = DepthFormat::float32;
     /// A sample at the far end of the depth range (1, or 0 with reversed Z) means that nothing is drawn
-    /// there, so it does not count. Right for buffers cleared to that value and drawn with a strict depth
-    /// comparison. When false, such a sample is something drawn at the far plane.
+    /// there, so it does not count, but for ZBounds::transparent_max. Right for buffers cleared to that value
+    /// and drawn with a strict depth comparison. When false, such a sample is something drawn at the far plane.
     bool skip_background = false;
 };
 
@@ -119,9 +132,7 @@ void reduce_tile_row(std::size_t columns, std::size_t tile_columns, Reduce reduc
 
 }  // namespace detail
 
-/// Reduces a depth buffer to Z bounds in `min` and `max` and, if asked for, `gap_min` and `gap_max`, which the
-/// result then refers to. Any span may be empty where that side is not wanted; otherwise it takes
-/// view.tile_count() floats. Gaps are written both or not at all.
+/// Reduces a depth buffer to Z bounds in the caller's buffers, which the result then refers to.
 ///
 /// After it, the view depth of every sample lies within its tile's bounds, which are rounded outward and
 /// widened by the format's step. A tile where nothing is drawn (see skip_background) has min = +inf, max =
@@ -132,9 +143,8 @@ void reduce_tile_row(std::size_t columns, std::size_t tile_columns, Reduce reduc
 ///
 /// Source: Tiled Shading, section 3 (minimum and maximum depth a tile); Harada, "A 2.5D Culling for Forward+",
 /// SIGGRAPH Asia 2012 (depths with a gap).
-inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer, std::span<float> min,
-                                    std::span<float> max, std::span<float> gap_min = {},
-                                    std::span<float> gap_max = {}, Isa isa = detail::compiled_isa) {
+inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer, const ZBoundsBuffers& out,
+                                    Isa isa = detail::compiled_isa) {
     const Extent viewport = view.viewport();
     const std::size_t tiles = view.tile_count();
     if (buffer.samples < 1 || buffer.samples > 8)
@@ -146,14 +156,13 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
     const std::size_t needed = tiles == 0 ? 0 : pitch * static_cast<std::size_t>(viewport.height - 1) + row;
     if (buffer.depth.size() < needed)
         return Error{ErrorCode::depth_buffer_too_small, needed, buffer.depth.size()};
-    for (const std::span<float> side : {min, max, gap_min, gap_max})
+    for (const std::span<float> side : {out.min, out.max, out.gap_min, out.gap_max, out.transparent_max})
         if (!side.empty() && side.size() < tiles)
             return Error{ErrorCode::z_bounds_too_small, tiles, side.size()};
 
-    const float skipped = !buffer.skip_background ? std::numeric_limits<float>::quiet_NaN()
-                          : view.reversed_z()     ? 0.0f
-                                                  : 1.0f;
-    const bool gaps = !gap_min.empty() && !gap_max.empty();
+    constexpr float none = std::numeric_limits<float>::quiet_NaN();
+    const float skipped = !buffer.skip_background ? none : view.reversed_z() ? 0.0f : 1.0f;
+    const bool gaps = !out.gap_min.empty() && !out.gap_max.empty();
     const std::size_t size = static_cast<std::size_t>(view.tile_size());
     const std::size_t tiles_x = static_cast<std::size_t>(view.tiles_x());
     const std::size_t height = static_cast<std::size_t>(viewport.height);
@@ -163,23 +172,32 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
             return detail::DepthRows{buffer.depth.data() + y * pitch + first, pitch,
                                      (std::min)(size, height - y), columns};
         };
-        detail::reduce_tile_row(
-            row, size * samples,
-            [&](std::size_t first, std::size_t columns, float* lower, float* upper) {
-                detail::depth_kernels(isa, columns).extremes(rows(first, columns), skipped, lower, upper);
-            },
-            [&](std::size_t index, detail::Extremes range) {
-                const std::size_t tile = first_tile + index;
-                DepthInterval depths = {detail::infinity, -detail::infinity};
-                if (range.lower <= range.upper)
-                    depths = detail::fragment_depths(view, range.lower, range.upper, buffer.format);
-                if (!min.empty()) min[tile] = depths.min;
-                if (!max.empty()) max[tile] = depths.max;
-                if (gaps)  // for now, where to split the tile; NaN: nowhere, as a sample is NaN
-                    gap_min[tile] = range.lower > -detail::infinity
+        const auto reduce = [&](float left_out, auto finish) {
+            detail::reduce_tile_row(
+                row, size * samples,
+                [&](std::size_t first, std::size_t columns, float* lower, float* upper) {
+                    detail::depth_kernels(isa, columns)
+                        .extremes(rows(first, columns), left_out, lower, upper);
+                },
+                [&](std::size_t index, detail::Extremes range) {
+                    DepthInterval depths = {detail::infinity, -detail::infinity};
+                    if (range.lower <= range.upper)
+                        depths = detail::fragment_depths(view, range.lower, range.upper, buffer.format);
+                    finish(first_tile + index, range, depths);
+                });
+        };
+        reduce(skipped, [&](std::size_t tile, detail::Extremes range, DepthInterval depths) {
+            if (!out.min.empty()) out.min[tile] = depths.min;
+            if (!out.max.empty()) out.max[tile] = depths.max;
+            if (gaps)  // for now, where to split the tile; NaN: nowhere, as a sample is NaN
+                out.gap_min[tile] = range.lower > -detail::infinity
                                         ? view.window_depth(0.5 * (static_cast<double>(depths.min) +
                                                                    static_cast<double>(depths.max)))
-                                        : std::numeric_limits<float>::quiet_NaN();
+                                        : none;
+        });
+        if (!out.transparent_max.empty())
+            reduce(none, [&](std::size_t tile, detail::Extremes, DepthInterval depths) {
+                out.transparent_max[tile] = depths.max;
             });
         if (!gaps) continue;
         detail::reduce_tile_row(
@@ -189,7 +207,7 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
                 for (std::size_t i = 0; i < columns;) {
                     const std::size_t index = (first + i) / (size * samples);
                     const std::size_t end = (std::min)((index + 1) * size * samples - first, columns);
-                    std::fill(split + i, split + end, gap_min[first_tile + index]);
+                    std::fill(split + i, split + end, out.gap_min[first_tile + index]);
                     i = end;
                 }
                 detail::depth_kernels(isa, columns).gaps(rows(first, columns), skipped, split, upper, lower);
@@ -202,15 +220,19 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
                     above = detail::fragment_depths(view, range.lower, range.lower, buffer.format);
                 }
                 if (view.reversed_z()) std::swap(below, above);
-                gap_min[first_tile + index] = below.max;
-                gap_max[first_tile + index] = above.min;
+                out.gap_min[first_tile + index] = below.max;
+                out.gap_max[first_tile + index] = above.min;
             });
     }
     const auto given = [&](std::span<float> side) {
         return side.empty() ? std::span<const float>{} : std::span<const float>(side.first(tiles));
     };
-    return ZBounds{given(min), given(max), gaps ? given(gap_min) : given({}),
-                   gaps ? given(gap_max) : given({})};
+    return ZBounds{.min = given(out.min),
+                   .max = given(out.max),
+                   .gap_min = gaps ? given(out.gap_min) : given({}),
+                   .gap_max = gaps ? given(out.gap_max) : given({}),
+                   .transparent_max = given(out.transparent_max),
+                   .background_skipped = buffer.skip_background};
 }
 
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR

@@ -93,7 +93,7 @@ struct Scene {
     }
 
     ZBounds reduce() {
-        const auto bounds = reduce_depth(view, {.depth = depth}, min, max);
+        const auto bounds = reduce_depth(view, {.depth = depth}, {.min = min, .max = max});
         if (!bounds) std::abort();
         return *bounds;
     }

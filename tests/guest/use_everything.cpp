@@ -130,12 +130,14 @@ void use_view(Hash& hash, const View& view) {
 
     const std::size_t pixels =
         static_cast<std::size_t>(view.viewport().width) * static_cast<std::size_t>(view.viewport().height);
-    std::vector<float> depth(2 * pixels), min(view.tile_count()), max(view.tile_count());
+    std::vector<float> depth(2 * pixels), min(view.tile_count()), max(view.tile_count()),
+        transparent_max(view.tile_count());
     for (std::size_t i = 0; i < depth.size(); ++i)
         depth[i] = static_cast<float>(i % 1000) / 1000.0f;
     DepthBuffer buffer{.depth = depth, .samples = 2};
     buffer.format = DepthFormat::unorm24;
-    const ZBounds bounds = value_of(reduce_depth(view, buffer, min, max));
+    const ZBounds bounds =
+        value_of(reduce_depth(view, buffer, {.min = min, .max = max, .transparent_max = transparent_max}));
 
     std::vector<Sphere> spheres;
     std::vector<glm::vec4> vectors;

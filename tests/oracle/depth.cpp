@@ -173,15 +173,15 @@ private:
     void reduce(const lightbin::DepthBuffer& buffer) {
         for (auto* side : {&min_, &max_, &gap_min_, &gap_max_})
             side->assign(view_.tile_count(), nan);
-        const auto all = lightbin::reduce_depth(view_, buffer, min_, max_, gap_min_, gap_max_);
+        const auto all = lightbin::reduce_depth(view_, buffer, {min_, max_, gap_min_, gap_max_});
         REQUIRE(all.has_value());
         for (std::size_t tile = 0; tile < gap_min_.size(); ++tile)
             counts_.gaps += gap_min_[tile] < gap_max_[tile];
         std::vector<float> alone(view_.tile_count(), nan);
-        const auto only_min = lightbin::reduce_depth(view_, buffer, alone, {});
+        const auto only_min = lightbin::reduce_depth(view_, buffer, {.min = alone});
         REQUIRE(only_min.has_value());
         CHECK((alone == min_ && only_min->max.empty()));
-        const auto only_max = lightbin::reduce_depth(view_, buffer, {}, alone);
+        const auto only_max = lightbin::reduce_depth(view_, buffer, {.max = alone});
         REQUIRE(only_max.has_value());
         CHECK((alone == max_ && only_max->min.empty()));
     }

@@ -69,8 +69,8 @@ Lists built(const lightbin::View& view, const Scene& scene, bool flush, std::siz
                     return split ? std::span<float>(sides[side]) : std::span<float>{};
                 };
                 bounds = *lightbin::reduce_depth(
-                    view, {.depth = scene.depth, .skip_background = scene.skip_background}, sides[0],
-                    sides[1], gap(2), gap(3), options.isa);
+                    view, {.depth = scene.depth, .skip_background = scene.skip_background},
+                    {sides[0], sides[1], gap(2), gap(3)}, options.isa);
             }
             return binner.bin(view, scene.lights, bounds, parallel);
         }

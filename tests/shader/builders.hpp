@@ -303,7 +303,7 @@ inline Job reduce_job(lightbin::ReduceShaderOptions options, int camera, int wid
                              .samples = options.samples,
                              .format = options.format,
                              .skip_background = options.skip_background};
-    if (!reduce_depth(view, buffer, min, max)) return {};
+    if (!reduce_depth(view, buffer, {.min = min, .max = max})) return {};
 
     BuilderData data;
     data.put("depth", texels);

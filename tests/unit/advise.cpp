@@ -34,7 +34,7 @@ std::vector<float> ground_depth(Extent size) {
 struct Bounds {
     explicit Bounds(const View& view, const std::vector<float>& depth)
         : min(view.tile_count()), max(min), gap_min(min), gap_max(min) {
-        reduced = *reduce_depth(view, {.depth = depth, .skip_background = true}, min, max, gap_min, gap_max);
+        reduced = *reduce_depth(view, {.depth = depth, .skip_background = true}, {min, max, gap_min, gap_max});
     }
     std::vector<float> min, max, gap_min, gap_max;
     ZBounds reduced;

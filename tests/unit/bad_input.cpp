@@ -104,7 +104,7 @@ TEST_CASE("an empty viewport") {
         CHECK(none->indices().empty());
 
         Binner<Options{.depth_test = DepthTest::interval}> pruned;
-        const auto bounds = reduce_depth(view, {}, {}, {});
+        const auto bounds = reduce_depth(view, {}, {});
         REQUIRE(bounds);
         CHECK(pruned.bin(view, lights, *bounds)->indices().empty());
         const auto size = pruned.count(view, lights, *bounds);

@@ -6,8 +6,11 @@
 #include <glm/ext/matrix_transform.hpp>
 
 #include <array>
+#include <cfloat>
 #include <cmath>
 #include <cstdint>
+#include <random>
+#include <type_traits>
 #include <vector>
 
 using namespace lightbin;
@@ -51,6 +54,90 @@ TEST_CASE("vec4 arrays, Spheres and the user's own structs give the same bytes")
     std::array<Sphere, 3> three = {plain[0], plain[1], plain[2]};
     CHECK(test::lists(view, three) ==
           test::lists(view, std::vector<Sphere>(plain.begin(), plain.begin() + 3)));
+}
+
+namespace {
+
+struct IsOne : Sphere {};
+struct IsOneWithMore : Sphere {
+    std::uint32_t w = 0x7fc00000;  // not its radius
+};
+struct BecomesOne {
+    float x, y, z, r;
+    operator Sphere() const { return {x, y, z, r}; }
+};
+struct BecomesOneFromOther {
+    std::uint64_t pad;
+    double px, py, pz, r;
+    operator Sphere() const {
+        return {static_cast<float>(px), static_cast<float>(py), static_cast<float>(pz),
+                static_cast<float>(r)};
+    }
+};
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("what is a Sphere, or becomes one, is a light", Light, IsOne, IsOneWithMore, BecomesOne,
+                   BecomesOneFromOther) {
+    const auto spheres = test::random_lights(300, 5);
+    std::vector<Light> lights(spheres.size());
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+        const glm::vec4& s = spheres[i];
+        if constexpr (requires { lights[i].px; })
+            lights[i] = {7, static_cast<double>(s.x), static_cast<double>(s.y), static_cast<double>(s.z),
+                         static_cast<double>(s.w)};
+        else if constexpr (std::is_base_of_v<Sphere, Light>)
+            static_cast<Sphere&>(lights[i]) = {s.x, s.y, s.z, s.w};
+        else
+            lights[i] = {s.x, s.y, s.z, s.w};
+    }
+    const View view = test::view({641, 361}, 16);
+    CHECK(test::lists(view, lights) == test::lists(view, spheres));
+    const std::vector<float> low(view.tile_count(), 5.0f), high(view.tile_count(), 40.0f);
+    const ZBounds bounds = {.min = low, .max = high};
+    constexpr Options box = {.depth_test = DepthTest::box};
+    CHECK(test::lists<box>(view, lights, bounds) == test::lists<box>(view, spheres, bounds));
+}
+
+TEST_CASE("doubles become a sphere of floats that holds theirs, and is no larger than it must be") {
+    std::mt19937_64 random(6);
+    std::uniform_real_distribution<double> mantissa(-2, 2);
+    for (int i = 0; i < 200000; ++i) {
+        const auto number = [&](int low, int high) {
+            return std::ldexp(mantissa(random),
+                              low + static_cast<int>(random() % static_cast<unsigned>(high - low)));
+        };
+        const glm::dvec4 light(number(-40, 40), number(-40, 40), number(-160, 127),
+                               std::fabs(number(i % 3 == 0 ? -1000 : -30, i % 3 == 1 ? 126 : 30)));
+        const Sphere sphere = AsSphere()(light);
+        // The farthest point of the one sphere from the other's centre; long double has 11 bits more.
+        const long double dx = static_cast<long double>(light.x) - static_cast<long double>(sphere.x),
+                          dy = static_cast<long double>(light.y) - static_cast<long double>(sphere.y),
+                          dz = static_cast<long double>(light.z) - static_cast<long double>(sphere.z),
+                          moved = std::sqrt(dx * dx + dy * dy + dz * dz),
+                          reach = static_cast<long double>(light.w) + moved;
+        CHECK_UNARY(static_cast<long double>(sphere.radius) >= reach * (1 - 0x1p-60L));
+        CHECK_UNARY(static_cast<long double>(sphere.radius) <=
+                    (reach + moved) * (1 + 0x1p-22L) + static_cast<long double>(FLT_TRUE_MIN));
+    }
+    const auto spheres = test::random_lights(300, 7);
+    const std::vector<glm::dvec4> same(spheres.begin(), spheres.end());
+    const View view = test::view({641, 361}, 16);
+    CHECK(test::lists(view, same) == test::lists(view, spheres));
+}
+
+TEST_CASE("doubles out of the floats' range light everything; those that are bad input stay bad") {
+    const View view = test::view({64, 64}, 32);
+    const double nan = std::nan(""), infinite = HUGE_VAL;
+    const std::vector<glm::dvec4> lights = {{1e300, 0, 0, 1e301}, {0, 0, 0, 1e300},    {0, 0, 0, infinite},
+                                            {nan, 0, 0, 1},       {infinite, 0, 0, 1}, {0, 0, 0, nan},
+                                            {0, 0, 0, -1e-300}};
+    Binner<> binner;
+    const auto grid = binner.bin(view, lights);
+    REQUIRE(grid);
+    CHECK(grid->rejected() == 4);
+    for (const std::vector<std::uint32_t>& list : test::to_lists(*grid))
+        CHECK(list == std::vector<std::uint32_t>{0, 1, 2});
 }
 
 TEST_CASE("world-space lights cover the view-space ones, and by little more") {

@@ -16,7 +16,7 @@ struct Reduced {
 
 Reduced reduce(const View& view, const DepthBuffer& buffer) {
     Reduced reduced{std::vector<float>(view.tile_count()), std::vector<float>(view.tile_count())};
-    REQUIRE(reduce_depth(view, buffer, reduced.min, reduced.max));
+    REQUIRE(reduce_depth(view, buffer, {.min = reduced.min, .max = reduced.max}));
     return reduced;
 }
 
@@ -117,12 +117,12 @@ TEST_CASE("one side alone, and the formats' steps") {
     const View view = test::view({64, 64}, 32);
     const std::vector<float> depth(64 * 64, window_depth(100));
     std::vector<float> min(4, -1.0f), max(4, -1.0f);
-    const auto only_max = reduce_depth(view, {.depth = depth}, {}, max);
+    const auto only_max = reduce_depth(view, {.depth = depth}, {.max = max});
     REQUIRE(only_max);
     CHECK(only_max->min.empty());
     CHECK(only_max->max.size() == 4);
     CHECK(max[3] == doctest::Approx(100).epsilon(1e-2));
-    const auto only_min = reduce_depth(view, {.depth = depth}, min, {});
+    const auto only_min = reduce_depth(view, {.depth = depth}, {.min = min});
     REQUIRE(only_min);
     CHECK(only_min->max.empty());
     CHECK(min[3] == doctest::Approx(100).epsilon(1e-2));
@@ -144,7 +144,7 @@ TEST_CASE("sizes that do not fit are errors that name what is needed") {
     const std::vector<float> depth(64 * 48);
     std::vector<float> min(12), max(12);
     const auto code = [&](const DepthBuffer& buffer, std::span<float> a, std::span<float> b) {
-        const auto bounds = reduce_depth(view, buffer, a, b);
+        const auto bounds = reduce_depth(view, buffer, {.min = a, .max = b});
         REQUIRE(!bounds);
         const auto needed =
             static_cast<std::int64_t>(bounds.error().needed);  // a sample count may be negative
@@ -188,7 +188,8 @@ TEST_CASE("gaps lie between a tile's two groups of samples, in every tier") {
             const std::size_t tiles = view.tile_count();
             const DepthBuffer buffer = {.depth = depth, .samples = samples, .skip_background = true};
             std::vector<float> min(tiles), max(tiles), gap_min(tiles), gap_max(tiles);
-            const ZBounds bounds = *reduce_depth(view, buffer, min, max, gap_min, gap_max);
+            const ZBounds bounds =
+                *reduce_depth(view, buffer, {.min = min, .max = max, .gap_min = gap_min, .gap_max = gap_max});
             REQUIRE((bounds.gap_min.size() == tiles && bounds.gap_max.size() == tiles));
             std::size_t gaps = 0;
             for (std::size_t tile = 0; tile < tiles; ++tile) {
@@ -226,7 +227,7 @@ TEST_CASE("gaps lie between a tile's two groups of samples, in every tier") {
                 std::vector<float> other[4];
                 for (auto& side : other)
                     side.resize(tiles);
-                REQUIRE(reduce_depth(view, buffer, other[0], other[1], other[2], other[3], isa));
+                REQUIRE(reduce_depth(view, buffer, {other[0], other[1], other[2], other[3]}, isa));
                 CHECK((other[0] == min && other[1] == max && other[2] == gap_min && other[3] == gap_max));
             }
         }

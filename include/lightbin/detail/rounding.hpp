@@ -17,6 +17,14 @@
 keep lights from being missed. Compile the files that include lightbin without them."
 #endif
 
+#if (defined(__FLT_EVAL_METHOD__) &&                                                                         \
+     (__FLT_EVAL_METHOD__ < 0 || __FLT_EVAL_METHOD__ == 1 || __FLT_EVAL_METHOD__ == 2)) ||                   \
+    (defined(_M_IX86_FP) && _M_IX86_FP == 0)
+#error                                                                                                       \
+    "lightbin: here floats are kept in wider registers (x87), so that the same input gives other bytes than elsewhere. \
+Compile the files that include lightbin with SSE2 arithmetic, -msse2 -mfpmath=sse or /arch:SSE2."
+#endif
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<double>::is_iec559);
@@ -42,4 +50,4 @@ inline float float_above(double value) {
     return -float_below(-value);
 }
 
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
