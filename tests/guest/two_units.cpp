@@ -1,5 +1,5 @@
-// use_everything.cpp twice in one program, with different flags: it links, it runs, and both get the same
-// bytes.
+// use_everything.cpp twice in one program, with different flags. Without an argument only the plain unit runs, which
+// every machine must be able to; with one both do, and get the same bytes.
 #include <cinttypes>
 #include <cstdint>
 #include <cstdio>
@@ -7,8 +7,8 @@
 std::uint64_t plain_unit();
 std::uint64_t tuned_unit();
 
-int main() {
-    const std::uint64_t plain = plain_unit(), tuned = tuned_unit();
+int main(int argc, char**) {
+    const std::uint64_t plain = plain_unit(), tuned = argc > 1 ? tuned_unit() : plain;
     std::printf("%016" PRIx64 " %016" PRIx64 "\n", plain, tuned);
     return plain == tuned ? 0 : 1;
 }
