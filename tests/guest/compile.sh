@@ -38,4 +38,15 @@ if refusal=$("$compiler" -I "$include" -std=c++20 -ffast-math -fsyntax-only "$he
 fi
 echo "$refusal" | grep -q 'error.*lightbin: -ffast-math'
 
+# In x87's wider registers other bytes would come out. (clang has no such switch for x86-64.)
+case $compiler in
+g++*)
+    if refusal=$("$compiler" -I "$include" -std=c++20 -mfpmath=387 -fsyntax-only "$here/hostile_macros.cpp" 2>&1); then
+        echo "$compiler accepts x87 arithmetic" >&2
+        exit 1
+    fi
+    echo "$refusal" | grep -q 'error.*lightbin: .*x87'
+    ;;
+esac
+
 echo "$compiler: $count headers, no warning"

@@ -94,9 +94,8 @@ TEST_CASE("a plain function runs a Parallel's work") {
 }
 
 TEST_CASE("what is transparent is lit before the sky as well") {
-    // A wall at depth 5, in half of tile 1 alone; all the rest is sky. A pane at depth 20, seen in tile 0 and beside the
-    // wall; a light at the pane, which the wall hides
-    // in tile 2.
+    // A wall at depth 5 in half of tile 1 and in tile 2, the rest is sky. A pane at depth 20, seen in tile 0 and beside
+    // the wall, and a light at it, which the wall hides in tile 2.
     const View view = test::view({96, 32}, 32);
     const auto depth_of = [&](double depth) { return view.window_depth(depth); };
     std::vector<float> depth(96 * 32, 1.0f);
