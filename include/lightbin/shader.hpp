@@ -28,7 +28,8 @@ enum class ListStorage : std::uint8_t {
 struct ShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     ListStorage storage = ListStorage::storage_buffer;
-    /// As given to encode(), which offset_count with the Binner's own ids doesn't need.
+    /// What the lists hold: as given to encode(), or where the Binner's own lists are read, their ids (IdWidth::u16
+    /// with Index::u16).
     ListFormat format = {};
     /// offset_count: the table of tiles in a uniform block, whatever `storage` is for the ids.
     bool tiles_in_uniform_block = false;
@@ -258,4 +259,4 @@ vec3 $heat(uvec2 pixel, float most) {
     return writer.finish();
 }
 
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR

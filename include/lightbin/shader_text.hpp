@@ -180,7 +180,7 @@ public:
                                   "ByteAddressBuffer", "");
         const bool texture = buffer.resource == ShaderResource::texture_2d;
         declare_opaque({buffer.name, buffer.resource, buffer.slot, buffer.format, texel_bytes(buffer.format),
-                        0, buffer.width},
+                        0, texture ? buffer.width : 0},
                        (texture ? "Texture2D<" : "Buffer<") + type + ">",
                        texture ? "usampler2D" : "usamplerBuffer");
     }

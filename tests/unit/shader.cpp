@@ -78,6 +78,19 @@ TEST_CASE("the bindings tell what the text declares") {
         CHECK(has(shader->text, binding.name.c_str()));
 }
 
+TEST_CASE("a binding tells a row's width where there are rows") {
+    for (const auto& [storage, width] : {std::pair(ListStorage::texture_2d, 100u),
+                                         {ListStorage::texel_buffer, 0u},
+                                         {ListStorage::storage_buffer, 0u},
+                                         {ListStorage::uniform_block, 0u}}) {
+        const auto shader =
+            shader_snippet({.storage = storage, .texture_width = 100, .max_tiles = 8, .max_entries = 8});
+        REQUIRE(shader);
+        CHECK(shader->bindings[2].name.starts_with("lightbin_lists"));
+        CHECK(shader->bindings[2].width == width);
+    }
+}
+
 TEST_CASE("a wrong option set is refused with a sentence that names the limit") {
     const std::string ids = refusal({.format = {.ids = IdWidth::u8, .max_lights = 300}});
     CHECK(has(ids, "300"));
