@@ -37,13 +37,18 @@ public:
     template <class Run>
     Parallel(std::size_t workers, Run&& run, double start_ns = 50000)
         : workers_(workers > 1 ? workers : 1), start_ns_(start_ns) {
-        using Callable = std::remove_reference_t<Run>;
-        if constexpr (std::is_function_v<Callable>) {
-            run_.function = reinterpret_cast<void (*)()>(&run);
+        using Function = std::decay_t<Run>;  // a pointer, of a function and of a pointer to one
+        if constexpr (std::is_function_v<std::remove_pointer_t<Function>>) {
+            run_.function = reinterpret_cast<void (*)()>(Function(run));
             start_ = [](CallersRun callers, std::size_t n, Body body) {
-                reinterpret_cast<Callable*>(callers.function)(n, body);
+                reinterpret_cast<Function>(callers.function)(n, body);
             };
         } else {
+            static_assert(
+                std::is_lvalue_reference_v<Run>,
+                "lightbin: a Parallel refers to `run`, and this one is gone after the expression: give it a "
+                "name that lives on");
+            using Callable = std::remove_reference_t<Run>;
             run_.object = const_cast<void*>(static_cast<const void*>(std::addressof(run)));
             start_ = [](CallersRun callers, std::size_t n, Body body) {
                 (*static_cast<Callable*>(callers.object))(n, body);

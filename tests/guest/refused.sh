@@ -1,0 +1,25 @@
+#!/bin/sh
+# refused.sh COMPILER: each mistake of refused.cpp does not compile, and the first error says what its comment does.
+set -eu
+compiler=$1
+here=$(cd "$(dirname "$0")" && pwd)
+
+compile() {
+    "$compiler" -std=c++20 -I "$here/../../include" -fsyntax-only "$here/refused.cpp" "$@" 2>&1
+}
+compile -DMISTAKE=0
+
+mistakes=$(grep -oE 'MISTAKE == [0-9]+' "$here/refused.cpp" | grep -oE '[0-9]+')
+for mistake in $mistakes; do
+    expected=$(sed -nE "s,.*MISTAKE == $mistake  // (.*),\1,p" "$here/refused.cpp")
+    if said=$(compile "-DMISTAKE=$mistake"); then
+        echo "$compiler accepts mistake $mistake" >&2
+        exit 1
+    fi
+    echo "$said" | grep -m 1 -E 'error' | grep -qE "$expected" || {
+        echo "$compiler says of mistake $mistake:" >&2
+        echo "$said" >&2
+        exit 1
+    }
+done
+echo "$compiler: $(echo "$mistakes" | wc -w) mistakes, each refused by name"
