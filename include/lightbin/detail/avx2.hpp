@@ -156,7 +156,6 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
 #include <lightbin/detail/scan.inl>
 #include <lightbin/detail/scatter.inl>
 #include <lightbin/detail/supertile.inl>
-#include <lightbin/detail/survey.inl>
 
 }  // namespace avx2
 }  // namespace lightbin::detail

@@ -150,7 +150,6 @@ LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t*
 
 #include <lightbin/detail/tile_masks.inl>
 
-#include <lightbin/detail/survey.inl>
 
 #include <lightbin/detail/compress.inl>
 

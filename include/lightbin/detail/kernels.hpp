@@ -20,7 +20,6 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 using ProjectKernel = decltype(&scalar::project);
 using RowSpanKernel = decltype(&scalar::row_spans);
-using SurveyKernel = decltype(&scalar::survey_block);
 struct DepthKernels {
     decltype(&scalar::column_extremes) extremes;
     decltype(&scalar::column_gaps) gaps;
@@ -64,18 +63,6 @@ inline DepthKernels depth_kernels(Isa isa, std::size_t columns) {
     static_cast<void>(isa);
     static_cast<void>(columns);
     return {scalar::column_extremes, scalar::column_gaps};
-}
-
-inline SurveyKernel survey_kernel(Isa isa) {
-#if defined(LIGHTBIN_X86)
-    if (isa == Isa::avx512) return avx512::survey_block;
-    if (isa == Isa::avx2) return avx2::survey_block;
-    if (isa == Isa::sse2) return sse2::survey_block;
-#elif defined(LIGHTBIN_NEON)
-    if (isa == Isa::neon) return neon::survey_block;
-#endif
-    static_cast<void>(isa);
-    return scalar::survey_block;
 }
 
 /// The scalar tier has the vectors of the platform too: the text is there, and the bytes are the same.

@@ -71,7 +71,6 @@ inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
 
 #include <lightbin/detail/scatter.inl>
 #include <lightbin/detail/supertile.inl>
-#include <lightbin/detail/survey.inl>
 
 }  // namespace neon
 }  // namespace lightbin::detail

@@ -57,7 +57,6 @@ inline void store_spans(RowSpan* spans, double first, double last) {
 #include <lightbin/detail/silhouette.inl>
 #include <lightbin/detail/tile_masks.inl>
 
-#include <lightbin/detail/survey.inl>
 
 /// See LayOutRows.
 template <class Id>

@@ -131,7 +131,6 @@ template <class Id> std::uint32_t append(Id* out, const Packed<Id>* ids, unsigne
 
 #include <lightbin/detail/scatter.inl>
 #include <lightbin/detail/supertile.inl>
-#include <lightbin/detail/survey.inl>
 
 }  // namespace sse2
 }  // namespace lightbin::detail

@@ -7,7 +7,6 @@
 #include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/supertile.hpp>
-#include <lightbin/detail/survey_block.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/view.hpp>
 
