@@ -39,12 +39,13 @@ struct Costs {
     double z_bounds_ns = 0;
 };
 
-/// One way to light a view, and what it costs a frame. with_options() applies it.
+/// One way to light a view, and what it costs a frame. with_options() applies its options, View::with_tile_size its tile
+/// size.
 struct Plan {
     bool tiled = true;  ///< false: every pixel evaluates every light; the next three are without meaning
     Footprint footprint = Footprint::rectangle;
     DepthTest depth_test = DepthTest::none;
-    int tile_size = 0;          ///< for View::with_tile_size
+    int tile_size = 0;
     double build_ns = 0;        ///< with Costs::z_bounds_ns where there is a depth test
     std::uint64_t entries = 0;  ///< length of the light index list
     double evaluations = 0;     ///< sum over the pixels with something to light of their lists' lengths
@@ -88,13 +89,15 @@ private:
 
 namespace detail {
 
-/// What is weighed. An interval test, and silhouettes beside a depth test, were the cheapest in no scene that was
-/// measured: a box takes about as long and leaves less.
+/// What is weighed. Silhouettes beside a depth test were the cheapest in no scene that was measured with AVX-512, and by
+/// 1 % at most with SSE2: a box leaves little for them to drop.
 inline constexpr Options weighed[] = {{.footprint = Footprint::rectangle, .depth_test = DepthTest::none},
+                                      {.footprint = Footprint::rectangle, .depth_test = DepthTest::interval},
                                       {.footprint = Footprint::rectangle, .depth_test = DepthTest::box},
                                       {.footprint = Footprint::rectangle, .depth_test = DepthTest::split_box},
                                       {.footprint = Footprint::silhouette, .depth_test = DepthTest::none}};
 
+/// A Binner's options for what is weighed, with the rest from `base`.
 template <Options base, std::size_t i>
 inline constexpr Options weighed_options = [] {
     Options options = base;
@@ -187,35 +190,34 @@ inline bool allowed(DepthTest test, const ZBounds& bounds) {
 
 }  // namespace detail
 
-/// Calls visit.operator()<options>(), where `options` are a plan's, a constant: only the Binners of plans that advise()
-/// weighs are compiled. Returns what it returns.
+/// Applies a plan: calls visit.operator()<options>() with its options as a constant, and returns what that returns. A
+/// Binner is compiled for each of the options that advise() weighs, and for no other.
 ///
 ///     lightbin::with_options(plan, [&]<lightbin::Options options> {
 ///         lightbin::Binner<options> binner;
 ///         draw_frames(binner, *view.with_tile_size(plan.tile_size));  // a template of yours
 ///     });
 ///
-/// plan  tiled, and as advise() makes them; another asserts
+/// plan  one of advise()'s. Of one that is not tiled the options mean nothing: look at Plan::tiled first
 /// base  the options that a plan leaves to you: index, statistics, isa
 template <Options base = Options{}, class Visit>
 decltype(auto) with_options(const Plan& plan, Visit&& visit) {
     return detail::with_options_from<base, 0>(plan, visit);
 }
 
-/// Measures what the ways to light a view cost, in the very scene: no tiling; tiles of the view's size, of 2, 4 and 8
-/// times it, and one as large as the screen, with rectangles or silhouettes, and as far as `bounds` allow with box or
-/// split_box. So give the view of the smallest tiles that you would use. Lists' lengths are counted; times are the
-/// shortest of some builds on one thread, or the first build's where the evaluations alone cost more than all of the
-/// best plan. Errors: as bin(), for any of the grids.
+/// Measures what the ways to light a view cost, on the scene itself: no tiling; tiles of the view's size, of 2, 4 and 8
+/// times it, and one as large as the screen; each with rectangles or silhouettes, and as far as `bounds` allow with the
+/// depth tests. So give the view of the smallest tiles that you would use. Errors: as bin(), if it refuses any of them.
+///
+/// Ask once a scene, not once a frame, and in the program as it is shipped, that is, optimised. Each grid is built 3
+/// to 9 times, by turns and on this thread; the shortest time counts. That takes as long as some tens of builds of the
+/// view's tiles without options, some hundreds with `bounds`. Entries and evaluations are counted. Allocates; keeps
+/// nothing.
 ///
 /// lights  as for Binner::bin
 /// bounds  of the view's own tiles; larger tiles' bounds are merged from them. None: no depth test is weighed
-/// base    what a plan says nothing of: index, statistics, isa
+/// base    the options that a plan leaves to you: index, statistics, isa
 /// Clock   as those of <chrono>
-///
-/// To be asked once a scene, not once a frame: it builds each grid up to 11 times, so it takes as long as some tens of
-/// builds of the view's tiles, some hundreds with `bounds`. In the program as it is shipped, that is, optimised. Allocates,
-/// and keeps nothing.
 template <Options base = Options{}, class Clock = std::chrono::steady_clock, class LightRange>
 Result<Advice> advise(const View& view, const LightRange& lights, const Costs& costs = {},
                       const ZBounds& bounds = {}) {
@@ -224,7 +226,6 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
             return Error{ErrorCode::z_bounds_too_small, view.tile_count(), side.size()};
 
     using Id = typename Binner<base>::Id;
-    // One is of a single tile, and the others before it of more.
     std::vector<detail::WeighedGrid> grids;
     const int whole = (std::max)({view.viewport().width, view.viewport().height, view.tile_size()});
     for (int size = view.tile_size(); size < whole && grids.size() < 4;
@@ -270,10 +271,9 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
             plans.push_back(plan);
         }
 
-    // In turns, so that a slow moment of the machine meets all alike, and none is built twice running, which branch
-    // predictors would learn. The first build found no memory. After two more, times are taken for at most twice what
-    // they come to.
-    constexpr int turns = 10;
+    // By turns: a slow moment of the machine meets all alike, and none runs twice in a row, which the branch predictor
+    // would learn. The first build found no memory. After two more, a time is taken for at most twice the true one.
+    constexpr int turns = 8;
     for (int turn = 0;; ++turn) {
         double least = detail::infinity;
         for (Plan& plan : plans) {
