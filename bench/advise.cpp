@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Is advise() right? For each scene every plan is measured (build time on rotating light sets, evaluations of
 // the first one counted over the drawn pixels), and what the chosen one costs is held against the cheapest: with
-// Z bounds, and without any against those that need none. advise() sees the first light set alone, and has its own clock.
+// Z bounds, and without any against those that need none. advise() sees the first light set alone, on its own clock.
 //
-//   advise_plans.csv   a row a plan that was weighed: build time and evaluations as advise() has them, and measured here
+//   advise_plans.csv   a row a plan that was weighed: build time and evaluations by advise(), and by the sweep
 //   advise.csv         a row for each scene and cost of an evaluation: the choice, the best plan, and the regret, their
 //                      ratio: as swept, and, where that is over the limit, of the two timed again by themselves
 #include "arguments.hpp"
