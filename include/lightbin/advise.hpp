@@ -8,6 +8,7 @@
 #include <lightbin/detail/survey.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/options.hpp>
+#include <lightbin/project.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/view.hpp>
 #include <lightbin/z_bounds.hpp>
@@ -99,7 +100,7 @@ template <class LightRange>
 Result<Advice> advise(const View& view, const LightRange& lights, const Costs& costs = {},
                       const ZBounds& bounds = {}) {
     const auto& source = detail::as_lights(lights);
-    if (!source.valid) return Error{ErrorCode::view_matrix_not_affine};
+    if (const auto error = detail::refuse(source)) return *error;
     for (const std::span<const float> side : {bounds.min, bounds.max, bounds.gap_min, bounds.gap_max})
         if (!side.empty() && side.size() < view.tile_count())
             return Error{ErrorCode::z_bounds_too_small, view.tile_count(), side.size()};
@@ -149,4 +150,4 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
     return Advice(std::move(plans));
 }
 
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR

@@ -281,9 +281,7 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {})
 template <class LightRange>
 Result<std::vector<ShaderFootprint>> shader_footprints(const View& view, const LightRange& lights) {
     const auto& source = detail::as_lights(lights);
-    if (!source.valid) return Error{ErrorCode::view_matrix_not_affine};
-    if (source.array.size() > 0xffffffff)
-        return Error{ErrorCode::too_many_lights, source.array.size(), 0xffffffff};
+    if (const auto error = detail::refuse(source)) return *error;
     Footprints<Footprint::rectangle, true> footprints;
     footprints.project(detail::machine_isa(detail::compiled_isa), view, source, Parallel{});
     const detail::FootprintArrays& in = footprints.arrays();
@@ -441,4 +439,4 @@ void $run(uvec2 group, uint thread) {
     return writer.finish();
 }
 
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR

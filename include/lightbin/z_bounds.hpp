@@ -6,6 +6,7 @@
 #include <lightbin/detail/kernels.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/rounding.hpp>
+#include <lightbin/detail/sizes.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/view.hpp>
 
@@ -153,7 +154,9 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
     const std::size_t row = static_cast<std::size_t>(viewport.width) * samples;
     const std::size_t pitch = buffer.row_pitch == 0 ? row : buffer.row_pitch;
     if (pitch < row) return Error{ErrorCode::row_pitch_too_small, row, pitch};
-    const std::size_t needed = tiles == 0 ? 0 : pitch * static_cast<std::size_t>(viewport.height - 1) + row;
+    const std::uint64_t before_last =
+        detail::product_of_sizes(pitch, static_cast<std::uint64_t>(viewport.height) - 1);
+    const std::uint64_t needed = tiles == 0 ? 0 : detail::sum_of_sizes(before_last, row);
     if (buffer.depth.size() < needed)
         return Error{ErrorCode::depth_buffer_too_small, needed, buffer.depth.size()};
     for (const std::span<float> side : {out.min, out.max, out.gap_min, out.gap_max, out.transparent_max})
@@ -163,7 +166,9 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
     constexpr float none = std::numeric_limits<float>::quiet_NaN();
     const float skipped = !buffer.skip_background ? none : view.reversed_z() ? 0.0f : 1.0f;
     const bool gaps = !out.gap_min.empty() && !out.gap_max.empty();
-    const std::size_t size = static_cast<std::size_t>(view.tile_size());
+    // As one of the viewport's size, a larger tile has a number of columns that can be counted.
+    const std::size_t size =
+        static_cast<std::size_t>((std::min)(view.tile_size(), (std::max)(viewport.width, viewport.height)));
     const std::size_t tiles_x = static_cast<std::size_t>(view.tiles_x());
     const std::size_t height = static_cast<std::size_t>(viewport.height);
     isa = detail::machine_isa(isa);

@@ -1,6 +1,8 @@
 // Sizes first, then the caller's memory: nothing past the end, nothing at all when it does not fit.
 #include "scene.hpp"
 
+#include <lightbin/shader_build.hpp>
+
 #include <limits>
 #include <string>
 
@@ -87,6 +89,26 @@ TEST_CASE("too many lights for the id type") {
     CHECK(narrow.count(view, lights).error().code == ErrorCode::too_many_lights);
     Binner<> wide;
     CHECK(wide.bin(view, lights));
+}
+
+TEST_CASE("more lights than 32 bits number") {
+    if constexpr (sizeof(std::size_t) > 4) {
+        // Lights of a byte, of which there is one: they are refused before they are read.
+        const char byte = 0;
+        const std::span<const char> array(&byte, static_cast<std::size_t>(std::uint64_t{1} << 32));
+        const auto lights = view_space(array, [](char) { return Sphere{0, 0, -5, 1}; });
+        const View view = test::view({64, 64}, 32);
+        const auto refused = [](const auto& result) {
+            REQUIRE(!result);
+            CHECK(result.error().code == ErrorCode::too_many_lights);
+            CHECK(result.error().needed == std::uint64_t{1} << 32);
+        };
+        Binner<> binner;
+        refused(binner.bin(view, lights));
+        refused(binner.count(view, lights));
+        refused(advise(view, lights));
+        refused(shader_footprints(view, lights));
+    }
 }
 
 TEST_CASE("more entries than 32-bit offsets reach") {

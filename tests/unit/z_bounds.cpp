@@ -60,6 +60,14 @@ TEST_CASE("each sample lands in its own tile: partial tiles, several samples, a 
     }
 }
 
+TEST_CASE("tiles of which 8 samples a pixel are more than 32 bits count") {
+    const std::vector<float> depth(37 * 21 * 8, window_depth(10));
+    for (const int tile_size : {64, 1 << 29, (1 << 29) + 1, std::numeric_limits<int>::max()}) {
+        const Reduced reduced = reduce(test::view({37, 21}, tile_size), {.depth = depth, .samples = 8});
+        CHECK(reduced.max == reduce(test::view({37, 21}, 37), {.depth = depth, .samples = 8}).max);
+    }
+}
+
 TEST_CASE("background, NaN and out-of-range samples") {
     const View view = test::view({32, 16}, 16);  // two tiles
     const float near = view.near_depth(), far = view.far_depth();
@@ -156,6 +164,18 @@ TEST_CASE("sizes that do not fit are errors that name what is needed") {
     CHECK(code({.depth = depth, .samples = 2}, min, max) == ErrorCode::depth_buffer_too_small);
     CHECK(code({.depth = depth, .row_pitch = 65}, min, max) == ErrorCode::depth_buffer_too_small);
     CHECK(code({.depth = depth, .row_pitch = 63}, min, max) == ErrorCode::row_pitch_too_small);
+    // Pitches of which 63, or 64, make 0 or little where sizes wrap.
+    constexpr std::size_t most = (std::numeric_limits<std::size_t>::max)();
+    for (const std::size_t pitch :
+         {most, most - 63, most / 2 + 1, most / 64 + 1, most / 63 + 1, most / 63 + 2})
+        for (const int height : {64, 65}) {
+            const auto tall =
+                reduce_depth(test::view({64, height}, 32), {.depth = depth, .row_pitch = pitch}, {});
+            REQUIRE(!tall);
+            CHECK(tall.error().code == ErrorCode::depth_buffer_too_small);
+            CHECK(static_cast<double>(tall.error().needed) ==
+                  doctest::Approx((std::min)(static_cast<double>(pitch) * (height - 1) + 64, 0x1p64)));
+        }
     CHECK(code({.depth = depth, .samples = 0}, min, max) == ErrorCode::samples_out_of_range);
     CHECK(code({.depth = depth, .samples = 9}, min, max) == ErrorCode::samples_out_of_range);
     CHECK(code({.depth = depth, .samples = -1}, min, max) == ErrorCode::samples_out_of_range);
