@@ -25,20 +25,35 @@
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace avx512 {
 
-using Floats = __m512;
-using Doubles = __m512d;
 using Mask = __mmask16;
 using DoubleMask = __mmask8;
 inline constexpr std::uint32_t lanes = 16, double_lanes = 8;
 
-LIGHTBIN_TARGET inline Floats sqrt(Floats a) {
-    return _mm512_sqrt_ps(a);
+LIGHTBIN_TARGET inline __m512 all_lanes(float each) {
+    return _mm512_set1_ps(each);
 }
-LIGHTBIN_TARGET inline Doubles sqrt(Doubles a) {
-    return _mm512_sqrt_pd(a);
+LIGHTBIN_TARGET inline __m512 negated(__m512 a) {
+    return _mm512_xor_ps(a, _mm512_set1_ps(-0.0f));
 }
 
-#include <lightbin/detail/vectors.inl>
+#define LIGHTBIN_VECTOR Floats
+#define LIGHTBIN_ELEMENT float
+#define LIGHTBIN_REGISTER __m512
+#define LIGHTBIN_OP(name) _mm512_##name##_ps
+#include <lightbin/detail/vector.inl>
+
+LIGHTBIN_TARGET inline __m512d all_lanes(double each) {
+    return _mm512_set1_pd(each);
+}
+LIGHTBIN_TARGET inline __m512d negated(__m512d a) {
+    return _mm512_xor_pd(a, _mm512_set1_pd(-0.0));
+}
+
+#define LIGHTBIN_VECTOR Doubles
+#define LIGHTBIN_ELEMENT double
+#define LIGHTBIN_REGISTER __m512d
+#define LIGHTBIN_OP(name) _mm512_##name##_pd
+#include <lightbin/detail/vector.inl>
 
 LIGHTBIN_TARGET inline Mask less(Floats a, Floats b) {
     return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
@@ -61,12 +76,30 @@ LIGHTBIN_TARGET inline Doubles select(DoubleMask mask, Doubles a, Doubles b) {
 LIGHTBIN_TARGET inline Floats lesser(Floats a, Floats b) {
     return _mm512_min_ps(a, b);
 }
+LIGHTBIN_TARGET inline Doubles lesser(Doubles a, Doubles b) {
+    return _mm512_min_pd(a, b);
+}
 LIGHTBIN_TARGET inline Floats greater(Floats a, Floats b) {
     return _mm512_max_ps(a, b);
+}
+LIGHTBIN_TARGET inline Doubles greater(Doubles a, Doubles b) {
+    return _mm512_max_pd(a, b);
+}
+/// Of either type of mask.
+template <class AnyMask> LIGHTBIN_TARGET inline AnyMask both(AnyMask a, AnyMask b) {
+    return static_cast<AnyMask>(a & b);
+}
+template <class AnyMask> LIGHTBIN_TARGET inline AnyMask either(AnyMask a, AnyMask b) {
+    return static_cast<AnyMask>(a | b);
+}
+template <class AnyMask> LIGHTBIN_TARGET inline AnyMask and_not(AnyMask a, AnyMask b) {
+    return static_cast<AnyMask>(a & ~b);
 }
 LIGHTBIN_TARGET inline unsigned bits(unsigned mask) {
     return mask;
 }
+
+#include <lightbin/detail/vectors.inl>
 
 /// Half 0 or 1 of the lanes.
 LIGHTBIN_TARGET inline Doubles widened(Floats a, unsigned half) {
