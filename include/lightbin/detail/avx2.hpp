@@ -9,7 +9,7 @@
 
 #include <immintrin.h>
 
-#define LIGHTBIN_TARGET __attribute__((target("avx2,bmi,popcnt")))
+#define LIGHTBIN_TARGET LIGHTBIN_INSTRUCTIONS("avx2,bmi,popcnt")
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace avx2 {

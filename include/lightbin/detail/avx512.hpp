@@ -12,8 +12,8 @@
 #include <immintrin.h>
 
 #define LIGHTBIN_TARGET                                                                                      \
-    __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2,avx512bitalg,"          \
-                          "avx512vpopcntdq,bmi,bmi2,popcnt")))
+    LIGHTBIN_INSTRUCTIONS("avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2,avx512bitalg,"          \
+                          "avx512vpopcntdq,bmi,bmi2,popcnt")
 
 // gcc 12's own AVX-512 header gives these warnings, about values it leaves undefined on purpose.
 #if defined(__GNUC__) && !defined(__clang__)

@@ -42,7 +42,7 @@ LIGHTBIN_TARGET inline void store(void* p, __m512i v) {
 /// makes a chain of one iteration and the next: it is given fresh zeros.
 LIGHTBIN_TARGET inline __m512i fresh_zeros() {
     __m512i zeros = _mm512_setzero_si512();
-    __asm__("" : "+v"(zeros));  // or the compiler picks that form
+    LIGHTBIN_FORGET(zeros);  // or the compiler picks that form
     return zeros;
 }
 /// Those of the chosen elements, then zeros.

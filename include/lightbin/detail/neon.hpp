@@ -161,7 +161,8 @@ inline void store_tiles(std::uint16_t* tiles, Doubles values) {
 }
 inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
     const uint64x2_t pairs = vorrq_u64(vcvtq_u64_f64(first), vshlq_n_u64(vcvtq_u64_f64(last), 16));
-    vst1_u32(reinterpret_cast<std::uint32_t*>(spans), vmovn_u64(pairs));
+    const uint32x2_t narrow = vmovn_u64(pairs);
+    std::memcpy(spans, &narrow, sizeof narrow);
 }
 
 #include <lightbin/detail/depth_columns.inl>

@@ -39,7 +39,7 @@ LIGHTBIN_TARGET inline LIGHTBIN_VECTOR sqrt(LIGHTBIN_VECTOR a) {
 /// A product that is rounded before it is added to anything, see rounded().
 LIGHTBIN_TARGET inline LIGHTBIN_VECTOR mul(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
     LIGHTBIN_VECTOR product = a * b;
-    LIGHTBIN_ROUND(product.v);
+    LIGHTBIN_FORGET(product.v);
     return product;
 }
 
