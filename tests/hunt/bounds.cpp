@@ -29,19 +29,22 @@ float stored(Real depth, lightbin::DepthFormat format, Random& random) {
     }
     const Long steps = format == lightbin::DepthFormat::unorm24 ? 0xffffff : 0xffff;
     const auto value_of = [&](Long step) { return static_cast<float>(step / steps); };
-    const float value = value_of(way == 0 ? std::floor(exact * steps) : way == 1 ? std::ceil(exact * steps) : std::round(exact * steps));
+    const float value = value_of(way == 0   ? std::floor(exact * steps)
+                                 : way == 1 ? std::ceil(exact * steps)
+                                            : std::round(exact * steps));
     return std::fabs(value - exact) + depth.error <= 1 / steps ? value : value_of(std::round(exact * steps));
 }
 
 std::string text(const char* what, std::size_t tile, Long is, Long least, Long most) {
     char line[200];
-    std::snprintf(line, sizeof line, "%s: tile %zu, %.20Lg not in %.20Lg .. %.20Lg", what, tile, is, least, most);
+    std::snprintf(line, sizeof line, "%s: tile %zu, %.20Lg not in %.20Lg .. %.20Lg", what, tile, is, least,
+                  most);
     return line;
 }
 
 /// Draws points to a depth buffer and reduces it.
-std::string reduce(const Camera& camera, const lightbin::View& view, const std::vector<Placed>& points, Random& random,
-                   Tally& tally, Bounds& bounds) {
+std::string reduce(const Camera& camera, const lightbin::View& view, const std::vector<Placed>& points,
+                   Random& random, Tally& tally, Bounds& bounds) {
     lightbin::DepthBuffer buffer;
     const int format = random.below(3);
     buffer.format = static_cast<lightbin::DepthFormat>(format);
@@ -74,7 +77,8 @@ std::string reduce(const Camera& camera, const lightbin::View& view, const std::
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (points[i].pixel_x < 0 || random.one_in(5)) continue;
         const std::size_t place = static_cast<std::size_t>(points[i].pixel_y) * pitch +
-                                  static_cast<std::size_t>(points[i].pixel_x) * samples + random.below(samples);
+                                  static_cast<std::size_t>(points[i].pixel_x) * samples +
+                                  random.below(samples);
         depth[place] = stored(points[i].seen.window_depth, buffer.format, random);
         drawn[i] = place;
         places.emplace_back(place, i);
@@ -94,7 +98,8 @@ std::string reduce(const Camera& camera, const lightbin::View& view, const std::
         for (int i = 0; i < 4; ++i)
             sides.emplace_back(tiles + random.below(std::size_t{3}));
         const auto span = [&](std::size_t i) { return wanted[i] ? sides[i].span() : std::span<float>{}; };
-        const auto made = lightbin::reduce_depth(view, buffer, span(0), span(1), span(2), span(3), tiers[tier]);
+        const auto made =
+            lightbin::reduce_depth(view, buffer, span(0), span(1), span(2), span(3), tiers[tier]);
         if (!made) return "reduce_depth refuses: " + made.error().message();
         const bool gaps = wanted[2] && wanted[3];
         const std::span<const float> given[] = {made->min, made->max, made->gap_min, made->gap_max};
@@ -121,11 +126,12 @@ std::string reduce(const Camera& camera, const lightbin::View& view, const std::
                 return bounds.sides[k].empty() ? none : bounds.sides[k][tile];
             };
             if (surely_less(at, side(0, -endless)) || surely_less(side(1, endless), at))
-                return text("MISS: a drawn point is out of its tile's reduced bounds", tile, at.value, side(0, -endless),
-                            side(1, endless)) +
+                return text("MISS: a drawn point is out of its tile's reduced bounds", tile, at.value,
+                            side(0, -endless), side(1, endless)) +
                        " (" + format_names[format] + ", stored " + std::to_string(depth[drawn[i]]) + ")";
             if (surely_less(side(2, endless), at) && surely_less(at, side(3, -endless)))
-                return text("MISS: a drawn point is in its tile's reduced gap", tile, at.value, side(2, 0), side(3, 0));
+                return text("MISS: a drawn point is in its tile's reduced gap", tile, at.value, side(2, 0),
+                            side(3, 0));
         }
     }
     // What the words say of tiles without a sample that counts, and of NaN.
@@ -135,15 +141,20 @@ std::string reduce(const Camera& camera, const lightbin::View& view, const std::
                           ty = tile / static_cast<std::size_t>(view.tiles_x());
         bool any = false, nan = false;
         for (std::size_t y = ty * tile_size; y < std::min((ty + 1) * tile_size, height); ++y)
-            for (std::size_t x = tx * tile_size * samples; x < std::min((tx + 1) * tile_size, width) * samples; ++x) {
+            for (std::size_t x = tx * tile_size * samples;
+                 x < std::min((tx + 1) * tile_size, width) * samples; ++x) {
                 const float sample = depth[y * pitch + x];
                 if (std::isnan(sample)) nan = true;
                 if (!(buffer.skip_background && sample == background)) any = true;
             }
-        const auto is = [&](int side, auto test) { return bounds.sides[side].empty() || test(bounds.sides[side][tile]); };
-        if (!any && !(is(0, [](float z) { return z == endless; }) && is(1, [](float z) { return z == -endless; })))
+        const auto is = [&](int side, auto test) {
+            return bounds.sides[side].empty() || test(bounds.sides[side][tile]);
+        };
+        if (!any &&
+            !(is(0, [](float z) { return z == endless; }) && is(1, [](float z) { return z == -endless; })))
             return "a tile where nothing is drawn has bounds";
-        if (any && !bounds.sides[0].empty() && !bounds.sides[1].empty() && bounds.sides[0][tile] > bounds.sides[1][tile])
+        if (any && !bounds.sides[0].empty() && !bounds.sides[1].empty() &&
+            bounds.sides[0][tile] > bounds.sides[1][tile])
             return "a tile where something is drawn has no bounds";
         if (nan && !(is(0, [&](float z) { return z <= view.near_depth(); }) &&
                      is(1, [&](float z) { return z >= view.far_depth(); })))
@@ -158,11 +169,14 @@ std::string reduce(const Camera& camera, const lightbin::View& view, const std::
 bool surely_within(const Bounds& bounds, bool with_gaps, std::size_t tile, Real depth) {
     const auto& [min, max, gap_min, gap_max] = bounds.sides;
     if (!min.empty() && !max.empty() && min[tile] > max[tile]) return false;
-    const auto tests = [&](const std::vector<float>& side) { return !side.empty() && !std::isnan(side[tile]); };
+    const auto tests = [&](const std::vector<float>& side) {
+        return !side.empty() && !std::isnan(side[tile]);
+    };
     if (tests(min) && !surely_at_most(static_cast<Long>(min[tile]), depth)) return false;
     if (tests(max) && !surely_at_most(depth, static_cast<Long>(max[tile]))) return false;
     if (!with_gaps || !tests(gap_min) || !tests(gap_max) || gap_min[tile] >= gap_max[tile]) return true;
-    return surely_at_most(depth, static_cast<Long>(gap_min[tile])) || surely_at_most(static_cast<Long>(gap_max[tile]), depth);
+    return surely_at_most(depth, static_cast<Long>(gap_min[tile])) ||
+           surely_at_most(static_cast<Long>(gap_max[tile]), depth);
 }
 
 std::string make_bounds(int kind, const Camera& camera, const lightbin::View& view,
@@ -170,7 +184,8 @@ std::string make_bounds(int kind, const Camera& camera, const lightbin::View& vi
     const std::string_view name = bounds_kinds[kind];
     const std::size_t tiles = view.tile_count(), pixels = static_cast<std::size_t>(view.viewport().width) *
                                                           static_cast<std::size_t>(view.viewport().height);
-    if (name == "depth buffer" && pixels <= 200000) return reduce(camera, view, points, random, tally, bounds);
+    if (name == "depth buffer" && pixels <= 200000)
+        return reduce(camera, view, points, random, tally, bounds);
     if (name == "absent") return {};
     const bool gaps = name == "gaps" || random.one_in(4), nasty = name == "nasty bounds";
     const std::size_t room = tiles + (random.coin() ? 0 : random.below(std::size_t{70}));
@@ -203,7 +218,8 @@ std::string make_bounds(int kind, const Camera& camera, const lightbin::View& vi
             ++end;
         if (nasty && random.coin()) continue;
         const auto depth = [&](std::size_t i) { return points[by_tile[i].second].seen.depth; };
-        const Real one = depth(begin + random.below(end - begin)), two = depth(begin + random.below(end - begin));
+        const Real one = depth(begin + random.below(end - begin)),
+                   two = depth(begin + random.below(end - begin));
         const bool swapped = two.value < one.value;
         const Real least = swapped ? two : one, most = name == "tight" ? least : swapped ? one : two;
         side(0, tile) = float_down(least.low());

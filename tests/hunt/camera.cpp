@@ -8,7 +8,9 @@
 namespace hunt {
 namespace {
 
-bool is(int kind, std::string_view name) { return camera_kinds[kind] == name; }
+bool is(int kind, std::string_view name) {
+    return camera_kinds[kind] == name;
+}
 
 /// Slopes of the window's edges (perspective) or their coordinates, and depths.
 struct Frustum {
@@ -19,7 +21,8 @@ struct Frustum {
 Frustum make_frustum(int kind, Random& random) {
     const double half = std::tan(random.between(0.3, 1.2)), aspect = random.between(0.5, 2.5);
     const double near_depth = random.log_between(0.01, 1);
-    Frustum f = {-half * aspect, half * aspect, -half, half, near_depth, near_depth * random.log_between(100, 1e5)};
+    Frustum f = {-half * aspect, half * aspect, -half,
+                 half,           near_depth,    near_depth * random.log_between(100, 1e5)};
     const auto widen = [&](double by) {
         for (double* side : {&f.left, &f.right, &f.bottom, &f.top})
             *side *= by;
@@ -68,8 +71,8 @@ Frustum make_frustum(int kind, Random& random) {
 }  // namespace
 
 bool ordinary(int kind) {
-    for (const char* name : {"symmetric", "off-centre", "jittered", "infinite far", "reversed Z", "reversed Z, infinite",
-                             "orthographic"})
+    for (const char* name : {"symmetric", "off-centre", "jittered", "infinite far", "reversed Z",
+                             "reversed Z, infinite", "orthographic"})
         if (is(kind, name)) return true;
     return false;
 }
@@ -82,19 +85,24 @@ Camera make_camera(int kind, Random& random) {
     camera.near_hint = f.near_depth;
     camera.far_hint = f.infinite ? std::numeric_limits<double>::infinity() : f.far_depth;
     const bool zero_to_one = random.coin();
-    const bool reversed =
-        std::string_view(camera_kinds[kind]).starts_with("reversed") || (!is(kind, "symmetric") && random.one_in(3));
-    camera.options.clip_depth = zero_to_one ? lightbin::ClipDepth::zero_to_one : lightbin::ClipDepth::minus_one_to_one;
-    camera.options.reversed_z = camera.orthographic ? reversed : random.coin();  // read for orthographic ones alone
-    camera.options.origin = random.coin() ? lightbin::WindowOrigin::lower_left : lightbin::WindowOrigin::upper_left;
+    const bool reversed = std::string_view(camera_kinds[kind]).starts_with("reversed") ||
+                          (!is(kind, "symmetric") && random.one_in(3));
+    camera.options.clip_depth =
+        zero_to_one ? lightbin::ClipDepth::zero_to_one : lightbin::ClipDepth::minus_one_to_one;
+    camera.options.reversed_z =
+        camera.orthographic ? reversed : random.coin();  // read for orthographic ones alone
+    camera.options.origin =
+        random.coin() ? lightbin::WindowOrigin::lower_left : lightbin::WindowOrigin::upper_left;
 
     // clip = w * ndc, with w = depth (perspective) or 1; all times a number that changes nothing.
     double scale = 1;
     if (is(kind, "scaled matrix")) scale = random.log_between(1e-20, 1e20);
     const double flip_x = random.one_in(4) ? -1 : 1, flip_y = random.one_in(3) ? -1 : 1;
     const double toward = static_cast<double>(camera.toward);
-    const double x_scale = flip_x * 2 / (f.right - f.left), x_offset = -flip_x * (f.right + f.left) / (f.right - f.left);
-    const double y_scale = flip_y * 2 / (f.top - f.bottom), y_offset = -flip_y * (f.top + f.bottom) / (f.top - f.bottom);
+    const double x_scale = flip_x * 2 / (f.right - f.left),
+                 x_offset = -flip_x * (f.right + f.left) / (f.right - f.left);
+    const double y_scale = flip_y * 2 / (f.top - f.bottom),
+                 y_offset = -flip_y * (f.top + f.bottom) / (f.top - f.bottom);
     double at_near = zero_to_one ? 0 : -1, at_far = 1;
     if (reversed) std::swap(at_near, at_far);
     glm::dmat4& m = camera.matrix;
@@ -110,7 +118,8 @@ Camera make_camera(int kind, Random& random) {
         m[2][2] = scale * slope * toward;
         m[3][2] = scale * (at_near - slope * f.near_depth);
     } else {
-        const double over_depth = (at_near - at_far) / (1 / f.near_depth - (f.infinite ? 0 : 1 / f.far_depth));
+        const double over_depth =
+            (at_near - at_far) / (1 / f.near_depth - (f.infinite ? 0 : 1 / f.far_depth));
         m[2][2] = scale * toward * (f.infinite ? at_far : at_far - over_depth / f.far_depth);
         m[3][2] = scale * over_depth;
     }
@@ -124,15 +133,17 @@ void set_grid(Camera& camera, int kind, Random& random) {
     const auto side_of = [&](int tiles, int size) {  // of that many tiles, the last whole or not
         return std::min(tiles * size - (random.coin() ? 0 : random.below(size)), lightbin::View::max_side);
     };
-    const auto edge = [&](int most) {  // numbers of tiles where a kernel may begin a new vector, band, panel or byte
-        int tiles;
-        do {
-            const int base = random.pick({8, 16, 31, 32, 62, 64, 96, 124, 128, 192, 240, 248, 256, 264, 384, 496, 504,
-                                          512, 744, 992, 1024, 2040, 2048, 4096, 8192, 16384, 32760, 32768});
-            tiles = base + random.from_to(-1, 1);
-        } while (tiles > most);
-        return tiles;
-    };
+    const auto edge =
+        [&](int most) {  // numbers of tiles where a kernel may begin a new vector, band, panel or byte
+            int tiles;
+            do {
+                const int base = random.pick({8,    16,   31,   32,   62,   64,    96,    124,  128, 192,
+                                              240,  248,  256,  264,  384,  496,   504,   512,  744, 992,
+                                              1024, 2040, 2048, 4096, 8192, 16384, 32760, 32768});
+                tiles = base + random.from_to(-1, 1);
+            } while (tiles > most);
+            return tiles;
+        };
     int size = random.pick({1, 2, 3, 5, 7, 8, 13, 16, 31, 32, 33, 64}), width = random.from_to(1, 40 * size),
         height = random.from_to(1, 30 * size);
     if (name == "tile multiples") {
@@ -157,14 +168,18 @@ void set_grid(Camera& camera, int kind, Random& random) {
         width = height = 1;
     } else if (name == "huge tiles") {
         size = random.pick({1 << 14, 1 << 15, (1 << 15) + 1, 1 << 30, std::numeric_limits<int>::max()});
-        width = random.from_to(1, lightbin::View::max_side), height = random.from_to(1, lightbin::View::max_side);
+        width = random.from_to(1, lightbin::View::max_side),
+        height = random.from_to(1, lightbin::View::max_side);
     } else if (name == "longest side") {
         size = random.pick({64, 100, 128, 255, 256, 257, 1024});
-        width = lightbin::View::max_side - random.from_to(0, 2), height = lightbin::View::max_side - random.from_to(0, 2);
+        width = lightbin::View::max_side - random.from_to(0, 2),
+        height = lightbin::View::max_side - random.from_to(0, 2);
     } else if (name == "longest tall") {
-        size = 1, width = random.pick({1, 2, 7, 8, 9, 16, 17}), height = random.pick({32768, 32767, 32760, 16385});
+        size = 1, width = random.pick({1, 2, 7, 8, 9, 16, 17}),
+        height = random.pick({32768, 32768, 32767, 32760, 16385});
     } else if (name == "longest wide") {
-        size = 1, width = random.pick({32768, 32767, 32760, 16385}), height = random.pick({1, 2, 7, 8, 9, 16, 17});
+        size = 1, width = random.pick({32768, 32768, 32767, 32760, 16385}),
+        height = random.pick({1, 2, 7, 8, 9, 16, 17});
     } else if (name == "empty") {
         (random.coin() ? width : height) = 0;
         if (random.one_in(4)) width = height = 0;
@@ -178,8 +193,8 @@ std::optional<Seen> see(const Camera& camera, const RealPoint& point) {
     for (int row = 0; row < 4; ++row) {
         clip[row] = static_cast<long double>(camera.matrix[3][row]);
         for (int column = 0; column < 3; ++column)
-            clip[row] = clip[row] +
-                        Real(static_cast<long double>(camera.matrix[column][row])) * point[static_cast<std::size_t>(column)];
+            clip[row] = clip[row] + Real(static_cast<long double>(camera.matrix[column][row])) *
+                                        point[static_cast<std::size_t>(column)];
     }
     const Real w = clip[3];
     if (!surely_less(0, w)) return std::nullopt;

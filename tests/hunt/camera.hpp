@@ -18,8 +18,9 @@ inline constexpr const char* camera_kinds[] = {
     "scaled matrix", "narrow",       "wide",        "near extreme", "far extreme",  "thin depth range",
     "aside",         "orthographic", "ortho aside", "ortho thin",   "ortho extreme"};
 inline constexpr const char* grid_kinds[] = {
-    "ordinary", "tile multiples", "one-pixel tiles", "kernel widths", "kernel heights", "kernel both", "one tile wide",
-    "one tile high", "one pixel", "huge tiles", "longest side", "longest tall", "longest wide", "empty"};
+    "ordinary",     "tile multiples", "one-pixel tiles", "kernel widths", "kernel heights",
+    "kernel both",  "one tile wide",  "one tile high",   "one pixel",     "huge tiles",
+    "longest side", "longest tall",   "longest wide",    "empty"};
 
 /// A projection as the caller has it, in clip space as the caller's graphics API has it.
 struct Camera {
@@ -28,15 +29,15 @@ struct Camera {
     lightbin::Extent viewport;
     lightbin::ViewOptions options;
     bool orthographic = false;
-    long double toward = -1;       ///< view depth = toward * z
+    long double toward = -1;             ///< view depth = toward * z
     double near_hint = 0, far_hint = 0;  ///< about where the planes are; far may be infinite
 };
 
 /// Where a point of view space is seen.
 struct Seen {
-    Real x, y;                ///< in pixels from the window origin
-    Real depth;               ///< view depth
-    Real window_depth;        ///< 0 to 1
+    Real x, y;          ///< in pixels from the window origin
+    Real depth;         ///< view depth
+    Real window_depth;  ///< 0 to 1
 };
 
 /// Returns where a point is seen; nothing where it is out of the clip volume, or may be by rounding.

@@ -73,16 +73,19 @@ template <lightbin::Options options> struct Kept {
         using lightbin::ErrorCode;
         if (size.tiles > 0) {
             const auto grid = binner->emit(tiles.span(size.tiles - 1), ids.span());
-            if (grid || grid.error().code != ErrorCode::tile_buffer_too_small) out.wrong = "emit takes too few tiles";
+            if (grid || grid.error().code != ErrorCode::tile_buffer_too_small)
+                out.wrong = "emit takes too few tiles";
         }
         if (size.indices > 0) {
             const auto grid = binner->emit(tiles.span(), ids.span(size.indices - 1));
-            if (grid || grid.error().code != ErrorCode::index_buffer_too_small) out.wrong = "emit takes too few ids";
+            if (grid || grid.error().code != ErrorCode::index_buffer_too_small)
+                out.wrong = "emit takes too few ids";
         }
         if (!tiles.intact(0) || !ids.intact(0)) out.wrong = "emit writes to a buffer that is too small";
         const auto grid = binner->emit(tiles.span(), ids.span());
         if (!grid) return static_cast<void>(out.error = grid.error());
-        if (!tiles.intact(size.tiles) || !ids.intact(size.indices)) out.wrong = "emit writes beyond the lists";
+        if (!tiles.intact(size.tiles) || !ids.intact(size.indices))
+            out.wrong = "emit writes beyond the lists";
         if (grid->tiles().data() != tiles.span().data() || grid->tiles().size() != size.tiles ||
             grid->indices().size() != size.indices)
             out.wrong = "emit returns a grid that is not where it wrote";
@@ -125,12 +128,15 @@ template <lightbin::Options options> struct Kept {
             if (!out.error) out.statistics = binner->statistics();
     }
 
-    template <class Lights> static void build_with_threads(const Input& input, const Lights& lights, Output& out) {
+    template <class Lights>
+    static void build_with_threads(const Input& input, const Lights& lights, Output& out) {
         const Runner runner = {input.order, input.seed};
         // Serial with one form of lights alone, as each takes time to compile.
         if constexpr (std::is_same_v<Lights, std::vector<glm::vec4>>)
             if (input.order == Order::serial) return build(input, lights, lightbin::Serial{}, out);
-        build(input, lights, input.order == Order::serial ? lightbin::Parallel() : lightbin::Parallel(input.workers, runner, 0),
+        build(input, lights,
+              input.order == Order::serial ? lightbin::Parallel()
+                                           : lightbin::Parallel(input.workers, runner, 0),
               out);
     }
 
@@ -180,10 +186,14 @@ template <Footprint footprint, DepthTest depth_test, Index index> Engine of_tier
     };
     constexpr bool statistics = index == Index::u16;
     switch (tier) {
-    case 0: return of.template operator()<lightbin::Isa::scalar, statistics>();
-    case 1: return of.template operator()<lightbin::Isa::sse2, !statistics>();
-    case 2: return of.template operator()<lightbin::Isa::avx2, statistics>();
-    default: return of.template operator()<lightbin::Options{}.isa, !statistics>();
+    case 0:
+        return of.template operator()<lightbin::Isa::scalar, statistics>();
+    case 1:
+        return of.template operator()<lightbin::Isa::sse2, !statistics>();
+    case 2:
+        return of.template operator()<lightbin::Isa::avx2, statistics>();
+    default:
+        return of.template operator()<lightbin::Options{}.isa, !statistics>();
     }
 }
 

@@ -75,10 +75,14 @@ template <DepthTest depth_test> Engine engine(Footprint footprint, unsigned tier
 
 inline Engine engine_of(DepthTest depth_test, Footprint footprint, unsigned tier, Index index) {
     switch (depth_test) {
-    case DepthTest::none: return engine<DepthTest::none>(footprint, tier, index);
-    case DepthTest::interval: return engine<DepthTest::interval>(footprint, tier, index);
-    case DepthTest::box: return engine<DepthTest::box>(footprint, tier, index);
-    default: return engine<DepthTest::split_box>(footprint, tier, index);
+    case DepthTest::none:
+        return engine<DepthTest::none>(footprint, tier, index);
+    case DepthTest::interval:
+        return engine<DepthTest::interval>(footprint, tier, index);
+    case DepthTest::box:
+        return engine<DepthTest::box>(footprint, tier, index);
+    default:
+        return engine<DepthTest::split_box>(footprint, tier, index);
     }
 }
 

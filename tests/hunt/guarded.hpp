@@ -27,7 +27,8 @@ public:
         const auto* bytes = reinterpret_cast<const unsigned char*>(memory_.get());
         const auto written = [](unsigned char byte) { return byte != 0xa5; };
         return std::none_of(bytes, bytes + guard * sizeof(T), written) &&
-               std::none_of(bytes + (guard + used) * sizeof(T), bytes + (size_ + 2 * guard) * sizeof(T), written);
+               std::none_of(bytes + (guard + used) * sizeof(T), bytes + (size_ + 2 * guard) * sizeof(T),
+                            written);
     }
 
 private:

@@ -29,10 +29,12 @@ int main(int count, char** words) {
         else if (word == "--first" && next != nullptr)
             first = std::strtoull(next, nullptr, 10), ++i;
         else if (word == "--seed" && next != nullptr)
-            seed = std::string_view(next) == "random" ? std::random_device{}() : std::strtoull(next, nullptr, 10), ++i;
+            seed = std::string_view(next) == "random" ? std::random_device{}()
+                                                      : std::strtoull(next, nullptr, 10),
+            ++i;
         else
-            return std::fprintf(stderr,
-                                "hunt [--rounds N | --seconds N] [--seed N | --seed random] [--first ROUND] [--large]\n"),
+            return std::fprintf(stderr, "hunt [--rounds N | --seconds N] [--seed N | --seed random] [--first "
+                                        "ROUND] [--large]\n"),
                    2;
     }
     if (rounds == 0 && seconds == 0) rounds = 200;
@@ -41,11 +43,14 @@ int main(int count, char** words) {
 
     hunt::Report report;
     const auto start = std::chrono::steady_clock::now();
-    const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+    const auto elapsed = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
     const auto progress = [&](std::uint64_t done) {
-        std::printf("hunt: %.0f s, %llu rounds, %llu grids, %.4g entries, %.4g points looked for, %zu faults\n", elapsed(),
-                    static_cast<unsigned long long>(done), static_cast<unsigned long long>(report.grids),
-                    static_cast<double>(report.entries), static_cast<double>(report.points), report.faults.size());
+        std::printf(
+            "hunt: %.0f s, %llu rounds, %llu grids, %.4g entries, %.4g points looked for, %zu faults\n",
+            elapsed(), static_cast<unsigned long long>(done), static_cast<unsigned long long>(report.grids),
+            static_cast<double>(report.entries), static_cast<double>(report.points), report.faults.size());
     };
     std::size_t printed = 0;
     const auto print_faults = [&] {
@@ -59,7 +64,8 @@ int main(int count, char** words) {
     for (; (rounds == 0 || round - first < rounds) && (seconds == 0 || elapsed() < seconds); ++round) {
         const double before = elapsed();
         hunt::hunt_round(seed, round, report);
-        if (std::getenv("HUNT_SLOW") && elapsed() - before > 0.3) std::printf("slow %.2f round %d\n", elapsed() - before, (int)round);
+        if (std::getenv("HUNT_SLOW") && elapsed() - before > 0.3)
+            std::printf("slow %.2f round %d\n", elapsed() - before, (int)round);
         print_faults();
         if (report.faults.size() >= 10) break;
         if (elapsed() < next_line) continue;

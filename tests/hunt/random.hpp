@@ -65,10 +65,11 @@ inline int dealt(std::uint64_t seed, std::uint64_t at, int kinds) {
 /// A float that nobody would pass: signed zeros, denormals, powers of two, the ends of the range, infinity, NaN.
 inline float nasty_float(Random& random) {
     using Limits = std::numeric_limits<float>;
-    const float value = random.pick({0.0f, Limits::denorm_min(), Limits::min(), Limits::max(), Limits::infinity(),
-                                     Limits::quiet_NaN(), 1.0f, Limits::epsilon(), Limits::max() / 2,
-                                     static_cast<float>(random.log_between(0x1p-149, 0x1p127)),
-                                     static_cast<float>(random.log_between(0x1p-20, 0x1p20))});
+    const float value =
+        random.pick({0.0f, Limits::denorm_min(), Limits::min(), Limits::max(), Limits::infinity(),
+                     Limits::quiet_NaN(), 1.0f, Limits::epsilon(), Limits::max() / 2,
+                     static_cast<float>(random.log_between(0x1p-149, 0x1p127)),
+                     static_cast<float>(random.log_between(0x1p-20, 0x1p20))});
     return random.coin() ? value : -value;
 }
 
@@ -79,6 +80,8 @@ inline float float_up(long double value) {
                ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
                : nearest;
 }
-inline float float_down(long double value) { return -float_up(-value); }
+inline float float_down(long double value) {
+    return -float_up(-value);
+}
 
 }  // namespace hunt

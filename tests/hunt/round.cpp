@@ -17,7 +17,8 @@ namespace hunt {
 namespace {
 
 constexpr Footprint footprints[] = {Footprint::rectangle, Footprint::silhouette};
-constexpr DepthTest depth_tests[] = {DepthTest::none, DepthTest::interval, DepthTest::box, DepthTest::split_box};
+constexpr DepthTest depth_tests[] = {DepthTest::none, DepthTest::interval, DepthTest::box,
+                                     DepthTest::split_box};
 constexpr const char* footprint_names[] = {"rectangle", "silhouette"};
 constexpr const char* depth_names[] = {"none", "interval", "box", "split_box"};
 constexpr const char* index_names[] = {"u16", "u32"};
@@ -31,14 +32,16 @@ public:
     void run() {
         // Each kind comes up once in as many rounds as there are kinds.
         const auto deal = [&](int salt, auto& kinds) {
-            const int kind = dealt(seed_ * 31 + static_cast<std::uint64_t>(salt), round_, static_cast<int>(std::size(kinds)));
+            const int kind = dealt(seed_ * 31 + static_cast<std::uint64_t>(salt), round_,
+                                   static_cast<int>(std::size(kinds)));
             return kind;
         };
-        const int camera_kind = deal(1, camera_kinds), grid_kind = deal(2, grid_kinds), space = deal(3, space_kinds),
-                  bounds_kind = deal(4, bounds_kinds);
+        const int camera_kind = deal(1, camera_kinds), grid_kind = deal(2, grid_kinds),
+                  space = deal(3, space_kinds), bounds_kind = deal(4, bounds_kinds);
         const std::uint32_t lights = light_counts[deal(5, light_counts)];
-        what_ = std::string(camera_kinds[camera_kind]) + ", " + grid_kinds[grid_kind] + ", " + space_kinds[space] +
-                ", bounds " + bounds_kinds[bounds_kind] + ", " + std::to_string(lights) + " lights";
+        what_ = std::string(camera_kinds[camera_kind]) + ", " + grid_kinds[grid_kind] + ", " +
+                space_kinds[space] + ", bounds " + bounds_kinds[bounds_kind] + ", " + std::to_string(lights) +
+                " lights";
 
         std::optional<lightbin::View> view;
         for (int tries = 0; tries < 20 && !view; ++tries) {
@@ -62,8 +65,10 @@ public:
         const std::size_t tiles = view->tile_count(), most = 400'000;
         const std::uint32_t large = static_cast<std::uint32_t>(
             std::min<std::size_t>(lights, lights * tiles <= most ? lights : most / (2 * tiles) + 1));
-        if (std::getenv("HUNT_SLOW")) std::printf("%d %s; %zu tiles, large %u\n", (int)round_, what_.c_str(), tiles, large);
+        if (std::getenv("HUNT_SLOW"))
+            std::printf("%d %s; %zu tiles, large %u\n", (int)round_, what_.c_str(), tiles, large);
         scene_ = make_scene(camera_, space, lights, large, random_, report_.tally);
+        keep_small(large);
         rejected_ = static_cast<std::uint32_t>(std::ranges::count_if(scene_.lights, is_bad));
         place_points();
         const std::string wrong =
@@ -84,13 +89,35 @@ public:
 private:
     lightbin::Result<lightbin::View> make_view() const {
         if (camera_.in_float)
-            return lightbin::View::from_projection(glm::mat4(camera_.matrix), camera_.viewport, camera_.options);
+            return lightbin::View::from_projection(glm::mat4(camera_.matrix), camera_.viewport,
+                                                   camera_.options);
         return lightbin::View::from_projection(camera_.matrix, camera_.viewport, camera_.options);
     }
 
+    /// Where lights that should be small cover much all the same, shrinks some, as the round would take minutes.
+    void keep_small(std::uint32_t large) {
+        if (large >= scene_.lights.size()) return;
+        for (int tries = 0; tries < 8; ++tries) {
+            const auto advice =
+                scene_.in_world
+                    ? lightbin::advise(*view_, lightbin::world_space(scene_.lights, scene_.to_view))
+                    : lightbin::advise(*view_, scene_.lights);
+            double entries = 0;
+            for (const lightbin::Plan& plan : advice->plans())
+                if (plan.tiled && plan.tile_size == view_->tile_size() &&
+                    plan.footprint == Footprint::rectangle)
+                    entries =
+                        plan.evaluations / std::pow(std::min(plan.tile_size, lightbin::View::max_side), 2);
+            if (entries < 2e6) return;
+            ++report_.tally["lights shrunk"];
+            for (Sphere& light : scene_.lights)
+                if (random_.coin() && light.radius > 0) light.radius *= 0.01f;
+        }
+    }
+
     void fault(const std::string& what) {
-        report_.faults.push_back(what + "\n    in seed " + std::to_string(seed_) + ", round " + std::to_string(round_) + ": " +
-                                 what_);
+        report_.faults.push_back(what + "\n    in seed " + std::to_string(seed_) + ", round " +
+                                 std::to_string(round_) + ": " + what_);
     }
 
     void count_camera(int camera_kind, int grid_kind) {
@@ -99,9 +126,11 @@ private:
         ++tally[grid_kinds[grid_kind]];
         ++tally[camera_.in_float ? "float projection" : "double projection"];
         ++tally[camera_.toward > 0 ? "looks down +z" : "looks down -z"];
-        ++tally[camera_.options.clip_depth == lightbin::ClipDepth::zero_to_one ? "depth 0 to 1" : "depth -1 to 1"];
+        ++tally[camera_.options.clip_depth == lightbin::ClipDepth::zero_to_one ? "depth 0 to 1"
+                                                                               : "depth -1 to 1"];
         ++tally[camera_.options.origin == lightbin::WindowOrigin::lower_left ? "lower left" : "upper left"];
-        if (view_->reversed_z()) ++tally[view_->orthographic() ? "reversed orthographic" : "reversed perspective"];
+        if (view_->reversed_z())
+            ++tally[view_->orthographic() ? "reversed orthographic" : "reversed perspective"];
         if (camera_.matrix[0][0] < 0) ++tally["x flipped"];
         if (camera_.matrix[1][1] < 0) ++tally["y flipped"];
         const int size = view_->tile_size();
@@ -128,12 +157,14 @@ private:
                 const long double low = std::floor(at.low()), high = std::floor(at.high());
                 return low >= 0 && high < side && tile(low) == tile(high) ? static_cast<int>(tile(low)) : -1;
             };
-            const int x = side_tile(seen->x, camera_.viewport.width), y = side_tile(seen->y, camera_.viewport.height);
+            const int x = side_tile(seen->x, camera_.viewport.width),
+                      y = side_tile(seen->y, camera_.viewport.height);
             if (x < 0 || y < 0) continue;
             Placed placed = {point, *seen,
                              static_cast<std::size_t>(y) * static_cast<std::size_t>(view_->tiles_x()) +
                                  static_cast<std::size_t>(x),
-                             static_cast<int>(std::floor(seen->x.value)), static_cast<int>(std::floor(seen->y.value))};
+                             static_cast<int>(std::floor(seen->x.value)),
+                             static_cast<int>(std::floor(seen->y.value))};
             if (std::floor(seen->x.low()) != std::floor(seen->x.high()) ||
                 std::floor(seen->y.low()) != std::floor(seen->y.high()))
                 placed.pixel_x = -1;
@@ -146,7 +177,8 @@ private:
     }
 
     /// Looks for the lights of all points that lie within the bounds.
-    void look_for_points(const Lists& lists, const Bounds& bounds, DepthTest depth_test, const std::string& how) {
+    void look_for_points(const Lists& lists, const Bounds& bounds, DepthTest depth_test,
+                         const std::string& how) {
         for (const Placed& point : placed_) {
             if (depth_test != DepthTest::none &&
                 !surely_within(bounds, depth_test == DepthTest::split_box, point.tile, point.seen.depth))
@@ -158,12 +190,14 @@ private:
             const Sphere& light = scene_.lights[point.inside.light];
             const Point& p = point.inside.point;
             char line[500];
-            std::snprintf(line, sizeof line,
-                          "MISS: light %u (%.9g, %.9g, %.9g, %.9g) holds (%.21Lg, %.21Lg, %.21Lg), seen at pixel %.12Lg, "
-                          "%.12Lg in tile %zu of %d x %d at depth %.12Lg, but the tile's list of %zu lacks it; %s",
-                          point.inside.light, light.x, light.y, light.z, light.radius, p[0], p[1], p[2],
-                          point.seen.x.value, point.seen.y.value, point.tile, view_->tiles_x(), view_->tiles_y(),
-                          point.seen.depth.value, list.size(), how.c_str());
+            std::snprintf(
+                line, sizeof line,
+                "MISS: light %u (%.9g, %.9g, %.9g, %.9g) holds (%.21Lg, %.21Lg, %.21Lg), seen at pixel "
+                "%.12Lg, "
+                "%.12Lg in tile %zu of %d x %d at depth %.12Lg, but the tile's list of %zu lacks it; %s",
+                point.inside.light, light.x, light.y, light.z, light.radius, p[0], p[1], p[2],
+                point.seen.x.value, point.seen.y.value, point.tile, view_->tiles_x(), view_->tiles_y(),
+                point.seen.depth.value, list.size(), how.c_str());
             return fault(line);
         }
     }
@@ -171,9 +205,11 @@ private:
     /// What the public words say of any grid.
     void check_grid(const Output& out, const std::string& how) {
         if (!out.wrong.empty()) fault(out.wrong + "; " + how);
-        if (out.tiles_x != view_->tiles_x() || out.tiles_y != view_->tiles_y()) fault("the grid has other sides; " + how);
+        if (out.tiles_x != view_->tiles_x() || out.tiles_y != view_->tiles_y())
+            fault("the grid has other sides; " + how);
         if (out.rejected != rejected_)
-            fault("rejected is " + std::to_string(out.rejected) + " and not " + std::to_string(rejected_) + "; " + how);
+            fault("rejected is " + std::to_string(out.rejected) + " and not " + std::to_string(rejected_) +
+                  "; " + how);
         check_lists(out.lists, how);
         if (!out.statistics) return;
         const lightbin::Statistics& s = *out.statistics;
@@ -187,13 +223,15 @@ private:
         for (const std::uint32_t id : out.lists.ids)
             if (id < listed.size()) listed[id] = true;
         const std::uint64_t seen = static_cast<std::uint64_t>(std::ranges::count(listed, true));
-        if (s.lights != scene_.lights.size() || s.rejected != rejected_ || s.entries != out.lists.ids.size() ||
-            s.longest_list != longest || s.histogram != histogram || s.lights < s.rejected + s.culled + seen)
+        if (s.lights != scene_.lights.size() || s.rejected != rejected_ ||
+            s.entries != out.lists.ids.size() || s.longest_list != longest || s.histogram != histogram ||
+            s.lights < s.rejected + s.culled + seen)
             fault("the statistics are not those of the grid; " + how);
     }
 
     void check_lists(const Lists& lists, const std::string& how) {
-        if (lists.tiles.size() != view_->tile_count()) return fault("tiles has another length than the view; " + how);
+        if (lists.tiles.size() != view_->tile_count())
+            return fault("tiles has another length than the view; " + how);
         std::uint64_t at = 0;
         for (const lightbin::Tile& tile : lists.tiles) {
             if (tile.offset != at) return fault("offsets leave a gap or overlap; " + how);
@@ -237,7 +275,8 @@ private:
         for (int f = 0; f < 2; ++f)
             for (int d = 0; d < 4 && !too_large; ++d) {
                 if (costly && !random_.one_in(3)) continue;
-                const unsigned first_tier = static_cast<unsigned>(random_.below(static_cast<int>(tier_count)));
+                const unsigned first_tier =
+                    static_cast<unsigned>(random_.below(static_cast<int>(tier_count)));
                 Output& grid = grids[f][d];
                 grid = build(footprints[f], depth_tests[d], first_tier, true, nullptr);
                 if (grid.error) {
@@ -246,7 +285,8 @@ private:
                     break;
                 }
                 too_large = grid.lists.ids.size() > most_entries;
-                std::string how = std::string(footprint_names[f]) + ", " + depth_names[d] + ", " + tier_names[first_tier];
+                std::string how =
+                    std::string(footprint_names[f]) + ", " + depth_names[d] + ", " + tier_names[first_tier];
                 look_for_points(grid.lists, bounds_, depth_tests[d], how);
                 if (d > 0) check_empty_tiles(grid.lists, how);
                 Bounds only_max;
@@ -271,7 +311,8 @@ private:
                     check_within(grids[f][d].lists, grids[f][looser[d]].lists, depth_names[d]);
             }
         for (int d = 0; d < 4; ++d)
-            if (have(grids[0][d]) && have(grids[1][d])) check_within(grids[1][d].lists, grids[0][d].lists, "silhouette");
+            if (have(grids[0][d]) && have(grids[1][d]))
+                check_within(grids[1][d].lists, grids[0][d].lists, "silhouette");
         for (int d = 0; d < 4; ++d)
             if (have(grids[0][d]) && random_.one_in(3)) check_encodings(grids[0][d].lists);
         if (too_large || view_->tile_count() > 1'000'000)  // the Binners would keep much memory
@@ -283,9 +324,10 @@ private:
     }
 
     /// Builds a grid in a way of its own, `plainly` with 32-bit ids on the calling thread, and compares it.
-    Output build(Footprint footprint, DepthTest depth_test, unsigned tier, bool plainly, const Output* expected,
-                 const Output* transparent = nullptr) {
-        const bool narrow = !plainly && scene_.lights.size() <= 65536 && has_narrow_ids(depth_test) && random_.coin();
+    Output build(Footprint footprint, DepthTest depth_test, unsigned tier, bool plainly,
+                 const Output* expected, const Output* transparent = nullptr) {
+        const bool narrow =
+            !plainly && scene_.lights.size() <= 65536 && has_narrow_ids(depth_test) && random_.coin();
         const Engine engine = engine_of(depth_test, footprint, tier, narrow ? Index::u16 : Index::u32);
         Input input = {view_, &scene_, bounds_.spans()};
         input.seed = random_.bits();
@@ -298,10 +340,11 @@ private:
         if (random_.one_in(8)) engine.forget();
         Tally& tally = report_.tally;
         const int f = static_cast<int>(footprint), d = static_cast<int>(depth_test);
-        const std::string how = std::string(footprint_names[f]) + ", " + depth_names[d] + ", " + tier_names[tier] + ", " +
-                                index_names[narrow ? 0 : 1] + ", " + form_names[static_cast<int>(input.form)] + ", " +
-                                call_names[static_cast<int>(input.calls)] + ", " + order_names[static_cast<int>(input.order)] +
-                                " of " + std::to_string(input.workers);
+        const std::string how =
+            std::string(footprint_names[f]) + ", " + depth_names[d] + ", " + tier_names[tier] + ", " +
+            index_names[narrow ? 0 : 1] + ", " + form_names[static_cast<int>(input.form)] + ", " +
+            call_names[static_cast<int>(input.calls)] + ", " + order_names[static_cast<int>(input.order)] +
+            " of " + std::to_string(input.workers);
         ++tally[std::string(footprint_names[f]) + ", " + depth_names[d] + ", " + tier_names[tier]];
         ++tally[index_names[narrow ? 0 : 1]];
         ++tally[form_names[static_cast<int>(input.form)]];
@@ -311,7 +354,8 @@ private:
         ++report_.grids;
         if (out.error) {
             using lightbin::ErrorCode;
-            if (out.error->code != ErrorCode::too_many_entries && out.error->code != ErrorCode::too_many_list_places)
+            if (out.error->code != ErrorCode::too_many_entries &&
+                out.error->code != ErrorCode::too_many_list_places)
                 fault("refused: " + out.error->message() + "; " + how);
             if (expected != nullptr) fault("refused in one way alone: " + out.error->message() + "; " + how);
             return out;
@@ -319,7 +363,8 @@ private:
         report_.entries += out.lists.ids.size();
         check_grid(out, how);
         if (expected != nullptr && !same(out.lists, expected->lists)) fault("another grid; " + how);
-        if (expected != nullptr && input.calls == Calls::transparency && !same(out.transparent, transparent->lists))
+        if (expected != nullptr && input.calls == Calls::transparency &&
+            !same(out.transparent, transparent->lists))
             fault("another grid of the transparent; " + how);
         return out;
     }
@@ -347,20 +392,26 @@ private:
         format.encoding = static_cast<ListEncoding>(encoding);
         format.ids = random_.pick({IdWidth::u8, IdWidth::u16, IdWidth::u32});
         const std::size_t width = static_cast<std::size_t>(format.ids);
-        format.capacity = longest == 0 ? 1 : random_.coin() ? longest : static_cast<std::uint32_t>(random_.from_to(1, static_cast<int>(longest) + 2));
+        format.capacity = longest == 0 ? 1
+                          : random_.coin()
+                              ? longest
+                              : static_cast<std::uint32_t>(random_.from_to(1, static_cast<int>(longest) + 2));
         format.max_lights = format.encoding == ListEncoding::bitmask || random_.coin()
-                                ? lights + static_cast<std::uint32_t>(random_.below(70)) : 0;
+                                ? lights + static_cast<std::uint32_t>(random_.below(70))
+                                : 0;
         if (format.encoding == ListEncoding::bitmask && format.max_lights == 0) return;
         const std::uint64_t bytes = encoded_bytes(format, lists.tiles.size(), lists.ids.size());
         if (bytes > 50'000'000) return;
         static constexpr const char* names[] = {"offset_count", "sentinel", "bitmask"};
         ++report_.tally[names[encoding]];
         Guarded<std::byte> out(static_cast<std::size_t>(bytes) + random_.below(std::size_t{9}));
-        const bool countable = format.encoding == ListEncoding::bitmask || lists.ids.empty() || width == 4 ||
-                               highest < (1u << 8 * width) - (format.encoding == ListEncoding::sentinel ? 1 : 0);
+        const bool countable =
+            format.encoding == ListEncoding::bitmask || lists.ids.empty() || width == 4 ||
+            highest < (1u << 8 * width) - (format.encoding == ListEncoding::sentinel ? 1 : 0);
         if (bytes > 0 && countable) {
             const auto few = encode(grid, format, out.span(static_cast<std::size_t>(bytes) - 1));
-            if (few || !out.intact(0)) return fault(std::string("encode takes a buffer that is too small, ") + names[encoding]);
+            if (few || !out.intact(0))
+                return fault(std::string("encode takes a buffer that is too small, ") + names[encoding]);
         }
         const auto encoded = encode(grid, format, out.span());
         if (!countable) {
@@ -370,12 +421,14 @@ private:
             return;
         }
         if (!encoded) return fault("encode refuses: " + encoded.error().message());
-        if (!out.intact(static_cast<std::size_t>(bytes))) return fault(std::string("encode writes beyond its bytes, ") + names[encoding]);
+        if (!out.intact(static_cast<std::size_t>(bytes)))
+            return fault(std::string("encode writes beyond its bytes, ") + names[encoding]);
         const std::byte* const from = out.span().data();
         const auto id_at = [&](std::size_t i) {
             std::uint32_t id = 0;
             for (std::size_t byte = 0; byte < width; ++byte) {
-                const std::size_t shift = std::endian::native == std::endian::little ? byte : width - 1 - byte;
+                const std::size_t shift =
+                    std::endian::native == std::endian::little ? byte : width - 1 - byte;
                 id |= static_cast<std::uint32_t>(from[i * width + byte]) << 8 * shift;
             }
             return id;
@@ -411,7 +464,8 @@ private:
             if (!std::ranges::equal(decoded, expected))
                 return fault(std::string("encode: a tile's list is another one, ") + names[encoding]);
         }
-        if (encoded->entries_cut != cut || encoded->tiles_cut != tiles_cut || encoded->capacity_needed != longest)
+        if (encoded->entries_cut != cut || encoded->tiles_cut != tiles_cut ||
+            encoded->capacity_needed != longest)
             fault("encode counts other losses");
     }
 
@@ -421,7 +475,8 @@ private:
             if (!advice) return fault("advise refuses: " + advice.error().message());
             double before = 0;
             for (const lightbin::Plan& plan : advice->plans()) {
-                if (!(plan.build_ns >= 0) || !(plan.evaluations >= 0) || !std::isfinite(plan.total_ns) || plan.total_ns < before)
+                if (!(plan.build_ns >= 0) || !(plan.evaluations >= 0) || !std::isfinite(plan.total_ns) ||
+                    plan.total_ns < before)
                     fault("advise: a plan without a sound price");
                 before = plan.total_ns;
             }
@@ -475,11 +530,31 @@ void expect_all(Tally& tally) {
                 tally[std::string(footprint) + ", " + depth + ", " + tier];
     for (const char* depth : depth_names)
         tally[std::string("points, ") + depth];
-    for (const char* name :
-         {"float projection", "double projection", "looks down +z", "looks down -z", "depth 0 to 1", "depth -1 to 1",
-          "lower left", "upper left", "reversed orthographic", "reversed perspective", "x flipped", "y flipped",
-          "with_tile_size", "offset_count", "sentinel", "bitmask", "ids too narrow", "advise", "points drawn",
-          "background skipped", "background counts", "one sample", "many samples", "pitch", "no pitch"})
+    for (const char* name : {"float projection",
+                             "double projection",
+                             "looks down +z",
+                             "looks down -z",
+                             "depth 0 to 1",
+                             "depth -1 to 1",
+                             "lower left",
+                             "upper left",
+                             "reversed orthographic",
+                             "reversed perspective",
+                             "x flipped",
+                             "y flipped",
+                             "with_tile_size",
+                             "offset_count",
+                             "sentinel",
+                             "bitmask",
+                             "ids too narrow",
+                             "advise",
+                             "points drawn",
+                             "background skipped",
+                             "background counts",
+                             "one sample",
+                             "many samples",
+                             "pitch",
+                             "no pitch"})
         tally[name];
 }
 

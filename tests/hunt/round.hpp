@@ -12,8 +12,8 @@ namespace hunt {
 
 /// What a hunt has come to so far.
 struct Report {
-    Tally tally;                    ///< rounds by what they had
-    std::uint64_t points = 0;       ///< looked for in lists, all options together
+    Tally tally;               ///< rounds by what they had
+    std::uint64_t points = 0;  ///< looked for in lists, all options together
     std::uint64_t grids = 0;
     std::uint64_t entries = 0;
     std::vector<std::string> faults;

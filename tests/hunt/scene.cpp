@@ -10,11 +10,15 @@ namespace {
 constexpr float endless = std::numeric_limits<float>::infinity();
 using Long = long double;
 
-Long dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Long dot(const Point& a, const Point& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 Point plus(const Point& a, const Point& b, Long times = 1) {
     return {a[0] + times * b[0], a[1] + times * b[1], a[2] + times * b[2]};
 }
-Long length(const Point& a) { return std::sqrt(dot(a, a)); }
+Long length(const Point& a) {
+    return std::sqrt(dot(a, a));
+}
 Point direction(Random& random) {
     for (;;) {
         const Point p = {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
@@ -62,7 +66,8 @@ glm::dmat4 make_world(std::string_view kind, double reach, Random& random) {
         glm::dmat4 h(1);
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j)
-                h[i][j] -= static_cast<double>(2 * n[static_cast<std::size_t>(i)] * n[static_cast<std::size_t>(j)]);
+                h[i][j] -=
+                    static_cast<double>(2 * n[static_cast<std::size_t>(i)] * n[static_cast<std::size_t>(j)]);
         m = m * h;
     }
     if (random.one_in(4)) m = glm::dmat4(1);
@@ -87,7 +92,8 @@ glm::dmat4 make_world(std::string_view kind, double reach, Random& random) {
 
 /// A view depth to put something at: anywhere, or right at the planes.
 Long pick_depth(const Camera& camera, Random& random) {
-    const Long near_depth = camera.near_hint, far_depth = camera.far_hint, step = random.log_between(0x1p-45, 0x1p-3);
+    const Long near_depth = camera.near_hint, far_depth = camera.far_hint,
+               step = random.log_between(0x1p-45, 0x1p-3);
     if (camera.orthographic) {
         const Long all = far_depth - near_depth;
         return random.one_in(6)   ? near_depth + all * step
@@ -96,7 +102,9 @@ Long pick_depth(const Camera& camera, Random& random) {
     }
     if (random.one_in(8)) return near_depth * (1 + step);
     if (random.one_in(8) && std::isfinite(far_depth)) return far_depth * (1 - step);
-    const double most = std::isfinite(camera.far_hint) ? camera.far_hint : random.one_in(4) ? 1e37 : camera.near_hint * 1e6;
+    const double most = std::isfinite(camera.far_hint) ? camera.far_hint
+                        : random.one_in(4)             ? 1e37
+                                                       : camera.near_hint * 1e6;
     return random.log_between(camera.near_hint, std::clamp(most, camera.near_hint * 1.0000001, 1e37));
 }
 
@@ -115,7 +123,8 @@ public:
         for (int axis = 0; axis < 2; ++axis) {
             const int tiles = (sides[axis] - 1) / size + 1;
             const int tile = random_.one_in(6) ? random_.pick({0, tiles - 1}) : random_.below(tiles);
-            const bool near_edge = kind == "touches an edge" ? (axis == 0) == edge_of_x_ : kind == "touches a corner" || random_.coin();
+            const bool near_edge = kind == "touches an edge" ? (axis == 0) == edge_of_x_
+                                                             : kind == "touches a corner" || random_.coin();
             const double step = random_.log_between(0x1p-28, 0x1p-3);
             double place = random_.between(0.01, 0.99);
             if (near_edge) {
@@ -127,7 +136,8 @@ public:
         }
         edge_of_x_ = !edge_of_x_;
         Long depth = pick_depth(camera_, random_);
-        if (kind == "crosses near") depth = camera_.near_hint + std::fabs(camera_.near_hint) * random_.log_between(0x1p-30, 0x1p-2);
+        if (kind == "crosses near")
+            depth = camera_.near_hint + std::fabs(camera_.near_hint) * random_.log_between(0x1p-30, 0x1p-2);
         if (kind == "beyond far" && std::isfinite(camera_.far_hint))
             depth = camera_.far_hint - std::fabs(camera_.far_hint) * random_.log_between(0x1p-30, 0x1p-2);
         const Point seen_at = point_at(camera_, at[0], at[1], depth);
@@ -137,7 +147,8 @@ public:
         for (std::size_t axis = 0; axis < 2; ++axis) {
             if (outward[axis] == 0) continue;
             const Long step = outward[axis] * 0.001L * size;
-            const Point beside = point_at(camera_, at[0] + (axis == 0 ? step : 0), at[1] + (axis == 1 ? step : 0), depth);
+            const Point beside =
+                point_at(camera_, at[0] + (axis == 0 ? step : 0), at[1] + (axis == 1 ? step : 0), depth);
             Point normal = {};
             normal[axis] = beside[axis] < seen_at[axis] ? -1 : 1;
             if (!camera_.orthographic) {
@@ -146,7 +157,8 @@ public:
                 normal = plus(normal, ray, -dot(normal, ray) / dot(ray, ray));
                 normal = plus({}, normal, 1 / length(normal));
             }
-            away = plus(away, normal, kind == "touches a corner" || kind == "touches all ways" ? random_.unit() : 1);
+            away = plus(away, normal,
+                        kind == "touches a corner" || kind == "touches all ways" ? random_.unit() : 1);
         }
         if (kind == "touches a depth") away = {0, 0, static_cast<Long>(random_.sign())};
         if (kind == "touches all ways") away[2] += random_.between(-1, 1);
@@ -158,7 +170,9 @@ public:
         const Long tile_reach = this->tile_reach(at[0], at[1], depth);
         Long least = 1e-4L * tile_reach, most = 30 * tile_reach;
         if (!small && random_.one_in(3)) most = std::max<Long>(most, 10 * length(seen_at));
-        if (small) most = std::min<Long>(1.2L * tile_reach, camera_.orthographic ? most : (depth - camera_.near_hint) / 4);
+        if (small)
+            most = std::min<Long>(1.2L * tile_reach,
+                                  camera_.orthographic ? most : (depth - camera_.near_hint) / 4);
         return holding(seen_at, away, std::min(least, most), most, point);
     }
 
@@ -168,13 +182,15 @@ public:
         const Long depth = pick_depth(camera_, random_);
         const Point at = point_at(camera_, x, y, depth);
         const Long reach = std::max(length(at), tile_reach(x, y, depth));
-        const float nasty[] = {nasty_float(random_), nasty_float(random_), nasty_float(random_), nasty_float(random_)};
+        const float nasty[] = {nasty_float(random_), nasty_float(random_), nasty_float(random_),
+                               nasty_float(random_)};
         if (kind == "eye inside") {
             const Long radius = reach * random_.log_between(1e-3, 10);
             return moved(plus({}, direction(random_), radius * random_.unit()), radius);
         }
         if (kind == "tiny") return moved(at, reach * random_.log_between(1e-12, 1e-5));
-        if (kind == "huge") return moved(plus(at, direction(random_), reach * 10), reach * random_.log_between(1, 1e6));
+        if (kind == "huge")
+            return moved(plus(at, direction(random_), reach * 10), reach * random_.log_between(1, 1e6));
         if (kind == "denormal") {
             Sphere light = moved(at, random_.pick({0x1p-149L, 0x1p-140L, 0x1p-126L}));
             if (random_.coin()) light = {light.radius, -light.radius * 3, light.z, light.radius};
@@ -202,7 +218,8 @@ public:
             return {one(), one(), one(), std::fabs(one())};
         }
         if (kind == "nasty") return {nasty[0], nasty[1], nasty[2], nasty[3]};
-        return moved(plus(at, direction(random_), reach * random_.log_between(1e-3, 3)), reach * random_.log_between(1e-3, 2));
+        return moved(plus(at, direction(random_), reach * random_.log_between(1e-3, 3)),
+                     reach * random_.log_between(1e-3, 2));
     }
 
     bool regular() const { return from_view_.regular(); }
@@ -227,7 +244,8 @@ private:
             const Long radius = random_.log_between(std::max(1e-44, static_cast<double>(least)),
                                                     std::clamp(static_cast<double>(most), 1e-43, 1e38));
             const Point centre = from_view_(plus(in_view, away, radius));
-            Sphere light = {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2]), 0};
+            Sphere light = {static_cast<float>(centre[0]), static_cast<float>(centre[1]),
+                            static_cast<float>(centre[2]), 0};
             const Long reach = length(plus(point, {light.x, light.y, light.z}, -1));
             light.radius = float_up(reach * (1 + 0x1p-58L));
             const Long excess = (light.radius - reach) / reach;
@@ -242,7 +260,8 @@ private:
     Sphere moved(const Point& centre, Long radius) const {
         const Point at = from_view_.regular() ? from_view_(centre) : centre;
         Long by = 1;
-        if (scene_.in_world && from_view_.regular()) by = length(plus(from_view_({1, 0, 0}), from_view_({}), -1));
+        if (scene_.in_world && from_view_.regular())
+            by = length(plus(from_view_({1, 0, 0}), from_view_({}), -1));
         return {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2]),
                 static_cast<float>(radius * by)};
     }
@@ -277,8 +296,8 @@ Point extreme_point(const Camera& camera, const Scene& scene, const Sphere& ligh
 }  // namespace
 
 bool is_bad(const Sphere& light) {
-    return !std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) || std::isnan(light.radius) ||
-           light.radius < 0;
+    return !std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) ||
+           std::isnan(light.radius) || light.radius < 0;
 }
 
 bool surely_inside(const Sphere& light, const Point& point) {
@@ -313,7 +332,8 @@ Scene make_scene(const Camera& camera, int space, std::uint32_t count, std::uint
     Scene scene;
     std::string_view kind = space_kinds[space];
     // What a matrix adds to a radius is large where all else is next to nothing.
-    if (large < count) kind = std::fabs(camera.near_hint) < 1e-30 || kind.starts_with("view") ? "view" : "rigid";
+    if (large < count)
+        kind = std::fabs(camera.near_hint) < 1e-30 || kind.starts_with("view") ? "view" : "rigid";
     if (!kind.starts_with("view")) {
         scene.in_world = true;
         const double reach = std::clamp(std::fabs(camera.near_hint), 1e-20, 1e20) * 100;
@@ -343,6 +363,11 @@ Scene make_scene(const Camera& camera, int space, std::uint32_t count, std::uint
         } else {
             scene.lights.push_back(maker.other(name));
         }
+    }
+    // One of infinite radius reaches each end of the grid.
+    if (large > 0 && random.coin()) {
+        const std::size_t id = random.below(std::size_t{large});
+        scene.lights[id].radius = endless;
     }
     // Lights that may be anywhere among those that are small.
     if (large > 0 && large < count)
