@@ -34,7 +34,10 @@ Frustum make_frustum(int kind, Random& random) {
     };
     if (is(kind, "off-centre")) move(0.6);
     if (is(kind, "jittered")) move(0.0005);
-    if (is(kind, "infinite far") || is(kind, "reversed Z, infinite")) f.infinite = true;
+    if (is(kind, "infinite far") || is(kind, "reversed Z, infinite")) {
+        f.infinite = true;
+        if (random.one_in(3)) f.near_depth *= random.log_between(1e-12, 1);
+    }
     if (is(kind, "narrow")) widen(random.log_between(1e-7, 0.1));
     if (is(kind, "wide")) {
         widen(random.log_between(3, 1e5));

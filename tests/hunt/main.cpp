@@ -62,10 +62,7 @@ int main(int count, char** words) {
     double next_line = 10;
     std::uint64_t round = first;
     for (; (rounds == 0 || round - first < rounds) && (seconds == 0 || elapsed() < seconds); ++round) {
-        const double before = elapsed();
         hunt::hunt_round(seed, round, report);
-        if (std::getenv("HUNT_SLOW") && elapsed() - before > 0.3)
-            std::printf("slow %.2f round %d\n", elapsed() - before, (int)round);
         print_faults();
         if (report.faults.size() >= 10) break;
         if (elapsed() < next_line) continue;

@@ -65,8 +65,6 @@ public:
         const std::size_t tiles = view->tile_count(), most = 400'000;
         const std::uint32_t large = static_cast<std::uint32_t>(
             std::min<std::size_t>(lights, lights * tiles <= most ? lights : most / (2 * tiles) + 1));
-        if (std::getenv("HUNT_SLOW"))
-            std::printf("%d %s; %zu tiles, large %u\n", (int)round_, what_.c_str(), tiles, large);
         scene_ = make_scene(camera_, space, lights, large, random_, report_.tally);
         keep_small(large);
         rejected_ = static_cast<std::uint32_t>(std::ranges::count_if(scene_.lights, is_bad));
@@ -116,6 +114,7 @@ private:
     }
 
     void fault(const std::string& what) {
+        if (++faults_ > 3) return;  // the rest says no more
         report_.faults.push_back(what + "\n    in seed " + std::to_string(seed_) + ", round " +
                                  std::to_string(round_) + ": " + what_);
     }
@@ -421,7 +420,10 @@ private:
             return;
         }
         if (!encoded) return fault("encode refuses: " + encoded.error().message());
-        if (!out.intact(static_cast<std::size_t>(bytes)))
+        const std::size_t written = format.encoding == ListEncoding::offset_count
+                                        ? lists.ids.size() * width
+                                        : static_cast<std::size_t>(bytes);
+        if (!out.intact(written))
             return fault(std::string("encode writes beyond its bytes, ") + names[encoding]);
         const std::byte* const from = out.span().data();
         const auto id_at = [&](std::size_t i) {
@@ -489,6 +491,7 @@ private:
     }
 
     std::uint64_t seed_, round_;
+    int faults_ = 0;
     Random random_;
     Report& report_;
     std::string what_;

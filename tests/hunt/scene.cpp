@@ -74,8 +74,9 @@ glm::dmat4 make_world(std::string_view kind, double reach, Random& random) {
     if (kind == "scaled")
         for (int i = 0; i < 3; ++i)
             m[i] *= random.pick({0.01, 0.5, 3.0, 1000.0}) + 0 * i;
-    if (kind == "extreme scale") {
-        const double by = random.log_between(1e-30, 1e30);
+    if (kind == "extreme scale" || kind == "vast scale") {  // vast: squares are more than a double holds
+        const double by =
+            kind == "vast scale" ? random.log_between(1e140, 1e300) : random.log_between(1e-30, 1e30);
         for (int i = 0; i < 3; ++i)
             m[i] *= by;
     }
@@ -102,6 +103,8 @@ Long pick_depth(const Camera& camera, Random& random) {
     }
     if (random.one_in(8)) return near_depth * (1 + step);
     if (random.one_in(8) && std::isfinite(far_depth)) return far_depth * (1 - step);
+    if (!std::isfinite(far_depth) && random.one_in(8))  // where what a depth buffer holds has few bits
+        return std::min(near_depth * random.log_between(0x1p120, 0x1p150), 1e37L);
     const double most = std::isfinite(camera.far_hint) ? camera.far_hint
                         : random.one_in(4)             ? 1e37
                                                        : camera.near_hint * 1e6;
@@ -338,7 +341,7 @@ Scene make_scene(const Camera& camera, int space, std::uint32_t count, std::uint
         scene.in_world = true;
         const double reach = std::clamp(std::fabs(camera.near_hint), 1e-20, 1e20) * 100;
         scene.to_view = make_world(kind, reach, random);
-        scene.in_float = random.coin();
+        scene.in_float = random.coin() && kind != "vast scale";
         if (scene.in_float) scene.to_view = glm::dmat4(glm::mat4(scene.to_view));
     }
     Maker maker(camera, scene, random);

@@ -16,9 +16,9 @@ using lightbin::Sphere;
 /// How often something was tried, by name.
 using Tally = std::map<std::string, std::uint64_t>;
 
-inline constexpr const char* space_kinds[] = {"view",   "view space",   "rigid",   "far from origin",
-                                              "scaled", "mirrored",     "sheared", "squashed",
-                                              "flat",   "extreme scale"};
+inline constexpr const char* space_kinds[] = {"view",   "view space",    "rigid",     "far from origin",
+                                              "scaled", "mirrored",      "sheared",   "squashed",
+                                              "flat",   "extreme scale", "vast scale"};
 inline constexpr const char* light_kinds[] = {"touches an edge",
                                               "touches a corner",
                                               "touches a depth",
