@@ -9,13 +9,14 @@ cd "$(dirname "$0")/.."
 compilers="g++ clang-14 clang-19" # the last two to see that they have no warning to give either
 tools="cmake ninja-build"
 arm="g++-aarch64-linux-gnu qemu-user-static" # the NEON tier, in an emulator
+x86_32="g++-12-multilib" # a machine of 32 bits
 libraries="doctest-dev libglm-dev"
 oracle="libboost-dev libgmp-dev"
 examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
 opengl="libgl1-mesa-dri libgles2" # Mesa draws where there is no GPU
 shaders="glslang-dev glslang-tools spirv-tools" # the first names files of the second
 # shellcheck disable=SC2086  # one word a package
-install_packages $compilers $tools $arm $libraries $oracle $examples $opengl $shaders
+install_packages $compilers $tools $arm $x86_32 $libraries $oracle $examples $opengl $shaders
 
 echo "$me: configuring and building in build/dev"
 jobs=$(nproc)

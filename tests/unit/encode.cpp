@@ -76,7 +76,8 @@ TEST_CASE(
             for (const IdWidth ids : {IdWidth::u8, IdWidth::u16, IdWidth::u32})
                 for (const std::uint32_t capacity : {1u, 7u, 12u, 13u}) {
                     const ListFormat format{encoding, ids, capacity, lights};
-                    const std::uint64_t size = encoded_bytes(format, made.tiles.size(), made.ids.size());
+                    const std::size_t size =
+                        static_cast<std::size_t>(encoded_bytes(format, made.tiles.size(), made.ids.size()));
                     std::vector<std::byte> bytes(size + 4, std::byte{0xa5});
                     const auto result = encode(grid, format, std::span(bytes).first(size));
                     REQUIRE(result);

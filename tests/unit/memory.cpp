@@ -4,6 +4,7 @@
 #include <lightbin/shader_build.hpp>
 
 #include <limits>
+#include <new>
 #include <string>
 
 using namespace lightbin;
@@ -109,6 +110,23 @@ TEST_CASE("more lights than 32 bits number") {
         refused(advise(view, lights));
         refused(shader_footprints(view, lights));
     }
+}
+
+TEST_CASE("a buffer refuses what no machine holds, and is as any other after it") {
+    const auto check = [](auto buffer) {
+        for (const std::uint64_t size :
+             {~std::uint64_t{0}, (std::uint64_t{1} << 63) + 1, (std::uint64_t{1} << 62) + 1}) {
+            CHECK_THROWS_AS(buffer.room(size), const std::bad_alloc&);
+            CHECK(buffer.data() == nullptr);
+            auto* const few = buffer.room(3);
+            few[0] = few[2] = 7;
+            CHECK_THROWS_AS(buffer.room(size, 3), const std::bad_alloc&);
+            CHECK(buffer.room(3) == few);
+            CHECK(buffer.room(5, 3)[2] == 7);
+        }
+    };
+    check(detail::Buffer<std::uint8_t>());
+    check(detail::Buffer<std::uint64_t>());
 }
 
 TEST_CASE("more entries than 32-bit offsets reach") {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/sizes.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -32,7 +33,7 @@ public:
     /// The same, keeping the first `used` elements; grows in large steps.
     T* room(std::uint64_t size, std::size_t used) {
         if (size > size_) {
-            const std::uint64_t larger = 2 * size;
+            const std::uint64_t larger = sum_of_sizes(size, size);
             std::unique_ptr<T[]> memory = made(larger);
             std::copy_n(memory_.get(), used, memory.get());
             memory_ = std::move(memory);
