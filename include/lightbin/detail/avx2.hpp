@@ -105,8 +105,6 @@ LIGHTBIN_TARGET inline unsigned bits(DoubleMask mask) {
     return static_cast<unsigned>(_mm256_movemask_pd(mask.v));
 }
 
-#include <lightbin/detail/vectors.inl>
-
 /// Counts of a column's tiles, and tiles: for scatter.inl.
 struct Rows {
     __m256i v;
@@ -221,10 +219,6 @@ LIGHTBIN_TARGET inline void store_spans(RowSpan* spans, Doubles first, Doubles l
     _mm_storeu_si128(reinterpret_cast<__m128i*>(spans), pairs);
 }
 
-#include <lightbin/detail/depth_columns.inl>
-#include <lightbin/detail/project.inl>
-#include <lightbin/detail/silhouette.inl>
-
 /// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
 LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     __m256i low = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes));
@@ -255,15 +249,15 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
     return static_cast<std::uint32_t>(std::popcount(mask));
 }
 
-#include <lightbin/detail/tile_masks.inl>
+using portable::pack;
+using portable::Packed;
+using portable::packs_ids;
 
-#include <lightbin/detail/scan.inl>
-#include <lightbin/detail/scatter.inl>
-#include <lightbin/detail/supertile.inl>
-#include <lightbin/detail/survey.inl>
+#define LIGHTBIN_TIER_HAS_ROWS
+#define LIGHTBIN_TIER_SCANS
+#include <lightbin/detail/kernels.inl>
 
 }  // namespace avx2
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
 
-#undef LIGHTBIN_TARGET
 #endif

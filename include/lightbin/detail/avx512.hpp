@@ -99,8 +99,6 @@ LIGHTBIN_TARGET inline unsigned bits(unsigned mask) {
     return mask;
 }
 
-#include <lightbin/detail/vectors.inl>
-
 /// Half 0 or 1 of the lanes.
 LIGHTBIN_TARGET inline Doubles widened(Floats a, unsigned half) {
     return _mm512_cvtps_pd(half == 0 ? _mm512_castps512_ps256(a) : _mm512_extractf32x8_ps(a, 1));
@@ -168,12 +166,6 @@ LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCo
     counts.area += static_cast<std::uint64_t>(_mm512_reduce_add_epi64(sums));
 }
 
-#include <lightbin/detail/project.inl>
-
-#include <lightbin/detail/silhouette.inl>
-
-#include <lightbin/detail/depth_columns.inl>
-
 /// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
 LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     const __m512i all_bytes = _mm512_loadu_si512(bytes);
@@ -181,16 +173,12 @@ LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t*
         words[bit] = _mm512_test_epi8_mask(all_bytes, _mm512_set1_epi8(static_cast<char>(1 << bit)));
 }
 
-#include <lightbin/detail/tile_masks.inl>
-
-#include <lightbin/detail/survey.inl>
-
-#include <lightbin/detail/compress.inl>
+#define LIGHTBIN_TIER_COMPRESSES
+#include <lightbin/detail/kernels.inl>
 
 }  // namespace avx512
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
 
-#undef LIGHTBIN_TARGET
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic pop
 #endif

@@ -108,8 +108,6 @@ inline unsigned bits(DoubleMask mask) {
     return static_cast<unsigned>((vgetq_lane_u64(mask.v, 0) & 1) | (vgetq_lane_u64(mask.v, 1) & 2));
 }
 
-#include <lightbin/detail/vectors.inl>
-
 /// Counts of a column's tiles, and tiles: for scatter.inl.
 struct Rows {
     uint32x4_t v;
@@ -165,17 +163,20 @@ inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
     std::memcpy(spans, &narrow, sizeof narrow);
 }
 
-#include <lightbin/detail/depth_columns.inl>
-#include <lightbin/detail/project.inl>
-#include <lightbin/detail/silhouette.inl>
-#include <lightbin/detail/tile_masks.inl>
+inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
+                           unsigned visible, const ChunkRects& rects, std::uint32_t first) {
+    portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);
+}
+using portable::append;
+using portable::pack;
+using portable::Packed;
+using portable::packs_ids;
+using portable::split_bits;
 
-#include <lightbin/detail/scatter.inl>
-#include <lightbin/detail/supertile.inl>
-#include <lightbin/detail/survey.inl>
+#define LIGHTBIN_TIER_HAS_ROWS
+#include <lightbin/detail/kernels.inl>
 
 }  // namespace neon
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
 
-#undef LIGHTBIN_TARGET
 #endif

@@ -81,12 +81,13 @@ inline WideVectors wide_vectors() {
     if (!has(first[2], {23, 27, 28})) return {};  // POPCNT, OSXSAVE, AVX
     const unsigned long long saved = _xgetbv(0);
     const bool avx2 = (saved & 0x06) == 0x06 && has(seventh[1], {3, 5});  // BMI1, AVX2
-    return {avx2, avx2 && (saved & 0xe6) == 0xe6 && has(seventh[1], {8, 16, 17, 30, 31}) &&  // BMI2, F, DQ, BW, VL
-                      has(seventh[2], {1, 6, 12, 14})};  // VBMI, VBMI2, BITALG, VPOPCNTDQ
+    return {avx2, avx2 && (saved & 0xe6) == 0xe6 &&
+                      has(seventh[1], {8, 16, 17, 30, 31}) &&  // BMI2, F, DQ, BW, VL
+                      has(seventh[2], {1, 6, 12, 14})};        // VBMI, VBMI2, BITALG, VPOPCNTDQ
 #else
     // The compiler's own, which asks the processor once a program: in a virtual machine asking takes 10 us and more.
-    const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
-                      __builtin_cpu_supports("popcnt");
+    const bool avx2 =
+        __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("popcnt");
     return {avx2, avx2 && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("avx512f") &&
                       __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
                       __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512vbmi") &&
@@ -123,4 +124,4 @@ template <class Real> inline Real rounded(Real product) {
 }
 
 }  // namespace detail
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR

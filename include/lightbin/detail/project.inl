@@ -106,7 +106,7 @@ LIGHTBIN_TARGET inline void project_carefully(const Camera& camera, const Sphere
                                both(less_equal(abs(z), most), less_equal(all(0.0), radius)));
         const Doubles nearest = z - radius, farthest = z + radius;
         auto seen = and_not(good, either(less(farthest, all(near_depth)),
-                                          less(all(static_cast<double>(camera.far_depth)), nearest)));
+                                         less(all(static_cast<double>(camera.far_depth)), nearest)));
         // Not 0, so that no root is: much less than the rounding of any float.
         const Doubles r = greater(radius, all(0x1p-400));
         Doubles left = x - r, right = x + r, bottom = y - r, top = y + r;
@@ -136,26 +136,6 @@ LIGHTBIN_TARGET inline void project_carefully(const Camera& camera, const Sphere
             rects.y1[place] = y1[i];
             visible[place / lanes] |= (in_view >> i & 1) << place % lanes;
         }
-    }
-}
-
-/// Appends those of a vector of a chunk's lights, from `first` on, whose bit in `visible` is set. Every lane
-/// is written, and the place moves on for those in view: no branch to predict. A tier with a better way has a
-/// plain function for it, which wins over this one.
-template <class Rects>
-LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCounts& counts,
-                                           std::uint32_t first_id, unsigned visible, const Rects& rects,
-                                           std::uint32_t first) {
-    for (std::uint32_t i = first; i < first + lanes; ++i, visible >>= 1) {
-        const std::uint32_t at = counts.visible, in_view = visible & 1;
-        out.ids[at] = first_id + i;
-        out.x0[at] = rects.x0[i];
-        out.y0[at] = rects.y0[i];
-        out.x1[at] = rects.x1[i];
-        out.y1[at] = rects.y1[i];
-        counts.visible += in_view;
-        counts.area +=
-            in_view * ((rects.x1[i] - rects.x0[i] + 1u) * std::uint64_t{rects.y1[i] - rects.y0[i] + 1u});
     }
 }
 

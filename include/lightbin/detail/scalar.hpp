@@ -54,10 +54,6 @@ template <class Real> Real greater(Real a, Real b) {
     return a > b ? a : b;
 }
 
-#include <lightbin/detail/vectors.inl>
-
-#include <lightbin/detail/depth_columns.inl>
-
 inline double widened(float a, unsigned) {
     return static_cast<double>(a);
 }
@@ -74,12 +70,6 @@ template <class Real> void store_tiles(std::uint16_t* tiles, Real value) {
 inline void store_spans(RowSpan* spans, double first, double last) {
     *spans = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(last)};
 }
-
-#include <lightbin/detail/project.inl>
-#include <lightbin/detail/silhouette.inl>
-#include <lightbin/detail/tile_masks.inl>
-
-#include <lightbin/detail/survey.inl>
 
 /// See LayOutRows.
 template <class Id>
@@ -105,9 +95,17 @@ std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned beg
     return at;
 }
 
-#include <lightbin/detail/supertile.inl>
+inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
+                           unsigned visible, const ChunkRects& rects, std::uint32_t first) {
+    portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);
+}
+using portable::append;
+using portable::pack;
+using portable::Packed;
+using portable::packs_ids;
+using portable::split_bits;
 
-#undef LIGHTBIN_TARGET
+#include <lightbin/detail/kernels.inl>
 
 }  // namespace scalar
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

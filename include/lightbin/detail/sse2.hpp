@@ -105,8 +105,6 @@ LIGHTBIN_TARGET inline unsigned bits(DoubleMask mask) {
     return static_cast<unsigned>(_mm_movemask_pd(mask.v));
 }
 
-#include <lightbin/detail/vectors.inl>
-
 /// Counts of a column's tiles, and tiles: for scatter.inl.
 struct Rows {
     __m128i v;
@@ -165,10 +163,6 @@ inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
     _mm_storel_epi64(reinterpret_cast<__m128i*>(spans), pairs);
 }
 
-#include <lightbin/detail/depth_columns.inl>
-#include <lightbin/detail/project.inl>
-#include <lightbin/detail/silhouette.inl>
-
 /// As the AVX2 tier's, which see.
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     __m128i quarter[4];
@@ -226,14 +220,15 @@ template <class Id> std::uint32_t append(Id* out, const Packed<Id>* ids, unsigne
     return set[low] + std::uint32_t{set[high]};
 }
 
-#include <lightbin/detail/tile_masks.inl>
+inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
+                           unsigned visible, const ChunkRects& rects, std::uint32_t first) {
+    portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);
+}
 
-#include <lightbin/detail/scatter.inl>
-#include <lightbin/detail/supertile.inl>
-#include <lightbin/detail/survey.inl>
+#define LIGHTBIN_TIER_HAS_ROWS
+#include <lightbin/detail/kernels.inl>
 
 }  // namespace sse2
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
 
-#undef LIGHTBIN_TARGET
 #endif

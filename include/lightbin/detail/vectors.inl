@@ -24,6 +24,7 @@ template <class Reals> LIGHTBIN_TARGET inline Reals abs(Reals a) {
 }
 
 /// As select, of what no processor predicts: the scalar tier has its own of floats, without a branch.
-template <class Mask, class Reals> LIGHTBIN_TARGET inline Reals select_unpredicted(Mask mask, Reals a, Reals b) {
+template <class Mask, class Reals>
+LIGHTBIN_TARGET inline Reals select_unpredicted(Mask mask, Reals a, Reals b) {
     return select(mask, a, b);
 }
