@@ -181,6 +181,13 @@ TEST_CASE("all tiers give the same bytes, on any number of workers") {
     compare<Options{.index = Index::u16, .depth_test = DepthTest::split_box}>(100, 5000);
 }
 
+TEST_CASE("each tier scatters by its own text, the scalar one without vectors") {
+    const auto scalar = detail::scatter_kernel<std::uint32_t>(Isa::scalar);
+    for (const Isa isa : {Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon})
+        if (const Isa here = detail::machine_isa(isa); here != Isa::scalar)
+            CHECK(detail::scatter_kernel<std::uint32_t>(here) != scalar);
+}
+
 TEST_CASE("threads write their own parts only") {
     Input input = random_input(5);
     input.lights = test::random_lights(3000, 51);
