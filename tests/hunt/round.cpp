@@ -72,6 +72,14 @@ public:
         const std::string wrong =
             make_bounds(bounds_kind, camera_, *view_, placed_, random_, report_.tally, bounds_);
         if (!wrong.empty()) fault(wrong);
+        for (int more = 0; more < 3; ++more) {  // small ones cost next to nothing
+            if (camera_.viewport.width * camera_.viewport.height > 50'000) break;
+            Bounds unused;
+            const std::string fault_found =
+                make_bounds(static_cast<int>(std::size(bounds_kinds)) - 1, camera_, *view_, placed_, random_,
+                            report_.tally, unused);
+            if (!fault_found.empty()) fault(fault_found);
+        }
         if (random_.one_in(2) && tiles > 0) {
             // The same grid by way of another.
             const auto other = view->with_tile_size(random_.from_to(1, 64));
