@@ -62,9 +62,11 @@ public:
         ++report_.tally[bounds_kinds[bounds_kind]];
         ++report_.tally[std::to_string(lights) + " lights"];
 
-        const std::size_t tiles = view->tile_count(), most = 400'000;
+        const std::size_t tiles = view->tile_count();
+        constexpr std::uint64_t most = 250'000;
         const std::uint32_t large = static_cast<std::uint32_t>(
-            std::min<std::size_t>(lights, lights * tiles <= most ? lights : most / (2 * tiles) + 1));
+            std::uint64_t{lights} * tiles <= most ? lights
+                                                  : std::min<std::uint64_t>(lights, most / (2 * tiles) + 1));
         scene_ = make_scene(camera_, space, lights, large, random_, report_.tally);
         keep_small(large);
         rejected_ = static_cast<std::uint32_t>(std::ranges::count_if(scene_.lights, is_bad));
