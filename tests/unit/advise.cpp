@@ -141,10 +141,10 @@ TEST_CASE("the evaluations of lists with Z are near those of the built grids") {
     for (const std::size_t count : {20u, 300u, 1000u, 5000u}) {
         const auto lights = test::random_lights(count, 7);
         // As advise() does, with more lights and blocks than it takes time for.
-        detail::Survey survey = detail::survey_rectangles(detail::compiled_isa, view,
-                                                          detail::as_lights(lights), bounds.reduced, count);
-        detail::survey_blocks(detail::compiled_isa, view, detail::as_lights(lights), bounds.reduced, 4096,
-                              survey);
+        const auto source = detail::as_lights(lights);
+        detail::Survey survey =
+            detail::survey_rectangles(test::widest_tier(), view, source, bounds.reduced, count);
+        detail::survey_blocks(test::widest_tier(), view, source, bounds.reduced, 4096, survey);
         const Advice advice = advised(view, lights, {}, bounds.reduced);
         for (const Plan& plan : advice.plans()) {
             if (!plan.tiled || plan.tile_size > 64 || plan.footprint == Footprint::silhouette) continue;
@@ -184,8 +184,7 @@ TEST_CASE("all tiers survey alike; bounds that leave out nothing are as none") {
         return survey;
     };
     const detail::Survey scalar = surveyed(Isa::scalar, bounds.reduced);
-    for (const Isa isa : {Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon}) {
-        if (detail::machine_isa(isa) != isa) continue;
+    for (const Isa isa : test::machine_tiers()) {
         const detail::Survey other = surveyed(isa, bounds.reduced);
         for (std::size_t grid = 0; grid < 4; ++grid)
             for (std::size_t rung = 0; rung < std::size(detail::rungs); ++rung) {
@@ -194,8 +193,8 @@ TEST_CASE("all tiers survey alike; bounds that leave out nothing are as none") {
             }
     }
     const std::vector<float> from_eye(view.tile_count(), 0.0f), to_sky(view.tile_count(), unbounded);
-    const detail::Survey open = surveyed(detail::compiled_isa, {.min = from_eye, .max = to_sky}),
-                         blind = surveyed(detail::compiled_isa, {});
+    const detail::Survey open = surveyed(test::widest_tier(), {.min = from_eye, .max = to_sky}),
+                         blind = surveyed(test::widest_tier(), {});
     for (std::size_t grid = 0; grid < 4; ++grid)
         CHECK(open.grids[grid].evaluations[0] == doctest::Approx(blind.grids[grid].evaluations[0]));
 }
