@@ -133,8 +133,8 @@ public:
         on_each([&](auto& tier) {
             CHECK((tier.bytes(input) == expected));
             for (const std::size_t workers : {2u, 3u, 7u}) {
-                const double start_ns =
-                    workers == 3 ? 2000 : 0;  // parts of equal size, or a longer first one
+                // Parts of equal size, or a longer first one.
+                const double start_ns = workers == 3 ? 2000 : 0;
                 CHECK((tier.bytes(input, Parallel(workers, shuffled, start_ns)) == expected));
             }
         });
@@ -178,15 +178,10 @@ template <Options options> using Tiers = TiersOf<options, Isa::neon>;
 template <Options options> using Tiers = TiersOf<options>;
 #endif
 
-#if defined(__x86_64__)
-constexpr std::uint32_t share = 1;
-#else
-constexpr std::uint32_t share = 8;  // in an emulator
-#endif
-
 template <Options options> void compare(std::uint32_t seeds, std::uint32_t first_seed) {
     Tiers<options> tiers;
-    for (std::uint32_t seed = first_seed; seed < first_seed + seeds / share; ++seed)
+    const std::uint32_t share = test::share_of_cases(2);  // the campaign runs them all
+    for (std::uint32_t seed = first_seed; seed < first_seed + (seeds + share - 1) / share; ++seed)
         tiers.compare(random_input(seed));
 }
 
