@@ -99,7 +99,7 @@ Lists on_all_tiers(const lightbin::View& view, const Scene& scene, bool flush,
     Lists lists = built<capped(Isa::scalar)>(view, scene, flush);
     if (lists.offsets.empty()) complaints.push_back("the lights were refused");
     // An Isa in the options is a cap: one that the machine lacks would be a narrower one again.
-    const auto compare = [&]<Isa isa>(const char* name) {
+    [[maybe_unused]] const auto compare = [&]<Isa isa>(const char* name) {
         if (lightbin::detail::machine_isa(isa) == isa && built<capped(isa)>(view, scene, flush) != lists)
             complaints.push_back(name + std::string(" differs"));
     };

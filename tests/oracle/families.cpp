@@ -20,10 +20,12 @@ std::size_t lights_a_family() {
 void prove(const Family& family) {
     const std::size_t wanted = lights_a_family();
     std::uint64_t wrong = 0, answered = 0;
-    for (std::uint64_t seed = 0; seed < 10; ++seed)
+    // Beside the library, so an emulator has nothing to add.
+    const std::uint64_t scenes = wanted < 100000 ? 2 : 10;
+    for (std::uint64_t seed = 0; seed < scenes; ++seed)
         answered += test_filter(family, seed, 150, wrong);
     CHECK(wrong == 0);
-    CHECK(answered > 100);
+    CHECK(answered > 10 * scenes);
 
     Verdicts verdicts;
     const std::size_t a_scene = std::min(family.lights, wanted);
