@@ -83,7 +83,7 @@ std::string reduce(const Camera& camera, const lightbin::View& view, const std::
         drawn[i] = place;
         places.emplace_back(place, i);
     }
-    std::ranges::stable_sort(places, {}, &std::pair<std::size_t, std::size_t>::first);
+    std::ranges::sort(places);
     for (std::size_t i = 0; i + 1 < places.size(); ++i)
         if (places[i].first == places[i + 1].first) drawn[places[i].second] = size;  // drawn over
     buffer.depth = depth;

@@ -62,9 +62,11 @@ public:
         ++report_.tally[bounds_kinds[bounds_kind]];
         ++report_.tally[std::to_string(lights) + " lights"];
 
-        const std::size_t tiles = view->tile_count(), most = 400'000;
+        const std::size_t tiles = view->tile_count();
+        constexpr std::uint64_t most = 250'000;
         const std::uint32_t large = static_cast<std::uint32_t>(
-            std::min<std::size_t>(lights, lights * tiles <= most ? lights : most / (2 * tiles) + 1));
+            std::uint64_t{lights} * tiles <= most ? lights
+                                                  : std::min<std::uint64_t>(lights, most / (2 * tiles) + 1));
         scene_ = make_scene(camera_, space, lights, large, random_, report_.tally);
         keep_small(large);
         rejected_ = static_cast<std::uint32_t>(std::ranges::count_if(scene_.lights, is_bad));
@@ -72,6 +74,14 @@ public:
         const std::string wrong =
             make_bounds(bounds_kind, camera_, *view_, placed_, random_, report_.tally, bounds_);
         if (!wrong.empty()) fault(wrong);
+        for (int more = 0; more < 3; ++more) {  // small ones cost next to nothing
+            if (camera_.viewport.width * camera_.viewport.height > 50'000) break;
+            Bounds unused;
+            const std::string fault_found =
+                make_bounds(static_cast<int>(std::size(bounds_kinds)) - 1, camera_, *view_, placed_, random_,
+                            report_.tally, unused);
+            if (!fault_found.empty()) fault(fault_found);
+        }
         if (random_.one_in(2) && tiles > 0) {
             // The same grid by way of another.
             const auto other = view->with_tile_size(random_.from_to(1, 64));

@@ -120,8 +120,8 @@ TEST_CASE("all tiers project to the same bytes") {
         Silhouettes footprints;
         footprints.project(Isa::scalar, scene.view, view_space(scene.lights), {});
         const auto expected = words(footprints);
-        for (const Isa isa : {Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon}) {
-            footprints.project(detail::machine_isa(isa), scene.view, view_space(scene.lights), {});
+        for (const Isa isa : test::machine_tiers()) {
+            footprints.project(isa, scene.view, view_space(scene.lights), {});
             CHECK((words(footprints) == expected));
         }
     }
@@ -145,8 +145,8 @@ TEST_CASE("all tiers project lights that all but touch the sides of the view to 
         Silhouettes footprints;
         footprints.project(Isa::scalar, view, view_space(lights), {});
         const auto expected = words(footprints);
-        for (const Isa isa : {Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon}) {
-            footprints.project(detail::machine_isa(isa), view, view_space(lights), {});
+        for (const Isa isa : test::machine_tiers()) {
+            footprints.project(isa, view, view_space(lights), {});
             CHECK((words(footprints) == expected));
         }
     }
@@ -155,7 +155,7 @@ TEST_CASE("all tiers project lights that all but touch the sides of the view to 
 TEST_CASE("threads project to the same bytes") {
     const Scene scene = wild_scene(3, 40000);
     Silhouettes footprints;
-    const Isa isa = detail::machine_isa(Isa::avx512);
+    const Isa isa = test::widest_tier();
     footprints.project(isa, scene.view, view_space(scene.lights), {});
     CHECK(footprints.runs().size() == 1);
     const auto expected = words(footprints);
@@ -214,7 +214,7 @@ TEST_CASE("a row span leaves out no tile that the sphere is seen in, and little 
                                   static_cast<float>(edge_y(4 + i) + 4 * (edge_x(1) - edge_x(0))), -50,
                                   static_cast<float>(5 * (edge_x(1) - edge_x(0)))});
         Silhouettes footprints;
-        footprints.project(detail::machine_isa(Isa::avx512), view, view_space(lights), {});
+        footprints.project(test::widest_tier(), view, view_space(lights), {});
         const detail::FootprintArrays& a = footprints.arrays();
         for (std::uint32_t i = 0; i < footprints.visible(); ++i) {
             if (a.span_begin[i] == detail::FootprintArrays::whole_rectangle) continue;
