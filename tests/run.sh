@@ -23,13 +23,14 @@ compilers="g++ clang-14 clang-19" # the last two to see that they have no warnin
 tools="cmake ninja-build"
 emulators="g++-aarch64-linux-gnu qemu-user-static" # the NEON tier, and x86-64 without AVX and with AVX2
 x86_32="g++-12-multilib" # a machine of 32 bits
+microsoft="libc++-19-dev mingw-w64-x86-64-dev" # the libraries behind a compiler by Microsoft's rules
 libraries="doctest-dev libglm-dev"
 oracle="libboost-dev libgmp-dev"
 examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
 opengl="libgl1-mesa-dri libgles2" # Mesa draws where there is no GPU
 shaders="glslang-dev glslang-tools spirv-tools" # the first names files of the second
 # shellcheck disable=SC2086  # one word a package
-install_packages $compilers $tools $emulators $x86_32 $libraries $oracle $examples $opengl $shaders
+install_packages $compilers $tools $emulators $x86_32 $microsoft $libraries $oracle $examples $opengl $shaders
 
 # follow COMMAND...: waits for the last process in the background. Until then says what COMMAND prints: every 20 seconds,
 # or on a terminal every second on the same line.
