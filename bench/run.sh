@@ -15,11 +15,10 @@
 #       and .png.
 #   ablation [--quick] [SCENE.glb ...]
 #       What each part of the library costs and saves, by kind of scene; writes build/bench/ablation.csv.
-#   advise [--quick] [--avx2 | --sse2 | --scalar] [--fit] [SCENE.glb ...]
-#       What advise() chooses against the best of all plans, with Z bounds and without, and what asking costs beside a
-#       plain build; on the machine's widest instruction set or the named one. Writes build/bench/advise.csv and
-#       advise_plans.csv. With --fit: fits the constants of its build model to this machine instead, and prints the lines
-#       of detail/build_model.hpp (about a minute).
+#   advise [--quick] [--avx2 | --sse2 | --scalar] [SCENE.glb ...]
+#       What the plan that advise() chooses costs beside the best of all, with Z bounds and without, and how long asking
+#       takes beside a plain build; on the machine's widest instruction set or the named one. Writes
+#       build/bench/advise.csv and advise_plans.csv.
 set -eu
 me=bench/run.sh
 here=$(pwd)

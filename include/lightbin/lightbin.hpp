@@ -24,7 +24,7 @@
 //   5. Put shader_snippet({...})->text in your shader, and bind what its bindings list.        shader.hpp
 //        shader.md has it step by step. Narrow ids, sentinel lists, bitmasks: encode()         encode.hpp
 //        The same as stages 2 and 3 on the GPU, not included here                         shader_build.hpp
-// Which tile size and options? advise(view, lights, costs[, bounds]) weighs them for a scene      advise.hpp
+// Which tile size and options? advise(view, lights, costs[, bounds]) measures them, not included   advise.hpp
 //
 // Building. No compiler flags are needed. With gcc or clang there are kernels for SSE2, AVX2 and AVX-512 on
 // x86-64, of which the machine's own is picked at run time, and for NEON on 64-bit ARM; elsewhere the scalar
@@ -40,7 +40,6 @@
 // Forward Shading", GPU Pro 4, 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.
 #pragma once
 
-#include <lightbin/advise.hpp>
 #include <lightbin/binner.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/options.hpp>

@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cfloat>
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -20,6 +21,7 @@
 #define far
 #define small char
 
+#include <lightbin/advise.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader_build.hpp>
 

@@ -1,5 +1,6 @@
 // Every public template instantiated with every kind of argument, in a function named by the macro UNIT:
 // compiled by several compilers with several flags for its warnings, and twice into one program.
+#include <lightbin/advise.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader_build.hpp>
 
@@ -121,6 +122,19 @@ void use_shader_data(Hash& hash, const View& view, const std::vector<Sphere>& li
     hash.add(shader_build(view, static_cast<std::uint32_t>(footprints.size()), 9).footprints);
 }
 
+void use_advice(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
+    const Advice advice = value_of(advise(view, lights, {}, bounds));
+    double evaluations = 0;  // in any order: which plan is best depends on the machine
+    for (const Plan& plan : advice.plans()) {
+        evaluations += plan.evaluations;
+        hash.value += plan.entries;
+        if (plan.tiled)
+            hash.value += with_options(plan, []<Options options> { return sizeof(Binner<options>); });
+    }
+    hash.add(static_cast<std::uint64_t>(evaluations));
+    hash.value += advice.text().empty();
+}
+
 void use_view(Hash& hash, const View& view) {
     hash.add(static_cast<std::uint64_t>(view.tile_size()));
     hash.add(static_cast<std::uint64_t>(view.viewport().width));
@@ -159,6 +173,8 @@ void use_view(Hash& hash, const View& view) {
     Binner<> binner;
     use_encodings(hash, value_of(binner.bin(view, spheres)));
     use_shader_data(hash, view, spheres);
+    use_advice(hash, view, spheres, bounds);
+    use_advice(hash, view, world_space(lamps, identity, to_sphere), {});
     use_all_options<DepthTest::none>(hash, view, spheres, bounds);
     use_all_options<DepthTest::interval>(hash, view, spheres, bounds);
     use_lights(hash, view, std::span<const glm::vec4>(vectors), bounds);

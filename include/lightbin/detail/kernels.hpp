@@ -37,9 +37,6 @@ inline ProjectKernel project_kernel(Isa isa) {
 inline RowSpanKernel row_span_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.row_span_kernel(); });
 }
-inline SurveyKernel survey_kernel(Isa isa) {
-    return with_tier(isa, [](auto tier) { return tier.survey_kernel(); });
-}
 
 /// For blocks of `columns` columns or more: of this tier or the widest below it whose vectors are no wider.
 inline DepthKernels depth_kernels(Isa isa, std::size_t columns) {

@@ -31,8 +31,6 @@
 
 #include <lightbin/detail/tile_masks.inl>
 
-#include <lightbin/detail/survey.inl>
-
 #if defined(LIGHTBIN_TIER_COMPRESSES)
 #include <lightbin/detail/compress.inl>
 #else
@@ -54,7 +52,6 @@ struct Tier {
     static ProjectKernel project_kernel() { return project; }
     static RowSpanKernel row_span_kernel() { return row_spans; }
     static DepthKernels depth_kernels() { return {column_extremes, column_gaps}; }
-    static SurveyKernel survey_kernel() { return survey_block; }
 
     template <Footprint footprint, DepthTest depth_test, class Id> static BinKernel<Id> bin_kernel() {
 #if defined(LIGHTBIN_TIER_COMPRESSES)

@@ -10,7 +10,6 @@
 #include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/supertile.hpp>
-#include <lightbin/detail/survey_block.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/view.hpp>
 
@@ -26,7 +25,7 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
-// See project.inl, silhouette.inl, depth_columns.inl, survey.inl; supertile.inl, compress.inl and scatter.inl.
+// See project.inl, silhouette.inl, depth_columns.inl; supertile.inl, compress.inl and scatter.inl.
 using ProjectKernel = void (*)(const Camera& camera, const Sphere* spheres, std::uint32_t count,
                                std::uint32_t first_id, const FootprintArrays& out, ProjectCounts& counts);
 using RowSpanKernel = void (*)(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
@@ -35,8 +34,6 @@ struct DepthKernels {
     void (*extremes)(const DepthRows& depth, float skipped, float* lower, float* upper);
     void (*gaps)(const DepthRows& depth, float skipped, const float* split, float* below, float* above);
 };
-using SurveyKernel = BlockSums (*)(const Camera& camera, SurveyBlock& block, bool gaps,
-                                   const BlockLight* lights, std::uint32_t count);
 template <class Id>
 using BinKernel = std::uint64_t (*)(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands);
 
