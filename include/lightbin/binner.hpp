@@ -26,6 +26,8 @@
 #include <type_traits>
 #include <vector>
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// Number of elements that Binner::emit writes.
@@ -196,4 +198,6 @@ private:
     std::optional<LightGrid<Id>> counted_;  ///< what emit() has to write, in lists_
 };
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}  // namespace lightbin
+
+#include <lightbin/detail/warnings_on.inl>

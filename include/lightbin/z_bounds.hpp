@@ -218,4 +218,4 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
                    gaps ? given(gap_max) : given({})};
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}  // namespace lightbin

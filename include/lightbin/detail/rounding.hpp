@@ -17,6 +17,8 @@
 keep lights from being missed. Compile the files that include lightbin without them."
 #endif
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<double>::is_iec559);
@@ -43,3 +45,5 @@ inline float float_above(double value) {
 }
 
 }  // namespace lightbin::detail
+
+#include <lightbin/detail/warnings_on.inl>
