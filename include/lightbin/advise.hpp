@@ -150,4 +150,4 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
     return Advice(std::move(plans));
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}  // namespace lightbin

@@ -11,6 +11,8 @@
 
 #define LIGHTBIN_TARGET __attribute__((target("avx2,bmi,popcnt")))
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace avx2 {
 
@@ -160,6 +162,8 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
 
 }  // namespace avx2
 }  // namespace lightbin::detail
+
+#include <lightbin/detail/warnings_on.inl>
 
 #undef LIGHTBIN_TARGET
 #endif

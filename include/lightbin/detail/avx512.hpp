@@ -22,6 +22,8 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace avx512 {
 
@@ -156,6 +158,8 @@ LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t*
 
 }  // namespace avx512
 }  // namespace lightbin::detail
+
+#include <lightbin/detail/warnings_on.inl>
 
 #undef LIGHTBIN_TARGET
 #if defined(__GNUC__) && !defined(__clang__)

@@ -11,6 +11,8 @@
 
 #define LIGHTBIN_TARGET
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace sse2 {
 
@@ -135,6 +137,8 @@ template <class Id> std::uint32_t append(Id* out, const Packed<Id>* ids, unsigne
 
 }  // namespace sse2
 }  // namespace lightbin::detail
+
+#include <lightbin/detail/warnings_on.inl>
 
 #undef LIGHTBIN_TARGET
 #endif

@@ -23,6 +23,8 @@
 #include <numbers>
 #include <vector>
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 /// What is weighed. An interval test, and silhouettes beside a depth test, were the cheapest in no scene that was
@@ -261,3 +263,5 @@ void survey_blocks(Isa isa, const View& view, const Lights<Light, ToViewSphere>&
 }
 
 }  // namespace lightbin::detail
+
+#include <lightbin/detail/warnings_on.inl>

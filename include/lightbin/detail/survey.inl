@@ -11,7 +11,8 @@ LIGHTBIN_TARGET inline void merge_tiles(SurveyBlock& block) {
         for (unsigned i = 0; i < count; i += lanes) {
             Floats least = endless, most = -endless;
             for (unsigned side = 0; side < 3; ++side) {
-                least = endless, most = -endless;
+                least = endless;
+                most = -endless;
                 for (unsigned tile = from + i; tile < to; tile += count) {
                     least = lesser(load_floats(block.low[side] + tile), least);
                     most = greater(load_floats(block.high[side] + tile), most);
