@@ -287,4 +287,4 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
     }
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}  // namespace lightbin

@@ -24,6 +24,8 @@
 #include <type_traits>
 #include <vector>
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// A light grid in memory of its own, kept from call to call.
@@ -183,4 +185,6 @@ private:
     bool shared_ = false;
 };
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}  // namespace lightbin
+
+#include <lightbin/detail/warnings_on.inl>

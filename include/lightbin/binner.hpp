@@ -27,6 +27,8 @@
 #include <utility>
 #include <vector>
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// Number of elements that Binner::emit writes.
@@ -223,4 +225,6 @@ private:
     std::optional<LightGrid<Id>> counted_;  ///< what emit() has to write, in lists_
 };
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}  // namespace lightbin
+
+#include <lightbin/detail/warnings_on.inl>

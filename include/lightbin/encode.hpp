@@ -14,6 +14,8 @@
 #include <optional>
 #include <span>
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// How the lights of a tile are written down.
@@ -153,4 +155,6 @@ Result<Encoded> encode(const LightGrid<Id>& grid, const ListFormat& format, std:
     return encoded;
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}  // namespace lightbin
+
+#include <lightbin/detail/warnings_on.inl>

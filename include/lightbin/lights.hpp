@@ -16,6 +16,8 @@
 #include <span>
 #include <type_traits>
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// A light's sphere of influence: centre and radius (the papers' range).
@@ -112,7 +114,8 @@ public:
         if (!std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) ||
             !(light.radius >= 0))
             return light;  // bad input stays bad
-        const double x = light.x, y = light.y, z = light.z;
+        const double x = static_cast<double>(light.x), y = static_cast<double>(light.y),
+                     z = static_cast<double>(light.z);
         double centre[3], error = 0;
         for (int row = 0; row < 3; ++row) {
             const double a = m_[0][row] * x, b = m_[1][row] * y, c = m_[2][row] * z, d = m_[3][row];
@@ -212,3 +215,5 @@ inline Sphere load_sphere(const Sphere* from) {
 
 }  // namespace detail
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+
+#include <lightbin/detail/warnings_on.inl>

@@ -88,4 +88,4 @@ struct Serial {
     operator Parallel() const { return {}; }
 };
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}  // namespace lightbin

@@ -21,6 +21,8 @@
 #include <optional>
 #include <span>
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 namespace detail {
@@ -160,4 +162,6 @@ private:
     detail::ProjectCounts counts_;
 };
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}  // namespace lightbin
+
+#include <lightbin/detail/warnings_on.inl>

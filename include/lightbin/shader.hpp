@@ -254,4 +254,4 @@ vec3 $heat(uvec2 pixel, float most) {
     return writer.finish();
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}  // namespace lightbin

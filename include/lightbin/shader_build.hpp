@@ -439,4 +439,4 @@ void $run(uvec2 group, uint thread) {
     return writer.finish();
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}  // namespace lightbin

@@ -240,4 +240,4 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
                    .background_skipped = buffer.skip_background};
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}  // namespace lightbin

@@ -99,7 +99,7 @@ std::string reduce(const Camera& camera, const lightbin::View& view, const std::
             sides.emplace_back(tiles + random.below(std::size_t{3}));
         const auto span = [&](std::size_t i) { return wanted[i] ? sides[i].span() : std::span<float>{}; };
         const auto made =
-            lightbin::reduce_depth(view, buffer, span(0), span(1), span(2), span(3), tiers[tier]);
+            lightbin::reduce_depth(view, buffer, {span(0), span(1), span(2), span(3)}, tiers[tier]);
         if (!made) return "reduce_depth refuses: " + made.error().message();
         const bool gaps = wanted[2] && wanted[3];
         const std::span<const float> given[] = {made->min, made->max, made->gap_min, made->gap_max};

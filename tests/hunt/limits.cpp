@@ -112,7 +112,7 @@ public:
         std::vector<float> depth(64 * 9, 0.5f);
         const auto reduce = [&](lightbin::DepthBuffer buffer, std::size_t samples, std::size_t bounds = 64) {
             buffer.depth = std::span(depth).first(samples);
-            return lightbin::reduce_depth(view, buffer, std::span(floats).first(bounds), {});
+            return lightbin::reduce_depth(view, buffer, {.min = std::span(floats).first(bounds)});
         };
         expect_error(reduce({.samples = 0}, 64), ErrorCode::samples_out_of_range, "0 samples");
         expect_error(reduce({.samples = 9}, 64 * 9), ErrorCode::samples_out_of_range, "9 samples");

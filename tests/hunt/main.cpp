@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <new>
 #include <random>
 #include <string_view>
 
@@ -62,7 +63,11 @@ int main(int count, char** words) {
     double next_line = 10;
     std::uint64_t round = first;
     for (; (rounds == 0 || round - first < rounds) && (seconds == 0 || elapsed() < seconds); ++round) {
-        hunt::hunt_round(seed, round, report);
+        try {
+            hunt::hunt_round(seed, round, report);
+        } catch (const std::bad_alloc&) {
+            report.faults.push_back("out of memory in round " + std::to_string(round));
+        }
         print_faults();
         if (report.faults.size() >= 10) break;
         if (elapsed() < next_line) continue;

@@ -102,10 +102,10 @@ private:
         return lightbin::View::from_projection(camera_.matrix, camera_.viewport, camera_.options);
     }
 
-    /// Where lights that should be small cover much all the same, shrinks some, as the round would take minutes.
+    /// Where lights that should be small cover much all the same, shrinks them or in the end leaves them out, as the
+    /// round would take minutes and gigabytes.
     void keep_small(std::uint32_t large) {
-        if (large >= scene_.lights.size()) return;
-        for (int tries = 0; tries < 8; ++tries) {
+        for (int tries = 0; large < scene_.lights.size(); ++tries) {
             const auto advice =
                 scene_.in_world
                     ? lightbin::advise(*view_, lightbin::world_space(scene_.lights, scene_.to_view))
@@ -118,8 +118,14 @@ private:
                         plan.evaluations / std::pow(std::min(plan.tile_size, lightbin::View::max_side), 2);
             if (entries < 2e6) return;
             ++report_.tally["lights shrunk"];
-            for (Sphere& light : scene_.lights)
-                if (random_.coin() && light.radius > 0) light.radius *= 0.01f;
+            if (tries < 4) {
+                for (Sphere& light : scene_.lights)
+                    if (random_.coin() && light.radius > 0) light.radius *= 0.01f;
+            } else {
+                scene_.lights.resize(std::max<std::size_t>(large, scene_.lights.size() / 8));
+                std::erase_if(scene_.inside,
+                              [&](const Inside& i) { return i.light >= scene_.lights.size(); });
+            }
         }
     }
 

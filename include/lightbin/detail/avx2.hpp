@@ -11,6 +11,8 @@
 
 #define LIGHTBIN_TARGET LIGHTBIN_INSTRUCTIONS("avx2,bmi,popcnt")
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace avx2 {
 
@@ -260,4 +262,5 @@ using portable::packs_ids;
 }  // namespace avx2
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
 
+#include <lightbin/detail/warnings_on.inl>
 #endif

@@ -22,6 +22,8 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace avx512 {
 
@@ -179,6 +181,7 @@ LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t*
 }  // namespace avx512
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
 
+#include <lightbin/detail/warnings_on.inl>
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic pop
 #endif

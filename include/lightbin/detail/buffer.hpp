@@ -12,6 +12,8 @@
 #include <memory>
 #include <type_traits>
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 template <class T> class Buffer {
@@ -55,4 +57,6 @@ private:
     std::size_t size_ = 0;
 };
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
+}  // namespace lightbin::detail
+
+#include <lightbin/detail/warnings_on.inl>

@@ -72,4 +72,4 @@ std::uint64_t bin_scatter(const BinJob<Id>& job, Scratch& scratch, const BandJob
     return entries;
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
+}  // namespace lightbin::detail

@@ -21,4 +21,4 @@ constexpr std::uint64_t product_of_sizes(std::uint64_t a, std::uint64_t b) {
     return b != 0 && a > most_size / b ? most_size : a * b;
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
+}  // namespace lightbin::detail

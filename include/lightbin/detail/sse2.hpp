@@ -11,6 +11,8 @@
 
 #define LIGHTBIN_TARGET
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace sse2 {
 
@@ -231,4 +233,5 @@ inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, st
 }  // namespace sse2
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
 
+#include <lightbin/detail/warnings_on.inl>
 #endif

@@ -140,10 +140,13 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
                     split_bits(rows + i, words + 8);
                 }
             } else {
-                float cells[cell_planes<depth_test> * 64];
+                [[maybe_unused]] float arranged[cell_planes<depth_test> * 64];
+                const float* cells = nullptr;
                 std::uint64_t lit = ~std::uint64_t{0};
-                if constexpr (depth_test != DepthTest::none)
-                    lit = arrange_cells<depth_test>(job, x, top, cells);
+                if constexpr (depth_test != DepthTest::none) {
+                    lit = arrange_cells<depth_test>(job, x, top, arranged);
+                    cells = arranged;
+                }
                 std::uint64_t* masks = scratch.masks.room(end);
                 size[x] = mask_lights<footprint, depth_test>(
                     job, x, top, cells, lit, scratch.list_ids.data() + begin[x], 0, columns + begin[x],
