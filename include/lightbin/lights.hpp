@@ -48,7 +48,7 @@ namespace detail {
 /// one that covers everything; bad input stays bad.
 inline Sphere sphere_around(double x, double y, double z, double radius) {
     if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z) || !(radius >= 0)) return {0, 0, 0, -1};
-    constexpr double most = FLT_MAX;
+    constexpr double most = static_cast<double>(FLT_MAX);
     if (std::fabs(x) > most || std::fabs(y) > most || std::fabs(z) > most) return {0, 0, 0, infinity};
     const Sphere nearest = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 0};
     const double error = std::fabs(x - static_cast<double>(nearest.x)) +
