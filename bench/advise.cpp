@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Is advise() right? For each scene every plan is measured (build time on rotating light sets, evaluations of
 // the first one counted over the drawn pixels), and what the chosen one costs is held against the cheapest: with
-// Z bounds, and without any against those that need none. advise() sees the first light set alone, and has its own clock.
+// Z bounds, and without any against those that need none. advise() sees the first light set alone, on its own clock.
 //
-//   advise_plans.csv   a row a plan that was weighed: build time and evaluations as advise() has them, and measured here
+//   advise_plans.csv   a row a plan that was weighed: build time and evaluations by advise(), and by the sweep
 //   advise.csv         a row for each scene and cost of an evaluation: the choice, the best plan, and the regret, their
 //                      ratio: as swept, and, where that is over the limit, of the two timed again by themselves
 #include "arguments.hpp"
@@ -88,12 +88,13 @@ void time(std::vector<Candidate>& candidates, const Views& views, std::span<cons
                 for (int again = 0; again < together[i]; ++again)
                     candidates[i].build(view, sets[turn % sets.size()]);
             };
-            if (turn == 0) build();  // finds no memory
-            const double time = own_seconds(build);
-            if (turn == 0)
-                together[i] = static_cast<int>(std::clamp(50e-6 / time, 1.0, 32.0));
-            else
-                times[i].push_back(time / together[i]);
+            if (turn > 0) {
+                times[i].push_back(own_seconds(build) / together[i]);
+                continue;
+            }
+            build();  // finds no memory
+            const double time = std::min({own_seconds(build), own_seconds(build), own_seconds(build)});
+            together[i] = static_cast<int>(std::clamp(10e-6 / time, 1.0, 8.0));
         }
     for (std::size_t i = 0; i < candidates.size(); ++i)
         if (candidates[i].plan.tiled) candidates[i].build_us = 1e6 * median(times[i]);

@@ -21,7 +21,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <iterator>
-#include <numeric>
 #include <span>
 #include <string>
 #include <tuple>
@@ -39,8 +38,8 @@ struct Costs {
     double z_bounds_ns = 0;
 };
 
-/// One way to light a view, and what it costs a frame. with_options() applies its options, View::with_tile_size its tile
-/// size.
+/// One way to light a view, and what it costs a frame. with_options() applies its options, and View::with_tile_size()
+/// its tile size.
 struct Plan {
     bool tiled = true;  ///< false: every pixel evaluates every light; the next three are without meaning
     Footprint footprint = Footprint::rectangle;
@@ -92,8 +91,8 @@ private:
 
 namespace detail {
 
-/// What is weighed. Silhouettes beside a depth test were the cheapest in no scene that was measured with AVX-512, and by
-/// 1 % at most with SSE2: a box leaves little for them to drop.
+/// What is weighed. Silhouettes beside a depth test were the cheapest in no scene that was measured with AVX-512, and
+/// by 1 % at most with SSE2: a box leaves little for them to drop.
 inline constexpr Options weighed[] = {{.footprint = Footprint::rectangle, .depth_test = DepthTest::none},
                                       {.footprint = Footprint::rectangle, .depth_test = DepthTest::interval},
                                       {.footprint = Footprint::rectangle, .depth_test = DepthTest::box},
@@ -129,24 +128,25 @@ struct WeighedGrid {
     View view;
     ZBounds bounds;              ///< the caller's, or those below as far as the caller has them
     std::vector<double> pixels;  ///< by tile: those with something to light, as far as the bounds tell
-    std::vector<float> min, max, gap_min, gap_max;
+    std::vector<float> lowest, highest, gap_begin, gap_end;
 
-    /// What lies before or behind a small tile's gap counts as drawn all over, so the gaps around the middle of the depths
-    /// are at most as wide as reduce_depth() would find.
-    WeighedGrid(const View& small, const ZBounds& of_small, int tile_size)
-        : view(*small.with_tile_size(tile_size)), bounds(of_small), pixels(view.tile_count()),
-          min(view.tile_count(), infinity), max(view.tile_count(), -infinity), gap_min(max), gap_max(min) {
+    /// What lies before or behind a fine tile's gap counts as drawn all over, so the gaps around the middle of the
+    /// depths are at most as wide as reduce_depth() would find.
+    WeighedGrid(const View& fine, const ZBounds& of_fine, int tile_size)
+        : view(*fine.with_tile_size(tile_size)), bounds(of_fine), pixels(view.tile_count()),
+          lowest(view.tile_count(), infinity), highest(view.tile_count(), -infinity), gap_begin(highest),
+          gap_end(lowest) {
         const auto read = [](std::span<const float> side, std::size_t tile, float endless) {
             return side.empty() || std::isnan(side[tile]) ? endless : side[tile];
         };
         const auto for_each_drawn = [&](auto merge) {
             const auto [width, height] = view.viewport();
-            const int size = small.tile_size();
+            const int size = fine.tile_size();
             std::size_t from = 0;
             for (int y = 0; y < height; y += size)
                 for (int x = 0; x < width; x += size, ++from) {
-                    const float low = read(of_small.min, from, -infinity),
-                                high = read(of_small.max, from, infinity);
+                    const float low = read(of_fine.min, from, -infinity),
+                                high = read(of_fine.max, from, infinity);
                     const int tile = y / tile_size * view.tiles_x() + x / tile_size;
                     const double area = 1.0 * (std::min)(size, width - x) * (std::min)(size, height - y);
                     if (!(low > high)) merge(static_cast<std::size_t>(tile), from, low, high, area);
@@ -154,16 +154,16 @@ struct WeighedGrid {
         };
         for_each_drawn([&](std::size_t tile, std::size_t, float low, float high, double area) {
             pixels[tile] += area;
-            min[tile] = (std::min)(min[tile], low);
-            max[tile] = (std::max)(max[tile], high);
+            lowest[tile] = (std::min)(lowest[tile], low);
+            highest[tile] = (std::max)(highest[tile], high);
         });
-        if (tile_size == small.tile_size()) return;
+        if (tile_size == fine.tile_size()) return;
         for_each_drawn([&](std::size_t tile, std::size_t from, float low, float high, double) {
-            const float middle = 0.5f * std::clamp(min[tile], -FLT_MAX, FLT_MAX) +
-                                 0.5f * std::clamp(max[tile], -FLT_MAX, FLT_MAX);
+            const float middle = 0.5f * std::clamp(lowest[tile], -FLT_MAX, FLT_MAX) +
+                                 0.5f * std::clamp(highest[tile], -FLT_MAX, FLT_MAX);
             // What is drawn lies from low to end, and from begin to high.
-            float end = read(of_small.gap_min, from, infinity),
-                  begin = read(of_small.gap_max, from, -infinity);
+            float end = read(of_fine.gap_min, from, infinity),
+                  begin = read(of_fine.gap_max, from, -infinity);
             if (!(end < begin)) {
                 end = high;
                 begin = low;
@@ -174,16 +174,16 @@ struct WeighedGrid {
                         farther = middle <= end    ? low
                                   : middle <= high ? begin
                                                    : infinity;
-            gap_min[tile] = (std::max)(gap_min[tile], (std::min)(nearer, middle));
-            gap_max[tile] = (std::min)(gap_max[tile], (std::max)(farther, middle));
+            gap_begin[tile] = (std::max)(gap_begin[tile], (std::min)(nearer, middle));
+            gap_end[tile] = (std::min)(gap_end[tile], (std::max)(farther, middle));
         });
         const auto merged = [](std::span<const float> given, const std::vector<float>& side) {
             return given.empty() ? given : std::span<const float>(side);
         };
-        bounds = {.min = merged(of_small.min, min),
-                  .max = merged(of_small.max, max),
-                  .gap_min = merged(of_small.gap_min, gap_min),
-                  .gap_max = merged(of_small.gap_max, gap_max)};
+        bounds = {.min = merged(of_fine.min, lowest),
+                  .max = merged(of_fine.max, highest),
+                  .gap_min = merged(of_fine.gap_min, gap_begin),
+                  .gap_max = merged(of_fine.gap_max, gap_end)};
     }
     WeighedGrid(WeighedGrid&&) = default;  // a copy's bounds would be this one's
 };
@@ -258,10 +258,9 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
         });
     };
 
-    const double pixels = std::accumulate(grids[0].pixels.begin(), grids[0].pixels.end(), 0.0);
-    std::vector<Plan> plans = {
-        {.tiled = false,
-         .evaluations = pixels * static_cast<double>(detail::as_lights(lights).array.size())}};
+    std::vector<Plan> plans = {{.tiled = false}};
+    for (const double pixels : grids[0].pixels)
+        plans[0].evaluations += pixels * static_cast<double>(detail::as_lights(lights).array.size());
     for (const detail::WeighedGrid& grid : grids)
         for (const Options& options : detail::weighed) {
             if (!detail::allowed(options.depth_test, bounds)) continue;

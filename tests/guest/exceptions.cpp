@@ -2,6 +2,7 @@
 // other, whether it is the same again or one that needs less.
 #include "counted_new.hpp"
 
+#include <lightbin/advise.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader_build.hpp>
 

@@ -182,8 +182,6 @@ void use_view(Hash& hash, const View& view) {
     use_binner<Options{.index = Index::u16, .depth_test = DepthTest::box}>(hash, view, spheres, bounds);
     use_binner<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>(
         hash, view, spheres, {min, max, min, max});
-    const Advice advice = value_of(advise(view, spheres, {}, bounds));
-    hash.add(advice.text().empty() ? 0 : advice.plans().size());
     use_lights(hash, view, std::span<const glm::vec4>(vectors), bounds);
     use_lights(hash, view, view_space(lamps, to_sphere), bounds);
     use_lights(hash, view, world_space(vectors, camera), bounds);

@@ -1,6 +1,7 @@
 // Sizes first, then the caller's memory: nothing past the end, nothing at all when it does not fit.
 #include "scene.hpp"
 
+#include <lightbin/advise.hpp>
 #include <lightbin/shader_build.hpp>
 
 #include <limits>
