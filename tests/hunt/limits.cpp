@@ -7,6 +7,7 @@
 #include <lightbin/encode.hpp>
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
 
 namespace hunt {
