@@ -71,12 +71,18 @@ namespace detail {
 /// The view depths of fragments that may have left window depths `lower` and `upper` in a buffer, and all
 /// between. In double: a float sum near 1 would be off by a step of its own.
 inline DepthInterval fragment_depths(const View& view, float lower, float upper, DepthFormat format) {
-    const double step = format == DepthFormat::unorm24   ? 0x1.000002p-24
-                        : format == DepthFormat::unorm16 ? 0x1.0002p-16
-                                                         : 0.0;
-    const double ulp = format == DepthFormat::float32 ? 0x1p-23 : 0.0;
-    return view.view_depths(std::clamp(static_cast<double>(lower) * (1 - ulp) - step, 0.0, 1.0),
-                            std::clamp(static_cast<double>(upper) * (1 + ulp) + step, 0.0, 1.0));
+    const double low = static_cast<double>(lower), high = static_cast<double>(upper);
+    const auto depths = [&](double from, double to) {
+        return view.view_depths(std::clamp(from, 0.0, 1.0), std::clamp(to, 0.0, 1.0));
+    };
+    if (format != DepthFormat::float32) {
+        const double step = format == DepthFormat::unorm24 ? 0x1.000002p-24 : 0x1.0002p-16;
+        return depths(low - step, high + step);
+    }
+    // A denormal depth is rounded by up to all of itself, or to zero.
+    constexpr double least_normal = 0x1p-126;
+    return depths(low < least_normal ? 0 : low * (1 - 0x1p-23),
+                  (std::max)(high * (1 + 0x1p-23), least_normal));
 }
 
 /// Smallest and largest of some numbers; lower > upper if there are none.
@@ -240,4 +246,4 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
                    .background_skipped = buffer.skip_background};
 }
 
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR

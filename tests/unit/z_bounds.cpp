@@ -252,3 +252,27 @@ TEST_CASE("gaps lie between a tile's two groups of samples, in every tier") {
             }
         }
 }
+
+TEST_CASE("a denormal depth may be any near it") {
+    // Reversed Z with an infinite far plane: depth is near / window depth.
+    const double near = 1e-10;
+    glm::dmat4 projection(0);
+    projection[0][0] = projection[1][1] = 1;
+    projection[2][3] = -1;
+    projection[3][2] = near;
+    const View view =
+        *View::from_projection(projection, {1, 1}, {.tile_size = 1, .clip_depth = ClipDepth::zero_to_one});
+    for (const double unit : {0x1p-149, 0x1p-140, 0x1p-127, 0x1p-126, 0x1p-125})
+        for (const double units : {0.3, 0.6, 1.2, 1.4, 1.6}) {
+            const double drawn = units * unit;
+            // As it is rounded, to the nearest or to the other side, or flushed to zero.
+            const float nearest = static_cast<float>(drawn),
+                        other = std::nextafter(nearest, static_cast<double>(nearest) < drawn ? 1.0f : 0.0f);
+            for (const float stored : {nearest, other, drawn < 0x1p-126 ? 0.0f : nearest}) {
+                float min[1], max[1];
+                REQUIRE(reduce_depth(view, {.depth = std::span(&stored, 1)}, {.min = min, .max = max}));
+                CHECK(static_cast<double>(min[0]) <= near / drawn);
+                CHECK(static_cast<double>(max[0]) >= near / drawn);
+            }
+        }
+}
