@@ -153,17 +153,20 @@ TEST_CASE("the evaluations of lists with Z are near those of the built grids") {
     const Bounds& bounds = ground.bounds(view);
     double squares = 0, surveyed_squares = 0;
     int plans = 0;
-    for (const std::size_t count : {20u, 300u, 1000u, 5000u}) {
+    std::vector<std::size_t> counts = {20, 300, 1000, 5000};
+    if (test::share_of_cases(1) > 1) counts.resize(2);
+    for (const std::size_t count : counts) {
         const auto lights = test::random_lights(count, 7);
         // As advise() does, with more lights and blocks than it takes time for.
         const auto source = detail::as_lights(lights);
         detail::Survey survey =
             detail::survey_rectangles(test::widest_tier(), view, source, bounds.reduced, count);
         detail::survey_blocks(test::widest_tier(), view, source, bounds.reduced, 4096, survey);
-        // The standard error of a share is 0.44 over the root of the blocks: of some 40, or of no more than there are
-        // lights; 0.007 of the 4096 above.
-        const double allowed = 3.4 * 0.44 / std::sqrt(std::min(static_cast<double>(count), 40.0));
-        // Each tier asks other numbers of blocks.
+        // The standard error of a share is 0.44 over the root of the blocks: 0.007 for the 4096 above, 0.07 for the 40
+        // that there is time for at least with more lights, and with 20 lights it may be 8 of them. Each tier asks other
+        // numbers of blocks.
+        const bool few = count < 40;
+        const double allowed = 3.4 * 0.44 / std::sqrt(few ? 8 : 40);
         std::vector<Advice> advices;
         for (const Isa isa : test::machine_tiers())
             advices.push_back(advised(view, lights, {.isa = isa}, bounds.reduced));
@@ -189,17 +192,17 @@ TEST_CASE("the evaluations of lists with Z are near those of the built grids") {
                 REQUIRE(advised_plan != advice.plans().end());
                 const double error = (advised_plan->evaluations - truth) / untested;
                 CHECK(std::fabs(error) <= allowed);
-                squares += error * error;
+                if (!few) squares += error * error;
                 ++plans;
             }
             CHECK(std::fabs(surveyed - truth) <= 0.024 * untested);
             surveyed_squares += std::pow((surveyed - truth) / untested, 2);
         }
     }
-    constexpr int kinds = 4 * 4 * 3;
+    const int of_a_count = 4 * 3, kinds = static_cast<int>(counts.size()) * of_a_count;
     const int tiers = static_cast<int>(test::machine_tiers().size());
     CHECK(plans == kinds * tiers);
-    CHECK(std::sqrt(squares / plans) < 0.1);
+    CHECK(std::sqrt(squares / ((kinds - of_a_count) * tiers)) < 0.1);
     CHECK(std::sqrt(surveyed_squares / kinds) < 0.01);
 }
 
