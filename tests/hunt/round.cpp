@@ -5,7 +5,9 @@
 #include "engines.hpp"
 #include "guarded.hpp"
 
+#include <lightbin/advise.hpp>
 #include <lightbin/encode.hpp>
+#include <lightbin/shader_build.hpp>
 
 #include <algorithm>
 #include <array>
@@ -106,16 +108,13 @@ private:
     /// round would take minutes and gigabytes.
     void keep_small(std::uint32_t large) {
         for (int tries = 0; large < scene_.lights.size(); ++tries) {
-            const auto advice =
+            const auto footprints =
                 scene_.in_world
-                    ? lightbin::advise(*view_, lightbin::world_space(scene_.lights, scene_.to_view))
-                    : lightbin::advise(*view_, scene_.lights);
+                    ? lightbin::shader_footprints(*view_, lightbin::world_space(scene_.lights, scene_.to_view))
+                    : lightbin::shader_footprints(*view_, scene_.lights);
             double entries = 0;
-            for (const lightbin::Plan& plan : advice->plans())
-                if (plan.tiled && plan.tile_size == view_->tile_size() &&
-                    plan.footprint == Footprint::rectangle)
-                    entries =
-                        plan.evaluations / std::pow(std::min(plan.tile_size, lightbin::View::max_side), 2);
+            for (const lightbin::ShaderFootprint& f : *footprints)
+                entries += (f.x1 - f.x0 + 1.0) * (f.y1 - f.y0 + 1.0);
             if (entries < 2e6) return;
             ++report_.tally["lights shrunk"];
             if (tries < 4) {
