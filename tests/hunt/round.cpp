@@ -108,12 +108,12 @@ private:
     /// round would take minutes and gigabytes.
     void keep_small(std::uint32_t large) {
         for (int tries = 0; large < scene_.lights.size(); ++tries) {
-            const auto footprints =
+            const auto rectangles =
                 scene_.in_world
                     ? lightbin::shader_footprints(*view_, lightbin::world_space(scene_.lights, scene_.to_view))
                     : lightbin::shader_footprints(*view_, scene_.lights);
             double entries = 0;
-            for (const lightbin::ShaderFootprint& f : *footprints)
+            for (const lightbin::ShaderFootprint& f : *rectangles)
                 entries += (f.x1 - f.x0 + 1.0) * (f.y1 - f.y0 + 1.0);
             if (entries < 2e6) return;
             ++report_.tally["lights shrunk"];
