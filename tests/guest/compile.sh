@@ -50,16 +50,13 @@ done
 [ "$count" -gt 0 ]
 
 all -std=c++2b -fsyntax-only
+all -std=c++20 -fsyntax-only -DLIGHTBIN_NO_SIMD
 case $compiler in
 clang*)
     all -std=c++20 -O2 -c -DNDEBUG -fno-exceptions -fno-rtti
     all -std=c++20 -O0 -c -march=native
-    all -std=c++20 -fsyntax-only -DLIGHTBIN_NO_SIMD
     ;;
-*)
-    all -std=c++20 -O2 -c
-    all -std=c++20 -O2 -c -DLIGHTBIN_NO_SIMD
-    ;;
+*) all -std=c++20 -O1 -c ;;
 esac
 compile -w -std=c++20 -fsyntax-only "$here/hostile_macros.cpp"
 

@@ -419,9 +419,10 @@ private:
         static constexpr const char* names[] = {"offset_count", "sentinel", "bitmask"};
         ++report_.tally[names[encoding]];
         Guarded<std::byte> out(static_cast<std::size_t>(bytes) + random_.below(std::size_t{9}));
-        const bool countable =
-            format.encoding == ListEncoding::bitmask || lists.ids.empty() || width == 4 ||
-            highest < (1u << 8 * width) - (format.encoding == ListEncoding::sentinel ? 1 : 0);
+        const std::uint64_t numbers =
+            (std::uint64_t{1} << 8 * width) - (format.encoding == ListEncoding::sentinel ? 1 : 0);
+        const bool countable = format.encoding == ListEncoding::bitmask ||
+                               ((lists.ids.empty() || highest < numbers) && format.max_lights <= numbers);
         if (bytes > 0 && countable) {
             const auto few = encode(grid, format, out.span(static_cast<std::size_t>(bytes) - 1));
             if (few || !out.intact(0))
