@@ -7,7 +7,7 @@ set -eu
 me=tests/campaign.sh
 cd "$(dirname "$0")/.."
 . tests/packages.sh
-install_packages g++ clang-14 clang-19 libboost-dev libgmp-dev
+install_packages g++ clang-14 clang-19 libboost-dev libgmp-dev doctest-dev libglm-dev
 
 lights=${1:-2500000}
 others=${2:-1250000}
@@ -59,6 +59,11 @@ run 5_clang19_native "$others"
 g++ $common -O2 -ffp-contract=off tests/oracle/formulas.cpp -lquadmath -o $work/campaign_formulas
 echo "$me: formulas, $others lights a family"
 nice -n 19 $work/campaign_formulas "$others" >$work/formulas.md
+
+# All of the random cases of which the unit tests run some.
+g++ $common -O2 -pthread tests/unit/tiers.cpp tests/doctest_main.cpp -o $work/tiers
+echo "$me: tiers and workers, random cases"
+LIGHTBIN_TEST_SHARE=1 nice -n 19 $work/tiers >$work/tiers.log || failed="$failed $work/tiers.log"
 
 for compiler in g++ clang++-14 clang++-19; do
     if echo '#include <lightbin/lightbin.hpp>' | "$compiler" $common -ffast-math -x c++ -fsyntax-only - 2>$work/refusal; then

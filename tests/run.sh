@@ -1,32 +1,95 @@
 #!/bin/sh
-# Runs every test: `sh tests/run.sh` on Debian 12, as root or with sudo. Installs the packages that are missing,
-# configures and builds in build/dev, runs the tests.
+# Runs the tests: `sh tests/run.sh [--quick]` on Debian 12, as root or with sudo. Installs the packages that are missing,
+# configures and builds in build/dev, runs the tests, and says how far it is.
+#   (nothing)  every test: about 12 minutes on two cores
+#   --quick    the most telling ones, and builds only those: about two minutes
 set -eu
 me=tests/run.sh
 cd "$(dirname "$0")/.."
 . tests/packages.sh
 
+quick=
+case $#:${1-} in
+0:) ;;
+1:--quick) quick=yes ;;
+1:-h | 1:--help)
+    sed -n '2,/^set/s/^# \{0,1\}//p' $me
+    exit
+    ;;
+*) fail "cannot do '$*': it takes nothing, --quick or --help" ;;
+esac
+
 compilers="g++ clang-14 clang-19" # the last two to see that they have no warning to give either
 tools="cmake ninja-build"
-arm="g++-aarch64-linux-gnu qemu-user-static" # the NEON tier, in an emulator
+emulators="g++-aarch64-linux-gnu qemu-user-static" # the NEON tier, and x86-64 without AVX and with AVX2
+x86_32="g++-12-multilib" # a machine of 32 bits
+microsoft="libc++-19-dev mingw-w64-x86-64-dev" # the libraries behind a compiler by Microsoft's rules
 libraries="doctest-dev libglm-dev"
 oracle="libboost-dev libgmp-dev"
 examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
 opengl="libgl1-mesa-dri libgles2" # Mesa draws where there is no GPU
 shaders="glslang-dev glslang-tools spirv-tools" # the first names files of the second
 # shellcheck disable=SC2086  # one word a package
-install_packages $compilers $tools $arm $libraries $oracle $examples $opengl $shaders
+install_packages $compilers $tools $emulators $x86_32 $microsoft $libraries $oracle $examples $opengl $shaders
 
-echo "$me: configuring and building in build/dev"
+# follow COMMAND...: waits for the last process in the background. Until then says what COMMAND prints: every 20 seconds,
+# or on a terminal every second on the same line.
+follow() {
+    process=$!
+    seconds=0
+    while kill -0 "$process" 2>/dev/null; do
+        sleep 1
+        seconds=$((seconds + 1))
+        if [ -t 1 ]; then
+            printf '\r\033[K%s' "$("$@" | cut -c 1-100)"
+        elif [ $((seconds % 20)) -eq 0 ]; then
+            "$@"
+        fi
+    done
+    [ ! -t 1 ] || printf '\r\033[K'
+    wait "$process"
+}
+
+say_built() {
+    sed -n 's/^\[\([0-9]*\)\/\([0-9]*\)\].*/\1 of \2 built/p' build/dev-build.log | tail -n 1
+}
+
+say_tested() {
+    awk '/^ +Start +[0-9]+: / { sub(":", "", $2); running[$2] = $3 }
+        /^ *[0-9]+\/[0-9]+ Test +#/ { sub(/^ */, ""); split($0, at, /[\/ ]/); total = at[2]; ++ended
+            match($0, /#[0-9]+/); delete running[substr($0, RSTART + 1, RLENGTH - 1)] }
+        END { for (i in running) names = names (names ? ", " : "; running: ") running[i]
+            print ended + 0 (total ? " of " total : "") " tests done" names }' build/dev-tests.log
+}
+
 jobs=$(nproc)
 make_build_folder
-cmake --preset dev >build/dev.log 2>&1 || { cat build/dev.log; fail "the configuration failed"; }
-cmake --build --preset dev -j "$jobs" -- --quiet || fail "the build failed"
+echo "$me: configuring and building in build/dev"
+cmake --preset dev -DLIGHTBIN_ALL_TESTS=ON >build/dev.log 2>&1 || { cat build/dev.log; fail "the configuration failed"; }
+cmake --build --preset dev -j "$jobs" ${quick:+--target quick} >build/dev-build.log 2>&1 &
+follow say_built || {
+    sed -n '/^FAILED/,$p' build/dev-build.log | grep -v '^\[[0-9]*/[0-9]*\]' | head -n 100
+    fail "the build failed; the full log is build/dev-build.log"
+}
 
-echo "$me: running the tests, which takes a few minutes"
+echo "$me: running the tests${quick:+ (quick)}"
+# In the quick form random cases are as few as in an emulator.
+[ -z "$quick" ] || export LIGHTBIN_TEST_SHARE=16
+some='^(unit|oracle_families.*|oracle_cells_(symmetric|orthographic_off_centre)|gl_pictures_nova_430)$'
+# On ARM programs are built for the emulator, which takes long.
+ctest --preset dev -j "$jobs" ${quick:+-R "$some" -E aarch64} >build/dev-tests.log 2>&1 &
 failed=
-ctest --preset dev -j "$jobs" >build/dev-tests.log 2>&1 || failed=yes
+follow say_tested || failed=yes
 # What each failed test said, and the summary; no line for those that passed.
 grep -vE '^ *(Start +[0-9]+: |[0-9]+/[0-9]+ Test +#.* Passed )' build/dev-tests.log
+echo "$me: the longest tests: $(sed -n 's/.*Test *#[0-9]*: \([^ ]*\).* \([0-9.]*\) sec.*/\2 s \1/p' build/dev-tests.log |
+    sort -rn | head -n 5 | paste -s -d , | sed 's/,/, /g')"
 [ -z "$failed" ] || fail "not every test passed; the full log is build/dev-tests.log"
-echo "$me: every test passed"
+
+tiers=$(build/dev/tests/unit/unit --test-case='this machine has*' | sed -n 's/.*tiers: //p')
+echo "$me: kernels that ran on this machine: $tiers"
+case $tiers in
+*AVX-512*) ;;
+*) echo "$me: LEFT OUT for want of a machine: AVX-512 (Ice Lake, Zen 4 and later have all that it takes)" ;;
+esac
+echo "$me: every ${quick:+quick }test passed"

@@ -22,19 +22,26 @@ private:
     std::mt19937 engine_{2011};
 };
 
-void add_quad(Scene& scene, const std::array<glm::vec3, 4>& corners, glm::vec3 normal, glm::vec3 colour) {
+void add_quad(std::vector<Vertex>& triangles, const std::array<glm::vec3, 4>& corners, glm::vec3 normal,
+              glm::vec3 colour) {
     for (const std::size_t k : {0u, 1u, 2u, 0u, 2u, 3u})
-        scene.triangles.push_back({corners[k], normal, colour});
+        triangles.push_back({corners[k], normal, colour});
 }
 
 // The five sides of a block that can be seen.
 void add_block(Scene& scene, glm::vec3 low, glm::vec3 high, glm::vec3 colour) {
     const float x0 = low.x, y0 = low.y, z0 = low.z, x1 = high.x, y1 = high.y, z1 = high.z;
-    add_quad(scene, {{{x0, y1, z1}, {x1, y1, z1}, {x1, y1, z0}, {x0, y1, z0}}}, {0, 1, 0}, colour);
-    add_quad(scene, {{{x0, y0, z1}, {x1, y0, z1}, {x1, y1, z1}, {x0, y1, z1}}}, {0, 0, 1}, colour);
-    add_quad(scene, {{{x1, y0, z0}, {x0, y0, z0}, {x0, y1, z0}, {x1, y1, z0}}}, {0, 0, -1}, colour);
-    add_quad(scene, {{{x1, y0, z1}, {x1, y0, z0}, {x1, y1, z0}, {x1, y1, z1}}}, {1, 0, 0}, colour);
-    add_quad(scene, {{{x0, y0, z0}, {x0, y0, z1}, {x0, y1, z1}, {x0, y1, z0}}}, {-1, 0, 0}, colour);
+    add_quad(scene.triangles, {{{x0, y1, z1}, {x1, y1, z1}, {x1, y1, z0}, {x0, y1, z0}}}, {0, 1, 0}, colour);
+    add_quad(scene.triangles, {{{x0, y0, z1}, {x1, y0, z1}, {x1, y1, z1}, {x0, y1, z1}}}, {0, 0, 1}, colour);
+    add_quad(scene.triangles, {{{x1, y0, z0}, {x0, y0, z0}, {x0, y1, z0}, {x1, y1, z0}}}, {0, 0, -1}, colour);
+    add_quad(scene.triangles, {{{x1, y0, z1}, {x1, y0, z0}, {x1, y1, z0}, {x1, y1, z1}}}, {1, 0, 0}, colour);
+    add_quad(scene.triangles, {{{x0, y0, z0}, {x0, y0, z1}, {x0, y1, z1}, {x0, y1, z0}}}, {-1, 0, 0}, colour);
+}
+
+// An upright pane of glass over the line from `a` to `b`.
+void add_pane(Scene& scene, glm::vec3 a, glm::vec3 b, float height, glm::vec3 colour) {
+    const glm::vec3 up(0, height, 0);
+    add_quad(scene.transparent, {{a, b, b + up, a + up}}, glm::normalize(glm::cross(b - a, up)), colour);
 }
 
 void add_dome(Scene& scene, glm::vec3 centre, float radius, glm::vec3 colour) {
@@ -80,7 +87,7 @@ Scene make_scene(int light_count) {
     Scene scene;
     scene.name = "made scene";
 
-    add_quad(scene,
+    add_quad(scene.triangles,
              {{{-edge - 4, 0, edge + 4},
                {edge + 4, 0, edge + 4},
                {edge + 4, 0, -edge - 4},
@@ -127,6 +134,13 @@ Scene make_scene(int light_count) {
         light.intensity = rainbow(hue) * dice.between(6, 18) * (range / 8) * (range / 8);
         scene.lights.push_back(light);
     }
+
+    // Glass: two panes before the sky, one half before walls, one in a street.
+    const glm::vec3 glass(0.6f, 0.8f, 1);
+    add_pane(scene, {-2, 0, -82}, {26, 0, -82}, 13, glass);
+    add_pane(scene, {82, 0, 30}, {82, 0, 4}, 12, glass);
+    add_pane(scene, {-28, 0, 32}, {-13, 0, 32}, 8, glass);
+    add_pane(scene, {-1.3f, 0, 56}, {1.3f, 0, 56}, 3, glass);
 
     scene.cameras = {look("over the roofs", {-40, 30, 60}, {2, -2, 8}, 48),
                      look("in a street", {0.4, 2.2, 71}, {0, 4, 0}, 55),

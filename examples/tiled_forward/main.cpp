@@ -115,9 +115,11 @@ void print(const Scene& scene, const FrameSettings& frame, const Camera& camera,
     std::printf("lights       %llu in view of %zu", unsigned_long(report.lights_in_view),
                 scene.lights.size());
     if (report.rejected > 0) std::printf(", %llu rejected as bad input", unsigned_long(report.rejected));
-    std::printf("\nlists        %llu entries, the longest has %u\n", unsigned_long(report.entries),
+    std::printf("\nlists        %llu entries, the longest has %u", unsigned_long(report.entries),
                 report.longest_list);
-    std::printf("evaluations  %.2f lights a pixel", report.evaluations_per_pixel);
+    if (report.transparent_entries > 0)
+        std::printf("; %llu entries for glass", unsigned_long(report.transparent_entries));
+    std::printf("\nevaluations  %.2f lights a pixel", report.evaluations_per_pixel);
     if (report.evaluations_per_pixel > 0)
         std::printf("; every light for every pixel would be %.1f times as many",
                     every / report.evaluations_per_pixel);
@@ -174,8 +176,10 @@ int run(const Options& options) {
     if (static_cast<std::size_t>(options.view) >= scene.cameras.size())
         throw std::runtime_error("there is no view " + std::to_string(options.view) + ": the scene has " +
                                  counted(scene.cameras.size(), "view") + ", numbered from 0");
-    std::printf("scene        %s: %s, %s, %s\n", scene.name.c_str(),
-                counted(scene.triangles.size() / 3, "triangle").c_str(),
+    const std::string glass =
+        scene.transparent.empty() ? "" : " and " + std::to_string(scene.transparent.size() / 3) + " of glass";
+    std::printf("scene        %s: %s%s, %s, %s\n", scene.name.c_str(),
+                counted(scene.triangles.size() / 3, "triangle").c_str(), glass.c_str(),
                 counted(scene.lights.size(), "light").c_str(), counted(scene.cameras.size(), "view").c_str());
     for (const std::string& note : scene.notes)
         std::printf("note         %s\n", note.c_str());

@@ -62,6 +62,13 @@ GLuint new_texture(GLuint old, GLenum format, int width, int height) {
     return made;
 }
 
+std::uint32_t longest_list(const lightbin::LightGrid<std::uint32_t>& grid) {
+    std::uint32_t longest = 0;
+    for (const lightbin::Tile& tile : grid.tiles())
+        longest = std::max(longest, tile.count);
+    return longest;
+}
+
 // Mesa's software renderer ends a shader's loops after 65,535 rounds, and says nothing.
 void check_loop(std::size_t lights) {
     if (lights > 65000)
@@ -97,40 +104,53 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     }
     report.milliseconds.pre_pass = watch.lap();
 
+    // Opaque surfaces end before the sky, glass is lit there too: its maximum counts the background.
+    const bool glass = shows_glass(settings);
     lightbin::ZBounds z_bounds;
-    if (bounded && on_gpu) reduce_on_gpu(view, camera.orthographic);
     if (bounded) {
         min_depth_.resize(settings.z_bounds == ZBoundsUse::both ? view.tile_count() : 0);
-        z_bounds = {.min = min_depth_, .max = max_depth_};
-        if (!on_gpu) {
-            max_depth_.resize(view.tile_count());
-            z_bounds =
-                value_of(lightbin::reduce_depth(view, {.depth = depth_buffer_, .skip_background = true},
-                                                {.min = min_depth_, .max = max_depth_}));
+        max_depth_.resize(view.tile_count());
+        transparent_max_.resize(glass ? view.tile_count() : 0);
+        if (on_gpu) {
+            reduce_on_gpu(view, true, min_depth_, max_depth_);
+            if (glass) reduce_on_gpu(view, false, {}, transparent_max_);
+            z_bounds = {.min = min_depth_,
+                        .max = max_depth_,
+                        .transparent_max = transparent_max_,
+                        .background_skipped = true};
+        } else {
+            z_bounds = value_of(lightbin::reduce_depth(
+                view, {.depth = depth_buffer_, .skip_background = true},
+                {.min = min_depth_, .max = max_depth_, .transparent_max = transparent_max_}));
         }
     }
     report.milliseconds.reduce = watch.lap();
 
     // 3. The lists: which lights can reach which tile. The lights are read as they go to the GPU.
+    // Glass may stand anywhere before the opaque surfaces, so it has lists of its own.
     const std::span local_lights(gpu_lights_.data(), scene_.lights.size());
     const auto lights = lightbin::view_space(local_lights, [&](const GpuLight& light) {
         const bool dropped = &light - gpu_lights_.data() == settings.dropped_light;
         const glm::vec4& s = light.sphere;
         return lightbin::Sphere{s.x, s.y, s.z, dropped ? -1.0f : s.w};
     });
-    const auto lists = value_of(binner_.bin(view, lights, z_bounds));
+    const auto bin_once = [&]() -> lightbin::TransparencyGrids<std::uint32_t> {
+        const auto lists = value_of(binner_.bin(view, lights, z_bounds));
+        return {lists, lists};
+    };
+    const auto [opaque, transparent] =
+        glass ? value_of(binner_.bin_transparency(view, lights, z_bounds)) : bin_once();
     report.milliseconds.bin = watch.lap();
 
     // 4. To the GPU.
     grid_ = lightbin::shader_grid(view);
     upload_lights();
-    upload(tiles_, lists.tiles().data(), lists.tiles().size_bytes(), view.tiles_x(), "tiles");
-    upload(indices_, lists.indices().data(), lists.indices().size_bytes(),
-           static_cast<int>(list_binding_.width), "light lists");
+    upload_lists(opaque_lists_, opaque);
+    if (glass) upload_lists(transparent_lists_, transparent);
     report.milliseconds.upload = watch.lap();
 
     // 5. The picture.
-    check_loop(binner_.statistics().longest_list);
+    check_loop(longest_list(transparent));  // no shorter than the opaque one
     draw_triangles(tiled_program_, settings);
     report.milliseconds.draw = watch.lap();
 
@@ -141,13 +161,14 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     report.rejected = statistics.rejected;
     report.entries = statistics.entries;
     report.longest_list = statistics.longest_list;
+    report.transparent_entries = glass ? transparent.indices().size() : 0;
     const int t = settings.tile_size;
     double evaluations = 0;
     for (int ty = 0; ty < view.tiles_y(); ++ty)
         for (int tx = 0; tx < view.tiles_x(); ++tx) {
             const double pixels = static_cast<double>(std::min(t, settings.width - tx * t)) *
                                   std::min(t, settings.height - ty * t);
-            evaluations += pixels * static_cast<double>(lists.lights_in(tx, ty).size());
+            evaluations += pixels * static_cast<double>(opaque.lights_in(tx, ty).size());
         }
     report.evaluations_per_pixel = evaluations / settings.width / settings.height;
     if (const GLenum error = glGetError(); error != GL_NO_ERROR)
@@ -167,7 +188,7 @@ void Renderer::draw_every_light(const Camera& camera, const FrameSettings& setti
 
 void Renderer::draw_heat_map(const FrameReport& report) {
     glUseProgram(heat_map_program_);
-    bind_lists(heat_map_program_, grid_);
+    bind_lists(heat_map_program_, opaque_lists_);
     glUniform1f(uniform(heat_map_program_, "longest_list"),
                 static_cast<float>(std::max(report.longest_list, 1u)));
     glDisable(GL_DEPTH_TEST);
@@ -231,8 +252,10 @@ Renderer::Renderer(const Scene& scene, int glsl)
     GLuint vertices = 0;
     glGenBuffers(1, &vertices);
     glBindBuffer(GL_ARRAY_BUFFER, vertices);
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(scene.triangles.size() * sizeof(Vertex)),
-                 scene.triangles.data(), GL_STATIC_DRAW);
+    std::vector<Vertex> triangles = scene.triangles;
+    triangles.insert(triangles.end(), scene.transparent.begin(), scene.transparent.end());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size() * sizeof(Vertex)),
+                 triangles.data(), GL_STATIC_DRAW);
     for (const GLuint attribute : {0u, 1u, 2u}) {  // the three vec3 of a Vertex
         glEnableVertexAttribArray(attribute);
         glVertexAttribPointer(attribute, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex),
@@ -240,9 +263,11 @@ Renderer::Renderer(const Scene& scene, int glsl)
     }
 
     lights_ = {lightbin::ShaderResource::texture_2d, GL_RGBA32F, GL_RGBA, GL_FLOAT, 16};
-    tiles_ = {list_binding_.resource, GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, 8};
-    indices_ = {list_binding_.resource, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4};
-    for (GpuBuffer* made : {&lights_, &tiles_, &indices_}) {
+    opaque_lists_ = {{list_binding_.resource, GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, 8},
+                     {list_binding_.resource, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4}};
+    transparent_lists_ = opaque_lists_;
+    for (GpuBuffer* made : {&lights_, &opaque_lists_.tiles, &opaque_lists_.indices, &transparent_lists_.tiles,
+                            &transparent_lists_.indices}) {
         glGenBuffers(1, &made->buffer);
         glGenTextures(1, &made->texture);
     }
@@ -325,19 +350,35 @@ void Renderer::draw_triangles(GLuint program, const FrameSettings& settings) con
     glUniform1i(uniform(program, "light_count"), static_cast<int>(scene_.lights.size()));
     glUniform1i(uniform(program, "sun_count"), static_cast<int>(scene_.suns.size()));
     bind_texture(program, 2, lights_, "lights");
-    if (program == tiled_program_) bind_lists(program, grid_);
-    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(scene_.triangles.size()));
+    const auto opaque = static_cast<GLsizei>(scene_.triangles.size());
+    if (program == tiled_program_) bind_lists(program, opaque_lists_);
+    glDrawArrays(GL_TRIANGLES, 0, opaque);
+    if (!shows_glass(settings)) return;
+
+    // 1 - (1 - glass) (1 - behind): the light of both, whatever is drawn first, and never more than white.
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_COLOR);
+    glDepthMask(GL_FALSE);
+    if (program == tiled_program_) bind_lists(program, transparent_lists_);
+    glDrawArrays(GL_TRIANGLES, opaque, static_cast<GLsizei>(scene_.transparent.size()));
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
+}
+
+// The light meter looks through glass, as not every OpenGL ES blends floats.
+bool Renderer::shows_glass(const FrameSettings& settings) const {
+    return !scene_.transparent.empty() && settings.exposure != 0;
 }
 
 // Hands the lists to the text that lightbin/shader.hpp generates.
-void Renderer::bind_lists(GLuint program, const lightbin::ShaderGrid& grid) const {
-    glUniform4uiv(uniform(program, "lightbin_grid"), 1, &grid.tile_size);
+void Renderer::bind_lists(GLuint program, const Lists& lists) const {
+    glUniform4uiv(uniform(program, "lightbin_grid"), 1, &grid_.tile_size);
     if (list_binding_.resource == lightbin::ShaderResource::storage_buffer) {
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, tiles_.buffer);
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, indices_.buffer);
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, lists.tiles.buffer);
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, lists.indices.buffer);
     } else {
-        bind_texture(program, 0, tiles_, "lightbin_tiles");
-        bind_texture(program, 1, indices_, "lightbin_lists");
+        bind_texture(program, 0, lists.tiles, "lightbin_tiles");
+        bind_texture(program, 1, lists.indices, "lightbin_lists");
     }
 }
 
@@ -350,6 +391,12 @@ void Renderer::bind_texture(GLuint program, int unit, const GpuBuffer& source, c
 
 void Renderer::upload_lights() const {
     upload(lights_, gpu_lights_.data(), gpu_lights_.size() * sizeof(GpuLight), lights_width, "lights");
+}
+
+void Renderer::upload_lists(const Lists& target, const lightbin::LightGrid<std::uint32_t>& grid) const {
+    upload(target.tiles, grid.tiles().data(), grid.tiles().size_bytes(), grid.tiles_x(), "tiles");
+    upload(target.indices, grid.indices().data(), grid.indices().size_bytes(),
+           static_cast<int>(list_binding_.width), "light lists");
 }
 
 // `width`: texels a row of a 2D texture
@@ -392,11 +439,13 @@ void Renderer::upload(const GpuBuffer& target, const void* data, std::size_t byt
         glTexBuffer(GL_TEXTURE_BUFFER, target.format, target.buffer);
 }
 
-// Z bounds in min_depth_ and max_depth_, without reading the depth buffer back: only a tile's two depths are.
-void Renderer::reduce_on_gpu(const lightbin::View& view, bool orthographic) {
-    GLuint& program = reduce_programs_[orthographic ? 1 : 0];
+// Z bounds without reading the depth buffer back: only a tile's two depths are. No `min`: it is not wanted.
+void Renderer::reduce_on_gpu(const lightbin::View& view, bool skip_background, std::span<float> min,
+                             std::span<float> max) {
+    GLuint& program = reduce_programs_[view.orthographic() ? 1 : 0][skip_background ? 1 : 0];
     if (program == 0)
-        program = link_program(overlay_vertex_shader(glsl_), reduce_fragment_shader(glsl_, orthographic));
+        program = link_program(overlay_vertex_shader(glsl_),
+                               reduce_fragment_shader(glsl_, view.orthographic(), skip_background));
     glUseProgram(program);
     const lightbin::ShaderReduce constants = lightbin::shader_reduce(view);
     glUniform4uiv(uniform(program, "lightbin_grid"), 1, &constants.tile_size);
@@ -417,11 +466,9 @@ void Renderer::reduce_on_gpu(const lightbin::View& view, bool orthographic) {
     glEnable(GL_DEPTH_TEST);
     depth_buffer_.resize(2 * view.tile_count());
     glReadPixels(0, 0, view.tiles_x(), view.tiles_y(), GL_RG, GL_FLOAT, depth_buffer_.data());
-    min_depth_.clear();
-    max_depth_.clear();
     for (std::size_t tile = 0; tile < view.tile_count(); ++tile) {
-        min_depth_.push_back(depth_buffer_[2 * tile]);
-        max_depth_.push_back(depth_buffer_[2 * tile + 1]);
+        if (!min.empty()) min[tile] = depth_buffer_[2 * tile];
+        max[tile] = depth_buffer_[2 * tile + 1];
     }
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
     glViewport(0, 0, width_, height_);

@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 enum class ZBoundsUse { none, max, both };
@@ -33,7 +34,8 @@ struct FrameReport {
     std::uint64_t rejected = 0;
     std::uint64_t entries = 0;
     std::uint32_t longest_list = 0;
-    double evaluations_per_pixel = 0;
+    std::uint64_t transparent_entries = 0;  // 0: no lists are needed
+    double evaluations_per_pixel = 0;       // of opaque surfaces
     struct {
         double pre_pass, reduce, bin, upload, draw;
     } milliseconds{};
@@ -80,18 +82,24 @@ private:
         GLuint buffer = 0;
         GLuint texture = 0;
     };
+    struct Lists {
+        GpuBuffer tiles, indices;
+    };
 
     void set_size(int width, int height, GLenum colour_format);
     void set_camera(const Camera& camera);
+    bool shows_glass(const FrameSettings& settings) const;
     void clear() const;
     void draw_depth() const;
     void draw_triangles(GLuint program, const FrameSettings& settings) const;
-    void bind_lists(GLuint program, const lightbin::ShaderGrid& grid) const;
+    void bind_lists(GLuint program, const Lists& lists) const;
     void bind_texture(GLuint program, int unit, const GpuBuffer& source, const char* name) const;
     void upload(const GpuBuffer& target, const void* data, std::size_t bytes, int width,
                 const char* what) const;
     void upload_lights() const;
-    void reduce_on_gpu(const lightbin::View& view, bool orthographic);
+    void upload_lists(const Lists& target, const lightbin::LightGrid<std::uint32_t>& grid) const;
+    void reduce_on_gpu(const lightbin::View& view, bool skip_background, std::span<float> min,
+                       std::span<float> max);
 
     const Scene& scene_;
     int glsl_;
@@ -99,10 +107,11 @@ private:
     lightbin::ShaderBinding list_binding_;
     GLuint depth_program_, tiled_program_, brute_force_program_, heat_map_program_;
     GLuint vertex_array_ = 0;
-    GLuint reduce_programs_[2] = {};  // perspective, orthographic
+    GLuint reduce_programs_[2][2] = {};  // [orthographic][skip_background]
     GLuint framebuffer_ = 0, colour_ = 0, depth_ = 0;
     GLuint reduce_framebuffer_ = 0, reduced_ = 0;
-    GpuBuffer lights_, tiles_, indices_;
+    GpuBuffer lights_;
+    Lists opaque_lists_, transparent_lists_;
 
     // Of the frame
     int width_ = 0, height_ = 0;
@@ -110,7 +119,7 @@ private:
     glm::mat4 projection_{1}, view_{1};
     lightbin::ShaderGrid grid_{};
     std::vector<GpuLight> gpu_lights_;
-    std::vector<float> depth_buffer_, min_depth_, max_depth_;
+    std::vector<float> depth_buffer_, min_depth_, max_depth_, transparent_max_;
     lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval, .statistics = true}>
         binner_;
 };

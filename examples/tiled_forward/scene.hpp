@@ -44,7 +44,8 @@ struct Camera {
 
 struct Scene {
     std::string name;
-    std::vector<Vertex> triangles;  // three vertices each
+    std::vector<Vertex> triangles;    // opaque, three vertices each
+    std::vector<Vertex> transparent;  // glass: adds its light to that from behind
     std::vector<Light> lights;
     std::vector<Sun> suns;
     std::vector<Camera> cameras;     // at least one

@@ -118,12 +118,12 @@ lightbin::ShaderBinding list_binding(int glsl) {
     return lightbin::shader_snippet(list_options(glsl))->bindings.back();
 }
 
-std::string reduce_fragment_shader(int glsl, bool orthographic) {
+std::string reduce_fragment_shader(int glsl, bool orthographic, bool skip_background) {
     lightbin::ReduceShaderOptions options;
     options.language = list_options(glsl).language;
     options.stage = lightbin::ShaderStage::fragment;
     options.orthographic = orthographic;
-    options.skip_background = true;
+    options.skip_background = skip_background;
     return version_line(glsl) + lightbin::reduce_shader(options)->text;
 }
 

@@ -56,7 +56,10 @@ struct Plan {
 class Advice {
 public:
     explicit Advice(std::vector<Plan> plans) : plans_(std::move(plans)) {
-        std::ranges::stable_sort(plans_, {}, &Plan::total_ns);
+        // In their order where they cost the same; std::stable_sort is noisy with some compilers' warnings.
+        for (auto plan = plans_.begin(); plan != plans_.end(); ++plan)
+            std::rotate(std::ranges::upper_bound(plans_.begin(), plan, plan->total_ns, {}, &Plan::total_ns),
+                        plan, plan + 1);
     }
 
     const Plan& best() const { return plans_[0]; }
@@ -160,8 +163,12 @@ struct WeighedGrid {
             const float middle = 0.5f * std::clamp(lowest[tile], -FLT_MAX, FLT_MAX) +
                                  0.5f * std::clamp(highest[tile], -FLT_MAX, FLT_MAX);
             // What is drawn lies from low to end, and from begin to high.
-            float end = read(of_fine.gap_min, from, infinity), begin = read(of_fine.gap_max, from, -infinity);
-            if (!(end < begin)) end = high, begin = low;
+            float end = read(of_fine.gap_min, from, infinity),
+                  begin = read(of_fine.gap_max, from, -infinity);
+            if (!(end < begin)) {
+                end = high;
+                begin = low;
+            }
             const float nearer = begin <= middle ? high
                                  : low <= middle ? end
                                                  : -infinity,
@@ -265,7 +272,7 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
             Plan plan = {.footprint = options.footprint,
                          .depth_test = options.depth_test,
                          .tile_size = grid.view.tile_size(),
-                         .build_ns = detail::infinity};
+                         .build_ns = HUGE_VAL};
             const Result<LightGrid<Id>> built = build(plan, lights);
             if (!built) return built.error();
             plan.entries = built->indices().size();
@@ -279,7 +286,7 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
     // first build found no memory. After two more, a time is taken for at most twice the true one.
     constexpr int turns = 8;
     for (int turn = 0;; ++turn) {
-        double least = detail::infinity;
+        double least = HUGE_VAL;
         for (Plan& plan : plans) {
             plan.total_ns = plan.build_ns + plan.evaluations * costs.evaluation_ns;
             least = (std::min)(least, plan.total_ns);

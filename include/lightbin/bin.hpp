@@ -24,6 +24,8 @@
 #include <type_traits>
 #include <vector>
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// A light grid in memory of its own, kept from call to call.
@@ -41,6 +43,7 @@ public:
     std::optional<Error> build(Isa isa, const View& view, const Footprints<footprint, with_depth>& footprints,
                                const ZBounds& bounds, std::vector<detail::Scratch>& scratch,
                                [[maybe_unused]] const Threads& parallel) {
+        tile_count_ = entries_ = 0;  // until there is a grid
         const std::size_t tiles = view.tile_count();
         Job job = {.camera = &view.camera(),
                    .lights = footprints.arrays(),
@@ -72,11 +75,11 @@ public:
                                                                              {0, rows, nullptr, 0});
         if (room > most) return Error{ErrorCode::too_many_entries, room, most};
 
-        tile_count_ = tiles;
         job.tiles = tiles_.room(tiles + Job::slack(static_cast<std::size_t>(view.tiles_x())));
+        tile_count_ = tiles;
         const auto kernel =
             detail::bin_kernel<footprint, depth_test, Id>(isa, view, footprints.visible(), footprints.area());
-        Id* list = indices_.room(static_cast<std::size_t>(room) + slack);
+        Id* list = indices_.room(room + slack);
         shared_ = false;
         if constexpr (!std::is_same_v<Threads, Serial>) {
             const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), rows);
@@ -129,18 +132,17 @@ private:
                            {part.begin, part.end, out, static_cast<std::uint32_t>(part.before)});
                     return;
                 }
-                const std::size_t spare_room = static_cast<std::size_t>(part.spare_area);
-                Id* spare = spares_[i].room(spare_room + slack);
+                Id* spare = spares_[i].room(part.spare_area + slack);
                 kernel(job, scratch[i],
                        {part.begin, part.end, out, static_cast<std::uint32_t>(part.before), part.spare_row,
                         spare});
-                std::copy_n(spare, spare_room, out + part.area - part.spare_area);
+                std::copy_n(spare, part.spare_area, out + part.area - part.spare_area);
             });
             return static_cast<std::size_t>(parts[count - 1].before + parts[count - 1].area);
         } else {
             // Otherwise each part but the first makes a list of its own, and then they are put in their places.
             parallel.run(count, [&](std::size_t i) {
-                Id* out = i == 0 ? list : spares_[i].room(static_cast<std::size_t>(parts[i].area) + slack);
+                Id* out = i == 0 ? list : spares_[i].room(parts[i].area + slack);
                 parts[i].area = kernel(job, scratch[i], {parts[i].begin, parts[i].end, out, 0});
             });
             std::size_t entries = 0;
@@ -184,3 +186,5 @@ private:
 };
 
 }  // namespace lightbin
+
+#include <lightbin/detail/warnings_on.inl>

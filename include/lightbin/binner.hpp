@@ -27,6 +27,8 @@
 #include <utility>
 #include <vector>
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// Number of elements that Binner::emit writes.
@@ -51,8 +53,8 @@ struct Statistics {
 };
 
 /// Bins lights into screen tiles. Keeps its memory: the same input again allocates nothing, another one only where
-/// it outgrows the earlier ones, or where another kernel or number of threads takes it. Not thread-safe: one Binner
-/// a thread.
+/// it outgrows the earlier ones, or where another kernel or number of threads takes it. After an exception in a call,
+/// there is no grid, and the next call is as any other. Not thread-safe: one Binner a thread.
 template <Options options = Options{}> class Binner {
     static constexpr bool with_depth = options.depth_test != DepthTest::none;
 
@@ -175,10 +177,8 @@ private:
     std::optional<Error> project(const View& view, const LightRange& lights, const Parallel& parallel) {
         counted_.reset();
         const auto& source = detail::as_lights(lights);
-        if (!source.valid) return Error{ErrorCode::view_matrix_not_affine};
-        const std::uint64_t count = source.array.size(),
-                            most = options.index == Index::u16 ? 0x10000 : 0xffffffff;
-        if (count > most) return Error{ErrorCode::too_many_lights, count, most};
+        if (const auto error = detail::refuse(source, options.index == Index::u16 ? 0x10000 : 0xffffffff))
+            return error;
         if (scratch_.empty()) scratch_.resize(1);
         isa_ = detail::machine_isa(options.isa);
         footprints_.project(isa_, view, source, parallel, lists_.shared());
@@ -225,4 +225,6 @@ private:
     std::optional<LightGrid<Id>> counted_;  ///< what emit() has to write, in lists_
 };
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}  // namespace lightbin
+
+#include <lightbin/detail/warnings_on.inl>

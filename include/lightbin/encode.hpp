@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/sizes.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/result.hpp>
 
@@ -10,7 +11,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
+
+#include <lightbin/detail/warnings_off.inl>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
@@ -41,13 +45,36 @@ inline std::uint64_t countable_lights(const ListFormat& format) {
     return format.encoding == ListEncoding::sentinel ? values - 1 : values;
 }
 
-/// Returns the bytes that encode() writes for a grid of so many tiles (fewer than 2^32) and list entries, a
-/// multiple of 4. Where they are more than 64 bits count: 2^64 - 4.
+namespace detail {
+
+/// How many ids, or words of bits, each tile has, whatever its list.
+inline std::uint64_t places_a_tile(const ListFormat& format) {
+    return format.encoding == ListEncoding::bitmask ? (format.max_lights + 31ull) / 32 : format.capacity;
+}
+
+/// What is no format: neither encode() nor the shaders take it.
+inline std::optional<Error> refuse(const ListFormat& format) {
+    if (format.max_lights > countable_lights(format))
+        return Error{ErrorCode::ids_too_narrow, format.max_lights, countable_lights(format)};
+    if (format.encoding == ListEncoding::sentinel && format.capacity == 0)
+        return Error{ErrorCode::capacity_unknown};
+    if (format.encoding == ListEncoding::bitmask && format.max_lights == 0)
+        return Error{ErrorCode::max_lights_unknown};
+    return std::nullopt;
+}
+
+}  // namespace detail
+
+/// Returns the bytes that encode() writes for a grid of so many tiles and list entries, a multiple of 4. Where they
+/// are more than 64 bits count: 2^64 - 4.
 inline std::uint64_t encoded_bytes(const ListFormat& format, std::uint64_t tiles, std::uint64_t entries) {
-    if (format.encoding == ListEncoding::bitmask) return tiles * 4 * ((format.max_lights + 31ull) / 32);
-    const std::uint64_t ids = format.encoding == ListEncoding::sentinel ? tiles * format.capacity : entries;
+    const std::uint64_t places = format.encoding == ListEncoding::offset_count
+                                     ? entries
+                                     : detail::product_of_sizes(tiles, detail::places_a_tile(format));
+    const std::uint64_t width =
+        format.encoding == ListEncoding::bitmask ? 4 : static_cast<std::uint64_t>(format.ids);
     constexpr std::uint64_t most = ~std::uint64_t{3};
-    return ids > most / 4 ? most : (ids * static_cast<unsigned>(format.ids) + 3) / 4 * 4;
+    return places > most / width ? most : (places * width + 3) / 4 * 4;
 }
 
 /// What a sentinel list's capacity cut off.
@@ -77,9 +104,9 @@ void encode_ids(const LightGrid<Id>& grid, const ListFormat& format, std::byte* 
     }
 }
 
-template <class Id> void encode_bits(const LightGrid<Id>& grid, std::uint32_t words, std::byte* out) {
+template <class Id> void encode_bits(const LightGrid<Id>& grid, std::size_t bytes_a_tile, std::byte* out) {
     for (const Tile tile : grid.tiles()) {
-        std::memset(out, 0, std::size_t{4} * words);
+        std::memset(out, 0, bytes_a_tile);
         for (std::uint32_t i = 0; i < tile.count; ++i) {
             const std::uint32_t id = grid.indices()[tile.offset + i];
             std::uint32_t word = 0;
@@ -87,7 +114,7 @@ template <class Id> void encode_bits(const LightGrid<Id>& grid, std::uint32_t wo
             word |= std::uint32_t{1} << id % 32;
             std::memcpy(out + id / 32 * 4, &word, 4);
         }
-        out += std::size_t{4} * words;
+        out += bytes_a_tile;
     }
 }
 
@@ -98,10 +125,11 @@ template <class Id> void encode_bits(const LightGrid<Id>& grid, std::uint32_t wo
 ///
 /// After it, each tile's list in `out` is the grid's. Only a sentinel list longer than its capacity is cut:
 /// its first `capacity` ids, the lowest, stay, and the result counts the others. offset_count: the table of
-/// tiles is grid.tiles() as it is. Errors: an id the format can't number; `out` too small. Then `out` is not
-/// touched.
+/// tiles is grid.tiles() as it is. Errors: a format without the capacity or max_lights that it needs, or with more
+/// max_lights than its ids number; an id it can't number; `out` too small. Then `out` is not touched.
 template <class Id>
 Result<Encoded> encode(const LightGrid<Id>& grid, const ListFormat& format, std::span<std::byte> out) {
+    if (const auto error = detail::refuse(format)) return *error;
     const std::uint64_t bytes = encoded_bytes(format, grid.tiles().size(), grid.indices().size());
     if (out.size() < bytes) return Error{ErrorCode::list_buffer_too_small, bytes, out.size()};
     const std::uint64_t most = countable_lights(format);
@@ -117,7 +145,7 @@ Result<Encoded> encode(const LightGrid<Id>& grid, const ListFormat& format, std:
         ++encoded.tiles_cut;
     }
     if (format.encoding == ListEncoding::bitmask)
-        detail::encode_bits(grid, (format.max_lights + 31) / 32, out.data());
+        detail::encode_bits(grid, static_cast<std::size_t>(encoded_bytes(format, 1, 0)), out.data());
     else if (format.ids == IdWidth::u8)
         detail::encode_ids<std::uint8_t>(grid, format, out.data());
     else if (format.ids == IdWidth::u16)
@@ -128,3 +156,5 @@ Result<Encoded> encode(const LightGrid<Id>& grid, const ListFormat& format, std:
 }
 
 }  // namespace lightbin
+
+#include <lightbin/detail/warnings_on.inl>

@@ -14,7 +14,8 @@
 //   1. View::from_projection(projection, {width, height}, {.tile_size = 32, ...})              view.hpp
 //        Once a camera change. Any perspective or orthographic matrix; a Result, as a matrix may be refused
 //        by name.
-//   2. Optionally reduce_depth(view, {.depth = pixels}, min, max), or Z bounds of your own     z_bounds.hpp
+//   2. Optionally reduce_depth(view, {.depth = pixels}, {.min = min, .max = max}), or Z       z_bounds.hpp
+//      bounds of your own
 //   3. Binner<Options{...}> binner; once. Then each frame  binner.bin(view, lights[, bounds])  binner.hpp
 //        lights: vec4 array or Sphere array in view space, or view_space(yours, to_sphere),
 //        or world_space(yours, view_matrix[, to_sphere])                                       lights.hpp
@@ -29,7 +30,11 @@
 // x86-64, of which the machine's own is picked at run time, and for NEON on 64-bit ARM; elsewhere the scalar
 // ones run. All give the same bytes. Define LIGHTBIN_NO_SIMD to leave them out, LIGHTBIN_ASSERT to take over the
 // assertions. -ffast-math is refused where the compiler tells of it; clang does not tell of
-// -funsafe-math-optimizations alone: don't.
+// -funsafe-math-optimizations alone: don't. So is x87 arithmetic, which 32-bit compilers may default to.
+//
+// Files of one program may be compiled for different processors. They share none of this library's functions: its names
+// lie in an inline namespace that says what the file is compiled for. So its types can't be handed from one such file to
+// another (a linker error says so), nor be declared without its headers.
 //
 // Sources: Olsson and Assarsson, "Tiled Shading", JGT 15(4), 2011. Billeter, Olsson and Assarsson, "Tiled
 // Forward Shading", GPU Pro 4, 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.

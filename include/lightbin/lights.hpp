@@ -16,6 +16,8 @@
 #include <span>
 #include <type_traits>
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// A light's sphere of influence: centre and radius (the papers' range).
@@ -31,11 +33,11 @@ struct Sphere {
 /// in metres. What a light gives beyond its range is lost, so the cutoff is the largest error that one
 /// light's missing tail can make.
 ///
-/// intensity  0 or less gives range 0, NaN gives NaN
+/// intensity  0 or less gives range 0, infinite an infinite one, NaN gives NaN
 /// cutoff     0 or less gives an infinite range
 inline float light_range(float intensity, float cutoff) {
     if (intensity <= 0) return 0;
-    if (cutoff <= 0) return detail::infinity;
+    if (cutoff <= 0 || (intensity > FLT_MAX && !std::isnan(cutoff))) return detail::infinity;
     return detail::float_above(std::sqrt(static_cast<double>(intensity) / static_cast<double>(cutoff)) *
                                (1 + 0x1p-50));
 }
@@ -46,7 +48,7 @@ namespace detail {
 /// one that covers everything; bad input stays bad.
 inline Sphere sphere_around(double x, double y, double z, double radius) {
     if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z) || !(radius >= 0)) return {0, 0, 0, -1};
-    constexpr double most = FLT_MAX;
+    constexpr double most = static_cast<double>(FLT_MAX);
     if (std::fabs(x) > most || std::fabs(y) > most || std::fabs(z) > most) return {0, 0, 0, infinity};
     const Sphere nearest = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 0};
     const double error = std::fabs(x - static_cast<double>(nearest.x)) +
@@ -95,15 +97,17 @@ public:
     template <class Matrix> explicit WorldToView(const Matrix& matrix) {
         copy_matrix(matrix, m_);
         affine_ = finite(m_) && m_[0][3] == 0 && m_[1][3] == 0 && m_[2][3] == 0 && m_[3][3] == 1;
-        // The largest singular value is at most the root of the largest row sum of M^T M.
-        double square = 0;
+        // The largest singular value is at most the root of the largest row sum of M^T M. Where a product overflows, sums
+        // are infinite or NaN, which no comparison takes for the largest: then there is no bound.
+        double square = 0, all = 0;
         for (int i = 0; i < 3; ++i) {
             double row_sum = 0;
             for (int j = 0; j < 3; ++j)
                 row_sum += std::fabs(m_[i][0] * m_[j][0] + m_[i][1] * m_[j][1] + m_[i][2] * m_[j][2]);
             square = (std::max)(square, row_sum);
+            all += row_sum;
         }
-        stretch_ = std::sqrt(square) * (1 + 0x1p-48);
+        stretch_ = std::isfinite(all) ? std::sqrt(square) * (1 + 0x1p-48) : HUGE_VAL;
     }
 
     bool affine() const { return affine_; }
@@ -112,12 +116,13 @@ public:
         if (!std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) ||
             !(light.radius >= 0))
             return light;  // bad input stays bad
-        const double x = light.x, y = light.y, z = light.z;
+        const double x = static_cast<double>(light.x), y = static_cast<double>(light.y),
+                     z = static_cast<double>(light.z);
         double centre[3], error = 0;
         for (int row = 0; row < 3; ++row) {
             const double a = m_[0][row] * x, b = m_[1][row] * y, c = m_[2][row] * z, d = m_[3][row];
             centre[row] = a + b + c + d;
-            if (std::fabs(centre[row]) > static_cast<double>(FLT_MAX)) return {0, 0, 0, infinity};
+            if (!(std::fabs(centre[row]) <= static_cast<double>(FLT_MAX))) return {0, 0, 0, infinity};
             // 2^-24 to round the centre to float, 2^-50 for the sum in double
             error += 0x1p-24 * std::fabs(centre[row]) +
                      0x1p-50 * (std::fabs(a) + std::fabs(b) + std::fabs(c) + std::fabs(d));
@@ -125,7 +130,7 @@ public:
         const double radius = (static_cast<double>(light.radius) * stretch_ + error) * (1 + 0x1p-23) +
                               static_cast<double>(FLT_MIN);
         return {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2]),
-                radius > static_cast<double>(FLT_MAX) ? infinity : static_cast<float>(radius)};
+                radius <= static_cast<double>(FLT_MAX) ? static_cast<float>(radius) : infinity};
     }
 
 private:
@@ -147,7 +152,7 @@ template <class Light, class ToViewSphere> struct Lights {
 /// Returns lights in view space (the space that the projection matrix takes). The array is read in place: it
 /// must live until the Binner's call returns.
 ///
-/// to_sphere  any callable that makes a Sphere of an element
+/// to_sphere  a callable that makes a Sphere of an element; it is copied, and called as const
 template <std::ranges::contiguous_range Range, class ToSphere = AsSphere>
 auto view_space(const Range& lights, ToSphere to_sphere = {}) {
     using Light = std::ranges::range_value_t<const Range>;
@@ -212,3 +217,5 @@ inline Sphere load_sphere(const Sphere* from) {
 
 }  // namespace detail
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+
+#include <lightbin/detail/warnings_on.inl>

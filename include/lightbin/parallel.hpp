@@ -31,6 +31,8 @@ public:
     /// workers   how many threads `run` has; more or fewer change the speed, never the result
     /// run       run(n, body) calls body(i), a std::size_t, once for each 0 <= i < n, in any order, on any
     ///           threads, and returns when all calls have returned: tbb::parallel_for, a thread pool, OpenMP.
+    ///           A call throws where there is no memory, or what the caller's own functions throw. `run` may
+    ///           throw too, that or anything, once no call is under way.
     /// start_ns  about how long it takes until `run` has its threads at work. What would gain less is done by the
     ///           calling thread alone, unless it wakes the threads for what follows. The default is that of
     ///           threads asleep; 0 shares all that can be shared.
@@ -86,4 +88,4 @@ struct Serial {
     operator Parallel() const { return {}; }
 };
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}  // namespace lightbin

@@ -10,6 +10,7 @@
 #include <lightbin/lights.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/parallel.hpp>
+#include <lightbin/result.hpp>
 #include <lightbin/view.hpp>
 
 #include <algorithm>
@@ -17,9 +18,24 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
+
+namespace detail {
+
+/// The lights that no stage takes, ids being 32 bits at most.
+template <class Light, class ToViewSphere>
+std::optional<Error> refuse(const Lights<Light, ToViewSphere>& lights, std::uint64_t most = 0xffffffff) {
+    if (!lights.valid) return Error{ErrorCode::view_matrix_not_affine};
+    if (lights.array.size() > most) return Error{ErrorCode::too_many_lights, lights.array.size(), most};
+    return std::nullopt;
+}
+
+}  // namespace detail
 
 /// The footprints of the lights in view, in ascending order of id. Keeps its memory from call to call.
 ///
@@ -49,9 +65,10 @@ public:
                                       ? (std::min)(chunks, 4 * (std::min)(chunks, parallel.workers()))
                                       : 1;
         const auto first_of = [&](std::size_t part) {
-            return (std::min)(chunks * part / parts * chunk, lights_);
+            return static_cast<std::size_t>(
+                (std::min<std::uint64_t>)(std::uint64_t{chunks} * part / parts * chunk, lights_));
         };
-        const std::size_t room = lights_ + parts * padding;
+        const std::uint64_t room = std::uint64_t{lights_} + parts * padding;
         arrays_ = {.ids = ids_.room(room),
                    .x0 = x0_.room(room),
                    .y0 = y0_.room(room),
@@ -119,7 +136,7 @@ private:
         constexpr std::uint64_t padding = 8;  // a vector of rows
         // Later lights than 32 bits can number the spans of keep their rectangles.
         const std::uint64_t room = (std::min)(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
-        detail::RowSpan* spans = spans_.room(static_cast<std::size_t>(room + padding));
+        detail::RowSpan* spans = spans_.room(room + padding);
         arrays_.spans = spans;
         std::uint64_t place = 0;
         for (std::size_t part = 0; part < run_count_; ++part) {
@@ -146,3 +163,5 @@ private:
 };
 
 }  // namespace lightbin
+
+#include <lightbin/detail/warnings_on.inl>

@@ -110,12 +110,7 @@ inline std::optional<Error> refuse(const ShaderOptions& options) {
         return Error{ErrorCode::texture_width_out_of_range, options.texture_width, 16384};
 
     const ListFormat& format = options.format;
-    if (format.max_lights > countable_lights(format))
-        return Error{ErrorCode::ids_too_narrow, format.max_lights, countable_lights(format)};
-    if (format.encoding == ListEncoding::sentinel && format.capacity == 0)
-        return Error{ErrorCode::capacity_unknown};
-    if (format.encoding == ListEncoding::bitmask && format.max_lights == 0)
-        return Error{ErrorCode::max_lights_unknown};
+    if (const auto error = refuse(format)) return error;
 
     const bool table = format.encoding == ListEncoding::offset_count;
     const bool tiles_in_block =
@@ -219,7 +214,7 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
                         : writer.read(tiles, "(" + index + ")")) +
                    ";\n    c.id = 0u;\n    c.at = list.x;\n    c.end = list.x + list.y;\n");
     } else {
-        const std::string each = number(bits ? (format.max_lights + 31ull) / 32 : format.capacity);
+        const std::string each = number(places_a_tile(format));
         writer.add(std::string("    c.id = ") + (bits ? "0u - 32u" : "0u") + ";\n    c.at = (" + index +
                    ") * " + each + ";\n    c.end = c.at + " + each + ";\n");
         if (bits) writer.add("    c.bits = 0u;\n");
@@ -259,4 +254,4 @@ vec3 $heat(uvec2 pixel, float most) {
     return writer.finish();
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}  // namespace lightbin

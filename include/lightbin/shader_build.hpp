@@ -179,9 +179,10 @@ inline void add_depth_sample(ShaderWriter& writer, const ReduceShaderOptions& op
 inline void add_view_depths(ShaderWriter& writer, const ReduceShaderOptions& options) {
     const std::string endless = shader_infinity;
     writer.add("\nvec2 $view_depths(uvec2 range) {\n");
-    if (options.format == DepthFormat::float32)  // two units in the last place: no less than reduce_depth()
-        writer.add("    vec2 ends = vec2(uintBitsToFloat(range.x < 2u ? 0u : range.x - 2u), "
-                   "uintBitsToFloat(min(range.y + 2u, 0x3f800000u)));\n");
+    if (options.format == DepthFormat::float32)
+        // Two units in the last place, and no denormals: no less than reduce_depth().
+        writer.add("    vec2 ends = vec2(uintBitsToFloat(range.x < 0x00800002u ? 0u : range.x - 2u), "
+                   "uintBitsToFloat(clamp(range.y + 2u, 0x00800000u, 0x3f800000u)));\n");
     else  // one step, and 2^-24 for the roundings of the texel and here
         writer.add(std::string("    float step = ") +
                    (options.format == DepthFormat::unorm24 ? "1.1920931e-7" : "1.5318642e-5") +
@@ -281,9 +282,7 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {})
 template <class LightRange>
 Result<std::vector<ShaderFootprint>> shader_footprints(const View& view, const LightRange& lights) {
     const auto& source = detail::as_lights(lights);
-    if (!source.valid) return Error{ErrorCode::view_matrix_not_affine};
-    if (source.array.size() > 0xffffffff)
-        return Error{ErrorCode::too_many_lights, source.array.size(), 0xffffffff};
+    if (const auto error = detail::refuse(source)) return *error;
     Footprints<Footprint::rectangle, true> footprints;
     footprints.project(detail::machine_isa(detail::compiled_isa), view, source, Parallel{});
     const detail::FootprintArrays& in = footprints.arrays();

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 enum class ShaderLanguage : std::uint8_t {
@@ -213,7 +215,10 @@ public:
             const std::string width = std::to_string(buffer.width) + "u)";
             return read_texel(buffer, "int((" + index + ") % " + width + ", int((" + index + ") / " + width);
         }
-        default:
+        case ShaderResource::uniform_vector:
+        case ShaderResource::push_constants:
+        case ShaderResource::storage_buffer:
+        case ShaderResource::writable_buffer:
             break;
         }
         return name + "[" + index + "]";
@@ -325,9 +330,12 @@ private:
                 return dialect_.hlsl ? 3 : 2;
             case ShaderResource::storage_buffer:
                 return 2;
-            default:
-                return dialect_.hlsl ? 2 : 4;
+            case ShaderResource::byte_address:
+            case ShaderResource::texel_buffer:
+            case ShaderResource::texture_2d:
+                break;
             }
+            return dialect_.hlsl ? 2 : 4;
         };
         const int kind_a = kind(a), kind_b = kind(b);
         return dialect_.storage_buffers && kind_a != 0 && kind_b != 0 &&
@@ -343,3 +351,5 @@ private:
 }  // namespace detail
 
 }  // namespace lightbin
+
+#include <lightbin/detail/warnings_on.inl>

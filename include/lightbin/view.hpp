@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// Range of clip-space depth. It is a setting of the graphics API and cannot be read from the matrix.
@@ -268,3 +270,5 @@ private:
 };
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+
+#include <lightbin/detail/warnings_on.inl>

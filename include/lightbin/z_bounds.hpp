@@ -6,6 +6,7 @@
 #include <lightbin/detail/kernels.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/rounding.hpp>
+#include <lightbin/detail/sizes.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/view.hpp>
 
@@ -70,12 +71,18 @@ namespace detail {
 /// The view depths of fragments that may have left window depths `lower` and `upper` in a buffer, and all
 /// between. In double: a float sum near 1 would be off by a step of its own.
 inline DepthInterval fragment_depths(const View& view, float lower, float upper, DepthFormat format) {
-    const double step = format == DepthFormat::unorm24   ? 0x1.000002p-24
-                        : format == DepthFormat::unorm16 ? 0x1.0002p-16
-                                                         : 0.0;
-    const double ulp = format == DepthFormat::float32 ? 0x1p-23 : 0.0;
-    return view.view_depths(std::clamp(static_cast<double>(lower) * (1 - ulp) - step, 0.0, 1.0),
-                            std::clamp(static_cast<double>(upper) * (1 + ulp) + step, 0.0, 1.0));
+    const double low = static_cast<double>(lower), high = static_cast<double>(upper);
+    const auto depths = [&](double from, double to) {
+        return view.view_depths(std::clamp(from, 0.0, 1.0), std::clamp(to, 0.0, 1.0));
+    };
+    if (format != DepthFormat::float32) {
+        const double step = format == DepthFormat::unorm24 ? 0x1.000002p-24 : 0x1.0002p-16;
+        return depths(low - step, high + step);
+    }
+    // A denormal depth is rounded by up to all of itself, or to zero.
+    constexpr double least_normal = 0x1p-126;
+    return depths(low < least_normal ? 0 : low * (1 - 0x1p-23),
+                  (std::max)(high * (1 + 0x1p-23), least_normal));
 }
 
 /// Smallest and largest of some numbers; lower > upper if there are none.
@@ -153,7 +160,9 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
     const std::size_t row = static_cast<std::size_t>(viewport.width) * samples;
     const std::size_t pitch = buffer.row_pitch == 0 ? row : buffer.row_pitch;
     if (pitch < row) return Error{ErrorCode::row_pitch_too_small, row, pitch};
-    const std::size_t needed = tiles == 0 ? 0 : pitch * static_cast<std::size_t>(viewport.height - 1) + row;
+    const std::uint64_t before_last =
+        detail::product_of_sizes(pitch, static_cast<std::uint64_t>(viewport.height) - 1);
+    const std::uint64_t needed = tiles == 0 ? 0 : detail::sum_of_sizes(before_last, row);
     if (buffer.depth.size() < needed)
         return Error{ErrorCode::depth_buffer_too_small, needed, buffer.depth.size()};
     for (const std::span<float> side : {out.min, out.max, out.gap_min, out.gap_max, out.transparent_max})
@@ -163,7 +172,9 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
     constexpr float none = std::numeric_limits<float>::quiet_NaN();
     const float skipped = !buffer.skip_background ? none : view.reversed_z() ? 0.0f : 1.0f;
     const bool gaps = !out.gap_min.empty() && !out.gap_max.empty();
-    const std::size_t size = static_cast<std::size_t>(view.tile_size());
+    // As one of the viewport's size, a larger tile has a number of columns that can be counted.
+    const std::size_t size =
+        static_cast<std::size_t>((std::min)(view.tile_size(), (std::max)(viewport.width, viewport.height)));
     const std::size_t tiles_x = static_cast<std::size_t>(view.tiles_x());
     const std::size_t height = static_cast<std::size_t>(viewport.height);
     isa = detail::machine_isa(isa);

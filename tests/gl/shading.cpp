@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace {
 
@@ -64,8 +65,10 @@ double largest_difference(const Scene& scene, const Picture& picture, double exp
             const glm::dvec3 moon = glm::normalize(glm::dvec3(0.3, 0.8, 0.5));
             const glm::dvec3 night = colour * glm::dvec3(0.012, 0.015, 0.024) * (1 + moon.z);
             const glm::dvec3 display = 1.0 - glm::exp(-exposure * radiance - night);
+            const glm::dvec3 sky(0.02, 0.025, 0.04);
             for (int channel = 0; channel < 3; ++channel) {
-                const double expected = 255 * std::pow(display[channel], 1 / 2.2);
+                double expected = 255 * std::pow(display[channel], 1 / 2.2);
+                if (!scene.transparent.empty()) expected += sky[channel] * (255 - expected);
                 const auto place = static_cast<std::size_t>(3 * (y * width + x) + channel);
                 largest = std::max(largest, std::abs(expected - picture.rgb[place]));
             }
@@ -105,7 +108,13 @@ TEST_CASE("a pixel has the light that the specification gives it") {
         }
         scene.suns = {{glm::normalize(glm::vec3(1, 1, -1)), {0.5f, 0.5f, 0.8f}}};
     }
+    SUBCASE("the wall is a pane of glass before the sky") {
+        light.range = 1.7f;
+        scene.lights = {light};
+        std::swap(scene.triangles, scene.transparent);
+    }
 
+    const double most = scene.transparent.empty() ? 1 : 1.5;  // blended colours are rounded more than once
     for (const int glsl : {330, 430, 300, 310}) {
         CAPTURE(glsl);
         const OffscreenContext context(glsl);
@@ -115,9 +124,9 @@ TEST_CASE("a pixel has the light that the specification gives it") {
         settings.height = height;
         settings.exposure = 1.5f;
         renderer.draw(scene.cameras[0], settings);
-        CHECK(largest_difference(scene, renderer.read_picture(), 1.5) < 1);
+        CHECK(largest_difference(scene, renderer.read_picture(), 1.5) < most);
         renderer.draw_every_light(scene.cameras[0], settings);
-        CHECK(largest_difference(scene, renderer.read_picture(), 1.5) < 1);
+        CHECK(largest_difference(scene, renderer.read_picture(), 1.5) < most);
     }
 }
 

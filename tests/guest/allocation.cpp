@@ -1,4 +1,6 @@
-// Once warm, nothing allocates. Counts calls of the global operator new.
+// Once warm, nothing allocates.
+#include "counted_new.hpp"
+
 #include <lightbin/lightbin.hpp>
 
 #include <doctest/doctest.h>
@@ -7,48 +9,8 @@
 
 #include <cstddef>
 #include <cstdlib>
-#include <new>
 #include <random>
 #include <vector>
-
-namespace {
-
-std::size_t allocations = 0;
-
-void* counted(std::size_t size) {
-    ++allocations;
-    if (void* memory = std::malloc(size)) return memory;
-    std::abort();
-}
-
-void* counted(std::size_t size, std::align_val_t alignment) {
-    ++allocations;
-    const auto unit = static_cast<std::size_t>(alignment);
-    if (void* memory = std::aligned_alloc(unit, (size + unit - 1) / unit * unit)) return memory;
-    std::abort();
-}
-
-}  // namespace
-
-// The array and nothrow forms call these.
-void* operator new(std::size_t size) {
-    return counted(size);
-}
-void* operator new(std::size_t size, std::align_val_t alignment) {
-    return counted(size, alignment);
-}
-void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
-}
 
 namespace {
 

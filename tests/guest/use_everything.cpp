@@ -106,7 +106,8 @@ void use_encodings(Hash& hash, const auto& grid) {
     for (const ListFormat& format :
          {ListFormat{.ids = IdWidth::u8}, ListFormat{ListEncoding::sentinel, IdWidth::u16, 9},
           ListFormat{.encoding = ListEncoding::bitmask, .max_lights = 200}}) {
-        std::vector<std::byte> bytes(encoded_bytes(format, grid.tiles().size(), grid.indices().size()));
+        std::vector<std::byte> bytes(
+            static_cast<std::size_t>(encoded_bytes(format, grid.tiles().size(), grid.indices().size())));
         hash.add(value_of(encode(grid, format, bytes)).entries_cut);
         for (const std::byte byte : bytes)
             hash.add(std::to_integer<std::uint64_t>(byte));
@@ -161,7 +162,7 @@ void use_view(Hash& hash, const View& view) {
         const float radius = light_range(static_cast<float>(1 + i % 40), 0.25f);
         spheres.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), radius});
         vectors.emplace_back(x, y, z, radius);
-        lamps.push_back({{1.0 * x, 1.0 * y, 1.0 * z}, radius});
+        lamps.push_back({{1.0 * x, 1.0 * y, 1.0 * z}, static_cast<double>(radius)});
     }
     const auto to_sphere = [](const Lamp& lamp) {
         return Sphere{static_cast<float>(lamp.position[0]), static_cast<float>(lamp.position[1]),
@@ -177,6 +178,10 @@ void use_view(Hash& hash, const View& view) {
     use_advice(hash, view, world_space(lamps, identity, to_sphere), {});
     use_all_options<DepthTest::none>(hash, view, spheres, bounds);
     use_all_options<DepthTest::interval>(hash, view, spheres, bounds);
+    use_binner<Options{.footprint = Footprint::silhouette}>(hash, view, spheres, bounds);
+    use_binner<Options{.index = Index::u16, .depth_test = DepthTest::box}>(hash, view, spheres, bounds);
+    use_binner<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>(
+        hash, view, spheres, {min, max, min, max});
     use_lights(hash, view, std::span<const glm::vec4>(vectors), bounds);
     use_lights(hash, view, view_space(lamps, to_sphere), bounds);
     use_lights(hash, view, world_space(vectors, camera), bounds);

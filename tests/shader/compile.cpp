@@ -101,7 +101,8 @@ void compile_example(Compiler& compiler, int glsl) {
         compiler.compile(glsl_language(glsl), stage, text);
     };
     for (const bool orthographic : {false, true})
-        compile(EShLangFragment, reduce_fragment_shader(glsl, orthographic));
+        for (const bool skip_background : {false, true})
+            compile(EShLangFragment, reduce_fragment_shader(glsl, orthographic, skip_background));
     compile(EShLangVertex, geometry_vertex_shader(glsl));
     compile(EShLangFragment, depth_fragment_shader(glsl));
     compile(EShLangVertex, overlay_vertex_shader(glsl));

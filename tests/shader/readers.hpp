@@ -292,7 +292,8 @@ struct ReaderRun {
 
 /// What a language runs: every list, flipped and not, in fragment and compute shaders, at each small screen;
 /// the other options take turns. At the large screen: one width of ids.
-inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language) {
+/// each_flip  false: half of the small screens are flipped, the other half not; the next list has it the other way round
+inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, bool each_flip = true) {
     constexpr ScreenSize small[] = {{33, 17, 1},  {33, 17, 7}, {33, 17, 16},
                                     {33, 17, 64}, {1, 1, 1},   {1, 1, 64}};
     constexpr ScreenSize large = {1919, 1079, 32};
@@ -308,8 +309,8 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language) {
                     turn = (turn + 1) % (switch_count / 2);
                     runs.push_back({every[list + 2 * turn + flip], stage, screen});
                 };
-                for (const ScreenSize& screen : small)
-                    add(screen);
+                for (std::size_t i = 0; i < std::size(small); ++i)
+                    if (each_flip || (i + flip + list / switch_count) % 2 == 0) add(small[i]);
                 if (every[list].format.ids == lightbin::IdWidth::u16 ||
                     every[list].format.encoding == lightbin::ListEncoding::bitmask)
                     add(large);

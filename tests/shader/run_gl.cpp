@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs the jobs of a language on OpenGL: run_gl 330|430|300|310 FIRST COUNT takes a share of them.
+// Runs the jobs of a language on OpenGL: run_gl 330|430|300|310 FIRST COUNT takes a share of them. The same lists at every
+// screen both flipped and not are run by tests/shaders.sh, on Vulkan, in WebGL and on Direct3D.
 #include "gl_device.hpp"
 #include "run_jobs.hpp"
 
@@ -13,7 +14,7 @@ int main(int count, char** arguments) {
         const Share share = share_of(count, arguments);
         GlDevice device(glsl);
         Tally tally;
-        run_readers(device, glsl_language(glsl), share, tally);
+        run_readers(device, glsl_language(glsl), share, tally, false);
         run_builders(device, glsl_language(glsl), true, share, tally);
         std::printf("%s\n", tally.text().c_str());
         return !tally.good();

@@ -76,7 +76,8 @@ TEST_CASE(
             for (const IdWidth ids : {IdWidth::u8, IdWidth::u16, IdWidth::u32})
                 for (const std::uint32_t capacity : {1u, 7u, 12u, 13u}) {
                     const ListFormat format{encoding, ids, capacity, lights};
-                    const std::uint64_t size = encoded_bytes(format, made.tiles.size(), made.ids.size());
+                    const std::size_t size =
+                        static_cast<std::size_t>(encoded_bytes(format, made.tiles.size(), made.ids.size()));
                     std::vector<std::byte> bytes(size + 4, std::byte{0xa5});
                     const auto result = encode(grid, format, std::span(bytes).first(size));
                     REQUIRE(result);
@@ -120,4 +121,44 @@ TEST_CASE("what a format can't hold is an error, and nothing is written") {
     CHECK(with_last(100, {ListEncoding::bitmask, IdWidth::u32, 0, 100}, 16) != "");
     CHECK(with_last(9, {ListEncoding::bitmask, IdWidth::u32, 0, 100}, 15).find("holds 15 bytes and 16") !=
           std::string::npos);
+    // 2^27 words, from the first number of lights on at which 32 bits would count none.
+    for (const std::uint32_t lights : {0xffffffe1u, 0xffffffffu})
+        CHECK(with_last(9, {ListEncoding::bitmask, IdWidth::u32, 0, lights}, 16)
+                  .find("holds 16 bytes and 536870912") != std::string::npos);
+}
+
+TEST_CASE("a format that lacks its size, or has one that its ids can't number, is refused, and nothing is "
+          "written") {
+    const MadeGrid made(41, 12, 33);
+    for (const auto& [format, code] :
+         {std::pair(ListFormat{.encoding = ListEncoding::bitmask}, ErrorCode::max_lights_unknown),
+          std::pair(ListFormat{.encoding = ListEncoding::sentinel}, ErrorCode::capacity_unknown),
+          std::pair(ListFormat{.ids = IdWidth::u8, .max_lights = 257}, ErrorCode::ids_too_narrow)}) {
+        std::vector<std::byte> bytes(4096, std::byte{0xa5});
+        for (const std::size_t size : {std::size_t{0}, bytes.size()}) {
+            const auto result = encode(made.grid(), format, std::span(bytes).first(size));
+            REQUIRE(!result);
+            CHECK(result.error().code == code);
+        }
+        CHECK(std::count(bytes.begin(), bytes.end(), std::byte{0xa5}) == 4096);
+    }
+}
+
+TEST_CASE("sizes are exact as far as 64 bits count, and do not wrap beyond") {
+    constexpr std::uint64_t largest = ~std::uint64_t{0}, most = largest - 3, half = std::uint64_t{1} << 32;
+    const ListFormat bits{.encoding = ListEncoding::bitmask, .max_lights = 0xffffffff};
+    CHECK(encoded_bytes(bits, 3, 0) == std::uint64_t{3} << 29);
+    CHECK(encoded_bytes(bits, 0xffffffff, 0) == std::uint64_t{0xffffffff} << 29);
+    CHECK(encoded_bytes(bits, std::uint64_t{1} << 34, 0) == std::uint64_t{1} << 63);
+    CHECK(encoded_bytes(bits, std::uint64_t{1} << 35, 0) == most);
+    CHECK(encoded_bytes(bits, std::uint64_t{1} << 37, 0) == most);
+    CHECK(encoded_bytes(bits, largest, 0) == most);
+    const ListFormat bytes{ListEncoding::sentinel, IdWidth::u8, 0xffffffff};
+    CHECK(encoded_bytes(bytes, half + 1, 0) == most);  // 2^64 - 1 ids
+    CHECK(encoded_bytes(bytes, half, 0) == largest - half + 1);
+    CHECK(encoded_bytes(bytes, half + 2, 0) == most);
+    CHECK(encoded_bytes({ListEncoding::sentinel, IdWidth::u32, 0xffffffff}, half / 4 + 1, 0) == most);
+    CHECK(encoded_bytes({.ids = IdWidth::u8}, 0, most) == most);
+    CHECK(encoded_bytes({.ids = IdWidth::u8}, 0, most - 4) == most - 4);
+    CHECK(encoded_bytes({.ids = IdWidth::u32}, 0, largest) == most);
 }

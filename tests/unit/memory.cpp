@@ -1,7 +1,11 @@
 // Sizes first, then the caller's memory: nothing past the end, nothing at all when it does not fit.
 #include "scene.hpp"
 
+#include <lightbin/advise.hpp>
+#include <lightbin/shader_build.hpp>
+
 #include <limits>
+#include <new>
 #include <string>
 
 using namespace lightbin;
@@ -87,6 +91,43 @@ TEST_CASE("too many lights for the id type") {
     CHECK(narrow.count(view, lights).error().code == ErrorCode::too_many_lights);
     Binner<> wide;
     CHECK(wide.bin(view, lights));
+}
+
+TEST_CASE("more lights than 32 bits number") {
+    if constexpr (sizeof(std::size_t) > 4) {
+        // Lights of a byte, of which there is one: they are refused before they are read.
+        const char byte = 0;
+        const std::span<const char> array(&byte, static_cast<std::size_t>(std::uint64_t{1} << 32));
+        const auto lights = view_space(array, [](char) { return Sphere{0, 0, -5, 1}; });
+        const View view = test::view({64, 64}, 32);
+        const auto refused = [](const auto& result) {
+            REQUIRE(!result);
+            CHECK(result.error().code == ErrorCode::too_many_lights);
+            CHECK(result.error().needed == std::uint64_t{1} << 32);
+        };
+        Binner<> binner;
+        refused(binner.bin(view, lights));
+        refused(binner.count(view, lights));
+        refused(advise(view, lights));
+        refused(shader_footprints(view, lights));
+    }
+}
+
+TEST_CASE("a buffer refuses what no machine holds, and is as any other after it") {
+    const auto check = [](auto buffer) {
+        for (const std::uint64_t size :
+             {~std::uint64_t{0}, (std::uint64_t{1} << 63) + 1, (std::uint64_t{1} << 62) + 1}) {
+            CHECK_THROWS_AS(buffer.room(size), const std::bad_alloc&);
+            CHECK(buffer.data() == nullptr);
+            auto* const few = buffer.room(3);
+            few[0] = few[2] = 7;
+            CHECK_THROWS_AS(buffer.room(size, 3), const std::bad_alloc&);
+            CHECK(buffer.room(3) == few);
+            CHECK(buffer.room(5, 3)[2] == 7);
+        }
+    };
+    check(detail::Buffer<std::uint8_t>());
+    check(detail::Buffer<std::uint64_t>());
 }
 
 TEST_CASE("more entries than 32-bit offsets reach") {

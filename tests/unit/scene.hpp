@@ -13,10 +13,36 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace test {
+
+/// The instruction sets that this machine runs, the scalar kernels first and the widest last. A function of the library
+/// that takes an Isa and does not ask the machine is to be given one of these, never detail::compiled_isa.
+inline const std::vector<lightbin::Isa>& machine_tiers() {
+    using lightbin::Isa;
+    static const std::vector<Isa> tiers = [] {
+        std::vector<Isa> found = {Isa::scalar};
+        for (const Isa isa : {Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon})
+            if (lightbin::detail::machine_isa(isa) == isa) found.push_back(isa);
+        return found;
+    }();
+    return tiers;
+}
+inline lightbin::Isa widest_tier() {
+    return machine_tiers().back();
+}
+/// Such as "scalar SSE2 AVX2".
+inline std::string tier_names() {
+    constexpr const char* names[] = {"scalar", "SSE2", "AVX2", "AVX-512", "NEON"};
+    std::string all;
+    for (const lightbin::Isa isa : machine_tiers())
+        all += (all.empty() ? "" : " ") + std::string(names[static_cast<int>(isa)]);
+    return all;
+}
 
 /// 60 degrees high, near 0.1, far 1000, as OpenGL has it.
 inline lightbin::View view(lightbin::Extent viewport, int tile_size) {
@@ -38,6 +64,14 @@ inline std::vector<glm::vec4> random_lights(std::size_t count, std::uint32_t see
                             radius(random));
     }
     return lights;
+}
+
+/// Of how many random cases of the same kind one is to be run: LIGHTBIN_TEST_SHARE, such as 16 in an emulator, which is
+/// slow, and 1 where there is time. No kind is left out.
+inline std::uint32_t share_of_cases(std::uint32_t otherwise) {
+    const char* const asked = std::getenv("LIGHTBIN_TEST_SHARE");
+    const int share = asked ? std::atoi(asked) : 0;
+    return share > 0 ? static_cast<std::uint32_t>(share) : otherwise;
 }
 
 /// One list of ids a tile.

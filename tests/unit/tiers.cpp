@@ -1,8 +1,11 @@
 // Every instruction set that this machine has gives the same bytes as the scalar kernels.
 #include "scene.hpp"
 
+#include <cstdlib>
 #include <numeric>
+#include <string>
 #include <thread>
+#include <tuple>
 
 using namespace lightbin;
 
@@ -122,46 +125,63 @@ constexpr Options with(Options options, Isa isa) {
     return options;
 }
 
-/// All tiers, serial and shared among workers, against the serial scalar one.
-template <Options options> class Tiers {
+/// The tiers of this machine, serial and shared among workers, against the serial scalar one.
+template <Options options, Isa... vector_tiers> class TiersOf {
 public:
     void compare(const Input& input) {
-        const auto expected = scalar_.bytes(input);
-        CHECK((sse2_.bytes(input) == expected));
-        CHECK((avx2_.bytes(input) == expected));
-        CHECK((avx512_.bytes(input) == expected));
-        for (const std::size_t workers : {2u, 3u, 7u}) {
-            const double start_ns = workers == 3 ? 2000 : 0;  // parts of equal size, or a longer first one
-            const Parallel parallel(workers, shuffled, start_ns);
-            CHECK((scalar_.bytes(input, parallel) == expected));
-            CHECK((sse2_.bytes(input, parallel) == expected));
-            CHECK((avx2_.bytes(input, parallel) == expected));
-            CHECK((avx512_.bytes(input, parallel) == expected));
-        }
+        const auto expected = std::get<0>(tiers_).bytes(input);
+        on_each([&](auto& tier) {
+            CHECK((tier.bytes(input) == expected));
+            for (const std::size_t workers : {2u, 3u, 7u}) {
+                // Parts of equal size, or a longer first one.
+                const double start_ns = workers == 3 ? 2000 : 0;
+                CHECK((tier.bytes(input, Parallel(workers, shuffled, start_ns)) == expected));
+            }
+        });
     }
 
     void compare_on_threads(const Input& input) {
-        const auto expected = avx512_.bytes(input);
-        for (const std::size_t workers : {1u, 2u, 3u, 7u})
-            CHECK((avx512_.bytes(input, {workers, threads, 0}) == expected));
+        const auto expected = std::get<0>(tiers_).bytes(input);
+        on_each([&](auto& tier) {
+            for (const std::size_t workers : {1u, 2u, 3u, 7u})
+                CHECK((tier.bytes(input, {workers, threads, 0}) == expected));
+        });
     }
 
 private:
-    Tier<with(options, Isa::scalar)> scalar_;
-    Tier<with(options, Isa::sse2)> sse2_;
-    Tier<with(options, Isa::avx2)> avx2_;
-    Tier<with(options, Isa::avx512)> avx512_;
+    /// A Binner takes its Isa for a cap, so one that the machine lacks would be a narrower one again.
+    template <class Visit> void on_each(Visit visit) {
+        std::size_t visited = 0;
+        const auto visit_one = [&](Isa isa, auto& tier) {
+            const auto& there = test::machine_tiers();
+            if (std::find(there.begin(), there.end(), isa) == there.end()) return;
+            visit(tier);
+            ++visited;
+        };
+        std::apply(
+            [&](auto& scalar, auto&... vectors) {
+                visit_one(Isa::scalar, scalar);
+                (visit_one(vector_tiers, vectors), ...);
+            },
+            tiers_);
+        REQUIRE(visited == test::machine_tiers().size());
+    }
+
+    std::tuple<Tier<with(options, Isa::scalar)>, Tier<with(options, vector_tiers)>...> tiers_;
 };
 
-#if defined(__x86_64__)
-constexpr std::uint32_t share = 1;
+#if defined(LIGHTBIN_X86)
+template <Options options> using Tiers = TiersOf<options, Isa::sse2, Isa::avx2, Isa::avx512>;
+#elif defined(LIGHTBIN_NEON)
+template <Options options> using Tiers = TiersOf<options, Isa::neon>;
 #else
-constexpr std::uint32_t share = 8;  // in an emulator
+template <Options options> using Tiers = TiersOf<options>;
 #endif
 
 template <Options options> void compare(std::uint32_t seeds, std::uint32_t first_seed) {
     Tiers<options> tiers;
-    for (std::uint32_t seed = first_seed; seed < first_seed + seeds / share; ++seed)
+    const std::uint32_t share = test::share_of_cases(2);  // the campaign runs them all
+    for (std::uint32_t seed = first_seed; seed < first_seed + (seeds + share - 1) / share; ++seed)
         tiers.compare(random_input(seed));
 }
 
@@ -170,8 +190,14 @@ constexpr Options plain = {}, interval = {.depth_test = DepthTest::interval},
 
 }  // namespace
 
+// Who runs this in an emulator says in LIGHTBIN_TIERS what the emulated machine has, so that it cannot be less in silence.
+TEST_CASE("this machine has the tiers that it is said to have") {
+    const char* const wanted = std::getenv("LIGHTBIN_TIERS");
+    MESSAGE("tiers: " << test::tier_names());
+    if (wanted) CHECK(test::tier_names() == std::string(wanted));
+}
+
 TEST_CASE("all tiers give the same bytes, on any number of workers") {
-    MESSAGE("widest tier on this machine: " << static_cast<int>(detail::machine_isa(Isa::avx512)));
     compare<plain>(150, 0);
     compare<Options{.index = Index::u16}>(50, 1000);
     compare<interval>(150, 2000);
@@ -179,6 +205,13 @@ TEST_CASE("all tiers give the same bytes, on any number of workers") {
     compare<Options{.footprint = Footprint::silhouette}>(100, 6000);
     compare<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>(50, 7000);
     compare<Options{.index = Index::u16, .depth_test = DepthTest::split_box}>(100, 5000);
+}
+
+TEST_CASE("each tier scatters by its own text, the scalar one without vectors") {
+    const auto scalar = detail::scatter_kernel<std::uint32_t>(Isa::scalar);
+    for (const Isa isa : {Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon})
+        if (const Isa here = detail::machine_isa(isa); here != Isa::scalar)
+            CHECK_UNARY(detail::scatter_kernel<std::uint32_t>(here) != scalar);
 }
 
 TEST_CASE("threads write their own parts only") {

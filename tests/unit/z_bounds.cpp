@@ -60,6 +60,14 @@ TEST_CASE("each sample lands in its own tile: partial tiles, several samples, a 
     }
 }
 
+TEST_CASE("tiles of which 8 samples a pixel are more than 32 bits count") {
+    const std::vector<float> depth(37 * 21 * 8, window_depth(10));
+    for (const int tile_size : {64, 1 << 29, (1 << 29) + 1, std::numeric_limits<int>::max()}) {
+        const Reduced reduced = reduce(test::view({37, 21}, tile_size), {.depth = depth, .samples = 8});
+        CHECK(reduced.max == reduce(test::view({37, 21}, 37), {.depth = depth, .samples = 8}).max);
+    }
+}
+
 TEST_CASE("background, NaN and out-of-range samples") {
     const View view = test::view({32, 16}, 16);  // two tiles
     const float near = view.near_depth(), far = view.far_depth();
@@ -156,6 +164,18 @@ TEST_CASE("sizes that do not fit are errors that name what is needed") {
     CHECK(code({.depth = depth, .samples = 2}, min, max) == ErrorCode::depth_buffer_too_small);
     CHECK(code({.depth = depth, .row_pitch = 65}, min, max) == ErrorCode::depth_buffer_too_small);
     CHECK(code({.depth = depth, .row_pitch = 63}, min, max) == ErrorCode::row_pitch_too_small);
+    // Pitches of which 63, or 64, make 0 or little where sizes wrap.
+    constexpr std::size_t most = (std::numeric_limits<std::size_t>::max)();
+    for (const std::size_t pitch :
+         {most, most - 63, most / 2 + 1, most / 64 + 1, most / 63 + 1, most / 63 + 2})
+        for (const int height : {64, 65}) {
+            const auto tall =
+                reduce_depth(test::view({64, height}, 32), {.depth = depth, .row_pitch = pitch}, {});
+            REQUIRE(!tall);
+            CHECK(tall.error().code == ErrorCode::depth_buffer_too_small);
+            CHECK(static_cast<double>(tall.error().needed) ==
+                  doctest::Approx((std::min)(static_cast<double>(pitch) * (height - 1) + 64, 0x1p64)));
+        }
     CHECK(code({.depth = depth, .samples = 0}, min, max) == ErrorCode::samples_out_of_range);
     CHECK(code({.depth = depth, .samples = 9}, min, max) == ErrorCode::samples_out_of_range);
     CHECK(code({.depth = depth, .samples = -1}, min, max) == ErrorCode::samples_out_of_range);
@@ -229,6 +249,30 @@ TEST_CASE("gaps lie between a tile's two groups of samples, in every tier") {
                     side.resize(tiles);
                 REQUIRE(reduce_depth(view, buffer, {other[0], other[1], other[2], other[3]}, isa));
                 CHECK((other[0] == min && other[1] == max && other[2] == gap_min && other[3] == gap_max));
+            }
+        }
+}
+
+TEST_CASE("a denormal depth may be any near it") {
+    // Reversed Z with an infinite far plane: depth is near / window depth.
+    const double near = 1e-10;
+    glm::dmat4 projection(0);
+    projection[0][0] = projection[1][1] = 1;
+    projection[2][3] = -1;
+    projection[3][2] = near;
+    const View view =
+        *View::from_projection(projection, {1, 1}, {.tile_size = 1, .clip_depth = ClipDepth::zero_to_one});
+    for (const double unit : {0x1p-149, 0x1p-140, 0x1p-127, 0x1p-126, 0x1p-125})
+        for (const double units : {0.3, 0.6, 1.2, 1.4, 1.6}) {
+            const double drawn = units * unit;
+            // As it is rounded, to the nearest or to the other side, or flushed to zero.
+            const float nearest = static_cast<float>(drawn),
+                        other = std::nextafter(nearest, static_cast<double>(nearest) < drawn ? 1.0f : 0.0f);
+            for (const float stored : {nearest, other, drawn < 0x1p-126 ? 0.0f : nearest}) {
+                float min[1], max[1];
+                REQUIRE(reduce_depth(view, {.depth = std::span(&stored, 1)}, {.min = min, .max = max}));
+                CHECK(static_cast<double>(min[0]) <= near / drawn);
+                CHECK(static_cast<double>(max[0]) >= near / drawn);
             }
         }
 }

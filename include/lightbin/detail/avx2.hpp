@@ -9,32 +9,136 @@
 
 #include <immintrin.h>
 
-#define LIGHTBIN_TARGET __attribute__((target("avx2,bmi,popcnt")))
+#define LIGHTBIN_TARGET LIGHTBIN_INSTRUCTIONS("avx2,bmi,popcnt")
+
+#include <lightbin/detail/warnings_off.inl>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace avx2 {
 
-using Floats = __m256;
-using Doubles = __m256d;
 inline constexpr std::uint32_t lanes = 8, double_lanes = 4;
 
-LIGHTBIN_TARGET inline Floats sqrt(Floats a) {
-    return _mm256_sqrt_ps(a);
+LIGHTBIN_TARGET inline __m256 all_lanes(float each) {
+    return _mm256_set1_ps(each);
 }
-LIGHTBIN_TARGET inline Doubles sqrt(Doubles a) {
-    return _mm256_sqrt_pd(a);
+LIGHTBIN_TARGET inline __m256 negated(__m256 a) {
+    return _mm256_xor_ps(a, _mm256_set1_ps(-0.0f));
 }
 
-#include <lightbin/detail/vectors.inl>
+#define LIGHTBIN_VECTOR Floats
+#define LIGHTBIN_ELEMENT float
+#define LIGHTBIN_REGISTER __m256
+#define LIGHTBIN_OP(name) _mm256_##name##_ps
+#include <lightbin/detail/vector.inl>
 
-using Mask = decltype(less(Floats{}, Floats{}));
-using DoubleMask = decltype(less(Doubles{}, Doubles{}));
-
+/// All ones or all zeros a lane.
+struct Mask {
+    __m256 v;
+};
+LIGHTBIN_TARGET inline Mask less(Floats a, Floats b) {
+    return {_mm256_cmp_ps(a, b, _CMP_LT_OQ)};
+}
+LIGHTBIN_TARGET inline Mask less_equal(Floats a, Floats b) {
+    return {_mm256_cmp_ps(a, b, _CMP_LE_OQ)};
+}
+LIGHTBIN_TARGET inline Mask both(Mask a, Mask b) {
+    return {_mm256_and_ps(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Mask either(Mask a, Mask b) {
+    return {_mm256_or_ps(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Mask and_not(Mask a, Mask b) {
+    return {_mm256_andnot_ps(b.v, a.v)};
+}
+LIGHTBIN_TARGET inline Floats select(Mask mask, Floats a, Floats b) {
+    return _mm256_blendv_ps(b, a, mask.v);
+}
+LIGHTBIN_TARGET inline Floats lesser(Floats a, Floats b) {
+    return _mm256_min_ps(a, b);
+}
+LIGHTBIN_TARGET inline Floats greater(Floats a, Floats b) {
+    return _mm256_max_ps(a, b);
+}
 LIGHTBIN_TARGET inline unsigned bits(Mask mask) {
-    return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<Floats>(mask)));
+    return static_cast<unsigned>(_mm256_movemask_ps(mask.v));
+}
+LIGHTBIN_TARGET inline __m256d all_lanes(double each) {
+    return _mm256_set1_pd(each);
+}
+LIGHTBIN_TARGET inline __m256d negated(__m256d a) {
+    return _mm256_xor_pd(a, _mm256_set1_pd(-0.0));
+}
+
+#define LIGHTBIN_VECTOR Doubles
+#define LIGHTBIN_ELEMENT double
+#define LIGHTBIN_REGISTER __m256d
+#define LIGHTBIN_OP(name) _mm256_##name##_pd
+#include <lightbin/detail/vector.inl>
+
+/// All ones or all zeros a lane.
+struct DoubleMask {
+    __m256d v;
+};
+LIGHTBIN_TARGET inline DoubleMask less(Doubles a, Doubles b) {
+    return {_mm256_cmp_pd(a, b, _CMP_LT_OQ)};
+}
+LIGHTBIN_TARGET inline DoubleMask less_equal(Doubles a, Doubles b) {
+    return {_mm256_cmp_pd(a, b, _CMP_LE_OQ)};
+}
+LIGHTBIN_TARGET inline DoubleMask both(DoubleMask a, DoubleMask b) {
+    return {_mm256_and_pd(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline DoubleMask either(DoubleMask a, DoubleMask b) {
+    return {_mm256_or_pd(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline DoubleMask and_not(DoubleMask a, DoubleMask b) {
+    return {_mm256_andnot_pd(b.v, a.v)};
+}
+LIGHTBIN_TARGET inline Doubles select(DoubleMask mask, Doubles a, Doubles b) {
+    return _mm256_blendv_pd(b, a, mask.v);
+}
+LIGHTBIN_TARGET inline Doubles lesser(Doubles a, Doubles b) {
+    return _mm256_min_pd(a, b);
+}
+LIGHTBIN_TARGET inline Doubles greater(Doubles a, Doubles b) {
+    return _mm256_max_pd(a, b);
 }
 LIGHTBIN_TARGET inline unsigned bits(DoubleMask mask) {
-    return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<Doubles>(mask)));
+    return static_cast<unsigned>(_mm256_movemask_pd(mask.v));
+}
+
+/// Counts of a column's tiles, and tiles: for scatter.inl.
+struct Rows {
+    __m256i v;
+};
+using Tiles = __m256i;
+LIGHTBIN_TARGET inline Rows operator+(Rows a, Rows b) {
+    return {_mm256_add_epi32(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Rows operator-(Rows a, Rows b) {
+    return {_mm256_sub_epi32(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Rows all_rows(std::uint32_t count) {
+    return {_mm256_set1_epi32(static_cast<int>(count))};
+}
+LIGHTBIN_TARGET inline Rows last_row(Rows rows) {
+    return {_mm256_permutevar8x32_epi32(rows.v, _mm256_set1_epi32(7))};
+}
+LIGHTBIN_TARGET inline Tiles low_pairs(Rows ends, Rows counts) {
+    return _mm256_unpacklo_epi32(ends.v, counts.v);
+}
+LIGHTBIN_TARGET inline Tiles high_pairs(Rows ends, Rows counts) {
+    return _mm256_unpackhi_epi32(ends.v, counts.v);
+}
+LIGHTBIN_TARGET inline void transpose(Tiles* columns) {
+    const Tiles even_low = _mm256_unpacklo_epi64(columns[0], columns[1]),
+                odd_low = _mm256_unpackhi_epi64(columns[0], columns[1]),
+                even_high = _mm256_unpacklo_epi64(columns[2], columns[3]),
+                odd_high = _mm256_unpackhi_epi64(columns[2], columns[3]);
+    columns[0] = _mm256_permute2x128_si256(even_low, even_high, 0x20);
+    columns[1] = _mm256_permute2x128_si256(odd_low, odd_high, 0x20);
+    columns[2] = _mm256_permute2x128_si256(even_low, even_high, 0x31);
+    columns[3] = _mm256_permute2x128_si256(odd_low, odd_high, 0x31);
 }
 
 /// Half 0 or 1 of the lanes.
@@ -117,10 +221,6 @@ LIGHTBIN_TARGET inline void store_spans(RowSpan* spans, Doubles first, Doubles l
     _mm_storeu_si128(reinterpret_cast<__m128i*>(spans), pairs);
 }
 
-#include <lightbin/detail/depth_columns.inl>
-#include <lightbin/detail/project.inl>
-#include <lightbin/detail/silhouette.inl>
-
 /// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
 LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     __m256i low = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes));
@@ -151,14 +251,16 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
     return static_cast<std::uint32_t>(std::popcount(mask));
 }
 
-#include <lightbin/detail/tile_masks.inl>
+using portable::pack;
+using portable::Packed;
+using portable::packs_ids;
 
-#include <lightbin/detail/scan.inl>
-#include <lightbin/detail/scatter.inl>
-#include <lightbin/detail/supertile.inl>
+#define LIGHTBIN_TIER_HAS_ROWS
+#define LIGHTBIN_TIER_SCANS
+#include <lightbin/detail/kernels.inl>
 
 }  // namespace avx2
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
 
-#undef LIGHTBIN_TARGET
+#include <lightbin/detail/warnings_on.inl>
 #endif

@@ -12,8 +12,8 @@
 #include <immintrin.h>
 
 #define LIGHTBIN_TARGET                                                                                      \
-    __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2,avx512bitalg,"          \
-                          "avx512vpopcntdq,bmi,bmi2,popcnt")))
+    LIGHTBIN_INSTRUCTIONS("avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2,avx512bitalg,"          \
+                          "avx512vpopcntdq,bmi,bmi2,popcnt")
 
 // gcc 12's own AVX-512 header gives these warnings, about values it leaves undefined on purpose.
 #if defined(__GNUC__) && !defined(__clang__)
@@ -22,23 +22,40 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace avx512 {
 
-using Floats = __m512;
-using Doubles = __m512d;
 using Mask = __mmask16;
 using DoubleMask = __mmask8;
 inline constexpr std::uint32_t lanes = 16, double_lanes = 8;
 
-LIGHTBIN_TARGET inline Floats sqrt(Floats a) {
-    return _mm512_sqrt_ps(a);
+LIGHTBIN_TARGET inline __m512 all_lanes(float each) {
+    return _mm512_set1_ps(each);
 }
-LIGHTBIN_TARGET inline Doubles sqrt(Doubles a) {
-    return _mm512_sqrt_pd(a);
+LIGHTBIN_TARGET inline __m512 negated(__m512 a) {
+    return _mm512_xor_ps(a, _mm512_set1_ps(-0.0f));
 }
 
-#include <lightbin/detail/vectors.inl>
+#define LIGHTBIN_VECTOR Floats
+#define LIGHTBIN_ELEMENT float
+#define LIGHTBIN_REGISTER __m512
+#define LIGHTBIN_OP(name) _mm512_##name##_ps
+#include <lightbin/detail/vector.inl>
+
+LIGHTBIN_TARGET inline __m512d all_lanes(double each) {
+    return _mm512_set1_pd(each);
+}
+LIGHTBIN_TARGET inline __m512d negated(__m512d a) {
+    return _mm512_xor_pd(a, _mm512_set1_pd(-0.0));
+}
+
+#define LIGHTBIN_VECTOR Doubles
+#define LIGHTBIN_ELEMENT double
+#define LIGHTBIN_REGISTER __m512d
+#define LIGHTBIN_OP(name) _mm512_##name##_pd
+#include <lightbin/detail/vector.inl>
 
 LIGHTBIN_TARGET inline Mask less(Floats a, Floats b) {
     return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
@@ -61,8 +78,24 @@ LIGHTBIN_TARGET inline Doubles select(DoubleMask mask, Doubles a, Doubles b) {
 LIGHTBIN_TARGET inline Floats lesser(Floats a, Floats b) {
     return _mm512_min_ps(a, b);
 }
+LIGHTBIN_TARGET inline Doubles lesser(Doubles a, Doubles b) {
+    return _mm512_min_pd(a, b);
+}
 LIGHTBIN_TARGET inline Floats greater(Floats a, Floats b) {
     return _mm512_max_ps(a, b);
+}
+LIGHTBIN_TARGET inline Doubles greater(Doubles a, Doubles b) {
+    return _mm512_max_pd(a, b);
+}
+/// Of either type of mask.
+template <class AnyMask> LIGHTBIN_TARGET inline AnyMask both(AnyMask a, AnyMask b) {
+    return static_cast<AnyMask>(a & b);
+}
+template <class AnyMask> LIGHTBIN_TARGET inline AnyMask either(AnyMask a, AnyMask b) {
+    return static_cast<AnyMask>(a | b);
+}
+template <class AnyMask> LIGHTBIN_TARGET inline AnyMask and_not(AnyMask a, AnyMask b) {
+    return static_cast<AnyMask>(a & ~b);
 }
 LIGHTBIN_TARGET inline unsigned bits(unsigned mask) {
     return mask;
@@ -135,12 +168,6 @@ LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCo
     counts.area += static_cast<std::uint64_t>(_mm512_reduce_add_epi64(sums));
 }
 
-#include <lightbin/detail/project.inl>
-
-#include <lightbin/detail/silhouette.inl>
-
-#include <lightbin/detail/depth_columns.inl>
-
 /// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
 LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     const __m512i all_bytes = _mm512_loadu_si512(bytes);
@@ -148,15 +175,13 @@ LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t*
         words[bit] = _mm512_test_epi8_mask(all_bytes, _mm512_set1_epi8(static_cast<char>(1 << bit)));
 }
 
-#include <lightbin/detail/tile_masks.inl>
-
-
-#include <lightbin/detail/compress.inl>
+#define LIGHTBIN_TIER_COMPRESSES
+#include <lightbin/detail/kernels.inl>
 
 }  // namespace avx512
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
 
-#undef LIGHTBIN_TARGET
+#include <lightbin/detail/warnings_on.inl>
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic pop
 #endif

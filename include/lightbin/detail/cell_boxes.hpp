@@ -31,7 +31,7 @@ inline constexpr float flushed = 0x1p-120f;
 
 /// Writes a tile's two edges along an axis, as slopes or coordinates, `low` rounded down and `high` up.
 inline void tile_edges(const ImageAxis& axis, int tile, float& low, float& high) {
-    constexpr double most = FLT_MAX;
+    constexpr double most = static_cast<double>(FLT_MAX);
     const double error = 0x1p-48 * (std::fabs(axis.offset) + axis.tiles + 1);
     const double end = (std::min)(tile + 1.0, static_cast<double>(axis.limit));
     double from = (tile - axis.offset - error) / axis.scale, to = (end - axis.offset + error) / axis.scale;

@@ -42,7 +42,7 @@ LIGHTBIN_TARGET inline void store(void* p, __m512i v) {
 /// makes a chain of one iteration and the next: it is given fresh zeros.
 LIGHTBIN_TARGET inline __m512i fresh_zeros() {
     __m512i zeros = _mm512_setzero_si512();
-    __asm__("" : "+v"(zeros));  // or the compiler picks that form
+    LIGHTBIN_FORGET(zeros);  // or the compiler picks that form
     return zeros;
 }
 /// Those of the chosen elements, then zeros.
@@ -159,12 +159,14 @@ LIGHTBIN_TARGET BandLists fill_bands(const BinJob<Id>& job, Scratch& scratch, st
     const FootprintArrays& lights = job.lights;
     const IdBlock* blocks = scratch.blocks.data();
     const std::size_t lists = std::size_t{bands} * panels;
+    const std::uint64_t stride =
+        std::uint64_t{job.visible} + 64 * block_count + 192;  // whole vectors are stored and read
     BandLists to = {};
-    to.stride = std::size_t{job.visible} + 64 * block_count + 192;  // whole vectors are stored and read
-    to.x0 = scratch.band_x0.room(lists * to.stride);
-    to.x1 = scratch.band_x1.room(lists * to.stride);
-    to.rows = scratch.band_rows.room(lists * to.stride);
-    to.ids = scratch.band_ids.room(lists * to.stride);
+    to.stride = static_cast<std::size_t>(stride);
+    to.x0 = scratch.band_x0.room(lists * stride);
+    to.x1 = scratch.band_x1.room(lists * stride);
+    to.rows = scratch.band_rows.room(lists * stride);
+    to.ids = scratch.band_ids.room(lists * stride);
     to.ends = scratch.block_ends.room(lists * block_count);
     std::uint32_t* size = scratch.band_size.room(lists);
     std::fill_n(size, lists, 0u);
@@ -481,7 +483,7 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
             const bool one_chunk = in_band <= 64;
             if (one_chunk && x % panel_side == 0) chunk = load_chunk(lists, list_begin);
             std::uint16_t* ids =
-                scratch.short_ids.room(std::size_t{ids_used} + in_band + 192, ids_used) + ids_used;
+                scratch.short_ids.room(std::uint64_t{ids_used} + in_band + 192, ids_used) + ids_used;
             float cells[cell_planes<depth_test> * 64];
             std::uint64_t lit = 0;
             bool arranged = false;
@@ -526,7 +528,8 @@ LIGHTBIN_TARGET std::uint64_t bin_compress(const BinJob<Id>& job, Scratch& scrat
             in_row[x] = {count, ids_used, words_used};
             const std::uint32_t needed =
                 count < 32 ? 40 : (count + 63) / 64 * group;  // short lists: see store_rows
-            std::uint64_t* words = scratch.words.room(words_used + needed, words_used) + words_used;
+            std::uint64_t* words =
+                scratch.words.room(std::uint64_t{words_used} + needed, words_used) + words_used;
             if (count <= up_to_8) {
                 store_rows<with_words, 1>(masks, columns, rows, count, words);
             } else if (count <= 16) {

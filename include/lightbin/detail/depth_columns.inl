@@ -39,8 +39,8 @@ LIGHTBIN_TARGET inline void column_gaps(const DepthRows& depth, float skipped, c
         for (std::size_t row = 0; row < depth.rows; ++row, samples += depth.pitch) {
             const Floats sample = load_floats(samples);
             const auto out = both(less_equal(sample, all(skipped)), less_equal(all(skipped), sample));
-            most = greater(select(both_not(less_equal(sample, middle), out), sample, -endless), most);
-            least = lesser(select(both_not(less(middle, sample), out), sample, endless), least);
+            most = greater(select(and_not(less_equal(sample, middle), out), sample, -endless), most);
+            least = lesser(select(and_not(less(middle, sample), out), sample, endless), least);
         }
         store_floats(below + column, most);
         store_floats(above + column, least);

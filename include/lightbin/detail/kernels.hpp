@@ -18,64 +18,36 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
-using ProjectKernel = decltype(&scalar::project);
-using RowSpanKernel = decltype(&scalar::row_spans);
-struct DepthKernels {
-    decltype(&scalar::column_extremes) extremes;
-    decltype(&scalar::column_gaps) gaps;
-};
-template <class Id>
-using BinKernel = std::uint64_t (*)(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands);
+/// Calls pick(Tier) with the tier of an instruction set that the machine has.
+template <class Pick> auto with_tier(Isa isa, Pick pick) {
+#if defined(LIGHTBIN_X86)
+    if (isa == Isa::avx512) return pick(avx512::Tier{});
+    if (isa == Isa::avx2) return pick(avx2::Tier{});
+    if (isa == Isa::sse2) return pick(sse2::Tier{});
+#elif defined(LIGHTBIN_NEON)
+    if (isa == Isa::neon) return pick(neon::Tier{});
+#endif
+    static_cast<void>(isa);
+    return pick(scalar::Tier{});
+}
 
 inline ProjectKernel project_kernel(Isa isa) {
-#if defined(LIGHTBIN_X86)
-    if (isa == Isa::avx512) return avx512::project;
-    if (isa == Isa::avx2) return avx2::project;
-    if (isa == Isa::sse2) return sse2::project;
-#elif defined(LIGHTBIN_NEON)
-    if (isa == Isa::neon) return neon::project;
-#endif
-    static_cast<void>(isa);
-    return scalar::project;
+    return with_tier(isa, [](auto tier) { return tier.project_kernel(); });
 }
-
 inline RowSpanKernel row_span_kernel(Isa isa) {
-#if defined(LIGHTBIN_X86)
-    if (isa == Isa::avx512) return avx512::row_spans;
-    if (isa == Isa::avx2) return avx2::row_spans;
-    if (isa == Isa::sse2) return sse2::row_spans;
-#elif defined(LIGHTBIN_NEON)
-    if (isa == Isa::neon) return neon::row_spans;
-#endif
-    static_cast<void>(isa);
-    return scalar::row_spans;
+    return with_tier(isa, [](auto tier) { return tier.row_span_kernel(); });
 }
 
-/// For blocks of `columns` columns or more.
+/// For blocks of `columns` columns or more: of this tier or the widest below it whose vectors are no wider.
 inline DepthKernels depth_kernels(Isa isa, std::size_t columns) {
-#if defined(LIGHTBIN_X86)
-    if (isa == Isa::avx512 && columns >= avx512::lanes) return {avx512::column_extremes, avx512::column_gaps};
-    if (isa >= Isa::avx2 && columns >= avx2::lanes) return {avx2::column_extremes, avx2::column_gaps};
-    if (isa >= Isa::sse2 && columns >= sse2::lanes) return {sse2::column_extremes, sse2::column_gaps};
-#elif defined(LIGHTBIN_NEON)
-    if (isa == Isa::neon && columns >= neon::lanes) return {neon::column_extremes, neon::column_gaps};
-#endif
-    static_cast<void>(isa);
-    static_cast<void>(columns);
-    return {scalar::column_extremes, scalar::column_gaps};
+    if (with_tier(isa, [=](auto tier) { return columns >= tier.vector; }))
+        return with_tier(isa, [](auto tier) { return tier.depth_kernels(); });
+    const bool wide = isa == Isa::avx512 || isa == Isa::avx2;
+    return depth_kernels(wide ? static_cast<Isa>(static_cast<int>(isa) - 1) : Isa::scalar, columns);
 }
 
-/// The scalar tier has the vectors of the platform too: the text is there, and the bytes are the same.
 template <class Id> BinKernel<Id> scatter_kernel(Isa isa) {
-    static_cast<void>(isa);
-#if defined(LIGHTBIN_X86)
-    if (isa >= Isa::avx2) return avx2::bin_rectangles<Id>;
-    return sse2::bin_rectangles<Id>;
-#elif defined(LIGHTBIN_NEON)
-    return neon::bin_rectangles<Id>;
-#else
-    return bin_scatter<Id, scalar::lay_out_rows<Id>>;
-#endif
+    return with_tier(isa, [](auto tier) { return tier.template scatter_kernel<Id>(); });
 }
 
 /// The fastest kernel for `lights` lights in view whose rectangles have `area` tiles in all.
@@ -90,14 +62,7 @@ BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint32_t lights, std::u
                                                 : area < 6 * tiles + std::uint64_t{48} * lights;
         if (isa == Isa::scalar || scatter) return scatter_kernel<Id>(isa);
     }
-#if defined(LIGHTBIN_X86)
-    if (isa == Isa::avx512) return avx512::bin_compress<footprint, depth_test, Id>;
-    if (isa == Isa::avx2) return avx2::bin_supertiles<footprint, depth_test, Id>;
-    if (isa == Isa::sse2) return sse2::bin_supertiles<footprint, depth_test, Id>;
-#elif defined(LIGHTBIN_NEON)
-    if (isa == Isa::neon) return neon::bin_supertiles<footprint, depth_test, Id>;
-#endif
-    return scalar::bin_supertiles<footprint, depth_test, Id>;
+    return with_tier(isa, [](auto tier) { return tier.template bin_kernel<footprint, depth_test, Id>(); });
 }
 
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

@@ -6,26 +6,34 @@
 #include <lightbin/detail/flavour.hpp>
 
 #include <cstdint>
+#include <initializer_list>
 
-#if !defined(LIGHTBIN_NO_SIMD) && defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
+#if !defined(LIGHTBIN_NO_SIMD) && (defined(__x86_64__) || (defined(_M_X64) && !defined(_M_ARM64EC)))
 #define LIGHTBIN_X86 1
 #elif !defined(LIGHTBIN_NO_SIMD) && defined(__aarch64__) && (defined(__GNUC__) || defined(__clang__))
 #define LIGHTBIN_NEON 1
 #endif
 
-#if defined(_MSC_VER) && !defined(__clang__)
-#define LIGHTBIN_NOINLINE __declspec(noinline)
-#else
-#define LIGHTBIN_NOINLINE __attribute__((noinline))
+#if defined(_MSC_VER)
+#include <intrin.h>
 #endif
 
-// Makes the compiler forget how `product`, a number or a vector, came about. See rounded().
-#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
-#define LIGHTBIN_ROUND(product) __asm__("" : "+v"(product))
-#elif defined(__aarch64__) && (defined(__GNUC__) || defined(__clang__))
-#define LIGHTBIN_ROUND(product) __asm__("" : "+w"(product))
+// The instructions that a function may use beyond those of the compiler's flags. Microsoft's compiler asks for no leave.
+#if defined(_MSC_VER) && !defined(__clang__)
+#define LIGHTBIN_NOINLINE __declspec(noinline)
+#define LIGHTBIN_INSTRUCTIONS(names)
 #else
-#define LIGHTBIN_ROUND(product) static_cast<void>(product)
+#define LIGHTBIN_NOINLINE __attribute__((noinline))
+#define LIGHTBIN_INSTRUCTIONS(names) __attribute__((target(names)))
+#endif
+
+// Makes the compiler forget how a number or vector came about. See rounded(). Microsoft's fuses nothing unless told to.
+#if defined(__x86_64__)
+#define LIGHTBIN_FORGET(value) __asm__("" : "+v"(value))
+#elif defined(__aarch64__) && (defined(__GNUC__) || defined(__clang__))
+#define LIGHTBIN_FORGET(value) __asm__("" : "+w"(value))
+#else
+#define LIGHTBIN_FORGET(value) static_cast<void>(value)
 #endif
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
@@ -51,6 +59,44 @@ inline constexpr Isa compiled_isa = Isa::neon;
 inline constexpr Isa compiled_isa = Isa::scalar;
 #endif
 
+#if defined(LIGHTBIN_X86)
+/// Whether the processor and the system have what the avx2 kernels use; the avx512 kernels.
+struct WideVectors {
+    bool avx2, avx512;
+};
+
+inline WideVectors wide_vectors() {
+#if defined(_MSC_VER)
+    // Intel's manual, volume 2, CPUID: leaf 1, ECX; leaf 7, EBX and ECX. XGETBV: what the system saves of registers.
+    int first[4], seventh[4];
+    __cpuid(first, 0);
+    if (first[0] < 7) return {};
+    __cpuid(first, 1);
+    __cpuidex(seventh, 7, 0);
+    const auto has = [](int register_value, std::initializer_list<unsigned> bits) {
+        for (const unsigned bit : bits)
+            if ((static_cast<unsigned>(register_value) >> bit & 1) == 0) return false;
+        return true;
+    };
+    if (!has(first[2], {23, 27, 28})) return {};  // POPCNT, OSXSAVE, AVX
+    const unsigned long long saved = _xgetbv(0);
+    const bool avx2 = (saved & 0x06) == 0x06 && has(seventh[1], {3, 5});  // BMI1, AVX2
+    return {avx2, avx2 && (saved & 0xe6) == 0xe6 &&
+                      has(seventh[1], {8, 16, 17, 30, 31}) &&  // BMI2, F, DQ, BW, VL
+                      has(seventh[2], {1, 6, 12, 14})};        // VBMI, VBMI2, BITALG, VPOPCNTDQ
+#else
+    // The compiler's own, which asks the processor once a program: in a virtual machine asking takes 10 us and more.
+    const bool avx2 =
+        __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") && __builtin_cpu_supports("popcnt");
+    return {avx2, avx2 && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("avx512f") &&
+                      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
+                      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512vbmi") &&
+                      __builtin_cpu_supports("avx512vbmi2") && __builtin_cpu_supports("avx512bitalg") &&
+                      __builtin_cpu_supports("avx512vpopcntdq")};
+#endif
+}
+#endif
+
 /// The widest instruction set, `cap` or below, that was compiled in and that this machine runs. On ARM all
 /// but scalar mean neon; on x86 neon means scalar.
 inline Isa machine_isa(Isa cap) {
@@ -58,14 +104,11 @@ inline Isa machine_isa(Isa cap) {
     return cap == Isa::scalar ? Isa::scalar : Isa::neon;
 #elif defined(LIGHTBIN_X86)
     if (cap == Isa::neon) return Isa::scalar;
-    if (cap >= Isa::avx512 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
-        __builtin_cpu_supports("avx512vbmi") && __builtin_cpu_supports("avx512vbmi2") &&
-        __builtin_cpu_supports("avx512bitalg") && __builtin_cpu_supports("avx512vpopcntdq"))
-        return Isa::avx512;
-    if (cap >= Isa::avx2 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
-        __builtin_cpu_supports("popcnt"))
-        return Isa::avx2;
+    if (cap >= Isa::avx2) {
+        const WideVectors has = wide_vectors();
+        if (cap >= Isa::avx512 && has.avx512) return Isa::avx512;
+        if (has.avx2) return Isa::avx2;
+    }
     return cap >= Isa::sse2 ? Isa::sse2 : Isa::scalar;
 #else
     static_cast<void>(cap);
@@ -76,9 +119,9 @@ inline Isa machine_isa(Isa cap) {
 /// A product that is rounded before it is added to anything: keeps compilers from fusing the two, which would
 /// make the result depend on the instruction set.
 template <class Real> inline Real rounded(Real product) {
-    LIGHTBIN_ROUND(product);
+    LIGHTBIN_FORGET(product);
     return product;
 }
 
 }  // namespace detail
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR

@@ -20,8 +20,8 @@ LIGHTBIN_TARGET inline void tangent_slopes(Reals c, Reals z, Reals r, Reals e, R
     const Reals q = mul(a, z) + mul(r, sqrt(mul(a, a) + e));
     const Reals outer = mul(q, per_e), inner = mul(a - r, a + r) / q;
     const auto negative = less(c, Reals{});
-    low = select(negative, -outer, inner);
-    high = select(negative, -inner, outer);
+    low = select_unpredicted(negative, -outer, inner);  // on which side of the view axis a light is
+    high = select_unpredicted(negative, -inner, outer);
 }
 
 /// Bounds on c / z over the part of the discs (c, z, r) at depth near_z or more; infinite where double
@@ -105,8 +105,8 @@ LIGHTBIN_TARGET inline void project_carefully(const Camera& camera, const Sphere
         const auto good = both(both(less_equal(abs(x), most), less_equal(abs(y), most)),
                                both(less_equal(abs(z), most), less_equal(all(0.0), radius)));
         const Doubles nearest = z - radius, farthest = z + radius;
-        auto seen = both_not(good, either(less(farthest, all(near_depth)),
-                                          less(all(static_cast<double>(camera.far_depth)), nearest)));
+        auto seen = and_not(good, either(less(farthest, all(near_depth)),
+                                         less(all(static_cast<double>(camera.far_depth)), nearest)));
         // Not 0, so that no root is: much less than the rounding of any float.
         const Doubles r = greater(radius, all(0x1p-400));
         Doubles left = x - r, right = x + r, bottom = y - r, top = y + r;
@@ -136,26 +136,6 @@ LIGHTBIN_TARGET inline void project_carefully(const Camera& camera, const Sphere
             rects.y1[place] = y1[i];
             visible[place / lanes] |= (in_view >> i & 1) << place % lanes;
         }
-    }
-}
-
-/// Appends those of a vector of a chunk's lights, from `first` on, whose bit in `visible` is set. Every lane
-/// is written, and the place moves on for those in view: no branch to predict. A tier with a better way has a
-/// plain function for it, which wins over this one.
-template <class Rects>
-LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCounts& counts,
-                                           std::uint32_t first_id, unsigned visible, const Rects& rects,
-                                           std::uint32_t first) {
-    for (std::uint32_t i = first; i < first + lanes; ++i, visible >>= 1) {
-        const std::uint32_t at = counts.visible, in_view = visible & 1;
-        out.ids[at] = first_id + i;
-        out.x0[at] = rects.x0[i];
-        out.y0[at] = rects.y0[i];
-        out.x1[at] = rects.x1[i];
-        out.y1[at] = rects.y1[i];
-        counts.visible += in_view;
-        counts.area +=
-            in_view * ((rects.x1[i] - rects.x0[i] + 1u) * std::uint64_t{rects.y1[i] - rects.y0[i] + 1u});
     }
 }
 
@@ -227,7 +207,7 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const Sphere* spheres,
             unsigned& in_view = visible[i / lanes] = 0;
             if ((~bits(culled) & valid) == 0) continue;
 
-            auto plain = both_not(usable, culled);
+            auto plain = and_not(usable, culled);
             Floats left = x - r, right = x + r, bottom = y - r, top = y + r;
             if (!camera.orthographic) {
                 plain = both(plain, less(all(camera.near_fast), nearest));

@@ -25,6 +25,8 @@ keep lights from being missed. Compile the files that include lightbin without t
 Compile the files that include lightbin with SSE2 arithmetic, -msse2 -mfpmath=sse or /arch:SSE2."
 #endif
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<double>::is_iec559);
@@ -51,3 +53,5 @@ inline float float_above(double value) {
 }
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
+
+#include <lightbin/detail/warnings_on.inl>

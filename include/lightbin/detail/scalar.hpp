@@ -14,28 +14,46 @@ using Floats = float;
 using Doubles = double;
 inline constexpr std::uint32_t lanes = 1, double_lanes = 1;
 
-inline float sqrt(float a) {
+// One lane: numbers are their own vectors, and a mask is a bool. Of floats and of doubles.
+template <class Real> Real sqrt(Real a) {
     return std::sqrt(a);
 }
-inline double sqrt(double a) {
-    return std::sqrt(a);
+template <class Real> Real mul(Real a, Real b) {
+    return rounded(a * b);
 }
-
-#include <lightbin/detail/vectors.inl>
-
-#include <lightbin/detail/depth_columns.inl>
-
-/// From here on without a branch: nothing predicts which side of the view axis a light is on.
-inline float select(bool mask, float a, float b) {
-    const float either[] = {b, a};
-    return either[mask];
+template <class Real> bool less(Real a, Real b) {
+    return a < b;
 }
-inline float abs(float a) {
-    return std::fabs(a);
+template <class Real> bool less_equal(Real a, Real b) {
+    return a <= b;
+}
+inline bool both(bool a, bool b) {
+    return a & b;
+}
+inline bool either(bool a, bool b) {
+    return a | b;
+}
+inline bool and_not(bool a, bool b) {
+    return a & !b;
 }
 inline unsigned bits(bool mask) {
     return mask;
 }
+template <class Real> Real select(bool mask, Real a, Real b) {
+    return mask ? a : b;
+}
+inline float select_unpredicted(bool mask, float a, float b) {
+    const float of_both[] = {b, a};
+    return of_both[mask];
+}
+// With NaN in `a`, b.
+template <class Real> Real lesser(Real a, Real b) {
+    return a < b ? a : b;
+}
+template <class Real> Real greater(Real a, Real b) {
+    return a > b ? a : b;
+}
+
 inline double widened(float a, unsigned) {
     return static_cast<double>(a);
 }
@@ -52,11 +70,6 @@ template <class Real> void store_tiles(std::uint16_t* tiles, Real value) {
 inline void store_spans(RowSpan* spans, double first, double last) {
     *spans = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(last)};
 }
-
-#include <lightbin/detail/project.inl>
-#include <lightbin/detail/silhouette.inl>
-#include <lightbin/detail/tile_masks.inl>
-
 
 /// See LayOutRows.
 template <class Id>
@@ -82,9 +95,17 @@ std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned beg
     return at;
 }
 
-#include <lightbin/detail/supertile.inl>
+inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
+                           unsigned visible, const ChunkRects& rects, std::uint32_t first) {
+    portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);
+}
+using portable::append;
+using portable::pack;
+using portable::Packed;
+using portable::packs_ids;
+using portable::split_bits;
 
-#undef LIGHTBIN_TARGET
+#include <lightbin/detail/kernels.inl>
 
 }  // namespace scalar
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

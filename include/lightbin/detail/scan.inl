@@ -60,7 +60,7 @@ template <bool with_words, class Id>
 LIGHTBIN_TARGET std::uint32_t scan_band(const BinJob<Id>& job, Scratch& scratch, unsigned top,
                                         unsigned end_row) {
     const FootprintArrays& lights = job.lights;
-    const std::size_t room = std::size_t{job.visible} + 64;
+    const std::uint64_t room = std::uint64_t{job.visible} + 64;
     std::uint8_t* first = scratch.band_x0.room(room);
     std::uint8_t* end = scratch.band_x1.room(room);
     std::uint8_t* rows = scratch.band_rows.room(room);
@@ -106,7 +106,7 @@ LIGHTBIN_TARGET void scan_lists(const BinJob<Id>& job, Scratch& scratch, unsigne
     std::uint32_t* size = scratch.list_size.room(width + 1);
     std::uint32_t total = 0;
     for (unsigned x = 0; x < width; ++x) {
-        const std::size_t room = std::size_t{total} + count + 64;
+        const std::uint64_t room = std::uint64_t{total} + count + 64;
         std::uint8_t* columns = scratch.list_columns.room(room, total) + total;
         std::uint8_t* rows = scratch.list_rows.room(room, total) + total;
         std::uint32_t* ids = scratch.list_ids.room(room, total) + total;

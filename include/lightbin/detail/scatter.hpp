@@ -62,9 +62,10 @@ std::uint64_t bin_scatter(const BinJob<Id>& job, Scratch& scratch, const BandJob
 
     // Long lists have cache lines and pages of their own, and of all tiles at once too many. Then rows of some 512 tiles
     // at a time are faster, as was measured, unless reading all lights each time takes longer than putting their ids.
-    const std::size_t height = bands.end - bands.begin, entries = at - bands.at, lights = job.visible;
+    const std::size_t height = bands.end - bands.begin;
+    const std::uint64_t entries = at - bands.at, lights = job.visible;
     std::size_t step = 512 / width + 1;
-    if (entries < 256 * height * width + 2 * lights * (height / step + 1)) step = height;
+    if (entries < 256 * std::uint64_t{height} * width + 2 * lights * (height / step + 1)) step = height;
     Id* const list = bands.out - bands.at;  // the whole list
     for (std::size_t begin = bands.begin; begin < bands.end; begin += step)
         put_ids(job, list, begin, (std::min<std::size_t>)(begin + step, bands.end));

@@ -2,41 +2,13 @@
 // The counts and prefix sums of scatter.hpp. A vector is a column of a band, a lane a tile row: sums along rows are
 // then plain additions, where lanes along a row would have to be shuffled up for each. What is shuffled instead is
 // the result, a square of tiles at a time. Also the stores of empty tiles, and the kernel that scatter_kernel() gives.
-// Included once a tier of vectors, after its Floats.
+// Included once a tier of vectors, after its Rows: a vector of counts with + and -; all_rows(count); last_row(rows), the last
+// one in all; low_pairs and high_pairs(ends, counts), half of the rows as Tiles each, see BandTiles; and transpose(Tiles*), of a
+// square of tiles.
 
-using Rows = std::uint32_t __attribute__((vector_size(sizeof(Floats))));
-using Tiles = std::uint64_t __attribute__((vector_size(sizeof(Rows))));
 inline constexpr unsigned band_rows = sizeof(Rows) / 4, tiles_stored = band_rows / 2;
 using EachRow = std::make_integer_sequence<int, band_rows>;
 using EachTile = std::make_integer_sequence<int, tiles_stored>;
-
-/// The row of pair i of paired<half>: pairs are made within 128 bits, where that is one instruction.
-constexpr int row_of(int i, int half) {
-    return i / 2 * 4 + i % 2 + 2 * half;
-}
-/// Half of the rows as tiles: of each where its list ends, and its count.
-template <int half, int... i>
-LIGHTBIN_TARGET inline Tiles paired(Rows ends, Rows counts, std::integer_sequence<int, i...>) {
-    return reinterpret_cast<Tiles>(
-        __builtin_shufflevector(ends, counts, (row_of(i / 2, half) + i % 2 * band_rows)...));
-}
-
-/// A step of turning a square of tiles: swaps the upper right part of 2x2 parts, of `by` tiles each way, with the
-/// lower left.
-template <int by, int... i>
-LIGHTBIN_TARGET inline void swap_parts(Tiles& a, Tiles& b, std::integer_sequence<int, i...>) {
-    const Tiles low = __builtin_shufflevector(a, b, (i & by ? tiles_stored + i - by : i)...);
-    b = __builtin_shufflevector(a, b, (i & by ? tiles_stored + i : i + by)...);
-    a = low;
-}
-LIGHTBIN_TARGET inline void turn(Tiles* columns) {
-    swap_parts<1>(columns[0], columns[1], EachTile{});
-    if constexpr (tiles_stored == 4) {
-        swap_parts<1>(columns[2], columns[3], EachTile{});
-        swap_parts<2>(columns[0], columns[2], EachTile{});
-        swap_parts<2>(columns[1], columns[3], EachTile{});
-    }
-}
 
 LIGHTBIN_TARGET inline Rows load_rows(const std::uint32_t* from) {
     Rows rows;
@@ -51,11 +23,6 @@ LIGHTBIN_TARGET inline void add(std::uint32_t* to, Rows rows) {
     store_rows(to, load_rows(to) + rows);
 }
 
-/// The last row in all of them.
-template <int... i> LIGHTBIN_TARGET inline Rows last(Rows rows, std::integer_sequence<int, i...>) {
-    return __builtin_shufflevector(rows, rows, (band_rows - 1 + 0 * i)...);
-}
-
 /// For each row of a band, ones from it on.
 inline constexpr auto ones_from = [] {
     std::array<std::array<std::uint32_t, band_rows>, band_rows> rows = {};
@@ -65,12 +32,13 @@ inline constexpr auto ones_from = [] {
     return rows;
 }();
 
-/// `tiles_stored` tiles of each of a band's rows: vectors are columns, and then, turned, rows.
+/// `tiles_stored` tiles of each of a band's rows: vectors are columns, and then, transposed, rows.
 struct BandTiles {
-    Tiles low[tiles_stored], high[tiles_stored];  ///< of half the rows each, see row_of
+    /// Of half the rows each: pairs are made within 128 bits, so of each four rows two.
+    Tiles low[tiles_stored], high[tiles_stored];
 };
 
-/// Stores turned tiles, row after row: so what is beyond a row's end is overwritten by the next row.
+/// Stores transposed tiles, row after row: so what is beyond a row's end is overwritten by the next row.
 template <int... i>
 LIGHTBIN_TARGET inline void store(const BandTiles& tiles, Tile* column, std::size_t width,
                                   std::integer_sequence<int, i...>) {
@@ -84,11 +52,11 @@ LIGHTBIN_TARGET inline void store(const BandTiles& tiles, Tile* column, std::siz
 LIGHTBIN_TARGET inline void take_column(const std::uint32_t* steps, std::uint32_t* above, Rows& counts,
                                         Rows& ends, Tiles& low, Tiles& high) {
     const Rows step = load_rows(steps) + load_rows(above);
-    store_rows(above, last(step, EachRow{}));
-    counts += step;
-    low = paired<0>(ends, counts, EachRow{});
-    high = paired<1>(ends, counts, EachRow{});
-    ends -= counts;
+    store_rows(above, last_row(step));
+    counts = counts + step;
+    low = low_pairs(ends, counts);
+    high = high_pairs(ends, counts);
+    ends = ends - counts;
 }
 
 /// Writes a band's tiles, `columns` of each row. Stores may go on for less than a vector.
@@ -109,8 +77,8 @@ LIGHTBIN_TARGET inline void lay_out(const std::uint32_t* steps, std::uint32_t* a
         (take_column(steps + (x + most - i) * band_rows, above + (x + most - i) * band_rows, counts, ends,
                      tiles.low[most - i], tiles.high[most - i]),
          ...);
-        turn(tiles.low);
-        turn(tiles.high);
+        transpose(tiles.low);
+        transpose(tiles.high);
         store(tiles, rows + x, width, EachRow{});
     }
 }
@@ -180,7 +148,7 @@ LIGHTBIN_TARGET inline void fill_empty(Tile* tiles, std::size_t count, std::uint
         if (at == 0)
             return static_cast<void>(std::memset(static_cast<void*>(tiles), 0, count * sizeof *tiles));
     if (count < 16) return static_cast<void>(std::fill_n(tiles, count, Tile{at, 0}));
-    const Tiles empty = paired<0>(Rows{} + at, Rows{}, EachRow{});
+    const Tiles empty = low_pairs(all_rows(at), Rows{});
     Tile* const last = tiles + count - 16;
     fill_lines(tiles, empty);
     tiles += 8 - reinterpret_cast<std::uintptr_t>(tiles) / sizeof *tiles % 8;

@@ -11,35 +11,134 @@
 
 #define LIGHTBIN_TARGET
 
+#include <lightbin/detail/warnings_off.inl>
+
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace sse2 {
 
-using Floats = __m128;
-using Doubles = __m128d;
 inline constexpr std::uint32_t lanes = 4, double_lanes = 2;
 
-inline Floats sqrt(Floats a) {
-    return _mm_sqrt_ps(a);
+LIGHTBIN_TARGET inline __m128 all_lanes(float each) {
+    return _mm_set1_ps(each);
 }
-inline Doubles sqrt(Doubles a) {
-    return _mm_sqrt_pd(a);
+LIGHTBIN_TARGET inline __m128 negated(__m128 a) {
+    return _mm_xor_ps(a, _mm_set1_ps(-0.0f));
 }
 
-#include <lightbin/detail/vectors.inl>
+#define LIGHTBIN_VECTOR Floats
+#define LIGHTBIN_ELEMENT float
+#define LIGHTBIN_REGISTER __m128
+#define LIGHTBIN_OP(name) _mm_##name##_ps
+#include <lightbin/detail/vector.inl>
 
-using Mask = decltype(less(Floats{}, Floats{}));
-using DoubleMask = decltype(less(Doubles{}, Doubles{}));
-
-inline unsigned bits(Mask mask) {
-    return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<Floats>(mask)));
+/// All ones or all zeros a lane.
+struct Mask {
+    __m128 v;
+};
+LIGHTBIN_TARGET inline Mask less(Floats a, Floats b) {
+    return {_mm_cmplt_ps(a, b)};
 }
-inline unsigned bits(DoubleMask mask) {
-    return static_cast<unsigned>(_mm_movemask_pd(reinterpret_cast<Doubles>(mask)));
+LIGHTBIN_TARGET inline Mask less_equal(Floats a, Floats b) {
+    return {_mm_cmple_ps(a, b)};
+}
+LIGHTBIN_TARGET inline Mask both(Mask a, Mask b) {
+    return {_mm_and_ps(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Mask either(Mask a, Mask b) {
+    return {_mm_or_ps(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Mask and_not(Mask a, Mask b) {
+    return {_mm_andnot_ps(b.v, a.v)};
+}
+LIGHTBIN_TARGET inline Floats select(Mask mask, Floats a, Floats b) {
+    return _mm_or_ps(_mm_and_ps(mask.v, a), _mm_andnot_ps(mask.v, b));
+}
+LIGHTBIN_TARGET inline Floats lesser(Floats a, Floats b) {
+    return _mm_min_ps(a, b);
+}
+LIGHTBIN_TARGET inline Floats greater(Floats a, Floats b) {
+    return _mm_max_ps(a, b);
+}
+LIGHTBIN_TARGET inline unsigned bits(Mask mask) {
+    return static_cast<unsigned>(_mm_movemask_ps(mask.v));
+}
+LIGHTBIN_TARGET inline __m128d all_lanes(double each) {
+    return _mm_set1_pd(each);
+}
+LIGHTBIN_TARGET inline __m128d negated(__m128d a) {
+    return _mm_xor_pd(a, _mm_set1_pd(-0.0));
+}
+
+#define LIGHTBIN_VECTOR Doubles
+#define LIGHTBIN_ELEMENT double
+#define LIGHTBIN_REGISTER __m128d
+#define LIGHTBIN_OP(name) _mm_##name##_pd
+#include <lightbin/detail/vector.inl>
+
+/// All ones or all zeros a lane.
+struct DoubleMask {
+    __m128d v;
+};
+LIGHTBIN_TARGET inline DoubleMask less(Doubles a, Doubles b) {
+    return {_mm_cmplt_pd(a, b)};
+}
+LIGHTBIN_TARGET inline DoubleMask less_equal(Doubles a, Doubles b) {
+    return {_mm_cmple_pd(a, b)};
+}
+LIGHTBIN_TARGET inline DoubleMask both(DoubleMask a, DoubleMask b) {
+    return {_mm_and_pd(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline DoubleMask either(DoubleMask a, DoubleMask b) {
+    return {_mm_or_pd(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline DoubleMask and_not(DoubleMask a, DoubleMask b) {
+    return {_mm_andnot_pd(b.v, a.v)};
+}
+LIGHTBIN_TARGET inline Doubles select(DoubleMask mask, Doubles a, Doubles b) {
+    return _mm_or_pd(_mm_and_pd(mask.v, a), _mm_andnot_pd(mask.v, b));
+}
+LIGHTBIN_TARGET inline Doubles lesser(Doubles a, Doubles b) {
+    return _mm_min_pd(a, b);
+}
+LIGHTBIN_TARGET inline Doubles greater(Doubles a, Doubles b) {
+    return _mm_max_pd(a, b);
+}
+LIGHTBIN_TARGET inline unsigned bits(DoubleMask mask) {
+    return static_cast<unsigned>(_mm_movemask_pd(mask.v));
+}
+
+/// Counts of a column's tiles, and tiles: for scatter.inl.
+struct Rows {
+    __m128i v;
+};
+using Tiles = __m128i;
+inline Rows operator+(Rows a, Rows b) {
+    return {_mm_add_epi32(a.v, b.v)};
+}
+inline Rows operator-(Rows a, Rows b) {
+    return {_mm_sub_epi32(a.v, b.v)};
+}
+inline Rows all_rows(std::uint32_t count) {
+    return {_mm_set1_epi32(static_cast<int>(count))};
+}
+inline Rows last_row(Rows rows) {
+    return {_mm_shuffle_epi32(rows.v, 0xff)};
+}
+inline Tiles low_pairs(Rows ends, Rows counts) {
+    return _mm_unpacklo_epi32(ends.v, counts.v);
+}
+inline Tiles high_pairs(Rows ends, Rows counts) {
+    return _mm_unpackhi_epi32(ends.v, counts.v);
+}
+inline void transpose(Tiles* columns) {
+    const Tiles low = _mm_unpacklo_epi64(columns[0], columns[1]);
+    columns[1] = _mm_unpackhi_epi64(columns[0], columns[1]);
+    columns[0] = low;
 }
 
 /// Half 0 or 1 of the lanes.
 inline Doubles widened(Floats a, unsigned half) {
-    return _mm_cvtps_pd(half == 0 ? a : _mm_movehl_ps(a, a));
+    return _mm_cvtps_pd(half == 0 ? a.v : _mm_movehl_ps(a, a));
 }
 
 inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z, Floats& radius) {
@@ -48,7 +147,7 @@ inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z,
     y = _mm_loadu_ps(p + 4);
     z = _mm_loadu_ps(p + 8);
     radius = _mm_loadu_ps(p + 12);
-    _MM_TRANSPOSE4_PS(x, y, z, radius);
+    _MM_TRANSPOSE4_PS(x.v, y.v, z.v, radius.v);
 }
 
 inline void store_tiles(std::uint16_t* tiles, Floats values) {
@@ -65,10 +164,6 @@ inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
     const __m128i pairs = _mm_or_si128(_mm_cvttpd_epi32(first), _mm_slli_epi32(_mm_cvttpd_epi32(last), 16));
     _mm_storel_epi64(reinterpret_cast<__m128i*>(spans), pairs);
 }
-
-#include <lightbin/detail/depth_columns.inl>
-#include <lightbin/detail/project.inl>
-#include <lightbin/detail/silhouette.inl>
 
 /// As the AVX2 tier's, which see.
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
@@ -127,13 +222,16 @@ template <class Id> std::uint32_t append(Id* out, const Packed<Id>* ids, unsigne
     return set[low] + std::uint32_t{set[high]};
 }
 
-#include <lightbin/detail/tile_masks.inl>
+inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
+                           unsigned visible, const ChunkRects& rects, std::uint32_t first) {
+    portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);
+}
 
-#include <lightbin/detail/scatter.inl>
-#include <lightbin/detail/supertile.inl>
+#define LIGHTBIN_TIER_HAS_ROWS
+#include <lightbin/detail/kernels.inl>
 
 }  // namespace sse2
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
 
-#undef LIGHTBIN_TARGET
+#include <lightbin/detail/warnings_on.inl>
 #endif

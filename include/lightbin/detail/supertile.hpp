@@ -61,36 +61,6 @@ inline std::uint64_t turned(std::uint64_t x) {
     return x ^ t ^ t << 28;
 }
 
-/// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
-inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
-    for (unsigned i = 0; i < 64; i += 8) {
-        std::uint64_t eight;
-        std::memcpy(&eight, bytes + i, 8);
-        eight = turned(eight);
-        for (unsigned bit = 0; bit < 8; ++bit)
-            words[bit] = (i == 0 ? 0 : words[bit]) | (eight >> 8 * bit & 0xff) << i;
-    }
-}
-
-/// The form in which a tier's append() takes ids, one after another: as they are, unless the tier has its own.
-template <class Id> using Packed = std::uint32_t;
-inline constexpr bool packs_ids = false;
-void pack(const std::uint32_t* ids, std::uint32_t count, std::uint32_t* to);  // for name look-up alone
-
-/// Whether the tier makes lists by scan.inl.
-inline constexpr bool scans_lists = false;
-
-/// Writes those of 8 ids whose bit is set, in order, then elements that mean nothing: every id is written, and
-/// the place moves on for those chosen. Returns how many.
-template <class Id> std::uint32_t append(Id* out, const std::uint32_t* ids, unsigned mask) {
-    std::uint32_t count = 0;
-    for (unsigned i = 0; i < 8; ++i, mask >>= 1) {
-        out[count] = static_cast<Id>(ids[i]);
-        count += mask & 1;
-    }
-    return count;
-}
-
 /// Turns the words of up to 8 lights, a bit a tile, into a byte a tile, a bit a light.
 inline void turn_words(const std::uint64_t* words, std::uint32_t count, std::uint8_t* tiles) {
     for (unsigned row = 0; row < 8; ++row) {
@@ -103,4 +73,4 @@ inline void turn_words(const std::uint64_t* words, std::uint32_t count, std::uin
     }
 }
 
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

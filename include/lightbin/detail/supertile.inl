@@ -48,9 +48,10 @@ LIGHTBIN_TARGET void fill_lists(const BinJob<Id>& job, Scratch& scratch, const B
         begin[list] = cursors[list] = total;
         total += (here + 64) & ~63u;
     }
-    std::uint32_t* ids = scratch.list_ids.room(total + 64);
-    std::uint8_t* columns = scratch.list_columns.room(total + 64);
-    std::uint8_t* rows = scratch.list_rows.room(total + 64);
+    const std::uint64_t room = std::uint64_t{total} + 64;
+    std::uint32_t* ids = scratch.list_ids.room(room);
+    std::uint8_t* columns = scratch.list_columns.room(room);
+    std::uint8_t* rows = scratch.list_rows.room(room);
     const auto put = [=](std::uint32_t place, std::uint32_t id, unsigned column_bits, unsigned row_bits) {
         ids[place] = id;
         columns[place] = static_cast<std::uint8_t>(column_bits);
@@ -124,10 +125,11 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
         // Per 64 lights 16 words, or a word a light and then 64 words.
         std::uint64_t* words = scratch.words.room(room / 64 * 16);
         std::uint8_t* bytes = nullptr;
-        if constexpr (with_words) bytes = scratch.tile_bytes.room(std::size_t{room} * 8);
+        if constexpr (with_words) bytes = scratch.tile_bytes.room(std::uint64_t{room} * 8);
         Packed<Id>* packed = nullptr;
         if constexpr (packs_ids)
-            packed = reinterpret_cast<Packed<Id>*>(scratch.packed_ids.room(room * sizeof(Packed<Id>)));
+            packed = reinterpret_cast<Packed<Id>*>(
+                scratch.packed_ids.room(std::uint64_t{room} * sizeof(Packed<Id>)));
         for (unsigned x = 0; x < width; ++x) {
             const std::uint32_t count = size[x], end = (count + 63) & ~63u;
             if (count == 0) continue;
@@ -138,10 +140,13 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
                     split_bits(rows + i, words + 8);
                 }
             } else {
-                float cells[cell_planes<depth_test> * 64];
+                [[maybe_unused]] float arranged[cell_planes<depth_test> * 64];
+                const float* cells = nullptr;
                 std::uint64_t lit = ~std::uint64_t{0};
-                if constexpr (depth_test != DepthTest::none)
-                    lit = arrange_cells<depth_test>(job, x, top, cells);
+                if constexpr (depth_test != DepthTest::none) {
+                    lit = arrange_cells<depth_test>(job, x, top, arranged);
+                    cells = arranged;
+                }
                 std::uint64_t* masks = scratch.masks.room(end);
                 size[x] = mask_lights<footprint, depth_test>(
                     job, x, top, cells, lit, scratch.list_ids.data() + begin[x], 0, columns + begin[x],

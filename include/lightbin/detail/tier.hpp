@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What every tier includes: the types and the standard headers that its kernels' text, the .inl files, works with.
+// What every tier includes: the types and the standard headers that its kernels' text, the .inl files, works with, and
+// the types of the kernels.
 #pragma once
 
+#include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/platform.hpp>
+#include <lightbin/detail/portable.hpp>
 #include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/supertile.hpp>
@@ -19,3 +22,19 @@
 #include <cstdint>
 #include <cstring>
 #include <utility>
+
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
+
+// See project.inl, silhouette.inl, depth_columns.inl; supertile.inl, compress.inl and scatter.inl.
+using ProjectKernel = void (*)(const Camera& camera, const Sphere* spheres, std::uint32_t count,
+                               std::uint32_t first_id, const FootprintArrays& out, ProjectCounts& counts);
+using RowSpanKernel = void (*)(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
+                               RowSpan* spans, std::uint64_t place);
+struct DepthKernels {
+    void (*extremes)(const DepthRows& depth, float skipped, float* lower, float* upper);
+    void (*gaps)(const DepthRows& depth, float skipped, const float* split, float* below, float* above);
+};
+template <class Id>
+using BinKernel = std::uint64_t (*)(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands);
+
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

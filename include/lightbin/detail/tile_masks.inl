@@ -52,6 +52,7 @@ LIGHTBIN_TARGET inline void store_boxes(const Camera& camera, float* boxes, Floa
 /// second box. Returns a bit for each tile that has anything to light.
 template <DepthTest depth_test, class Id>
 LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, float* cells) {
+    static_assert(lanes <= 8 || sizeof(Id) == 0, "a vector would reach beyond its row of 8 tiles");
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
     const unsigned rows = (std::min)(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
     const unsigned columns = (std::min)(8u, static_cast<unsigned>(width) - 8 * x);

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// The text of all kernels, in one order: a tier is a file that opens a namespace of its own, defines what is named below,
+// includes this once and closes. A new kernel is its text, a line here and a line in Tier; a new tier is a file, and a line
+// in kernels.hpp.
+//
+// A tier defines
+//   LIGHTBIN_TARGET                what its functions are declared with: their instructions
+//   lanes, double_lanes            floats and doubles in a vector
+//   Floats, Doubles                vectors with + - * / and a sign, made of one number for all lanes (vector.inl); sqrt, mul
+//   less, less_equal               of two vectors: a mask
+//   both, either, and_not, bits    of masks; bits: a bit a lane
+//   select, lesser, greater        a where the mask is set, else b; with NaN in a, b
+//   widened                        half 0 or 1 of Floats as Doubles
+//   load_spheres                   `lanes` spheres as four vectors
+//   store_tiles, store_spans       numbers of tiles, cut off to 16 bits
+//   append_visible, split_bits     as in portable.hpp, or that
+// and
+//   Packed, packs_ids, append      for supertile.inl: ids in the form that append() takes, see portable.hpp and sse2.hpp
+//   LIGHTBIN_TIER_HAS_ROWS         defined: has Rows and Tiles, for scatter.inl; else a lay_out_rows of its own
+//   LIGHTBIN_TIER_SCANS            defined: lists are made by scan.inl
+// or
+//   LIGHTBIN_TIER_COMPRESSES       defined: bins by compress.inl, and scatters as AVX2 does
+
+#include <lightbin/detail/vectors.inl>
+
+#include <lightbin/detail/depth_columns.inl>
+
+#include <lightbin/detail/project.inl>
+
+#include <lightbin/detail/silhouette.inl>
+
+#include <lightbin/detail/tile_masks.inl>
+
+#if defined(LIGHTBIN_TIER_COMPRESSES)
+#include <lightbin/detail/compress.inl>
+#else
+#if defined(LIGHTBIN_TIER_HAS_ROWS)
+#include <lightbin/detail/scatter.inl>
+#endif
+#if defined(LIGHTBIN_TIER_SCANS)
+#include <lightbin/detail/scan.inl>
+#else
+inline constexpr bool scans_lists = false;
+#endif
+#include <lightbin/detail/supertile.inl>
+#endif
+
+/// What the tier hands out, see kernels.hpp.
+struct Tier {
+    static constexpr std::size_t vector = lanes;
+
+    static ProjectKernel project_kernel() { return project; }
+    static RowSpanKernel row_span_kernel() { return row_spans; }
+    static DepthKernels depth_kernels() { return {column_extremes, column_gaps}; }
+
+    template <Footprint footprint, DepthTest depth_test, class Id> static BinKernel<Id> bin_kernel() {
+#if defined(LIGHTBIN_TIER_COMPRESSES)
+        return bin_compress<footprint, depth_test, Id>;
+#else
+        return bin_supertiles<footprint, depth_test, Id>;
+#endif
+    }
+
+    template <class Id> static BinKernel<Id> scatter_kernel() {
+#if defined(LIGHTBIN_TIER_COMPRESSES)
+        return avx2::bin_rectangles<Id>;
+#elif defined(LIGHTBIN_TIER_HAS_ROWS)
+        return bin_rectangles<Id>;
+#else
+        return bin_scatter<Id, lay_out_rows<Id>>;
+#endif
+    }
+};
+
+#undef LIGHTBIN_TARGET
+#undef LIGHTBIN_TIER_HAS_ROWS
+#undef LIGHTBIN_TIER_SCANS
+#undef LIGHTBIN_TIER_COMPRESSES

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// Ways to do, without special instructions, what a tier must define and some tiers do faster: a tier names those it takes.
+#pragma once
+
+#include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/supertile.hpp>
+
+#include <cstdint>
+#include <cstring>
+
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail::portable {
+
+/// Appends those of a vector of a chunk's lights, from `first` on, whose bit in `visible` is set. Every lane
+/// is written, and the place moves on for those in view: no branch to predict.
+template <std::uint32_t lanes>
+void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
+                    unsigned visible, const ChunkRects& rects, std::uint32_t first) {
+    for (std::uint32_t i = first; i < first + lanes; ++i, visible >>= 1) {
+        const std::uint32_t at = counts.visible, in_view = visible & 1;
+        out.ids[at] = first_id + i;
+        out.x0[at] = rects.x0[i];
+        out.y0[at] = rects.y0[i];
+        out.x1[at] = rects.x1[i];
+        out.y1[at] = rects.y1[i];
+        counts.visible += in_view;
+        counts.area +=
+            in_view * ((rects.x1[i] - rects.x0[i] + 1u) * std::uint64_t{rects.y1[i] - rects.y0[i] + 1u});
+    }
+}
+
+/// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
+inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
+    for (unsigned i = 0; i < 64; i += 8) {
+        std::uint64_t eight;
+        std::memcpy(&eight, bytes + i, 8);
+        eight = turned(eight);
+        for (unsigned bit = 0; bit < 8; ++bit)
+            words[bit] = (i == 0 ? 0 : words[bit]) | (eight >> 8 * bit & 0xff) << i;
+    }
+}
+
+/// The form in which append() takes ids, one after another: as they are.
+template <class Id> using Packed = std::uint32_t;
+inline constexpr bool packs_ids = false;
+void pack(const std::uint32_t* ids, std::uint32_t count, std::uint32_t* to);  // not called
+
+/// Writes those of 8 ids whose bit is set, in order, then elements that mean nothing: every id is written, and
+/// the place moves on for those chosen. Returns how many.
+template <class Id> std::uint32_t append(Id* out, const std::uint32_t* ids, unsigned mask) {
+    std::uint32_t count = 0;
+    for (unsigned i = 0; i < 8; ++i, mask >>= 1) {
+        out[count] = static_cast<Id>(ids[i]);
+        count += mask & 1;
+    }
+    return count;
+}
+
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail::portable

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// A class of vectors with the operators of its elements. Included twice a tier, for floats and for doubles, which give
+//
+//   LIGHTBIN_VECTOR      the class's name
+//   LIGHTBIN_ELEMENT     float or double
+//   LIGHTBIN_REGISTER    the compiler's type for the register
+//   LIGHTBIN_OP(name)    the intrinsic of add, sub, mul, div, sqrt
+//
+// and functions all_lanes(element) and negated(register).
+
+struct LIGHTBIN_VECTOR {
+    LIGHTBIN_VECTOR() = default;
+    LIGHTBIN_TARGET LIGHTBIN_VECTOR(LIGHTBIN_REGISTER value) : v(value) {}
+    LIGHTBIN_TARGET LIGHTBIN_VECTOR(LIGHTBIN_ELEMENT each) : v(all_lanes(each)) {}
+    LIGHTBIN_TARGET operator LIGHTBIN_REGISTER() const { return v; }
+
+    LIGHTBIN_REGISTER v;
+};
+
+LIGHTBIN_TARGET inline LIGHTBIN_VECTOR operator+(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
+    return LIGHTBIN_OP(add)(a.v, b.v);
+}
+LIGHTBIN_TARGET inline LIGHTBIN_VECTOR operator-(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
+    return LIGHTBIN_OP(sub)(a.v, b.v);
+}
+LIGHTBIN_TARGET inline LIGHTBIN_VECTOR operator*(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
+    return LIGHTBIN_OP(mul)(a.v, b.v);
+}
+LIGHTBIN_TARGET inline LIGHTBIN_VECTOR operator/(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
+    return LIGHTBIN_OP(div)(a.v, b.v);
+}
+LIGHTBIN_TARGET inline LIGHTBIN_VECTOR operator-(LIGHTBIN_VECTOR a) {
+    return negated(a.v);
+}
+LIGHTBIN_TARGET inline LIGHTBIN_VECTOR sqrt(LIGHTBIN_VECTOR a) {
+    return LIGHTBIN_OP(sqrt)(a.v);
+}
+
+/// A product that is rounded before it is added to anything, see rounded().
+LIGHTBIN_TARGET inline LIGHTBIN_VECTOR mul(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
+    LIGHTBIN_VECTOR product = a * b;
+    LIGHTBIN_FORGET(product.v);
+    return product;
+}
+
+#undef LIGHTBIN_VECTOR
+#undef LIGHTBIN_ELEMENT
+#undef LIGHTBIN_REGISTER
+#undef LIGHTBIN_OP

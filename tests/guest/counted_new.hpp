@@ -1,0 +1,10 @@
+// The global operator new of the program, counted, and made to fail.
+#pragma once
+
+#include <cstddef>
+
+/// How often it was called.
+extern std::size_t allocations;
+
+/// Counts down to the call that throws std::bad_alloc; 0: none does.
+extern std::size_t allocations_left;

@@ -1,0 +1,254 @@
+// An exception anywhere in a call, be it for want of memory or from the caller's own functions: the next call is as any
+// other, whether it is the same again or one that needs less.
+#include "counted_new.hpp"
+
+#include <lightbin/advise.hpp>
+#include <lightbin/lightbin.hpp>
+#include <lightbin/shader_build.hpp>
+
+#include <doctest/doctest.h>
+#include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <new>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace lightbin;
+
+/// What the caller's own functions throw.
+struct Thrown {};
+
+/// Counts down to the event in the caller's functions that throws; 0: none does.
+std::size_t events_left = 0;
+
+void event() {
+    if (events_left != 0 && --events_left == 0) throw Thrown{};
+}
+
+const auto as_sphere = [](const glm::vec4& light) {
+    event();
+    return Sphere{light.x, light.y, light.z, light.w};
+};
+
+/// A loop for Parallel that may throw before, between and after the calls.
+const auto run = [](std::size_t n, const auto& body) {
+    event();
+    while (n > 0) {
+        body(--n);
+        event();
+    }
+};
+
+/// Whether a call throws, at the given place, what is thrown there.
+template <class Exception> bool throws(std::size_t& left, std::size_t place, const auto& call) {
+    left = place;
+    try {
+        call();
+    } catch (const Exception&) {
+        left = 0;
+        return true;
+    }
+    const bool reached = left == 0;
+    left = 0;
+    CHECK(!reached);  // nothing else may catch it
+    return false;
+}
+
+struct Scene {
+    View view;
+    std::vector<glm::vec4> lights;
+    std::vector<float> min, max, gap_min, gap_max;
+
+    Scene(Extent viewport, int tile_size, std::size_t count, float largest)
+        : view(*View::from_projection(glm::perspective(1.0f, 1.5f, 0.1f, 100.0f), viewport,
+                                      {.tile_size = tile_size})),
+          lights(count), min(view.tile_count(), 5), max(min), gap_min(min), gap_max(min) {
+        std::mt19937 random(7);
+        const auto from_to = [&](float low, float high) {
+            return low + (high - low) * static_cast<float>(random() % 1000) / 1000;
+        };
+        for (glm::vec4& light : lights)
+            light = {from_to(-20, 20), from_to(-15, 15), from_to(-40, 1), from_to(0, largest)};
+        for (std::size_t i = 0; i < min.size(); ++i) {
+            min[i] = from_to(1, 10);
+            gap_min[i] = min[i] + from_to(1, 5);
+            gap_max[i] = gap_min[i] + from_to(1, 5);
+            max[i] = gap_max[i] + from_to(1, 10);
+        }
+    }
+
+    ZBounds bounds() const { return {min, max, gap_min, gap_max}; }
+};
+
+/// The bytes of what a Binner makes of a scene, one call after another.
+struct Bytes {
+    std::vector<std::uint32_t> words;
+
+    void add(const auto& grid) {
+        for (const Tile tile : grid.tiles())
+            words.insert(words.end(), {tile.offset, tile.count});
+        words.insert(words.end(), grid.indices().begin(), grid.indices().end());
+    }
+};
+
+enum class Call { bin, count_and_emit, bin_transparency };
+
+template <Options options>
+void use(Binner<options>& binner, Call call, const Scene& scene, const Parallel& parallel, Bytes* bytes) {
+    const auto lights = view_space(scene.lights, as_sphere);
+    const auto with_bounds = [&](const auto& member) {
+        if constexpr (options.depth_test == DepthTest::none)
+            return member();
+        else
+            return member(scene.bounds());
+    };
+    if (call == Call::bin) {
+        const auto grid =
+            with_bounds([&](const auto&... z) { return binner.bin(scene.view, lights, z..., parallel); });
+        if (bytes != nullptr) bytes->add(*grid);
+    } else if (call == Call::count_and_emit) {
+        const auto size =
+            with_bounds([&](const auto&... z) { return binner.count(scene.view, lights, z..., parallel); });
+        if (bytes == nullptr) return;
+        std::vector<Tile> tiles(size->tiles);
+        std::vector<typename Binner<options>::Id> ids(size->indices);
+        bytes->add(*binner.emit(tiles, ids));
+    } else if constexpr (options.depth_test != DepthTest::none) {
+        const auto grids = binner.bin_transparency(scene.view, lights, scene.bounds(), parallel);
+        if (bytes != nullptr) bytes->add(grids->opaque);
+        if (bytes != nullptr) bytes->add(grids->transparent);
+    }
+}
+
+template <Options options> struct Survival {
+    const Scene &scene, &less;
+    Call call;
+    Parallel parallel;
+
+    std::vector<std::uint32_t> made(Binner<options>& binner, const Scene& of) const {
+        Bytes bytes;
+        use(binner, call, of, parallel, &bytes);
+        return bytes.words;
+    }
+
+    /// Tries every place, or one in `step`, and how many there were.
+    template <class Exception> std::size_t everywhere(std::size_t& left, std::size_t step = 1) const {
+        Binner<options> fresh, other;
+        const auto expected = made(fresh, scene), expected_less = made(other, less);
+        std::size_t places = 0;
+        for (const bool warm : {false, true})
+            for (std::size_t place = 1;; place += step) {
+                Binner<options> binner;
+                if (warm) use(binner, call, less, parallel, nullptr);
+                if (!throws<Exception>(left, place, [&] { use(binner, call, scene, parallel, nullptr); }))
+                    break;
+                const bool less_first = ++places % 2 == 0;
+                const bool right = (!less_first || made(binner, less) == expected_less) &&
+                                   made(binner, scene) == expected && made(binner, less) == expected_less;
+                CAPTURE(warm);
+                CAPTURE(place);
+                CHECK(right);
+            }
+        return places;
+    }
+};
+
+template <Options options> void check_options(const Scene& scene, const Scene& less, bool all = true) {
+    CAPTURE(static_cast<int>(options.isa));
+    for (const Call call : {Call::bin, Call::count_and_emit, Call::bin_transparency}) {
+        if (call == Call::bin_transparency && options.depth_test == DepthTest::none) continue;
+        if (call == Call::count_and_emit && !all) continue;
+        for (const std::size_t workers : {1u, 3u}) {
+            const Survival<options> survival{scene, less, call, Parallel(workers, run, 0)};
+            CHECK(survival.template everywhere<std::bad_alloc>(allocations_left) > 10);
+            if (!all) continue;
+            CHECK(survival.template everywhere<Thrown>(events_left, 37) >= 2 * (scene.lights.size() / 37));
+        }
+    }
+}
+
+template <Isa isa> void check_tier() {
+    // Large lights and small ones; wide rows of tiles, for which lists are made in another way.
+    const Scene scene({160, 104}, 8, 150, 20), less({160, 120}, 16, 40, 20);
+    const Scene scattered({160, 104}, 8, 40, 1), wide({980, 24}, 4, 100, 20);
+    check_options<Options{.isa = isa}>(scene, less);
+    check_options<Options{.isa = isa}>(scattered, less, false);
+    check_options<Options{.isa = isa}>(wide, less, false);
+    check_options<Options{
+        .index = Index::u16, .footprint = Footprint::silhouette, .statistics = true, .isa = isa}>(scene, less,
+                                                                                                  false);
+    check_options<Options{.depth_test = DepthTest::box, .isa = isa}>(scene, less, false);
+    check_options<Options{.index = Index::u16,
+                          .footprint = Footprint::silhouette,
+                          .depth_test = DepthTest::split_box,
+                          .isa = isa}>(scene, less);
+}
+
+/// Every allocation of a function that keeps nothing.
+void check_function(const auto& text_of) {
+    const std::string expected = text_of();
+    std::size_t place = 1;
+    std::string text;
+    while (throws<std::bad_alloc>(allocations_left, place, [&] { text = text_of(); }))
+        ++place;
+    CHECK(place > 1);
+    CHECK(text == expected);
+}
+
+}  // namespace
+
+TEST_CASE("a Binner is as good as new after an exception: the machine's tier") {
+    check_tier<detail::compiled_isa>();
+}
+TEST_CASE("a Binner is as good as new after an exception: the scalar tier") {
+    check_tier<Isa::scalar>();
+}
+#if defined(LIGHTBIN_X86)
+TEST_CASE("a Binner is as good as new after an exception: AVX2") {
+    check_tier<Isa::avx2>();
+}
+TEST_CASE("a Binner is as good as new after an exception: SSE2") {
+    check_tier<Isa::sse2>();
+}
+#endif
+
+TEST_CASE("a Binner is as good as new after an exception: more lights than 16 bits number") {
+    Scene scene({64, 48}, 8, 70000, 1), less({64, 48}, 8, 10, 1);
+    for (std::size_t i = 1; i < scene.lights.size(); ++i)
+        if (i % 1000 != 0) scene.lights[i].z = 50;  // behind the eye
+    for (const std::size_t workers : {1u, 3u}) {
+        const Survival<Options{}> survival{scene, less, Call::bin, Parallel(workers, run, 0)};
+        CHECK(survival.everywhere<std::bad_alloc>(allocations_left) > 10);
+    }
+}
+
+TEST_CASE("what keeps nothing from call to call loses nothing, either") {
+    const Scene scene({320, 200}, 8, 300, 20);
+    check_function([&] {
+        const Advice advice = *advise(scene.view, scene.lights, {}, scene.bounds());
+        std::string entries =
+            advice.text().substr(0, 4);  // times differ from call to call, and so does the order
+        for (const int tile_size : {8, 16, 32, 64, 320})
+            for (const Plan& plan : advice.plans())
+                if (plan.tile_size == tile_size && plan.footprint == Footprint::rectangle &&
+                    plan.depth_test == DepthTest::box)
+                    entries += std::to_string(plan.entries) + " ";
+        return entries;
+    });
+    check_function([&] { return shader_snippet()->text; });
+    check_function([&] { return reduce_shader()->text; });
+    check_function([&] { return build_shader()->text; });
+    check_function([&] { return Error{ErrorCode::too_many_lights, 5, 4}.message(); });
+    check_function([&] {
+        const auto footprints = shader_footprints(scene.view, scene.lights);
+        return std::to_string(footprints->size() + shader_edges(scene.view).size());
+    });
+}

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+// The engines of one depth test, HUNT_DEPTH_TEST.
+#include "engines.hpp"
+#include "guarded.hpp"
+
+#include <lightbin/encode.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <numeric>
+#include <thread>
+
+namespace hunt {
+namespace {
+
+/// A light as a caller may have it, with what the library need not know.
+struct Lamp {
+    double power;
+    float range;
+    float place[3];
+    char name[7];
+};
+
+/// The caller's way to run a loop.
+struct Runner {
+    template <class Body> void operator()(std::size_t n, const Body& body) const {
+        std::vector<std::size_t> order(n);
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        Random random(seed);
+        if (how == Order::backward) std::reverse(order.begin(), order.end());
+        if (how == Order::shuffled)
+            for (std::size_t i = n; i > 1; --i)
+                std::swap(order[i - 1], order[random.below(i)]);
+        if (how != Order::threads) {
+            for (const std::size_t i : order)
+                body(i);
+            return;
+        }
+        std::atomic<std::size_t> next = 0;
+        const auto work = [&] {
+            for (std::size_t i; (i = next++) < n;)
+                body(i);
+        };
+        std::thread others[] = {std::thread(work), std::thread(work)};
+        work();
+        for (std::thread& other : others)
+            other.join();
+    }
+
+    Order how;
+    std::uint64_t seed;
+};
+
+template <class Id> Lists copy_of(const lightbin::LightGrid<Id>& grid) {
+    return {{grid.tiles().begin(), grid.tiles().end()}, {grid.indices().begin(), grid.indices().end()}};
+}
+
+template <lightbin::Options options> struct Kept {
+    using Binner = lightbin::Binner<options>;
+    using Id = typename Binner::Id;
+    static constexpr bool with_depth = options.depth_test != DepthTest::none;
+
+    static inline std::unique_ptr<Binner> binner;
+
+    static void forget() { binner.reset(); }
+
+    /// To the caller's memory, which is too small at first. Writes what is wrong.
+    static void emit(const lightbin::GridSize& size, Random& random, Output& out) {
+        const std::size_t more = random.one_in(3) ? 0 : random.below(std::size_t{20});
+        Guarded<lightbin::Tile> tiles(size.tiles + more);
+        Guarded<Id> ids(size.indices + more);
+        using lightbin::ErrorCode;
+        if (size.tiles > 0) {
+            const auto grid = binner->emit(tiles.span(size.tiles - 1), ids.span());
+            if (grid || grid.error().code != ErrorCode::tile_buffer_too_small)
+                out.wrong = "emit takes too few tiles";
+        }
+        if (size.indices > 0) {
+            const auto grid = binner->emit(tiles.span(), ids.span(size.indices - 1));
+            if (grid || grid.error().code != ErrorCode::index_buffer_too_small)
+                out.wrong = "emit takes too few ids";
+        }
+        if (!tiles.intact(0) || !ids.intact(0)) out.wrong = "emit writes to a buffer that is too small";
+        const auto grid = binner->emit(tiles.span(), ids.span());
+        if (!grid) return static_cast<void>(out.error = grid.error());
+        if (!tiles.intact(size.tiles) || !ids.intact(size.indices))
+            out.wrong = "emit writes beyond the lists";
+        if (grid->tiles().data() != tiles.span().data() || grid->tiles().size() != size.tiles ||
+            grid->indices().size() != size.indices)
+            out.wrong = "emit returns a grid that is not where it wrote";
+        take(*grid, out);
+    }
+
+    static void take(const lightbin::LightGrid<Id>& grid, Output& out) {
+        out.tiles_x = grid.tiles_x();
+        out.tiles_y = grid.tiles_y();
+        out.rejected = grid.rejected();
+        out.lists = copy_of(grid);
+    }
+
+    template <class Lights, class Threads>
+    static void build(const Input& input, const Lights& lights, const Threads& threads, Output& out) {
+        Random random(input.seed);
+        const auto with_bounds = [&](auto call) {
+            if constexpr (with_depth)
+                return call(*input.view, lights, input.bounds, threads);
+            else
+                return call(*input.view, lights, threads);
+        };
+        if (input.calls == Calls::count_emit) {
+            const auto size = with_bounds([](const auto&... a) { return binner->count(a...); });
+            if (!size) return static_cast<void>(out.error = size.error());
+            emit(*size, random, out);
+        } else if (input.calls == Calls::transparency && with_depth) {
+            if constexpr (with_depth) {
+                const auto grids = binner->bin_transparency(*input.view, lights, input.bounds, threads);
+                if (!grids) return static_cast<void>(out.error = grids.error());
+                take(grids->opaque, out);
+                out.transparent = copy_of(grids->transparent);
+            }
+        } else {
+            const auto grid = with_bounds([](const auto&... a) { return binner->bin(a...); });
+            if (!grid) return static_cast<void>(out.error = grid.error());
+            take(*grid, out);
+        }
+        if constexpr (options.statistics)
+            if (!out.error) out.statistics = binner->statistics();
+    }
+
+    template <class Lights>
+    static void build_with_threads(const Input& input, const Lights& lights, Output& out) {
+        const Runner runner = {input.order, input.seed};
+        // Serial with one form of lights alone, as each takes time to compile.
+        if constexpr (std::is_same_v<Lights, std::vector<glm::vec4>>)
+            if (input.order == Order::serial) return build(input, lights, lightbin::Serial{}, out);
+        build(input, lights,
+              input.order == Order::serial ? lightbin::Parallel()
+                                           : lightbin::Parallel(input.workers, runner, 0),
+              out);
+    }
+
+    static Output run(const Input& input) {
+        if (!binner) binner = std::make_unique<Binner>();
+        Output out;
+        const Scene& scene = *input.scene;
+        if (input.form == Form::own) {
+            std::vector<Lamp> lamps;
+            lamps.reserve(scene.lights.size());
+            for (const Sphere& light : scene.lights)
+                lamps.push_back({0, light.radius, {light.x, light.y, light.z}, {}});
+            const auto to_sphere = [&scene](const Lamp& lamp) {
+                static_cast<void>(scene);
+                return Sphere{lamp.place[0], lamp.place[1], lamp.place[2], lamp.range};
+            };
+            if (!scene.in_world)
+                build_with_threads(input, lightbin::view_space(lamps, to_sphere), out);
+            else
+                build_with_threads(input, lightbin::world_space(lamps, scene.to_view, to_sphere), out);
+        } else if (scene.in_world) {
+            if (scene.in_float)
+                build_with_threads(input, lightbin::world_space(scene.lights, glm::mat4(scene.to_view)), out);
+            else
+                build_with_threads(input, lightbin::world_space(scene.lights, scene.to_view), out);
+        } else if (input.form == Form::spheres) {
+            build_with_threads(input, std::span<const Sphere>(scene.lights), out);
+        } else {
+            std::vector<glm::vec4> vectors;
+            vectors.reserve(scene.lights.size());
+            for (const Sphere& light : scene.lights)
+                vectors.emplace_back(light.x, light.y, light.z, light.radius);
+            build_with_threads(input, vectors, out);
+        }
+        return out;
+    }
+};
+
+template <Footprint footprint, DepthTest depth_test, Index index> Engine of_tier(unsigned tier) {
+    constexpr auto of = []<lightbin::Isa isa, bool statistics>() {
+        constexpr lightbin::Options options = {.index = index,
+                                               .footprint = footprint,
+                                               .depth_test = depth_test,
+                                               .statistics = statistics,
+                                               .isa = isa};
+        return Engine{Kept<options>::run, Kept<options>::forget};
+    };
+    constexpr bool statistics = index == Index::u16;
+    switch (tier) {
+    case 0:
+        return of.template operator()<lightbin::Isa::scalar, statistics>();
+    case 1:
+        return of.template operator()<lightbin::Isa::sse2, !statistics>();
+    case 2:
+        return of.template operator()<lightbin::Isa::avx2, statistics>();
+    default:
+        return of.template operator()<lightbin::Options{}.isa, !statistics>();
+    }
+}
+
+}  // namespace
+
+template <DepthTest depth_test> Engine engine(Footprint footprint, unsigned tier, Index index) {
+    if constexpr (has_narrow_ids(depth_test))
+        if (index == Index::u16)
+            return footprint == Footprint::rectangle
+                       ? of_tier<Footprint::rectangle, depth_test, Index::u16>(tier)
+                       : of_tier<Footprint::silhouette, depth_test, Index::u16>(tier);
+    return footprint == Footprint::rectangle ? of_tier<Footprint::rectangle, depth_test, Index::u32>(tier)
+                                             : of_tier<Footprint::silhouette, depth_test, Index::u32>(tier);
+}
+
+template Engine engine<DepthTest::HUNT_DEPTH_TEST>(Footprint footprint, unsigned tier, Index index);
+
+}  // namespace hunt
