@@ -1,8 +1,8 @@
 #!/bin/sh
 # Runs the tests: `sh tests/run.sh [--quick]` on Debian 12, as root or with sudo. Installs the packages that are missing,
 # configures and builds in build/dev, runs the tests, and says how far it is.
-#   (nothing)  every test: about 12 minutes on two cores
-#   --quick    the most telling ones, and builds only those: about two minutes
+#   (nothing)  every test: about a quarter of an hour on two cores
+#   --quick    the most telling ones, and builds only those
 set -eu
 me=tests/run.sh
 cd "$(dirname "$0")/.."

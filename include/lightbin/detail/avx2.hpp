@@ -16,6 +16,8 @@
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace avx2 {
 
+using FloatRegister = __m256;
+using DoubleRegister = __m256d;
 inline constexpr std::uint32_t lanes = 8, double_lanes = 4;
 
 LIGHTBIN_TARGET inline __m256 all_lanes(float each) {

@@ -29,6 +29,8 @@ namespace avx512 {
 
 using Mask = __mmask16;
 using DoubleMask = __mmask8;
+using FloatRegister = __m512;
+using DoubleRegister = __m512d;
 inline constexpr std::uint32_t lanes = 16, double_lanes = 8;
 
 LIGHTBIN_TARGET inline __m512 all_lanes(float each) {

@@ -6,6 +6,7 @@
 // A tier defines
 //   LIGHTBIN_TARGET                what its functions are declared with: their instructions
 //   lanes, double_lanes            floats and doubles in a vector
+//   FloatRegister, DoubleRegister  the compiler's types for what they lie in
 //   Floats, Doubles                vectors with + - * / and a sign, made of one number for all lanes (vector.inl); sqrt, mul
 //   less, less_equal               of two vectors: a mask
 //   both, either, and_not, bits    of masks; bits: a bit a lane

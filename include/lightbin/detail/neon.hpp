@@ -14,6 +14,8 @@
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace neon {
 
+using FloatRegister = float32x4_t;
+using DoubleRegister = float64x2_t;
 inline constexpr std::uint32_t lanes = 4, double_lanes = 2;
 
 inline float32x4_t all_lanes(float each) {

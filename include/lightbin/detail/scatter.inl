@@ -12,11 +12,11 @@ using EachTile = std::make_integer_sequence<int, tiles_stored>;
 
 LIGHTBIN_TARGET inline Rows load_rows(const std::uint32_t* from) {
     Rows rows;
-    std::memcpy(&rows, from, sizeof rows);
+    std::memcpy(&rows.v, from, sizeof rows.v);
     return rows;
 }
 LIGHTBIN_TARGET inline void store_rows(std::uint32_t* to, Rows rows) {
-    std::memcpy(to, &rows, sizeof rows);
+    std::memcpy(to, &rows.v, sizeof rows.v);
 }
 
 LIGHTBIN_TARGET inline void add(std::uint32_t* to, Rows rows) {

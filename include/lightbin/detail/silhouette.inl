@@ -24,10 +24,6 @@ struct RowTerms {
     double middle[lanes], reach[lanes], low[lanes], high[lanes], left_v[lanes], right_v[lanes];
 };
 
-template <class Reals> LIGHTBIN_TARGET inline void store(double* to, Reals values) {
-    std::memcpy(to, &values, sizeof values);
-}
-
 /// Writes the terms of the lights. Returns a bit for each whose silhouette is known: those wholly beyond the
 /// near plane.
 LIGHTBIN_TARGET inline unsigned row_terms(const Camera& camera, const Sphere (&spheres)[lanes],
@@ -66,18 +62,18 @@ LIGHTBIN_TARGET inline unsigned row_terms(const Camera& camera, const Sphere (&s
         const Doubles m = mul(g_z, all(most)) + abs(y) + largest_f;
         const Doubles error =
             (mul(abs(middle), mul(abs(y_v), all(most)) + g_z) + mul(reach, largest_f)) * 0x1p-46 + margin;
-        store(terms.y + at, y);
-        store(terms.y_v + at, y_v);
-        store(terms.z + at, g_z);
-        store(terms.r2 + at, r2);
-        store(terms.r2_v + at, r2_v);
-        store(terms.middle + at, middle);
-        store(terms.reach + at, reach);
-        store(terms.low + at, offset - error);
-        store(terms.high + at, offset + error);
-        store(terms.slack + at, mul(m, largest_f) * 0x1p-44 + mul(m, m) * 0x1p-93);
-        store(terms.left_v + at, left_v);
-        store(terms.right_v + at, right_v);
+        store_doubles(terms.y + at, y);
+        store_doubles(terms.y_v + at, y_v);
+        store_doubles(terms.z + at, g_z);
+        store_doubles(terms.r2 + at, r2);
+        store_doubles(terms.r2_v + at, r2_v);
+        store_doubles(terms.middle + at, middle);
+        store_doubles(terms.reach + at, reach);
+        store_doubles(terms.low + at, offset - error);
+        store_doubles(terms.high + at, offset + error);
+        store_doubles(terms.slack + at, mul(m, largest_f) * 0x1p-44 + mul(m, m) * 0x1p-93);
+        store_doubles(terms.left_v + at, left_v);
+        store_doubles(terms.right_v + at, right_v);
         known |= bits(whole) << at;
     }
     return known;
@@ -88,8 +84,7 @@ LIGHTBIN_TARGET inline unsigned row_terms(const Camera& camera, const Sphere (&s
 LIGHTBIN_TARGET inline void row_spans(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
                                       RowSpan* spans, std::uint64_t place) {
     static constexpr double count_up[] = {0, 1, 2, 3, 4, 5, 6, 7};
-    Doubles lane;
-    std::memcpy(&lane, count_up, sizeof lane);
+    const Doubles lane = load_doubles(count_up);
     const double row_offset = camera.y.offset, per_scale = 1 / camera.y.scale;
     RowTerms terms;
     Sphere spheres[lanes];

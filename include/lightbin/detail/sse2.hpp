@@ -16,6 +16,8 @@
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace sse2 {
 
+using FloatRegister = __m128;
+using DoubleRegister = __m128d;
 inline constexpr std::uint32_t lanes = 4, double_lanes = 2;
 
 LIGHTBIN_TARGET inline __m128 all_lanes(float each) {

@@ -10,12 +10,21 @@ template <class Real> LIGHTBIN_TARGET inline typename VectorOf<Real>::Type all(R
     return typename VectorOf<Real>::Type(value);
 }
 
+// By way of registers: gcc 12 copies a class that holds one in halves, for which the next load has to wait.
 LIGHTBIN_TARGET inline Floats load_floats(const float* from) {
-    Floats values;
+    FloatRegister values;
     std::memcpy(&values, from, sizeof values);
     return values;
 }
-LIGHTBIN_TARGET inline void store_floats(float* to, Floats values) {
+LIGHTBIN_TARGET inline void store_floats(float* to, FloatRegister values) {
+    std::memcpy(to, &values, sizeof values);
+}
+LIGHTBIN_TARGET inline Doubles load_doubles(const double* from) {
+    DoubleRegister values;
+    std::memcpy(&values, from, sizeof values);
+    return values;
+}
+LIGHTBIN_TARGET inline void store_doubles(double* to, DoubleRegister values) {
     std::memcpy(to, &values, sizeof values);
 }
 
