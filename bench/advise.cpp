@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Is advise() right? For each scene every plan is measured (build time on rotating light sets, evaluations of
 // the first one counted over the drawn pixels), and what the chosen one costs is held against the cheapest: with
-// Z bounds, and without any against those that need none. advise() sees the first light set alone, on its own clock.
+// Z bounds, and without any against those that need none. advise() sees the first light set alone.
 //
 //   advise_plans.csv   a row a plan that was weighed: build time and evaluations by advise(), and by the sweep
 //   advise.csv         a row for each scene and cost of an evaluation: the choice, the best plan, and the regret, their
@@ -12,6 +12,7 @@
 
 #include <lightbin/advise.hpp>
 
+#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <exception>
@@ -63,16 +64,22 @@ template <Isa isa> std::vector<Candidate> candidates() {
     return all;
 }
 
-/// In seconds of this thread: what else runs on the machine is no plan's cost.
-template <class Work> double own_seconds(Work work) {
-    const auto now = [] {
+/// This thread's own time: what else runs on the machine is no plan's cost.
+struct ThreadClock {
+    using duration = std::chrono::nanoseconds;
+    using time_point = std::chrono::time_point<ThreadClock>;
+
+    static time_point now() {
         std::timespec time;
         clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-        return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-    };
-    const double start = now();
+        return time_point(std::chrono::seconds(time.tv_sec) + duration(time.tv_nsec));
+    }
+};
+
+template <class Work> double own_seconds(Work work) {
+    const ThreadClock::time_point start = ThreadClock::now();
     work();
-    return now() - start;
+    return std::chrono::duration<double>(ThreadClock::now() - start).count();
 }
 
 /// Times all candidates in turns, each turn with another light set.
@@ -94,7 +101,7 @@ void time(std::vector<Candidate>& candidates, const Views& views, std::span<cons
             }
             build();  // finds no memory
             const double time = std::min({own_seconds(build), own_seconds(build), own_seconds(build)});
-            together[i] = static_cast<int>(std::clamp(10e-6 / time, 1.0, 8.0));
+            together[i] = time < 20e-6 ? 8 : 1;
         }
     for (std::size_t i = 0; i < candidates.size(); ++i)
         if (candidates[i].plan.tiled) candidates[i].build_us = 1e6 * median(times[i]);
@@ -115,8 +122,8 @@ template <Isa isa>
 lightbin::Advice ask(const TiledView& view, const Lights& lights, double cost, bool with_depth) {
     const lightbin::Costs costs = {.evaluation_ns = cost};
     const lightbin::ZBounds bounds = with_depth ? view.bounds() : lightbin::ZBounds{};
-    return *lightbin::advise<lightbin::Options{.index = Index::u16, .isa = isa}>(view.view, lights, costs,
-                                                                                 bounds);
+    return *lightbin::advise<lightbin::Options{.index = Index::u16, .isa = isa}, ThreadClock>(
+        view.view, lights, costs, bounds);
 }
 
 template <Isa isa> void judge(const BenchScene& scene, Report& report) {

@@ -225,7 +225,7 @@ decltype(auto) with_options(const Plan& plan, Visit&& visit) {
 /// lights  as for Binner::bin
 /// bounds  of the view's own tiles; larger tiles' bounds are merged from them. None: no depth test is weighed
 /// base    the options that a plan leaves to you: index, statistics, isa
-/// Clock   as those of <chrono>
+/// Clock   as those of <chrono>: where other work keeps the cores busy, better one of this thread's own time
 template <Options base = Options{}, class Clock = std::chrono::steady_clock, class LightRange>
 Result<Advice> advise(const View& view, const LightRange& lights, const Costs& costs = {},
                       const ZBounds& bounds = {}) {
@@ -242,17 +242,18 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
     grids.emplace_back(view, bounds, whole);
     decltype(detail::weighed_binners<base>(std::make_index_sequence<std::size(detail::weighed)>())) binners;
     const auto build = [&](Plan& plan, const auto& seen) {
-        const detail::WeighedGrid& grid = *std::ranges::find_if(
-            grids, [&](const auto& weighed) { return weighed.view.tile_size() == plan.tile_size; });
+        const detail::WeighedGrid* grid = grids.data();
+        while (grid->view.tile_size() != plan.tile_size)
+            ++grid;
         return with_options<base>(plan, [&]<Options options>() -> Result<LightGrid<Id>> {
             Binner<options>& binner = std::get<Binner<options>>(binners);
             constexpr bool with_depth = options.depth_test != DepthTest::none;
             const auto start = Clock::now();
             const Result<LightGrid<Id>> built = [&] {
                 if constexpr (with_depth)
-                    return binner.bin(grid.view, seen, grid.bounds);
+                    return binner.bin(grid->view, seen, grid->bounds);
                 else
-                    return binner.bin(grid.view, seen);
+                    return binner.bin(grid->view, seen);
             }();
             const std::chrono::duration<double, std::nano> time = Clock::now() - start;
             if (!built) return built;
