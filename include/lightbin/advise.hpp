@@ -219,7 +219,8 @@ decltype(auto) with_options(const Plan& plan, Visit&& visit) {
 /// Ask once a scene, not once a frame, and in the program as it is shipped, that is, optimised. Each grid is built 3
 /// to 9 times, by turns and on this thread: once as it is, to count its entries and evaluations, then with the lights a
 /// little to one side or the other, as a scene that is repeated is built faster than frames are. The shortest time
-/// counts. That takes as long as some tens of builds of the view's tiles without options, at worst some hundreds.
+/// counts. That takes as long as some hundreds of builds of the view's tiles without options, where those are short a
+/// thousand.
 /// Allocates; keeps nothing.
 ///
 /// lights  as for Binner::bin
