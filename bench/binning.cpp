@@ -7,7 +7,6 @@
 #include "glb_scenes.hpp"
 #include "goals.hpp"
 #include "measure.hpp"
-#include "names.hpp"
 #include "reference.hpp"
 
 #include <lightbin/binner.hpp>
@@ -30,7 +29,7 @@ namespace {
 
 using lightbin::DepthTest;
 using lightbin::Footprint;
-using lightbin::Index;
+using lightbin::IdWidth;
 using lightbin::Isa;
 using lightbin::Options;
 
@@ -97,9 +96,9 @@ void verify(const FlatView& view, const Lights& lights, const Grid& grid, const 
                -double(lights[id].z) - double(lights[id].w) <= view.near_depth;
     };
     std::size_t missing = 0, extra = 0, common = 0;
-    for (std::size_t tile = 0; tile < grid.tiles().size(); ++tile) {
+    for (std::size_t tile = 0; tile < grid.ranges().size(); ++tile) {
         const int x = int(tile) % view.tiles_x, y = int(tile) / view.tiles_x;
-        const auto ours = grid.indices().subspan(grid.tiles()[tile].offset, grid.tiles()[tile].count);
+        const auto ours = grid.ids().subspan(grid.ranges()[tile].offset, grid.ranges()[tile].count);
         auto next = ours.begin();
         for (std::uint32_t i = flat.offsets[tile]; i < flat.offsets[tile + 1]; ++i) {
             const std::uint32_t id = flat.indices[i];
@@ -175,7 +174,6 @@ template <class Bin> Gains measure_gains(const lightbin::Parallel& parallel, Bin
 /// together where one is too short for the clock. Whether ours comes first alternates, as the second finds the lights in
 /// the cache.
 template <Options options> void build(benchmark::State& state, const Case& which) {
-    constexpr bool with_depth = options.depth_test != DepthTest::none;
     constexpr bool twin = options.depth_test == DepthTest::interval;  // the baseline has this depth test too
     const std::vector<Frame>& frames = frames_of(which);
     const MadeBounds made(which.tile_size);
@@ -202,10 +200,8 @@ template <Options options> void build(benchmark::State& state, const Case& which
     const lightbin::Parallel parallel =
         which.threads > 1 ? lightbin::Parallel(std::size_t(which.threads), loop) : lightbin::Parallel();
     const auto bin = [&](const lightbin::Parallel& threads, std::size_t frame) {
-        if constexpr (with_depth)
-            return *binner.bin(views[seen[frame].view], seen[frame].lights, made.bounds, threads);
-        else
-            return *binner.bin(views[seen[frame].view], seen[frame].lights, threads);
+        return *binner.bin(views[seen[frame].view], seen[frame].lights,
+                           lightbin::inputs_for<options>(made.bounds), threads);
     };
     const auto bin_flat = [&](std::size_t frame) {
         flat.build<twin>(flat_views[seen[frame].view], seen[frame].lights, made.min.data(), made.max.data());
@@ -213,7 +209,7 @@ template <Options options> void build(benchmark::State& state, const Case& which
     verify(flat_views[0], frames[0].lights, bin(parallel, 0), options, made.bounds);
 
     std::vector<double> ours, theirs, stores, clears, ratios;
-    std::vector<char> list, table(sizeof(lightbin::Tile) * views[0].tile_count());
+    std::vector<char> list, table(sizeof(lightbin::ListRange) * views[0].tile_count());
     double entries = 0, spent = 0;
     std::size_t turn = 0;
     const std::size_t n = which.lights,
@@ -227,9 +223,8 @@ template <Options options> void build(benchmark::State& state, const Case& which
                     work((first + i) % frames.size());
             };
             const auto time_ours = [&] {
-                ours.push_back(seconds([&] {
-                    each([&](std::size_t frame) { written += bin(parallel, frame).indices().size(); });
-                }));
+                ours.push_back(seconds(
+                    [&] { each([&](std::size_t frame) { written += bin(parallel, frame).ids().size(); }); }));
             };
             if (turn % 2 == 0) time_ours();
             theirs.push_back(seconds([&] { each(bin_flat); }));
@@ -254,9 +249,9 @@ template <Options options> void build(benchmark::State& state, const Case& which
     Result result = {.set = which.set,
                      .lights = n,
                      .tile_size = which.tile_size,
-                     .footprint = name_of(options.footprint),
-                     .depth_test = name_of(options.depth_test),
-                     .tier = name_of(options.isa),
+                     .footprint = to_string(options.footprint),
+                     .depth_test = to_string(options.depth_test),
+                     .tier = to_string(options.isa),
                      .threads = which.threads,
                      .ns_per_light = ns / lights,
                      .ns_per_entry = ns / std::max(entries, 1.0),
@@ -268,7 +263,7 @@ template <Options options> void build(benchmark::State& state, const Case& which
                      .gains = {}};
     if (which.threads > 1)
         result.gains = measure_gains(parallel, [&](const lightbin::Parallel& threads, std::size_t frame) {
-            return bin(threads, frame % frames.size()).indices().size_bytes();
+            return bin(threads, frame % frames.size()).ids().size_bytes();
         });
     results.push_back(result);
 }
@@ -284,7 +279,7 @@ public:
             "percentile of the turns' ratios; entries: a light; x store: to writing the index list once, "
             "with as\n"
             "many threads\n\n",
-            name_of(lightbin::detail::machine_isa(Options{}.isa)));
+            to_string(lightbin::machine_isa()));
         std::printf("%-16s%8s%4s %-11s%-10s%-7s%2s%10s%10s%8s%8s%9s%9s\n", "set", "n", "px", "footprint",
                     "depth", "tier", "th", "ns/light", "ns/entry", "ratio", "spread", "entries", "x store");
         return true;
@@ -300,10 +295,10 @@ public:
 };
 
 template <Options options> void add(const Case& which) {
-    if (lightbin::detail::machine_isa(options.isa) != options.isa) return;  // not on this machine
+    if (lightbin::machine_isa(options.isa) != options.isa) return;  // not on this machine
     const std::string label = which.set + "/" + std::to_string(which.lights) + "/" +
-                              std::to_string(which.tile_size) + "px/" + name_of(options.footprint) + "/" +
-                              name_of(options.depth_test) + "/" + name_of(options.isa) + "/" +
+                              std::to_string(which.tile_size) + "px/" + to_string(options.footprint) + "/" +
+                              to_string(options.depth_test) + "/" + to_string(options.isa) + "/" +
                               std::to_string(which.threads);
     benchmark::RegisterBenchmark(label.c_str(), build<options>, which)->Iterations(1)->UseManualTime();
 }
@@ -314,9 +309,9 @@ constexpr Options with(Options options, Isa isa) {
 }
 
 template <DepthTest depth_test = DepthTest::none, Footprint footprint = Footprint::rectangle,
-          Index index = Index::u32>
+          IdWidth ids = IdWidth::u32>
 void add_tiers(const Case& which) {
-    constexpr Options options = {.index = index, .footprint = footprint, .depth_test = depth_test};
+    constexpr Options options = {.ids = ids, .footprint = footprint, .depth_test = depth_test};
     add<with(options, Isa::scalar)>(which);
 #if defined(LIGHTBIN_X86)
     add<with(options, Isa::sse2)>(which);
@@ -370,7 +365,7 @@ void add_set(const std::string& set, float median, double footprint, bool quick)
             if (in_goals && often && (median == field20_median || (n == 4096 && tile == 32)))
                 add_rungs(which);
             if (tile == 32 && n == 10000)
-                add_tiers<DepthTest::none, Footprint::rectangle, Index::u16>(
+                add_tiers<DepthTest::none, Footprint::rectangle, IdWidth::u16>(
                     {set + "-u16", n, tile, which.frames});
             if (tile == 32 && (n == 256 || n >= 10000)) add_threads(which);
         }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/platform.hpp>
+#include <lightbin/isa.hpp>
 #include <lightbin/light_grid.hpp>
 
 #include <cstdint>
@@ -24,14 +24,37 @@ enum class DepthTest : std::uint8_t {
     split_box,  ///< the same with two boxes, before and behind the tile's gap (see ZBounds)
 };
 
+constexpr const char* to_string(Footprint footprint) {
+    switch (footprint) {
+    case Footprint::rectangle:
+        return "rectangle";
+    case Footprint::silhouette:
+        return "silhouette";
+    }
+    return "?";
+}
+
+constexpr const char* to_string(DepthTest test) {
+    switch (test) {
+    case DepthTest::none:
+        return "none";
+    case DepthTest::interval:
+        return "interval";
+    case DepthTest::box:
+        return "box";
+    case DepthTest::split_box:
+        return "split_box";
+    }
+    return "?";
+}
+
 /// What a Binner does.
 struct Options {
-    Index index = Index::u32;
+    IdWidth ids = IdWidth::u32;  ///< u16 or u32
     Footprint footprint = Footprint::rectangle;
     DepthTest depth_test = DepthTest::none;
-    bool statistics = false;  ///< keep Statistics; costs a pass over the tiles
     /// Use no wider instructions than these, even where the machine has them. The result is the same.
-    Isa isa = detail::compiled_isa;
+    Isa isa = compiled_isa;
 };
 
 }  // namespace lightbin

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 
 #include <lightbin/detail/warnings_off.inl>
 
@@ -31,6 +32,26 @@ enum class WindowOrigin : std::uint8_t {
     upper_left,  ///< Direct3D, Metal, WebGPU
 };
 
+constexpr const char* to_string(ClipDepth depth) {
+    switch (depth) {
+    case ClipDepth::minus_one_to_one:
+        return "minus_one_to_one";
+    case ClipDepth::zero_to_one:
+        return "zero_to_one";
+    }
+    return "?";
+}
+
+constexpr const char* to_string(WindowOrigin origin) {
+    switch (origin) {
+    case WindowOrigin::lower_left:
+        return "lower_left";
+    case WindowOrigin::upper_left:
+        return "upper_left";
+    }
+    return "?";
+}
+
 /// Width and height in pixels.
 struct Extent {
     int width = 0;
@@ -48,6 +69,24 @@ struct ViewOptions {
 struct DepthInterval {
     float min, max;
 };
+
+/// A point of view space, the space that the projection matrix takes.
+struct ViewPoint {
+    double x, y, z;
+};
+
+/// The same point as the image has it: pixels from the corner of the window origin, and view depth. Pixel
+/// (i, j) reaches from (i, j) to (i + 1, j + 1), and its centre is (i + 0.5, j + 0.5).
+struct ImagePoint {
+    double x, y, depth;
+};
+
+/// A tile's column and row.
+struct TilePosition {
+    int x, y;
+};
+
+class View;
 
 namespace detail {
 
@@ -79,6 +118,9 @@ struct Camera {
     float near_fast = 0;   ///< spheres beyond it are projected in float: near_depth, but at least 2^-40
     bool orthographic = false;
 };
+
+/// The constants of a view in the form that the stages read.
+const Camera& camera_of(const View& view);
 
 }  // namespace detail
 
@@ -142,10 +184,35 @@ public:
         return static_cast<float>(clip_depth_ == ClipDepth::zero_to_one ? ndc : 0.5 * (ndc + 1));
     }
 
-    /// The constants in the form the projection stage reads.
-    const detail::Camera& camera() const { return camera_; }
+    /// Returns where in the image a point of view space lies, in the viewport or outside of it, up to the
+    /// rounding of doubles. A perspective image has no place for what is not in front of the eye: depth is 0 or
+    /// less then, and x and y are without meaning.
+    ImagePoint image_point(const ViewPoint& point) const {
+        const double depth = static_cast<double>(camera_.z_sign) * point.z,
+                     distance = camera_.orthographic ? 1 : depth;
+        return {pixels(camera_.x, point.x / distance), pixels(camera_.y, point.y / distance), depth};
+    }
+
+    /// Returns the point of view space that the image has at a place and view depth: the inverse of
+    /// image_point(). The viewport must not be empty.
+    ViewPoint view_point(const ImagePoint& point) const {
+        const double distance = camera_.orthographic ? 1 : point.depth;
+        return {slope(camera_.x, point.x) * distance, slope(camera_.y, point.y) * distance,
+                static_cast<double>(camera_.z_sign) * point.depth};
+    }
+
+    /// Returns the tile of a place in the image, for LightGrid::lights_in(). None where that lies outside of the
+    /// viewport, or not in front of a perspective view's eye.
+    std::optional<TilePosition> tile_at(const ImagePoint& point) const {
+        const bool inside =
+            point.x >= 0 && point.x < viewport_.width && point.y >= 0 && point.y < viewport_.height;
+        if (!inside || !(camera_.orthographic || point.depth > 0)) return std::nullopt;
+        return TilePosition{static_cast<int>(point.x) / tile_size_, static_cast<int>(point.y) / tile_size_};
+    }
 
 private:
+    friend const detail::Camera& detail::camera_of(const View& view);
+
     View() = default;  // from_projection() alone makes one
 
     static Result<View> from_rows(const double (&m)[4][4], Extent viewport, const ViewOptions& options) {
@@ -227,6 +294,14 @@ private:
         return axis.scale >= 0x1p-80 && axis.scale <= 0x1p80 && std::fabs(axis.offset) <= 0x1p80;
     }
 
+    /// The pixel coordinate of a slope (orthographic: of a view-space coordinate), and back.
+    double pixels(const detail::ImageAxis& axis, double slope) const {
+        return tile_size_ * (axis.scale * static_cast<double>(axis.sign) * slope + axis.offset);
+    }
+    double slope(const detail::ImageAxis& axis, double pixels) const {
+        return static_cast<double>(axis.sign) * (pixels / tile_size_ - axis.offset) / axis.scale;
+    }
+
     bool set_depth_range() {
         const DepthInterval range = view_depths(0, 1);
         camera_.near_depth = range.min;
@@ -268,6 +343,10 @@ private:
     bool reversed_ = false;
     double z_scale_ = 0, z_offset_ = 0, w_scale_ = 0, w_offset_ = 0;
 };
+
+inline const detail::Camera& detail::camera_of(const View& view) {
+    return view.camera_;
+}
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR
 
