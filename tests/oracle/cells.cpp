@@ -44,7 +44,7 @@ void examine_silhouettes(const Camera& camera, Tally& tally, std::uint64_t& seed
     lightbin::Binner<> rectangles;
     lightbin::Binner<lightbin::Options{.footprint = lightbin::Footprint::silhouette}> binner;
     const std::size_t tiles = view.tile_count();
-    const Examiner::Cell range(oracle.range());
+    const Examiner::Cell range(examiner);
     for (const SphereSet& set : sphere_sets()) {
         const std::size_t count = std::clamp<std::size_t>(40000 / tiles, 8, 300);
         const std::vector<Light> lights = make(set, camera, count, ++seed);
@@ -90,12 +90,11 @@ void examine_silhouettes(const Camera& camera, Tally& tally, std::uint64_t& seed
 }
 
 /// What a tile has to light: one run of depths, or with split_box one on each side of its gap.
-std::vector<Examiner::Cell> cells_of(const Oracle& oracle, std::optional<float> min, std::optional<float> max,
-                                     float gap_min, float gap_max, bool split) {
-    if (!split || !(gap_min < gap_max)) return {Examiner::Cell(oracle.depths(min, max))};
-    if (min && max && *min > *max) return {};
-    return {Examiner::Cell(oracle.depths(min, std::min(gap_min, max.value_or(gap_min)))),
-            Examiner::Cell(oracle.depths(std::max(gap_max, min.value_or(gap_max)), max))};
+std::vector<Examiner::Cell> cells_of(const Examiner& examiner, float min, float max, float gap_min, float gap_max,
+                                     bool split) {
+    if (!split || !(gap_min < gap_max)) return {{examiner, min, max}};
+    if (min > max) return {};
+    return {{examiner, min, std::min(gap_min, max)}, {examiner, std::max(gap_max, min), max}};
 }
 
 /// Every pair that a Binner of these options lists or, of those that rectangles give, does not list.
@@ -143,7 +142,8 @@ void examine_depth_test(const Camera& camera, Tally& tally, std::uint64_t& seed)
                 if (sides & 1) min = bounds.min[tile];
                 if (sides & 2) max = bounds.max[tile];
                 const std::vector<Examiner::Cell> cells =
-                    cells_of(oracle, min, max, bounds.gap_min[tile], bounds.gap_max[tile], split);
+                    cells_of(examiner, min.value_or(-INFINITY), max.value_or(INFINITY), bounds.gap_min[tile],
+                             bounds.gap_max[tile], split);
                 const auto finite = [](std::optional<float> bound) {
                     return bound && std::isfinite(*bound) ? std::optional(exact(*bound)) : std::nullopt;
                 };
@@ -161,9 +161,7 @@ void examine_depth_test(const Camera& camera, Tally& tally, std::uint64_t& seed)
                                            (max && std::isinf(*max) && *max < 0);
                         bool fits = examiner.depths_within(subjects[i], flat, least, most);
                         if (boxes && fits)
-                            fits = std::any_of(cells.begin(), cells.end(), [&](const Examiner::Cell& cell) {
-                                return examiner.box_meets(subjects[i], x, y, cell);
-                            });
+                            fits = examiner.box_meets(subjects[i], x, y, cells);
                         // In float the depth interval of a light may reach infinity, and then meets a bound
                         // that lies there; boxes end at FLT_MAX.
                         const float end = std::abs(lights[i].z) + lights[i].w;

@@ -57,7 +57,6 @@ Pairs count_pairs(const std::vector<Light>& lights, int tile, bool interval) {
 
     // A ground plane seen from 10 above it, tiles above the horizon full of sky from 150 to 400.
     std::vector<float> min, max;
-    std::vector<Depths> depths;
     for (int y = 0; y < ny; ++y)
         for (int x = 0; x < nx; ++x) {
             const double t = std::tan(std::acos(-1.0) / 6), low = (1 - 2.0 * y * tile / 1080) * t,
@@ -65,7 +64,6 @@ Pairs count_pairs(const std::vector<Light>& lights, int tile, bool interval) {
             const bool ground = high > 10.0 / 150;
             min.push_back(ground ? static_cast<float>(10 / low) : 150.0f);
             max.push_back(ground ? static_cast<float>(10 / high) : 400.0f);
-            depths.push_back(interval ? oracle.depths(min.back(), max.back()) : oracle.range());
         }
 
     Pairs pairs;
@@ -77,19 +75,22 @@ Pairs count_pairs(const std::vector<Light>& lights, int tile, bool interval) {
         lightbin::Binner<> binner;
         pairs.emitted = static_cast<double>(binner.bin(view, lights)->ids().size());
     }
+    const Examiner::Cell range(examiner);
     for (const Light& light : lights) {
         const auto s = examiner.subject(light);
         const Rational lowest = s.seen.depth - s.seen.radius, highest = s.seen.depth + s.seen.radius;
         const auto [x0, x1] =
-            met_range(nx, [&](int x) { return examiner.meets_columns(s, x, x + 1, oracle.range()); });
+            met_range(nx, [&](int x) { return examiner.meets_columns(s, x, x + 1); });
         const auto [y0, y1] =
-            met_range(ny, [&](int y) { return examiner.meets_rows(s, y, y + 1, oracle.range()); });
+            met_range(ny, [&](int y) { return examiner.meets_rows(s, y, y + 1); });
         for (int y = y0; y < y1; ++y)
             for (int x = x0; x < x1; ++x) {
-                const Depths& bounds = depths[static_cast<std::size_t>(y * nx + x)];
-                if (highest < *bounds.min || (bounds.max && lowest > *bounds.max)) continue;
+                const std::size_t at = static_cast<std::size_t>(y * nx + x);
+                const Examiner::Cell cell = interval ? Examiner::Cell(examiner, min[at], max[at]) : range;
+                const Depths& depths = cell.depths();
+                if (highest < *depths.min || (depths.max && lowest > *depths.max)) continue;
                 ++pairs.rectangle;
-                pairs.exact += examiner.meets_tile(s, x, y, Examiner::Cell(bounds));
+                pairs.exact += examiner.meets_tile(s, x, y, cell);
             }
     }
     return pairs;

@@ -31,8 +31,8 @@ struct FlatDepths {
     double min = 0, max = 0;
 
     explicit FlatDepths(const Depths& depths)
-        : min(depths.min->convert_to<double>()),
-          max(depths.max ? depths.max->convert_to<double>() : std::numeric_limits<double>::infinity()) {}
+        : min(nearly(*depths.min)),
+          max(depths.max ? nearly(*depths.max) : std::numeric_limits<double>::infinity()) {}
     FlatDepths(double low, double high) : min(low), max(high) {}
     FlatDepths() = default;
 
@@ -51,6 +51,14 @@ public:
         : oracle_(exact), columns_(static_cast<std::size_t>(exact.tiles_x()) + 1),
           rows_(static_cast<std::size_t>(exact.tiles_y()) + 1) {}
 
+    /// True: the ball does not meet the wedge of whole columns [x0, x1) between these depths. False: unknown.
+    bool apart_from_columns(int x0, int x1, const FlatDepths& depths, const FlatBall& ball) {
+        return apart_from_wedge(0, {column(x0), column(x1)}, depths, ball);
+    }
+    bool apart_from_rows(int y0, int y1, const FlatDepths& depths, const FlatBall& ball) {
+        return apart_from_wedge(1, {row(y0), row(y1)}, depths, ball);
+    }
+
     /// True: the ball does not meet the block of tiles [x0, x1) x [y0, y1) between these depths. False: unknown.
     bool apart(int x0, int x1, int y0, int y1, const FlatDepths& depths, const FlatBall& ball) {
         if (separates({0, 0, ball.depth < depths.min ? 1.0 : -1.0}, {}, depths, ball)) return true;
@@ -65,6 +73,16 @@ public:
     double cell_distance2(int x, int y, const FlatDepths& depths, const FlatBall& ball) {
         double at = 0;
         return nearest({{{column(x), column(x + 1)}, {row(y), row(y + 1)}}}, depths, ball, at);
+    }
+
+    /// The same from the wedge of a whole column or row of tiles.
+    double column_distance2(int x, const FlatDepths& depths, const FlatBall& ball) {
+        double at = 0;
+        return nearest({{{column(x), column(x + 1)}, {nowhere(-1), nowhere(1)}}}, depths, ball, at);
+    }
+    double row_distance2(int y, const FlatDepths& depths, const FlatBall& ball) {
+        double at = 0;
+        return nearest({{{nowhere(-1), nowhere(1)}, {row(y), row(y + 1)}}}, depths, ball, at);
     }
 
     /// The squared distance of the ball's centre from the box around a tile's cell, give or take 2^-48 of the
@@ -95,6 +113,11 @@ private:
         double x, y, z;
     };
 
+    /// The end of an axis that bounds nothing.
+    static FlatLine nowhere(int direction) {
+        return {direction * std::numeric_limits<double>::infinity(), 0, true};
+    }
+
     const FlatLine& column(int x) { return line(columns_, x, true); }
     const FlatLine& row(int y) { return line(rows_, y, false); }
     const FlatLine& line(std::vector<FlatLine>& lines, int edge, bool across) {
@@ -102,7 +125,7 @@ private:
         if (!flat.known) {
             const Line exact = across ? oracle_.column_slab(oracle_.columns(edge, edge)).low
                                       : oracle_.row_slab(oracle_.rows(edge, edge)).low;
-            flat = {exact.offset.convert_to<double>(), exact.slope.convert_to<double>(), true};
+            flat = {nearly(exact.offset), nearly(exact.slope), true};
         }
         return flat;
     }
@@ -133,6 +156,17 @@ private:
         const double length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
         const double gap = along - centre;
         return gap > 0x1p-800 && gap - 0x1p-47 * sizes > c.radius * length * (1 + 0x1p-47);
+    }
+
+    /// The lines of the other axis count for nothing, as the direction has no part along it.
+    static bool apart_from_wedge(std::size_t axis, const FlatLine (&lines)[2], const FlatDepths& depths,
+                                 const FlatBall& ball) {
+        if (separates({0, 0, ball.depth < depths.min ? 1.0 : -1.0}, {}, depths, ball)) return true;
+        Cell cell = {};
+        cell.side[axis][0] = lines[0], cell.side[axis][1] = lines[1];
+        for (const double towards : {1.0, -1.0})
+            if (separates(of_planes(static_cast<int>(axis), towards, cell), cell, depths, ball)) return true;
+        return false;
     }
 
     static double clamped(double v, double low, double high) { return v < low ? low : v > high ? high : v; }

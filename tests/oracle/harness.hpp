@@ -102,6 +102,7 @@ public:
             columns_.push_back(oracle.column_slab(oracle.columns(x, x + 1)));
         for (int y = 0; y < oracle.tiles_y(); ++y)
             rows_.push_back(oracle.row_slab(oracle.rows(y, y + 1)));
+        range_ = FlatDepths(oracle.range());
         // The image-plane margin that rounding explains, in pixels. The library states 16 u (|O| + tiles)
         // tiles, u = 2^-24, for its error and adds as much: twice that.
         const auto margin = [&](const Rational& offset, int tiles) {
@@ -109,6 +110,22 @@ public:
         };
         grow_x_ = margin(oracle.offset_x(), oracle.tiles_x());
         grow_y_ = margin(oracle.offset_y(), oracle.tiles_y());
+        const auto grown = [](const Edges& edges, const Rational& grow) {
+            return Edges{edges.low - grow, edges.high + grow};
+        };
+        for (int x = 0; x < oracle.tiles_x(); ++x)
+            grown_columns_.push_back(oracle.column_slab(grown(oracle.columns(x, x + 1), grow_x_)));
+        for (int y = 0; y < oracle.tiles_y(); ++y)
+            grown_rows_.push_back(oracle.row_slab(grown(oracle.rows(y, y + 1), grow_y_)));
+        // A perspective sphere is cut at the near plane, held as a float, and not at the far plane; an orthographic one
+        // is not cut.
+        if (!oracle.orthographic()) beyond_near_.at_least(*oracle.range().min * (1 - Rational(1) / (1 << 22)));
+        const auto add_slack = [](std::vector<Rational>& slacks, const std::vector<Slab>& slabs, const Rational& offset) {
+            for (const Slab& slab : slabs)
+                slacks.push_back(slack(slab, offset, static_cast<int>(slabs.size())));
+        };
+        add_slack(column_slacks_, columns_, oracle.offset_x());
+        add_slack(row_slacks_, rows_, oracle.offset_y());
     }
 
     /// The ball of a light in both of the oracle's forms.
@@ -118,41 +135,62 @@ public:
         FlatBall flat;
     };
     Subject subject(const Light& light) const {
-        const Ball ball = exact_ball(light.x, light.y, light.z, light.w);
+        return subject(exact_ball(light.x, light.y, light.z, light.w));
+    }
+    Subject subject(const Ball& ball) const {
         const CameraBall seen = oracle.in_camera(ball);
-        const auto flat = [](const Rational& v) { return v.convert_to<double>(); };
-        return {ball, seen, {flat(seen.x), flat(seen.y), flat(seen.depth), static_cast<double>(light.w)}};
+        return {ball, seen, {nearly(seen.x), nearly(seen.y), nearly(seen.depth), ball.all ? INFINITY : nearly(ball.radius)}};
     }
 
-    /// A run of depths in both forms.
-    struct Cell {
-        explicit Cell(const Depths& exact) : depths(exact), flat(exact) {}
-        Depths depths;
+    /// The depths of a tile between two bounds, infinite where there is none, and within near and far. In rationals once
+    /// double precision leaves a question open.
+    class Cell {
+    public:
+        Cell(const Examiner& examiner, float min = -INFINITY, float max = INFINITY)
+            : flat{std::max(static_cast<double>(min), examiner.range_.min),
+                   std::min(static_cast<double>(max), examiner.range_.max)},
+              empty(min == INFINITY || max == -INFINITY), oracle_(&examiner.oracle), min_(min), max_(max) {}
         FlatDepths flat;
+        bool empty;
+
+        const Depths& depths() const {
+            if (!depths_) depths_ = oracle_->depths(min_, max_);
+            return *depths_;
+        }
+
+    private:
+        const Oracle* oracle_;
+        float min_, max_;
+        mutable std::optional<Depths> depths_;
     };
 
-    /// Exact, in three dimensions: does the light meet the block of tiles [x0, x1) x [y0, y1)?
-    bool meets_block(const Subject& s, int x0, int x1, int y0, int y1, const Depths& depths) {
+    /// In three dimensions: does the light meet the block of tiles [x0, x1) x [y0, y1)? In every 97th case decided exactly,
+    /// by both deciders.
+    bool meets_block(const Subject& s, int x0, int x1, int y0, int y1) {
+        const bool both = ++asked_ % 97 == 0;
+        if (!both && filter_.apart(x0, x1, y0, y1, range_, s.flat)) return false;
+        const Depths& depths = oracle.range();
         const Edges columns = oracle.columns(x0, x1), rows = oracle.rows(y0, y1);
         const bool verdict = meets({{oracle.column_slab(columns)}, {oracle.row_slab(rows)}}, depths, s.seen);
-        if (++asked_ % 97 == 0) {
+        if (both) {
             ++tally.twice;
             REQUIRE(verdict == meets(oracle.half_spaces(columns, rows, depths), s.ball));
         }
         return verdict;
     }
     bool meets_tile(const Subject& s, int x, int y, const Cell& cell) {
-        const Depths& depths = cell.depths;
-        if (depths.empty || filter_.apart(x, x + 1, y, y + 1, cell.flat, s.flat)) return false;
-        return meets({columns_[static_cast<std::size_t>(x)], rows_[static_cast<std::size_t>(y)]}, depths,
+        if (cell.empty || filter_.apart(x, x + 1, y, y + 1, cell.flat, s.flat)) return false;
+        return meets({columns_[static_cast<std::size_t>(x)], rows_[static_cast<std::size_t>(y)]}, cell.depths(),
                      s.seen);
     }
     /// What a rectangle tests, one image axis at a time: the wedge of whole columns (rows) of tiles.
-    bool meets_columns(const Subject& s, int x0, int x1, const Depths& depths) const {
-        return x0 < x1 && meets({oracle.column_slab(oracle.columns(x0, x1)), {}}, depths, s.seen);
+    bool meets_columns(const Subject& s, int x0, int x1) {
+        if (x0 >= x1 || filter_.apart_from_columns(x0, x1, range_, s.flat)) return false;
+        return meets({oracle.column_slab(oracle.columns(x0, x1)), {}}, oracle.range(), s.seen);
     }
-    bool meets_rows(const Subject& s, int y0, int y1, const Depths& depths) const {
-        return y0 < y1 && meets({{}, oracle.row_slab(oracle.rows(y0, y1))}, depths, s.seen);
+    bool meets_rows(const Subject& s, int y0, int y1) {
+        if (y0 >= y1 || filter_.apart_from_rows(y0, y1, range_, s.flat)) return false;
+        return meets({{}, oracle.row_slab(oracle.rows(y0, y1))}, oracle.range(), s.seen);
     }
 
     /// A light without Z bounds: no tile outside `emitted` may be met, and the rectangle must be the method's
@@ -167,19 +205,18 @@ public:
             return;
         }
         const Subject s = subject(light);
-        const Depths& range = oracle.range();
         const int nx = oracle.tiles_x(), ny = oracle.tiles_y();
         CHECK(e.rectangle());
 
         const auto ask = [&](int x0, int x1, int y0, int y1) {
             if (x0 >= x1 || y0 >= y1) return;
             ++tally.verdicts;
-            if (meets_block(s, x0, x1, y0, y1, range))
+            if (meets_block(s, x0, x1, y0, y1))
                 tally.report(tally.misses, "MISS", oracle.camera(), set, id, light, at());
         };
         if (!e.any()) {
             ask(0, nx, 0, ny);
-            if (meets_columns(s, 0, nx, range) && meets_rows(s, 0, ny, range))
+            if (meets_columns(s, 0, nx) && meets_rows(s, 0, ny))
                 tally.report(tally.below, "not emitted", oracle.camera(), set, id, light, at());
             return;
         }
@@ -190,9 +227,9 @@ public:
 
         // From below: a column (row) whose wedge is met belongs to the rectangle, if any row (column) is met
         // at all.
-        const bool wider = meets_columns(s, 0, e.x0, range) || meets_columns(s, e.x1 + 1, nx, range);
-        const bool taller = meets_rows(s, 0, e.y0, range) || meets_rows(s, e.y1 + 1, ny, range);
-        if ((wider && meets_rows(s, 0, ny, range)) || (taller && meets_columns(s, 0, nx, range)))
+        const bool wider = meets_columns(s, 0, e.x0) || meets_columns(s, e.x1 + 1, nx);
+        const bool taller = meets_rows(s, 0, e.y0) || meets_rows(s, e.y1 + 1, ny);
+        if ((wider && meets_rows(s, 0, ny)) || (taller && meets_columns(s, 0, nx)))
             tally.report(tally.below, "rectangle too small", oracle.camera(), set, id, light, at());
 
         // From above: the outermost columns and rows are met, give or take rounding.
@@ -201,25 +238,22 @@ public:
             tally.report(tally.unexplained, "unexplained", oracle.camera(), set, id, light, at());
     }
 
-    bool explained(const Subject& s, const Emitted& e) const {
+    bool explained(const Subject& s, const Emitted& e) {
         if (s.seen.all) return true;
         if (!depths_within(s, oracle.range().min, oracle.range().max)) return false;
-        // A perspective sphere is cut at the near plane, held as a float, and not at the far plane; an
-        // orthographic one is not cut. Where the circle in the near plane is tiny its size is all rounding,
-        // of the radius in double precision.
-        Depths beyond_near;
-        if (!oracle.orthographic()) beyond_near.at_least(*oracle.range().min * (1 - Rational(1) / (1 << 22)));
+        // Where the circle in the near plane is tiny its size is all rounding, of the radius in double precision.
         CameraBall ball = s.seen;
         ball.radius *= 1 + Rational(1) / (std::int64_t{1} << 40);
+        // What double precision gets wrong is nothing beside the margins.
+        const double end = std::abs(s.flat.depth) + s.flat.radius, reach = s.flat.radius * s.flat.radius;
+        const FlatDepths flat = {beyond_near_.min ? range_.min : -2 * end, 2 * end};
         const auto column = [&](int x) {
-            const Edges edges = oracle.columns(x, x + 1);
-            return meets({oracle.column_slab({edges.low - grow_x_, edges.high + grow_x_}), {}}, beyond_near,
-                         ball);
+            return filter_.column_distance2(x, flat, s.flat) <= reach ||
+                   meets({grown_columns_[static_cast<std::size_t>(x)], {}}, beyond_near_, ball);
         };
         const auto row = [&](int y) {
-            const Edges edges = oracle.rows(y, y + 1);
-            return meets({{}, oracle.row_slab({edges.low - grow_y_, edges.high + grow_y_})}, beyond_near,
-                         ball);
+            return filter_.row_distance2(y, flat, s.flat) <= reach ||
+                   meets({{}, grown_rows_[static_cast<std::size_t>(y)]}, beyond_near_, ball);
         };
         return (eye_on_surface(ball.x, ball) || (column(e.x0) && column(e.x1))) &&
                (eye_on_surface(ball.y, ball) || (row(e.y0) && row(e.y1)));
@@ -229,7 +263,7 @@ public:
     bool depths_within(const Subject& s, const std::optional<Rational>& min,
                        const std::optional<Rational>& max) const {
         const auto flat = [](const std::optional<Rational>& bound, double none) {
-            return bound ? bound->convert_to<double>() : none;
+            return bound ? nearly(*bound) : none;
         };
         return depths_within(s, {flat(min, -INFINITY), flat(max, INFINITY)}, min, max);
     }
@@ -251,11 +285,11 @@ public:
         Depths beyond_near;
         if (!oracle.orthographic()) beyond_near.min = oracle.range().min;
         const double end = std::abs(b.depth) + b.radius;
-        const FlatDepths flat = {beyond_near.min ? beyond_near.min->convert_to<double>() : -2 * end, 2 * end};
+        const FlatDepths flat = {beyond_near.min ? range_.min : -2 * end, 2 * end};
         if (filter_.cell_distance2(x, y, flat, b) <= b.radius * b.radius) return true;
 
         const auto larger = [](const Slab& slab) {
-            return std::max(abs(slab.low.slope), abs(slab.high.slope)).convert_to<double>();
+            return nearly(std::max(abs(slab.low.slope), abs(slab.high.slope)));
         };
         CameraBall ball = s.seen;
         Rational grow = grow_x_;
@@ -267,7 +301,7 @@ public:
             const double a = b.y * b.y + (b.depth - b.radius) * (b.depth + b.radius),
                          t = std::sqrt(a + b.x * b.x);
             const Slab& column = columns_.front();
-            const double width = Rational(column.high.slope - column.low.slope).convert_to<double>();
+            const double width = nearly(column.high.slope - column.low.slope);
             const double pixels = (std::abs(b.x) * (std::abs(b.y) * v + b.depth) + t * f) / a / width *
                                   std::min(oracle.camera().tile, oracle.camera().width);
             grow += exact(pixels) / (std::int64_t{1} << 45);
@@ -285,12 +319,17 @@ public:
 
     /// The sphere meets the box around the tile's cell between these depths, give or take the margins that the
     /// library states: 2^-21 of an edge and of a depth, 2^-20 of the squared radius. Twice those are allowed.
-    bool box_meets(const Subject& s, int x, int y, const Cell& cell) {
-        const Depths& depths = cell.depths;
+    /// What double precision gets wrong is nothing beside the margins, so the cells are asked in it first.
+    bool box_meets(const Subject& s, int x, int y, const std::vector<Cell>& cells) {
         if (s.flat.radius > 0x1p63) return true;  // its square is infinite in float
-        if (depths.empty) return false;
-        // What double precision gets wrong is nothing beside the margins.
-        if (filter_.box_distance2(x, y, cell.flat, s.flat) <= s.flat.radius * s.flat.radius) return true;
+        const auto surely = [&](const Cell& cell) {
+            return !cell.empty && filter_.box_distance2(x, y, cell.flat, s.flat) <= s.flat.radius * s.flat.radius;
+        };
+        const auto barely = [&](const Cell& cell) { return !cell.empty && box_meets(s, x, y, cell.depths()); };
+        return std::any_of(cells.begin(), cells.end(), surely) || std::any_of(cells.begin(), cells.end(), barely);
+    }
+
+    bool box_meets(const Subject& s, int x, int y, const Depths& depths) const {
         const auto grown = [](const Rational& end, int direction) {
             return end + direction * (abs(end) / (1 << 20) + exact(0x1p-100));
         };
@@ -309,11 +348,15 @@ public:
                 slack * (oracle.orthographic() ? Rational(1) : std::max(abs(near), abs(far)));
             distance += square(outside(grown(low, -1) - off, grown(high, 1) + off, c));
         };
-        const Slab& column = columns_[static_cast<std::size_t>(x)];
-        const Slab& row = rows_[static_cast<std::size_t>(y)];
-        add(column, s.seen.x, slack(column, oracle.offset_x(), oracle.tiles_x()));
-        add(row, s.seen.y, slack(row, oracle.offset_y(), oracle.tiles_y()));
+        const std::size_t column = static_cast<std::size_t>(x), row = static_cast<std::size_t>(y);
+        add(columns_[column], s.seen.x, column_slacks_[column]);
+        add(rows_[row], s.seen.y, row_slacks_[row]);
         return distance <= square(s.seen.radius) * (1 + Rational(1) / (1 << 18)) + exact(0x1p-124);
+    }
+
+    /// Beyond doubt the ball does not meet the block of tiles within the cell's depths.
+    bool apart(int x0, int x1, int y0, int y1, const Cell& cell, const FlatBall& ball) {
+        return filter_.apart(x0, x1, y0, y1, cell.flat, ball);
     }
 
     Oracle oracle;
@@ -335,7 +378,10 @@ private:
     }
 
     Filter filter_;
-    std::vector<Slab> columns_, rows_;
+    FlatDepths range_;
+    std::vector<Slab> columns_, rows_, grown_columns_, grown_rows_;
+    std::vector<Rational> column_slacks_, row_slacks_;
+    Depths beyond_near_;
     Rational grow_x_, grow_y_;
     std::uint64_t asked_ = 0;
 };

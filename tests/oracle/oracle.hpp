@@ -48,6 +48,15 @@ inline Rational exact(double value) {
     return Rational(value);
 }
 
+/// The value within 2^-52 of itself, if it is in the range of double; a double as it is.
+inline double nearly(const Rational& value) {
+#if defined(ORACLE_WITHOUT_GMP)
+    return value.convert_to<double>();
+#else
+    return mpq_get_d(value.backend().data());  // many times as fast as Boost's, which rounds to nearest
+#endif
+}
+
 inline Rational square(const Rational& v) {
     return v * v;
 }
