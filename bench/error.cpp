@@ -17,7 +17,7 @@
 //                   every rung with a depth test), on rotating light sets; Z bounds not included
 //   reduce_us       what making the Z bounds of one view takes
 #include "arguments.hpp"
-#include "exact.hpp"
+#include "exact_pairs.hpp"
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
 

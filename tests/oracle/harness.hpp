@@ -2,10 +2,10 @@
 // From the library's lists to questions for the oracle, and the count of the answers.
 #pragma once
 
-#include "filter.hpp"
 #include "library_view.hpp"
-#include "oracle.hpp"
 #include "spheres.hpp"
+
+#include "../../bench/exact/filter.hpp"
 
 #include <lightbin/binner.hpp>
 
