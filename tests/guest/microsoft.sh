@@ -7,7 +7,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-clang++-19 --target=x86_64-pc-windows-msvc -fms-compatibility-version=19.38 -fgnuc-version=4.2.1 -std=c++20 -O0 \
+clang++-19 --target=x86_64-pc-windows-msvc -fms-compatibility-version=19.38 -fgnuc-version=4.2.1 -std=c++20 -O1 \
     -D_LIBCPP_NO_VCRUNTIME -nostdinc++ -isystem /usr/lib/llvm-19/include/c++/v1 \
     -isystem /usr/x86_64-w64-mingw32/include -isystem "$1" -include "$here/microsoft.hpp" \
     -I "$here/../../include" -Wall -Wextra -Werror -Wno-error=#warnings -DUNIT=unit \
