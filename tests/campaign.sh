@@ -65,6 +65,15 @@ g++ $common -O2 -pthread tests/unit/tiers.cpp tests/doctest_main.cpp -o $work/ti
 echo "$me: tiers and workers, random cases"
 LIGHTBIN_TEST_SHARE=1 nice -n 19 $work/tiers >$work/tiers.log || failed="$failed $work/tiers.log"
 
+echo "$me: every header alone, and the adversary"
+sh tests/guest/compile.sh g++ alone >$work/headers.log || failed="$failed $work/headers.log"
+for depth_test in none interval box split_box; do
+    g++ $common -O2 -DHUNT_DEPTH_TEST=$depth_test -c tests/hunt/engines.cpp -o $work/hunt_$depth_test.o
+done
+g++ $common -O2 -pthread tests/hunt/main.cpp tests/hunt/round.cpp tests/hunt/scene.cpp tests/hunt/camera.cpp tests/hunt/bounds.cpp \
+    tests/hunt/limits.cpp $work/hunt_*.o -o $work/hunt
+nice -n 19 $work/hunt --seconds 300 --seed 1 >$work/hunt.log || failed="$failed $work/hunt.log"
+
 for compiler in g++ clang++-14 clang++-19; do
     if echo '#include <lightbin/lightbin.hpp>' | "$compiler" $common -ffast-math -x c++ -fsyntax-only - 2>$work/refusal; then
         fail "$compiler -ffast-math is not refused"

@@ -151,7 +151,8 @@ inline std::optional<Vector> nearest_point(const std::vector<HalfSpace>& cell, c
         for (std::size_t j = 0; j <= i; ++j)
             gram[i][j] = gram[j][i] = dot(planes[i]->a, planes[j]->a);
     }
-    // q = p + sum l_i a_i with a_i . q + b_i = 0 for the chosen planes:  gram l = -value
+    // q = p + sum l_i a_i with a_i . q + b_i = 0 for the chosen planes:  gram l = -value.  l . value = -l . gram l < 0, so
+    // with l >= 0 one of the values is negative.
     for (std::size_t i = 0; i < n; ++i) {
         if (value[i] > 0) continue;  // l would be negative
         const Vector q = p + (-value[i] / gram[i][i]) * planes[i]->a;
@@ -160,7 +161,7 @@ inline std::optional<Vector> nearest_point(const std::vector<HalfSpace>& cell, c
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = i + 1; j < n; ++j) {
             const Rational det = gram[i][i] * gram[j][j] - square(gram[i][j]);
-            if (det.is_zero()) continue;
+            if (det.is_zero() || (value[i] >= 0 && value[j] >= 0)) continue;
             const Rational li = gram[i][j] * value[j] - gram[j][j] * value[i];
             const Rational lj = gram[i][j] * value[i] - gram[i][i] * value[j];
             if (li < 0 || lj < 0) continue;  // det > 0 (Cauchy-Schwarz), so the signs are those of l
@@ -171,6 +172,7 @@ inline std::optional<Vector> nearest_point(const std::vector<HalfSpace>& cell, c
         for (std::size_t j = i + 1; j < n; ++j)
             for (std::size_t k = j + 1; k < n; ++k) {
                 const std::size_t s[3] = {i, j, k};
+                if (value[i] >= 0 && value[j] >= 0 && value[k] >= 0) continue;
                 const auto g = [&](int r, int c) -> const Rational& { return gram[s[r]][s[c]]; };
                 const auto minor = [&](int r,
                                        int c) {  // of the symmetric 3x3 Gram matrix, signs by cyclic indices

@@ -1,6 +1,6 @@
 #!/bin/sh
 # left_out.sh COMPILER: what a Binner's options leave out is not in the program. Unoptimised, every function that
-# anything calls has a symbol; optimised, the sizes tell.
+# anything calls has a symbol, and the sizes tell, too.
 set -eu
 compiler=$1
 here=$(cd "$(dirname "$0")" && pwd)
@@ -26,8 +26,6 @@ for function in tiles_met arrange_cells store_box tile_edges find_edges mask_lig
     fi
 done
 
-compile -O2 -o "$work/off.o"
-compile -O2 -DALL_OPTIONS -o "$work/on.o"
 text() { size "$1" | awk 'NR == 2 { print $1 }'; }
 off=$(text "$work/off.o")
 on=$(text "$work/on.o")

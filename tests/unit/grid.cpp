@@ -100,7 +100,8 @@ TEST_CASE("lights straight on are listed where they are, in grids of any shape, 
     for (const int tiles_x : {1, 2, 3, 4, 5, 7, 8, 9, 61})
         for (const int tiles_y : {1, 2, 7, 8, 9, 70, 513, 1040})
             for (const std::size_t count : {0u, 1u, 2u, 15u, 16u, 60u}) {
-                const Plain plain(tiles_x, tiles_y, count, ++seed);
+                if (++seed % test::share_of_cases(1) != 0) continue;
+                const Plain plain(tiles_x, tiles_y, count, seed);
                 check_plain<Isa::scalar>(plain);
                 check_plain<Isa::sse2>(plain);
                 check_plain<Isa::avx2>(plain);

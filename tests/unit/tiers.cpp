@@ -235,7 +235,7 @@ TEST_CASE("more lights than 16 bits count, and more tiles than 8 bits count") {
         Tiers<plain>().compare(input);
         Tiers<box>().compare(input);
     };
-    check({1280, 720}, 40, 150000, 0.05f);
+    check({1280, 720}, 40, 70000, 0.05f);
     check({960, 300}, 4, 1500, 0.2f);  // the widest grid that is scanned on AVX2, and one tile more
     check({964, 300}, 4, 1500, 0.2f);
     check({3000, 300}, 4, 1500, 0.2f);
