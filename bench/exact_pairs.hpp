@@ -53,9 +53,9 @@ public:
         ExactPairs result{std::vector<std::vector<Pair>>(tiles), tiles * lights.size(), 0};
         by_rationals_ = 0;
         for (std::size_t id = 0; id < lights.size(); ++id) {
-            const oracle::FlatBall ball = {static_cast<double>(lights[id].x), static_cast<double>(lights[id].y),
-                                           -static_cast<double>(lights[id].z),
-                                           static_cast<double>(lights[id].w)};
+            const oracle::FlatBall ball = {
+                static_cast<double>(lights[id].x), static_cast<double>(lights[id].y),
+                -static_cast<double>(lights[id].z), static_cast<double>(lights[id].w)};
             const Span across = met(nx, [&](int x) { return meets_column(x, ball); }),
                        up = met(ny, [&](int y) { return meets_row(y, ball); });
             for (int y = up.first; y < up.end; ++y)
@@ -127,21 +127,25 @@ private:
     }
 
     bool meets_column(int x, const Ball& ball) {
-        return settle(filter_.meets_columns(x, x + 1, view_, ball),
-                      [&] { return oracle::meets({column(x), {}}, oracle_.range(), exact(ball)); });
+        return settle(filter_.meets_columns(x, x + 1, view_, ball), [&] {
+            return oracle::meets({column(x), {}}, oracle_.range(), exact(ball));
+        });
     }
     bool meets_row(int y, const Ball& ball) {
-        return settle(filter_.meets_rows(y, y + 1, view_, ball),
-                      [&] { return oracle::meets({{}, row(y)}, oracle_.range(), exact(ball)); });
+        return settle(filter_.meets_rows(y, y + 1, view_, ball), [&] {
+            return oracle::meets({{}, row(y)}, oracle_.range(), exact(ball));
+        });
     }
     /// Whether the ball meets the cell of tile (x, y) in this range.
     bool meets(int x, int y, const Range& range, const Ball& ball) {
-        return settle(filter_.meets(x, x + 1, y, y + 1, range, ball),
-                      [&] { return oracle::meets({column(x), row(y)}, exact(range), exact(ball)); });
+        return settle(filter_.meets(x, x + 1, y, y + 1, range, ball), [&] {
+            return oracle::meets({column(x), row(y)}, exact(range), exact(ball));
+        });
     }
     /// Whether it meets the view-space box around the cell.
     bool meets_box(int x, int y, const Range& range, const Ball& ball) {
-        return settle(filter_.meets_box(x, y, range, ball), [&] { return exactly_meets_box(x, y, range, ball); });
+        return settle(filter_.meets_box(x, y, range, ball),
+                      [&] { return exactly_meets_box(x, y, range, ball); });
     }
 
     /// The answer in double precision, or where there is none, and now and then as a check, the exact one.

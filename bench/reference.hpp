@@ -16,7 +16,8 @@ public:
         : oracle_(camera(lens, tile_size)), filter_(oracle_), pyramid_(oracle_.range()), bounds_(bounds) {}
 
     /// Whether a light whose rectangle has the tile stays in its list.
-    bool passes(lightbin::Footprint footprint, lightbin::DepthTest test, const glm::vec4& light, int x, int y) {
+    bool passes(lightbin::Footprint footprint, lightbin::DepthTest test, const glm::vec4& light, int x,
+                int y) {
         using lightbin::DepthTest;
         const oracle::FlatBall ball = {double(light.x), double(light.y), -double(light.z), double(light.w)};
         const double reach = ball.radius * ball.radius;

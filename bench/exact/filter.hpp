@@ -79,7 +79,8 @@ public:
     }
 
     /// Whether the ball meets the block of tiles [x0, x1) x [y0, y1) between these depths; nothing: unknown.
-    std::optional<bool> meets(int x0, int x1, int y0, int y1, const FlatDepths& depths, const FlatBall& ball) {
+    std::optional<bool> meets(int x0, int x1, int y0, int y1, const FlatDepths& depths,
+                              const FlatBall& ball) {
         if (reaches({{{column(x0), column(x1)}, {row(y0), row(y1)}}}, depths, ball)) return true;
         if (apart(x0, x1, y0, y1, depths, ball)) return false;
         return std::nullopt;
@@ -275,15 +276,16 @@ private:
             const auto size = [&](const FlatLine& line) {
                 return std::abs(line.offset) + std::abs(line.slope * d);
             };
-            distance2 += squared(std::abs(off) +
-                                 0x1p-48 * (std::abs(centre[axis]) + std::max(size(lines[0]), size(lines[1]))));
+            distance2 += squared(std::abs(off) + 0x1p-48 * (std::abs(centre[axis]) +
+                                                            std::max(size(lines[0]), size(lines[1]))));
         }
         const double reach = c.radius * c.radius;
         return reach > 0x1p-800 && distance2 * (1 + 0x1p-48) <= reach;
     }
 
     /// By the direction to the nearest point of `found`, which is `cell` but for an axis that bounds nothing.
-    static bool apart_at_edge(const Cell& found, const Cell& cell, const FlatDepths& depths, const FlatBall& c) {
+    static bool apart_at_edge(const Cell& found, const Cell& cell, const FlatDepths& depths,
+                              const FlatBall& c) {
         const double centre[2] = {c.x, c.y};
         double best_d = 0;
         nearest(found, depths, c, best_d);
