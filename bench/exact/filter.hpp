@@ -2,9 +2,9 @@
 // Whether a ball meets a cell, proven in double precision: the quick answer to most questions. Where it has none,
 // oracle.hpp decides. It is the one decider in double precision: the exact tests and the bench both ask it.
 //
-// They do not meet. A direction n separates a ball from a cell if  n.p > n.c + r |n|  for every point p of the cell. Which n to try
-// is found with ordinary rounding and needs no proof: a bad one only proves nothing. What is proven is the
-// inequality, for the n that came out, as the doubles they are:
+// They do not meet. A direction n separates a ball from a cell if  n.p > n.c + r |n|  for every point p of the cell.
+// Which n to try is found with ordinary rounding and needs no proof: a bad one only proves nothing. What is proven is
+// the inequality, for the n that came out, as the doubles they are:
 // - On a cell low(d) <= x <= high(d), the same in y, d0 <= d <= d1, lines  offset + slope d,  a positive n_x meets
 //   its least product on the low line, a negative one on the high line. So
 //       n.p >= A + B d,  A = n_x offset_x + n_y offset_y,  B = n_x slope_x + n_y slope_y + n_z,
