@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/names.hpp>
 #include <lightbin/detail/sizes.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/result.hpp>
@@ -28,15 +29,7 @@ enum class ListEncoding : std::uint8_t {
 };
 
 constexpr const char* to_string(ListEncoding encoding) {
-    switch (encoding) {
-    case ListEncoding::offset_count:
-        return "offset_count";
-    case ListEncoding::sentinel:
-        return "sentinel";
-    case ListEncoding::bitmask:
-        return "bitmask";
-    }
-    return "?";
+    return detail::name_at(encoding, {"offset_count", "sentinel", "bitmask"});
 }
 
 /// A form of the lists. What encode() writes and what a shader reads must have the same.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/names.hpp>
 #include <lightbin/detail/platform.hpp>
 
 #include <cstdint>
@@ -24,19 +25,7 @@ enum class Isa : std::uint8_t {
 };
 
 constexpr const char* to_string(Isa isa) {
-    switch (isa) {
-    case Isa::scalar:
-        return "scalar";
-    case Isa::sse2:
-        return "sse2";
-    case Isa::avx2:
-        return "avx2";
-    case Isa::avx512:
-        return "avx512";
-    case Isa::neon:
-        return "neon";
-    }
-    return "?";
+    return detail::name_at(isa, {"scalar", "sse2", "avx2", "avx512", "neon"});
 }
 
 /// The widest instruction set that this compiler makes kernels for.

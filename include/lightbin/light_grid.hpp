@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/names.hpp>
 #include <lightbin/result.hpp>
 
 #include <algorithm>
@@ -22,15 +23,7 @@ enum class IdWidth : std::uint8_t {
 };
 
 constexpr const char* to_string(IdWidth width) {
-    switch (width) {
-    case IdWidth::u8:
-        return "u8";
-    case IdWidth::u16:
-        return "u16";
-    case IdWidth::u32:
-        return "u32";
-    }
-    return "?";
+    return detail::name_at(width, {"?", "u8", "u16", "?", "u32"});
 }
 
 /// One tile's part of the light index list: `count` ids from `offset` on. 8 bytes, as a GPU's uvec2.

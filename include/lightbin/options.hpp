@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/names.hpp>
 #include <lightbin/isa.hpp>
 #include <lightbin/light_grid.hpp>
 
@@ -25,27 +26,11 @@ enum class DepthTest : std::uint8_t {
 };
 
 constexpr const char* to_string(Footprint footprint) {
-    switch (footprint) {
-    case Footprint::rectangle:
-        return "rectangle";
-    case Footprint::silhouette:
-        return "silhouette";
-    }
-    return "?";
+    return detail::name_at(footprint, {"rectangle", "silhouette"});
 }
 
 constexpr const char* to_string(DepthTest test) {
-    switch (test) {
-    case DepthTest::none:
-        return "none";
-    case DepthTest::interval:
-        return "interval";
-    case DepthTest::box:
-        return "box";
-    case DepthTest::split_box:
-        return "split_box";
-    }
-    return "?";
+    return detail::name_at(test, {"none", "interval", "box", "split_box"});
 }
 
 /// What a Binner does.

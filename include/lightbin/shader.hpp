@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/names.hpp>
 #include <lightbin/encode.hpp>
 #include <lightbin/shader_text.hpp>
 #include <lightbin/view.hpp>
@@ -26,19 +27,7 @@ enum class ListStorage : std::uint8_t {
 };
 
 constexpr const char* to_string(ListStorage value) {
-    switch (value) {
-    case ListStorage::storage_buffer:
-        return "storage_buffer";
-    case ListStorage::texel_buffer:
-        return "texel_buffer";
-    case ListStorage::texture_2d:
-        return "texture_2d";
-    case ListStorage::uniform_block:
-        return "uniform_block";
-    case ListStorage::byte_address:
-        return "byte_address";
-    }
-    return "?";
+    return detail::name_at(value, {"storage_buffer", "texel_buffer", "texture_2d", "uniform_block", "byte_address"});
 }
 
 struct ShaderOptions {

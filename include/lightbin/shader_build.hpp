@@ -5,6 +5,7 @@
 
 #include <lightbin/detail/cell_boxes.hpp>
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/names.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/project.hpp>
@@ -25,13 +26,7 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR {
 enum class ShaderStage : std::uint8_t { compute, fragment };
 
 constexpr const char* to_string(ShaderStage value) {
-    switch (value) {
-    case ShaderStage::compute:
-        return "compute";
-    case ShaderStage::fragment:
-        return "fragment";
-    }
-    return "?";
+    return detail::name_at(value, {"compute", "fragment"});
 }
 
 /// What reduce_shader() makes.
@@ -83,15 +78,7 @@ enum class BuildPass : std::uint8_t {
 };
 
 constexpr const char* to_string(BuildPass value) {
-    switch (value) {
-    case BuildPass::count:
-        return "count";
-    case BuildPass::offsets:
-        return "offsets";
-    case BuildPass::fill:
-        return "fill";
-    }
-    return "?";
+    return detail::name_at(value, {"count", "offsets", "fill"});
 }
 
 /// What build_shader() makes. All passes take the same but for `pass`.

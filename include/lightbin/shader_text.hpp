@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/names.hpp>
 #include <lightbin/result.hpp>
 
 #include <cctype>
@@ -26,23 +27,7 @@ enum class ShaderLanguage : std::uint8_t {
 };
 
 constexpr const char* to_string(ShaderLanguage value) {
-    switch (value) {
-    case ShaderLanguage::glsl_330:
-        return "glsl_330";
-    case ShaderLanguage::glsl_430:
-        return "glsl_430";
-    case ShaderLanguage::glsl_vulkan:
-        return "glsl_vulkan";
-    case ShaderLanguage::essl_300:
-        return "essl_300";
-    case ShaderLanguage::essl_310:
-        return "essl_310";
-    case ShaderLanguage::hlsl_5_0:
-        return "hlsl_5_0";
-    case ShaderLanguage::hlsl_5_1:
-        return "hlsl_5_1";
-    }
-    return "?";
+    return detail::name_at(value, {"glsl_330", "glsl_430", "glsl_vulkan", "essl_300", "essl_310", "hlsl_5_0", "hlsl_5_1"});
 }
 
 /// What a name in the text is bound to.
@@ -58,46 +43,14 @@ enum class ShaderResource : std::uint8_t {
 };
 
 constexpr const char* to_string(ShaderResource value) {
-    switch (value) {
-    case ShaderResource::uniform_vector:
-        return "uniform_vector";
-    case ShaderResource::uniform_block:
-        return "uniform_block";
-    case ShaderResource::push_constants:
-        return "push_constants";
-    case ShaderResource::storage_buffer:
-        return "storage_buffer";
-    case ShaderResource::byte_address:
-        return "byte_address";
-    case ShaderResource::texel_buffer:
-        return "texel_buffer";
-    case ShaderResource::texture_2d:
-        return "texture_2d";
-    case ShaderResource::writable_buffer:
-        return "writable_buffer";
-    }
-    return "?";
+    return detail::name_at(value, {"uniform_vector", "uniform_block", "push_constants", "storage_buffer", "byte_address", "texel_buffer", "texture_2d", "writable_buffer"});
 }
 
 /// Texel of a texture or buffer texture: GL_R8UI, VK_FORMAT_R8_UINT, DXGI_FORMAT_R8_UINT and so on.
 enum class TexelFormat : std::uint8_t { none, r8ui, r16ui, r32ui, rg32ui, r32f };
 
 constexpr const char* to_string(TexelFormat value) {
-    switch (value) {
-    case TexelFormat::none:
-        return "none";
-    case TexelFormat::r8ui:
-        return "r8ui";
-    case TexelFormat::r16ui:
-        return "r16ui";
-    case TexelFormat::r32ui:
-        return "r32ui";
-    case TexelFormat::rg32ui:
-        return "rg32ui";
-    case TexelFormat::r32f:
-        return "r32f";
-    }
-    return "?";
+    return detail::name_at(value, {"none", "r8ui", "r16ui", "r32ui", "rg32ui", "r32f"});
 }
 
 /// Where a resource is bound. GLSL: binding and set; HLSL: register number and space. OpenGL 3.3 and ES 3.0

@@ -4,6 +4,7 @@
 
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/matrix.hpp>
+#include <lightbin/detail/names.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/result.hpp>
 
@@ -33,23 +34,11 @@ enum class WindowOrigin : std::uint8_t {
 };
 
 constexpr const char* to_string(ClipDepth depth) {
-    switch (depth) {
-    case ClipDepth::minus_one_to_one:
-        return "minus_one_to_one";
-    case ClipDepth::zero_to_one:
-        return "zero_to_one";
-    }
-    return "?";
+    return detail::name_at(depth, {"minus_one_to_one", "zero_to_one"});
 }
 
 constexpr const char* to_string(WindowOrigin origin) {
-    switch (origin) {
-    case WindowOrigin::lower_left:
-        return "lower_left";
-    case WindowOrigin::upper_left:
-        return "upper_left";
-    }
-    return "?";
+    return detail::name_at(origin, {"lower_left", "upper_left"});
 }
 
 /// Width and height in pixels.

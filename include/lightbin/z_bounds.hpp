@@ -4,6 +4,7 @@
 
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/kernels.hpp>
+#include <lightbin/detail/names.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/detail/sizes.hpp>
 #include <lightbin/isa.hpp>
@@ -54,15 +55,7 @@ enum class DepthFormat : std::uint8_t {
 };
 
 constexpr const char* to_string(DepthFormat format) {
-    switch (format) {
-    case DepthFormat::float32:
-        return "float32";
-    case DepthFormat::unorm24:
-        return "unorm24";
-    case DepthFormat::unorm16:
-        return "unorm16";
-    }
-    return "?";
+    return detail::name_at(format, {"float32", "unorm24", "unorm16"});
 }
 
 /// A depth buffer in main memory: window depth in 0..1 (as glReadPixels gives it), the view's viewport only.
