@@ -27,7 +27,8 @@ enum class ListStorage : std::uint8_t {
 };
 
 constexpr const char* to_string(ListStorage value) {
-    return detail::name_at(value, {"storage_buffer", "texel_buffer", "texture_2d", "uniform_block", "byte_address"});
+    return detail::name_at(value,
+                           {"storage_buffer", "texel_buffer", "texture_2d", "uniform_block", "byte_address"});
 }
 
 struct ShaderOptions {

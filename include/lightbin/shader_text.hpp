@@ -27,7 +27,8 @@ enum class ShaderLanguage : std::uint8_t {
 };
 
 constexpr const char* to_string(ShaderLanguage value) {
-    return detail::name_at(value, {"glsl_330", "glsl_430", "glsl_vulkan", "essl_300", "essl_310", "hlsl_5_0", "hlsl_5_1"});
+    return detail::name_at(
+        value, {"glsl_330", "glsl_430", "glsl_vulkan", "essl_300", "essl_310", "hlsl_5_0", "hlsl_5_1"});
 }
 
 /// What a name in the text is bound to.
@@ -43,7 +44,8 @@ enum class ShaderResource : std::uint8_t {
 };
 
 constexpr const char* to_string(ShaderResource value) {
-    return detail::name_at(value, {"uniform_vector", "uniform_block", "push_constants", "storage_buffer", "byte_address", "texel_buffer", "texture_2d", "writable_buffer"});
+    return detail::name_at(value, {"uniform_vector", "uniform_block", "push_constants", "storage_buffer",
+                                   "byte_address", "texel_buffer", "texture_2d", "writable_buffer"});
 }
 
 /// Texel of a texture or buffer texture: GL_R8UI, VK_FORMAT_R8_UINT, DXGI_FORMAT_R8_UINT and so on.
