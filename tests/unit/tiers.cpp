@@ -123,15 +123,13 @@ constexpr Options with(Options options, Isa isa) {
 /// The tiers of this machine, serial and shared among workers, against the serial scalar one.
 template <Options options, Isa... vector_tiers> class TiersOf {
 public:
-    void compare(const Input& input) {
+    void compare(const Input& input, std::size_t workers = 3) {
         const auto expected = std::get<0>(tiers_).bytes(input);
         on_each([&](auto& tier) {
             CHECK((tier.bytes(input) == expected));
-            for (const std::size_t workers : {2u, 3u, 7u}) {
-                // Parts of equal size, or a longer first one.
-                const double start_ns = workers == 3 ? 2000 : 0;
-                CHECK((tier.bytes(input, Parallel(workers, shuffled, start_ns)) == expected));
-            }
+            // With three the start costs something, so that less is shared.
+            const double start_ns = workers == 3 ? 2000 : 0;
+            CHECK((tier.bytes(input, Parallel(workers, shuffled, start_ns)) == expected));
         });
     }
 
@@ -177,7 +175,7 @@ template <Options options> void compare(std::uint32_t seeds, std::uint32_t first
     Tiers<options> tiers;
     const std::uint32_t share = test::share_of_cases(2);  // the campaign runs them all
     for (std::uint32_t seed = first_seed; seed < first_seed + (seeds + share - 1) / share; ++seed)
-        tiers.compare(random_input(seed));
+        tiers.compare(random_input(seed), seed % 3 == 0 ? 2 : seed % 3 == 1 ? 3 : 7);
 }
 
 constexpr Options plain = {}, interval = {.depth_test = DepthTest::interval},
