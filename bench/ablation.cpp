@@ -23,7 +23,7 @@ namespace {
 
 /// What a build gave: the lists' lengths and what an id takes.
 struct Built {
-    std::span<const lightbin::Tile> tiles;
+    std::span<const lightbin::ListRange> tiles;
     std::size_t index_bytes;
 };
 
@@ -48,25 +48,19 @@ auto build_with(Bounds sides, std::shared_ptr<tbb::task_arena> threads = nullptr
             threads == nullptr
                 ? lightbin::Parallel()
                 : lightbin::Parallel(static_cast<std::size_t>(threads->max_concurrency()), loop);
-        const auto grid = [&] {
-            if constexpr (options.depth_test == DepthTest::none) {
-                return *binner->bin(view.view, lights, parallel);
-            } else {
-                lightbin::ZBounds bounds = view.bounds();
-                if (sides == Bounds::max) bounds = {.min = {}, .max = bounds.max};
-                return *binner->bin(view.view, lights, bounds, parallel);
-            }
-        }();
-        return Built{grid.tiles(), grid.indices().size_bytes()};
+        lightbin::ZBounds bounds = view.bounds();
+        if (sides == Bounds::max) bounds = {.min = {}, .max = bounds.max};
+        const auto grid = *binner->bin(view.view, lights, lightbin::inputs_for<options>(bounds), parallel);
+        return Built{grid.ranges(), grid.ids().size_bytes()};
     };
 }
 
 std::vector<Part> parts() {
-    using lightbin::Index, lightbin::Options;
+    using lightbin::IdWidth, lightbin::Options;
     constexpr Options plain, interval = {.depth_test = DepthTest::interval},
                              box = {.depth_test = DepthTest::box},
                              split_box = {.depth_test = DepthTest::split_box},
-                             narrow = {.index = Index::u16, .depth_test = DepthTest::box},
+                             narrow = {.ids = IdWidth::u16, .depth_test = DepthTest::box},
                              outline = {.footprint = Footprint::silhouette},
                              outline_box = {.footprint = Footprint::silhouette, .depth_test = DepthTest::box};
     const auto two = std::make_shared<tbb::task_arena>(2);

@@ -23,7 +23,7 @@
 
 namespace {
 
-using lightbin::Index;
+using lightbin::IdWidth;
 using lightbin::Isa;
 using lightbin::Plan;
 
@@ -35,8 +35,8 @@ std::size_t turns = 15;
 /// A plan and how to build it: returns the grid's tiles.
 struct Candidate {
     Plan plan;
-    Index index;
-    std::function<std::span<const lightbin::Tile>(const TiledView&, const Lights&)> build;
+    IdWidth ids;
+    std::function<std::span<const lightbin::ListRange>(const TiledView&, const Lights&)> build;
     double build_us = 0, evaluations = 0;
 
     double total_us(double evaluation_ns) const { return build_us + evaluations * evaluation_ns * 1e-3; }
@@ -45,20 +45,20 @@ struct Candidate {
 /// Every method, id width and tile size.
 template <Isa isa> std::vector<Candidate> candidates() {
     std::vector<Candidate> all;
-    const auto add = [&]<std::size_t method, Index index> {
-        const auto bin = std::make_shared<Bin<ladder[method], index, isa>>();
+    const auto add = [&]<std::size_t method, IdWidth ids> {
+        const auto bin = std::make_shared<Bin<ladder[method], ids, isa>>();
         for (const int tile_size : tile_sizes)
             all.push_back({.plan = {.footprint = ladder[method].footprint,
                                     .depth_test = ladder[method].depth_test,
                                     .tile_size = tile_size},
-                           .index = index,
+                           .ids = ids,
                            .build = [bin](const TiledView& view, const Lights& lights) {
-                               return (*bin)(view, lights).tiles();
+                               return (*bin)(view, lights).ranges();
                            }});
     };
     [&]<std::size_t... method>(std::index_sequence<method...>) {
-        (add.template operator()<method, Index::u16>(), ...);
-        (add.template operator()<method, Index::u32>(), ...);
+        (add.template operator()<method, IdWidth::u16>(), ...);
+        (add.template operator()<method, IdWidth::u32>(), ...);
     }
     (std::make_index_sequence<std::size(ladder)>{});
     return all;
@@ -107,10 +107,10 @@ void time(std::vector<Candidate>& candidates, const Views& views, std::span<cons
         if (candidates[i].plan.tiled) candidates[i].build_us = 1e6 * median(times[i]);
 }
 
-std::string words(const Plan& plan, Index index) {
+std::string words(const Plan& plan, IdWidth ids) {
     if (!plan.tiled) return "no tiling";
-    return std::to_string(plan.tile_size) + " px " + name_of(plan.footprint) + " " +
-           name_of(plan.depth_test) + (index == Index::u16 ? " u16" : " u32");
+    return std::to_string(plan.tile_size) + " px " + to_string(plan.footprint) + " " +
+           to_string(plan.depth_test) + " " + to_string(ids);
 }
 
 struct Report {
@@ -122,7 +122,7 @@ template <Isa isa>
 lightbin::Advice ask(const TiledView& view, const Lights& lights, double cost, bool with_depth) {
     const lightbin::Costs costs = {.evaluation_ns = cost};
     const lightbin::ZBounds bounds = with_depth ? view.bounds() : lightbin::ZBounds{};
-    return *lightbin::advise<lightbin::Options{.index = Index::u16, .isa = isa}, ThreadClock>(
+    return *lightbin::advise<lightbin::Options{.ids = IdWidth::u16, .isa = isa}, ThreadClock>(
         view.view, lights, costs, bounds);
 }
 
@@ -138,13 +138,14 @@ template <Isa isa> void judge(const BenchScene& scene, Report& report) {
         const TiledView& view = views.of(candidate.plan.tile_size);
         candidate.evaluations = view.all_evaluations(candidate.build(view, sets[0]));
     }
-    const std::vector<lightbin::Tile> one(1, {0, static_cast<std::uint32_t>(sets[0].size())});
-    sweep.push_back({{.tiled = false}, Index::u16, {}, 0, views.of(screen.width).all_evaluations(one)});
+    const std::vector<lightbin::ListRange> one(1, {0, static_cast<std::uint32_t>(sets[0].size())});
+    sweep.push_back({{.tiled = false}, IdWidth::u16, {}, 0, views.of(screen.width).all_evaluations(one)});
     const auto measured = [&](const Plan& plan) -> const Candidate& {
         const auto found = std::ranges::find_if(
-            sweep, [&](const Candidate& c) { return words(c.plan, c.index) == words(plan, Index::u16); });
+            sweep, [&](const Candidate& c) { return words(c.plan, c.ids) == words(plan, IdWidth::u16); });
         if (found == sweep.end())
-            std::fprintf(stderr, "advise: no such plan: %s\n", words(plan, Index::u16).c_str()), std::abort();
+            std::fprintf(stderr, "advise: no such plan: %s\n", words(plan, IdWidth::u16).c_str()),
+                std::abort();
         return *found;
     };
 
@@ -170,8 +171,7 @@ template <Isa isa> void judge(const BenchScene& scene, Report& report) {
                 regret = two[0].total_us(cost) / two[1].total_us(cost);
             }
             report.regrets.push_back(regret);
-            const std::string chosen = words(choice.plan, choice.index),
-                              cheapest = words(best.plan, best.index);
+            const std::string chosen = words(choice.plan, choice.ids), cheapest = words(best.plan, best.ids);
             std::fprintf(report.csv, "%s,%s,%g,%s,%.2f,%s,%.2f,%.4f,%.4f,%.1f\n", scene.name.c_str(),
                          with_depth ? "both" : "none", cost, chosen.c_str(), choice.total_us(cost),
                          cheapest.c_str(), best.total_us(cost), swept, regret, asking);
@@ -182,7 +182,7 @@ template <Isa isa> void judge(const BenchScene& scene, Report& report) {
             for (const Plan& plan : advice.plans()) {
                 const Candidate& c = measured(plan);
                 std::fprintf(report.plans_csv, "%s,%s,%g,%s,%.2f,%.2f,%.0f,%.0f\n", scene.name.c_str(),
-                             with_depth ? "both" : "none", cost, words(plan, Index::u16).c_str(),
+                             with_depth ? "both" : "none", cost, words(plan, IdWidth::u16).c_str(),
                              plan.build_ns * 1e-3, c.build_us, plan.evaluations, c.evaluations);
             }
         }
@@ -217,9 +217,9 @@ template <class Visit> void with_isa(Isa isa, Visit visit) {
 int main(int argc, char** argv) try {
     Arguments arguments(argc, argv);
     if (arguments.take("--quick")) turns = 5;
-    Isa isa = lightbin::detail::machine_isa(lightbin::Options{}.isa);
+    Isa isa = lightbin::machine_isa();
     for (const Isa named : {Isa::scalar, Isa::sse2, Isa::avx2})
-        if (arguments.take(std::string("--") + name_of(named))) isa = lightbin::detail::machine_isa(named);
+        if (arguments.take(std::string("--") + to_string(named))) isa = lightbin::machine_isa(named);
 
     std::vector<BenchScene> all = scene_kinds();
     for (const std::string& file : arguments.scenes_or_fixtures())

@@ -7,7 +7,6 @@
 #include "glb_scenes.hpp"
 #include "goals.hpp"
 #include "measure.hpp"
-#include "names.hpp"
 #include "reference.hpp"
 
 #include <lightbin/binner.hpp>
@@ -30,7 +29,7 @@ namespace {
 
 using lightbin::DepthTest;
 using lightbin::Footprint;
-using lightbin::Index;
+using lightbin::IdWidth;
 using lightbin::Isa;
 using lightbin::Options;
 
@@ -84,22 +83,24 @@ struct MadeBounds {
     }
 };
 
-/// Stops the run unless the lists hold what the double-precision two-pass finds, and next to nothing else.
+/// Stops the run unless the lists of a frame hold what the double-precision two-pass finds, and next to nothing else.
 template <class Grid>
-void verify(const FlatView& view, const Lights& lights, const Grid& grid, const Options& options,
+void verify(const Frame& frame, int tile_size, const Grid& grid, const Options& options,
             const lightbin::ZBounds& bounds) {
+    const FlatView view = frame.lens.flat_view(tile_size);
+    const Lights& lights = frame.lights;
     Flat<double> flat;
     flat.build<false>(view, lights, nullptr, nullptr);
-    const PairTest pair(view, bounds);
+    PairTest pair(frame.lens, tile_size, bounds);
     // A light that crosses the near plane may keep its rectangle.
     const auto may_be_there = [&](std::uint32_t id) {
         return options.footprint == Footprint::silhouette &&
                -double(lights[id].z) - double(lights[id].w) <= view.near_depth;
     };
     std::size_t missing = 0, extra = 0, common = 0;
-    for (std::size_t tile = 0; tile < grid.tiles().size(); ++tile) {
+    for (std::size_t tile = 0; tile < grid.ranges().size(); ++tile) {
         const int x = int(tile) % view.tiles_x, y = int(tile) / view.tiles_x;
-        const auto ours = grid.indices().subspan(grid.tiles()[tile].offset, grid.tiles()[tile].count);
+        const auto ours = grid.ids().subspan(grid.ranges()[tile].offset, grid.ranges()[tile].count);
         auto next = ours.begin();
         for (std::uint32_t i = flat.offsets[tile]; i < flat.offsets[tile + 1]; ++i) {
             const std::uint32_t id = flat.indices[i];
@@ -171,104 +172,135 @@ template <class Bin> Gains measure_gains(const lightbin::Parallel& parallel, Bin
     return gains;
 }
 
+/// The frames of a case, ready to be built by lightbin and by the baseline.
+template <Options options> class Builds {
+public:
+    using Id = typename lightbin::Binner<options>::Id;
+
+    explicit Builds(const Case& which)
+        : frames_(frames_of(which)), tile_size_(which.tile_size), made_(which.tile_size) {
+        // One view for all frames that have it in common, as a program would: it stays in the cache.
+        for (std::size_t i = 0; i < frames_.size(); ++i) {
+            if (i == 0 || !frames_[i].lens.same(frames_[i - 1].lens)) {
+                views_.push_back(frames_[i].lens.view(tile_size_));
+                flat_views_.push_back(frames_[i].lens.flat_view(tile_size_));
+            }
+            view_of_.push_back(views_.size() - 1);
+        }
+    }
+
+    std::size_t count() const { return frames_.size(); }
+    std::size_t table_bytes() const { return sizeof(lightbin::ListRange) * views_[0].tile_count(); }
+
+    lightbin::LightGrid<Id> ours(const lightbin::Parallel& threads, std::size_t frame) {
+        return *binner_.bin(views_[view_of_[frame]], frames_[frame].lights,
+                            lightbin::inputs_for<options>(made_.bounds), threads);
+    }
+    /// The baseline, which has the depth test `interval` too.
+    void theirs(std::size_t frame) {
+        flat_.build<options.depth_test == DepthTest::interval>(
+            flat_views_[view_of_[frame]], frames_[frame].lights, made_.min.data(), made_.max.data());
+    }
+    void verify_first(const lightbin::Parallel& threads) {
+        verify(frames_[0], tile_size_, ours(threads, 0), options, made_.bounds);
+    }
+
+private:
+    const std::vector<Frame>& frames_;
+    int tile_size_;
+    MadeBounds made_;
+    std::vector<lightbin::View> views_;
+    std::vector<FlatView> flat_views_;
+    std::vector<std::size_t> view_of_;  ///< of each frame
+    Flat<float> flat_;
+    lightbin::Binner<options> binner_;
+};
+
+/// Seconds of each turn.
+struct Times {
+    std::vector<double> ours, theirs, stores, clears, ratios;
+    double entries = 0;        ///< that ours made in a turn, in the mean
+    std::size_t together = 1;  ///< frames a turn
+};
+
 /// Times one case. In turns: the baseline, ours, storing the list once, clearing the tile table. Each time a few frames
 /// together where one is too short for the clock. Whether ours comes first alternates, as the second finds the lights in
 /// the cache.
-template <Options options> void build(benchmark::State& state, const Case& which) {
-    constexpr bool with_depth = options.depth_test != DepthTest::none;
-    constexpr bool twin = options.depth_test == DepthTest::interval;  // the baseline has this depth test too
-    const std::vector<Frame>& frames = frames_of(which);
-    const MadeBounds made(which.tile_size);
-
-    // One view for all frames that have it in common, as a program would: it stays in the cache.
-    struct Seen {
-        std::size_t view;
-        std::span<const glm::vec4> lights;
-    };
-    std::vector<lightbin::View> views;
-    std::vector<FlatView> flat_views;
-    std::vector<Seen> seen;
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        if (i == 0 || !frames[i].lens.same(frames[i - 1].lens)) {
-            views.push_back(frames[i].lens.view(which.tile_size));
-            flat_views.push_back(frames[i].lens.flat_view(which.tile_size));
-        }
-        seen.push_back({views.size() - 1, frames[i].lights});
+template <Options options>
+Times time_in_turns(Builds<options>& builds, std::size_t lights, const lightbin::Parallel& parallel) {
+    constexpr std::size_t id_size = sizeof(typename Builds<options>::Id);
+    Times times;
+    times.together = std::max<std::size_t>(1, 256 / std::max<std::size_t>(lights, 1));
+    std::vector<char> list, table(builds.table_bytes());
+    double spent = 0;
+    std::size_t turn = 0;
+    while (spent < seconds_a_case || times.ours.size() < 5) {
+        const std::size_t first = turn++ * times.together;
+        std::size_t written = 0;
+        const auto each = [&](auto work) {
+            for (std::size_t i = 0; i < times.together; ++i)
+                work((first + i) % builds.count());
+        };
+        const auto time_ours = [&] {
+            times.ours.push_back(seconds([&] {
+                each([&](std::size_t frame) { written += builds.ours(parallel, frame).ids().size(); });
+            }));
+        };
+        if (turn % 2 == 0) time_ours();
+        times.theirs.push_back(seconds([&] { each([&](std::size_t frame) { builds.theirs(frame); }); }));
+        if (turn % 2 == 1) time_ours();
+        times.entries += double(written);
+        written *= id_size;
+        list.resize(std::max(list.size(), written));
+        times.stores.push_back(seconds([&] {
+            const std::size_t share = written / parallel.workers();
+            parallel.run(parallel.workers(), [&](std::size_t i) { fill(list.data() + i * share, share); });
+        }));
+        times.clears.push_back(
+            seconds([&] { each([&](std::size_t) { fill(table.data(), table.size()); }); }));
+        times.ratios.push_back(times.ours.back() / times.theirs.back());
+        spent += times.ours.back() + times.theirs.back() + times.stores.back();
     }
-    Flat<float> flat;
-    lightbin::Binner<options> binner;
-    constexpr std::size_t id_size = sizeof(typename lightbin::Binner<options>::Id);
+    times.entries /= double(turn);
+    return times;
+}
+
+Result result_of(const Case& which, const Options& options, const Times& times) {
+    const double lights = double(std::max<std::size_t>(which.lights, 1) * times.together),
+                 ns = 1e9 * median(times.ours);
+    return {.set = which.set,
+            .lights = which.lights,
+            .tile_size = which.tile_size,
+            .footprint = to_string(options.footprint),
+            .depth_test = to_string(options.depth_test),
+            .tier = to_string(options.isa),
+            .threads = which.threads,
+            .ns_per_light = ns / lights,
+            .ns_per_entry = ns / std::max(times.entries, 1.0),
+            .ratio = ns / (1e9 * median(times.theirs)),
+            .spread = percentile(times.ratios, 0.9) - percentile(times.ratios, 0.1),
+            .entries_per_light = times.entries / lights,
+            .store_ratio = ns / (1e9 * median(times.stores)),
+            .clear_ratio = ns / (1e9 * median(times.clears)),
+            .gains = {}};
+}
+
+/// Verifies one case, times it, and where it has threads measures what they gain.
+template <Options options> void build(benchmark::State& state, const Case& which) {
     TbbLoop loop(which.threads);
     const lightbin::Parallel parallel =
         which.threads > 1 ? lightbin::Parallel(std::size_t(which.threads), loop) : lightbin::Parallel();
-    const auto bin = [&](const lightbin::Parallel& threads, std::size_t frame) {
-        if constexpr (with_depth)
-            return *binner.bin(views[seen[frame].view], seen[frame].lights, made.bounds, threads);
-        else
-            return *binner.bin(views[seen[frame].view], seen[frame].lights, threads);
-    };
-    const auto bin_flat = [&](std::size_t frame) {
-        flat.build<twin>(flat_views[seen[frame].view], seen[frame].lights, made.min.data(), made.max.data());
-    };
-    verify(flat_views[0], frames[0].lights, bin(parallel, 0), options, made.bounds);
-
-    std::vector<double> ours, theirs, stores, clears, ratios;
-    std::vector<char> list, table(sizeof(lightbin::Tile) * views[0].tile_count());
-    double entries = 0, spent = 0;
-    std::size_t turn = 0;
-    const std::size_t n = which.lights,
-                      together = std::max<std::size_t>(1, 256 / std::max<std::size_t>(n, 1));
+    Builds<options> builds(which);
+    builds.verify_first(parallel);
+    Times times;
     for (auto _ : state) {
-        while (spent < seconds_a_case || ours.size() < 5) {
-            const std::size_t first = turn++ * together;
-            std::size_t written = 0;
-            const auto each = [&](auto work) {
-                for (std::size_t i = 0; i < together; ++i)
-                    work((first + i) % frames.size());
-            };
-            const auto time_ours = [&] {
-                ours.push_back(seconds([&] {
-                    each([&](std::size_t frame) { written += bin(parallel, frame).indices().size(); });
-                }));
-            };
-            if (turn % 2 == 0) time_ours();
-            theirs.push_back(seconds([&] { each(bin_flat); }));
-            if (turn % 2 == 1) time_ours();
-            written *= id_size;
-            list.resize(std::max(list.size(), written));
-            stores.push_back(seconds([&] {
-                const std::size_t share = written / parallel.workers();
-                parallel.run(parallel.workers(),
-                             [&](std::size_t i) { fill(list.data() + i * share, share); });
-            }));
-            clears.push_back(seconds([&] { each([&](std::size_t) { fill(table.data(), table.size()); }); }));
-            ratios.push_back(ours.back() / theirs.back());
-            entries += double(written / id_size);
-            spent += ours.back() + theirs.back() + stores.back();
-        }
-        state.SetIterationTime(median(ours) / double(together));
+        times = time_in_turns(builds, which.lights, parallel);
+        state.SetIterationTime(median(times.ours) / double(times.together));
     }
-
-    const double lights = double(std::max<std::size_t>(n, 1) * together), ns = 1e9 * median(ours);
-    entries /= double(turn);
-    Result result = {.set = which.set,
-                     .lights = n,
-                     .tile_size = which.tile_size,
-                     .footprint = name_of(options.footprint),
-                     .depth_test = name_of(options.depth_test),
-                     .tier = name_of(options.isa),
-                     .threads = which.threads,
-                     .ns_per_light = ns / lights,
-                     .ns_per_entry = ns / std::max(entries, 1.0),
-                     .ratio = ns / (1e9 * median(theirs)),
-                     .spread = percentile(ratios, 0.9) - percentile(ratios, 0.1),
-                     .entries_per_light = entries / lights,
-                     .store_ratio = ns / (1e9 * median(stores)),
-                     .clear_ratio = ns / (1e9 * median(clears)),
-                     .gains = {}};
+    Result result = result_of(which, options, times);
     if (which.threads > 1)
-        result.gains = measure_gains(parallel, [&](const lightbin::Parallel& threads, std::size_t frame) {
-            return bin(threads, frame % frames.size()).indices().size_bytes();
+        result.gains = measure_gains(parallel, [&](const lightbin::Parallel& threads, std::size_t turn) {
+            return builds.ours(threads, turn % builds.count()).ids().size_bytes();
         });
     results.push_back(result);
 }
@@ -284,7 +316,7 @@ public:
             "percentile of the turns' ratios; entries: a light; x store: to writing the index list once, "
             "with as\n"
             "many threads\n\n",
-            name_of(lightbin::detail::machine_isa(Options{}.isa)));
+            to_string(lightbin::machine_isa()));
         std::printf("%-16s%8s%4s %-11s%-10s%-7s%2s%10s%10s%8s%8s%9s%9s\n", "set", "n", "px", "footprint",
                     "depth", "tier", "th", "ns/light", "ns/entry", "ratio", "spread", "entries", "x store");
         return true;
@@ -300,10 +332,10 @@ public:
 };
 
 template <Options options> void add(const Case& which) {
-    if (lightbin::detail::machine_isa(options.isa) != options.isa) return;  // not on this machine
+    if (lightbin::machine_isa(options.isa) != options.isa) return;  // not on this machine
     const std::string label = which.set + "/" + std::to_string(which.lights) + "/" +
-                              std::to_string(which.tile_size) + "px/" + name_of(options.footprint) + "/" +
-                              name_of(options.depth_test) + "/" + name_of(options.isa) + "/" +
+                              std::to_string(which.tile_size) + "px/" + to_string(options.footprint) + "/" +
+                              to_string(options.depth_test) + "/" + to_string(options.isa) + "/" +
                               std::to_string(which.threads);
     benchmark::RegisterBenchmark(label.c_str(), build<options>, which)->Iterations(1)->UseManualTime();
 }
@@ -314,9 +346,9 @@ constexpr Options with(Options options, Isa isa) {
 }
 
 template <DepthTest depth_test = DepthTest::none, Footprint footprint = Footprint::rectangle,
-          Index index = Index::u32>
+          IdWidth ids = IdWidth::u32>
 void add_tiers(const Case& which) {
-    constexpr Options options = {.index = index, .footprint = footprint, .depth_test = depth_test};
+    constexpr Options options = {.ids = ids, .footprint = footprint, .depth_test = depth_test};
     add<with(options, Isa::scalar)>(which);
 #if defined(LIGHTBIN_X86)
     add<with(options, Isa::sse2)>(which);
@@ -370,7 +402,7 @@ void add_set(const std::string& set, float median, double footprint, bool quick)
             if (in_goals && often && (median == field20_median || (n == 4096 && tile == 32)))
                 add_rungs(which);
             if (tile == 32 && n == 10000)
-                add_tiers<DepthTest::none, Footprint::rectangle, Index::u16>(
+                add_tiers<DepthTest::none, Footprint::rectangle, IdWidth::u16>(
                     {set + "-u16", n, tile, which.frames});
             if (tile == 32 && (n == 256 || n >= 10000)) add_threads(which);
         }

@@ -142,7 +142,7 @@ void study(const BenchScene& scene, bool quick, std::FILE* csv) {
             const Lights set = with_cutoff(scene.lights(seed), white / k);
             builds.push_back(seconds([&] { bin(large, set); }));
         }
-        const double evaluations = large.evaluations(bin(large, ranged).tiles());
+        const double evaluations = large.evaluations(bin(large, ranged).ranges());
 
         const auto grid = bin(view, ranged);
         Difference differences[2];

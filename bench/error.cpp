@@ -17,7 +17,7 @@
 //                   every rung with a depth test), on rotating light sets; Z bounds not included
 //   reduce_us       what making the Z bounds of one view takes
 #include "arguments.hpp"
-#include "exact.hpp"
+#include "exact_pairs.hpp"
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
 
@@ -117,11 +117,11 @@ void count(const SeenScene& seen, int tile_size, Report& report) {
         const Method& method = ladder[rung];
         Row& row = report.rows[rung];
         const auto grid = bin(view, lights);
-        row.entries += grid.indices().size();
-        row.evaluations += view.all_evaluations(grid.tiles());
+        row.entries += grid.ids().size();
+        row.evaluations += view.all_evaluations(grid.ranges());
         for (std::size_t tile = 0; tile < truth.tiles.size(); ++tile) {
-            const lightbin::Tile list = grid.tiles()[tile];
-            const std::uint32_t* id = grid.indices().data() + list.offset;
+            const lightbin::ListRange list = grid.ranges()[tile];
+            const std::uint32_t* id = grid.ids().data() + list.offset;
             const std::uint32_t* const end = id + list.count;
             for (const Pair& pair : truth.tiles[tile]) {
                 row.unrounded += keeps(method, pair.facts);
@@ -171,7 +171,7 @@ void write(std::FILE* csv, const Case& scene, int tile_size, const Report& repor
         const double views = static_cast<double>(scene.views.size());
         const double evaluations = row.evaluations / static_cast<double>(report.drawn);
         std::fprintf(csv, "%s,%zu,%d,%s,%s,%llu,%llu,%llu,", scene.name.c_str(), scene.views.size(),
-                     tile_size, name_of(ladder[rung].footprint), name_of(ladder[rung].depth_test),
+                     tile_size, to_string(ladder[rung].footprint), to_string(ladder[rung].depth_test),
                      number(row.misses), number(report.verdicts), number(report.by_rationals));
         std::fprintf(csv, "%llu,%llu,%.5f,%llu,%.5f,%.6f,", number(row.entries), number(report.exact),
                      part(row.entries, report.exact) - 1, number(report.lit),
@@ -182,8 +182,9 @@ void write(std::FILE* csv, const Case& scene, int tile_size, const Report& repor
                      report.reduce_us / views);
         std::printf(
             "%-12s %2d px  %-10s %-9s  %llu misses  excess %7.1f %%  evals %6.2f  %8.1f us  %.2f of flat\n",
-            scene.name.c_str(), tile_size, name_of(ladder[rung].footprint), name_of(ladder[rung].depth_test),
-            number(row.misses), 100 * (part(row.entries, report.exact) - 1), evaluations, row.us, row.ratio);
+            scene.name.c_str(), tile_size, to_string(ladder[rung].footprint),
+            to_string(ladder[rung].depth_test), number(row.misses),
+            100 * (part(row.entries, report.exact) - 1), evaluations, row.us, row.ratio);
     }
     std::fflush(csv);
     std::fflush(stdout);

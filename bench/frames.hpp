@@ -28,11 +28,13 @@ struct Lens {
                screen.height == other.screen.height;
     }
 
-    lightbin::View view(int tile_size) const {
+    glm::dmat4 projection() const {
         const double aspect_ratio = double(screen.width) / screen.height;
-        const glm::dmat4 projection =
-            glm::perspectiveRH_NO(2 * std::atan(tan_half_height), aspect_ratio, near_depth, far_depth);
-        return *lightbin::View::from_projection(projection, screen, {.tile_size = tile_size});
+        return glm::perspectiveRH_NO(2 * std::atan(tan_half_height), aspect_ratio, near_depth, far_depth);
+    }
+
+    lightbin::View view(int tile_size) const {
+        return *lightbin::View::from_projection(projection(), screen, {.tile_size = tile_size});
     }
 
     FlatView flat_view(int tile_size) const {

@@ -2,7 +2,6 @@
 // The rungs of the ladder.
 #pragma once
 
-#include "names.hpp"
 #include "sets.hpp"
 #include "tiled_view.hpp"
 
@@ -28,21 +27,19 @@ inline constexpr Method ladder[] = {
 };
 
 /// Bins by one rung; the grid is valid until the next call.
-template <Method method, lightbin::Index index = lightbin::Index::u32,
-          lightbin::Isa isa = lightbin::Options{}.isa>
+template <Method method, lightbin::IdWidth ids = lightbin::IdWidth::u32,
+          lightbin::Isa isa = lightbin::compiled_isa>
 class Bin {
 public:
     auto operator()(const TiledView& view, const Lights& lights) {
-        if constexpr (method.depth_test == DepthTest::none)
-            return *binner_.bin(view.view, lights);
-        else
-            return *binner_.bin(view.view, lights, view.bounds());
+        return *binner_.bin(view.view, lights, lightbin::inputs_for<options>(view.bounds()));
     }
 
 private:
-    lightbin::Binner<lightbin::Options{
-        .index = index, .footprint = method.footprint, .depth_test = method.depth_test, .isa = isa}>
-        binner_;
+    static constexpr lightbin::Options options = {
+        .ids = ids, .footprint = method.footprint, .depth_test = method.depth_test, .isa = isa};
+
+    lightbin::Binner<options> binner_;
 };
 
 /// One binner for each rung. Calls visit(i, bin) for ladder[i] and its own Bin.

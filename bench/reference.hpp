@@ -2,79 +2,55 @@
 // The lists again, by a plain two-pass in double precision: what the timed ones are verified against.
 #pragma once
 
-#include "flat.hpp"
+#include "exact/filter.hpp"
+#include "frames.hpp"
 
 #include <lightbin/binner.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <span>
+#include <cstddef>
 
 /// One light and one tile, as the rungs of the ladder see them.
 class PairTest {
 public:
-    PairTest(const FlatView& view, const lightbin::ZBounds& bounds) : view_(view), bounds_(bounds) {}
-
-    /// Whether the sphere meets the view-space box around the tile between two depths.
-    bool meets_box(const glm::vec4& light, int tile_x, int tile_y, double z0, double z1) const {
-        if (!(z0 <= z1)) return false;
-        const auto gap = [&](double c, Slopes s) {
-            return std::max(
-                {std::min(s.low * z0, s.low * z1) - c, c - std::max(s.high * z0, s.high * z1), 0.0});
-        };
-        const double z = -double(light.z), r = double(light.w);
-        const double dx = gap(double(light.x), columns(tile_x)), dy = gap(double(light.y), rows(tile_y)),
-                     dz = std::max({z0 - z, z - z1, 0.0});
-        return dx * dx + dy * dy + dz * dz <= r * r;
-    }
-
-    /// Whether the sphere meets the pyramid of the tile beyond the near plane: the least distance over the
-    /// pyramid's sections, which is a convex function of their depth.
-    bool meets_pyramid(const glm::vec4& light, int tile_x, int tile_y) const {
-        const Slopes sx = columns(tile_x), sy = rows(tile_y);
-        const double x = double(light.x), y = double(light.y), z = -double(light.z), r = double(light.w);
-        const auto distance2 = [&](double depth) {
-            const double dx = std::max({sx.low * depth - x, x - sx.high * depth, 0.0});
-            const double dy = std::max({sy.low * depth - y, y - sy.high * depth, 0.0});
-            return dx * dx + dy * dy + (depth - z) * (depth - z);
-        };
-        double low = std::max(view_.near_depth, z - r), high = std::min(view_.far_depth, z + r);
-        for (int step = 0; step < 60; ++step) {
-            const double a = low + (high - low) * 0.45, b = low + (high - low) * 0.55;
-            if (distance2(a) <= r * r) return true;
-            (distance2(a) < distance2(b) ? high : low) = distance2(a) < distance2(b) ? b : a;
-        }
-        return distance2(low) <= r * r;
-    }
+    PairTest(const Lens& lens, int tile_size, const lightbin::ZBounds& bounds)
+        : oracle_(camera(lens, tile_size)), filter_(oracle_), pyramid_(oracle_.range()), bounds_(bounds) {}
 
     /// Whether a light whose rectangle has the tile stays in its list.
-    bool passes(lightbin::Footprint footprint, lightbin::DepthTest test, const glm::vec4& light, int tile_x,
-                int tile_y) const {
+    bool passes(lightbin::Footprint footprint, lightbin::DepthTest test, const glm::vec4& light, int x,
+                int y) {
         using lightbin::DepthTest;
-        if (footprint == lightbin::Footprint::silhouette && !meets_pyramid(light, tile_x, tile_y))
+        const oracle::FlatBall ball = {double(light.x), double(light.y), -double(light.z), double(light.w)};
+        const double reach = ball.radius * ball.radius;
+        if (footprint == lightbin::Footprint::silhouette &&
+            filter_.cell_distance2(x, y, pyramid_, ball) > reach)
             return false;
         if (test == DepthTest::none) return true;
-        const std::size_t tile = std::size_t(tile_y * view_.tiles_x + tile_x);
+        const std::size_t tile = std::size_t(y * oracle_.tiles_x() + x);
         const double min = double(bounds_.min[tile]), max = double(bounds_.max[tile]);
-        const double z = -double(light.z), r = double(light.w);
-        if (z + r < min || z - r > max) return false;
+        if (ball.depth + ball.radius < min || ball.depth - ball.radius > max) return false;
         if (test == DepthTest::interval) return true;
+        const auto meets_box = [&](double from, double to) {
+            return from <= to && filter_.box_distance2(x, y, {from, to}, ball) <= reach;
+        };
         const double gap_min = double(bounds_.gap_min[tile]), gap_max = double(bounds_.gap_max[tile]);
-        if (test == DepthTest::box || !(gap_min < gap_max)) return meets_box(light, tile_x, tile_y, min, max);
-        return meets_box(light, tile_x, tile_y, min, gap_min) ||
-               meets_box(light, tile_x, tile_y, gap_max, max);
+        if (test == DepthTest::box || !(gap_min < gap_max)) return meets_box(min, max);
+        return meets_box(min, gap_min) || meets_box(gap_max, max);
     }
 
 private:
-    struct Slopes {
-        double low, high;
-    };
-    Slopes slopes(int tile, double side) const {
-        return {(tile - side / 2) / view_.scale, (std::min(tile + 1.0, side) - side / 2) / view_.scale};
+    static oracle::Camera camera(const Lens& lens, int tile_size) {
+        oracle::Camera camera;
+        const glm::dmat4 projection = lens.projection();
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row)
+                camera.m[column][row] = projection[column][row];
+        camera.doubles = true;
+        camera.width = lens.screen.width, camera.height = lens.screen.height, camera.tile = tile_size;
+        return camera;
     }
-    Slopes columns(int x) const { return slopes(x, view_.width); }
-    Slopes rows(int y) const { return slopes(y, view_.height); }
 
-    const FlatView& view_;
+    oracle::Oracle oracle_;
+    oracle::Filter filter_;
+    oracle::FlatDepths pyramid_;
     const lightbin::ZBounds& bounds_;
 };

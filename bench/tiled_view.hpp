@@ -42,7 +42,7 @@ struct TiledView {
     }
 
     /// Light evaluations of all drawn pixels.
-    double all_evaluations(std::span<const lightbin::Tile> lists) const {
+    double all_evaluations(std::span<const lightbin::ListRange> lists) const {
         double sum = 0;
         for (std::size_t tile = 0; tile < lists.size(); ++tile)
             sum += static_cast<double>(drawn[tile]) * static_cast<double>(lists[tile].count);
@@ -50,7 +50,7 @@ struct TiledView {
     }
 
     /// The same a drawn pixel: the mean length of its list.
-    double evaluations(std::span<const lightbin::Tile> lists) const {
+    double evaluations(std::span<const lightbin::ListRange> lists) const {
         return all_evaluations(lists) / static_cast<double>(all_drawn);
     }
 

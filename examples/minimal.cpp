@@ -33,7 +33,7 @@ int main() {
         return 1;
     }
 
-    // A renderer uploads lists->tiles() and lists->indices(). Here is how many lights each tile has, from the
+    // A renderer uploads lists->ranges() and lists->ids(). Here is how many lights each tile has, from the
     // upper rows down: row 0 is the lowest.
     for (int y = lists->tiles_y() - 1; y >= 0; --y) {
         for (int x = 0; x < lists->tiles_x(); ++x)
@@ -43,7 +43,7 @@ int main() {
 
     // And here is one of the lists: ids are places in `lights`, in ascending order.
     std::printf("%zu lights, %zu tiles, %zu entries in the lists; the lights of tile (26, 20) are",
-                lights.size(), lists->tiles().size(), lists->indices().size());
+                lights.size(), lists->ranges().size(), lists->ids().size());
     for (const auto light : lists->lights_in(26, 20))
         std::printf(" %u", light);
     std::printf("\n");

@@ -62,13 +62,6 @@ GLuint new_texture(GLuint old, GLenum format, int width, int height) {
     return made;
 }
 
-std::uint32_t longest_list(const lightbin::LightGrid<std::uint32_t>& grid) {
-    std::uint32_t longest = 0;
-    for (const lightbin::Tile& tile : grid.tiles())
-        longest = std::max(longest, tile.count);
-    return longest;
-}
-
 // Mesa's software renderer ends a shader's loops after 65,535 rounds, and says nothing.
 void check_loop(std::size_t lights) {
     if (lights > 65000)
@@ -135,11 +128,11 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
         return lightbin::Sphere{s.x, s.y, s.z, dropped ? -1.0f : s.w};
     });
     const auto bin_once = [&]() -> lightbin::TransparencyGrids<std::uint32_t> {
-        const auto lists = value_of(binner_.bin(view, lights, z_bounds));
+        const auto lists = value_of(binner_.bin(view, lights, {.bounds = z_bounds}));
         return {lists, lists};
     };
     const auto [opaque, transparent] =
-        glass ? value_of(binner_.bin_transparency(view, lights, z_bounds)) : bin_once();
+        glass ? value_of(binner_.bin_transparency(view, lights, {.bounds = z_bounds})) : bin_once();
     report.milliseconds.bin = watch.lap();
 
     // 4. To the GPU.
@@ -150,18 +143,19 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     report.milliseconds.upload = watch.lap();
 
     // 5. The picture.
-    check_loop(longest_list(transparent));  // no shorter than the opaque one
+    const std::uint32_t longest = list_lengths(opaque).longest;
+    check_loop(glass ? list_lengths(transparent).longest : longest);  // no shorter than the opaque one
     draw_triangles(tiled_program_, settings);
     report.milliseconds.draw = watch.lap();
 
-    const lightbin::Statistics& statistics = binner_.statistics();
+    const lightbin::LightCounts& counts = opaque.light_counts();
     report.tiles_x = view.tiles_x();
     report.tiles_y = view.tiles_y();
-    report.lights_in_view = statistics.lights - statistics.culled - statistics.rejected;
-    report.rejected = statistics.rejected;
-    report.entries = statistics.entries;
-    report.longest_list = statistics.longest_list;
-    report.transparent_entries = glass ? transparent.indices().size() : 0;
+    report.lights_in_view = counts.lights - counts.culled - counts.rejected;
+    report.rejected = counts.rejected;
+    report.entries = opaque.ids().size();
+    report.longest_list = longest;
+    report.transparent_entries = glass ? transparent.ids().size() : 0;
     const int t = settings.tile_size;
     double evaluations = 0;
     for (int ty = 0; ty < view.tiles_y(); ++ty)
@@ -394,9 +388,9 @@ void Renderer::upload_lights() const {
 }
 
 void Renderer::upload_lists(const Lists& target, const lightbin::LightGrid<std::uint32_t>& grid) const {
-    upload(target.tiles, grid.tiles().data(), grid.tiles().size_bytes(), grid.tiles_x(), "tiles");
-    upload(target.indices, grid.indices().data(), grid.indices().size_bytes(),
-           static_cast<int>(list_binding_.width), "light lists");
+    upload(target.tiles, grid.ranges().data(), grid.ranges().size_bytes(), grid.tiles_x(), "tiles");
+    upload(target.indices, grid.ids().data(), grid.ids().size_bytes(), static_cast<int>(list_binding_.width),
+           "light lists");
 }
 
 // `width`: texels a row of a 2D texture

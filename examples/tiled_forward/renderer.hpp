@@ -6,6 +6,7 @@
 #include "scene.hpp"
 
 #include <lightbin/lightbin.hpp>
+#include <lightbin/shader.hpp>
 
 #include <epoxy/gl.h>
 
@@ -120,6 +121,5 @@ private:
     lightbin::ShaderGrid grid_{};
     std::vector<GpuLight> gpu_lights_;
     std::vector<float> depth_buffer_, min_depth_, max_depth_, transparent_max_;
-    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval, .statistics = true}>
-        binner_;
+    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner_;
 };

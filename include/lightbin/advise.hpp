@@ -68,8 +68,6 @@ public:
 
     /// Returns a table of the plans for a person, a line each. Allocates.
     std::string text() const {
-        static constexpr const char* footprints[] = {"rectangle", "silhouette"};
-        static constexpr const char* depth_tests[] = {"none", "interval", "box", "split_box"};
         std::string lines =
             "   cost  tile  footprint   depth test     entries   build us  M evaluations   total us\n";
         for (const Plan& plan : plans()) {
@@ -77,8 +75,8 @@ public:
             if (plan.tiled) std::snprintf(tile, sizeof tile, "%d", plan.tile_size);
             std::snprintf(line, sizeof line, "%7.2f  %4s  %-10s  %-10s  %10llu  %9.1f  %13.3f  %9.1f\n",
                           plan.total_ns / (std::max)(best().total_ns, 1.0), tile,
-                          plan.tiled ? footprints[static_cast<int>(plan.footprint)] : "no tiling",
-                          plan.tiled ? depth_tests[static_cast<int>(plan.depth_test)] : "-",
+                          plan.tiled ? to_string(plan.footprint) : "no tiling",
+                          plan.tiled ? to_string(plan.depth_test) : "-",
                           static_cast<unsigned long long>(plan.entries), plan.build_ns * 1e-3,
                           plan.evaluations * 1e-6, plan.total_ns * 1e-3);
             lines += line;
@@ -202,11 +200,11 @@ inline bool allowed(DepthTest test, const ZBounds& bounds) {
 ///
 ///     lightbin::with_options(plan, [&]<lightbin::Options options> {
 ///         lightbin::Binner<options> binner;
-///         draw_frames(binner, *view.with_tile_size(plan.tile_size));  // a template of yours
-///     });
+///         draw_frames(binner, *view.with_tile_size(plan.tile_size));  // a template of yours, which calls
+///     });                                        // binner.bin(view, lights, inputs_for<options>(bounds))
 ///
 /// plan  one of advise()'s. Of one that is not tiled the options mean nothing: look at Plan::tiled first
-/// base  the options that a plan leaves to you: index, statistics, isa
+/// base  the options that a plan leaves to you: ids, isa
 template <Options base = Options{}, class Visit>
 decltype(auto) with_options(const Plan& plan, Visit&& visit) {
     return detail::with_options_from<base, 0>(plan, visit);
@@ -225,7 +223,7 @@ decltype(auto) with_options(const Plan& plan, Visit&& visit) {
 ///
 /// lights  as for Binner::bin
 /// bounds  of the view's own tiles; larger tiles' bounds are merged from them. None: no depth test is weighed
-/// base    the options that a plan leaves to you: index, statistics, isa
+/// base    the options that a plan leaves to you: ids, isa
 /// Clock   as those of <chrono>: where other work keeps the cores busy, better one of this thread's own time
 template <Options base = Options{}, class Clock = std::chrono::steady_clock, class LightRange>
 Result<Advice> advise(const View& view, const LightRange& lights, const Costs& costs = {},
@@ -250,12 +248,8 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
             Binner<options>& binner = std::get<Binner<options>>(binners);
             constexpr bool with_depth = options.depth_test != DepthTest::none;
             const auto start = Clock::now();
-            const Result<LightGrid<Id>> built = [&] {
-                if constexpr (with_depth)
-                    return binner.bin(grid->view, seen, grid->bounds);
-                else
-                    return binner.bin(grid->view, seen);
-            }();
+            const Result<LightGrid<Id>> built =
+                binner.bin(grid->view, seen, inputs_for<options>(grid->bounds));
             const std::chrono::duration<double, std::nano> time = Clock::now() - start;
             if (!built) return built;
             plan.build_ns = (std::min)(plan.build_ns, time.count() + (with_depth ? costs.z_bounds_ns : 0));
@@ -276,9 +270,9 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
                          .build_ns = HUGE_VAL};
             const Result<LightGrid<Id>> built = build(plan, lights);
             if (!built) return built.error();
-            plan.entries = built->indices().size();
+            plan.entries = built->ids().size();
             for (std::size_t tile = 0; tile < grid.pixels.size(); ++tile)
-                plan.evaluations += grid.pixels[tile] * built->tiles()[tile].count;
+                plan.evaluations += grid.pixels[tile] * built->ranges()[tile].count;
             plans.push_back(plan);
         }
 
@@ -293,8 +287,8 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
             least = (std::min)(least, plan.total_ns);
         }
         if (turn == turns) return Advice(std::move(plans));
-        const float aside =
-            static_cast<float>((2.0 * turn / (turns - 1) - 1) / 32 * view.tiles_x() / view.camera().x.scale);
+        const float aside = static_cast<float>((2.0 * turn / (turns - 1) - 1) / 32 * view.tiles_x() /
+                                               detail::camera_of(view).x.scale);
         const auto moved = view_space(source.array, [&](const auto& light) {
             Sphere sphere = std::invoke(source.to_view_sphere, light);
             sphere.x += aside * (view.orthographic() ? 1 : sphere.z);

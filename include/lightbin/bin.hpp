@@ -45,7 +45,7 @@ public:
                                [[maybe_unused]] const Threads& parallel) {
         tile_count_ = entries_ = 0;  // until there is a grid
         const std::size_t tiles = view.tile_count();
-        Job job = {.camera = &view.camera(),
+        Job job = {.camera = &detail::camera_of(view),
                    .lights = footprints.arrays(),
                    .runs = footprints.runs(),
                    .visible = footprints.visible(),
@@ -83,8 +83,9 @@ public:
         shared_ = false;
         if constexpr (!std::is_same_v<Threads, Serial>) {
             const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), rows);
-            shared_ = parts > 1 && footprints.area() <= most &&
-                      parallel.worth(estimate(isa, kernel, footprints.visible(), static_cast<double>(room)));
+            shared_ =
+                parts > 1 && footprints.area() <= most &&
+                parallel.pays_off(estimate(isa, kernel, footprints.visible(), static_cast<double>(room)));
             if (shared_) {
                 entries_ = build_parts(isa, job, kernel, list, scratch, parallel, parts);
                 return std::nullopt;
@@ -94,7 +95,7 @@ public:
         return std::nullopt;
     }
 
-    std::span<const Tile> tiles() const { return {tiles_.data(), tile_count_}; }
+    std::span<const ListRange> tiles() const { return {tiles_.data(), tile_count_}; }
     std::span<const Id> indices() const { return {indices_.data(), entries_}; }
 
     /// Whether the last grid was built on several threads.
@@ -153,7 +154,7 @@ private:
             parallel.run(count - 1, [&](std::size_t previous) {
                 const detail::Part& part = parts[previous + 1];
                 const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
-                for (Tile *tile = job.tiles + width * part.begin, *end = job.tiles + width * part.end;
+                for (ListRange *tile = job.tiles + width * part.begin, *end = job.tiles + width * part.end;
                      tile < end; ++tile)
                     tile->offset += static_cast<std::uint32_t>(part.before);
                 std::copy_n(spares_[previous + 1].data(), static_cast<std::size_t>(part.area),
@@ -175,7 +176,7 @@ private:
         }
     }
 
-    detail::Buffer<Tile> tiles_;
+    detail::Buffer<ListRange> tiles_;
     detail::Buffer<Id> indices_;
     detail::Buffer<float> edges_[4];
     detail::Buffer<detail::Part> parts_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/names.hpp>
 #include <lightbin/detail/sizes.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/result.hpp>
@@ -20,15 +21,16 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// How the lights of a tile are written down.
 enum class ListEncoding : std::uint8_t {
-    offset_count,  ///< grid.tiles(), and the ids of all tiles one after the other (Tiled Shading, Figure 1)
+    offset_count,  ///< grid.ranges(), and the ids of all tiles one after the other (Tiled Shading, Figure 1)
     /// `capacity` ids a tile; a shorter list ends with the sentinel, the largest value of the id's width.
     /// Needs no table of tiles (Light Indexed Deferred Rendering).
     sentinel,
     bitmask,  ///< (max_lights + 31) / 32 words of 32 bits a tile: bit b of word w is light 32 w + b
 };
 
-/// Bytes of a light id.
-enum class IdWidth : std::uint8_t { u8 = 1, u16 = 2, u32 = 4 };
+constexpr const char* to_string(ListEncoding encoding) {
+    return detail::name_at(encoding, {"offset_count", "sentinel", "bitmask"});
+}
 
 /// A form of the lists. What encode() writes and what a shader reads must have the same.
 struct ListFormat {
@@ -90,25 +92,25 @@ template <class To, class Id>
 void encode_ids(const LightGrid<Id>& grid, const ListFormat& format, std::byte* out) {
     const auto put = [&](std::size_t at, To id) { std::memcpy(out + at * sizeof(To), &id, sizeof(To)); };
     if (format.encoding == ListEncoding::offset_count) {
-        for (std::size_t i = 0; i < grid.indices().size(); ++i)
-            put(i, static_cast<To>(grid.indices()[i]));
+        for (std::size_t i = 0; i < grid.ids().size(); ++i)
+            put(i, static_cast<To>(grid.ids()[i]));
         return;
     }
     std::size_t at = 0;
-    for (const Tile tile : grid.tiles()) {
-        const std::uint32_t kept = (std::min)(tile.count, format.capacity);
+    for (const ListRange range : grid.ranges()) {
+        const std::uint32_t kept = (std::min)(range.count, format.capacity);
         for (std::uint32_t i = 0; i < kept; ++i)
-            put(at + i, static_cast<To>(grid.indices()[tile.offset + i]));
+            put(at + i, static_cast<To>(grid.ids()[range.offset + i]));
         if (kept < format.capacity) put(at + kept, static_cast<To>(~To{0}));
         at += format.capacity;
     }
 }
 
 template <class Id> void encode_bits(const LightGrid<Id>& grid, std::size_t bytes_a_tile, std::byte* out) {
-    for (const Tile tile : grid.tiles()) {
+    for (const ListRange range : grid.ranges()) {
         std::memset(out, 0, bytes_a_tile);
-        for (std::uint32_t i = 0; i < tile.count; ++i) {
-            const std::uint32_t id = grid.indices()[tile.offset + i];
+        for (std::uint32_t i = 0; i < range.count; ++i) {
+            const std::uint32_t id = grid.ids()[range.offset + i];
             std::uint32_t word = 0;
             std::memcpy(&word, out + id / 32 * 4, 4);
             word |= std::uint32_t{1} << id % 32;
@@ -125,23 +127,23 @@ template <class Id> void encode_bits(const LightGrid<Id>& grid, std::size_t byte
 ///
 /// After it, each tile's list in `out` is the grid's. Only a sentinel list longer than its capacity is cut:
 /// its first `capacity` ids, the lowest, stay, and the result counts the others. offset_count: the table of
-/// tiles is grid.tiles() as it is. Errors: a format without the capacity or max_lights that it needs, or with more
+/// tiles is grid.ranges() as it is. Errors: a format without the capacity or max_lights that it needs, or with more
 /// max_lights than its ids number; an id it can't number; `out` too small. Then `out` is not touched.
 template <class Id>
 Result<Encoded> encode(const LightGrid<Id>& grid, const ListFormat& format, std::span<std::byte> out) {
     if (const auto error = detail::refuse(format)) return *error;
-    const std::uint64_t bytes = encoded_bytes(format, grid.tiles().size(), grid.indices().size());
+    const std::uint64_t bytes = encoded_bytes(format, grid.ranges().size(), grid.ids().size());
     if (out.size() < bytes) return Error{ErrorCode::list_buffer_too_small, bytes, out.size()};
     const std::uint64_t most = countable_lights(format);
     const std::uint64_t limit = format.max_lights ? (std::min<std::uint64_t>)(format.max_lights, most) : most;
-    for (const Id id : grid.indices())
+    for (const Id id : grid.ids())
         if (id >= limit) return Error{ErrorCode::ids_too_narrow, id + std::uint64_t{1}, limit};
 
     Encoded encoded;
-    for (const Tile tile : grid.tiles()) {
-        encoded.capacity_needed = (std::max)(encoded.capacity_needed, tile.count);
-        if (format.encoding != ListEncoding::sentinel || tile.count <= format.capacity) continue;
-        encoded.entries_cut += tile.count - format.capacity;
+    for (const ListRange range : grid.ranges()) {
+        encoded.capacity_needed = (std::max)(encoded.capacity_needed, range.count);
+        if (format.encoding != ListEncoding::sentinel || range.count <= format.capacity) continue;
+        encoded.entries_cut += range.count - format.capacity;
         ++encoded.tiles_cut;
     }
     if (format.encoding == ListEncoding::bitmask)

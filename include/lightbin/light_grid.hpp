@@ -3,57 +3,107 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/names.hpp>
 #include <lightbin/result.hpp>
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
-/// Type of a light id.
-enum class Index : std::uint8_t {
-    u16,  ///< up to 65,536 lights, half the memory
-    u32,
+/// Bytes of a light id.
+enum class IdWidth : std::uint8_t {
+    u8 = 1,   ///< up to 256 lights; encode() makes them, a Binner does not
+    u16 = 2,  ///< up to 65,536 lights
+    u32 = 4,
 };
 
+constexpr const char* to_string(IdWidth width) {
+    return detail::name_at(width, {"?", "u8", "u16", "?", "u32"});
+}
+
 /// One tile's part of the light index list: `count` ids from `offset` on. 8 bytes, as a GPU's uvec2.
-struct Tile {
+struct ListRange {
     std::uint32_t offset, count;
+};
+
+namespace detail {
+using Tile = ListRange;
+}
+
+/// What became of the lights that a grid was made of. The others, lights - rejected - culled, have tiles in their
+/// footprints.
+struct LightCounts {
+    std::uint32_t lights = 0;
+    std::uint32_t rejected = 0;  ///< bad input, see Sphere
+    std::uint32_t culled = 0;    ///< out of the view
 };
 
 /// A finished light grid. It does not own its memory: see the call that returned it for how long that lives.
 template <class Id> class LightGrid {
 public:
-    LightGrid(int tiles_x, int tiles_y, std::span<const Tile> tiles, std::span<const Id> indices,
-              std::uint32_t rejected)
-        : tiles_(tiles), indices_(indices), tiles_x_(tiles_x), tiles_y_(tiles_y), rejected_(rejected) {}
+    LightGrid(int tiles_x, int tiles_y, std::span<const ListRange> ranges, std::span<const Id> ids,
+              const LightCounts& counts = {})
+        : ranges_(ranges), ids_(ids), tiles_x_(tiles_x), tiles_y_(tiles_y), counts_(counts) {}
 
     int tiles_x() const { return tiles_x_; }
     int tiles_y() const { return tiles_y_; }
 
-    /// tiles_x() * tiles_y() tiles, row-major; offsets ascend and leave no gap.
-    std::span<const Tile> tiles() const { return tiles_; }
+    /// The parts of ids() that are the tiles' lists: tiles_x() * tiles_y() of them, row-major. Offsets ascend and leave
+    /// no gap.
+    std::span<const ListRange> ranges() const { return ranges_; }
 
     /// The light index list. A light's id is its position in the caller's array; ids ascend within a tile.
-    std::span<const Id> indices() const { return indices_; }
+    std::span<const Id> ids() const { return ids_; }
 
     /// Returns the ids of the lights of tile (x, y), 0 <= x < tiles_x(), 0 <= y < tiles_y().
     std::span<const Id> lights_in(int x, int y) const {
         LIGHTBIN_ASSERT(x >= 0 && x < tiles_x_ && y >= 0 && y < tiles_y_);
-        const Tile tile = tiles_[static_cast<std::size_t>(y) * static_cast<std::size_t>(tiles_x_) +
-                                 static_cast<std::size_t>(x)];
-        return indices_.subspan(tile.offset, tile.count);
+        const ListRange range = ranges_[static_cast<std::size_t>(y) * static_cast<std::size_t>(tiles_x_) +
+                                        static_cast<std::size_t>(x)];
+        return ids_.subspan(range.offset, range.count);
     }
 
-    /// Lights that were skipped as bad input, see Sphere.
-    std::uint32_t rejected() const { return rejected_; }
+    const LightCounts& light_counts() const { return counts_; }
+
+    /// Copies ranges() and ids() to the beginning of the caller's memory, and returns the grid there, which is valid as
+    /// long as that memory. Only writes there, in order, so it may be a mapped GPU buffer. Errors: a buffer is smaller
+    /// than ranges() or ids(); then nothing is written.
+    Result<LightGrid> copy_to(std::span<ListRange> ranges, std::span<Id> ids) const {
+        if (ranges.size() < ranges_.size())
+            return Error{ErrorCode::range_buffer_too_small, ranges_.size(), ranges.size()};
+        if (ids.size() < ids_.size()) return Error{ErrorCode::id_buffer_too_small, ids_.size(), ids.size()};
+        std::ranges::copy(ranges_, ranges.begin());
+        std::ranges::copy(ids_, ids.begin());
+        return LightGrid(tiles_x_, tiles_y_, ranges.first(ranges_.size()), ids.first(ids_.size()), counts_);
+    }
 
 private:
-    std::span<const Tile> tiles_;
-    std::span<const Id> indices_;
+    std::span<const ListRange> ranges_;
+    std::span<const Id> ids_;
     int tiles_x_, tiles_y_;
-    std::uint32_t rejected_;
+    LightCounts counts_;
 };
+
+/// How long a grid's lists are.
+struct ListLengths {
+    std::uint32_t longest = 0;
+    /// [0]: tiles without lights; [k]: tiles with 2^(k-1) to 2^k - 1 lights.
+    std::array<std::uint64_t, 33> histogram = {};
+};
+
+/// Returns the lengths of a grid's lists; a pass over its tiles.
+template <class Id> ListLengths list_lengths(const LightGrid<Id>& grid) {
+    ListLengths lengths;
+    for (const ListRange range : grid.ranges()) {
+        lengths.longest = (std::max)(lengths.longest, range.count);
+        ++lengths.histogram[static_cast<std::size_t>(std::bit_width(range.count))];
+    }
+    return lengths;
+}
 
 }  // namespace lightbin

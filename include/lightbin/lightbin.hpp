@@ -12,19 +12,25 @@
 //
 // Step by step
 //   1. View::from_projection(projection, {width, height}, {.tile_size = 32, ...})              view.hpp
-//        Once a camera change. Any perspective or orthographic matrix; a Result, as a matrix may be refused
-//        by name.
+//        Whenever the camera or the window's size changes. Any perspective or orthographic matrix; a Result,
+//        as a matrix may be refused by name. It also tells the pixel and the tile of a point.
 //   2. Optionally reduce_depth(view, {.depth = pixels}, {.min = min, .max = max}), or Z       z_bounds.hpp
 //      bounds of your own
-//   3. Binner<Options{...}> binner; once. Then each frame  binner.bin(view, lights[, bounds])  binner.hpp
+//   3. Binner<Options{...}> binner; once. Then each frame                                      binner.hpp
+//        binner.bin(view, lights), with a depth test binner.bin(view, lights, {.bounds = *bounds}); and your
+//        threads, if you lend some, last.
 //        lights: vec4 array or Sphere array in view space, or view_space(yours, to_sphere),
 //        or world_space(yours, view_matrix[, to_sphere])                                       lights.hpp
-//        To write to your own buffers instead: binner.count(...), then binner.emit(tiles, indices).
-//   4. Upload grid->tiles() and grid->indices().                                               light_grid.hpp
-//   5. Put shader_snippet({...})->text in your shader, and bind what its bindings list.        shader.hpp
-//        shader.md has it step by step. Narrow ids, sentinel lists, bitmasks: encode()         encode.hpp
-//        The same as stages 2 and 3 on the GPU, not included here                         shader_build.hpp
-// Which tile size and options? advise(view, lights, costs[, bounds]) measures them, not included   advise.hpp
+//   4. Upload grid->ranges() and grid->ids(), or have grid->copy_to(ranges, ids)               light_grid.hpp
+//      write them to buffers of yours.
+//   5. #include <lightbin/shader.hpp>. Put shader_snippet({...})->text in your shader, and bind what its
+//      bindings list. shader.md has it step by step.
+//
+// This header includes steps 1 to 4. What else there is, one include each:
+//   shader.hpp        the shader text that reads the lists, in GLSL and HLSL
+//   encode.hpp        the lists in other forms: 8-bit ids, sentinel-terminated lists, bitmasks
+//   shader_build.hpp  shaders that do the same as steps 2 and 3 on the GPU
+//   advise.hpp        which tile size and options? advise(view, lights, costs[, bounds]) measures them
 //
 // Building. No compiler flags are needed. With gcc or clang there are kernels for SSE2, AVX2 and AVX-512 on
 // x86-64, of which the machine's own is picked at run time, and for NEON on 64-bit ARM; elsewhere the scalar
@@ -33,18 +39,20 @@
 // -funsafe-math-optimizations alone: don't. So is x87 arithmetic, which 32-bit compilers may default to.
 //
 // Files of one program may be compiled for different processors. They share none of this library's functions: its names
-// lie in an inline namespace that says what the file is compiled for. So its types can't be handed from one such file to
-// another (a linker error says so), nor be declared without its headers.
+// lie in an inline namespace that says what the file is compiled for. So its types can't be handed from one such file
+// to another (a linker error says so), nor be declared without its headers.
 //
 // Sources: Olsson and Assarsson, "Tiled Shading", JGT 15(4), 2011. Billeter, Olsson and Assarsson, "Tiled
 // Forward Shading", GPU Pro 4, 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.
 #pragma once
 
 #include <lightbin/binner.hpp>
+#include <lightbin/isa.hpp>
+#include <lightbin/light_grid.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/parallel.hpp>
-#include <lightbin/shader.hpp>
+#include <lightbin/result.hpp>
 #include <lightbin/version.hpp>
 #include <lightbin/view.hpp>
 #include <lightbin/z_bounds.hpp>

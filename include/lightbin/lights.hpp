@@ -20,7 +20,8 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
-/// A light's sphere of influence: centre and radius (the papers' range).
+/// A light's sphere of influence: centre and radius (the papers' range), in the units of the space that the lights are
+/// given in. That is the space that the projection matrix takes, unless they go through world_space().
 ///
 /// Radius 0 is a point; radius +inf covers everything. A light with a NaN or infinite centre, or a NaN or
 /// negative radius, is bad input: it is skipped and counted, and the others are right.

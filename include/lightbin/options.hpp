@@ -3,7 +3,8 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/platform.hpp>
+#include <lightbin/detail/names.hpp>
+#include <lightbin/isa.hpp>
 #include <lightbin/light_grid.hpp>
 
 #include <cstdint>
@@ -24,14 +25,21 @@ enum class DepthTest : std::uint8_t {
     split_box,  ///< the same with two boxes, before and behind the tile's gap (see ZBounds)
 };
 
+constexpr const char* to_string(Footprint footprint) {
+    return detail::name_at(footprint, {"rectangle", "silhouette"});
+}
+
+constexpr const char* to_string(DepthTest test) {
+    return detail::name_at(test, {"none", "interval", "box", "split_box"});
+}
+
 /// What a Binner does.
 struct Options {
-    Index index = Index::u32;
+    IdWidth ids = IdWidth::u32;  ///< u16 or u32
     Footprint footprint = Footprint::rectangle;
     DepthTest depth_test = DepthTest::none;
-    bool statistics = false;  ///< keep Statistics; costs a pass over the tiles
     /// Use no wider instructions than these, even where the machine has them. The result is the same.
-    Isa isa = detail::compiled_isa;
+    Isa isa = compiled_isa;
 };
 
 }  // namespace lightbin

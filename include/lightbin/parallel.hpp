@@ -60,8 +60,8 @@ public:
 
     std::size_t workers() const { return workers_; }
 
-    /// Whether work that takes one thread so long is worth sharing: the gain is twice what the start costs.
-    bool worth(double ns) const {
+    /// Whether sharing work pays off that takes one thread so long: the gain is at least twice what the start costs.
+    bool pays_off(double ns) const {
         const double workers = static_cast<double>(workers_);
         return workers_ > 1 && ns * (workers - 1) >= 2 * start_ns_ * workers;
     }

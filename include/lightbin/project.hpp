@@ -55,7 +55,7 @@ public:
                  const Parallel& parallel, bool wake = false) {
         lights_ = lights.array.size();
         const double ns_a_light = isa == Isa::avx512 ? 2 : isa == Isa::avx2 ? 3 : 7;  // in view
-        const bool share = wake || parallel.worth(static_cast<double>(lights_) * ns_a_light);
+        const bool share = wake || parallel.pays_off(static_cast<double>(lights_) * ns_a_light);
         const Parallel threads = share ? parallel : Parallel();
         // Some parts a worker, so that a late one costs little; as many where they are not shared, as more take
         // more room; one where 32 bits might not number their places.
@@ -91,7 +91,7 @@ public:
             const detail::FootprintArrays out = arrays_.from(place);
             detail::ProjectCounts sum;
             const auto consume = [&](const Sphere* spheres, std::size_t first_id, std::size_t count) {
-                kernel(view.camera(), spheres, static_cast<std::uint32_t>(count),
+                kernel(detail::camera_of(view), spheres, static_cast<std::uint32_t>(count),
                        static_cast<std::uint32_t>(first_id), out, sum);
             };
             if (!move) {
@@ -146,7 +146,8 @@ private:
             place += rows + padding;
         }
         threads.run(run_count_, [&](std::size_t part) {
-            kernel(view.camera(), arrays_, runs_.data()[part], spans, part_counts_.data()[part].rows);
+            kernel(detail::camera_of(view), arrays_, runs_.data()[part], spans,
+                   part_counts_.data()[part].rows);
         });
     }
 

@@ -4,8 +4,10 @@
 
 #include <lightbin/detail/flavour.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -35,9 +37,8 @@ enum class ErrorCode : std::uint8_t {
     // light grid
     too_many_entries,
     too_many_list_places,
-    tile_buffer_too_small,
-    index_buffer_too_small,
-    nothing_counted,
+    range_buffer_too_small,
+    id_buffer_too_small,
     // Z bounds
     z_bounds_too_small,
     depth_buffer_too_small,
@@ -63,121 +64,122 @@ enum class ErrorCode : std::uint8_t {
     not_a_prefix,
 };
 
+/// Returns one sentence for a person, in which {needed}, {given} (the same, with a sign) and {available} stand for the
+/// numbers of an Error.
+constexpr const char* to_string(ErrorCode code) {
+    switch (code) {
+    case ErrorCode::matrix_not_finite:
+        return "the projection matrix has a NaN or infinite entry";
+    case ErrorCode::not_a_projection:
+        return "the matrix is neither a perspective nor an orthographic projection: its w row must read z "
+               "alone, or be a positive constant alone";
+    case ErrorCode::eye_not_at_origin:
+        return "the perspective matrix does not have its eye at the origin of view space: pass the "
+               "projection alone, not projection times view (lights in world space go through world_space())";
+    case ErrorCode::image_axes_rotated:
+        return "the projection rotates or shears the image (its x row reads y, its y row reads x, or an "
+               "orthographic row reads z): pass the projection without that rotation and apply it to the "
+               "pixels";
+    case ErrorCode::oblique_depth:
+        return "the projection has an oblique near plane (its z row reads x or y): pass the projection "
+               "without it; its tiles are the same and its near plane misses no light";
+    case ErrorCode::no_near_plane:
+        return "the projection has no near and far plane in front of the eye: check ViewOptions::clip_depth "
+               "and the matrix's z row";
+    case ErrorCode::degenerate_scale:
+        return "the projection scales x or y by zero, or by more than 2^80 or less than 2^-80 tiles a unit";
+    case ErrorCode::viewport_out_of_range:
+        return "the viewport's sides must be 0 to {available} pixels, and one is {given}";
+    case ErrorCode::tile_size_out_of_range:
+        return "the tile size must be at least 1 pixel, and is {given}";
+    case ErrorCode::view_matrix_not_affine:
+        return "the world-to-view matrix is not affine: its entries must be finite and its last row 0 0 0 1";
+    case ErrorCode::too_many_lights:
+        return "{needed} lights are too many for the id type, which counts to {available}: use wider "
+               "Options::ids or fewer lights";
+    case ErrorCode::too_many_entries:
+        return "the light index list would need {needed} entries, and 32-bit offsets reach {available}: use "
+               "larger tiles, or Z bounds";
+    case ErrorCode::too_many_list_places:
+        return "the lights' rectangles may meet blocks of 8x8 tiles {needed} times, and binning counts to "
+               "{available}: use larger tiles or fewer lights";
+    case ErrorCode::range_buffer_too_small:
+        return "the buffer for list ranges holds {available} and {needed} are needed";
+    case ErrorCode::id_buffer_too_small:
+        return "the buffer for light ids holds {available} and {needed} are needed";
+    case ErrorCode::z_bounds_too_small:
+        return "a Z bounds buffer holds {available} tiles and {needed} are needed";
+    case ErrorCode::depth_buffer_too_small:
+        return "the depth buffer holds {available} samples and {needed} are needed";
+    case ErrorCode::samples_out_of_range:
+        return "a depth buffer has 1 to 8 samples a pixel, not {given}";
+    case ErrorCode::row_pitch_too_small:
+        return "the depth buffer's row pitch is {available} samples and a row of pixels has {needed}";
+    case ErrorCode::no_transparent_max:
+        return "the Z bounds leave out the background, before which transparent geometry is seen too: have "
+               "reduce_depth() write ZBoundsBuffers::transparent_max, or count the background";
+    case ErrorCode::ids_too_narrow:
+        return "the lists' format numbers {available} lights and {needed} are needed: use wider ids, or a "
+               "larger ListFormat::max_lights";
+    case ErrorCode::list_buffer_too_small:
+        return "the buffer for the encoded lists holds {available} bytes and {needed} are needed";
+    case ErrorCode::capacity_unknown:
+        return "sentinel lists need ListFormat::capacity, the lights a tile can hold";
+    case ErrorCode::max_lights_unknown:
+        return "bitmasks need ListFormat::max_lights, which fixes the words a tile";
+    case ErrorCode::block_size_unknown:
+        return "uniform blocks have a fixed size: ShaderOptions::max_tiles must be given, and max_entries "
+               "where the light index list lies in one";
+    case ErrorCode::uniform_block_too_small:
+        return "a uniform block would need {needed} bytes and holds {available}: use larger tiles, narrower "
+               "ids or another storage, or raise uniform_block_bytes to what the device has";
+    case ErrorCode::no_storage_buffers:
+        return "GLSL 3.30 and GLSL ES 3.00 have no storage buffers and no compute shaders: read the lists "
+               "from texel_buffer (not ES), texture_2d or uniform_block";
+    case ErrorCode::no_texel_buffers:
+        return "GLSL ES 3.00 and 3.10 have no buffer textures: use texture_2d, uniform_block or (ES 3.10) "
+               "storage_buffer";
+    case ErrorCode::no_byte_address_buffers:
+        return "byte_address buffers are HLSL's: use storage_buffer";
+    case ErrorCode::no_sets:
+        return "this language has no descriptor sets or register spaces: ShaderSlot::set must be 0 and is "
+               "{needed}";
+    case ErrorCode::no_push_constants:
+        return "push constants are Vulkan GLSL's: set ShaderOptions::push_constants to false";
+    case ErrorCode::no_multisample_textures:
+        return "GLSL ES 3.00 has no multisample textures: resolve the depth buffer first";
+    case ErrorCode::no_split_box_shader:
+        return "build_shader has the depth tests none, interval and box, not split_box";
+    case ErrorCode::texture_width_out_of_range:
+        return "ShaderOptions::texture_width must be 1 to {available} texels, and is {needed}";
+    case ErrorCode::bindings_overlap:
+        return "two resources of the shader are bound to binding {needed} of set {available}";
+    case ErrorCode::not_a_prefix:
+        return "ShaderOptions::prefix must begin a name in every language: letters, digits and single "
+               "underscores, no digit first, not gl_";
+    }
+    return "unknown error";
+}
+
 /// What went wrong, and where a size was the trouble: how much is needed and how much there was.
 struct Error {
     ErrorCode code;
     std::uint64_t needed = 0;
     std::uint64_t available = 0;
 
-    /// Returns one sentence for a log or a person, with the numbers in it. Allocates; meant for the error
-    /// path only.
+    /// Returns the sentence of to_string() with the numbers in it. Allocates; meant for the error path only.
     std::string message() const {
-        const std::string need = std::to_string(needed), have = std::to_string(available);
-        switch (code) {
-        case ErrorCode::matrix_not_finite:
-            return "the projection matrix has a NaN or infinite entry";
-        case ErrorCode::not_a_projection:
-            return "the matrix is neither a perspective nor an orthographic projection: its w row must read "
-                   "z alone, or be a positive constant alone";
-        case ErrorCode::eye_not_at_origin:
-            return "the perspective matrix does not have its eye at the origin of view space: pass the "
-                   "projection alone, not projection times view (lights in world space go through "
-                   "world_space())";
-        case ErrorCode::image_axes_rotated:
-            return "the projection rotates or shears the image (its x row reads y, its y row reads x, or an "
-                   "orthographic row reads z): pass the projection without that rotation and apply it to the "
-                   "pixels";
-        case ErrorCode::oblique_depth:
-            return "the projection has an oblique near plane (its z row reads x or y): pass the projection "
-                   "without it; its tiles are the same and its near plane misses no light";
-        case ErrorCode::no_near_plane:
-            return "the projection has no near and far plane in front of the eye: check "
-                   "ViewOptions::clip_depth and the matrix's z row";
-        case ErrorCode::degenerate_scale:
-            return "the projection scales x or y by zero, or by more than 2^80 or less than 2^-80 tiles a "
-                   "unit";
-        case ErrorCode::viewport_out_of_range:
-            return "the viewport's sides must be 0 to " + have + " pixels, and one is " + signed_text(needed);
-        case ErrorCode::tile_size_out_of_range:
-            return "the tile size must be at least 1 pixel, and is " + signed_text(needed);
-        case ErrorCode::view_matrix_not_affine:
-            return "the world-to-view matrix is not affine: its entries must be finite and its last row 0 0 "
-                   "0 1";
-        case ErrorCode::too_many_lights:
-            return need + " lights are too many for the id type, which counts to " + have +
-                   ": use a wider Options::index or fewer lights";
-        case ErrorCode::too_many_entries:
-            return "the light index list would need " + need + " entries, and 32-bit offsets reach " + have +
-                   ": use larger tiles, or Z bounds";
-        case ErrorCode::too_many_list_places:
-            return "the lights' rectangles may meet blocks of 8x8 tiles " + need +
-                   " times, and binning counts to " + have + ": use larger tiles or fewer lights";
-        case ErrorCode::tile_buffer_too_small:
-            return "the tile buffer holds " + have + " tiles and " + need + " are needed";
-        case ErrorCode::index_buffer_too_small:
-            return "the index buffer holds " + have + " light ids and " + need + " are needed";
-        case ErrorCode::nothing_counted:
-            return "emit() has nothing to write: call count() before each emit(), and nothing else of the Binner in "
-                   "between";
-        case ErrorCode::z_bounds_too_small:
-            return "a Z bounds buffer holds " + have + " tiles and " + need + " are needed";
-        case ErrorCode::depth_buffer_too_small:
-            return "the depth buffer holds " + have + " samples and " + need + " are needed";
-        case ErrorCode::samples_out_of_range:
-            return "a depth buffer has 1 to 8 samples a pixel, not " + signed_text(needed);
-        case ErrorCode::row_pitch_too_small:
-            return "the depth buffer's row pitch is " + have + " samples and a row of pixels has " + need;
-        case ErrorCode::no_transparent_max:
-            return "the Z bounds leave out the background, before which transparent geometry is seen too: have "
-                   "reduce_depth() write ZBoundsBuffers::transparent_max, or count the background";
-        case ErrorCode::ids_too_narrow:
-            return "the lists' format numbers " + have + " lights and " + need +
-                   " are needed: use wider ids, or a larger ListFormat::max_lights";
-        case ErrorCode::list_buffer_too_small:
-            return "the buffer for the encoded lists holds " + have + " bytes and " + need + " are needed";
-        case ErrorCode::capacity_unknown:
-            return "sentinel lists need ListFormat::capacity, the lights a tile can hold";
-        case ErrorCode::max_lights_unknown:
-            return "bitmasks need ListFormat::max_lights, which fixes the words a tile";
-        case ErrorCode::block_size_unknown:
-            return "uniform blocks have a fixed size: ShaderOptions::max_tiles must be given, and "
-                   "max_entries where the light index list lies in one";
-        case ErrorCode::uniform_block_too_small:
-            return "a uniform block would need " + need + " bytes and holds " + have +
-                   ": use larger tiles, narrower ids or another storage, or raise uniform_block_bytes to "
-                   "what the device has";
-        case ErrorCode::no_storage_buffers:
-            return "GLSL 3.30 and GLSL ES 3.00 have no storage buffers and no compute shaders: read the "
-                   "lists from texel_buffer (not ES), texture_2d or uniform_block";
-        case ErrorCode::no_texel_buffers:
-            return "GLSL ES 3.00 and 3.10 have no buffer textures: use texture_2d, uniform_block or (ES "
-                   "3.10) storage_buffer";
-        case ErrorCode::no_byte_address_buffers:
-            return "byte_address buffers are HLSL's: use storage_buffer";
-        case ErrorCode::no_sets:
-            return "this language has no descriptor sets or register spaces: ShaderSlot::set must be 0 and "
-                   "is " +
-                   need;
-        case ErrorCode::no_push_constants:
-            return "push constants are Vulkan GLSL's: set ShaderOptions::push_constants to false";
-        case ErrorCode::no_multisample_textures:
-            return "GLSL ES 3.00 has no multisample textures: resolve the depth buffer first";
-        case ErrorCode::no_split_box_shader:
-            return "build_shader has the depth tests none, interval and box, not split_box";
-        case ErrorCode::texture_width_out_of_range:
-            return "ShaderOptions::texture_width must be 1 to " + have + " texels, and is " + need;
-        case ErrorCode::bindings_overlap:
-            return "two resources of the shader are bound to binding " + need + " of set " + have;
-        case ErrorCode::not_a_prefix:
-            return "ShaderOptions::prefix must begin a name in every language: letters, digits and single "
-                   "underscores, no digit first, not gl_";
-        }
-        return "unknown error";
+        std::string text = to_string(code);
+        fill_in(text, "{needed}", std::to_string(needed));
+        fill_in(text, "{given}", std::to_string(static_cast<std::int64_t>(needed)));
+        fill_in(text, "{available}", std::to_string(available));
+        return text;
     }
 
 private:
-    static std::string signed_text(std::uint64_t value) {
-        return std::to_string(static_cast<std::int64_t>(value));
+    static void fill_in(std::string& text, std::string_view name, const std::string& number) {
+        if (const std::size_t at = text.find(name); at != std::string::npos)
+            text.replace(at, name.size(), number);
     }
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/names.hpp>
 #include <lightbin/encode.hpp>
 #include <lightbin/shader_text.hpp>
 #include <lightbin/view.hpp>
@@ -25,11 +26,15 @@ enum class ListStorage : std::uint8_t {
     byte_address,    ///< HLSL: ByteAddressBuffer
 };
 
+constexpr const char* to_string(ListStorage value) {
+    return detail::name_at(value,
+                           {"storage_buffer", "texel_buffer", "texture_2d", "uniform_block", "byte_address"});
+}
+
 struct ShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     ListStorage storage = ListStorage::storage_buffer;
-    /// What the lists hold: as given to encode(), or where the Binner's own lists are read, their ids (IdWidth::u16
-    /// with Index::u16).
+    /// What the lists hold: as given to encode(), or where the Binner's own lists are read, {.ids = Options::ids}.
     ListFormat format = {};
     /// offset_count: the table of tiles in a uniform block, whatever `storage` is for the ids.
     bool tiles_in_uniform_block = false;
@@ -59,7 +64,7 @@ struct ShaderGrid {
     std::int32_t corner_x, corner_y;                  ///< corner
     std::int32_t unused[2] = {};
 };
-static_assert(sizeof(ShaderGrid) == 32 && sizeof(Tile) == 8);  // so there is no padding
+static_assert(sizeof(ShaderGrid) == 32 && sizeof(ListRange) == 8);  // so there is no padding
 
 /// Returns the constants of a view. The corner is the window pixel at the viewport's first column and row, as
 /// the shader counts pixels; it is read with viewport_corner only.

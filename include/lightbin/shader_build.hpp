@@ -5,6 +5,7 @@
 
 #include <lightbin/detail/cell_boxes.hpp>
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/names.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/project.hpp>
@@ -23,6 +24,10 @@
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 enum class ShaderStage : std::uint8_t { compute, fragment };
+
+constexpr const char* to_string(ShaderStage value) {
+    return detail::name_at(value, {"compute", "fragment"});
+}
 
 /// What reduce_shader() makes.
 struct ReduceShaderOptions {
@@ -71,6 +76,10 @@ enum class BuildPass : std::uint8_t {
     offsets,  ///< one group: where each list begins, and the length of the light index list
     fill,     ///< tiles_x * tiles_y groups: the lists
 };
+
+constexpr const char* to_string(BuildPass value) {
+    return detail::name_at(value, {"count", "offsets", "fill"});
+}
 
 /// What build_shader() makes. All passes take the same but for `pass`.
 struct BuildShaderOptions {
@@ -284,12 +293,13 @@ Result<std::vector<ShaderFootprint>> shader_footprints(const View& view, const L
     const auto& source = detail::as_lights(lights);
     if (const auto error = detail::refuse(source)) return *error;
     Footprints<Footprint::rectangle, true> footprints;
-    footprints.project(detail::machine_isa(detail::compiled_isa), view, source, Parallel{});
+    footprints.project(machine_isa(), view, source, Parallel{});
     const detail::FootprintArrays& in = footprints.arrays();
+    const detail::Camera& camera = detail::camera_of(view);
     std::vector<ShaderFootprint> out;
     for (std::uint32_t i = 0; i < footprints.visible(); ++i) {
         const Sphere& sphere = in.spheres[in.ids[i]];
-        const detail::TestedLight light(view.camera(), sphere);
+        const detail::TestedLight light(camera, sphere);
         out.push_back({in.ids[i], in.x0[i], in.y0[i], in.x1[i], in.y1[i], light.reach2, light.x, light.y,
                        light.z, sphere.radius});
     }
@@ -304,7 +314,8 @@ struct ShaderEdges {
 /// Returns the sides of all columns and then of all rows: what build_shader() reads for box.
 inline std::vector<ShaderEdges> shader_edges(const View& view) {
     std::vector<ShaderEdges> edges;
-    for (const detail::ImageAxis* axis : {&view.camera().x, &view.camera().y})
+    const detail::Camera& camera = detail::camera_of(view);
+    for (const detail::ImageAxis* axis : {&camera.x, &camera.y})
         for (int tile = 0; tile < axis->tiles; ++tile) {
             ShaderEdges sides;
             detail::tile_edges(*axis, tile, sides.low, sides.high);
@@ -315,7 +326,7 @@ inline std::vector<ShaderEdges> shader_edges(const View& view) {
 
 /// Returns one of the shaders that build the grid of the footprints, a group of 64 threads a tile testing
 /// every light, or an Error that names the limit that the options break. After the three passes, with a
-/// barrier between them, `tiles` and `lists` hold what Binner's grid has in tiles() and indices() (32-bit
+/// barrier between them, `tiles` and `lists` hold what Binner's grid has in ranges() and ids() (32-bit
 /// ids), and `total` the entries that there are. Where `room` is less than that, the tiles from the one that
 /// does not fit on have shorter lists or none: build again with more room.
 ///

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/names.hpp>
 #include <lightbin/result.hpp>
 
 #include <cctype>
@@ -25,6 +26,11 @@ enum class ShaderLanguage : std::uint8_t {
     hlsl_5_1,     ///< shader models 5.1 and 6.x: Direct3D 12, and Vulkan by DXC
 };
 
+constexpr const char* to_string(ShaderLanguage value) {
+    return detail::name_at(
+        value, {"glsl_330", "glsl_430", "glsl_vulkan", "essl_300", "essl_310", "hlsl_5_0", "hlsl_5_1"});
+}
+
 /// What a name in the text is bound to.
 enum class ShaderResource : std::uint8_t {
     uniform_vector,   ///< loose uniforms `grid` (uvec4) and `corner` (ivec2)
@@ -37,8 +43,17 @@ enum class ShaderResource : std::uint8_t {
     writable_buffer,  ///< storage buffer that is written; HLSL: RWStructuredBuffer, register u
 };
 
+constexpr const char* to_string(ShaderResource value) {
+    return detail::name_at(value, {"uniform_vector", "uniform_block", "push_constants", "storage_buffer",
+                                   "byte_address", "texel_buffer", "texture_2d", "writable_buffer"});
+}
+
 /// Texel of a texture or buffer texture: GL_R8UI, VK_FORMAT_R8_UINT, DXGI_FORMAT_R8_UINT and so on.
 enum class TexelFormat : std::uint8_t { none, r8ui, r16ui, r32ui, rg32ui, r32f };
+
+constexpr const char* to_string(TexelFormat value) {
+    return detail::name_at(value, {"none", "r8ui", "r16ui", "r32ui", "rg32ui", "r32f"});
+}
 
 /// Where a resource is bound. GLSL: binding and set; HLSL: register number and space. OpenGL 3.3 and ES 3.0
 /// have no bindings in the text: set the sampler or block by its name.

@@ -2,8 +2,10 @@
 // Stage 1: projection matrix + viewport + tile size -> the few constants that all other stages use.
 #pragma once
 
+#include <lightbin/detail/camera.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/matrix.hpp>
+#include <lightbin/detail/names.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/result.hpp>
 
@@ -11,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 
 #include <lightbin/detail/warnings_off.inl>
 
@@ -31,6 +34,14 @@ enum class WindowOrigin : std::uint8_t {
     upper_left,  ///< Direct3D, Metal, WebGPU
 };
 
+constexpr const char* to_string(ClipDepth depth) {
+    return detail::name_at(depth, {"minus_one_to_one", "zero_to_one"});
+}
+
+constexpr const char* to_string(WindowOrigin origin) {
+    return detail::name_at(origin, {"lower_left", "upper_left"});
+}
+
 /// Width and height in pixels.
 struct Extent {
     int width = 0;
@@ -49,38 +60,21 @@ struct DepthInterval {
     float min, max;
 };
 
-namespace detail {
-
-/// One image axis of a camera, oriented so that the tile index grows with the coordinate. A point with
-/// coordinate c (after the sign) and view depth d lands at  scale * (c / d) + offset  tiles (perspective)  or
-/// scale * c + offset (orthographic). Off-centre, jittered, reversed, flipped cameras differ in these numbers
-/// only.
-struct ImageAxis {
-    double scale = 0;  ///< > 0
-    double offset = 0;
-    float sign = 1;     ///< of the view-space coordinate
-    float scale_f = 0;  ///< scale, offset rounded to nearest
-    float offset_f = 0;
-    float margin = 0;  ///< bound on the error of a float tile coordinate inside the viewport, in tiles
-    float limit = 0;   ///< the viewport's far edge in tiles, rounded up
-    float inside = 0;  ///< a coordinate in the last tile
-    /// A plane through the eye with the whole viewport on one side, and so its mirror image: points at depth
-    /// d with  side * |c| + side_z * d > 0  are out of view. Of unit length; 0 if there is no such plane.
-    float side = 0, side_z = 0;
-    int tiles = 0;
+/// A point of view space, the space that the projection matrix takes.
+struct ViewPoint {
+    double x, y, z;
 };
 
-/// Everything the projection stage needs to know of a view.
-struct Camera {
-    ImageAxis x, y;
-    float z_sign = 1;      ///< view depth = z_sign * z
-    float near_depth = 0;  ///< rounded down
-    float far_depth = 0;   ///< rounded up, may be +inf
-    float near_fast = 0;   ///< spheres beyond it are projected in float: near_depth, but at least 2^-40
-    bool orthographic = false;
+/// The same point as the image has it: pixels from the corner of the window origin, and view depth. Pixel
+/// (i, j) reaches from (i, j) to (i + 1, j + 1), and its centre is (i + 0.5, j + 0.5).
+struct ImagePoint {
+    double x, y, depth;
 };
 
-}  // namespace detail
+/// A tile's column and row.
+struct TilePosition {
+    int x, y;
+};
 
 /// A projection, a viewport and a tile size: what fixes the tile grid.
 ///
@@ -142,10 +136,35 @@ public:
         return static_cast<float>(clip_depth_ == ClipDepth::zero_to_one ? ndc : 0.5 * (ndc + 1));
     }
 
-    /// The constants in the form the projection stage reads.
-    const detail::Camera& camera() const { return camera_; }
+    /// Returns where in the image a point of view space lies, in the viewport or outside of it, up to the
+    /// rounding of doubles. A perspective image has no place for what is not in front of the eye: depth is 0 or
+    /// less then, and x and y are without meaning.
+    ImagePoint image_point(const ViewPoint& point) const {
+        const double depth = static_cast<double>(camera_.z_sign) * point.z,
+                     distance = camera_.orthographic ? 1 : depth;
+        return {pixels(camera_.x, point.x / distance), pixels(camera_.y, point.y / distance), depth};
+    }
+
+    /// Returns the point of view space that the image has at a place and view depth: the inverse of
+    /// image_point(). The viewport must not be empty.
+    ViewPoint view_point(const ImagePoint& point) const {
+        const double distance = camera_.orthographic ? 1 : point.depth;
+        return {slope(camera_.x, point.x) * distance, slope(camera_.y, point.y) * distance,
+                static_cast<double>(camera_.z_sign) * point.depth};
+    }
+
+    /// Returns the tile of a place in the image, for LightGrid::lights_in(). None where that lies outside of the
+    /// viewport, or not in front of a perspective view's eye.
+    std::optional<TilePosition> tile_at(const ImagePoint& point) const {
+        const bool inside =
+            point.x >= 0 && point.x < viewport_.width && point.y >= 0 && point.y < viewport_.height;
+        if (!inside || !(camera_.orthographic || point.depth > 0)) return std::nullopt;
+        return TilePosition{static_cast<int>(point.x) / tile_size_, static_cast<int>(point.y) / tile_size_};
+    }
 
 private:
+    friend const detail::Camera& detail::camera_of(const View& view);
+
     View() = default;  // from_projection() alone makes one
 
     static Result<View> from_rows(const double (&m)[4][4], Extent viewport, const ViewOptions& options) {
@@ -227,6 +246,14 @@ private:
         return axis.scale >= 0x1p-80 && axis.scale <= 0x1p80 && std::fabs(axis.offset) <= 0x1p80;
     }
 
+    /// The pixel coordinate of a slope (orthographic: of a view-space coordinate), and back.
+    double pixels(const detail::ImageAxis& axis, double slope) const {
+        return tile_size_ * (axis.scale * static_cast<double>(axis.sign) * slope + axis.offset);
+    }
+    double slope(const detail::ImageAxis& axis, double pixels) const {
+        return static_cast<double>(axis.sign) * (pixels / tile_size_ - axis.offset) / axis.scale;
+    }
+
     bool set_depth_range() {
         const DepthInterval range = view_depths(0, 1);
         camera_.near_depth = range.min;
@@ -268,6 +295,10 @@ private:
     bool reversed_ = false;
     double z_scale_ = 0, z_offset_ = 0, w_scale_ = 0, w_offset_ = 0;
 };
+
+inline const detail::Camera& detail::camera_of(const View& view) {
+    return view.camera_;
+}
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR
 

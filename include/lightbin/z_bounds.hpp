@@ -4,9 +4,10 @@
 
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/kernels.hpp>
-#include <lightbin/detail/platform.hpp>
+#include <lightbin/detail/names.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/detail/sizes.hpp>
+#include <lightbin/isa.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/view.hpp>
 
@@ -52,6 +53,10 @@ enum class DepthFormat : std::uint8_t {
     unorm24,  ///< one step of 1 / (2^24 - 1)
     unorm16,  ///< one step of 1 / (2^16 - 1)
 };
+
+constexpr const char* to_string(DepthFormat format) {
+    return detail::name_at(format, {"float32", "unorm24", "unorm16"});
+}
 
 /// A depth buffer in main memory: window depth in 0..1 (as glReadPixels gives it), the view's viewport only.
 struct DepthBuffer {
@@ -151,7 +156,7 @@ void reduce_tile_row(std::size_t columns, std::size_t tile_columns, Reduce reduc
 /// Source: Tiled Shading, section 3 (minimum and maximum depth a tile); Harada, "A 2.5D Culling for Forward+",
 /// SIGGRAPH Asia 2012 (depths with a gap).
 inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer, const ZBoundsBuffers& out,
-                                    Isa isa = detail::compiled_isa) {
+                                    Isa isa = compiled_isa) {
     const Extent viewport = view.viewport();
     const std::size_t tiles = view.tile_count();
     if (buffer.samples < 1 || buffer.samples > 8)
@@ -177,7 +182,7 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
         static_cast<std::size_t>((std::min)(view.tile_size(), (std::max)(viewport.width, viewport.height)));
     const std::size_t tiles_x = static_cast<std::size_t>(view.tiles_x());
     const std::size_t height = static_cast<std::size_t>(viewport.height);
-    isa = detail::machine_isa(isa);
+    isa = machine_isa(isa);
     for (std::size_t y = 0, first_tile = 0; first_tile < tiles; y += size, first_tile += tiles_x) {
         const auto rows = [&](std::size_t first, std::size_t columns) {
             return detail::DepthRows{buffer.depth.data() + y * pitch + first, pitch,

@@ -22,7 +22,7 @@ int main() {
         return 1;
     }
 
-    bool right = grid->tiles_x() == 2 && grid->tiles_y() == 2 && grid->tiles().size() == 4;
+    bool right = grid->tiles_x() == 2 && grid->tiles_y() == 2 && grid->ranges().size() == 4;
     for (int y = 0; right && y < 2; ++y)
         for (int x = 0; x < 2; ++x)
             right = right && grid->lights_in(x, y).size() == (x == 1 && y == 1 ? 1u : 0u);

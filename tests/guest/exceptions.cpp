@@ -93,36 +93,23 @@ struct Bytes {
     std::vector<std::uint32_t> words;
 
     void add(const auto& grid) {
-        for (const Tile tile : grid.tiles())
-            words.insert(words.end(), {tile.offset, tile.count});
-        words.insert(words.end(), grid.indices().begin(), grid.indices().end());
+        for (const ListRange range : grid.ranges())
+            words.insert(words.end(), {range.offset, range.count});
+        words.insert(words.end(), grid.ids().begin(), grid.ids().end());
     }
 };
 
-enum class Call { bin, count_and_emit, bin_transparency };
+enum class Call { bin, bin_transparency };
 
 template <Options options>
 void use(Binner<options>& binner, Call call, const Scene& scene, const Parallel& parallel, Bytes* bytes) {
     const auto lights = view_space(scene.lights, as_sphere);
-    const auto with_bounds = [&](const auto& member) {
-        if constexpr (options.depth_test == DepthTest::none)
-            return member();
-        else
-            return member(scene.bounds());
-    };
+    const auto inputs = inputs_for<options>(scene.bounds());
     if (call == Call::bin) {
-        const auto grid =
-            with_bounds([&](const auto&... z) { return binner.bin(scene.view, lights, z..., parallel); });
+        const auto grid = binner.bin(scene.view, lights, inputs, parallel);
         if (bytes != nullptr) bytes->add(*grid);
-    } else if (call == Call::count_and_emit) {
-        const auto size =
-            with_bounds([&](const auto&... z) { return binner.count(scene.view, lights, z..., parallel); });
-        if (bytes == nullptr) return;
-        std::vector<Tile> tiles(size->tiles);
-        std::vector<typename Binner<options>::Id> ids(size->indices);
-        bytes->add(*binner.emit(tiles, ids));
     } else if constexpr (options.depth_test != DepthTest::none) {
-        const auto grids = binner.bin_transparency(scene.view, lights, scene.bounds(), parallel);
+        const auto grids = binner.bin_transparency(scene.view, lights, inputs, parallel);
         if (bytes != nullptr) bytes->add(grids->opaque);
         if (bytes != nullptr) bytes->add(grids->transparent);
     }
@@ -163,9 +150,8 @@ template <Options options> struct Survival {
 
 template <Options options> void check_options(const Scene& scene, const Scene& less, bool all = true) {
     CAPTURE(static_cast<int>(options.isa));
-    for (const Call call : {Call::bin, Call::count_and_emit, Call::bin_transparency}) {
+    for (const Call call : {Call::bin, Call::bin_transparency}) {
         if (call == Call::bin_transparency && options.depth_test == DepthTest::none) continue;
-        if (call == Call::count_and_emit && !all) continue;
         for (const std::size_t workers : {1u, 3u}) {
             const Survival<options> survival{scene, less, call, Parallel(workers, run, 0)};
             CHECK(survival.template everywhere<std::bad_alloc>(allocations_left) > 10);
@@ -182,11 +168,10 @@ template <Isa isa> void check_tier() {
     check_options<Options{.isa = isa}>(scene, less);
     check_options<Options{.isa = isa}>(scattered, less, false);
     check_options<Options{.isa = isa}>(wide, less, false);
-    check_options<Options{
-        .index = Index::u16, .footprint = Footprint::silhouette, .statistics = true, .isa = isa}>(scene, less,
-                                                                                                  false);
+    check_options<Options{.ids = IdWidth::u16, .footprint = Footprint::silhouette, .isa = isa}>(scene, less,
+                                                                                                false);
     check_options<Options{.depth_test = DepthTest::box, .isa = isa}>(scene, less, false);
-    check_options<Options{.index = Index::u16,
+    check_options<Options{.ids = IdWidth::u16,
                           .footprint = Footprint::silhouette,
                           .depth_test = DepthTest::split_box,
                           .isa = isa}>(scene, less);
@@ -206,7 +191,7 @@ void check_function(const auto& text_of) {
 }  // namespace
 
 TEST_CASE("a Binner is as good as new after an exception: the machine's tier") {
-    check_tier<detail::compiled_isa>();
+    check_tier<compiled_isa>();
 }
 TEST_CASE("a Binner is as good as new after an exception: the scalar tier") {
     check_tier<Isa::scalar>();

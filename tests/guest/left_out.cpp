@@ -16,16 +16,15 @@ std::uint64_t bin(const lightbin::View& view, std::span<const lightbin::Sphere> 
         }
     };
     lightbin::Binner<lightbin::Options{.footprint = lightbin::Footprint::silhouette,
-                                       .depth_test = lightbin::DepthTest::split_box,
-                                       .statistics = true}>
+                                       .depth_test = lightbin::DepthTest::split_box}>
         binner;
-    const auto grid = binner.bin(view, lights, bounds, lightbin::Parallel(4, loop));
-    return grid ? grid->indices().size() + binner.statistics().longest_list : 0;
+    const auto grid = binner.bin(view, lights, {.bounds = bounds}, lightbin::Parallel(4, loop));
+    return grid ? grid->ids().size() : 0;
 #else
     static_cast<void>(bounds);
     static_cast<void>(run);
     lightbin::Binner<> binner;
     const auto grid = binner.bin(view, lights);
-    return grid ? grid->indices().size() : 0;
+    return grid ? grid->ids().size() : 0;
 #endif
 }

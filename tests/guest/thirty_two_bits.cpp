@@ -27,15 +27,12 @@ template <Options options> void check(const View& view, std::size_t count, const
     const ZBounds bounds{z, z, {}, {}};
     Binner<options> binner;
     const auto bin = [&](const View& of, const auto& some) {
-        if constexpr (options.depth_test == DepthTest::none)
-            return binner.bin(of, some, parallel);
-        else
-            return binner.bin(of, some, bounds, parallel);
+        return binner.bin(of, some, inputs_for<options>(bounds), parallel);
     };
     CHECK_THROWS_AS((void)bin(view, lights), const std::bad_alloc&);
     const auto grid = bin(view_of({5, 3}), std::vector<Sphere>(7, lights[0]));
     REQUIRE(grid);
-    CHECK(grid->indices().size() == 5 * 3 * 7);
+    CHECK(grid->ids().size() == 5 * 3 * 7);
 }
 
 }  // namespace
@@ -51,6 +48,6 @@ TEST_CASE("2^32 - 1 entries, the most that offsets reach, and what kernels write
         check<Options{}>(view, 65537, parallel);
         check<Options{.footprint = Footprint::silhouette}>(view, 65537, parallel);
         check<Options{.depth_test = DepthTest::box}>(view, 65537, parallel);
-        check<Options{.index = Index::u16}>(view, 65536, parallel);
+        check<Options{.ids = IdWidth::u16}>(view, 65536, parallel);
     }
 }

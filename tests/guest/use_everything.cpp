@@ -37,12 +37,14 @@ struct Hash {
     template <class Id> void add(const LightGrid<Id>& grid) {
         add(static_cast<std::uint64_t>(grid.tiles_x()));
         add(static_cast<std::uint64_t>(grid.tiles_y()));
-        add(grid.rejected());
-        for (const Tile& tile : grid.tiles()) {
-            add(tile.offset);
-            add(tile.count);
+        add(grid.light_counts().lights);
+        add(grid.light_counts().rejected);
+        add(grid.light_counts().culled);
+        for (const ListRange range : grid.ranges()) {
+            add(range.offset);
+            add(range.count);
         }
-        for (const Id id : grid.indices())
+        for (const Id id : grid.ids())
             add(id);
         for (const Id id : grid.lights_in(0, 0))
             add(id);
@@ -59,42 +61,29 @@ template <Options options>
 void use_binner(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
     Binner<options> binner;
     using Id = typename Binner<options>::Id;
-    const auto emit = [&](const GridSize& size) {
-        std::vector<Tile> tiles(size.tiles);
-        std::vector<Id> indices(size.indices);
-        hash.add(value_of(binner.emit(tiles, indices)));
-    };
-
+    const auto grid = value_of(binner.bin(view, lights, inputs_for<options>(bounds)));
+    std::vector<ListRange> ranges(grid.ranges().size());
+    std::vector<Id> ids(grid.ids().size());
+    hash.add(value_of(grid.copy_to(ranges, ids)));
+    const ListLengths lengths = list_lengths(grid);
+    hash.add(lengths.longest);
+    for (const std::uint64_t tiles : lengths.histogram)
+        hash.add(tiles);
     if constexpr (options.depth_test == DepthTest::none) {
         hash.add(value_of(binner.bin(view, lights)));
-        emit(value_of(binner.count(view, lights)));
+        hash.add(value_of(binner.bin(view, lights, {})));
     } else {
-        hash.add(value_of(binner.bin(view, lights, bounds)));
-        emit(value_of(binner.count(view, lights, bounds)));
-        const auto grids = value_of(binner.bin_transparency(view, lights, bounds));
+        hash.add(value_of(binner.bin(view, lights, {.bounds = bounds})));
+        const auto grids = value_of(binner.bin_transparency(view, lights, {.bounds = bounds}));
         hash.add(grids.opaque);
         hash.add(grids.transparent);
-    }
-    if constexpr (options.statistics) {
-        const Statistics& statistics = binner.statistics();
-        hash.add(statistics.lights);
-        hash.add(statistics.rejected);
-        hash.add(statistics.culled);
-        hash.add(statistics.entries);
-        hash.add(statistics.longest_list);
-        for (const std::uint64_t tiles : statistics.histogram)
-            hash.add(tiles);
     }
 }
 
 template <DepthTest depth_test>
 void use_all_options(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
-    use_binner<Options{.index = Index::u16, .depth_test = depth_test}>(hash, view, lights, bounds);
-    use_binner<Options{.index = Index::u32, .depth_test = depth_test}>(hash, view, lights, bounds);
-    use_binner<Options{.index = Index::u16, .depth_test = depth_test, .statistics = true}>(hash, view, lights,
-                                                                                           bounds);
-    use_binner<Options{.index = Index::u32, .depth_test = depth_test, .statistics = true}>(hash, view, lights,
-                                                                                           bounds);
+    use_binner<Options{.ids = IdWidth::u16, .depth_test = depth_test}>(hash, view, lights, bounds);
+    use_binner<Options{.ids = IdWidth::u32, .depth_test = depth_test}>(hash, view, lights, bounds);
 }
 
 void use_lights(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
@@ -107,7 +96,7 @@ void use_encodings(Hash& hash, const auto& grid) {
          {ListFormat{.ids = IdWidth::u8}, ListFormat{ListEncoding::sentinel, IdWidth::u16, 9},
           ListFormat{.encoding = ListEncoding::bitmask, .max_lights = 200}}) {
         std::vector<std::byte> bytes(
-            static_cast<std::size_t>(encoded_bytes(format, grid.tiles().size(), grid.indices().size())));
+            static_cast<std::size_t>(encoded_bytes(format, grid.ranges().size(), grid.ids().size())));
         hash.add(value_of(encode(grid, format, bytes)).entries_cut);
         for (const std::byte byte : bytes)
             hash.add(std::to_integer<std::uint64_t>(byte));
@@ -142,6 +131,10 @@ void use_view(Hash& hash, const View& view) {
     hash.add(static_cast<std::uint64_t>(view.origin()) + (view.orthographic() ? 8u : 0u) +
              (view.reversed_z() ? 16u : 0u));
     hash.add(shader_grid(view).tiles_x);
+    const ImagePoint place = view.image_point({1, 2, -3});
+    const ViewPoint back = view.view_point(place);
+    if (const auto tile = view.tile_at(place)) hash.add(static_cast<std::uint64_t>(tile->x));
+    hash.add(back.z < 0);
 
     const std::size_t pixels =
         static_cast<std::size_t>(view.viewport().width) * static_cast<std::size_t>(view.viewport().height);
@@ -179,7 +172,7 @@ void use_view(Hash& hash, const View& view) {
     use_all_options<DepthTest::none>(hash, view, spheres, bounds);
     use_all_options<DepthTest::interval>(hash, view, spheres, bounds);
     use_binner<Options{.footprint = Footprint::silhouette}>(hash, view, spheres, bounds);
-    use_binner<Options{.index = Index::u16, .depth_test = DepthTest::box}>(hash, view, spheres, bounds);
+    use_binner<Options{.ids = IdWidth::u16, .depth_test = DepthTest::box}>(hash, view, spheres, bounds);
     use_binner<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>(
         hash, view, spheres, {min, max, min, max});
     use_lights(hash, view, std::span<const glm::vec4>(vectors), bounds);

@@ -46,8 +46,7 @@ std::string text(const char* what, std::size_t tile, Long is, Long least, Long m
 std::string reduce(const Camera& camera, const lightbin::View& view, const std::vector<Placed>& points,
                    Random& random, Tally& tally, Bounds& bounds) {
     lightbin::DepthBuffer buffer;
-    const int format = random.below(3);
-    buffer.format = static_cast<lightbin::DepthFormat>(format);
+    buffer.format = static_cast<lightbin::DepthFormat>(random.below(3));
     buffer.samples = random.pick({1, 1, 2, 3, 4, 8});
     buffer.skip_background = random.coin();
     const std::size_t width = static_cast<std::size_t>(view.viewport().width),
@@ -56,7 +55,7 @@ std::string reduce(const Camera& camera, const lightbin::View& view, const std::
     if (random.coin()) buffer.row_pitch = row + random.below(std::size_t{9});
     const std::size_t pitch = buffer.row_pitch == 0 ? row : buffer.row_pitch;
     const std::size_t size = height == 0 || width == 0 ? 0 : pitch * (height - 1) + row;
-    ++tally[format_names[format]];
+    ++tally[to_string(buffer.format)];
     ++tally[buffer.skip_background ? "background skipped" : "background counts"];
     ++tally[samples == 1 ? "one sample" : "many samples"];
     ++tally[pitch == row ? "no pitch" : "pitch"];
@@ -128,7 +127,7 @@ std::string reduce(const Camera& camera, const lightbin::View& view, const std::
             if (surely_less(at, side(0, -endless)) || surely_less(side(1, endless), at))
                 return text("MISS: a drawn point is out of its tile's reduced bounds", tile, at.value,
                             side(0, -endless), side(1, endless)) +
-                       " (" + format_names[format] + ", stored " + std::to_string(depth[drawn[i]]) + ")";
+                       " (" + to_string(buffer.format) + ", stored " + std::to_string(depth[drawn[i]]) + ")";
             if (surely_less(side(2, endless), at) && surely_less(at, side(3, -endless)))
                 return text("MISS: a drawn point is in its tile's reduced gap", tile, at.value, side(2, 0),
                             side(3, 0));

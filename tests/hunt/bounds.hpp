@@ -11,7 +11,6 @@ namespace hunt {
 
 inline constexpr const char* bounds_kinds[] = {"absent", "minimum", "maximum",      "both",
                                                "tight",  "gaps",    "nasty bounds", "depth buffer"};
-inline constexpr const char* format_names[] = {"float32", "unorm24", "unorm16"};
 
 /// A point of a light that is surely seen, and surely in one tile.
 struct Placed {

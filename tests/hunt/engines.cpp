@@ -53,7 +53,7 @@ struct Runner {
 };
 
 template <class Id> Lists copy_of(const lightbin::LightGrid<Id>& grid) {
-    return {{grid.tiles().begin(), grid.tiles().end()}, {grid.indices().begin(), grid.indices().end()}};
+    return {{grid.ranges().begin(), grid.ranges().end()}, {grid.ids().begin(), grid.ids().end()}};
 }
 
 template <lightbin::Options options> struct Kept {
@@ -65,67 +65,61 @@ template <lightbin::Options options> struct Kept {
 
     static void forget() { binner.reset(); }
 
-    /// To the caller's memory, which is too small at first. Writes what is wrong.
-    static void emit(const lightbin::GridSize& size, Random& random, Output& out) {
-        const std::size_t more = random.one_in(3) ? 0 : random.below(std::size_t{20});
-        Guarded<lightbin::Tile> tiles(size.tiles + more);
-        Guarded<Id> ids(size.indices + more);
+    /// The grid in the caller's memory, which is too small at first. Writes what is wrong.
+    static lightbin::LightGrid<Id> copy(const lightbin::LightGrid<Id>& grid,
+                                        Guarded<lightbin::ListRange>& ranges, Guarded<Id>& ids, Output& out) {
         using lightbin::ErrorCode;
-        if (size.tiles > 0) {
-            const auto grid = binner->emit(tiles.span(size.tiles - 1), ids.span());
-            if (grid || grid.error().code != ErrorCode::tile_buffer_too_small)
-                out.wrong = "emit takes too few tiles";
+        const std::size_t tiles = grid.ranges().size(), entries = grid.ids().size();
+        if (tiles > 0) {
+            const auto few = grid.copy_to(ranges.span(tiles - 1), ids.span());
+            if (few || few.error().code != ErrorCode::range_buffer_too_small)
+                out.wrong = "copy_to takes too few ranges";
         }
-        if (size.indices > 0) {
-            const auto grid = binner->emit(tiles.span(), ids.span(size.indices - 1));
-            if (grid || grid.error().code != ErrorCode::index_buffer_too_small)
-                out.wrong = "emit takes too few ids";
+        if (entries > 0) {
+            const auto few = grid.copy_to(ranges.span(), ids.span(entries - 1));
+            if (few || few.error().code != ErrorCode::id_buffer_too_small)
+                out.wrong = "copy_to takes too few ids";
         }
-        if (!tiles.intact(0) || !ids.intact(0)) out.wrong = "emit writes to a buffer that is too small";
-        const auto grid = binner->emit(tiles.span(), ids.span());
-        if (!grid) return static_cast<void>(out.error = grid.error());
-        if (!tiles.intact(size.tiles) || !ids.intact(size.indices))
-            out.wrong = "emit writes beyond the lists";
-        if (grid->tiles().data() != tiles.span().data() || grid->tiles().size() != size.tiles ||
-            grid->indices().size() != size.indices)
-            out.wrong = "emit returns a grid that is not where it wrote";
-        take(*grid, out);
+        if (!ranges.intact(0) || !ids.intact(0)) out.wrong = "copy_to writes to a buffer that is too small";
+        const auto copied = grid.copy_to(ranges.span(), ids.span());
+        if (!copied) {
+            out.wrong = "copy_to refuses buffers that are large enough";
+            return grid;
+        }
+        if (!ranges.intact(tiles) || !ids.intact(entries)) out.wrong = "copy_to writes beyond the lists";
+        if (copied->ranges().data() != ranges.span().data() || copied->ranges().size() != tiles ||
+            copied->ids().size() != entries)
+            out.wrong = "copy_to returns a grid that is not where it wrote";
+        return *copied;
     }
 
     static void take(const lightbin::LightGrid<Id>& grid, Output& out) {
         out.tiles_x = grid.tiles_x();
         out.tiles_y = grid.tiles_y();
-        out.rejected = grid.rejected();
+        out.counts = grid.light_counts();
+        out.lengths = list_lengths(grid);
         out.lists = copy_of(grid);
     }
 
     template <class Lights, class Threads>
     static void build(const Input& input, const Lights& lights, const Threads& threads, Output& out) {
-        Random random(input.seed);
-        const auto with_bounds = [&](auto call) {
-            if constexpr (with_depth)
-                return call(*input.view, lights, input.bounds, threads);
-            else
-                return call(*input.view, lights, threads);
-        };
-        if (input.calls == Calls::count_emit) {
-            const auto size = with_bounds([](const auto&... a) { return binner->count(a...); });
-            if (!size) return static_cast<void>(out.error = size.error());
-            emit(*size, random, out);
-        } else if (input.calls == Calls::transparency && with_depth) {
-            if constexpr (with_depth) {
-                const auto grids = binner->bin_transparency(*input.view, lights, input.bounds, threads);
+        const auto inputs = lightbin::inputs_for<options>(input.bounds);
+        if constexpr (with_depth)
+            if (input.calls == Calls::transparency) {
+                const auto grids = binner->bin_transparency(*input.view, lights, inputs, threads);
                 if (!grids) return static_cast<void>(out.error = grids.error());
                 take(grids->opaque, out);
                 out.transparent = copy_of(grids->transparent);
+                return;
             }
-        } else {
-            const auto grid = with_bounds([](const auto&... a) { return binner->bin(a...); });
-            if (!grid) return static_cast<void>(out.error = grid.error());
-            take(*grid, out);
-        }
-        if constexpr (options.statistics)
-            if (!out.error) out.statistics = binner->statistics();
+        const auto grid = binner->bin(*input.view, lights, inputs, threads);
+        if (!grid) return static_cast<void>(out.error = grid.error());
+        if (input.calls != Calls::copy) return take(*grid, out);
+        Random random(input.seed);
+        const std::size_t more = random.one_in(3) ? 0 : random.below(std::size_t{20});
+        Guarded<lightbin::ListRange> ranges(grid->ranges().size() + more);
+        Guarded<Id> ids(grid->ids().size() + more);
+        take(copy(*grid, ranges, ids, out), out);
     }
 
     template <class Lights>
@@ -175,40 +169,36 @@ template <lightbin::Options options> struct Kept {
     }
 };
 
-template <Footprint footprint, DepthTest depth_test, Index index> Engine of_tier(unsigned tier) {
-    constexpr auto of = []<lightbin::Isa isa, bool statistics>() {
-        constexpr lightbin::Options options = {.index = index,
-                                               .footprint = footprint,
-                                               .depth_test = depth_test,
-                                               .statistics = statistics,
-                                               .isa = isa};
+template <Footprint footprint, DepthTest depth_test, IdWidth ids> Engine of_tier(unsigned tier) {
+    constexpr auto of = []<lightbin::Isa isa>() {
+        constexpr lightbin::Options options = {
+            .ids = ids, .footprint = footprint, .depth_test = depth_test, .isa = isa};
         return Engine{Kept<options>::run, Kept<options>::forget};
     };
-    constexpr bool statistics = index == Index::u16;
     switch (tier) {
     case 0:
-        return of.template operator()<lightbin::Isa::scalar, statistics>();
+        return of.template operator()<lightbin::Isa::scalar>();
     case 1:
-        return of.template operator()<lightbin::Isa::sse2, !statistics>();
+        return of.template operator()<lightbin::Isa::sse2>();
     case 2:
-        return of.template operator()<lightbin::Isa::avx2, statistics>();
+        return of.template operator()<lightbin::Isa::avx2>();
     default:
-        return of.template operator()<lightbin::Options{}.isa, !statistics>();
+        return of.template operator()<lightbin::compiled_isa>();
     }
 }
 
 }  // namespace
 
-template <DepthTest depth_test> Engine engine(Footprint footprint, unsigned tier, Index index) {
+template <DepthTest depth_test> Engine engine(Footprint footprint, unsigned tier, IdWidth ids) {
     if constexpr (has_narrow_ids(depth_test))
-        if (index == Index::u16)
+        if (ids == IdWidth::u16)
             return footprint == Footprint::rectangle
-                       ? of_tier<Footprint::rectangle, depth_test, Index::u16>(tier)
-                       : of_tier<Footprint::silhouette, depth_test, Index::u16>(tier);
-    return footprint == Footprint::rectangle ? of_tier<Footprint::rectangle, depth_test, Index::u32>(tier)
-                                             : of_tier<Footprint::silhouette, depth_test, Index::u32>(tier);
+                       ? of_tier<Footprint::rectangle, depth_test, IdWidth::u16>(tier)
+                       : of_tier<Footprint::silhouette, depth_test, IdWidth::u16>(tier);
+    return footprint == Footprint::rectangle ? of_tier<Footprint::rectangle, depth_test, IdWidth::u32>(tier)
+                                             : of_tier<Footprint::silhouette, depth_test, IdWidth::u32>(tier);
 }
 
-template Engine engine<DepthTest::HUNT_DEPTH_TEST>(Footprint footprint, unsigned tier, Index index);
+template Engine engine<DepthTest::HUNT_DEPTH_TEST>(Footprint footprint, unsigned tier, IdWidth ids);
 
 }  // namespace hunt

@@ -13,15 +13,15 @@ namespace hunt {
 
 using lightbin::DepthTest;
 using lightbin::Footprint;
-using lightbin::Index;
+using lightbin::IdWidth;
 
 /// How the lights are given, in view space or world space.
 enum class Form { vectors, spheres, own };
 inline constexpr const char* form_names[] = {"vec4 array", "Sphere array", "own struct"};
 
 /// Which calls make the grid.
-enum class Calls { bin, count_emit, transparency };
-inline constexpr const char* call_names[] = {"bin", "count and emit", "bin_transparency"};
+enum class Calls { bin, copy, transparency };
+inline constexpr const char* call_names[] = {"bin", "bin and copy_to", "bin_transparency"};
 
 /// The order or the threads in which bodies are run.
 enum class Order { serial, forward, backward, shuffled, threads };
@@ -43,7 +43,7 @@ struct Input {
 
 /// A grid, with ids of 32 bits, in memory of its own.
 struct Lists {
-    std::vector<lightbin::Tile> tiles;
+    std::vector<lightbin::ListRange> tiles;
     std::vector<std::uint32_t> ids;
 
     std::span<const std::uint32_t> of(std::size_t tile) const {
@@ -54,9 +54,9 @@ struct Lists {
 struct Output {
     std::optional<lightbin::Error> error;
     int tiles_x = 0, tiles_y = 0;
-    std::uint32_t rejected = 0;
+    lightbin::LightCounts counts;
+    lightbin::ListLengths lengths;
     Lists lists, transparent;
-    std::optional<lightbin::Statistics> statistics;
     std::string wrong;  ///< what was found in the call itself; empty: nothing
 };
 
@@ -70,19 +70,19 @@ constexpr bool has_narrow_ids(DepthTest depth_test) {
     return depth_test == DepthTest::none || depth_test == DepthTest::box;
 }
 
-/// The Binner of these options; it lives on from call to call. Every other one keeps statistics.
-template <DepthTest depth_test> Engine engine(Footprint footprint, unsigned tier, Index index);
+/// The Binner of these options; it lives on from call to call.
+template <DepthTest depth_test> Engine engine(Footprint footprint, unsigned tier, IdWidth ids);
 
-inline Engine engine_of(DepthTest depth_test, Footprint footprint, unsigned tier, Index index) {
+inline Engine engine_of(DepthTest depth_test, Footprint footprint, unsigned tier, IdWidth ids) {
     switch (depth_test) {
     case DepthTest::none:
-        return engine<DepthTest::none>(footprint, tier, index);
+        return engine<DepthTest::none>(footprint, tier, ids);
     case DepthTest::interval:
-        return engine<DepthTest::interval>(footprint, tier, index);
+        return engine<DepthTest::interval>(footprint, tier, ids);
     case DepthTest::box:
-        return engine<DepthTest::box>(footprint, tier, index);
+        return engine<DepthTest::box>(footprint, tier, ids);
     default:
-        return engine<DepthTest::split_box>(footprint, tier, index);
+        return engine<DepthTest::split_box>(footprint, tier, ids);
     }
 }
 

@@ -16,7 +16,7 @@ namespace {
 using lightbin::ErrorCode;
 using lightbin::View;
 constexpr float endless = std::numeric_limits<float>::infinity();
-constexpr lightbin::Options plain = {}, narrow = {.index = Index::u16},
+constexpr lightbin::Options plain = {}, narrow = {.ids = IdWidth::u16},
                             interval = {.depth_test = DepthTest::interval};
 
 /// Looks from z = 0 to z = 2 with x and y from -1 to 1: so pixels are easily hit.
@@ -72,8 +72,7 @@ public:
         lightbin::Binner<narrow> binner;
         const View view = unit_view(1, 1, 1);
         const auto all = binner.bin(view, std::span(many).first(65536));
-        expect(all && all->indices().size() == 65536 && all->indices()[65535] == 65535,
-               "65,536 lights with 16 bits");
+        expect(all && all->ids().size() == 65536 && all->ids()[65535] == 65535, "65,536 lights with 16 bits");
         expect_error(binner.bin(view, many), ErrorCode::too_many_lights, "65,537 lights with 16 bits", 65537,
                      65536);
         for (const float bad : {std::nanf(""), endless}) {
@@ -96,7 +95,7 @@ public:
                      ErrorCode::too_many_entries, "2^32 entries of the largest grid", std::uint64_t{1} << 32,
                      most);
         const auto after = binner.bin(unit_view(8, 8, 1), std::span(covering).first(2));
-        expect(after && after->indices().size() == 128, "a grid after a refused one");
+        expect(after && after->ids().size() == 128, "a grid after a refused one");
     }
 
     void z_bounds() {
@@ -107,7 +106,7 @@ public:
         for (int side = 0; side < 4; ++side) {
             std::span<const float> sides[] = {floats, floats, floats, floats};
             sides[side] = few;
-            expect_error(binner.bin(view, light, {sides[0], sides[1], sides[2], sides[3]}),
+            expect_error(binner.bin(view, light, {.bounds = {sides[0], sides[1], sides[2], sides[3]}}),
                          ErrorCode::z_bounds_too_small, "Z bounds of 63 tiles", 64, 63);
         }
         std::vector<float> depth(64 * 9, 0.5f);
@@ -142,7 +141,7 @@ public:
         for (const Footprint footprint : {Footprint::rectangle, Footprint::silhouette})
             for (const DepthTest depth_test : {DepthTest::none, DepthTest::box})
                 for (unsigned tier = 0; tier < tier_count; ++tier) {
-                    const Engine engine = engine_of(depth_test, footprint, tier, Index::u32);
+                    const Engine engine = engine_of(depth_test, footprint, tier, IdWidth::u32);
                     Input input = {&view, &scene, {least, most}};
                     input.order = tier % 2 == 0 ? Order::serial : Order::shuffled;
                     input.workers = 7;
@@ -182,8 +181,8 @@ public:
         std::vector<float> least(view.tile_count(), 1), most(view.tile_count(), 0);
         most[12345] = 1;
         lightbin::Binner<interval> binner;
-        const auto grid = binner.bin(view, covering, {least, most});
-        expect(grid && grid->indices().size() == 4096, "4,096 entries of 2^32 in rectangles");
+        const auto grid = binner.bin(view, covering, {.bounds = {least, most}});
+        expect(grid && grid->ids().size() == 4096, "4,096 entries of 2^32 in rectangles");
     }
 
 private:

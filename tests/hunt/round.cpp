@@ -21,9 +21,6 @@ namespace {
 constexpr Footprint footprints[] = {Footprint::rectangle, Footprint::silhouette};
 constexpr DepthTest depth_tests[] = {DepthTest::none, DepthTest::interval, DepthTest::box,
                                      DepthTest::split_box};
-constexpr const char* footprint_names[] = {"rectangle", "silhouette"};
-constexpr const char* depth_names[] = {"none", "interval", "box", "split_box"};
-constexpr const char* index_names[] = {"u16", "u32"};
 constexpr std::size_t most_entries = 20'000'000;
 
 class Round {
@@ -198,7 +195,7 @@ private:
                 !surely_within(bounds, depth_test == DepthTest::split_box, point.tile, point.seen.depth))
                 continue;
             ++report_.points;
-            ++report_.tally[std::string("points, ") + depth_names[static_cast<int>(depth_test)]];
+            ++report_.tally[std::string("points, ") + to_string(depth_test)];
             const auto list = lists.of(point.tile);
             if (std::ranges::binary_search(list, point.inside.light)) continue;
             const Sphere& light = scene_.lights[point.inside.light];
@@ -221,49 +218,47 @@ private:
         if (!out.wrong.empty()) fault(out.wrong + "; " + how);
         if (out.tiles_x != view_->tiles_x() || out.tiles_y != view_->tiles_y())
             fault("the grid has other sides; " + how);
-        if (out.rejected != rejected_)
-            fault("rejected is " + std::to_string(out.rejected) + " and not " + std::to_string(rejected_) +
-                  "; " + how);
         check_lists(out.lists, how);
-        if (!out.statistics) return;
-        const lightbin::Statistics& s = *out.statistics;
         std::uint32_t longest = 0;
         std::array<std::uint64_t, 33> histogram = {};
-        for (const lightbin::Tile& tile : out.lists.tiles) {
-            longest = std::max(longest, tile.count);
-            ++histogram[static_cast<std::size_t>(std::bit_width(tile.count))];
+        for (const lightbin::ListRange range : out.lists.tiles) {
+            longest = std::max(longest, range.count);
+            ++histogram[static_cast<std::size_t>(std::bit_width(range.count))];
         }
+        if (out.lengths.longest != longest || out.lengths.histogram != histogram)
+            fault("the lengths are not those of the lists; " + how);
         std::vector<bool> listed(scene_.lights.size());
         for (const std::uint32_t id : out.lists.ids)
             if (id < listed.size()) listed[id] = true;
         const std::uint64_t seen = static_cast<std::uint64_t>(std::ranges::count(listed, true));
-        if (s.lights != scene_.lights.size() || s.rejected != rejected_ ||
-            s.entries != out.lists.ids.size() || s.longest_list != longest || s.histogram != histogram ||
-            s.lights < s.rejected + s.culled + seen)
-            fault("the statistics are not those of the grid; " + how);
+        const lightbin::LightCounts& counts = out.counts;
+        if (counts.lights != scene_.lights.size() || counts.rejected != rejected_ ||
+            counts.lights < counts.rejected + counts.culled + seen)
+            fault("the counts are not those of the lights: " + std::to_string(counts.rejected) + " of " +
+                  std::to_string(rejected_) + " are rejected; " + how);
     }
 
     void check_lists(const Lists& lists, const std::string& how) {
         if (lists.tiles.size() != view_->tile_count())
             return fault("tiles has another length than the view; " + how);
         std::uint64_t at = 0;
-        for (const lightbin::Tile& tile : lists.tiles) {
-            if (tile.offset != at) return fault("offsets leave a gap or overlap; " + how);
-            at += tile.count;
+        for (const lightbin::ListRange range : lists.tiles) {
+            if (range.offset != at) return fault("offsets leave a gap or overlap; " + how);
+            at += range.count;
         }
         if (at != lists.ids.size()) return fault("counts do not add up to the index list; " + how);
-        for (const lightbin::Tile& tile : lists.tiles)
-            for (std::uint32_t i = 0; i < tile.count; ++i) {
-                const std::uint32_t id = lists.ids[tile.offset + i];
+        for (const lightbin::ListRange range : lists.tiles)
+            for (std::uint32_t i = 0; i < range.count; ++i) {
+                const std::uint32_t id = lists.ids[range.offset + i];
                 if (id >= scene_.lights.size()) return fault("an id that no light has; " + how);
-                if (i > 0 && lists.ids[tile.offset + i - 1] >= id) return fault("ids do not ascend; " + how);
+                if (i > 0 && lists.ids[range.offset + i - 1] >= id) return fault("ids do not ascend; " + how);
             }
     }
 
     static bool same(const Lists& a, const Lists& b) {
         return a.tiles.size() == b.tiles.size() && a.ids == b.ids &&
-               (a.tiles.empty() ||
-                std::memcmp(a.tiles.data(), b.tiles.data(), a.tiles.size() * sizeof(lightbin::Tile)) == 0);
+               (a.tiles.empty() || std::memcmp(a.tiles.data(), b.tiles.data(),
+                                               a.tiles.size() * sizeof(lightbin::ListRange)) == 0);
     }
 
     void check_within(const Lists& smaller, const Lists& larger, const char* what) {
@@ -299,8 +294,8 @@ private:
                     break;
                 }
                 too_large = grid.lists.ids.size() > most_entries;
-                std::string how =
-                    std::string(footprint_names[f]) + ", " + depth_names[d] + ", " + tier_names[first_tier];
+                std::string how = std::string(to_string(footprints[f])) + ", " + to_string(depth_tests[d]) +
+                                  ", " + tier_names[first_tier];
                 look_for_points(grid.lists, bounds_, depth_tests[d], how);
                 if (d > 0) check_empty_tiles(grid.lists, how);
                 Bounds only_max;
@@ -322,7 +317,7 @@ private:
             for (int d = 1; d < 4; ++d) {
                 static constexpr int looser[] = {0, 0, 1, 2};
                 if (have(grids[f][d]) && have(grids[f][looser[d]]))
-                    check_within(grids[f][d].lists, grids[f][looser[d]].lists, depth_names[d]);
+                    check_within(grids[f][d].lists, grids[f][looser[d]].lists, to_string(depth_tests[d]));
             }
         for (int d = 0; d < 4; ++d)
             if (have(grids[0][d]) && have(grids[1][d]))
@@ -333,8 +328,8 @@ private:
             for (int f = 0; f < 2; ++f)
                 for (int d = 0; d < 4; ++d)
                     for (unsigned tier = 0; tier < tier_count; ++tier)
-                        for (const Index index : {Index::u16, Index::u32})
-                            engine_of(depth_tests[d], footprints[f], tier, index).forget();
+                        for (const IdWidth ids : {IdWidth::u16, IdWidth::u32})
+                            engine_of(depth_tests[d], footprints[f], tier, ids).forget();
     }
 
     /// Builds a grid in a way of its own, `plainly` with 32-bit ids on the calling thread, and compares it.
@@ -342,7 +337,7 @@ private:
                  const Output* expected, const Output* transparent = nullptr) {
         const bool narrow =
             !plainly && scene_.lights.size() <= 65536 && has_narrow_ids(depth_test) && random_.coin();
-        const Engine engine = engine_of(depth_test, footprint, tier, narrow ? Index::u16 : Index::u32);
+        const Engine engine = engine_of(depth_test, footprint, tier, narrow ? IdWidth::u16 : IdWidth::u32);
         Input input = {view_, &scene_, bounds_.spans()};
         input.seed = random_.bits();
         input.form = static_cast<Form>(random_.below(3));
@@ -353,14 +348,15 @@ private:
         }
         if (random_.one_in(8)) engine.forget();
         Tally& tally = report_.tally;
-        const int f = static_cast<int>(footprint), d = static_cast<int>(depth_test);
+        const IdWidth ids = narrow ? IdWidth::u16 : IdWidth::u32;
+        const std::string engine_name =
+            std::string(to_string(footprint)) + ", " + to_string(depth_test) + ", " + tier_names[tier];
         const std::string how =
-            std::string(footprint_names[f]) + ", " + depth_names[d] + ", " + tier_names[tier] + ", " +
-            index_names[narrow ? 0 : 1] + ", " + form_names[static_cast<int>(input.form)] + ", " +
+            engine_name + ", " + to_string(ids) + ", " + form_names[static_cast<int>(input.form)] + ", " +
             call_names[static_cast<int>(input.calls)] + ", " + order_names[static_cast<int>(input.order)] +
             " of " + std::to_string(input.workers);
-        ++tally[std::string(footprint_names[f]) + ", " + depth_names[d] + ", " + tier_names[tier]];
-        ++tally[index_names[narrow ? 0 : 1]];
+        ++tally[engine_name];
+        ++tally[to_string(ids)];
         ++tally[form_names[static_cast<int>(input.form)]];
         ++tally[call_names[static_cast<int>(input.calls)]];
         ++tally[order_names[static_cast<int>(input.order)]];
@@ -394,11 +390,11 @@ private:
 
     void check_encodings(const Lists& lists) {
         using namespace lightbin;
-        const LightGrid<std::uint32_t> grid(view_->tiles_x(), view_->tiles_y(), lists.tiles, lists.ids, 0);
+        const LightGrid<std::uint32_t> grid(view_->tiles_x(), view_->tiles_y(), lists.tiles, lists.ids);
         const std::uint32_t lights = static_cast<std::uint32_t>(scene_.lights.size());
         std::uint32_t longest = 0, highest = 0;
-        for (const Tile& tile : lists.tiles)
-            longest = std::max(longest, tile.count);
+        for (const ListRange range : lists.tiles)
+            longest = std::max(longest, range.count);
         for (const std::uint32_t id : lists.ids)
             highest = std::max(highest, id);
         ListFormat format;
@@ -416,8 +412,7 @@ private:
         if (format.encoding == ListEncoding::bitmask && format.max_lights == 0) return;
         const std::uint64_t bytes = encoded_bytes(format, lists.tiles.size(), lists.ids.size());
         if (bytes > 50'000'000) return;
-        static constexpr const char* names[] = {"offset_count", "sentinel", "bitmask"};
-        ++report_.tally[names[encoding]];
+        ++report_.tally[to_string(format.encoding)];
         Guarded<std::byte> out(static_cast<std::size_t>(bytes) + random_.below(std::size_t{9}));
         const std::uint64_t numbers =
             (std::uint64_t{1} << 8 * width) - (format.encoding == ListEncoding::sentinel ? 1 : 0);
@@ -426,13 +421,15 @@ private:
         if (bytes > 0 && countable) {
             const auto few = encode(grid, format, out.span(static_cast<std::size_t>(bytes) - 1));
             if (few || !out.intact(0))
-                return fault(std::string("encode takes a buffer that is too small, ") + names[encoding]);
+                return fault(std::string("encode takes a buffer that is too small, ") +
+                             to_string(format.encoding));
         }
         const auto encoded = encode(grid, format, out.span());
         if (!countable) {
             ++report_.tally["ids too narrow"];
             if (encoded || encoded.error().code != ErrorCode::ids_too_narrow || !out.intact(0))
-                fault(std::string("encode writes ids that the format can't number, ") + names[encoding]);
+                fault(std::string("encode writes ids that the format can't number, ") +
+                      to_string(format.encoding));
             return;
         }
         if (!encoded) return fault("encode refuses: " + encoded.error().message());
@@ -440,7 +437,7 @@ private:
                                         ? lists.ids.size() * width
                                         : static_cast<std::size_t>(bytes);
         if (!out.intact(written))
-            return fault(std::string("encode writes beyond its bytes, ") + names[encoding]);
+            return fault(std::string("encode writes beyond its bytes, ") + to_string(format.encoding));
         const std::byte* const from = out.span().data();
         const auto id_at = [&](std::size_t i) {
             std::uint32_t id = 0;
@@ -480,7 +477,8 @@ private:
                 }
             }
             if (!std::ranges::equal(decoded, expected))
-                return fault(std::string("encode: a tile's list is another one, ") + names[encoding]);
+                return fault(std::string("encode: a tile's list is another one, ") +
+                             to_string(format.encoding));
         }
         if (encoded->entries_cut != cut || encoded->tiles_cut != tiles_cut ||
             encoded->capacity_needed != longest)
@@ -536,19 +534,17 @@ void expect_all(Tally& tally) {
     expect(space_kinds);
     expect(light_kinds);
     expect(bounds_kinds);
-    expect(format_names);
     expect(form_names);
     expect(call_names);
     expect(order_names);
-    expect(index_names);
     for (const std::uint32_t count : light_counts)
         tally[std::to_string(count) + " lights"];
-    for (const char* footprint : footprint_names)
-        for (const char* depth : depth_names)
+    for (const Footprint footprint : footprints)
+        for (const DepthTest depth_test : depth_tests)
             for (const char* tier : tier_names)
-                tally[std::string(footprint) + ", " + depth + ", " + tier];
-    for (const char* depth : depth_names)
-        tally[std::string("points, ") + depth];
+                tally[std::string(to_string(footprint)) + ", " + to_string(depth_test) + ", " + tier];
+    for (const DepthTest depth_test : depth_tests)
+        tally[std::string("points, ") + to_string(depth_test)];
     for (const char* name : {"float projection",
                              "double projection",
                              "looks down +z",
@@ -562,6 +558,11 @@ void expect_all(Tally& tally) {
                              "x flipped",
                              "y flipped",
                              "with_tile_size",
+                             "float32",
+                             "unorm24",
+                             "unorm16",
+                             "u16",
+                             "u32",
                              "offset_count",
                              "sentinel",
                              "bitmask",

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Every camera kind that is promised to work, by name: what a user hands over (a matrix, the API's settings),
-// no more.
+// Every camera kind that is promised to work, by name.
 #pragma once
+
+#include "../../bench/exact/camera.hpp"
 
 #include <cmath>
 #include <functional>
@@ -10,24 +11,6 @@
 #include <vector>
 
 namespace oracle {
-
-/// m[column][row]
-template <class Real> struct Matrix4 {
-    Real entry[4][4] = {};
-    Real* operator[](int column) { return entry[column]; }
-    const Real* operator[](int column) const { return entry[column]; }
-};
-using Matrix = Matrix4<double>;
-
-struct Camera {
-    std::string name;
-    Matrix m{};            ///< every entry is a float, unless `doubles`
-    bool doubles = false;  ///< handed over in double precision
-    int width = 0, height = 0, tile = 0;
-    bool zero_to_one = false;  ///< range of clip depth
-    bool upper_left = false;   ///< window origin
-    bool reversed = false;     ///< declared for orthographic matrices only
-};
 
 /// What a projection matrix is made from. Extents are those of the image plane at depth 1 (perspective) or of
 /// the box (orthographic), x to the right, y up.

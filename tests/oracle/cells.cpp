@@ -13,16 +13,15 @@ void examine_rectangles(const Camera& camera, Tally& tally, std::uint64_t& seed)
     Examiner examiner(camera, tally);
     const lightbin::View view = view_of(camera);
     lightbin::Binner<> binner;
-    lightbin::Binner<lightbin::Options{.index = lightbin::Index::u16}> small_binner;
+    lightbin::Binner<lightbin::Options{.ids = lightbin::IdWidth::u16}> small_binner;
     for (const SphereSet& set : sphere_sets()) {
         const std::vector<Light> lights = make(set, camera, lights_a_set, ++seed);
         const auto grid = binner.bin(view, lights);
         REQUIRE(grid.has_value());
-        CHECK(grid->rejected() == std::count_if(lights.begin(), lights.end(), is_bad));
+        CHECK(grid->light_counts().rejected == std::count_if(lights.begin(), lights.end(), is_bad));
         const auto small = small_binner.bin(view, lights);
         REQUIRE(small.has_value());
-        CHECK(std::equal(grid->indices().begin(), grid->indices().end(), small->indices().begin(),
-                         small->indices().end()));
+        CHECK(std::equal(grid->ids().begin(), grid->ids().end(), small->ids().begin(), small->ids().end()));
         const std::vector<Emitted> emitted = emitted_tiles(*grid, lights.size());
         for (std::size_t i = 0; i < lights.size(); ++i)
             examiner.examine_rectangle(lights[i], i, set.name, emitted[i]);
@@ -30,10 +29,11 @@ void examine_rectangles(const Camera& camera, Tally& tally, std::uint64_t& seed)
 }
 
 template <class Id> bool same(const lightbin::LightGrid<Id>& a, const lightbin::LightGrid<Id>& b) {
-    return std::equal(a.indices().begin(), a.indices().end(), b.indices().begin(), b.indices().end()) &&
-           std::equal(
-               a.tiles().begin(), a.tiles().end(), b.tiles().begin(), b.tiles().end(),
-               [](lightbin::Tile s, lightbin::Tile t) { return s.offset == t.offset && s.count == t.count; });
+    return std::equal(a.ids().begin(), a.ids().end(), b.ids().begin(), b.ids().end()) &&
+           std::equal(a.ranges().begin(), a.ranges().end(), b.ranges().begin(), b.ranges().end(),
+                      [](lightbin::ListRange s, lightbin::ListRange t) {
+                          return s.offset == t.offset && s.count == t.count;
+                      });
 }
 
 /// Without Z bounds, where silhouettes leave nothing but the exact set and its margin.
@@ -53,7 +53,7 @@ void examine_silhouettes(const Camera& camera, Tally& tally, std::uint64_t& seed
         const auto in_rectangle = membership(*rectangle_grid, lights.size());
         const auto grid = binner.bin(view, lights);
         REQUIRE(grid.has_value());
-        CHECK(grid->rejected() == rectangle_grid->rejected());
+        CHECK(grid->light_counts().rejected == rectangle_grid->light_counts().rejected);
         emitted_tiles(*grid, lights.size());
         const auto in_list = membership(*grid, lights.size());
         const std::vector<Emitted> rectangle = emitted_tiles(*rectangle_grid, lights.size());
@@ -108,7 +108,7 @@ void examine_depth_test(const Camera& camera, Tally& tally, std::uint64_t& seed)
     const Aim aim(camera);
     lightbin::Binner<> rectangles;
     lightbin::Binner<lightbin::Options{.depth_test = depth_test}> binner, other;
-    lightbin::Binner<lightbin::Options{.index = lightbin::Index::u16, .depth_test = depth_test}> small_binner;
+    lightbin::Binner<lightbin::Options{.ids = lightbin::IdWidth::u16, .depth_test = depth_test}> small_binner;
     const std::size_t tiles = view.tile_count();
 
     for (const SphereSet& set : sphere_sets()) {
@@ -131,7 +131,7 @@ void examine_depth_test(const Camera& camera, Tally& tally, std::uint64_t& seed)
             if (sides & 1) given.min = bounds.min;
             if (sides & 2) given.max = bounds.max;
             if (split) given.gap_min = bounds.gap_min, given.gap_max = bounds.gap_max;
-            const auto grid = binner.bin(view, lights, given);
+            const auto grid = binner.bin(view, lights, {.bounds = given});
             REQUIRE(grid.has_value());
             emitted_tiles(*grid, lights.size());
             const auto in_list = membership(*grid, lights.size());
@@ -177,15 +177,15 @@ void examine_depth_test(const Camera& camera, Tally& tally, std::uint64_t& seed)
                     }
                 }
             }
-            const auto small = small_binner.bin(view, lights, given);
+            const auto small = small_binner.bin(view, lights, {.bounds = given});
             REQUIRE(small.has_value());
-            CHECK(std::equal(grid->indices().begin(), grid->indices().end(), small->indices().begin(),
-                             small->indices().end()));
+            CHECK(
+                std::equal(grid->ids().begin(), grid->ids().end(), small->ids().begin(), small->ids().end()));
 
             if (sides != 1) {  // Listing 4.2: the transparent list is pruned by the maximum alone
                 lightbin::ZBounds all = given;
                 all.min = bounds.min;
-                const auto both = other.bin_transparency(view, lights, all);
+                const auto both = other.bin_transparency(view, lights, {.bounds = all});
                 REQUIRE(both.has_value());
                 if (sides == 3)
                     CHECK(same(both->opaque, *grid));

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The two deciders of oracle.hpp against each other, and each "yes" against a point that lies in both cell
 // and ball. No part of the library takes part.
-#include "oracle.hpp"
+#include "cameras.hpp"
 #include "spheres.hpp"
+
+#include "../../bench/exact/oracle.hpp"
 
 #include <doctest/doctest.h>
 

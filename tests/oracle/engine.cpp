@@ -57,7 +57,7 @@ Lists built(const lightbin::View& view, const Scene& scene, bool flush, std::siz
         };
         const auto parallel = workers > 1 ? lightbin::Parallel(workers, run, 0) : lightbin::Parallel();
         if constexpr (options.depth_test == lightbin::DepthTest::none) {
-            return binner.bin(view, scene.lights, parallel);
+            return binner.bin(view, scene.lights, {}, parallel);
         } else {
             constexpr bool split = options.depth_test == lightbin::DepthTest::split_box;
             lightbin::ZBounds bounds{.min = scene.min, .max = scene.max};
@@ -72,17 +72,17 @@ Lists built(const lightbin::View& view, const Scene& scene, bool flush, std::siz
                     view, {.depth = scene.depth, .skip_background = scene.skip_background},
                     {sides[0], sides[1], gap(2), gap(3)}, options.isa);
             }
-            return binner.bin(view, scene.lights, bounds, parallel);
+            return binner.bin(view, scene.lights, {.bounds = bounds}, parallel);
         }
     }();
     Lists lists;
     if (!grid) return lists;
-    lists.rejected = grid->rejected();
-    lists.offsets.reserve(grid->tiles().size() + 1);
-    for (const lightbin::Tile& tile : grid->tiles())
-        lists.offsets.push_back(tile.offset);
-    lists.offsets.push_back(static_cast<std::uint32_t>(grid->indices().size()));
-    lists.ids.assign(grid->indices().begin(), grid->indices().end());
+    lists.rejected = grid->light_counts().rejected;
+    lists.offsets.reserve(grid->ranges().size() + 1);
+    for (const lightbin::ListRange range : grid->ranges())
+        lists.offsets.push_back(range.offset);
+    lists.offsets.push_back(static_cast<std::uint32_t>(grid->ids().size()));
+    lists.ids.assign(grid->ids().begin(), grid->ids().end());
     if (view.tile_count() > (1 << 24)) binner = lightbin::Binner<options>();  // gigabytes
     return lists;
 }
@@ -99,16 +99,16 @@ Lists on_all_tiers(const lightbin::View& view, const Scene& scene, bool flush,
     Lists lists = built<capped(Isa::scalar)>(view, scene, flush);
     if (lists.offsets.empty()) complaints.push_back("the lights were refused");
     // An Isa in the options is a cap: one that the machine lacks would be a narrower one again.
-    [[maybe_unused]] const auto compare = [&]<Isa isa>(const char* name) {
-        if (lightbin::detail::machine_isa(isa) == isa && built<capped(isa)>(view, scene, flush) != lists)
-            complaints.push_back(name + std::string(" differs"));
+    [[maybe_unused]] const auto compare = [&]<Isa isa>() {
+        if (lightbin::machine_isa(isa) == isa && built<capped(isa)>(view, scene, flush) != lists)
+            complaints.push_back(to_string(isa) + std::string(" differs"));
     };
 #if defined(LIGHTBIN_X86)
-    compare.template operator()<Isa::sse2>("SSE2");
-    compare.template operator()<Isa::avx2>("AVX2");
-    compare.template operator()<Isa::avx512>("AVX-512");
+    compare.template operator()<Isa::sse2>();
+    compare.template operator()<Isa::avx2>();
+    compare.template operator()<Isa::avx512>();
 #elif defined(LIGHTBIN_NEON)
-    compare.template operator()<Isa::neon>("NEON");
+    compare.template operator()<Isa::neon>();
 #endif
     if (built<options>(view, scene, flush, 3) != lists) complaints.push_back("with workers it differs");
     return lists;

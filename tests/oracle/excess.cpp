@@ -70,10 +70,10 @@ Pairs count_pairs(const std::vector<Light>& lights, int tile, bool interval) {
     if (interval) {
         lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner;
         pairs.emitted =
-            static_cast<double>(binner.bin(view, lights, {.min = min, .max = max})->indices().size());
+            static_cast<double>(binner.bin(view, lights, {.bounds = {.min = min, .max = max}})->ids().size());
     } else {
         lightbin::Binner<> binner;
-        pairs.emitted = static_cast<double>(binner.bin(view, lights)->indices().size());
+        pairs.emitted = static_cast<double>(binner.bin(view, lights)->ids().size());
     }
     const Examiner::Cell range(examiner);
     for (const Light& light : lights) {

@@ -145,7 +145,7 @@ void run(const Family& family, double lights) {
              .origin = camera.upper_left ? lightbin::WindowOrigin::upper_left
                                          : lightbin::WindowOrigin::lower_left});
         if (!view || view->orthographic()) continue;
-        const auto& constants = view->camera();
+        const auto& constants = lightbin::detail::camera_of(*view);
         const float n = constants.near_depth;
         for (const Light& light : scene.lights) {
             const float z = constants.z_sign * light.z, r = light.w;

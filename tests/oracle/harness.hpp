@@ -2,10 +2,10 @@
 // From the library's lists to questions for the oracle, and the count of the answers.
 #pragma once
 
-#include "filter.hpp"
 #include "library_view.hpp"
-#include "oracle.hpp"
 #include "spheres.hpp"
+
+#include "../../bench/exact/filter.hpp"
 
 #include <lightbin/binner.hpp>
 
@@ -49,9 +49,9 @@ std::vector<Emitted> emitted_tiles(const lightbin::LightGrid<Id>& grid, std::siz
     std::uint32_t end = 0;
     for (int y = 0; y < grid.tiles_y(); ++y)
         for (int x = 0; x < grid.tiles_x(); ++x) {
-            const lightbin::Tile tile = grid.tiles()[static_cast<std::size_t>(y * grid.tiles_x() + x)];
-            in_order = in_order && tile.offset == end;
-            end = tile.offset + tile.count;
+            const lightbin::ListRange range = grid.ranges()[static_cast<std::size_t>(y * grid.tiles_x() + x)];
+            in_order = in_order && range.offset == end;
+            end = range.offset + range.count;
             std::int64_t last = -1;
             for (const Id id : grid.lights_in(x, y)) {
                 in_order = in_order && std::int64_t{id} > last && id < lights;
@@ -63,16 +63,16 @@ std::vector<Emitted> emitted_tiles(const lightbin::LightGrid<Id>& grid, std::siz
             }
         }
     CHECK(in_order);
-    CHECK(end == grid.indices().size());
+    CHECK(end == grid.ids().size());
     return emitted;
 }
 
 /// in[tile][light]
 template <class Id>
 std::vector<std::vector<bool>> membership(const lightbin::LightGrid<Id>& grid, std::size_t lights) {
-    std::vector<std::vector<bool>> in(grid.tiles().size(), std::vector<bool>(lights));
+    std::vector<std::vector<bool>> in(grid.ranges().size(), std::vector<bool>(lights));
     for (std::size_t tile = 0; tile < in.size(); ++tile)
-        for (const Id id : grid.indices().subspan(grid.tiles()[tile].offset, grid.tiles()[tile].count))
+        for (const Id id : grid.ids().subspan(grid.ranges()[tile].offset, grid.ranges()[tile].count))
             in[tile][id] = true;
     return in;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "judge.hpp"
 
-#include "filter.hpp"
+#include "../../bench/exact/filter.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -113,9 +113,13 @@ public:
             const std::span<const Range> ranges = ranges_of(tile);
             const Range range =
                 ranges.empty() ? Range{whole_, NAN, NAN} : ranges[random.bits() % ranges.size()];
-            if (!filter_.apart(block.x0, block.x1, block.y0, block.y1, range.flat, flat(light))) continue;
+            const FlatBall ball = flat(light);
+            const bool apart = filter_.apart(block.x0, block.x1, block.y0, block.y1, range.flat, ball);
+            const auto met = filter_.meets(block.x0, block.x1, block.y0, block.y1, range.flat, ball);
+            if (!apart && !met) continue;
             ++answered;
-            wrong += meets_exactly(block, range, light);
+            const bool truth = meets_exactly(block, range, light);
+            wrong += (apart && truth) || (met && *met != truth);
         }
         return answered;
     }

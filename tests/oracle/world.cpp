@@ -174,7 +174,7 @@ void examine_rectangles(const Camera& camera, Tally& tally, std::uint64_t& seed)
             const std::vector<Light> lights = into_world(make(set, camera, 110, ++seed), matrix);
             const auto grid = binner.bin(view, lightbin::world_space(lights, matrix.m));
             REQUIRE(grid.has_value());
-            CHECK(grid->rejected() == std::count_if(lights.begin(), lights.end(), is_bad));
+            CHECK(grid->light_counts().rejected == std::count_if(lights.begin(), lights.end(), is_bad));
             const std::vector<Emitted> emitted = emitted_tiles(*grid, lights.size());
             for (std::size_t i = 0; i < lights.size(); ++i) {
                 const Emitted& e = emitted[i];
@@ -235,7 +235,8 @@ void examine_pairs(const Camera& camera, Tally& tally, std::uint64_t& seed) {
     const Aim aim(camera);
     const std::size_t tiles = view.tile_count();
     lightbin::Binner<> rectangles;
-    lightbin::Binner<lightbin::Options{.footprint = footprint, .depth_test = depth_test}> binner;
+    constexpr lightbin::Options options = {.footprint = footprint, .depth_test = depth_test};
+    lightbin::Binner<options> binner;
     Random random(++seed);
     for (const ViewMatrix& matrix : view_matrices(random)) {
         const ExactView exact_view(matrix.m);
@@ -256,12 +257,7 @@ void examine_pairs(const Camera& camera, Tally& tally, std::uint64_t& seed) {
                 if (sides & 1) given.min = bounds.min;
                 if (sides & 2) given.max = bounds.max;
                 if (split) given.gap_min = bounds.gap_min, given.gap_max = bounds.gap_max;
-                const auto grid = [&] {
-                    if constexpr (with_depth)
-                        return binner.bin(view, world, given);
-                    else
-                        return binner.bin(view, world);
-                }();
+                const auto grid = binner.bin(view, world, lightbin::inputs_for<options>(given));
                 REQUIRE(grid.has_value());
                 const auto in_list = membership(*grid, lights.size());
                 bool added = false;  // a pair that is not in the rectangles

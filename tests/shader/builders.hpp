@@ -172,11 +172,12 @@ inline std::vector<Job> build_jobs(lightbin::BuildShaderOptions options, int cam
     Binner<> none;
     Binner<Options{.depth_test = DepthTest::interval}> interval;
     Binner<Options{.depth_test = DepthTest::box}> box;
-    const auto grid = options.depth_test == DepthTest::none       ? none.bin(view, lights)
-                      : options.depth_test == DepthTest::interval ? interval.bin(view, lights, bounds)
-                                                                  : box.bin(view, lights, bounds);
-    const std::vector<Tile> tiles(grid->tiles().begin(), grid->tiles().end());
-    const auto entries = static_cast<std::uint32_t>(grid->indices().size());
+    const auto grid = options.depth_test == DepthTest::none ? none.bin(view, lights)
+                      : options.depth_test == DepthTest::interval
+                          ? interval.bin(view, lights, {.bounds = bounds})
+                          : box.bin(view, lights, {.bounds = bounds});
+    const std::vector<ListRange> tiles(grid->ranges().begin(), grid->ranges().end());
+    const auto entries = static_cast<std::uint32_t>(grid->ids().size());
 
     options.orthographic = view.orthographic();
     const auto footprints = *shader_footprints(view, lights);
@@ -207,9 +208,9 @@ inline std::vector<Job> build_jobs(lightbin::BuildShaderOptions options, int cam
     };
 
     // What is written is 0xee before, in the list too where it has room beyond its end.
-    std::vector<Tile> counts = tiles;
-    for (Tile& tile : counts)
-        tile.offset = 0;
+    std::vector<ListRange> counts = tiles;
+    for (ListRange& range : counts)
+        range.offset = 0;
     const auto blank = [](std::size_t bytes) { return std::vector<std::byte>(bytes, std::byte{0xee}); };
     data.put("tiles", blank((std::max)(tiles.size() * 8, std::size_t{16})));
     add(BuildPass::count, "tiles", entries, std::as_bytes(std::span(counts)));
@@ -218,21 +219,21 @@ inline std::vector<Job> build_jobs(lightbin::BuildShaderOptions options, int cam
     add(BuildPass::offsets, "total", entries, std::as_bytes(std::span(&entries, 1)));
     if (tiles.size() > 1) {
         add(BuildPass::offsets, "tiles", entries, std::as_bytes(std::span(tiles)));
-        std::vector<Tile> cut = tiles;
+        std::vector<ListRange> cut = tiles;
         const std::uint32_t room = entries / 2;
-        for (Tile& tile : cut) {
-            tile.offset = (std::min)(tile.offset, room);
-            tile.count = (std::min)(tile.count, room - tile.offset);
+        for (ListRange& range : cut) {
+            range.offset = (std::min)(range.offset, room);
+            range.count = (std::min)(range.count, room - range.offset);
         }
         add(BuildPass::offsets, "tiles", room, std::as_bytes(std::span(cut)));
         data.put("tiles", cut);
         data.put("lists", blank((std::max)(entries * std::size_t{4}, std::size_t{16})));
-        add(BuildPass::fill, "lists", room, std::as_bytes(grid->indices().first(room)));
+        add(BuildPass::fill, "lists", room, std::as_bytes(grid->ids().first(room)));
         jobs.back().expected.resize((std::max)(entries, 4u), 0xeeeeeeee);
     }
     data.put("tiles", tiles);
     data.put("lists", blank((std::max)(entries * std::size_t{4}, std::size_t{16})));
-    add(BuildPass::fill, "lists", entries, std::as_bytes(grid->indices()));
+    add(BuildPass::fill, "lists", entries, std::as_bytes(grid->ids()));
     return jobs;
 }
 

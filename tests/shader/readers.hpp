@@ -18,19 +18,9 @@ struct ScreenSize {
     int width, height, tile_size;
 };
 
-inline const char* name_of(lightbin::ShaderLanguage language) {
-    constexpr const char* names[] = {"glsl_330", "glsl_430", "glsl_vulkan", "essl_300",
-                                     "essl_310", "hlsl_5_0", "hlsl_5_1"};
-    return names[static_cast<int>(language)];
-}
-
 inline std::string name_of(const lightbin::ShaderOptions& options) {
-    constexpr const char* storages[] = {"storage_buffer", "texel_buffer", "texture_2d", "uniform_block",
-                                        "byte_address"};
-    constexpr const char* encodings[] = {"offset_count", "sentinel", "bitmask"};
-    std::string name = std::string(name_of(options.language)) + " " +
-                       storages[static_cast<int>(options.storage)] + " " +
-                       encodings[static_cast<int>(options.format.encoding)] + " " +
+    std::string name = std::string(to_string(options.language)) + " " + to_string(options.storage) + " " +
+                       to_string(options.format.encoding) + " " +
                        std::to_string(8 * static_cast<int>(options.format.ids)) + " bits";
     const auto option = [&](bool on, const char* word) {
         if (on) name += std::string(", ") + word;
@@ -193,7 +183,7 @@ inline std::vector<lightbin::Sphere> reader_lights(std::size_t count) {
 /// The bytes of what a snippet binds.
 inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin::ShaderOptions& options,
                           const lightbin::ShaderGrid& constants, const lightbin::View& view,
-                          std::span<const lightbin::Tile> tiles, std::span<const std::byte> lists) {
+                          std::span<const lightbin::ListRange> tiles, std::span<const std::byte> lists) {
     const std::string name = binding.name.substr(options.prefix.size());
     Input input;
     input.binding = binding;
@@ -230,14 +220,14 @@ inline Job reader_job(lightbin::ShaderOptions options, Stage stage, const Screen
                                : options.format.ids == IdWidth::u16             ? 50000
                                                                                 : 100000;
     const auto grid = binner.bin(*view, reader_lights(lights));
-    std::vector<std::byte> lists(encoded_bytes(options.format, grid->tiles().size(), grid->indices().size()));
+    std::vector<std::byte> lists(encoded_bytes(options.format, grid->ranges().size(), grid->ids().size()));
     Job job;
     job.name = name_of(options) + (stage == Stage::compute ? ", compute, " : ", fragment, ") +
                std::to_string(screen.width) + "x" + std::to_string(screen.height) + ", tile " +
                std::to_string(screen.tile_size);
     if (options.tile_size != 0) options.tile_size = screen.tile_size;
-    options.max_tiles = static_cast<std::uint32_t>(grid->tiles().size());
-    options.max_entries = static_cast<std::uint32_t>(grid->indices().size()) + 1;  // 0 would be unknown
+    options.max_tiles = static_cast<std::uint32_t>(grid->ranges().size());
+    options.max_entries = static_cast<std::uint32_t>(grid->ids().size()) + 1;  // 0 would be unknown
     const auto snippet = shader_snippet(options);
     if (!snippet || !encode(*grid, options.format, lists)) return job;  // no text: the runner refuses it
 
@@ -250,7 +240,7 @@ inline Job reader_job(lightbin::ShaderOptions options, Stage stage, const Screen
     job.text = reader_text(options, *snippet, stage, job.width, job.height);
     const ShaderGrid constants = shader_grid(*view, corner_x, corner_y);
     for (const ShaderBinding& binding : snippet->bindings)
-        job.inputs.push_back(reader_input(binding, options, constants, *view, grid->tiles(), lists));
+        job.inputs.push_back(reader_input(binding, options, constants, *view, grid->ranges(), lists));
 
     for (int y = 0; y < screen.height; ++y)
         for (int x = 0; x < screen.width; ++x) {

@@ -54,7 +54,7 @@ struct WoundClock {
     }
 };
 
-constexpr Options narrow = {.index = Index::u16, .isa = Isa::scalar};
+constexpr Options narrow = {.ids = IdWidth::u16, .isa = Isa::scalar};
 
 Advice checked(const Result<Advice>& advice, const Costs& costs) {
     REQUIRE(advice);
@@ -95,10 +95,7 @@ test::Lists lists_of(const Plan& plan, const View& fine, const auto& lights,
     return with_options(plan, [&]<Options options> {
         CHECK(options.footprint == plan.footprint);
         CHECK(options.depth_test == plan.depth_test);
-        if constexpr (options.depth_test == DepthTest::none)
-            return test::lists<options>(view, lights);
-        else
-            return test::lists<options>(view, lights, bounds.reduced);
+        return test::lists<options>(view, lights, bounds.reduced);
     });
 }
 
@@ -316,21 +313,19 @@ TEST_CASE("a plan's options reach a Binner, with the rest from the caller's") {
     int plans = 0;
     for (const Plan& plan : advice.plans()) {
         if (!plan.tiled) continue;
-        constexpr Options base = {.index = Index::u16,
+        constexpr Options base = {.ids = IdWidth::u16,
                                   .footprint = Footprint::silhouette,
                                   .depth_test = DepthTest::interval,
-                                  .statistics = true,
                                   .isa = Isa::scalar};
         const Options told = with_options<base>(plan, []<Options options> { return options; });
         CHECK(told.footprint == plan.footprint);
         CHECK(told.depth_test == plan.depth_test);
-        CHECK(told.index == Index::u16);
-        CHECK(told.statistics);
+        CHECK(told.ids == IdWidth::u16);
         CHECK(told.isa == Isa::scalar);
         const Options plain = with_options(plan, []<Options options> { return options; });
         CHECK(plain.footprint == plan.footprint);
         CHECK(plain.depth_test == plan.depth_test);
-        CHECK(plain.index == Options().index);
+        CHECK(plain.ids == Options().ids);
         CHECK(plain.isa == Options().isa);
         ++plans;
     }

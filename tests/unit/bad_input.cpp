@@ -38,15 +38,16 @@ TEST_CASE("bad lights are skipped and counted, and the others are right") {
     Binner<> binner;
     const auto grid = binner.bin(view, mixed);
     REQUIRE(grid);
-    CHECK(grid->rejected() == bad.size());
+    CHECK(grid->light_counts().rejected == bad.size());
     CHECK(test::to_lists(*grid) == moved);
 
     const auto in_world = binner.bin(view, world_space(mixed, glm::mat4(1.0f)));
     REQUIRE(in_world);
-    CHECK(in_world->rejected() == bad.size());
+    CHECK(in_world->light_counts().rejected == bad.size());
 
     const glm::mat4 ortho = glm::ortho(-20.0f, 20.0f, -10.0f, 10.0f, 0.0f, 100.0f);
-    CHECK(binner.bin(*View::from_projection(ortho, {960, 540}), mixed)->rejected() == bad.size());
+    CHECK(binner.bin(*View::from_projection(ortho, {960, 540}), mixed)->light_counts().rejected ==
+          bad.size());
 }
 
 TEST_CASE("an infinite radius covers everything, for every camera") {
@@ -77,10 +78,10 @@ TEST_CASE("no lights") {
     const View view = test::view({960, 540}, 16);
     const auto grid = binner.bin(view, std::vector<glm::vec4>());
     REQUIRE(grid);
-    CHECK(grid->indices().empty());
-    CHECK(grid->tiles().size() == view.tile_count());
-    for (const Tile& tile : grid->tiles())
-        CHECK((tile.offset == 0 && tile.count == 0));
+    CHECK(grid->ids().empty());
+    CHECK(grid->ranges().size() == view.tile_count());
+    for (const ListRange range : grid->ranges())
+        CHECK((range.offset == 0 && range.count == 0));
 }
 
 TEST_CASE("an empty viewport") {
@@ -89,28 +90,28 @@ TEST_CASE("an empty viewport") {
         auto lights = test::random_lights(200, 41);
         lights.emplace_back(0, 0, 0, inf);
         lights.emplace_back(0, 0, not_a_number, 1);
-        Binner<Options{.statistics = true}> binner;
+        Binner<> binner;
         const auto grid = binner.bin(view, lights);
         REQUIRE(grid);
-        CHECK(grid->tiles().empty());
-        CHECK(grid->indices().empty());
-        CHECK(grid->rejected() == 1);
-        CHECK(binner.statistics().culled == 201);
+        CHECK(grid->ranges().empty());
+        CHECK(grid->ids().empty());
+        CHECK(grid->light_counts().rejected == 1);
+        CHECK(grid->light_counts().culled == 201);
 
         // Projected in several parts, and binned by the kernel that scatters.
         Binner<Options{.isa = Isa::scalar}> shared;
-        const auto none = shared.bin(view, test::random_lights(1000, 43), Parallel(3, test::backwards, 0));
+        const auto none =
+            shared.bin(view, test::random_lights(1000, 43), {}, Parallel(3, test::backwards, 0));
         REQUIRE(none);
-        CHECK(none->indices().empty());
+        CHECK(none->ids().empty());
 
         Binner<Options{.depth_test = DepthTest::interval}> pruned;
         const auto bounds = reduce_depth(view, {}, {});
         REQUIRE(bounds);
-        CHECK(pruned.bin(view, lights, *bounds)->indices().empty());
-        const auto size = pruned.count(view, lights, *bounds);
-        CHECK(size->tiles == 0);
-        CHECK(size->indices == 0);
-        CHECK(pruned.emit({}, {}));
+        const auto tested = pruned.bin(view, lights, {.bounds = *bounds});
+        REQUIRE(tested);
+        CHECK(tested->ids().empty());
+        CHECK(tested->copy_to({}, {}));
     }
 }
 
@@ -121,23 +122,23 @@ TEST_CASE("any number of workers") {
          {std::size_t{1} << (std::numeric_limits<std::size_t>::digits - 10),
           (std::numeric_limits<std::size_t>::max)() / 4 + 1, (std::numeric_limits<std::size_t>::max)()}) {
         Binner<> binner;
-        CHECK(test::to_lists(*binner.bin(view, lights, Parallel(workers, test::backwards, 0))) ==
+        CHECK(test::to_lists(*binner.bin(view, lights, {}, Parallel(workers, test::backwards, 0))) ==
               test::lists(view, lights));
     }
 }
 
 TEST_CASE("one pixel, and a tile larger than the screen") {
     const auto lights = test::random_lights(300, 42);
-    Binner<Options{.statistics = true}> binner;
+    Binner<> binner;
     std::size_t before = 0;
     for (const auto& [viewport, tile] :
          {std::pair(Extent{1, 1}, 1), std::pair(Extent{1, 1}, 64), std::pair(Extent{640, 640}, 1000)}) {
         const auto grid = binner.bin(test::view(viewport, tile), lights);
         REQUIRE(grid);
-        CHECK(grid->tiles().size() == 1);
-        CHECK(grid->indices().size() == 300 - binner.statistics().culled);
-        if (before != 0) CHECK(grid->indices().size() == before);  // the same frustum each time
-        before = grid->indices().size();
+        CHECK(grid->ranges().size() == 1);
+        CHECK(grid->ids().size() == 300 - grid->light_counts().culled);
+        if (before != 0) CHECK(grid->ids().size() == before);  // the same frustum each time
+        before = grid->ids().size();
     }
 }
 

@@ -1,7 +1,11 @@
 // What holds after a call that failed, was left out, or came at the wrong time.
 #include "scene.hpp"
 
+#include <lightbin/shader_build.hpp>
+
 #include <functional>
+#include <set>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -18,29 +22,6 @@ void run_backwards(std::size_t n, const std::function<void(std::size_t)>& body) 
 
 }  // namespace
 
-TEST_CASE("statistics are those of the last call that succeeded") {
-    const View view = test::view({640, 640}, 32);
-    const auto lights = test::random_lights(100, 50), others = test::random_lights(7, 51);
-    Binner<Options{.depth_test = DepthTest::interval, .statistics = true}> binner;
-    const std::vector<float> min(view.tile_count(), 0.0f), max(view.tile_count(), 50.0f);
-    const std::span<const float> few = std::span(min).first(3);
-    REQUIRE(binner.bin(view, lights, {min, max}));
-    const Statistics before = binner.statistics();
-    CHECK(before.lights == 100);
-    CHECK(!binner.bin(view, others, {few, max}));
-    CHECK(!binner.bin_transparency(view, others, {few, max}));
-    CHECK(!binner.count(view, others, {few, max}));
-    glm::mat4 bad(1.0f);
-    bad[0][3] = 1;
-    CHECK(!binner.bin(view, world_space(others, bad), {min, max}));
-    CHECK(binner.statistics().lights == before.lights);
-    CHECK(binner.statistics().culled == before.culled);
-    CHECK(binner.statistics().entries == before.entries);
-    CHECK(binner.statistics().histogram == before.histogram);
-    REQUIRE(binner.bin_transparency(view, others, {min, max}));
-    CHECK(binner.statistics().lights == 7);
-}
-
 TEST_CASE("a Binner that was moved from is as new, and what it had goes on elsewhere") {
     const View view = test::view({640, 360}, 16);
     const auto lights = test::random_lights(500, 52);
@@ -48,49 +29,29 @@ TEST_CASE("a Binner that was moved from is as new, and what it had goes on elsew
     for (const std::size_t workers : {1u, 3u}) {
         const Parallel parallel(workers, test::backwards, 0);
         Binner<> from;
-        const GridSize size = *from.count(view, lights, parallel);
+        const auto grid = from.bin(view, lights, {}, parallel);
+        REQUIRE(grid);
         Binner<> to = std::move(from);
-        std::vector<Tile> tiles(size.tiles);
-        std::vector<std::uint32_t> indices(size.indices);
-        CHECK(from.emit(tiles, indices).error().code == ErrorCode::nothing_counted);
-        const auto emitted = to.emit(tiles, indices);
-        REQUIRE(emitted);
-        CHECK(test::to_lists(*emitted) == expected);
-        CHECK(test::to_lists(*from.bin(view, lights, parallel)) == expected);
-        CHECK(test::to_lists(*to.bin(view, lights, parallel)) == expected);
+        CHECK(test::to_lists(*grid) == expected);  // its memory has gone on with `to`
+        CHECK(test::to_lists(*from.bin(view, lights, {}, parallel)) == expected);
+        CHECK(test::to_lists(*grid) == expected);
+        CHECK(test::to_lists(*to.bin(view, lights, {}, parallel)) == expected);
         Binner<>& same = to;
         to = std::move(same);
         CHECK(test::to_lists(*to.bin(view, lights)) == expected);
         from = std::move(to);
-        CHECK(test::to_lists(*to.bin(view, lights, parallel)) == expected);
+        CHECK(test::to_lists(*to.bin(view, lights, {}, parallel)) == expected);
     }
-}
-
-TEST_CASE("emit without a count before it, or with another call between, is an error") {
-    const View view = test::view({640, 480}, 32);
-    const auto lights = test::random_lights(10, 53), more = test::random_lights(20000, 54);
-    Binner<> binner;
-    std::vector<Tile> tiles(view.tile_count(), Tile{7, 7});
-    std::vector<std::uint32_t> indices(100000, 7);
-    CHECK(binner.emit(tiles, indices).error().code == ErrorCode::nothing_counted);
-    REQUIRE(binner.count(view, lights));
-    REQUIRE(binner.bin(view, more));
-    CHECK(binner.emit(tiles, indices).error().code == ErrorCode::nothing_counted);
-    CHECK(tiles.front().count == 7);
-    CHECK(indices.front() == 7);
-    REQUIRE(binner.count(view, lights));
-    REQUIRE(binner.emit(tiles, indices));
-    CHECK(binner.emit(tiles, indices).error().code == ErrorCode::nothing_counted);
 }
 
 TEST_CASE("a plain function runs a Parallel's work") {
     const View view = test::view({640, 360}, 16);
     const auto lights = test::random_lights(500, 55);
     const auto expected = test::lists(view, lights);
-    CHECK(test::lists(view, lights, Parallel(3, run_backwards, 0)) == expected);
-    CHECK(test::lists(view, lights, Parallel(3, &run_backwards, 0)) == expected);
+    CHECK(test::lists(view, lights, {}, Parallel(3, run_backwards, 0)) == expected);
+    CHECK(test::lists(view, lights, {}, Parallel(3, &run_backwards, 0)) == expected);
     const std::function<void(std::size_t, const std::function<void(std::size_t)>&)> function = run_backwards;
-    CHECK(test::lists(view, lights, Parallel(3, function, 0)) == expected);
+    CHECK(test::lists(view, lights, {}, Parallel(3, function, 0)) == expected);
 }
 
 TEST_CASE("what is transparent is lit before the sky as well") {
@@ -116,23 +77,62 @@ TEST_CASE("what is transparent is lit before the sky as well") {
         CHECK((max[1] < 5.01f) == skip);
 
         Binner<Options{.depth_test = DepthTest::box}> binner;
-        const auto grids = binner.bin_transparency(view, std::vector<glm::vec4>{{0, 0, -20, 5}}, *bounds);
+        const auto grids =
+            binner.bin_transparency(view, std::vector<glm::vec4>{{0, 0, -20, 5}}, {.bounds = *bounds});
         REQUIRE(grids);
         const std::vector<std::uint32_t> none, listed = {0};
         const auto transparent = test::to_lists(grids->transparent), opaque = test::to_lists(grids->opaque);
         CHECK(transparent[1] == listed);
         CHECK(opaque[1] == (skip ? none : listed));
-        const auto wide = binner.bin_transparency(view, lights, *bounds);
+        const auto wide = binner.bin_transparency(view, lights, {.bounds = *bounds});
         REQUIRE(wide);
         CHECK(test::to_lists(wide->transparent) == test::Lists{listed, listed, none});
 
         // Without the maximum that counts the sky, it is refused.
         const auto without = reduce_depth(view, buffer, {.min = min, .max = max});
-        const auto refused = binner.bin_transparency(view, lights, *without);
+        const auto refused = binner.bin_transparency(view, lights, {.bounds = *without});
         CHECK(refused.has_value() == !skip);
         if (!refused) CHECK(refused.error().code == ErrorCode::no_transparent_max);
         // The opaque lists alone need none; nor does one that is not pruned by a maximum.
-        CHECK(binner.bin(view, lights, *without));
-        CHECK(binner.bin_transparency(view, lights, *reduce_depth(view, buffer, {.min = min})));
+        CHECK(binner.bin(view, lights, {.bounds = *without}));
+        const auto nearest = reduce_depth(view, buffer, {.min = min});
+        CHECK(binner.bin_transparency(view, lights, {.bounds = *nearest}));
     }
+}
+
+namespace {
+
+/// Every value from the first to the last has words of its own.
+template <class Enum> void check_words(Enum first, Enum last) {
+    std::set<std::string> words;
+    int count = 0;
+    for (int value = static_cast<int>(first); value <= static_cast<int>(last); ++value, ++count)
+        words.insert(to_string(static_cast<Enum>(value)));
+    CHECK(words.size() == static_cast<std::size_t>(count));
+    CHECK(!words.contains("?"));
+    CHECK(!words.contains("unknown error"));
+}
+
+}  // namespace
+
+TEST_CASE("every enum has words") {
+    check_words(Isa::scalar, Isa::neon);
+    check_words(Footprint::rectangle, Footprint::silhouette);
+    check_words(DepthTest::none, DepthTest::split_box);
+    check_words(ClipDepth::minus_one_to_one, ClipDepth::zero_to_one);
+    check_words(WindowOrigin::lower_left, WindowOrigin::upper_left);
+    check_words(DepthFormat::float32, DepthFormat::unorm16);
+    check_words(ErrorCode::matrix_not_finite, ErrorCode::not_a_prefix);
+    check_words(ListEncoding::offset_count, ListEncoding::bitmask);
+    check_words(ShaderLanguage::glsl_330, ShaderLanguage::hlsl_5_1);
+    check_words(ShaderResource::uniform_vector, ShaderResource::writable_buffer);
+    check_words(TexelFormat::none, TexelFormat::r32f);
+    check_words(ListStorage::storage_buffer, ListStorage::byte_address);
+    check_words(ShaderStage::compute, ShaderStage::fragment);
+    check_words(BuildPass::count, BuildPass::fill);
+    static_assert(std::string_view(to_string(IdWidth::u8)) == "u8" &&
+                  std::string_view(to_string(IdWidth::u16)) == "u16" &&
+                  std::string_view(to_string(IdWidth::u32)) == "u32");
+    CHECK(machine_isa() == test::widest_tier());
+    CHECK(machine_isa(Isa::scalar) == Isa::scalar);
 }

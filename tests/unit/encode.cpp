@@ -16,7 +16,7 @@ namespace {
 
 // A grid that no binning made: `tiles` lists of up to `longest` ids below `lights`.
 struct MadeGrid {
-    std::vector<Tile> tiles;
+    std::vector<ListRange> tiles;
     std::vector<std::uint32_t> ids;
 
     MadeGrid(std::size_t count, std::uint32_t longest, std::uint32_t lights) {
@@ -34,7 +34,7 @@ struct MadeGrid {
         }
     }
 
-    LightGrid<std::uint32_t> grid() const { return {static_cast<int>(tiles.size()), 1, tiles, ids, 0}; }
+    LightGrid<std::uint32_t> grid() const { return {static_cast<int>(tiles.size()), 1, tiles, ids}; }
 };
 
 std::uint32_t number_at(const std::vector<std::byte>& bytes, std::size_t at, IdWidth width) {
@@ -45,20 +45,20 @@ std::uint32_t number_at(const std::vector<std::byte>& bytes, std::size_t at, IdW
 }
 
 std::vector<std::uint32_t> decoded(const std::vector<std::byte>& bytes, const ListFormat& format,
-                                   std::size_t index, Tile tile) {
+                                   std::size_t tile, ListRange range) {
     std::vector<std::uint32_t> list;
     if (format.encoding == ListEncoding::offset_count)
-        for (std::uint32_t i = 0; i < tile.count; ++i)
-            list.push_back(number_at(bytes, tile.offset + i, format.ids));
+        for (std::uint32_t i = 0; i < range.count; ++i)
+            list.push_back(number_at(bytes, range.offset + i, format.ids));
     if (format.encoding == ListEncoding::sentinel)
         for (std::uint32_t i = 0; i < format.capacity; ++i) {
-            const std::uint32_t id = number_at(bytes, index * format.capacity + i, format.ids);
+            const std::uint32_t id = number_at(bytes, tile * format.capacity + i, format.ids);
             if (id == (std::uint64_t{1} << 8 * static_cast<unsigned>(format.ids)) - 1) break;
             list.push_back(id);
         }
     if (format.encoding == ListEncoding::bitmask)
         for (std::uint32_t id = 0; id < format.max_lights; ++id)
-            if (number_at(bytes, index * ((format.max_lights + 31) / 32) + id / 32, IdWidth::u32) >> id % 32 &
+            if (number_at(bytes, tile * ((format.max_lights + 31) / 32) + id / 32, IdWidth::u32) >> id % 32 &
                 1)
                 list.push_back(id);
     return list;
@@ -103,11 +103,11 @@ TEST_CASE(
 }
 
 TEST_CASE("what a format can't hold is an error, and nothing is written") {
-    const std::vector<Tile> tiles = {{0, 2}};
+    const std::vector<ListRange> tiles = {{0, 2}};
     const auto with_last = [&](std::uint32_t last, ListFormat format, std::size_t size) {
         const std::vector<std::uint32_t> ids = {0, last};
         std::vector<std::byte> bytes(size, std::byte{0xa5});
-        const auto result = encode(LightGrid<std::uint32_t>(1, 1, tiles, ids, 0), format, bytes);
+        const auto result = encode(LightGrid<std::uint32_t>(1, 1, tiles, ids), format, bytes);
         if (!result) CHECK(std::count(bytes.begin(), bytes.end(), std::byte{0xa5}) == static_cast<int>(size));
         return result ? std::string() : result.error().message();
     };

@@ -1,4 +1,4 @@
-// The light grid itself: order, determinism, both id types, Z bounds, transparency, statistics. That no light
+// The light grid itself: order, determinism, both id types, Z bounds, transparency, counts. That no light
 // is missed is proved in tests/oracle.
 #include "scene.hpp"
 
@@ -37,13 +37,13 @@ TEST_CASE("offsets leave no gap and ids ascend within a tile") {
     const auto grid = binner.bin(view, lights);
     REQUIRE(grid);
     std::uint32_t next = 0;
-    for (const Tile& tile : grid->tiles()) {
-        CHECK(tile.offset == next);
-        next += tile.count;
-        const auto ids = grid->indices().subspan(tile.offset, tile.count);
+    for (const ListRange range : grid->ranges()) {
+        CHECK(range.offset == next);
+        next += range.count;
+        const auto ids = grid->ids().subspan(range.offset, range.count);
         CHECK(std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<>()) == ids.end());
     }
-    CHECK(next == grid->indices().size());
+    CHECK(next == grid->ids().size());
     CHECK(next > 3000);
 }
 
@@ -83,15 +83,11 @@ struct Plain {
 };
 
 template <Isa isa, DepthTest depth_test = DepthTest::none> void check_plain(const Plain& plain) {
-    static Binner<Options{.depth_test = depth_test, .isa = isa}> binner;
+    constexpr Options options = {.depth_test = depth_test, .isa = isa};
+    static Binner<options> binner;
     for (const std::size_t workers : {1u, 2u, 5u}) {
         const Parallel parallel(workers, test::backwards, 0);
-        const auto grid = [&] {
-            if constexpr (depth_test == DepthTest::none)
-                return binner.bin(plain.view, plain.spheres, parallel);
-            else
-                return binner.bin(plain.view, plain.spheres, ZBounds{}, parallel);
-        }();
+        const auto grid = binner.bin(plain.view, plain.spheres, inputs_for<options>({}), parallel);
         REQUIRE(grid);
         CHECK((test::to_lists(*grid) == plain.expected));
     }
@@ -144,16 +140,16 @@ TEST_CASE("the same input gives the same bytes, whatever the Binner did before")
     (void)used.bin(other, test::random_lights(5000, 12));
     (void)used.bin(view, test::random_lights(10, 13));
     const auto a = used.bin(view, lights), b = fresh.bin(view, lights);
-    REQUIRE(a->tiles().size_bytes() == b->tiles().size_bytes());
-    REQUIRE(a->indices().size_bytes() == b->indices().size_bytes());
-    CHECK(std::memcmp(a->tiles().data(), b->tiles().data(), a->tiles().size_bytes()) == 0);
-    CHECK(std::memcmp(a->indices().data(), b->indices().data(), a->indices().size_bytes()) == 0);
+    REQUIRE(a->ranges().size_bytes() == b->ranges().size_bytes());
+    REQUIRE(a->ids().size_bytes() == b->ids().size_bytes());
+    CHECK(std::memcmp(a->ranges().data(), b->ranges().data(), a->ranges().size_bytes()) == 0);
+    CHECK(std::memcmp(a->ids().data(), b->ids().data(), a->ids().size_bytes()) == 0);
 }
 
 TEST_CASE("16-bit ids are the same ids") {
     const View view = test::view({1280, 720}, 32);
     const auto lights = test::random_lights(65536, 14);  // as many as there are ids
-    CHECK(test::lists<Options{.index = Index::u16}>(view, lights) == test::lists(view, lights));
+    CHECK(test::lists<Options{.ids = IdWidth::u16}>(view, lights) == test::lists(view, lights));
 }
 
 TEST_CASE("coarser tiles hold the union of finer ones") {
@@ -227,24 +223,50 @@ TEST_CASE("a NaN bound tests nothing; infinite bounds mean what they say") {
 }
 
 TEST_CASE("transparency lists: one call gives what two Binners give") {
-    constexpr Options options = {.index = Index::u16, .depth_test = DepthTest::interval, .statistics = true};
+    constexpr Options options = {.ids = IdWidth::u16, .depth_test = DepthTest::interval};
     const View view = test::view({960, 540}, 16);
     const auto lights = test::random_lights(1500, 20);
     const auto min = random_floats(view.tile_count(), 5.0f, 30.0f, 21),
                max = random_floats(view.tile_count(), 30.0f, 60.0f, 22);
     Binner<options> binner;
-    const auto grids = binner.bin_transparency(view, lights, {.min = min, .max = max});
+    const auto grids = binner.bin_transparency(view, lights, {.bounds = {.min = min, .max = max}});
     REQUIRE(grids);
     const auto opaque = test::to_lists(grids->opaque), transparent = test::to_lists(grids->transparent);
     CHECK(opaque == test::lists<options>(view, lights, ZBounds{.min = min, .max = max}));
     CHECK(transparent == test::lists<options>(view, lights, ZBounds{.min = {}, .max = max}));
     CHECK(test::is_superset(transparent, opaque));
     CHECK(test::entries(transparent) > test::entries(opaque));
-    CHECK(binner.statistics().entries == test::entries(opaque));
 }
 
-TEST_CASE("statistics") {
-    constexpr Options options = {.statistics = true};
+TEST_CASE("a point is lit by the lights of its tile") {
+    const View view = test::view({960, 540}, 16);
+    const auto lights = test::random_lights(400, 60);
+    Binner<> binner;
+    const auto grid = binner.bin(view, lights);
+    REQUIRE(grid);
+    std::mt19937 random(61);
+    std::uniform_real_distribution<double> x(0, 960), y(0, 540), depth(0.2, 100);
+    std::size_t lit = 0;
+    for (int i = 0; i < 5000; ++i) {
+        const ImagePoint place = {x(random), y(random), depth(random)};
+        const ViewPoint point = view.view_point(place);
+        const auto tile = view.tile_at(view.image_point(point));
+        if (!tile) continue;  // at the very edge
+        const auto listed = grid->lights_in(tile->x, tile->y);
+        for (std::size_t light = 0; light < lights.size(); ++light) {
+            const glm::vec4& sphere = lights[light];
+            const double dx = point.x - static_cast<double>(sphere.x),
+                         dy = point.y - static_cast<double>(sphere.y),
+                         dz = point.z - static_cast<double>(sphere.z), radius = static_cast<double>(sphere.w);
+            if (dx * dx + dy * dy + dz * dz > radius * radius) continue;
+            ++lit;
+            CHECK(std::binary_search(listed.begin(), listed.end(), light));
+        }
+    }
+    CHECK(lit > 1000);
+}
+
+TEST_CASE("what became of the lights, and how long the lists are") {
     const View view = test::view({960, 540}, 16);
     auto lights = test::random_lights(150, 23);
     std::erase_if(lights, [](const glm::vec4& light) { return light.z > -5; });  // leaves tiles empty
@@ -252,33 +274,32 @@ TEST_CASE("statistics") {
     lights[7].w = -1;
     lights[11].x = std::nanf("");
     lights[13] = {0, 0, 50, 1};  // behind the eye
-    Binner<options> binner;
+    Binner<> binner;
     const auto grid = binner.bin(view, lights);
     REQUIRE(grid);
-    const Statistics& statistics = binner.statistics();
+    const ListLengths lengths = list_lengths(*grid);
     const auto lists = test::to_lists(*grid);
     std::vector<bool> listed(lights.size());
-    Statistics expected;
+    ListLengths expected;
     for (const auto& list : lists) {
         for (const std::uint32_t id : list)
             listed[id] = true;
-        expected.longest_list = std::max(expected.longest_list, static_cast<std::uint32_t>(list.size()));
+        expected.longest = std::max(expected.longest, static_cast<std::uint32_t>(list.size()));
         std::size_t bits = 0;
         while (list.size() >> bits)
             ++bits;
         ++expected.histogram[bits];
     }
     const auto in_view = static_cast<std::uint64_t>(std::count(listed.begin(), listed.end(), true));
-    CHECK(statistics.lights == 20);
-    CHECK(statistics.rejected == 2);
-    CHECK(grid->rejected() == 2);
-    CHECK(statistics.culled == 20 - 2 - in_view);
-    CHECK(statistics.entries == test::entries(lists));
-    CHECK(statistics.longest_list == expected.longest_list);
-    CHECK(statistics.histogram == expected.histogram);
-    CHECK(statistics.histogram[0] > 0);
+    CHECK(grid->light_counts().lights == 20);
+    CHECK(grid->light_counts().rejected == 2);
+    CHECK(grid->light_counts().culled == 20 - 2 - in_view);
+    CHECK(lengths.longest == expected.longest);
+    CHECK(lengths.histogram == expected.histogram);
+    CHECK(lengths.histogram[0] > 0);
 
-    (void)binner.bin(view, std::vector<glm::vec4>());
-    CHECK(binner.statistics().lights == 0);
-    CHECK(binner.statistics().histogram[0] == view.tile_count());
+    const auto none = binner.bin(view, std::vector<glm::vec4>());
+    REQUIRE(none);
+    CHECK(none->light_counts().lights == 0);
+    CHECK(list_lengths(*none).histogram[0] == view.tile_count());
 }

@@ -65,8 +65,9 @@ bool right(const Picture& picture, const LightGrid<Id>& grid, bool rectangles, c
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const auto ids = grid.lights_in(x, y);
-            const Tile tile = grid.tiles()[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                           static_cast<std::size_t>(x)];
+            const ListRange range =
+                grid.ranges()[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                              static_cast<std::size_t>(x)];
             std::size_t next = 0;
             for (std::uint32_t id = 0; id < picture.spheres.size(); ++id) {
                 const bool listed = next < ids.size() && ids[next] == id;
@@ -81,22 +82,17 @@ bool right(const Picture& picture, const LightGrid<Id>& grid, bool rectangles, c
                              << ", " << y << " of " << width << " x " << height);
                 return false;
             }
-            if (next != ids.size() || tile.offset != offset) return false;
-            offset += tile.count;
+            if (next != ids.size() || range.offset != offset) return false;
+            offset += range.count;
         }
-    return offset == grid.indices().size();
+    return offset == grid.ids().size();
 }
 
 template <Options options> void check(const Picture& picture, const std::string& name) {
     Binner<options> binner;
     for (const std::size_t workers : {1u, 5u}) {
         const Parallel parallel(workers, test::backwards, 0);
-        const auto grid = [&] {
-            if constexpr (options.depth_test == DepthTest::none)
-                return binner.bin(picture.view, picture.spheres, parallel);
-            else
-                return binner.bin(picture.view, picture.spheres, ZBounds{}, parallel);
-        }();
+        const auto grid = binner.bin(picture.view, picture.spheres, inputs_for<options>({}), parallel);
         REQUIRE(grid);
         CHECK(right(picture, *grid, options.footprint == Footprint::rectangle, name));
     }
@@ -105,7 +101,7 @@ template <Options options> void check(const Picture& picture, const std::string&
 template <Isa isa> void check_tier(const Picture& picture, const std::string& name) {
     check<Options{.isa = isa}>(picture, name);
     check<Options{.footprint = Footprint::silhouette, .isa = isa}>(picture, name);
-    check<Options{.index = Index::u16, .depth_test = DepthTest::interval, .isa = isa}>(picture, name);
+    check<Options{.ids = IdWidth::u16, .depth_test = DepthTest::interval, .isa = isa}>(picture, name);
 }
 
 }  // namespace

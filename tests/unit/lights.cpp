@@ -135,7 +135,7 @@ TEST_CASE("doubles out of the floats' range light everything; those that are bad
     Binner<> binner;
     const auto grid = binner.bin(view, lights);
     REQUIRE(grid);
-    CHECK(grid->rejected() == 4);
+    CHECK(grid->light_counts().rejected == 4);
     for (const std::vector<std::uint32_t>& list : test::to_lists(*grid))
         CHECK(list == std::vector<std::uint32_t>{0, 1, 2});
 }
@@ -182,7 +182,6 @@ TEST_CASE("a view matrix that is not affine is refused") {
     CHECK(binner.bin(view, world_space(lights, bad)).error().code == ErrorCode::view_matrix_not_affine);
     bad = glm::mat4(1.0f);
     bad[3][0] = std::nanf("");
-    CHECK(binner.count(view, world_space(lights, bad)).error().code == ErrorCode::view_matrix_not_affine);
 }
 
 TEST_CASE("a light whose move overflows covers everything rather than nothing") {
@@ -203,13 +202,13 @@ TEST_CASE("a matrix whose squares overflow loses no light") {
             Binner<> binner;
             const auto grid = binner.bin(view, world_space(points, matrix));
             REQUIRE(grid);
-            CHECK(grid->rejected() == 0);
+            CHECK(grid->light_counts().rejected == 0);
             for (const std::vector<std::uint32_t>& list : test::to_lists(*grid)) {
                 REQUIRE(list.size() >= 2);
                 CHECK(list[0] == 0);
                 CHECK(list[1] == 1);
             }
-            CHECK(binner.bin(view, world_space(far, matrix))->rejected() == 0);
+            CHECK(binner.bin(view, world_space(far, matrix))->light_counts().rejected == 0);
         }
 }
 

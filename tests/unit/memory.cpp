@@ -18,77 +18,91 @@ bool names(const Error& error, std::uint64_t number) {
 
 }  // namespace
 
-TEST_CASE("count, then emit into the caller's memory, exactly") {
+TEST_CASE("a grid is copied into the caller's memory, exactly") {
     const View view = test::view({960, 540}, 16);
     const auto lights = test::random_lights(1000, 30);
-    Binner<Options{.index = Index::u16}> binner;
-    const auto size = binner.count(view, lights);
-    REQUIRE(size);
-    CHECK(size->tiles == view.tile_count());
-
-    constexpr Tile guard_tile = {0xdeadbeef, 0xfeedface};
-    constexpr std::uint16_t guard_id = 0xabcd;
-    std::vector<Tile> tiles(size->tiles + 8, guard_tile);
-    std::vector<std::uint16_t> ids(size->indices + 64, guard_id);
-    const auto grid = binner.emit(std::span(tiles).first(size->tiles), std::span(ids).first(size->indices));
+    Binner<Options{.ids = IdWidth::u16}> binner;
+    const auto grid = binner.bin(view, lights);
     REQUIRE(grid);
-    CHECK(grid->tiles().data() == tiles.data());
-    CHECK(grid->indices().data() == ids.data());
-    CHECK(grid->indices().size() == size->indices);
-    CHECK(test::to_lists(*grid) == test::lists(view, lights));
-    CHECK(std::all_of(ids.begin() + static_cast<std::ptrdiff_t>(size->indices), ids.end(),
-                      [&](auto id) { return id == guard_id; }));
-    CHECK(std::all_of(tiles.begin() + static_cast<std::ptrdiff_t>(size->tiles), tiles.end(),
-                      [&](const Tile& tile) {
-                          return tile.offset == guard_tile.offset && tile.count == guard_tile.count;
-                      }));
+    CHECK(grid->ranges().size() == view.tile_count());
 
-    const auto again = binner.count(view, lights);  // larger buffers than needed are fine
+    constexpr ListRange guard_range = {0xdeadbeef, 0xfeedface};
+    constexpr std::uint16_t guard_id = 0xabcd;
+    const std::size_t tiles = grid->ranges().size(), entries = grid->ids().size();
+    std::vector<ListRange> ranges(tiles + 8, guard_range);
+    std::vector<std::uint16_t> ids(entries + 64, guard_id);
+    const auto copy = grid->copy_to(std::span(ranges).first(tiles), std::span(ids).first(entries));
+    REQUIRE(copy);
+    CHECK(copy->ranges().data() == ranges.data());
+    CHECK(copy->ranges().size() == tiles);
+    CHECK(copy->ids().data() == ids.data());
+    CHECK(copy->ids().size() == entries);
+    CHECK(copy->light_counts().lights == 1000);
+    CHECK(copy->light_counts().culled == grid->light_counts().culled);
+    CHECK(test::to_lists(*copy) == test::lists(view, lights));
+    const auto intact = [&] {
+        return std::all_of(ids.begin() + static_cast<std::ptrdiff_t>(entries), ids.end(),
+                           [&](auto id) { return id == guard_id; }) &&
+               std::all_of(ranges.begin() + static_cast<std::ptrdiff_t>(tiles), ranges.end(),
+                           [&](const ListRange range) {
+                               return range.offset == guard_range.offset && range.count == guard_range.count;
+                           });
+    };
+    CHECK(intact());
+
+    const auto again = grid->copy_to(ranges, ids);  // larger buffers than needed are fine
     REQUIRE(again);
-    CHECK(test::to_lists(*binner.emit(tiles, ids)) == test::lists(view, lights));
+    CHECK(again->ids().size() == entries);
+    CHECK(intact());
+    const auto first = test::to_lists(*again);
+    REQUIRE(binner.bin(view, test::random_lights(10, 3)));  // and the copy stays
+    CHECK(test::to_lists(*again) == first);
+    CHECK(first == test::lists(view, lights));
 }
 
 TEST_CASE("a buffer that is too small is an error that names the size, and nothing is written") {
     const View view = test::view({960, 540}, 16);
     const auto lights = test::random_lights(1000, 31);
     Binner<> binner;
-    const auto size = binner.count(view, lights);
-    REQUIRE(size);
-    std::vector<Tile> tiles(size->tiles, Tile{7, 7});
-    std::vector<std::uint32_t> ids(size->indices, 7u);
+    const auto grid = binner.bin(view, lights);
+    REQUIRE(grid);
+    const std::size_t tiles = grid->ranges().size(), entries = grid->ids().size();
+    std::vector<ListRange> ranges(tiles, ListRange{7, 7});
+    std::vector<std::uint32_t> ids(entries, 7u);
 
-    const auto few_tiles = binner.emit(std::span(tiles).first(size->tiles - 1), ids);
-    REQUIRE(!few_tiles);
-    CHECK(few_tiles.error().code == ErrorCode::tile_buffer_too_small);
-    CHECK(few_tiles.error().needed == size->tiles);
-    CHECK(names(few_tiles.error(), size->tiles));
+    const auto few_ranges = grid->copy_to(std::span(ranges).first(tiles - 1), ids);
+    REQUIRE(!few_ranges);
+    CHECK(few_ranges.error().code == ErrorCode::range_buffer_too_small);
+    CHECK(few_ranges.error().needed == tiles);
+    CHECK(names(few_ranges.error(), tiles));
+    CHECK(names(few_ranges.error(), tiles - 1));
 
-    const auto few_ids = binner.emit(tiles, std::span(ids).first(size->indices - 1));
+    const auto few_ids = grid->copy_to(ranges, std::span(ids).first(entries - 1));
     REQUIRE(!few_ids);
-    CHECK(few_ids.error().code == ErrorCode::index_buffer_too_small);
-    CHECK(few_ids.error().needed == size->indices);
-    CHECK(few_ids.error().available == size->indices - 1);
-    CHECK(names(few_ids.error(), size->indices));
-    CHECK(names(few_ids.error(), size->indices - 1));
+    CHECK(few_ids.error().code == ErrorCode::id_buffer_too_small);
+    CHECK(few_ids.error().needed == entries);
+    CHECK(few_ids.error().available == entries - 1);
+    CHECK(names(few_ids.error(), entries));
+    CHECK(names(few_ids.error(), entries - 1));
 
     CHECK(std::all_of(ids.begin(), ids.end(), [](std::uint32_t id) { return id == 7; }));
-    CHECK(std::all_of(tiles.begin(), tiles.end(),
-                      [](const Tile& tile) { return tile.offset == 7 && tile.count == 7; }));
+    CHECK(std::all_of(ranges.begin(), ranges.end(),
+                      [](const ListRange range) { return range.offset == 7 && range.count == 7; }));
 
-    CHECK(test::to_lists(*binner.emit(tiles, ids)) ==
-          test::lists(view, lights));  // and it can be tried again
+    const auto copy = grid->copy_to(ranges, ids);  // and it can be tried again
+    REQUIRE(copy);
+    CHECK(test::to_lists(*copy) == test::lists(view, lights));
 }
 
 TEST_CASE("too many lights for the id type") {
     const View view = test::view({64, 64}, 32);
     const std::vector<glm::vec4> lights(65537, glm::vec4(0, 0, 50, 1));
-    Binner<Options{.index = Index::u16}> narrow;
+    Binner<Options{.ids = IdWidth::u16}> narrow;
     const auto grid = narrow.bin(view, lights);
     REQUIRE(!grid);
     CHECK(grid.error().code == ErrorCode::too_many_lights);
     CHECK(names(grid.error(), 65537));
     CHECK(names(grid.error(), 65536));
-    CHECK(narrow.count(view, lights).error().code == ErrorCode::too_many_lights);
     Binner<> wide;
     CHECK(wide.bin(view, lights));
 }
@@ -107,7 +121,6 @@ TEST_CASE("more lights than 32 bits number") {
         };
         Binner<> binner;
         refused(binner.bin(view, lights));
-        refused(binner.count(view, lights));
         refused(advise(view, lights));
         refused(shader_footprints(view, lights));
     }
@@ -134,21 +147,21 @@ TEST_CASE("more entries than 32-bit offsets reach") {
     const View view = test::view({4096, 4096}, 1);  // 2^24 tiles
     const std::vector<glm::vec4> lights(256, glm::vec4(0, 0, 0, HUGE_VALF));
     Binner<> binner;
-    const auto size = binner.count(view, lights);
-    REQUIRE(!size);
-    CHECK(size.error().code == ErrorCode::too_many_entries);
-    CHECK(size.error().needed == std::uint64_t{1} << 32);
-    CHECK(names(size.error(), std::uint64_t{1} << 32));
+    const auto grid = binner.bin(view, lights);
+    REQUIRE(!grid);
+    CHECK(grid.error().code == ErrorCode::too_many_entries);
+    CHECK(grid.error().needed == std::uint64_t{1} << 32);
+    CHECK(names(grid.error(), std::uint64_t{1} << 32));
 }
 
 TEST_CASE("more lights in supertiles than kernels count to") {
     const View view = test::view({16384, 16384}, 1);  // 2^22 supertiles
     const std::vector<glm::vec4> lights(1024, glm::vec4(0, 0, 0, HUGE_VALF));
     Binner<Options{.footprint = Footprint::silhouette}> binner;
-    const auto size = binner.count(view, lights);
-    REQUIRE(!size);
-    CHECK(size.error().code == ErrorCode::too_many_list_places);
-    CHECK(size.error().needed >= std::uint64_t{1} << 32);
+    const auto grid = binner.bin(view, lights);
+    REQUIRE(!grid);
+    CHECK(grid.error().code == ErrorCode::too_many_list_places);
+    CHECK(grid.error().needed >= std::uint64_t{1} << 32);
 }
 
 TEST_CASE("Z bounds shorter than the grid are an error that names the size") {
@@ -158,12 +171,11 @@ TEST_CASE("Z bounds shorter than the grid are an error that names the size") {
     const std::vector<float> right(view.tile_count()), small(view.tile_count() - 1);
     for (const ZBounds& bounds :
          {ZBounds{small, right}, ZBounds{right, small}, ZBounds{small, {}}, ZBounds{{}, small}}) {
-        const auto grid = binner.bin(view, lights, bounds);
+        const auto grid = binner.bin(view, lights, {.bounds = bounds});
         REQUIRE(!grid);
         CHECK(grid.error().code == ErrorCode::z_bounds_too_small);
         CHECK(names(grid.error(), view.tile_count()));
-        CHECK(!binner.count(view, lights, bounds));
-        CHECK(!binner.bin_transparency(view, lights, bounds));
+        CHECK(!binner.bin_transparency(view, lights, {.bounds = bounds}));
     }
-    CHECK(binner.bin(view, lights, {right, right}));
+    CHECK(binner.bin(view, lights, {.bounds = {right, right}}));
 }

@@ -21,13 +21,13 @@
 namespace test {
 
 /// The instruction sets that this machine runs, the scalar kernels first and the widest last. A function of the library
-/// that takes an Isa and does not ask the machine is to be given one of these, never detail::compiled_isa.
+/// that takes an Isa and does not ask the machine is to be given one of these, never compiled_isa.
 inline const std::vector<lightbin::Isa>& machine_tiers() {
     using lightbin::Isa;
     static const std::vector<Isa> tiers = [] {
         std::vector<Isa> found = {Isa::scalar};
         for (const Isa isa : {Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon})
-            if (lightbin::detail::machine_isa(isa) == isa) found.push_back(isa);
+            if (lightbin::machine_isa(isa) == isa) found.push_back(isa);
         return found;
     }();
     return tiers;
@@ -35,12 +35,11 @@ inline const std::vector<lightbin::Isa>& machine_tiers() {
 inline lightbin::Isa widest_tier() {
     return machine_tiers().back();
 }
-/// Such as "scalar SSE2 AVX2".
+/// Such as "scalar sse2 avx2".
 inline std::string tier_names() {
-    constexpr const char* names[] = {"scalar", "SSE2", "AVX2", "AVX-512", "NEON"};
     std::string all;
     for (const lightbin::Isa isa : machine_tiers())
-        all += (all.empty() ? "" : " ") + std::string(names[static_cast<int>(isa)]);
+        all += (all.empty() ? "" : " ") + std::string(lightbin::to_string(isa));
     return all;
 }
 
@@ -87,10 +86,11 @@ template <class Id> Lists to_lists(const lightbin::LightGrid<Id>& grid) {
     return lists;
 }
 
-template <lightbin::Options options = lightbin::Options{}, class Lights, class... Bounds>
-Lists lists(const lightbin::View& view, const Lights& lights, const Bounds&... bounds) {
+template <lightbin::Options options = lightbin::Options{}, class Lights, class Threads = lightbin::Serial>
+Lists lists(const lightbin::View& view, const Lights& lights, const lightbin::ZBounds& bounds = {},
+            const Threads& threads = {}) {
     lightbin::Binner<options> binner;
-    const auto grid = binner.bin(view, lights, bounds...);
+    const auto grid = binner.bin(view, lights, lightbin::inputs_for<options>(bounds), threads);
     REQUIRE(grid);
     return to_lists(*grid);
 }

@@ -70,7 +70,7 @@ TEST_CASE("the bindings tell what the text declares") {
     CHECK(grid.slot.binding == 5);
     CHECK(tiles.resource == ShaderResource::texel_buffer);
     CHECK(tiles.format == TexelFormat::rg32ui);
-    CHECK(tiles.stride == sizeof(Tile));
+    CHECK(tiles.stride == sizeof(ListRange));
     CHECK(lists.format == TexelFormat::r16ui);
     CHECK(lists.stride == 2);
     CHECK(lists.slot.set == 1);

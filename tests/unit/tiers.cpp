@@ -101,18 +101,13 @@ const auto threads = [](std::size_t n, auto body) {
 template <Options options> class Tier {
 public:
     std::vector<std::uint32_t> bytes(const Input& input, const Parallel& parallel = {}) {
-        const auto grid = [&] {
-            if constexpr (options.depth_test == DepthTest::none)
-                return binner_.bin(input.view, input.lights, parallel);
-            else
-                return binner_.bin(input.view, input.lights,
-                                   {input.min, input.max, input.gap_min, input.gap_max}, parallel);
-        }();
+        const ZBounds bounds = {input.min, input.max, input.gap_min, input.gap_max};
+        const auto grid = binner_.bin(input.view, input.lights, inputs_for<options>(bounds), parallel);
         REQUIRE(grid);
-        std::vector<std::uint32_t> all = {grid->rejected()};
-        for (const Tile& tile : grid->tiles())
-            all.insert(all.end(), {tile.offset, tile.count});
-        all.insert(all.end(), grid->indices().begin(), grid->indices().end());
+        std::vector<std::uint32_t> all = {grid->light_counts().rejected};
+        for (const ListRange range : grid->ranges())
+            all.insert(all.end(), {range.offset, range.count});
+        all.insert(all.end(), grid->ids().begin(), grid->ids().end());
         return all;
     }
 
@@ -197,18 +192,18 @@ TEST_CASE("this machine has the tiers that it is said to have") {
 
 TEST_CASE("all tiers give the same bytes, on any number of workers") {
     compare<plain>(150, 0);
-    compare<Options{.index = Index::u16}>(50, 1000);
+    compare<Options{.ids = IdWidth::u16}>(50, 1000);
     compare<interval>(150, 2000);
     compare<box>(100, 4000);
     compare<Options{.footprint = Footprint::silhouette}>(100, 6000);
     compare<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>(50, 7000);
-    compare<Options{.index = Index::u16, .depth_test = DepthTest::split_box}>(100, 5000);
+    compare<Options{.ids = IdWidth::u16, .depth_test = DepthTest::split_box}>(100, 5000);
 }
 
 TEST_CASE("each tier scatters by its own text, the scalar one without vectors") {
     const auto scalar = detail::scatter_kernel<std::uint32_t>(Isa::scalar);
     for (const Isa isa : {Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon})
-        if (const Isa here = detail::machine_isa(isa); here != Isa::scalar)
+        if (const Isa here = machine_isa(isa); here != Isa::scalar)
             CHECK_UNARY(detail::scatter_kernel<std::uint32_t>(here) != scalar);
 }
 

@@ -10,8 +10,10 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 #include <string>
 #include <utility>
+#include <vector>
 
 using lightbin::ClipDepth;
 using lightbin::ErrorCode;
@@ -191,9 +193,136 @@ TEST_CASE("a view's grid can be made anew with other tiles") {
             CHECK(made_anew->reversed_z() == direct->reversed_z());
             CHECK(made_anew->near_depth() == direct->near_depth());
             CHECK(made_anew->far_depth() == direct->far_depth());
-            CHECK(made_anew->camera().x.scale == direct->camera().x.scale);
-            CHECK(made_anew->camera().y.offset == direct->camera().y.offset);
+            const lightbin::ImagePoint a = made_anew->image_point({1, 2, -3}),
+                                       b = direct->image_point({1, 2, -3});
+            CHECK(a.x == b.x);
+            CHECK(a.y == b.y);
         }
     }
     CHECK(view->with_tile_size(0).error().code == ErrorCode::tile_size_out_of_range);
+}
+
+namespace {
+
+/// A matrix and where it looks: view depth is `forward` times z.
+struct Projected {
+    glm::dmat4 matrix;
+    double forward;
+    bool perspective = true;
+};
+
+std::vector<Projected> all_kinds() {
+    glm::dmat4 jittered = glm::perspectiveRH_NO(1.0, 1.5, 0.1, 100.0);
+    jittered[2][0] += 0.003;
+    jittered[2][1] -= 0.002;
+    glm::dmat4 flipped = glm::perspectiveRH_ZO(0.7, 0.8, 0.1, 100.0);
+    flipped[0][0] = -flipped[0][0];
+    flipped[1][1] = -flipped[1][1];
+    return {
+        {glm::dmat4(glm::perspectiveRH_NO(1.0f, 1.5f, 0.1f, 100.0f)), -1},
+        {jittered, -1},
+        {flipped, -1},
+        {3.0 * jittered, -1},
+        {glm::perspectiveLH_ZO(2.5, 1.0, 0.1, 100.0), 1},
+        {glm::perspectiveRH_ZO(1.0, 1.5, 100.0, 0.1), -1},  // reversed Z
+        {glm::infinitePerspective(1.0, 1.5, 0.1), -1},
+        {glm::frustumRH_NO(0.1, 0.3, -0.5, -0.1, 0.1, 100.0), -1},
+        {glm::orthoRH_NO(-4.0, 9.0, -3.0, 5.0, 0.1, 100.0), -1, false},
+        {glm::orthoLH_ZO(-4.0, 4.0, 3.0, -3.0, -50.0, 100.0), 1, false},
+    };
+}
+
+/// The pixel coordinates of a point by its definition: matrix, division by w, viewport.
+void check_place(const View& view, const Projected& made, const lightbin::ViewPoint& point) {
+    const long double p[] = {point.x, point.y, point.z, 1};
+    long double clip[4] = {};
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+            clip[row] += static_cast<long double>(made.matrix[column][row]) * p[column];
+    const auto [width, height] = view.viewport();
+    const long double x = (clip[0] / clip[3] + 1) / 2 * width, up = (clip[1] / clip[3] + 1) / 2 * height,
+                      y = view.origin() == WindowOrigin::lower_left ? up : height - up;
+
+    const lightbin::ImagePoint place = view.image_point(point);
+    // The largest terms of the sums, times some roundings of doubles.
+    const long double error = 1e-14L * (std::fabs(x) + std::fabs(y) + width + height) *
+                              (1 + std::fabs(made.matrix[2][0]) + std::fabs(made.matrix[2][1]));
+    CHECK(std::fabs(x - static_cast<long double>(place.x)) <= error);
+    CHECK(std::fabs(y - static_cast<long double>(place.y)) <= error);
+    CHECK(place.depth == made.forward * point.z);
+
+    const lightbin::ViewPoint back = view.view_point(place);
+    CHECK(back.x == doctest::Approx(point.x).epsilon(1e-9));
+    CHECK(back.y == doctest::Approx(point.y).epsilon(1e-9));
+    CHECK(back.z == point.z);
+
+    const bool inside =
+        x >= 0 && x < width && y >= 0 && y < height && (!made.perspective || made.forward * point.z > 0);
+    const auto distance = [&](long double c) {  // to the next pixel's edge
+        return std::fabs(c - std::round(c));
+    };
+    if (distance(x) < error || distance(y) < error) return;
+    const auto tile = view.tile_at(place);
+    REQUIRE(tile.has_value() == inside);
+    if (!tile) return;
+    CHECK(tile->x == static_cast<int>(std::floor(x / view.tile_size())));
+    CHECK(tile->y == static_cast<int>(std::floor(y / view.tile_size())));
+}
+
+}  // namespace
+
+TEST_CASE("a point of view space lies where the matrix puts it, and back") {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> side(-1.2, 1.2), depth(-5, 60);
+    int seen = 0;
+    for (const Projected& made : all_kinds())
+        for (const lightbin::Extent viewport :
+             {full_hd, lightbin::Extent{1919, 1079}, lightbin::Extent{3, 500}})
+            for (const WindowOrigin origin : {WindowOrigin::lower_left, WindowOrigin::upper_left}) {
+                const auto view = View::from_projection(
+                    made.matrix, viewport,
+                    {.tile_size = 17, .clip_depth = ClipDepth::zero_to_one, .origin = origin});
+                REQUIRE(view);
+                for (int i = 0; i < 200; ++i) {
+                    const double distance = depth(random), reach = made.perspective ? distance : 5;
+                    const lightbin::ViewPoint point = {side(random) * reach, side(random) * reach,
+                                                       made.forward * distance};
+                    check_place(*view, made, point);
+                    seen += view->tile_at(view->image_point(point)).has_value();
+                }
+            }
+    CHECK(seen > 2000);
+}
+
+TEST_CASE("the tile of each pixel, and of what is none") {
+    const auto view =
+        View::from_projection(glm::perspectiveRH_NO(1.0f, 1.5f, 0.1f, 100.0f), {50, 31}, {.tile_size = 8});
+    REQUIRE(view);
+    for (int y = 0; y < 31; ++y)
+        for (int x = 0; x < 50; ++x)
+            for (const double within : {0.0, 0.5, 0.999}) {
+                const auto tile = view->tile_at({x + within, y + within, 1});
+                REQUIRE(tile);
+                CHECK(tile->x == x / 8);
+                CHECK(tile->y == y / 8);
+            }
+    const double nan = std::numeric_limits<double>::quiet_NaN(),
+                 inf = std::numeric_limits<double>::infinity();
+    for (const lightbin::ImagePoint& place : {lightbin::ImagePoint{-0.001, 1, 1},
+                                              {50, 1, 1},
+                                              {1, -1, 1},
+                                              {1, 31, 1},
+                                              {nan, 1, 1},
+                                              {1, nan, 1},
+                                              {1, 1, nan},
+                                              {inf, 1, 1},
+                                              {1, -inf, 1},
+                                              {1, 1, 0},
+                                              {1, 1, -3}})
+        CHECK(!view->tile_at(place));
+    CHECK(!view->tile_at(view->image_point({0, 0, 0})));  // the eye itself
+    CHECK(!view->tile_at(view->image_point({0, 0, 1})));  // behind it
+    const auto empty = View::from_projection(glm::perspectiveRH_NO(1.0f, 1.5f, 0.1f, 100.0f), {0, 31});
+    REQUIRE(empty);
+    CHECK(!empty->tile_at(empty->image_point({0, 0, -1})));
 }

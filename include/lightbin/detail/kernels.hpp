@@ -7,11 +7,11 @@
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/neon.hpp>
-#include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/scalar.hpp>
 #include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/sse2.hpp>
+#include <lightbin/isa.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// "These do not meet", proven in double precision: the quick answer to most of the oracle's questions. Where it
-// has none, oracle.hpp decides.
+// Whether a ball meets a cell, proven in double precision: the quick answer to most questions. Where it has none,
+// oracle.hpp decides. It is the one decider in double precision: the exact tests and the bench both ask it.
 //
-// A direction n separates a ball from a cell if  n.p > n.c + r |n|  for every point p of the cell. Which n to try
-// is found with ordinary rounding and needs no proof: a bad one only proves nothing. What is proven is the
-// inequality, for the n that came out, as the doubles they are:
+// They do not meet. A direction n separates a ball from a cell if  n.p > n.c + r |n|  for every point p of the cell.
+// Which n to try is found with ordinary rounding and needs no proof: a bad one only proves nothing. What is proven is
+// the inequality, for the n that came out, as the doubles they are:
 // - On a cell low(d) <= x <= high(d), the same in y, d0 <= d <= d1, lines  offset + slope d,  a positive n_x meets
 //   its least product on the low line, a negative one on the high line. So
 //       n.p >= A + B d,  A = n_x offset_x + n_y offset_y,  B = n_x slope_x + n_y slope_y + n_z,
@@ -15,6 +15,10 @@
 //   sum of its terms' sizes. 2^-47 is taken, for the roundings of that bound and of the comparison.
 // - Overflow leaves infinity or NaN, for which no comparison below holds. Underflow of a product is less than
 //   2^-1074, times at most 2^230 later on: nothing beside the 2^-800 that is asked of the difference.
+//
+// They meet. The cell has a point at every depth between its ends: the one nearest to the centre, whose distance along
+// each image axis is a difference of the centre's coordinate and a line at that depth. That is four roundings of its
+// terms, and the depth itself may be an end that was cut to double, 2^-52 of it: 2^-48 of the sizes is taken for both.
 #pragma once
 
 #include "oracle.hpp"
@@ -22,6 +26,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace oracle {
@@ -38,6 +43,10 @@ struct FlatDepths {
 
     /// Beyond doubt no depth lies between them.
     bool surely_empty() const { return min - max > 0x1p-50 * (std::abs(min) + std::abs(max)); }
+    /// Beyond doubt some do.
+    bool surely_some() const {
+        return std::isinf(max) ? max > 0 : max - min > 0x1p-50 * (std::abs(min) + std::abs(max));
+    }
 };
 
 /// A ball in the camera's axes, exact.
@@ -66,7 +75,50 @@ public:
         for (const int axis : {0, 1})
             for (const int side : {0, 1})
                 if (separates(of_planes(axis, side == 0 ? 1.0 : -1.0, cell), cell, depths, ball)) return true;
-        return apart_at_edge(cell, depths, ball);
+        return apart_at_edge(cell, cell, depths, ball);
+    }
+
+    /// Whether the ball meets the block of tiles [x0, x1) x [y0, y1) between these depths; nothing: unknown.
+    std::optional<bool> meets(int x0, int x1, int y0, int y1, const FlatDepths& depths,
+                              const FlatBall& ball) {
+        if (reaches({{{column(x0), column(x1)}, {row(y0), row(y1)}}}, depths, ball)) return true;
+        if (apart(x0, x1, y0, y1, depths, ball)) return false;
+        return std::nullopt;
+    }
+    /// The same of the wedge of whole columns or rows of tiles.
+    std::optional<bool> meets_columns(int x0, int x1, const FlatDepths& depths, const FlatBall& ball) {
+        if (reaches({{{column(x0), column(x1)}, {nowhere(-1), nowhere(1)}}}, depths, ball)) return true;
+        if (apart_from_columns(x0, x1, depths, ball)) return false;
+        return std::nullopt;
+    }
+    std::optional<bool> meets_rows(int y0, int y1, const FlatDepths& depths, const FlatBall& ball) {
+        if (reaches({{{nowhere(-1), nowhere(1)}, {row(y0), row(y1)}}}, depths, ball)) return true;
+        if (apart_from_rows(y0, y1, depths, ball)) return false;
+        return std::nullopt;
+    }
+
+    /// Whether the ball meets the box around a tile's cell; nothing: unknown.
+    std::optional<bool> meets_box(int x, int y, const FlatDepths& depths, const FlatBall& ball) {
+        if (std::isinf(depths.max)) return std::nullopt;
+        double least = 0, most = 0;  // the squared distance, rounded either way
+        const auto add = [&](double low, double high, double c) {
+            const double gap = std::max({low - c, c - high, 0.0}),
+                         error = 0x1p-48 * (std::abs(low) + std::abs(high) + std::abs(c)),
+                         below = std::max(gap - error, 0.0);
+            least += below * below;
+            most += (gap + error) * (gap + error);
+        };
+        const auto across = [&](const FlatLine& low, const FlatLine& high, double c) {
+            add(std::min(low.at(depths.min), low.at(depths.max)),
+                std::max(high.at(depths.min), high.at(depths.max)), c);
+        };
+        across(column(x), column(x + 1), ball.x);
+        across(row(y), row(y + 1), ball.y);
+        add(depths.min, depths.max, ball.depth);
+        const double reach = ball.radius * ball.radius;
+        if (reach > 0x1p-800 && depths.surely_some() && most * (1 + 0x1p-48) <= reach) return true;
+        if (least > 0x1p-800 && least > reach * (1 + 0x1p-48)) return false;
+        return std::nullopt;
     }
 
     /// The squared distance of the ball's centre from a tile's cell, give or take 2^-48 of the sizes involved.
@@ -166,7 +218,9 @@ private:
         cell.side[axis][0] = lines[0], cell.side[axis][1] = lines[1];
         for (const double towards : {1.0, -1.0})
             if (separates(of_planes(static_cast<int>(axis), towards, cell), cell, depths, ball)) return true;
-        return false;
+        Cell wedge = {{{nowhere(-1), nowhere(1)}, {nowhere(-1), nowhere(1)}}};
+        wedge.side[axis][0] = lines[0], wedge.side[axis][1] = lines[1];
+        return apart_at_edge(wedge, cell, depths, ball);
     }
 
     static double clamped(double v, double low, double high) { return v < low ? low : v > high ? high : v; }
@@ -207,13 +261,37 @@ private:
         return best;
     }
 
-    static bool apart_at_edge(const Cell& cell, const FlatDepths& depths, const FlatBall& c) {
+    /// Beyond doubt a point of the cell, that at the depth of the nearest one, is in the ball.
+    static bool reaches(const Cell& cell, const FlatDepths& depths, const FlatBall& c) {
+        if (!depths.surely_some()) return false;
         const double centre[2] = {c.x, c.y};
-        double best_d = 0;
-        nearest(cell, depths, c, best_d);
-        double n[2];
+        double d = 0;
+        nearest(cell, depths, c, d);
+        const auto squared = [](double v) { return v * v; };
+        double distance2 = squared(std::abs(d - c.depth) + 0x1p-48 * (std::abs(d) + std::abs(c.depth)));
         for (const int axis : {0, 1}) {
             const FlatLine(&lines)[2] = cell.side[axis];
+            if (std::isinf(lines[0].offset)) continue;  // not bounded
+            const double off = centre[axis] - clamped(centre[axis], lines[0].at(d), lines[1].at(d));
+            const auto size = [&](const FlatLine& line) {
+                return std::abs(line.offset) + std::abs(line.slope * d);
+            };
+            distance2 += squared(std::abs(off) + 0x1p-48 * (std::abs(centre[axis]) +
+                                                            std::max(size(lines[0]), size(lines[1]))));
+        }
+        const double reach = c.radius * c.radius;
+        return reach > 0x1p-800 && distance2 * (1 + 0x1p-48) <= reach;
+    }
+
+    /// By the direction to the nearest point of `found`, which is `cell` but for an axis that bounds nothing.
+    static bool apart_at_edge(const Cell& found, const Cell& cell, const FlatDepths& depths,
+                              const FlatBall& c) {
+        const double centre[2] = {c.x, c.y};
+        double best_d = 0;
+        nearest(found, depths, c, best_d);
+        double n[2];
+        for (const int axis : {0, 1}) {
+            const FlatLine(&lines)[2] = found.side[axis];
             n[axis] = clamped(centre[axis], lines[0].at(best_d), lines[1].at(best_d)) - centre[axis];
         }
         return separates(lifted(n[0], n[1], cell), cell, depths, c) ||

@@ -18,7 +18,7 @@
 //   not ours.
 #pragma once
 
-#include "cameras.hpp"
+#include "camera.hpp"
 
 #if defined(ORACLE_WITHOUT_GMP)  // for another machine, which has no such library installed here: slower
 #include <boost/multiprecision/cpp_int.hpp>
