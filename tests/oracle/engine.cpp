@@ -91,18 +91,24 @@ template <lightbin::Options options>
 Lists on_all_tiers(const lightbin::View& view, const Scene& scene, bool flush,
                    std::vector<std::string>& complaints) {
     using lightbin::Isa;
-    constexpr auto capped = [](Isa isa) {
+    constexpr auto capped = [](Isa isa, lightbin::Index index = lightbin::Index::u32) {
         lightbin::Options with_isa = options;
         with_isa.isa = isa;
+        with_isa.index = index;
         return with_isa;
     };
     Lists lists = built<capped(Isa::scalar)>(view, scene, flush);
     if (lists.offsets.empty()) complaints.push_back("the lights were refused");
+    const bool short_ids = scene.lights.size() <= 0x10000;
     // An Isa in the options is a cap: one that the machine lacks would be a narrower one again.
-    [[maybe_unused]] const auto compare = [&]<Isa isa>(const char* name) {
-        if (lightbin::detail::machine_isa(isa) == isa && built<capped(isa)>(view, scene, flush) != lists)
+    const auto compare = [&]<Isa isa>(const char* name) {
+        if (lightbin::detail::machine_isa(isa) != isa) return;
+        if (built<capped(isa)>(view, scene, flush) != lists)
             complaints.push_back(name + std::string(" differs"));
+        if (short_ids && built<capped(isa, lightbin::Index::u16)>(view, scene, flush) != lists)
+            complaints.push_back(name + std::string(" differs with ids of 16 bits"));
     };
+    compare.template operator()<Isa::scalar>("scalar");
 #if defined(LIGHTBIN_X86)
     compare.template operator()<Isa::sse2>("SSE2");
     compare.template operator()<Isa::avx2>("AVX2");
@@ -110,7 +116,9 @@ Lists on_all_tiers(const lightbin::View& view, const Scene& scene, bool flush,
 #elif defined(LIGHTBIN_NEON)
     compare.template operator()<Isa::neon>("NEON");
 #endif
-    if (built<options>(view, scene, flush, 3) != lists) complaints.push_back("with workers it differs");
+    for (const std::size_t workers : {2, 3, 16})
+        if (built<options>(view, scene, flush, workers) != lists)
+            complaints.push_back("with " + std::to_string(workers) + " workers it differs");
     return lists;
 }
 
