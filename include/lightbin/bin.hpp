@@ -31,7 +31,7 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR {
 /// A light grid in memory of its own, kept from call to call.
 template <class Id, Footprint footprint, DepthTest depth_test> class GridLists {
     static constexpr bool with_depth = depth_test != DepthTest::none,
-                          masked = detail::masked<footprint, depth_test>,
+                          worded = detail::with_words<footprint, depth_test>,
                           with_boxes = depth_test == DepthTest::box || depth_test == DepthTest::split_box;
 
 public:
@@ -69,10 +69,9 @@ public:
             if (places > most) return Error{ErrorCode::too_many_list_places, places, most};
         }
         // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.
-        if constexpr (masked)
+        if constexpr (worded)
             if (room > most)
-                room = detail::scalar::bin_supertiles<footprint, depth_test>(job, scratch[0],
-                                                                             {0, rows, nullptr, 0});
+                room = detail::scalar::count_entries<footprint, depth_test>(job, scratch[0]);
         if (room > most) return Error{ErrorCode::too_many_entries, room, most};
 
         job.tiles = tiles_.room(tiles + Job::slack(static_cast<std::size_t>(view.tiles_x())));
@@ -109,7 +108,7 @@ private:
         // Scattering does more for each light in parts, where it can't predict which lights are in one.
         if (kernel == detail::scatter_kernel<Id>(isa)) return (std::max)(0.6 * entries - 8 * lights, 0.0);
         const double slower = isa == Isa::avx512 ? 1 : isa == Isa::avx2 ? 1.5 : 2;
-        return slower * (masked ? 9 * lights + 0.35 * entries : 1.5 * lights + 0.1 * entries);
+        return slower * (worded ? 9 * lights + 0.35 * entries : 1.5 * lights + 0.1 * entries);
     }
 
     /// Builds `count` parts on the caller's threads, see make_parts(). Returns the number of entries.
@@ -120,7 +119,7 @@ private:
         if (spares_.size() < count) spares_.resize(count);
         detail::Part* parts = parts_.room(count);
         detail::make_parts(job, parallel, row_sums_, parts, count);
-        if constexpr (!masked) {
+        if constexpr (!worded) {
             // Rectangles: a part's place in the list is known. Its last entries go there by way of spare room,
             // as a kernel writes beyond its end, where the next part is at work.
             parallel.run(count, [&](std::size_t i) {

@@ -237,13 +237,11 @@ LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t*
 
 /// Writes those of 8 ids whose bit is set, in order; then up to 8 elements that mean nothing. Returns how
 /// many.
-template <class Id>
-LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, unsigned mask) {
+template <class Id> LIGHTBIN_TARGET inline std::uint32_t append(Id* out, __m256i ids, unsigned mask) {
     std::uint64_t places;
     std::memcpy(&places, set_bits[mask].data(), sizeof places);
-    const __m256i chosen =
-        _mm256_permutevar8x32_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(ids)),
-                                    _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(places))));
+    const __m256i chosen = _mm256_permutevar8x32_epi32(
+        ids, _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(places))));
     if constexpr (sizeof(Id) == 4)
         _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), chosen);
     else
@@ -252,13 +250,89 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
             _mm_packus_epi32(_mm256_castsi256_si128(chosen), _mm256_extracti128_si256(chosen, 1)));
     return static_cast<std::uint32_t>(std::popcount(mask));
 }
+template <class Id>
+LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, unsigned mask) {
+    return append(out, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(ids)), mask);
+}
 
-using portable::pack;
-using portable::Packed;
-using portable::packs_ids;
+// Vectors of bytes.
+
+struct Bytes {
+    __m256i v;
+};
+using ByteMask = std::uint32_t;
+using ListIds = WholeIds;
+inline constexpr std::uint32_t byte_lanes = 32;
+
+LIGHTBIN_TARGET inline Bytes load_bytes(const std::uint8_t* from) {
+    return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from))};
+}
+LIGHTBIN_TARGET inline Bytes all_bytes(unsigned each) {
+    return {_mm256_set1_epi8(static_cast<char>(each))};
+}
+LIGHTBIN_TARGET inline Bytes operator&(Bytes a, Bytes b) {
+    return {_mm256_and_si256(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Bytes lesser(Bytes a, Bytes b) {
+    return {_mm256_min_epu8(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Bytes subtract(Bytes a, Bytes b) {
+    return {_mm256_subs_epu8(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Bytes look_up(const std::uint8_t (&table)[16], Bytes places) {
+    const __m128i once = _mm_loadu_si128(reinterpret_cast<const __m128i*>(table));
+    return {_mm256_shuffle_epi8(_mm256_broadcastsi128_si256(once), places.v)};
+}
+LIGHTBIN_TARGET inline ByteMask not_zero(Bytes bytes) {
+    return ~static_cast<ByteMask>(_mm256_movemask_epi8(_mm256_cmpeq_epi8(bytes.v, _mm256_setzero_si256())));
+}
+LIGHTBIN_TARGET inline Bytes coordinates(const std::uint16_t* from, unsigned more, unsigned begin) {
+    const __m256i add = _mm256_set1_epi16(static_cast<short>(more)),
+                  start = _mm256_set1_epi16(static_cast<short>(begin)), most = _mm256_set1_epi16(255);
+    const __m256i* const halves = reinterpret_cast<const __m256i*>(from);
+    const __m256i low = _mm256_subs_epu16(_mm256_add_epi16(_mm256_loadu_si256(halves), add), start),
+                  high = _mm256_subs_epu16(_mm256_add_epi16(_mm256_loadu_si256(halves + 1), add), start);
+    // Packing takes words as signed, and the end of the last of 32768 rows is 0x8000.
+    return {_mm256_permute4x64_epi64(
+        _mm256_packus_epi16(_mm256_min_epu16(low, most), _mm256_min_epu16(high, most)), 0xd8)};
+}
+
+LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, Bytes from, std::uint8_t* to) {
+    const __m128i halves[] = {_mm256_castsi256_si128(from.v), _mm256_extracti128_si256(from.v, 1)};
+    for (unsigned i = 0; i < 4; ++i, chosen >>= 8) {
+        __m128i places = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_bits[chosen & 0xff].data()));
+        if (i % 2 == 1) places = _mm_add_epi8(places, _mm_set1_epi8(8));
+        _mm_storel_epi64(reinterpret_cast<__m128i*>(to), _mm_shuffle_epi8(halves[i / 2], places));
+        to += std::popcount(chosen & 0xff);
+    }
+}
+struct ByteIds {
+    __m256i eights[4];
+};
+LIGHTBIN_TARGET inline ByteIds load_ids(const std::uint32_t* from, bool) {
+    ByteIds ids;
+    for (unsigned i = 0; i < 4; ++i)
+        ids.eights[i] = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from + 8 * i));
+    return ids;
+}
+LIGHTBIN_TARGET inline ByteIds load_ids(ListIds from) {
+    return load_ids(from.ids, false);
+}
+LIGHTBIN_TARGET inline ByteIds count_ids(std::uint32_t first, bool) {
+    ByteIds ids;
+    for (unsigned i = 0; i < 4; ++i)
+        ids.eights[i] = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first + 8 * i)),
+                                         _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+    return ids;
+}
+LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, const ByteIds& from, ListIds to) {
+    std::uint32_t* out = to.ids;
+    for (unsigned i = 0; i < 4; ++i, chosen >>= 8)
+        out += append(out, from.eights[i], chosen & 0xff);
+}
 
 #define LIGHTBIN_TIER_HAS_ROWS
-#define LIGHTBIN_TIER_SCANS
+#define LIGHTBIN_TIER_HAS_BYTES
 #include <lightbin/detail/kernels.inl>
 
 }  // namespace avx2

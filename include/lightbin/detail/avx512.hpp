@@ -177,6 +177,109 @@ LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t*
         words[bit] = _mm512_test_epi8_mask(all_bytes, _mm512_set1_epi8(static_cast<char>(1 << bit)));
 }
 
+/// On Zen 5 the form of a compress instruction that zeroes the rest waits for what its register held before, which
+/// makes a chain of one iteration and the next: it is given fresh zeros.
+LIGHTBIN_TARGET inline __m512i fresh_zeros() {
+    __m512i zeros = _mm512_setzero_si512();
+    LIGHTBIN_FORGET(zeros);  // or the compiler picks that form
+    return zeros;
+}
+/// Those of the chosen elements, then zeros.
+LIGHTBIN_TARGET inline __m512i compressed_bytes(__mmask64 chosen, __m512i from) {
+    return _mm512_mask_compress_epi8(fresh_zeros(), chosen, from);
+}
+
+// Vectors of bytes.
+
+struct Bytes {
+    __m512i v;
+};
+using ByteMask = std::uint64_t;
+using ListIds = SplitIds;
+inline constexpr std::uint32_t byte_lanes = 64;
+
+LIGHTBIN_TARGET inline Bytes load_bytes(const std::uint8_t* from) {
+    return {_mm512_loadu_si512(from)};
+}
+LIGHTBIN_TARGET inline Bytes all_bytes(unsigned each) {
+    return {_mm512_set1_epi8(static_cast<char>(each))};
+}
+LIGHTBIN_TARGET inline Bytes operator&(Bytes a, Bytes b) {
+    return {_mm512_and_si512(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Bytes lesser(Bytes a, Bytes b) {
+    return {_mm512_min_epu8(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Bytes subtract(Bytes a, Bytes b) {
+    return {_mm512_subs_epu8(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Bytes look_up(const std::uint8_t (&table)[16], Bytes places) {
+    const __m128i once = _mm_loadu_si128(reinterpret_cast<const __m128i*>(table));
+    return {_mm512_shuffle_epi8(_mm512_broadcast_i32x4(once), places.v)};
+}
+LIGHTBIN_TARGET inline ByteMask not_zero(Bytes bytes) {
+    return _mm512_test_epi8_mask(bytes.v, bytes.v);
+}
+LIGHTBIN_TARGET inline Bytes coordinates(const std::uint16_t* from, unsigned more, unsigned begin) {
+    const __m512i add = _mm512_set1_epi16(static_cast<short>(more)),
+                  start = _mm512_set1_epi16(static_cast<short>(begin));
+    const __m512i low = _mm512_subs_epu16(_mm512_add_epi16(_mm512_loadu_si512(from), add), start),
+                  high = _mm512_subs_epu16(_mm512_add_epi16(_mm512_loadu_si512(from + 32), add), start);
+    return {_mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtusepi16_epi8(low)),
+                               _mm512_cvtusepi16_epi8(high), 1)};
+}
+
+LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, Bytes from, std::uint8_t* to) {
+    _mm512_storeu_si512(to, compressed_bytes(chosen, from.v));
+}
+struct ByteIds {
+    __m512i low[2], high[2];  ///< 16 bits each
+    bool wide;
+};
+/// The lower halves of 32 numbers of 32 bits, after a shift to the right.
+LIGHTBIN_TARGET inline __m512i halved(__m512i first, __m512i last, unsigned shift) {
+    return _mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtepi32_epi16(_mm512_srli_epi32(first, shift))),
+                              _mm512_cvtepi32_epi16(_mm512_srli_epi32(last, shift)), 1);
+}
+LIGHTBIN_TARGET inline ByteIds split_ids(const __m512i (&ids)[4], bool wide) {
+    return {{halved(ids[0], ids[1], 0), halved(ids[2], ids[3], 0)},
+            {halved(ids[0], ids[1], 16), halved(ids[2], ids[3], 16)},
+            wide};
+}
+LIGHTBIN_TARGET inline ByteIds load_ids(const std::uint32_t* from, bool wide) {
+    return split_ids({_mm512_loadu_si512(from), _mm512_loadu_si512(from + 16), _mm512_loadu_si512(from + 32),
+                      _mm512_loadu_si512(from + 48)},
+                     wide);
+}
+LIGHTBIN_TARGET inline ByteIds load_ids(ListIds from) {
+    ByteIds ids = {{_mm512_loadu_si512(from.low), _mm512_loadu_si512(from.low + 32)}, {}, from.high != nullptr};
+    if (ids.wide) {
+        ids.high[0] = _mm512_loadu_si512(from.high);
+        ids.high[1] = _mm512_loadu_si512(from.high + 32);
+    }
+    return ids;
+}
+LIGHTBIN_TARGET inline ByteIds count_ids(std::uint32_t first, bool wide) {
+    const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    __m512i ids[4];
+    for (unsigned i = 0; i < 4; ++i)
+        ids[i] = _mm512_add_epi32(lane, _mm512_set1_epi32(static_cast<int>(first + 16 * i)));
+    return split_ids(ids, wide);
+}
+LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, const __m512i (&from)[2], std::uint16_t* to) {
+    const __mmask32 chosen_low = static_cast<__mmask32>(chosen), chosen_high = static_cast<__mmask32>(chosen >> 32);
+    _mm512_storeu_si512(to, _mm512_mask_compress_epi16(fresh_zeros(), chosen_low, from[0]));
+    _mm512_storeu_si512(to + std::popcount(chosen_low),
+                        _mm512_mask_compress_epi16(fresh_zeros(), chosen_high, from[1]));
+}
+LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, const ByteIds& from, ListIds to) {
+    append_chosen(chosen, from.low, to.low);
+    if (from.wide) append_chosen(chosen, from.high, to.high);
+}
+
+using avx2::arrange_cells;
+
+#define LIGHTBIN_TIER_HAS_BYTES
 #define LIGHTBIN_TIER_COMPRESSES
 #include <lightbin/detail/kernels.inl>
 

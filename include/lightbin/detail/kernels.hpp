@@ -53,7 +53,7 @@ template <class Id> BinKernel<Id> scatter_kernel(Isa isa) {
 /// The fastest kernel for `lights` lights in view whose rectangles have `area` tiles in all.
 template <Footprint footprint, DepthTest depth_test, class Id>
 BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint32_t lights, std::uint64_t area) {
-    if constexpr (!masked<footprint, depth_test>) {
+    if constexpr (!with_words<footprint, depth_test>) {
         // A walk over all supertiles costs as much as scattering some entries a tile; putting a light in their lists,
         // where neither compress nor scanning does it, as scattering it to 48 tiles.
         const std::uint64_t tiles = view.tile_count();

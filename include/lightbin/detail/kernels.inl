@@ -30,21 +30,27 @@
 
 #include <lightbin/detail/silhouette.inl>
 
-#include <lightbin/detail/tile_masks.inl>
-
-#if defined(LIGHTBIN_TIER_COMPRESSES)
-#include <lightbin/detail/compress.inl>
-#else
 #if defined(LIGHTBIN_TIER_HAS_ROWS)
 #include <lightbin/detail/scatter.inl>
 #endif
-#if defined(LIGHTBIN_TIER_SCANS)
-#include <lightbin/detail/scan.inl>
+
+#if defined(LIGHTBIN_TIER_HAS_BYTES)
+#include <lightbin/detail/lists_scan.inl>
 #else
-inline constexpr bool scans_lists = false;
+#include <lightbin/detail/lists_insert.inl>
 #endif
-#include <lightbin/detail/supertile.inl>
+
+#if defined(LIGHTBIN_TIER_COMPRESSES)
+#include <lightbin/detail/emit_compress.inl>
+#else
+#include <lightbin/detail/cells.inl>
+
+#include <lightbin/detail/emit.inl>
 #endif
+
+#include <lightbin/detail/words.inl>
+
+#include <lightbin/detail/bin.inl>
 
 /// What the tier hands out, see kernels.hpp.
 struct Tier {
@@ -55,11 +61,7 @@ struct Tier {
     static DepthKernels depth_kernels() { return {column_extremes, column_gaps}; }
 
     template <Footprint footprint, DepthTest depth_test, class Id> static BinKernel<Id> bin_kernel() {
-#if defined(LIGHTBIN_TIER_COMPRESSES)
-        return bin_compress<footprint, depth_test, Id>;
-#else
         return bin_supertiles<footprint, depth_test, Id>;
-#endif
     }
 
     template <class Id> static BinKernel<Id> scatter_kernel() {
@@ -75,5 +77,5 @@ struct Tier {
 
 #undef LIGHTBIN_TARGET
 #undef LIGHTBIN_TIER_HAS_ROWS
-#undef LIGHTBIN_TIER_SCANS
+#undef LIGHTBIN_TIER_HAS_BYTES
 #undef LIGHTBIN_TIER_COMPRESSES

@@ -14,6 +14,7 @@ using Floats = float;
 using Doubles = double;
 using FloatRegister = float;
 using DoubleRegister = double;
+using ListIds = WholeIds;
 inline constexpr std::uint32_t lanes = 1, double_lanes = 1;
 
 // One lane: numbers are their own vectors, and a mask is a bool. Of floats and of doubles.
@@ -102,9 +103,6 @@ inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, st
     portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);
 }
 using portable::append;
-using portable::pack;
-using portable::Packed;
-using portable::packs_ids;
 using portable::split_bits;
 
 #include <lightbin/detail/kernels.inl>
