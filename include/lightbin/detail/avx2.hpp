@@ -309,14 +309,14 @@ LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, Bytes from, std::uint
 struct ByteIds {
     __m256i eights[4];
 };
-LIGHTBIN_TARGET inline ByteIds load_ids(const std::uint32_t* from, bool) {
+LIGHTBIN_TARGET inline ByteIds load_ids(const std::uint32_t* from, std::size_t, bool) {
     ByteIds ids;
     for (unsigned i = 0; i < 4; ++i)
         ids.eights[i] = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from + 8 * i));
     return ids;
 }
-LIGHTBIN_TARGET inline ByteIds load_ids(ListIds from) {
-    return load_ids(from.ids, false);
+LIGHTBIN_TARGET inline ByteIds load_ids(ListIds from, std::size_t count) {
+    return load_ids(from.ids, count, false);
 }
 LIGHTBIN_TARGET inline ByteIds count_ids(std::uint32_t first, bool) {
     ByteIds ids;

@@ -17,7 +17,7 @@ LIGHTBIN_TARGET std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scra
     for (unsigned top = bands.begin; top < bands.end; top += 8) {
         const BandLists<ListIds> band =
             make_lists<with_words<footprint, depth_test>>(job, scratch, bands, top, width, listed);
-        for (unsigned x = 0; x < width; ++x) {
+        for (unsigned x = 0; band.lists != nullptr && x < width; ++x) {
             if (band.lists[x].count == 0) continue;
             const std::uint32_t left =
                 mask_lights<footprint, depth_test>(job, scratch, x, top, band.lists[x], band.ids);
@@ -39,8 +39,13 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
     std::uint32_t at = bands.at;
     for (unsigned top = bands.begin; top < bands.end; top += 8) {
         const BandLists<ListIds> band = make_lists<worded>(job, scratch, bands, top, width, listed);
-        make_words<footprint, depth_test>(job, scratch, top, band, width);
-        for (unsigned y = top; y < bands.end && y < top + 8; ++y) {
+        const unsigned end_row = (std::min)(top + 8, bands.end);
+        if (band.lists == nullptr || !make_words<footprint, depth_test>(job, scratch, top, band, width)) {
+            fill_empty(job.tiles + top * std::size_t{tiles_x}, (end_row - top) * std::size_t{tiles_x}, at);
+            if (bands.spare_row >= top && bands.spare_row < end_row) out = bands.spare;
+            continue;
+        }
+        for (unsigned y = top; y < end_row; ++y) {
             if (y == bands.spare_row) out = bands.spare;
             Tile* const tiles = job.tiles + y * std::size_t{tiles_x};
             Id* const end = emit_row<worded>(out, tiles, tiles_x, at, scratch, band, y - top);

@@ -13,7 +13,8 @@ inline std::uint32_t store_no_words(Scratch&) {
 
 /// Stores the words of a list at list.words of scratch.words. Returns where they end.
 template <bool with_words>
-LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const SupertileList& list, ListIds) {
+LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLists<ListIds>&,
+                                                 const SupertileList& list) {
     const std::uint32_t groups = (list.count + 63) / 64, eights = (list.count + 7) / 8,
                         end = list.words + (with_words ? 8 * eights : 16 * groups);
     std::uint64_t* words = scratch.words.room(end, list.words) + list.words;

@@ -42,11 +42,13 @@ template <> struct IdTable<true> {
 };
 inline constexpr std::uint32_t mixed = 1;
 
-/// Those of a group of 64.
-template <bool wide> LIGHTBIN_TARGET inline IdTable<wide> load_table(ListIds ids, const std::uint32_t* upper) {
-    const __m512i low = load(ids.low), high = load(ids.low + 32);
+/// Those of a group of 64 of a list, with what store_uppers() found of each.
+template <bool wide>
+LIGHTBIN_TARGET inline IdTable<wide> load_table(ListIds ids, const std::uint32_t* uppers, std::size_t group) {
+    const std::uint16_t* const first = ids.low + 64 * group;
+    const __m512i low = load(first), high = load(first + 32);
     if constexpr (wide)
-        return {low, high, *upper, ids};
+        return {low, high, uppers[group], {ids.low + 64 * group, ids.high + 64 * group}};
     else
         return {low, high};
 }
@@ -247,17 +249,24 @@ LIGHTBIN_TARGET inline void store_uppers(Scratch& scratch, const SupertileList& 
     }
 }
 
+/// How many lights a list of the first form has at most. Where most are longer, it has none: it would be one more form to
+/// mispredict.
+LIGHTBIN_TARGET inline std::uint32_t up_to_8(const BandLists<ListIds>& band) {
+    return band.few ? 8 : 0;
+}
+
 /// Stores the words of a list at list.words of scratch.words. Returns where they end.
 template <bool with_words>
-LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const SupertileList& list, ListIds ids) {
-    if (ids.high != nullptr) store_uppers(scratch, list, ids);
+LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLists<ListIds>& band,
+                                                 const SupertileList& list) {
+    if (band.ids.high != nullptr) store_uppers(scratch, list, band.ids);
     const std::uint32_t count = list.count, groups = (count + 63) / 64;
     const std::uint32_t end = list.words + (count < 32 ? 40 : (with_words ? 64 : 16) * groups);
     std::uint64_t* words = scratch.words.room(end, list.words) + list.words;
     const std::uint64_t* masks = scratch.masks.data();
     const std::uint8_t* columns = scratch.list_columns.data() + list.begin;
     const std::uint8_t* rows = scratch.list_rows.data() + list.begin;
-    if (count <= 8)
+    if (count <= up_to_8(band))
         store_short_words<with_words, 1>(masks, columns, rows, count, words);
     else if (count <= 16)
         store_short_words<with_words, 2>(masks, columns, rows, count, words);
@@ -315,7 +324,7 @@ LIGHTBIN_TARGET inline std::uint32_t append_more(Id* to, Tile* tiles, unsigned c
             const std::uint64_t* w = words + group;
             const std::uint64_t lit = with_words ? w[(row * 8 + column) * groups]
                                                  : w[column * groups] & w[(8 + row) * groups];
-            to += append<64>(to, lit, load_table<wide>(ids.from(64 * group), uppers + group));
+            to += append<64>(to, lit, load_table<wide>(ids, uppers, group));
         }
         const std::uint32_t count = static_cast<std::uint32_t>(to - from);
         tiles[column] = {at, count};
@@ -329,6 +338,7 @@ template <bool with_words, bool wide, class Id>
 LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id* emit_any_row(Id* out, Tile* tiles, unsigned tiles_x, std::uint32_t at, const Scratch& scratch,
                              const BandLists<ListIds>& band, unsigned row) {
     const ListIds all_ids = band.ids;
+    const std::uint32_t eight = up_to_8(band);
     const std::uint32_t* const all_uppers = scratch.uppers.data();
     const SupertileList* list = band.lists;
     const std::uint64_t* const all_words = scratch.words.data();
@@ -343,8 +353,8 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id* emit_any_row(Id* out, Tile* tiles, unsigne
         if (lights > 64) {
             count = append_more<with_words, wide>(out, tiles, columns, at, words, row, ids, uppers, lights);
         } else {
-            const IdTable<wide> table = load_table<wide>(ids, uppers);
-            if (lights <= 8)
+            const IdTable<wide> table = load_table<wide>(ids, uppers, 0);
+            if (lights <= eight)
                 count = append_row<1>(out, tiles, stored, at, words, row, table);
             else if (lights <= 16)
                 count = append_row<2>(out, tiles, stored, at, words, row, table);

@@ -66,11 +66,9 @@ struct Tier {
 
     template <class Id> static BinKernel<Id> scatter_kernel() {
 #if defined(LIGHTBIN_TIER_COMPRESSES)
-        return avx2::bin_rectangles<Id>;
-#elif defined(LIGHTBIN_TIER_HAS_ROWS)
-        return bin_rectangles<Id>;
+        return avx2::Tier::scatter_kernel<Id>();
 #else
-        return bin_scatter<Id, lay_out_rows<Id>>;
+        return bin_scatter<Id, lay_out_rows<Id>, fill_empty>;
 #endif
     }
 };

@@ -103,5 +103,5 @@ LIGHTBIN_TARGET BandLists<ListIds> make_lists(const BinJob<Id>& job, Scratch& sc
                               rows.first, rows.last);
             }
     }
-    return {scratch.supertile_lists.data() + (top - bands.begin) / 8 * pitch, {scratch.list_ids.whole.data()}};
+    return {scratch.supertile_lists.data() + (top - bands.begin) / 8 * pitch, {scratch.list_ids.whole.data()}, false};
 }

@@ -46,17 +46,17 @@ template <class Id> bool wide_ids(const BinJob<Id>& job) {
     return false;
 }
 
-/// Appends a vector of lights, from visible index i on, to the lists of the bands and panels that they meet.
+/// Appends a vector of lights, `count` or as many as it has, from visible index i on, to the lists of the bands and panels that they meet.
 template <bool with_words>
 LIGHTBIN_TARGET inline void add_to_bands(const FootprintArrays& lights, const ListedBands& to, std::uint32_t i,
-                                         ByteMask valid) {
+                                         std::size_t count) {
     const Bytes first_y = coordinates(lights.y0 + i, 0, to.begin), end_y = coordinates(lights.y1 + i, 1, to.begin);
-    const ByteIds ids = with_words ? count_ids(i, to.wide) : load_ids(lights.ids + i, to.wide);
+    const ByteIds ids = with_words ? count_ids(i, to.wide) : load_ids(lights.ids + i, count, to.wide);
     const unsigned bands = (to.end - to.begin + 7) / 8;
     for (unsigned panel = 0; panel < to.panels; ++panel) {
         const unsigned begin = 8 * panel_side * panel;
         const Bytes first_x = coordinates(lights.x0 + i, 0, begin), end_x = coordinates(lights.x1 + i, 1, begin);
-        ByteMask in_panel = valid;
+        ByteMask in_panel = first_bytes(count);
         if (to.panels > 1) in_panel &= not_zero(end_x) & not_zero(subtract(all_bytes(8 * panel_side), first_x));
         for (unsigned band = 0; band < bands; ++band) {
             const Bytes rows = covered_bytes(first_y, end_y, 8 * band);
@@ -93,7 +93,7 @@ LIGHTBIN_TARGET void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigne
     std::fill_n(to.size, lists, 0u);
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; i += byte_lanes)
-            add_to_bands<with_words>(job.lights, to, i, first_bytes(run.end - i));
+            add_to_bands<with_words>(job.lights, to, i, run.end - i);
 }
 
 /// Makes the list of the supertile whose columns begin at `begin` in its panel, out of the panel's list number `list`, at
@@ -107,7 +107,7 @@ LIGHTBIN_TARGET inline std::uint32_t pick_lights(const ListedBands& bands, std::
         if (chosen == 0) continue;
         append_chosen(chosen, here, columns + count);
         append_chosen(chosen, load_bytes(bands.rows + at), rows + count);
-        append_chosen(chosen, load_ids(bands.ids.from(at)), ids.from(count));
+        append_chosen(chosen, load_ids(bands.ids.from(at), end - at), ids.from(count));
         count += static_cast<std::uint32_t>(std::popcount(chosen));
     }
     return count;
@@ -118,11 +118,14 @@ template <bool with_words, class Id>
 LIGHTBIN_TARGET BandLists<ListIds> make_lists(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands,
                                           unsigned top, unsigned width, ListedBands& listed) {
     if (top >= listed.end) list_bands<with_words>(job, scratch, top, bands.end, width, listed);
+    const std::uint32_t* const sizes = listed.size + std::size_t{(top - listed.begin) / 8} * listed.panels;
+    const std::uint32_t longest = listed.panels > 0 ? *std::max_element(sizes, sizes + listed.panels) : 0;
+    if (longest == 0) return {};
     SupertileList* const lists = scratch.supertile_lists.room(width);
     ListIds ids = {};
     std::uint32_t used = 0;
     for (unsigned x = 0; x < width; ++x) {
-        const std::size_t list = std::size_t{(top - listed.begin) / 8} * listed.panels + x / panel_side;
+        const std::size_t list = static_cast<std::size_t>(sizes - listed.size) + x / panel_side;
         const std::uint64_t room = std::uint64_t{used} + listed.size[list] + 128;
         ids = ListIds::room(scratch.list_ids, room, used, listed.wide);
         const std::uint32_t count =
@@ -131,5 +134,5 @@ LIGHTBIN_TARGET BandLists<ListIds> make_lists(const BinJob<Id>& job, Scratch& sc
         lists[x] = {used, count, 0};
         used += (count + 63) & ~63u;
     }
-    return {lists, ids};
+    return {lists, ids, longest <= 64};
 }

@@ -98,6 +98,13 @@ std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned beg
     return at;
 }
 
+inline void fill_empty(Tile* tiles, std::size_t count, std::uint32_t at) {
+    if (at == 0)
+        std::memset(static_cast<void*>(tiles), 0, count * sizeof *tiles);
+    else
+        std::fill_n(tiles, count, Tile{at, 0});
+}
+
 inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
                            unsigned visible, const ChunkRects& rects, std::uint32_t first) {
     portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);

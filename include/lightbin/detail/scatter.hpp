@@ -20,6 +20,9 @@ template <class Id>
 using LayOutRows = std::uint32_t (*)(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end,
                                      const Tile* writable, std::uint32_t at);
 
+/// Writes `count` tiles without lights, at a place in the index list.
+using FillEmpty = void (*)(Tile* tiles, std::size_t count, std::uint32_t at);
+
 /// Puts an id in front of what the lists of `columns` tiles in each row have so far. One branch for all rows
 /// on the usual numbers of columns mispredicts less than a loop's end in each row.
 template <std::size_t fixed = 1, class Id>
@@ -47,9 +50,9 @@ LIGHTBIN_NOINLINE void put_ids(const BinJob<Id>& job, Id* list, std::size_t begi
         }
 }
 
-/// Bins the tile rows of `bands`. Returns the number of entries. Never writes past them.
+/// The same of any number of lights.
 template <class Id, LayOutRows<Id> lay_out_rows>
-std::uint64_t bin_scatter(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands) {
+std::uint64_t scatter_lights(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands) {
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
     const bool to_the_end = bands.end == static_cast<unsigned>(job.camera->y.tiles);
     const Tile* const writable = job.tiles + bands.end * width + (to_the_end ? job.slack(width) : 0);
@@ -70,6 +73,35 @@ std::uint64_t bin_scatter(const BinJob<Id>& job, Scratch& scratch, const BandJob
     for (std::size_t begin = bands.begin; begin < bands.end; begin += step)
         put_ids(job, list, begin, (std::min<std::size_t>)(begin + step, bands.end));
     return entries;
+}
+
+/// The same of no light or one: it needs no sums, and its list is only its id.
+template <class Id, FillEmpty fill_empty>
+std::uint64_t scatter_one(const BinJob<Id>& job, const FootprintRun& run, const BandJob<Id>& bands) {
+    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
+    Tile *tile = job.tiles + bands.begin * width, *const end = job.tiles + bands.end * width;
+    std::uint32_t at = bands.at;
+    if (run.begin < run.end) {
+        const std::size_t x0 = job.lights.x0[run.begin], x1 = job.lights.x1[run.begin] + std::size_t{1};
+        const unsigned y1 = (std::min)(job.lights.y1[run.begin] + 1u, bands.end);
+        for (unsigned y = (std::max<unsigned>)(job.lights.y0[run.begin], bands.begin); y < y1; ++y) {
+            Tile* const row = job.tiles + y * width;
+            fill_empty(tile, static_cast<std::size_t>(row + x0 - tile), at);
+            for (tile = row + x0; tile < row + x1; ++tile)
+                *tile = {at++, 1};
+        }
+        std::fill_n(bands.out, at - bands.at, static_cast<Id>(job.lights.ids[run.begin]));
+    }
+    fill_empty(tile, static_cast<std::size_t>(end - tile), at);
+    return at - bands.at;
+}
+
+/// Bins the tile rows of `bands`. Returns the number of entries. Never writes past them.
+template <class Id, LayOutRows<Id> lay_out_rows, FillEmpty fill_empty>
+std::uint64_t bin_scatter(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands) {
+    const FootprintRun run = job.runs.front();
+    if (job.runs.size() == 1 && run.end - run.begin <= 1) return scatter_one<Id, fill_empty>(job, run, bands);
+    return scatter_lights<Id, lay_out_rows>(job, scratch, bands);
 }
 
 }  // namespace lightbin::detail

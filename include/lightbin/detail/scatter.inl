@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The counts and prefix sums of scatter.hpp. A vector is a column of a band, a lane a tile row: sums along rows are
 // then plain additions, where lanes along a row would have to be shuffled up for each. What is shuffled instead is
-// the result, a square of tiles at a time. Also the stores of empty tiles, and the kernel that scatter_kernel() gives.
+// the result, a square of tiles at a time. Also the stores of empty tiles.
 // Included once a tier of vectors, after its Rows: a vector of counts with + and -; all_rows(count); last_row(rows), the last
 // one in all; low_pairs and high_pairs(ends, counts), half of the rows as Tiles each, see BandTiles; and transpose(Tiles*), of a
 // square of tiles.
@@ -155,29 +155,4 @@ LIGHTBIN_TARGET inline void fill_empty(Tile* tiles, std::size_t count, std::uint
     for (; tiles < last; tiles += 16)
         fill_lines(tiles, empty);
     fill_lines(last, empty);
-}
-
-/// Bins as bin_scatter does. A light that is alone in view, or none, needs no sums, and its list is only its id.
-template <class Id>
-LIGHTBIN_TARGET std::uint64_t bin_rectangles(const BinJob<Id>& job, Scratch& scratch,
-                                             const BandJob<Id>& bands) {
-    const FootprintRun run = job.runs.front();
-    if (job.runs.size() > 1 || run.end - run.begin > 1)
-        return bin_scatter<Id, lay_out_rows<Id>>(job, scratch, bands);
-    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
-    Tile *tile = job.tiles + bands.begin * width, *const end = job.tiles + bands.end * width;
-    std::uint32_t at = bands.at;
-    if (run.begin < run.end) {
-        const std::size_t x0 = job.lights.x0[run.begin], x1 = job.lights.x1[run.begin] + std::size_t{1};
-        const unsigned y1 = (std::min)(job.lights.y1[run.begin] + 1u, bands.end);
-        for (unsigned y = (std::max<unsigned>)(job.lights.y0[run.begin], bands.begin); y < y1; ++y) {
-            Tile* const row = job.tiles + y * width;
-            fill_empty(tile, static_cast<std::size_t>(row + x0 - tile), at);
-            for (tile = row + x0; tile < row + x1; ++tile)
-                *tile = {at++, 1};
-        }
-        std::fill_n(bands.out, at - bands.at, static_cast<Id>(job.lights.ids[run.begin]));
-    }
-    fill_empty(tile, static_cast<std::size_t>(end - tile), at);
-    return at - bands.at;
 }

@@ -27,8 +27,9 @@ inline constexpr unsigned next_box = 64 * cell_planes<DepthTest::box>;  ///< flo
 
 /// The lists of a band, one a supertile, and the ids in them.
 template <class ListIds> struct BandLists {
-    SupertileList* lists;
+    SupertileList* lists;  ///< null: no light meets the band
     ListIds ids;
+    bool few;  ///< most lists are of up to 8 lights, as far as is known
 };
 
 /// The most places that a kernel's lists can take, which it counts in 32 bits: one for each light and supertile that

@@ -131,12 +131,13 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
 }
 
 /// Makes the words of a band's supertiles, in the form that step 3 takes. Lights that are in no tile of a list are taken
-/// out of it.
+/// out of it. Returns whether any is left.
 template <Footprint footprint, DepthTest depth_test, class Id>
-LIGHTBIN_TARGET void make_words(const BinJob<Id>& job, Scratch& scratch, unsigned top,
+LIGHTBIN_TARGET bool make_words(const BinJob<Id>& job, Scratch& scratch, unsigned top,
                                 const BandLists<ListIds>& band, unsigned width) {
     constexpr bool worded = with_words<footprint, depth_test>;
-    std::uint32_t used = store_no_words(scratch);
+    const std::uint32_t begin = store_no_words(scratch);
+    std::uint32_t used = begin;
     for (unsigned x = 0; x < width; ++x) {
         SupertileList& list = band.lists[x];
         if constexpr (worded)
@@ -147,6 +148,7 @@ LIGHTBIN_TARGET void make_words(const BinJob<Id>& job, Scratch& scratch, unsigne
             continue;
         }
         list.words = used;
-        used = store_words<worded>(scratch, list, band.ids);
+        used = store_words<worded>(scratch, band, list);
     }
+    return used > begin;
 }
