@@ -38,7 +38,7 @@ template <bool wide> struct IdTable { __m512i low, high; };
 template <> struct IdTable<true> {
     __m512i low, high;
     std::uint32_t upper;  ///< what all of them have above, or `mixed`
-    SplitIds ids;
+    const std::uint16_t *low_ids, *high_ids;
 };
 inline constexpr std::uint32_t mixed = 1;
 
@@ -48,20 +48,23 @@ LIGHTBIN_TARGET inline IdTable<wide> load_table(ListIds ids, const std::uint32_t
     const std::uint16_t* const first = ids.low + 64 * group;
     const __m512i low = load(first), high = load(first + 32);
     if constexpr (wide)
-        return {low, high, uppers[group], {ids.low + 64 * group, ids.high + 64 * group}};
+        return {low, high, uppers[group], first, ids.high + 64 * group};
     else
         return {low, high};
 }
 
 /// Appends the ids of a table with up to `lights` as append() does, one by one.
-template <unsigned lights, class Id> LIGHTBIN_NOINLINE void append_mixed(Id* to, std::uint64_t lit, ListIds ids) {
-    for (; lit != 0; lit &= lit - 1)
-        *to++ = static_cast<Id>(ids.get(static_cast<unsigned>(std::countr_zero(lit)) % lights));
+template <unsigned lights, class Id>
+LIGHTBIN_NOINLINE void append_mixed(Id* to, std::uint64_t lit, const std::uint16_t* low, const std::uint16_t* high) {
+    for (; lit != 0; lit &= lit - 1) {
+        const unsigned light = static_cast<unsigned>(std::countr_zero(lit)) % lights;
+        *to++ = static_cast<Id>(low[light] | std::uint32_t{high[light]} << 16);
+    }
 }
 
 /// The lower 16 bits of the ids at 32 places of a table with up to `lights`.
 template <unsigned lights, bool wide>
-LIGHTBIN_TARGET inline __m512i look_up(const IdTable<wide>& table, __m256i places) {
+LIGHTBIN_TARGET inline __m512i look_up(IdTable<wide> table, __m256i places) {
     const __m512i at = _mm512_cvtepu8_epi16(places);
     return lights <= 32 ? _mm512_permutexvar_epi16(at, table.low)
                         : _mm512_permutex2var_epi16(table.low, at, table.high);
@@ -81,13 +84,13 @@ template <class Id> LIGHTBIN_TARGET inline void store_32(Id* to, __m512i ids, st
 /// Appends the ids of a table with up to `lights` whose bit is set, of one tile after another, `lights` bits each; then more
 /// that mean nothing. Returns how many.
 template <unsigned lights, bool wide, class Id>
-LIGHTBIN_TARGET inline std::uint32_t append(Id* to, std::uint64_t lit, const IdTable<wide>& table) {
+LIGHTBIN_TARGET inline std::uint32_t append(Id* to, std::uint64_t lit, IdTable<wide> table) {
     const std::uint32_t count = static_cast<std::uint32_t>(std::popcount(lit));
     std::uint32_t upper = 0;
     if constexpr (wide) {
         upper = table.upper;
         if (upper == mixed) {
-            append_mixed<lights>(to, lit, table.ids);
+            append_mixed<lights>(to, lit, table.low_ids, table.high_ids);
             return count;
         }
     }
@@ -282,7 +285,7 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
 template <unsigned blocks, bool wide, class Id>
 LIGHTBIN_TARGET inline std::uint32_t append_row(Id* to, Tile* tiles, __mmask8 columns, std::uint32_t at,
                                                 const std::uint64_t* words, unsigned row,
-                                                const IdTable<wide>& table) {
+                                                IdTable<wide> table) {
     // Tiles are pairs of 32 bits, offset and count: the difference of running sums.
     const std::uint64_t sums = words[row];
     const __m512i ends = _mm512_cvtepu8_epi64(_mm_cvtsi64_si128(static_cast<long long>(sums))),
@@ -299,7 +302,7 @@ LIGHTBIN_TARGET inline std::uint32_t append_row(Id* to, Tile* tiles, __mmask8 co
 template <bool with_words, bool wide, class Id>
 LIGHTBIN_TARGET inline std::uint32_t append_64(Id* to, Tile* tiles, unsigned columns, std::uint32_t at,
                                                const std::uint64_t* words, unsigned row,
-                                               const IdTable<wide>& table) {
+                                               IdTable<wide> table) {
     const Id* const begin = to;
     for (unsigned column = 0; column < columns; ++column) {
         const std::uint64_t lit = with_words ? words[row * 8 + column] : words[column] & words[8 + row];

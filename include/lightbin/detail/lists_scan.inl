@@ -48,8 +48,9 @@ template <class Id> bool wide_ids(const BinJob<Id>& job) {
 
 /// Appends a vector of lights, `count` or as many as it has, from visible index i on, to the lists of the bands and panels that they meet.
 template <bool with_words>
-LIGHTBIN_TARGET inline void add_to_bands(const FootprintArrays& lights, const ListedBands& to, std::uint32_t i,
+LIGHTBIN_TARGET inline void add_to_bands(const FootprintArrays& lights, const ListedBands& listed, std::uint32_t i,
                                          std::size_t count) {
+    const ListedBands to = listed;  // a copy, that no store can change
     const Bytes first_y = coordinates(lights.y0 + i, 0, to.begin), end_y = coordinates(lights.y1 + i, 1, to.begin);
     const ByteIds ids = with_words ? count_ids(i, to.wide) : load_ids(lights.ids + i, count, to.wide);
     const unsigned bands = (to.end - to.begin + 7) / 8;
@@ -98,8 +99,9 @@ LIGHTBIN_TARGET void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigne
 
 /// Makes the list of the supertile whose columns begin at `begin` in its panel, out of the panel's list number `list`, at
 /// the places given. Returns how many lights it has.
-LIGHTBIN_TARGET inline std::uint32_t pick_lights(const ListedBands& bands, std::size_t list, unsigned begin,
+LIGHTBIN_TARGET inline std::uint32_t pick_lights(const ListedBands& listed, std::size_t list, unsigned begin,
                                                  std::uint8_t* columns, std::uint8_t* rows, ListIds ids) {
+    const ListedBands bands = listed;  // a copy, that no store can change
     std::uint32_t count = 0;
     for (std::size_t at = list * bands.stride, end = at + bands.size[list]; at < end; at += byte_lanes) {
         const Bytes here = covered_bytes(load_bytes(bands.x0 + at), load_bytes(bands.x1 + at), begin);
