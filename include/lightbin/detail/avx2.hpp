@@ -255,6 +255,9 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
     return append(out, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(ids)), mask);
 }
 
+using portable::Packed;
+using portable::packs_ids;
+
 // Vectors of bytes.
 
 struct Bytes {

@@ -11,9 +11,19 @@ inline std::uint32_t store_no_words(Scratch&) {
     return 0;
 }
 
+/// The ids of a list in the form that append() takes.
+template <class Id>
+LIGHTBIN_TARGET inline Packed<Id>* packed_ids(const Scratch& scratch, const BandLists<ListIds>& band,
+                                              const SupertileList& list) {
+    if constexpr (packs_ids)
+        return reinterpret_cast<Packed<Id>*>(scratch.packed_ids.data()) + (list.begin - band.lists->begin);
+    else
+        return band.ids.ids + list.begin;
+}
+
 /// Stores the words of a list at list.words of scratch.words. Returns where they end.
-template <bool with_words>
-LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLists<ListIds>&,
+template <bool with_words, class Id>
+LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLists<ListIds>& band,
                                                  const SupertileList& list) {
     const std::uint32_t groups = (list.count + 63) / 64, eights = (list.count + 7) / 8,
                         end = list.words + (with_words ? 8 * eights : 16 * groups);
@@ -31,12 +41,17 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
             split_bits(rows + i, words + 8);
         }
     }
+    if constexpr (packs_ids) {
+        const std::uint64_t before = list.begin - band.lists->begin, size = sizeof(Packed<Id>);
+        scratch.packed_ids.room((before + 64 * groups) * size, static_cast<std::size_t>(before * size));
+        pack(band.ids.ids + list.begin, list.count, packed_ids<Id>(scratch, band, list));
+    }
     return end;
 }
 
 /// Appends those of `count` ids, up to 64, whose bit is set. Returns the end.
-template <class Id>
-LIGHTBIN_TARGET inline Id* append_64(Id* out, const std::uint32_t* ids, std::uint64_t chosen, std::uint32_t count) {
+template <class Id, class Ids>
+LIGHTBIN_TARGET inline Id* append_64(Id* out, const Ids* ids, std::uint64_t chosen, std::uint32_t count) {
     for (std::uint32_t i = 0; i < count; i += 16, chosen >>= 16) {
         out += append(out, ids + i, static_cast<unsigned>(chosen & 0xff));
         out += append(out, ids + i + 8, static_cast<unsigned>(chosen >> 8 & 0xff));
@@ -46,8 +61,8 @@ LIGHTBIN_TARGET inline Id* append_64(Id* out, const std::uint32_t* ids, std::uin
 
 /// Appends the lights of a tile by its words: bytes[0], bytes[64] ... have 8 lights each. Returns the end. The usual
 /// lengths of a list have no loop to predict.
-template <class Id>
-LIGHTBIN_TARGET inline Id* append_tile(Id* out, const std::uint32_t* ids, std::uint32_t count, const std::uint8_t* bytes) {
+template <class Id, class Ids>
+LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count, const std::uint8_t* bytes) {
     if (count <= 16) {
         out += append(out, ids, bytes[0]);
         if (count > 8) out += append(out, ids + 8, bytes[64]);
@@ -59,8 +74,8 @@ LIGHTBIN_TARGET inline Id* append_tile(Id* out, const std::uint32_t* ids, std::u
 }
 
 /// The same by the words of its column and its row: [0], [16] ... have 64 lights each.
-template <class Id>
-LIGHTBIN_TARGET inline Id* append_tile(Id* out, const std::uint32_t* ids, std::uint32_t count, const std::uint64_t* column,
+template <class Id, class Ids>
+LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count, const std::uint64_t* column,
                                        const std::uint64_t* row) {
     if (count <= 16) {
         const std::uint64_t chosen = column[0] & row[0];
@@ -82,7 +97,7 @@ LIGHTBIN_TARGET Id* emit_row(Id* out, Tile* tiles, unsigned tiles_x, std::uint32
     const Tile* const end = tiles + tiles_x;
     for (; tiles < end; tiles += 8, ++list) {
         const std::ptrdiff_t columns = (std::min<std::ptrdiff_t>)(end - tiles, 8);
-        const std::uint32_t* const ids = band.ids.ids + list->begin;
+        const Packed<Id>* const ids = packed_ids<Id>(scratch, band, *list);
         const std::uint64_t* const words = scratch.words.data() + list->words;
         const std::uint32_t count = list->count;
         for (std::ptrdiff_t column = 0; column < columns; ++column) {

@@ -259,7 +259,7 @@ LIGHTBIN_TARGET inline std::uint32_t up_to_8(const BandLists<ListIds>& band) {
 }
 
 /// Stores the words of a list at list.words of scratch.words. Returns where they end.
-template <bool with_words>
+template <bool with_words, class Id>
 LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLists<ListIds>& band,
                                                  const SupertileList& list) {
     if (band.ids.high != nullptr) store_uppers(scratch, list, band.ids);

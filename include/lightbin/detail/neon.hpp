@@ -171,6 +171,8 @@ inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, st
     portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);
 }
 using portable::append;
+using portable::Packed;
+using portable::packs_ids;
 using portable::split_bits;
 
 #define LIGHTBIN_TIER_HAS_ROWS

@@ -40,6 +40,10 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     }
 }
 
+/// The form in which append() takes ids, one after another: as they are.
+template <class Id> using Packed = std::uint32_t;
+inline constexpr bool packs_ids = false;
+
 /// Writes those of 8 ids whose bit is set, in order, then elements that mean nothing: every id is written, and
 /// the place moves on for those chosen. Returns how many.
 template <class Id> std::uint32_t append(Id* out, const std::uint32_t* ids, unsigned mask) {

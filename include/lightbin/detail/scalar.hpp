@@ -110,6 +110,8 @@ inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, st
     portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);
 }
 using portable::append;
+using portable::Packed;
+using portable::packs_ids;
 using portable::split_bits;
 
 #include <lightbin/detail/kernels.inl>

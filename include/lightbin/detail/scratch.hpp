@@ -62,6 +62,7 @@ struct Scratch {
     Buffer<SupertileList> supertile_lists;
     ListIdBuffers list_ids;
     Buffer<std::uint8_t> list_columns, list_rows;
+    Buffer<std::uint8_t> packed_ids;  ///< list_ids as Packed, of the SSE2 tier
     Buffer<std::uint64_t> masks;      ///< of a supertile: a word a light, a bit per tile
     Buffer<std::uint32_t> uppers;     ///< of 64 of list_ids each, see emit_compress.inl
     Buffer<std::uint64_t> words;      ///< of a band of supertiles, in the form of step 3

@@ -182,12 +182,53 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     }
 }
 
+/// No instruction here compresses or permutes by a variable. So all 16 choices of 4 ids are made beforehand,
+/// once a supertile, and used for each of its tiles: a light's share of them is 16 ids.
+template <class Id> struct Packed { Id ids[16]; };
+inline constexpr bool packs_ids = true;
+
+/// The immediate of a shuffle of four that puts those whose bit is set first.
+template <std::size_t mask>
+inline constexpr int chosen_first = [] {
+    int order = 0, place = 0;
+    for (int i = 0; i < 4; ++i)
+        if (mask >> i & 1) order |= i << 2 * place++;
+    return order;
+}();
+
+template <class Id, std::size_t... mask>
+void pack_four(const std::uint32_t* ids, Packed<Id>* to, std::index_sequence<mask...>) {
+    const __m128i four = _mm_loadu_si128(reinterpret_cast<const __m128i*>(ids));
+    if constexpr (sizeof(Id) == 4) {
+        __m128i* const choices = reinterpret_cast<__m128i*>(to);
+        (_mm_storeu_si128(choices + mask, _mm_shuffle_epi32(four, chosen_first<mask>)), ...);
+    } else {
+        const __m128i low = _mm_srai_epi32(_mm_slli_epi32(four, 16), 16), narrow = _mm_packs_epi32(low, low);
+        (_mm_storel_epi64(reinterpret_cast<__m128i*>(reinterpret_cast<Id*>(to) + 4 * mask),
+                          _mm_shufflelo_epi16(narrow, chosen_first<mask>)),
+         ...);
+    }
+}
+
+template <class Id> void pack(const std::uint32_t* ids, std::uint32_t count, Packed<Id>* to) {
+    for (std::uint32_t i = 0; i < count; i += 4)
+        pack_four(ids + i, to + i, std::make_index_sequence<16>());
+}
+
+/// Writes those of 8 ids whose bit is set, in order, then up to 4 elements that mean nothing. Returns how many.
+template <class Id> std::uint32_t append(Id* out, const Packed<Id>* ids, unsigned mask) {
+    constexpr std::uint8_t set[] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
+    const unsigned low = mask & 15, high = mask >> 4;
+    const Id* const choices = reinterpret_cast<const Id*>(ids);  // of four lights: 16 choices of 4 ids
+    std::memcpy(out, choices + 4 * low, 4 * sizeof(Id));
+    std::memcpy(out + set[low], choices + 64 + 4 * high, 4 * sizeof(Id));
+    return set[low] + std::uint32_t{set[high]};
+}
+
 inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
                            unsigned visible, const ChunkRects& rects, std::uint32_t first) {
     portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);
 }
-using portable::append;
-
 #define LIGHTBIN_TIER_HAS_ROWS
 #include <lightbin/detail/kernels.inl>
 

@@ -143,12 +143,8 @@ LIGHTBIN_TARGET bool make_words(const BinJob<Id>& job, Scratch& scratch, unsigne
         if constexpr (worded)
             if (list.count > 0)
                 list.count = mask_lights<footprint, depth_test>(job, scratch, x, top, list, band.ids);
-        if (list.count == 0) {
-            list = {};
-            continue;
-        }
-        list.words = used;
-        used = store_words<worded>(scratch, band, list);
+        list.words = list.count == 0 ? 0 : used;
+        if (list.count > 0) used = store_words<worded, Id>(scratch, band, list);
     }
     return used > begin;
 }
