@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/buffer.hpp>
+#include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/kernels.hpp>
 #include <lightbin/detail/parts.hpp>
@@ -64,7 +65,7 @@ public:
         const unsigned rows = static_cast<unsigned>(view.tiles_y());
         constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
         std::uint64_t room = footprints.area();
-        if (room > most / 8) {  // with fewer entries lists can't have that many places
+        if (room > detail::surely_listed_area) {
             const std::uint64_t places = detail::list_places(job);
             if (places > most) return Error{ErrorCode::too_many_list_places, places, most};
         }
@@ -82,6 +83,7 @@ public:
         shared_ = false;
         if constexpr (!std::is_same_v<Threads, Serial>) {
             const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), rows);
+            const double lights = footprints.visible(), entries = static_cast<double>(room);
             shared_ = parts > 1 && footprints.area() <= most &&
                       parallel.worth(estimate(isa, kernel, footprints.visible(), static_cast<double>(room)));
             if (shared_) {
@@ -102,14 +104,6 @@ public:
 private:
     using Job = detail::BinJob<Id>;
     static constexpr std::size_t slack = detail::BandJob<Id>::slack;
-
-    /// About how many ns one thread of a fast processor takes, apart from what each part does again.
-    static double estimate(Isa isa, detail::BinKernel<Id> kernel, double lights, double entries) {
-        // Scattering does more for each light in parts, where it can't predict which lights are in one.
-        if (kernel == detail::scatter_kernel<Id>(isa)) return (std::max)(0.6 * entries - 8 * lights, 0.0);
-        const double slower = isa == Isa::avx512 ? 1 : isa == Isa::avx2 ? 1.5 : 2;
-        return slower * (worded ? 9 * lights + 0.35 * entries : 1.5 * lights + 0.1 * entries);
-    }
 
     /// Builds `count` parts on the caller's threads, see make_parts(). Returns the number of entries.
     std::size_t build_parts(Isa isa, const Job& job, detail::BinKernel<Id> kernel, Id* list,

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <lightbin/detail/buffer.hpp>
+#include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/kernels.hpp>
@@ -49,21 +50,19 @@ public:
     /// tile that the part of its sphere beyond the near plane projects to; it is the smallest such rectangle
     /// but for the rounding margin of the view.
     ///
-    /// wake  share even what is soon done: there will be more to share, and by then the threads are awake
+    /// force_parallel  share even what is soon done: there will be more to share, and by then the threads are awake
     template <class Light, class ToViewSphere>
     void project(Isa isa, const View& view, const Lights<Light, ToViewSphere>& lights,
-                 const Parallel& parallel, bool wake = false) {
+                 const Parallel& parallel, bool force_parallel = false) {
         lights_ = lights.array.size();
-        const double ns_a_light = isa == Isa::avx512 ? 2 : isa == Isa::avx2 ? 3 : 7;  // in view
-        const bool share = wake || parallel.worth(static_cast<double>(lights_) * ns_a_light);
+        const bool share =
+            force_parallel || parallel.worth(detail::project_ns(isa, static_cast<double>(lights_)));
         const Parallel threads = share ? parallel : Parallel();
-        // Some parts a worker, so that a late one costs little; as many where they are not shared, as more take
-        // more room; one where 32 bits might not number their places.
+        // One part where 32 bits might not number the places of more.
         constexpr std::size_t chunk = detail::ChunkRects::size, padding = detail::FootprintArrays::padding;
         const std::size_t chunks = lights_ / chunk + 1;
-        const std::size_t parts = parallel.workers() > 1 && lights_ >> 31 == 0
-                                      ? (std::min)(chunks, 4 * (std::min)(chunks, parallel.workers()))
-                                      : 1;
+        const std::size_t parts =
+            lights_ >> 31 == 0 ? detail::project_parts(chunks, parallel.workers()) : 1;
         const auto first_of = [&](std::size_t part) {
             return static_cast<std::size_t>(
                 (std::min<std::uint64_t>)(std::uint64_t{chunks} * part / parts * chunk, lights_));

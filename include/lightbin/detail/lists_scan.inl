@@ -10,7 +10,6 @@
 // Coordinates are bytes here. So bands are listed by panels of 248 tiles a side, coordinates counted from the panel.
 
 inline constexpr unsigned panel_side = 31;  // in supertiles
-inline constexpr std::uint64_t most_band_places = std::uint64_t{1} << 24;
 
 /// The lights of some bands, from tile row `begin` to end-1, in a list for each band and panel: number
 /// band * panels + panel, with room for `stride` lights. Of each light the columns that it covers, x0..x1-1, its byte of

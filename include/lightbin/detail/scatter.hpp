@@ -3,6 +3,7 @@
 // A rectangle costs four corners of a difference array, whose sums along both axes are the counts.
 #pragma once
 
+#include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/platform.hpp>
@@ -57,18 +58,13 @@ std::uint64_t scatter_lights(const BinJob<Id>& job, Scratch& scratch, const Band
     const bool to_the_end = bands.end == static_cast<unsigned>(job.camera->y.tiles);
     const Tile* const writable = job.tiles + bands.end * width + (to_the_end ? job.slack(width) : 0);
     std::uint32_t at = bands.at;
-    constexpr unsigned some = 512;  // rows at a time, for the memory that they take
-    for (unsigned begin = bands.begin; begin < bands.end; begin += some)
-        at = lay_out_rows(job, scratch, begin, (std::min)(begin + some, bands.end), writable, at);
+    for (unsigned begin = bands.begin; begin < bands.end; begin += rows_laid_out)
+        at = lay_out_rows(job, scratch, begin, (std::min)(begin + rows_laid_out, bands.end), writable, at);
 
     if (at == bands.at) return 0;  // the rows may have no tiles, too
 
-    // Long lists have cache lines and pages of their own, and of all tiles at once too many. Then rows of some 512 tiles
-    // at a time are faster, as was measured, unless reading all lights each time takes longer than putting their ids.
-    const std::size_t height = bands.end - bands.begin;
-    const std::uint64_t entries = at - bands.at, lights = job.visible;
-    std::size_t step = 512 / width + 1;
-    if (entries < 256 * std::uint64_t{height} * width + 2 * lights * (height / step + 1)) step = height;
+    const std::uint64_t entries = at - bands.at;
+    const std::size_t step = rows_scattered(bands.end - bands.begin, width, job.visible, entries);
     Id* const list = bands.out - bands.at;  // the whole list
     for (std::size_t begin = bands.begin; begin < bands.end; begin += step)
         put_ids(job, list, begin, (std::min<std::size_t>)(begin + step, bands.end));

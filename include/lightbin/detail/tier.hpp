@@ -3,6 +3,7 @@
 // the types of the kernels.
 #pragma once
 
+#include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/platform.hpp>
