@@ -67,21 +67,21 @@ public:
             return static_cast<std::size_t>(
                 (std::min<std::uint64_t>)(std::uint64_t{chunks} * part / parts * chunk, lights_));
         };
-        const std::uint64_t room = std::uint64_t{lights_} + parts * padding;
-        arrays_ = {.ids = ids_.room(room),
-                   .x0 = x0_.room(room),
-                   .y0 = y0_.room(room),
-                   .x1 = x1_.room(room),
-                   .y1 = y1_.room(room),
-                   .span_begin = with_spans ? span_begin_.room(room) : nullptr,
+        const std::uint64_t capacity = std::uint64_t{lights_} + parts * padding;
+        arrays_ = {.ids = ids_.reserve(capacity),
+                   .x0 = x0_.reserve(capacity),
+                   .y0 = y0_.reserve(capacity),
+                   .x1 = x1_.reserve(capacity),
+                   .y1 = y1_.reserve(capacity),
+                   .span_begin = with_spans ? span_begin_.reserve(capacity) : nullptr,
                    .spans = nullptr,
                    .spheres = detail::as_they_are(lights)};
         const bool move = arrays_.spheres == nullptr;
         Sphere* kept = nullptr;
         if constexpr (keep)
-            if (move) arrays_.spheres = kept = spheres_.room(lights_);
-        detail::FootprintRun* runs = runs_.room(parts);
-        detail::ProjectCounts* counts = part_counts_.room(parts);
+            if (move) arrays_.spheres = kept = spheres_.reserve(lights_);
+        detail::FootprintRun* runs = runs_.reserve(parts);
+        detail::ProjectCounts* counts = part_counts_.reserve(parts);
         // One light is done sooner than a vector is filled up with copies of it.
         const detail::ProjectKernel kernel = detail::project_kernel(lights_ > 1 ? isa : Isa::scalar);
         threads.run(parts, [&](std::size_t part) {
@@ -96,10 +96,10 @@ public:
             if (!move) {
                 consume(arrays_.spheres + first, first, end - first);
             } else {
-                std::array<Sphere, detail::ChunkRects::size> block;
-                for (; first < end; first += block.size()) {
-                    const std::size_t count = (std::min)(block.size(), end - first);
-                    Sphere* to = keep ? kept + first : block.data();
+                std::array<Sphere, detail::ChunkRects::size> moved;
+                for (; first < end; first += moved.size()) {
+                    const std::size_t count = (std::min)(moved.size(), end - first);
+                    Sphere* to = keep ? kept + first : moved.data();
                     for (std::size_t i = 0; i < count; ++i)
                         to[i] = std::invoke(lights.to_view_sphere, lights.array[first + i]);
                     consume(to, first, count);
@@ -134,8 +134,8 @@ private:
     void add_spans(detail::RowSpanKernel kernel, const View& view, const Parallel& threads) {
         constexpr std::uint64_t padding = 8;  // a vector of rows
         // Later lights than 32 bits can number the spans of keep their rectangles.
-        const std::uint64_t room = (std::min)(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
-        detail::RowSpan* spans = spans_.room(room + padding);
+        const std::uint64_t capacity = (std::min)(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
+        detail::RowSpan* spans = spans_.reserve(capacity + padding);
         arrays_.spans = spans;
         std::uint64_t place = 0;
         for (std::size_t part = 0; part < run_count_; ++part) {

@@ -20,9 +20,9 @@ template <class T> class Buffer {
     static_assert(std::is_trivially_copyable_v<T>);
 
 public:
-    /// Returns room for `size` elements. Their values are lost when the room has to grow. Where there is no memory
+    /// Returns memory of `size` elements or more. Their values are lost where it has to grow. Where there is no memory
     /// for them, or `std::size_t` does not count them, it throws as `new` does, and later calls are right.
-    T* room(std::uint64_t size) {
+    T* reserve(std::uint64_t size) {
         if (size > size_) {
             memory_.reset();
             size_ = 0;  // should there be no memory
@@ -33,7 +33,7 @@ public:
     }
 
     /// The same, keeping the first `used` elements; grows in large steps.
-    T* room(std::uint64_t size, std::size_t used) {
+    T* reserve(std::uint64_t size, std::size_t used) {
         if (size > size_) {
             const std::uint64_t larger = sum_of_sizes(size, size);
             std::unique_ptr<T[]> memory = made(larger);

@@ -27,7 +27,7 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
                                                  const SupertileList& list) {
     const std::uint32_t groups = (list.count + 63) / 64, eights = (list.count + 7) / 8,
                         end = list.words + (with_words ? 8 * eights : 16 * groups);
-    std::uint64_t* words = scratch.words.room(end, list.words) + list.words;
+    std::uint64_t* words = scratch.words.reserve(end, list.words) + list.words;
     if constexpr (with_words) {
         const std::uint64_t* masks = scratch.masks.data();
         for (std::uint32_t i = 0; i < list.count; i += 8, words += 8)
@@ -43,7 +43,7 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
     }
     if constexpr (packs_ids) {
         const std::uint64_t before = list.begin - band.lists->begin, size = sizeof(Packed<Id>);
-        scratch.packed_ids.room((before + 64 * groups) * size, static_cast<std::size_t>(before * size));
+        scratch.packed_ids.reserve((before + 64 * groups) * size, static_cast<std::size_t>(before * size));
         pack(band.ids.ids + list.begin, list.count, packed_ids<Id>(scratch, band, list));
     }
     return end;

@@ -116,15 +116,15 @@ LIGHTBIN_TARGET inline __m512i transpose_bits(__m512i x) {
     return swap_bits<28>(x, 0x00000000f0f0f0f0);
 }
 
-/// Short lists: `blocks` = 1, 2 or 4 vectors of 8 lights' words, a bit a tile. For
-/// each row of the supertile stores, after one another, the 8 tiles' bits, a bit a light: `blocks` words a row.
+/// Short lists: `eights` = 1, 2 or 4 vectors of 8 lights' words, a bit per tile. For
+/// each row of the supertile stores, after one another, the 8 tiles' bits, a bit a light: `eights` words a row.
 /// Before them, for each row, 8 bytes: the running number of set bits up to and with each tile, at most 248.
-template <unsigned blocks>
-LIGHTBIN_TARGET inline void store_short_words(__m512i (&lights)[blocks], std::uint64_t* to) {
-    for (__m512i& v : lights)  // a word a row, a byte a tile
+template <unsigned eights>
+LIGHTBIN_TARGET inline void store_short_words(__m512i (&lights)[eights], std::uint64_t* to) {
+    for (__m512i& v : lights)  // a word a row, a byte per tile
         v = transpose_bits(_mm512_permutexvar_epi8(load(byte_transpose.data()), v));
     __m512i sums;
-    if constexpr (blocks == 1) {
+    if constexpr (eights == 1) {
         store(to + 8, lights[0]);
         sums = _mm512_popcnt_epi8(lights[0]);
     } else {
@@ -132,7 +132,7 @@ LIGHTBIN_TARGET inline void store_short_words(__m512i (&lights)[blocks], std::ui
                       more_bytes = _mm512_add_epi8(bytes, _mm512_set1_epi8(32));
         const __m512i low = _mm512_permutex2var_epi8(lights[0], bytes, lights[1]),
                       high = _mm512_permutex2var_epi8(lights[0], more_bytes, lights[1]);
-        if constexpr (blocks == 2) {
+        if constexpr (eights == 2) {
             store(to + 8, low);
             store(to + 16, high);
             sums = halves(_mm512_cvtepi16_epi8(_mm512_popcnt_epi16(low)),
@@ -161,11 +161,11 @@ LIGHTBIN_TARGET inline void store_short_words(__m512i (&lights)[blocks], std::ui
 }
 
 /// The same for a list given by the words of its lights, or by their columns and rows.
-template <bool with_words, unsigned blocks>
+template <bool with_words, unsigned eights>
 LIGHTBIN_TARGET inline void store_short_words(const std::uint64_t* masks, const std::uint8_t* columns,
                                        const std::uint8_t* rows, std::uint32_t count, std::uint64_t* to) {
-    __m512i lights[blocks];
-    for (unsigned i = 0; i < blocks; ++i) {
+    __m512i lights[eights];
+    for (unsigned i = 0; i < eights; ++i) {
         const std::uint32_t left = count > 8 * i ? count - 8 * i : 0;
         if constexpr (with_words) {
             lights[i] = _mm512_maskz_loadu_epi64(static_cast<__mmask8>(first_bytes(left)), masks + 8 * i);
@@ -236,15 +236,15 @@ LIGHTBIN_TARGET inline void store_long_words(const std::uint64_t* masks, const s
 /// Stores the words that empty lists, whose `words` is 0, share: of a short one without a bit. Returns where they end.
 LIGHTBIN_TARGET inline std::uint32_t store_no_words(Scratch& scratch) {
     constexpr std::uint32_t size = 24;
-    std::fill_n(scratch.words.room(size), size, 0u);
-    *scratch.uppers.room(1) = 0;
+    std::fill_n(scratch.words.reserve(size), size, 0u);
+    *scratch.uppers.reserve(1) = 0;
     return size;
 }
 
 /// Stores what the ids of each 64 of a list have above their lower 16 bits, or `mixed`.
 LIGHTBIN_TARGET inline void store_uppers(Scratch& scratch, const SupertileList& list, ListIds ids) {
     const std::uint32_t begin = list.begin / 64, end = begin + (list.count + 63) / 64;
-    std::uint32_t* uppers = scratch.uppers.room(end, begin) + begin;
+    std::uint32_t* uppers = scratch.uppers.reserve(end, begin) + begin;
     for (std::uint32_t i = 0; i < list.count; i += 64) {
         const std::uint16_t first = ids.high[list.begin + i],
                             last = ids.high[list.begin + (std::min)(i + 64, list.count) - 1];
@@ -265,7 +265,7 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
     if (band.ids.high != nullptr) store_uppers(scratch, list, band.ids);
     const std::uint32_t count = list.count, groups = (count + 63) / 64;
     const std::uint32_t end = list.words + (count < 32 ? 40 : (with_words ? 64 : 16) * groups);
-    std::uint64_t* words = scratch.words.room(end, list.words) + list.words;
+    std::uint64_t* words = scratch.words.reserve(end, list.words) + list.words;
     const std::uint64_t* masks = scratch.masks.data();
     const std::uint8_t* columns = scratch.list_columns.data() + list.begin;
     const std::uint8_t* rows = scratch.list_rows.data() + list.begin;
@@ -282,7 +282,7 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
 
 /// Appends a row of a supertile with a short list, `words` from store_short_words, and its `columns` tiles. Returns
 /// how many ids.
-template <unsigned blocks, bool wide, class Id>
+template <unsigned eights, bool wide, class Id>
 LIGHTBIN_TARGET inline std::uint32_t append_row(Id* to, Tile* tiles, __mmask8 columns, std::uint32_t at,
                                                 const std::uint64_t* words, unsigned row,
                                                 IdTable<wide> table) {
@@ -293,8 +293,8 @@ LIGHTBIN_TARGET inline std::uint32_t append_row(Id* to, Tile* tiles, __mmask8 co
     _mm512_mask_storeu_epi64(tiles, columns,
                              _mm512_or_si512(_mm512_add_epi32(begins, _mm512_set1_epi64(at)),
                                              _mm512_slli_epi64(_mm512_sub_epi64(ends, begins), 32)));
-    for (unsigned i = 0; i < blocks; ++i)  // a word has 8 / blocks tiles
-        to += append<8 * blocks>(to, words[8 + blocks * row + i], table);
+    for (unsigned i = 0; i < eights; ++i)  // a word has 8 / eights tiles
+        to += append<8 * eights>(to, words[8 + eights * row + i], table);
     return static_cast<std::uint32_t>(sums >> 56);
 }
 

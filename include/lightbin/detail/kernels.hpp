@@ -39,7 +39,7 @@ inline RowSpanKernel row_span_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.row_span_kernel(); });
 }
 
-/// For blocks of `columns` columns or more: of this tier or the widest below it whose vectors are no wider.
+/// For rows of `columns` samples or more: of this tier or the widest below it whose vectors are no wider.
 inline DepthKernels depth_kernels(Isa isa, std::size_t columns) {
     if (with_tier(isa, [=](auto tier) { return columns >= tier.vector; }))
         return with_tier(isa, [](auto tier) { return tier.depth_kernels(); });

@@ -23,7 +23,7 @@ template <class Id>
 LIGHTBIN_TARGET std::uint64_t size_lists(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands,
                                          std::size_t pitch) {
     const std::size_t count = pitch * ((bands.end - bands.begin + 7) / 8 + 2);
-    std::uint32_t* corners = scratch.corners.room(count);
+    std::uint32_t* corners = scratch.corners.reserve(count);
     std::memset(corners, 0, count * sizeof *corners);
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i) {
@@ -36,7 +36,7 @@ LIGHTBIN_TARGET std::uint64_t size_lists(const BinJob<Id>& job, Scratch& scratch
             --corners[bottom + left];
             ++corners[bottom + right];
         }
-    SupertileList* lists = scratch.supertile_lists.room(count);
+    SupertileList* lists = scratch.supertile_lists.reserve(count);
     std::uint32_t total = 0;
     for (std::size_t list = 0; list < count; ++list) {
         std::uint32_t here = corners[list];  // sums wrap, and come out right
@@ -92,9 +92,9 @@ LIGHTBIN_TARGET BandLists<ListIds> make_lists(const BinJob<Id>& job, Scratch& sc
     // One more column and row: the difference array closes there, and branch-free writes may go there.
     const std::size_t pitch = width + 2;
     if (top == bands.begin) {
-        const std::uint64_t room = size_lists(job, scratch, bands, pitch) + 64;
-        const ListPlaces to = {scratch.corners.data(), scratch.list_ids.whole.room(room), scratch.list_columns.room(room),
-                               scratch.list_rows.room(room)};
+        const std::uint64_t capacity = size_lists(job, scratch, bands, pitch) + 64;
+        const ListPlaces to = {scratch.corners.data(), scratch.list_ids.whole.reserve(capacity), scratch.list_columns.reserve(capacity),
+                               scratch.list_rows.reserve(capacity)};
         for (const FootprintRun& run : job.runs)
             for (std::uint32_t i = run.begin; i < run.end; ++i) {
                 const RowsHere rows = rows_here(job.lights, i, bands);

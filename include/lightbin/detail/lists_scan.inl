@@ -23,7 +23,7 @@ struct ListedBands {
     ListIds ids = {};
 };
 
-/// Of each light first..end-1, which of the 8 tiles from `begin` on it covers, a bit a tile.
+/// Of each light first..end-1, which of the 8 tiles from `begin` on it covers, a bit per tile.
 LIGHTBIN_TARGET inline Bytes covered_bytes(Bytes first, Bytes end, unsigned begin) {
     static constexpr std::uint8_t from[16] = {255, 254, 252, 248, 240, 224, 192, 128};
     static constexpr std::uint8_t before[16] = {0, 1, 3, 7, 15, 31, 63, 127, 255};
@@ -84,12 +84,12 @@ LIGHTBIN_TARGET void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigne
     const std::uint64_t lists = std::uint64_t{(to.end - to.begin + 7) / 8} * to.panels,
                         stride = std::uint64_t{job.visible} + 64;  // whole vectors are stored and read
     to.stride = static_cast<std::size_t>(stride);
-    to.x0 = scratch.band_x0.room(lists * stride);
-    to.x1 = scratch.band_x1.room(lists * stride);
-    to.rows = scratch.band_rows.room(lists * stride);
+    to.x0 = scratch.band_x0.reserve(lists * stride);
+    to.x1 = scratch.band_x1.reserve(lists * stride);
+    to.rows = scratch.band_rows.reserve(lists * stride);
     to.wide = wide_ids(job);
-    to.ids = ListIds::room(scratch.band_ids, lists * stride, 0, to.wide);
-    to.size = scratch.band_size.room(lists);
+    to.ids = ListIds::reserve(scratch.band_ids, lists * stride, 0, to.wide);
+    to.size = scratch.band_size.reserve(lists);
     std::fill_n(to.size, lists, 0u);
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; i += byte_lanes)
@@ -122,16 +122,16 @@ LIGHTBIN_TARGET BandLists<ListIds> make_lists(const BinJob<Id>& job, Scratch& sc
     const std::uint32_t* const sizes = listed.size + std::size_t{(top - listed.begin) / 8} * listed.panels;
     const std::uint32_t longest = listed.panels > 0 ? *std::max_element(sizes, sizes + listed.panels) : 0;
     if (longest == 0) return {};
-    SupertileList* const lists = scratch.supertile_lists.room(width);
+    SupertileList* const lists = scratch.supertile_lists.reserve(width);
     ListIds ids = {};
     std::uint32_t used = 0;
     for (unsigned x = 0; x < width; ++x) {
         const std::size_t list = static_cast<std::size_t>(sizes - listed.size) + x / panel_side;
-        const std::uint64_t room = std::uint64_t{used} + listed.size[list] + 128;
-        ids = ListIds::room(scratch.list_ids, room, used, listed.wide);
+        const std::uint64_t capacity = std::uint64_t{used} + listed.size[list] + 128;
+        ids = ListIds::reserve(scratch.list_ids, capacity, used, listed.wide);
         const std::uint32_t count =
-            pick_lights(listed, list, 8 * (x % panel_side), scratch.list_columns.room(room, used) + used,
-                        scratch.list_rows.room(room, used) + used, ids.from(used));
+            pick_lights(listed, list, 8 * (x % panel_side), scratch.list_columns.reserve(capacity, used) + used,
+                        scratch.list_rows.reserve(capacity, used) + used, ids.from(used));
         lists[x] = {used, count, 0};
         used += (count + 63) & ~63u;
     }

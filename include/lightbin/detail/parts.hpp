@@ -30,7 +30,7 @@ void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
                 std::size_t count) {
     // Each run of lights adds its widths to the steps between rows, in a column of its own.
     const std::size_t rows = static_cast<std::size_t>(job.camera->y.tiles), pitch = rows + 1;
-    std::uint64_t* row_area = sums.room(std::uint64_t{pitch} * job.runs.size());
+    std::uint64_t* row_area = sums.reserve(std::uint64_t{pitch} * job.runs.size());
     parallel.run(job.runs.size(), [&](std::size_t run) {
         std::uint64_t* steps = row_area + run * pitch;
         std::fill_n(steps, pitch, 0u);

@@ -79,7 +79,7 @@ template <class Id>
 std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end, const Tile*,
                            std::uint32_t at) {
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles), pitch = width + 1;
-    std::uint32_t* steps = scratch.corners.room(pitch * (end - begin));
+    std::uint32_t* steps = scratch.corners.reserve(pitch * (end - begin));
     std::memset(steps, 0, pitch * (end - begin) * sizeof *steps);
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i)

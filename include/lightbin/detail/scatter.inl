@@ -96,7 +96,7 @@ LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scrat
     // column before its first the opposite.
     const std::size_t pitch = (columns + 1) * band_rows;  // from the column before the first
     const std::size_t size = pitch * (band_count + 1) + band_count * band_rows;
-    std::uint32_t* steps = scratch.corners.room(size + 16);
+    std::uint32_t* steps = scratch.corners.reserve(size + 16);
     steps += -reinterpret_cast<std::uintptr_t>(steps) % 64 / sizeof *steps;
     std::memset(steps, 0, size * sizeof *steps);
     std::uint32_t *above = steps + pitch * band_count, *row_ends = above + pitch;
@@ -127,7 +127,7 @@ LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scrat
     for (std::size_t row = 0; row < height; row += band_rows, steps += pitch, tile += band_rows * width) {
         // Beyond a band's tiles there are others still to be written, or another thread's.
         const std::size_t own = static_cast<std::size_t>(writable - tile), stored = band_rows * width + 4;
-        Tile* rows = own < stored ? scratch.last_rows.room(stored) : tile;
+        Tile* rows = own < stored ? scratch.last_rows.reserve(stored) : tile;
         lay_out(steps + band_rows, above, row_ends + row, columns, width, rows, EachTile{});
         if (rows != tile) std::copy_n(rows, (std::min)(own, band_rows * width), tile);
     }

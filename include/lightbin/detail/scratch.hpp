@@ -25,8 +25,8 @@ struct ListIdBuffers {
 /// The lights in lists, ids or visible indices, as they are.
 struct WholeIds {
     /// Room for `size`, keeping the first `used`.
-    static WholeIds room(ListIdBuffers& buffers, std::uint64_t size, std::size_t used, bool) {
-        return {buffers.whole.room(size, used)};
+    static WholeIds reserve(ListIdBuffers& buffers, std::uint64_t size, std::size_t used, bool) {
+        return {buffers.whole.reserve(size, used)};
     }
     WholeIds from(std::size_t place) const { return {ids + place}; }
     std::uint32_t get(std::size_t place) const { return ids[place]; }
@@ -38,8 +38,8 @@ struct WholeIds {
 /// The same with the lower and the upper 16 bits apart, which are 0 where there is no `high`.
 struct SplitIds {
     /// wide  some have upper bits
-    static SplitIds room(ListIdBuffers& buffers, std::uint64_t size, std::size_t used, bool wide) {
-        return {buffers.low.room(size, used), wide ? buffers.high.room(size, used) : nullptr};
+    static SplitIds reserve(ListIdBuffers& buffers, std::uint64_t size, std::size_t used, bool wide) {
+        return {buffers.low.reserve(size, used), wide ? buffers.high.reserve(size, used) : nullptr};
     }
     SplitIds from(std::size_t place) const { return {low + place, high != nullptr ? high + place : nullptr}; }
     std::uint32_t get(std::size_t place) const {

@@ -114,7 +114,7 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
     const std::uint8_t* columns = scratch.list_columns.data() + list.begin;
     const std::uint8_t* rows = scratch.list_rows.data() + list.begin;
     const ListIds lights = all_lights.from(list.begin);
-    std::uint64_t* masks = scratch.masks.room(std::uint64_t{list.count} + 64);
+    std::uint64_t* masks = scratch.masks.reserve(std::uint64_t{list.count} + 64);
     std::uint32_t left = 0;
     for (std::uint32_t begin = 0; begin < list.count; begin += 64) {
         const std::uint32_t count = (std::min)(list.count - begin, 64u);
