@@ -312,16 +312,16 @@ LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, Bytes from, std::uint
 struct ByteIds {
     __m256i eights[4];
 };
-LIGHTBIN_TARGET inline ByteIds load_ids(const std::uint32_t* from, std::size_t, bool) {
+LIGHTBIN_TARGET inline ByteIds load_ids(const std::uint32_t* from, std::size_t) {
     ByteIds ids;
     for (unsigned i = 0; i < 4; ++i)
         ids.eights[i] = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from + 8 * i));
     return ids;
 }
 LIGHTBIN_TARGET inline ByteIds load_ids(ListIds from, std::size_t count) {
-    return load_ids(from.ids, count, false);
+    return load_ids(from.ids, count);
 }
-LIGHTBIN_TARGET inline ByteIds count_ids(std::uint32_t first, bool) {
+LIGHTBIN_TARGET inline ByteIds count_ids(std::uint32_t first) {
     ByteIds ids;
     for (unsigned i = 0; i < 4; ++i)
         ids.eights[i] = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first + 8 * i)),

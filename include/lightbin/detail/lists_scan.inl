@@ -51,7 +51,7 @@ LIGHTBIN_TARGET inline void add_to_bands(const FootprintArrays& lights, const Li
                                          std::size_t count) {
     const ListedBands to = listed;  // a copy, that no store can change
     const Bytes first_y = coordinates(lights.y0 + i, 0, to.begin), end_y = coordinates(lights.y1 + i, 1, to.begin);
-    const ByteIds ids = with_words ? count_ids(i, to.wide) : load_ids(lights.ids + i, count, to.wide);
+    const ByteIds ids = with_words ? count_ids(i) : load_ids(lights.ids + i, count);
     const unsigned bands = (to.end - to.begin + 7) / 8;
     for (unsigned panel = 0; panel < to.panels; ++panel) {
         const unsigned begin = 8 * panel_side * panel;
