@@ -264,7 +264,7 @@ struct Bytes {
     __m256i v;
 };
 using ByteMask = std::uint32_t;
-using ListIds = WholeIds;
+using ListId = std::uint32_t;
 inline constexpr std::uint32_t byte_lanes = 32;
 
 LIGHTBIN_TARGET inline Bytes load_bytes(const std::uint8_t* from) {
@@ -312,14 +312,11 @@ LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, Bytes from, std::uint
 struct ByteIds {
     __m256i eights[4];
 };
-LIGHTBIN_TARGET inline ByteIds load_ids(const std::uint32_t* from, std::size_t) {
+LIGHTBIN_TARGET inline ByteIds load_ids(const std::uint32_t* from) {
     ByteIds ids;
     for (unsigned i = 0; i < 4; ++i)
         ids.eights[i] = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from + 8 * i));
     return ids;
-}
-LIGHTBIN_TARGET inline ByteIds load_ids(ListIds from, std::size_t count) {
-    return load_ids(from.ids, count);
 }
 LIGHTBIN_TARGET inline ByteIds count_ids(std::uint32_t first) {
     ByteIds ids;
@@ -328,10 +325,9 @@ LIGHTBIN_TARGET inline ByteIds count_ids(std::uint32_t first) {
                                          _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
     return ids;
 }
-LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, const ByteIds& from, ListIds to) {
-    std::uint32_t* out = to.ids;
+LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, const ByteIds& from, std::uint32_t* to) {
     for (unsigned i = 0; i < 4; ++i, chosen >>= 8)
-        out += append(out, from.eights[i], chosen & 0xff);
+        to += append(to, from.eights[i], chosen & 0xff);
 }
 
 #define LIGHTBIN_TIER_HAS_ROWS

@@ -195,7 +195,7 @@ struct Bytes {
     __m512i v;
 };
 using ByteMask = std::uint64_t;
-using ListIds = SplitIds;
+using ListId = std::uint16_t;
 inline constexpr std::uint32_t byte_lanes = 64;
 
 LIGHTBIN_TARGET inline Bytes load_bytes(const std::uint8_t* from) {
@@ -232,67 +232,35 @@ LIGHTBIN_TARGET inline Bytes coordinates(const std::uint16_t* from, unsigned mor
 LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, Bytes from, std::uint8_t* to) {
     _mm512_storeu_si512(to, compressed_bytes(chosen, from.v));
 }
-/// The ids of 64 lights: the lower 16 bits of each in two vectors, and the upper ones that they share, or if `mixed` that
-/// each has. Where no light has upper bits, only the lower ones matter.
+/// Of 64 lights 16 bits each, in two vectors.
 struct ByteIds {
-    __m512i low[2];
-    std::uint16_t upper;
-    bool mixed;
-    __m512i uppers[2];
+    __m512i low, high;
 };
-/// The lower halves of 32 numbers of 32 bits, after a shift to the right.
-LIGHTBIN_TARGET inline __m512i halved(__m512i first, __m512i last, unsigned shift) {
-    return _mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtepi32_epi16(_mm512_srli_epi32(first, shift))),
-                              _mm512_cvtepi32_epi16(_mm512_srli_epi32(last, shift)), 1);
+LIGHTBIN_TARGET inline ByteIds load_ids(const std::uint16_t* from) {
+    return {_mm512_loadu_si512(from), _mm512_loadu_si512(from + 32)};
 }
-/// Of 64 ids that ascend, of which those from `first` to `last` matter.
-LIGHTBIN_TARGET inline ByteIds split_ids(const __m512i (&ids)[4], std::uint32_t first, std::uint32_t last) {
-    ByteIds split = {{halved(ids[0], ids[1], 0), halved(ids[2], ids[3], 0)},
-                     static_cast<std::uint16_t>(first >> 16),
-                     first >> 16 != last >> 16,
-                     {}};
-    if (split.mixed) {
-        split.uppers[0] = halved(ids[0], ids[1], 16);
-        split.uppers[1] = halved(ids[2], ids[3], 16);
-    }
-    return split;
-}
-LIGHTBIN_TARGET inline ByteIds load_ids(const std::uint32_t* from, std::size_t count) {
-    __m512i ids[4];
+LIGHTBIN_TARGET inline ByteIds load_ids(const std::uint32_t* from) {
+    __m256i quarters[4];
     for (unsigned i = 0; i < 4; ++i)
-        ids[i] = _mm512_loadu_si512(from + 16 * i);
-    return split_ids(ids, from[0], from[(std::min<std::size_t>)(count, 64) - 1]);
+        quarters[i] = _mm512_cvtepi32_epi16(_mm512_loadu_si512(from + 16 * i));
+    return {_mm512_inserti64x4(_mm512_castsi256_si512(quarters[0]), quarters[1], 1),
+            _mm512_inserti64x4(_mm512_castsi256_si512(quarters[2]), quarters[3], 1)};
 }
 LIGHTBIN_TARGET inline ByteIds count_ids(std::uint32_t first) {
-    const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-    __m512i ids[4];
-    for (unsigned i = 0; i < 4; ++i)
-        ids[i] = _mm512_add_epi32(lane, _mm512_set1_epi32(static_cast<int>(first + 16 * i)));
-    return split_ids(ids, first, first + 63);
+    static constexpr auto lane = [] {
+        std::array<std::uint16_t, 64> places = {};
+        for (std::uint16_t i = 0; i < 64; ++i)
+            places[i] = i;
+        return places;
+    }();
+    const __m512i begin = _mm512_set1_epi16(static_cast<short>(first));
+    const ByteIds places = load_ids(lane.data());
+    return {_mm512_add_epi16(places.low, begin), _mm512_add_epi16(places.high, begin)};
 }
-LIGHTBIN_TARGET inline ByteIds load_ids(ListIds from, std::size_t count) {
-    ByteIds ids = {{_mm512_loadu_si512(from.low), _mm512_loadu_si512(from.low + 32)}, 0, false, {}};
-    if (from.high == nullptr) return ids;
-    ids.upper = from.high[0];
-    ids.mixed = ids.upper != from.high[(std::min<std::size_t>)(count, 64) - 1];
-    if (ids.mixed) {
-        ids.uppers[0] = _mm512_loadu_si512(from.high);
-        ids.uppers[1] = _mm512_loadu_si512(from.high + 32);
-    }
-    return ids;
-}
-LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, const __m512i (&from)[2], std::uint16_t* to) {
+LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, const ByteIds& from, std::uint16_t* to) {
     const __mmask32 low = static_cast<__mmask32>(chosen), high = static_cast<__mmask32>(chosen >> 32);
-    _mm512_storeu_si512(to, _mm512_mask_compress_epi16(fresh_zeros(), low, from[0]));
-    _mm512_storeu_si512(to + std::popcount(low), _mm512_mask_compress_epi16(fresh_zeros(), high, from[1]));
-}
-LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, const ByteIds& from, ListIds to) {
-    append_chosen(chosen, from.low, to.low);
-    if (to.high == nullptr) return;
-    if (from.mixed) return append_chosen(chosen, from.uppers, to.high);
-    const __m512i upper = _mm512_set1_epi16(static_cast<short>(from.upper));
-    _mm512_storeu_si512(to.high, upper);
-    if (std::popcount(chosen) > 32) _mm512_storeu_si512(to.high + 32, upper);
+    _mm512_storeu_si512(to, _mm512_mask_compress_epi16(fresh_zeros(), low, from.low));
+    _mm512_storeu_si512(to + std::popcount(low), _mm512_mask_compress_epi16(fresh_zeros(), high, from.high));
 }
 
 using avx2::arrange_cells;

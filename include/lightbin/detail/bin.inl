@@ -15,7 +15,7 @@ LIGHTBIN_TARGET std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scra
     ListedBands listed;
     std::uint64_t entries = 0;
     for (unsigned top = bands.begin; top < bands.end; top += 8) {
-        const BandLists<ListIds> band =
+        const BandLists<ListId> band =
             make_lists<with_words<footprint, depth_test>>(job, scratch, bands, top, width, listed);
         for (unsigned x = 0; band.lists != nullptr && x < width; ++x) {
             if (band.lists[x].count == 0) continue;
@@ -38,7 +38,7 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
     Id* out = bands.out;
     std::uint32_t at = bands.at;
     for (unsigned top = bands.begin; top < bands.end; top += 8) {
-        const BandLists<ListIds> band = make_lists<worded>(job, scratch, bands, top, width, listed);
+        const BandLists<ListId> band = make_lists<worded>(job, scratch, bands, top, width, listed);
         const unsigned end_row = (std::min)(top + 8, bands.end);
         if (band.lists == nullptr || !make_words<footprint, depth_test>(job, scratch, top, band, width)) {
             fill_empty(job.tiles + top * std::size_t{tiles_x}, (end_row - top) * std::size_t{tiles_x}, at);

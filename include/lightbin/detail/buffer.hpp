@@ -32,12 +32,12 @@ public:
         return memory_.get();
     }
 
-    /// The same, keeping the first `used` elements; grows in large steps.
+    /// The same, keeping the first `used` elements, or as many as there are; grows in large steps.
     T* reserve(std::uint64_t size, std::size_t used) {
         if (size > size_) {
             const std::uint64_t larger = sum_of_sizes(size, size);
             std::unique_ptr<T[]> memory = made(larger);
-            std::copy_n(memory_.get(), used, memory.get());
+            std::copy_n(memory_.get(), (std::min)(used, size_), memory.get());
             memory_ = std::move(memory);
             size_ = static_cast<std::size_t>(larger);
         }

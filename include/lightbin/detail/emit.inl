@@ -13,17 +13,17 @@ inline std::uint32_t store_no_words(Scratch&) {
 
 /// The ids of a list in the form that append() takes.
 template <class Id>
-LIGHTBIN_TARGET inline Packed<Id>* packed_ids(const Scratch& scratch, const BandLists<ListIds>& band,
+LIGHTBIN_TARGET inline Packed<Id>* packed_ids(const Scratch& scratch, const BandLists<ListId>& band,
                                               const SupertileList& list) {
     if constexpr (packs_ids)
         return reinterpret_cast<Packed<Id>*>(scratch.packed_ids.data()) + (list.begin - band.lists->begin);
     else
-        return band.ids.ids + list.begin;
+        return band.ids + list.begin;
 }
 
 /// Stores the words of a list at list.words of scratch.words. Returns where they end.
 template <bool with_words, class Id>
-LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLists<ListIds>& band,
+LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLists<ListId>& band,
                                                  const SupertileList& list) {
     const std::uint32_t groups = (list.count + 63) / 64, eights = (list.count + 7) / 8,
                         end = list.words + (with_words ? 8 * eights : 16 * groups);
@@ -44,7 +44,7 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
     if constexpr (packs_ids) {
         const std::uint64_t before = list.begin - band.lists->begin, size = sizeof(Packed<Id>);
         scratch.packed_ids.reserve((before + 64 * groups) * size, static_cast<std::size_t>(before * size));
-        pack(band.ids.ids + list.begin, list.count, packed_ids<Id>(scratch, band, list));
+        pack(band.ids + list.begin, list.count, packed_ids<Id>(scratch, band, list));
     }
     return end;
 }
@@ -92,7 +92,7 @@ LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t co
 /// Emits a row of tiles, `row` of its supertiles. `at` is the offset of `out` in the index list. Returns the end.
 template <bool with_words, class Id>
 LIGHTBIN_TARGET Id* emit_row(Id* out, Tile* tiles, unsigned tiles_x, std::uint32_t at, const Scratch& scratch,
-                             const BandLists<ListIds>& band, unsigned row) {
+                             const BandLists<ListId>& band, unsigned row) {
     const SupertileList* list = band.lists;
     const Tile* const end = tiles + tiles_x;
     for (; tiles < end; tiles += 8, ++list) {

@@ -33,38 +33,29 @@ LIGHTBIN_TARGET inline __m512i halves(__m256i low, __m256i high) {
     return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
 }
 
-/// Up to 64 ids of a list, the lower 16 bits of each in two vectors.
-template <bool wide> struct IdTable { __m512i low, high; };
-template <> struct IdTable<true> {
+/// Up to 64 ids of a list: the lower 16 bits of each in two vectors, and the upper ones that they share.
+struct IdTable {
     __m512i low, high;
-    std::uint32_t upper;  ///< what all of them have above, or `mixed`
-    const std::uint16_t *low_ids, *high_ids;
+    std::uint32_t upper;
 };
-inline constexpr std::uint32_t mixed = 1;
 
-/// Those of a group of 64 of a list, with what store_uppers() found of each.
-template <bool wide>
-LIGHTBIN_TARGET inline IdTable<wide> load_table(ListIds ids, const std::uint32_t* uppers, std::size_t group) {
-    const std::uint16_t* const first = ids.low + 64 * group;
-    const __m512i low = load(first), high = load(first + 32);
-    if constexpr (wide)
-        return {low, high, uppers[group], first, ids.high + 64 * group};
-    else
-        return {low, high};
-}
+/// The ids of a list, and of each 64 of them the number of their block.
+struct GroupedIds {
+    const std::uint16_t* ids;
+    const std::uint32_t* group_blocks;
+    const IdBlock* blocks;
 
-/// Appends the ids of a table with up to `lights` as append() does, one by one.
-template <unsigned lights, class Id>
-LIGHTBIN_NOINLINE void append_mixed(Id* to, std::uint64_t lit, const std::uint16_t* low, const std::uint16_t* high) {
-    for (; lit != 0; lit &= lit - 1) {
-        const unsigned light = static_cast<unsigned>(std::countr_zero(lit)) % lights;
-        *to++ = static_cast<Id>(low[light] | std::uint32_t{high[light]} << 16);
-    }
+    GroupedIds from(std::uint32_t place) const { return {ids + place, group_blocks + place / 64, blocks}; }
+};
+
+/// Those of a group of 64.
+LIGHTBIN_TARGET inline IdTable load_table(const GroupedIds& list, std::size_t group) {
+    const std::uint16_t* const ids = list.ids + 64 * group;
+    return {load(ids), load(ids + 32), list.blocks[list.group_blocks[group]].upper};
 }
 
 /// The lower 16 bits of the ids at 32 places of a table with up to `lights`.
-template <unsigned lights, bool wide>
-LIGHTBIN_TARGET inline __m512i look_up(IdTable<wide> table, __m256i places) {
+template <unsigned lights> LIGHTBIN_TARGET inline __m512i look_up(const IdTable& table, __m256i places) {
     const __m512i at = _mm512_cvtepu8_epi16(places);
     return lights <= 32 ? _mm512_permutexvar_epi16(at, table.low)
                         : _mm512_permutex2var_epi16(table.low, at, table.high);
@@ -83,22 +74,15 @@ template <class Id> LIGHTBIN_TARGET inline void store_32(Id* to, __m512i ids, st
 
 /// Appends the ids of a table with up to `lights` whose bit is set, of one tile after another, `lights` bits each; then more
 /// that mean nothing. Returns how many.
-template <unsigned lights, bool wide, class Id>
-LIGHTBIN_TARGET inline std::uint32_t append(Id* to, std::uint64_t lit, IdTable<wide> table) {
+template <unsigned lights, class Id>
+LIGHTBIN_TARGET inline std::uint32_t append(Id* to, std::uint64_t lit, const IdTable& table) {
     const std::uint32_t count = static_cast<std::uint32_t>(std::popcount(lit));
-    std::uint32_t upper = 0;
-    if constexpr (wide) {
-        upper = table.upper;
-        if (upper == mixed) {
-            append_mixed<lights>(to, lit, table.low_ids, table.high_ids);
-            return count;
-        }
-    }
     const __m512i numbers =
         _mm512_and_si512(load(byte_places.data()), _mm512_set1_epi8(static_cast<char>(lights - 1)));
     const __m512i places = compressed_bytes(lit, numbers);
-    store_32(to, look_up<lights>(table, _mm512_castsi512_si256(places)), upper);
-    if (count > 32) store_32(to + 32, look_up<lights>(table, _mm512_extracti64x4_epi64(places, 1)), upper);
+    store_32(to, look_up<lights>(table, _mm512_castsi512_si256(places)), table.upper);
+    if (count > 32)
+        store_32(to + 32, look_up<lights>(table, _mm512_extracti64x4_epi64(places, 1)), table.upper);
     return count;
 }
 
@@ -237,32 +221,19 @@ LIGHTBIN_TARGET inline void store_long_words(const std::uint64_t* masks, const s
 LIGHTBIN_TARGET inline std::uint32_t store_no_words(Scratch& scratch) {
     constexpr std::uint32_t size = 24;
     std::fill_n(scratch.words.reserve(size), size, 0u);
-    *scratch.uppers.reserve(1) = 0;
     return size;
-}
-
-/// Stores what the ids of each 64 of a list have above their lower 16 bits, or `mixed`.
-LIGHTBIN_TARGET inline void store_uppers(Scratch& scratch, const SupertileList& list, ListIds ids) {
-    const std::uint32_t begin = list.begin / 64, end = begin + (list.count + 63) / 64;
-    std::uint32_t* uppers = scratch.uppers.reserve(end, begin) + begin;
-    for (std::uint32_t i = 0; i < list.count; i += 64) {
-        const std::uint16_t first = ids.high[list.begin + i],
-                            last = ids.high[list.begin + (std::min)(i + 64, list.count) - 1];
-        *uppers++ = first == last ? std::uint32_t{first} << 16 : mixed;
-    }
 }
 
 /// How many lights a list of the first form has at most. Where most are longer, it has none: it would be one more form to
 /// mispredict.
-LIGHTBIN_TARGET inline std::uint32_t up_to_8(const BandLists<ListIds>& band) {
+LIGHTBIN_TARGET inline std::uint32_t up_to_8(const BandLists<ListId>& band) {
     return band.few ? 8 : 0;
 }
 
 /// Stores the words of a list at list.words of scratch.words. Returns where they end.
 template <bool with_words, class Id>
-LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLists<ListIds>& band,
+LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLists<ListId>& band,
                                                  const SupertileList& list) {
-    if (band.ids.high != nullptr) store_uppers(scratch, list, band.ids);
     const std::uint32_t count = list.count, groups = (count + 63) / 64;
     const std::uint32_t end = list.words + (count < 32 ? 40 : (with_words ? 64 : 16) * groups);
     std::uint64_t* words = scratch.words.reserve(end, list.words) + list.words;
@@ -282,10 +253,10 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
 
 /// Appends a row of a supertile with a short list, `words` from store_short_words, and its `columns` tiles. Returns
 /// how many ids.
-template <unsigned eights, bool wide, class Id>
+template <unsigned eights, class Id>
 LIGHTBIN_TARGET inline std::uint32_t append_row(Id* to, Tile* tiles, __mmask8 columns, std::uint32_t at,
                                                 const std::uint64_t* words, unsigned row,
-                                                IdTable<wide> table) {
+                                                const IdTable& table) {
     // Tiles are pairs of 32 bits, offset and count: the difference of running sums.
     const std::uint64_t sums = words[row];
     const __m512i ends = _mm512_cvtepu8_epi64(_mm_cvtsi64_si128(static_cast<long long>(sums))),
@@ -299,10 +270,10 @@ LIGHTBIN_TARGET inline std::uint32_t append_row(Id* to, Tile* tiles, __mmask8 co
 }
 
 /// Appends the tiles of a row of a supertile with a list of 32 to 64 lights. Returns how many ids.
-template <bool with_words, bool wide, class Id>
+template <bool with_words, class Id>
 LIGHTBIN_TARGET inline std::uint32_t append_64(Id* to, Tile* tiles, unsigned columns, std::uint32_t at,
                                                const std::uint64_t* words, unsigned row,
-                                               IdTable<wide> table) {
+                                               const IdTable& table) {
     const Id* const begin = to;
     for (unsigned column = 0; column < columns; ++column) {
         const std::uint64_t lit = with_words ? words[row * 8 + column] : words[column] & words[8 + row];
@@ -315,10 +286,10 @@ LIGHTBIN_TARGET inline std::uint32_t append_64(Id* to, Tile* tiles, unsigned col
 }
 
 /// The same of a longer list.
-template <bool with_words, bool wide, class Id>
+template <bool with_words, class Id>
 LIGHTBIN_TARGET inline std::uint32_t append_more(Id* to, Tile* tiles, unsigned columns, std::uint32_t at,
-                                                 const std::uint64_t* words, unsigned row, ListIds ids,
-                                                 const std::uint32_t* uppers, std::size_t lights) {
+                                                 const std::uint64_t* words, unsigned row, const GroupedIds& ids,
+                                                 std::size_t lights) {
     const Id* const begin = to;
     const std::size_t groups = (lights + 63) / 64;
     for (unsigned column = 0; column < columns; ++column) {
@@ -327,7 +298,7 @@ LIGHTBIN_TARGET inline std::uint32_t append_more(Id* to, Tile* tiles, unsigned c
             const std::uint64_t* w = words + group;
             const std::uint64_t lit = with_words ? w[(row * 8 + column) * groups]
                                                  : w[column * groups] & w[(8 + row) * groups];
-            to += append<64>(to, lit, load_table<wide>(ids, uppers, group));
+            to += append<64>(to, lit, load_table(ids, group));
         }
         const std::uint32_t count = static_cast<std::uint32_t>(to - from);
         tiles[column] = {at, count};
@@ -336,27 +307,26 @@ LIGHTBIN_TARGET inline std::uint32_t append_more(Id* to, Tile* tiles, unsigned c
     return static_cast<std::uint32_t>(to - begin);
 }
 
-/// Emits a row of tiles as emit_row() does. wide: there are ids of more than 16 bits.
-template <bool with_words, bool wide, class Id>
-LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id* emit_any_row(Id* out, Tile* tiles, unsigned tiles_x, std::uint32_t at, const Scratch& scratch,
-                             const BandLists<ListIds>& band, unsigned row) {
-    const ListIds all_ids = band.ids;
+/// Emits a row of tiles, `row` of its supertiles. `at` is the offset of `out` in the index list. Returns the end. A
+/// function of its own, as in a longer one compilers keep what it needs on the stack.
+template <bool with_words, class Id>
+LIGHTBIN_TARGET Id* emit_row(Id* out, Tile* tiles, unsigned tiles_x, std::uint32_t at, const Scratch& scratch,
+                             const BandLists<ListId>& band, unsigned row) {
+    const GroupedIds all_ids = {band.ids, scratch.group_blocks.data(), scratch.blocks.data()};
     const std::uint32_t eight = up_to_8(band);
-    const std::uint32_t* const all_uppers = scratch.uppers.data();
     const SupertileList* list = band.lists;
     const std::uint64_t* const all_words = scratch.words.data();
     for (const Tile* const end = tiles + tiles_x; tiles < end; tiles += 8, ++list) {
         const std::uint32_t lights = list->count;
         const std::uint64_t* words = all_words + list->words;
-        const ListIds ids = all_ids.from(list->begin);
-        const std::uint32_t* uppers = all_uppers + list->begin / 64;
+        const GroupedIds ids = all_ids.from(list->begin);
         const unsigned columns = static_cast<unsigned>((std::min<std::ptrdiff_t>)(end - tiles, 8));
         const __mmask8 stored = static_cast<__mmask8>(0xff >> (8 - columns));
         std::uint32_t count;
         if (lights > 64) {
-            count = append_more<with_words, wide>(out, tiles, columns, at, words, row, ids, uppers, lights);
+            count = append_more<with_words>(out, tiles, columns, at, words, row, ids, lights);
         } else {
-            const IdTable<wide> table = load_table<wide>(ids, uppers, 0);
+            const IdTable table = load_table(ids, 0);
             if (lights <= eight)
                 count = append_row<1>(out, tiles, stored, at, words, row, table);
             else if (lights <= 16)
@@ -370,14 +340,4 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id* emit_any_row(Id* out, Tile* tiles, unsigne
         at += count;
     }
     return out;
-}
-
-/// Emits a row of tiles, `row` of its supertiles. `at` is the offset of `out` in the index list. Returns the end.
-template <bool with_words, class Id>
-LIGHTBIN_TARGET Id* emit_row(Id* out, Tile* tiles, unsigned tiles_x, std::uint32_t at, const Scratch& scratch,
-                             const BandLists<ListIds>& band, unsigned row) {
-    if constexpr (sizeof(Id) > 2)
-        if (band.ids.high != nullptr)
-            return emit_any_row<with_words, true>(out, tiles, tiles_x, at, scratch, band, row);
-    return emit_any_row<with_words, false>(out, tiles, tiles_x, at, scratch, band, row);
 }

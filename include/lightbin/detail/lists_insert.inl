@@ -87,7 +87,7 @@ LIGHTBIN_TARGET inline void put_light(const ListPlaces& to, std::size_t pitch, s
 
 /// Makes the lists of the band that begins at tile row `top`.
 template <bool with_words, class Id>
-LIGHTBIN_TARGET BandLists<ListIds> make_lists(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands,
+LIGHTBIN_TARGET BandLists<ListId> make_lists(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands,
                                           unsigned top, unsigned width, ListedBands&) {
     // One more column and row: the difference array closes there, and branch-free writes may go there.
     const std::size_t pitch = width + 2;
@@ -103,5 +103,5 @@ LIGHTBIN_TARGET BandLists<ListIds> make_lists(const BinJob<Id>& job, Scratch& sc
                               rows.first, rows.last);
             }
     }
-    return {scratch.supertile_lists.data() + (top - bands.begin) / 8 * pitch, {scratch.list_ids.whole.data()}, false};
+    return {scratch.supertile_lists.data() + (top - bands.begin) / 8 * pitch, scratch.list_ids.whole.data(), false};
 }

@@ -11,16 +11,21 @@
 
 inline constexpr unsigned panel_side = 31;  // in supertiles
 
-/// The lights of some bands, from tile row `begin` to end-1, in a list for each band and panel: number
-/// band * panels + panel, with room for `stride` lights. Of each light the columns that it covers, x0..x1-1, its byte of
-/// rows, and its id or, for words, its visible index.
+/// The lights of some bands, from tile row `begin` to end-1, in `count` lists for each block of ids: one for each band and
+/// panel, number band * panels + panel. Of each light the columns that it covers, x0..x1-1, its byte of rows, and its id
+/// or, for words, its visible index.
 struct ListedBands {
-    unsigned begin = 0, end = 0, panels = 0;
-    bool wide = false;  ///< some ids are longer than 16 bits
-    std::size_t stride = 0;
+    unsigned begin = 0, end = 0;
+    std::size_t panels = 0, count = 0, block_count = 0;
+    const IdBlock* blocks = nullptr;
     std::uint8_t *x0 = nullptr, *x1 = nullptr, *rows = nullptr;
+    ListId* ids = nullptr;
     std::uint32_t* size = nullptr;
-    ListIds ids = {};
+
+    /// Where a list begins.
+    std::size_t place(std::size_t block, std::size_t list) const {
+        return blocks[block].before * count + list * blocks[block].capacity;
+    }
 };
 
 /// Of each light first..end-1, which of the 8 tiles from `begin` on it covers, a bit per tile.
@@ -38,36 +43,59 @@ LIGHTBIN_TARGET inline ByteMask first_bytes(std::size_t count) {
     return count < byte_lanes ? static_cast<ByteMask>(~(all << count)) : all;
 }
 
-/// Whether ids or visible indices are longer than 16 bits.
-template <class Id> bool wide_ids(const BinJob<Id>& job) {
+/// Fills scratch.blocks; returns how many there are. Ids that are listed as they are are one block.
+template <class Id> std::size_t make_blocks(const BinJob<Id>& job, Scratch& scratch) {
+    std::size_t count = 0;
     for (const FootprintRun& run : job.runs)
-        if (run.begin < run.end && (run.end | job.lights.ids[run.end - 1]) > 0xffff) return true;
-    return false;
+        for (std::uint32_t i = run.begin, end; i < run.end; i = end) {
+            const std::uint32_t* ids = job.lights.ids;
+            const std::uint32_t upper = sizeof(ListId) == 2 ? ids[i] & 0xffff0000 : 0,
+                                last = sizeof(ListId) == 2 ? upper | 0xffff : 0xffffffff;
+            end = ids[run.end - 1] <= last
+                      ? run.end
+                      : static_cast<std::uint32_t>(std::upper_bound(ids + i, ids + run.end, last) - ids);
+            IdBlock* const blocks = scratch.blocks.reserve(count + 1, count);
+            const std::uint32_t most = sizeof(ListId) == 2 ? 0x10000 : 0xffffffff;
+            if (count > 0 && blocks[count - 1].upper == upper && end - blocks[count - 1].begin <= most)
+                blocks[count - 1].end = end;
+            else
+                blocks[count++] = {sizeof(ListId) == 2 ? i : 0, end, upper, 0, 0};
+        }
+    std::size_t before = 0;
+    for (IdBlock *block = scratch.blocks.data(), *const end = block + count; block < end; ++block) {
+        block->before = before;
+        block->capacity = std::size_t{(std::min)(block->end - block->begin, job.visible)} + 64;  // of whole vectors
+        before += block->capacity;
+    }
+    return count;
 }
 
-/// Appends a vector of lights, `count` or as many as it has, from visible index i on, to the lists of the bands and panels that they meet.
+/// Appends a vector of lights, `lights` of it, from visible index i on, to the lists of the bands and panels that they
+/// meet.
 template <bool with_words>
-LIGHTBIN_TARGET inline void add_to_bands(const FootprintArrays& lights, const ListedBands& listed, std::uint32_t i,
-                                         std::size_t count) {
+LIGHTBIN_TARGET inline void add_to_bands(const FootprintArrays& lights, const ListedBands& listed,
+                                         std::size_t block, std::uint32_t i, std::size_t count) {
     const ListedBands to = listed;  // a copy, that no store can change
     const Bytes first_y = coordinates(lights.y0 + i, 0, to.begin), end_y = coordinates(lights.y1 + i, 1, to.begin);
-    const ByteIds ids = with_words ? count_ids(i) : load_ids(lights.ids + i, count);
-    const unsigned bands = (to.end - to.begin + 7) / 8;
+    const ByteIds ids = with_words ? count_ids(i - to.blocks[block].begin) : load_ids(lights.ids + i);
+    std::uint32_t* const sizes = to.size + block * to.count;
+    const std::size_t first = to.place(block, 0), capacity = to.blocks[block].capacity;
     for (unsigned panel = 0; panel < to.panels; ++panel) {
         const unsigned begin = 8 * panel_side * panel;
         const Bytes first_x = coordinates(lights.x0 + i, 0, begin), end_x = coordinates(lights.x1 + i, 1, begin);
         ByteMask in_panel = first_bytes(count);
         if (to.panels > 1) in_panel &= not_zero(end_x) & not_zero(subtract(all_bytes(8 * panel_side), first_x));
-        for (unsigned band = 0; band < bands; ++band) {
-            const Bytes rows = covered_bytes(first_y, end_y, 8 * band);
+        unsigned top = 0;
+        for (std::size_t list = panel; list < to.count; list += to.panels, top += 8) {
+            const Bytes rows = covered_bytes(first_y, end_y, top);
             const ByteMask chosen = not_zero(rows) & in_panel;
             if (chosen == 0) continue;
-            const std::size_t list = std::size_t{band} * to.panels + panel, at = list * to.stride + to.size[list];
+            const std::size_t at = first + list * capacity + sizes[list];
             append_chosen(chosen, first_x, to.x0 + at);
             append_chosen(chosen, end_x, to.x1 + at);
             append_chosen(chosen, rows, to.rows + at);
-            append_chosen(chosen, ids, to.ids.from(at));
-            to.size[list] += static_cast<std::uint32_t>(std::popcount(chosen));
+            append_chosen(chosen, ids, to.ids + at);
+            sizes[list] += static_cast<std::uint32_t>(std::popcount(chosen));
         }
     }
 }
@@ -76,64 +104,93 @@ LIGHTBIN_TARGET inline void add_to_bands(const FootprintArrays& lights, const Li
 template <bool with_words, class Id>
 LIGHTBIN_TARGET void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end,
                                 unsigned width, ListedBands& to) {
+    if (to.blocks == nullptr) {
+        to.block_count = make_blocks(job, scratch);
+        to.blocks = scratch.blocks.data();
+    }
     to.panels = (width + panel_side - 1) / panel_side;
     const std::uint64_t together =
         std::clamp<std::uint64_t>(most_band_places / (std::uint64_t{job.visible} * to.panels + 1), 1, panel_side);
     to.begin = begin;
     to.end = (std::min)(begin + 8 * static_cast<unsigned>(together), end);
-    const std::uint64_t lists = std::uint64_t{(to.end - to.begin + 7) / 8} * to.panels,
-                        stride = std::uint64_t{job.visible} + 64;  // whole vectors are stored and read
-    to.stride = static_cast<std::size_t>(stride);
-    to.x0 = scratch.band_x0.reserve(lists * stride);
-    to.x1 = scratch.band_x1.reserve(lists * stride);
-    to.rows = scratch.band_rows.reserve(lists * stride);
-    to.wide = wide_ids(job);
-    to.ids = ListIds::reserve(scratch.band_ids, lists * stride, 0, to.wide);
-    to.size = scratch.band_size.reserve(lists);
-    std::fill_n(to.size, lists, 0u);
-    for (const FootprintRun& run : job.runs)
-        for (std::uint32_t i = run.begin; i < run.end; i += byte_lanes)
-            add_to_bands<with_words>(job.lights, to, i, run.end - i);
+    to.count = (to.end - to.begin + 7) / 8 * to.panels;
+    const std::uint64_t capacity = to.block_count > 0 ? to.place(to.block_count - 1, to.count) : 0;
+    to.x0 = scratch.band_x0.reserve(capacity);
+    to.x1 = scratch.band_x1.reserve(capacity);
+    to.rows = scratch.band_rows.reserve(capacity);
+    to.ids = scratch.band_ids.template reserve<ListId>(capacity);
+    to.size = scratch.band_size.reserve(to.block_count * to.count);
+    std::fill_n(to.size, to.block_count * to.count, 0u);
+    for (std::size_t block = 0; block < to.block_count; ++block)
+        for (const FootprintRun& run : job.runs) {
+            const std::uint32_t last = (std::min)(run.end, to.blocks[block].end);
+            for (std::uint32_t i = (std::max)(run.begin, to.blocks[block].begin); i < last; i += byte_lanes)
+                add_to_bands<with_words>(job.lights, to, block, i, last - i);
+        }
 }
 
-/// Makes the list of the supertile whose columns begin at `begin` in its panel, out of the panel's list number `list`, at
-/// the places given. Returns how many lights it has.
-LIGHTBIN_TARGET inline std::uint32_t pick_lights(const ListedBands& listed, std::size_t list, unsigned begin,
-                                                 std::uint8_t* columns, std::uint8_t* rows, ListIds ids) {
+/// Picks the lights of a supertile out of `size` lights of a list, from a place on, its columns beginning at `begin` in
+/// the panel. Returns how many.
+LIGHTBIN_TARGET inline std::uint32_t pick_lights(const ListedBands& listed, std::size_t at, std::size_t size,
+                                                 unsigned begin, std::uint8_t* columns, std::uint8_t* rows,
+                                                 ListId* ids) {
     const ListedBands bands = listed;  // a copy, that no store can change
     std::uint32_t count = 0;
-    for (std::size_t at = list * bands.stride, end = at + bands.size[list]; at < end; at += byte_lanes) {
+    for (const std::size_t end = at + size; at < end; at += byte_lanes) {
         const Bytes here = covered_bytes(load_bytes(bands.x0 + at), load_bytes(bands.x1 + at), begin);
         const ByteMask chosen = not_zero(here) & first_bytes(end - at);
         if (chosen == 0) continue;
         append_chosen(chosen, here, columns + count);
         append_chosen(chosen, load_bytes(bands.rows + at), rows + count);
-        append_chosen(chosen, load_ids(bands.ids.from(at), end - at), ids.from(count));
+        append_chosen(chosen, load_ids(bands.ids + at), ids + count);
         count += static_cast<std::uint32_t>(std::popcount(chosen));
     }
     return count;
 }
 
+/// Makes the list of supertile x from place `begin` on, a multiple of 64, out of list `band` + its panel of each block.
+/// Each block begins at a multiple of 64, after lights that cover nothing. Returns how many lights it has.
+LIGHTBIN_TARGET inline std::uint32_t list_supertile(Scratch& scratch, const ListedBands& listed, std::size_t band,
+                                                    unsigned x, std::uint32_t begin) {
+    const std::size_t list = band + x / panel_side;
+    std::uint32_t end = begin;
+    for (std::size_t block = 0; block < listed.block_count; ++block) {
+        const std::uint32_t size = listed.size[block * listed.count + list], from = (end + 63) & ~63u;
+        const std::uint64_t capacity = std::uint64_t{from} + size + 128;
+        std::uint8_t* columns = scratch.list_columns.reserve(capacity, end);
+        std::uint8_t* rows = scratch.list_rows.reserve(capacity, end);
+        ListId* ids = scratch.list_ids.template reserve<ListId>(capacity, end);
+        const std::uint32_t picked = pick_lights(listed, listed.place(block, list), size, 8 * (x % panel_side),
+                                                 columns + from, rows + from, ids + from);
+        if (picked == 0) continue;
+        std::fill(columns + end, columns + from, std::uint8_t{0});
+        std::fill(ids + end, ids + from, ListId{0});
+        end = from + picked;
+        if constexpr (sizeof(ListId) == 2) {
+            const std::size_t first = from / 64, last = (end + 63) / 64;
+            std::fill_n(scratch.group_blocks.reserve(last, first) + first, last - first,
+                        static_cast<std::uint32_t>(block));
+        }
+    }
+    return end - begin;
+}
+
 /// Makes the lists of the band that begins at tile row `top`. `listed` is kept from band to band.
 template <bool with_words, class Id>
-LIGHTBIN_TARGET BandLists<ListIds> make_lists(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands,
-                                          unsigned top, unsigned width, ListedBands& listed) {
+LIGHTBIN_TARGET BandLists<ListId> make_lists(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands,
+                                         unsigned top, unsigned width, ListedBands& listed) {
     if (top >= listed.end) list_bands<with_words>(job, scratch, top, bands.end, width, listed);
-    const std::uint32_t* const sizes = listed.size + std::size_t{(top - listed.begin) / 8} * listed.panels;
-    const std::uint32_t longest = listed.panels > 0 ? *std::max_element(sizes, sizes + listed.panels) : 0;
+    const std::size_t band = (top - listed.begin) / 8 * listed.panels;
+    std::uint32_t longest = 0;
+    for (std::size_t block = 0; block < listed.block_count; ++block)
+        for (std::size_t panel = 0; panel < listed.panels; ++panel)
+            longest = (std::max)(longest, listed.size[block * listed.count + band + panel]);
     if (longest == 0) return {};
     SupertileList* const lists = scratch.supertile_lists.reserve(width);
-    ListIds ids = {};
     std::uint32_t used = 0;
     for (unsigned x = 0; x < width; ++x) {
-        const std::size_t list = static_cast<std::size_t>(sizes - listed.size) + x / panel_side;
-        const std::uint64_t capacity = std::uint64_t{used} + listed.size[list] + 128;
-        ids = ListIds::reserve(scratch.list_ids, capacity, used, listed.wide);
-        const std::uint32_t count =
-            pick_lights(listed, list, 8 * (x % panel_side), scratch.list_columns.reserve(capacity, used) + used,
-                        scratch.list_rows.reserve(capacity, used) + used, ids.from(used));
-        lists[x] = {used, count, 0};
-        used += (count + 63) & ~63u;
+        lists[x] = {used, list_supertile(scratch, listed, band, x, used), 0};
+        used += (lists[x].count + 63) & ~63u;
     }
-    return {lists, ids, longest <= 64};
+    return {lists, scratch.list_ids.template reserve<ListId>(used, used), longest <= 64};
 }

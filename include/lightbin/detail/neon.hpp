@@ -16,7 +16,7 @@ namespace neon {
 
 using FloatRegister = float32x4_t;
 using DoubleRegister = float64x2_t;
-using ListIds = WholeIds;
+using ListId = std::uint32_t;
 inline constexpr std::uint32_t lanes = 4, double_lanes = 2;
 
 inline float32x4_t all_lanes(float each) {

@@ -14,7 +14,7 @@ using Floats = float;
 using Doubles = double;
 using FloatRegister = float;
 using DoubleRegister = double;
-using ListIds = WholeIds;
+using ListId = std::uint32_t;
 inline constexpr std::uint32_t lanes = 1, double_lanes = 1;
 
 // One lane: numbers are their own vectors, and a mask is a bool. Of floats and of doubles.

@@ -16,41 +16,24 @@ struct SupertileList {
     std::uint32_t begin, count, words;
 };
 
-/// Memory of the lights in lists: in one of the two forms below.
+/// Memory of the lights in lists, ids or visible indices: all of each, or 16 bits, what it has more than its block.
 struct ListIdBuffers {
     Buffer<std::uint32_t> whole;
-    Buffer<std::uint16_t> low, high;
+    Buffer<std::uint16_t> low;
+
+    template <class ListId> ListId* reserve(std::uint64_t size, std::size_t used = 0) {
+        if constexpr (sizeof(ListId) == 4)
+            return whole.reserve(size, used);
+        else
+            return low.reserve(size, used);
+    }
 };
 
-/// The lights in lists, ids or visible indices, as they are.
-struct WholeIds {
-    /// Room for `size`, keeping the first `used`.
-    static WholeIds reserve(ListIdBuffers& buffers, std::uint64_t size, std::size_t used, bool) {
-        return {buffers.whole.reserve(size, used)};
-    }
-    WholeIds from(std::size_t place) const { return {ids + place}; }
-    std::uint32_t get(std::size_t place) const { return ids[place]; }
-    void set(std::size_t place, std::uint32_t id) const { ids[place] = id; }
-
-    std::uint32_t* ids;
-};
-
-/// The same with the lower and the upper 16 bits apart, which are 0 where there is no `high`.
-struct SplitIds {
-    /// wide  some have upper bits
-    static SplitIds reserve(ListIdBuffers& buffers, std::uint64_t size, std::size_t used, bool wide) {
-        return {buffers.low.reserve(size, used), wide ? buffers.high.reserve(size, used) : nullptr};
-    }
-    SplitIds from(std::size_t place) const { return {low + place, high != nullptr ? high + place : nullptr}; }
-    std::uint32_t get(std::size_t place) const {
-        return low[place] | (high != nullptr ? std::uint32_t{high[place]} << 16 : 0);
-    }
-    void set(std::size_t place, std::uint32_t id) const {
-        low[place] = static_cast<std::uint16_t>(id);
-        if (high != nullptr) high[place] = static_cast<std::uint16_t>(id >> 16);
-    }
-
-    std::uint16_t *low, *high;
+/// Lights that lists of 16 bits tell apart: those of all runs at begin..end-1, no more than 2^16 places, whose ids share
+/// their upper 16 bits, `upper`. Its lists have room for `capacity` lights, after those of `before` of the blocks before.
+struct IdBlock {
+    std::uint32_t begin, end, upper;
+    std::size_t before, capacity;
 };
 
 struct Scratch {
@@ -64,7 +47,8 @@ struct Scratch {
     Buffer<std::uint8_t> list_columns, list_rows;
     Buffer<std::uint8_t> packed_ids;  ///< list_ids as Packed, of the SSE2 tier
     Buffer<std::uint64_t> masks;      ///< of a supertile: a word a light, a bit per tile
-    Buffer<std::uint32_t> uppers;     ///< of 64 of list_ids each, see emit_compress.inl
+    Buffer<IdBlock> blocks;
+    Buffer<std::uint32_t> group_blocks;  ///< of 64 of list_ids each the number of their block
     Buffer<std::uint64_t> words;      ///< of a band of supertiles, in the form of step 3
 
     // The lists of bands, see lists_scan.inl.

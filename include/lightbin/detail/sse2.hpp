@@ -18,7 +18,7 @@ namespace sse2 {
 
 using FloatRegister = __m128;
 using DoubleRegister = __m128d;
-using ListIds = WholeIds;
+using ListId = std::uint32_t;
 inline constexpr std::uint32_t lanes = 4, double_lanes = 2;
 
 LIGHTBIN_TARGET inline __m128 all_lanes(float each) {

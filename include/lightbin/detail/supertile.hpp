@@ -26,9 +26,9 @@ inline constexpr unsigned cell_planes = depth_test == DepthTest::split_box ? 12
 inline constexpr unsigned next_box = 64 * cell_planes<DepthTest::box>;  ///< floats from a box to the next
 
 /// The lists of a band, one a supertile, and the ids in them.
-template <class ListIds> struct BandLists {
+template <class ListId> struct BandLists {
     SupertileList* lists;  ///< null: no light meets the band
-    ListIds ids;
+    ListId* ids;
     bool few;  ///< most lists are of up to 8 lights, as far as is known
 };
 

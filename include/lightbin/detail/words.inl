@@ -62,7 +62,7 @@ LIGHTBIN_TARGET inline void meet_tiles(const float* cells, std::uint64_t lit, co
 /// Of the tiles of a supertile, from column 8 x and row `top` on, those within the row spans of visible light i.
 LIGHTBIN_TARGET inline std::uint64_t silhouette_tiles(const FootprintArrays& lights, std::uint32_t i,
                                                       unsigned x, unsigned top, std::uint64_t tiles) {
-    if (lights.span_begin[i] == FootprintArrays::whole_rectangle) return tiles;
+    if (tiles == 0 || lights.span_begin[i] == FootprintArrays::whole_rectangle) return tiles;
     std::uint64_t spanned = 0;
     for (unsigned row = static_cast<unsigned>(std::countr_zero(tiles)) / 8,
                   last = 7 - static_cast<unsigned>(std::countl_zero(tiles)) / 8;
@@ -74,10 +74,11 @@ LIGHTBIN_TARGET inline std::uint64_t silhouette_tiles(const FootprintArrays& lig
     return tiles & spanned;
 }
 
-/// Makes the words of up to 64 lights of a supertile, given by visible index with the columns and rows that they cover.
+/// Makes the words of up to 64 lights of a supertile, given by visible index, counted from `first`, with the columns and
+/// rows that they cover.
 template <Footprint footprint, DepthTest depth_test, class Id>
 LIGHTBIN_TARGET inline void make_64_words(const BinJob<Id>& job, unsigned x, unsigned top, const float* cells,
-                                          std::uint64_t lit, ListIds lights,
+                                          std::uint64_t lit, const ListId* lights, std::uint32_t first,
                                           const std::uint8_t* columns, const std::uint8_t* rows,
                                           std::uint32_t count, std::uint64_t* words) {
     std::uint64_t met[64];
@@ -85,7 +86,7 @@ LIGHTBIN_TARGET inline void make_64_words(const BinJob<Id>& job, unsigned x, uns
         TestedLight tested[64];
         for (std::uint32_t j = 0; j < count; ++j) {
             tested[j] =
-                TestedLight(*job.camera, load_sphere(job.lights.spheres + job.lights.ids[lights.get(j)]));
+                TestedLight(*job.camera, load_sphere(job.lights.spheres + job.lights.ids[first + lights[j]]));
             met[j] = 0;
         }
         meet_tiles<depth_test>(cells, lit, tested, columns, rows, count, met);
@@ -93,17 +94,31 @@ LIGHTBIN_TARGET inline void make_64_words(const BinJob<Id>& job, unsigned x, uns
     for (std::uint32_t j = 0; j < count; ++j) {
         std::uint64_t tiles = spread_rows(rows[j]) & columns[j] * std::uint64_t{0x0101010101010101};
         if constexpr (footprint == Footprint::silhouette)
-            tiles = silhouette_tiles(job.lights, lights.get(j), x, top, tiles);
+            tiles = silhouette_tiles(job.lights, first + lights[j], x, top, tiles);
         if constexpr (depth_test != DepthTest::none) tiles &= met[j] & lit;
         words[j] = tiles;
     }
+}
+
+/// Of a list in blocks of ids, whose lights before `begin` were masked so that `left` of them are left: lets those that
+/// follow begin at a multiple of 64 if they are of another block, and notes of which one. Returns what their visible
+/// indices are counted from.
+inline std::uint32_t begin_group(const Scratch& scratch, const SupertileList& list, std::uint32_t begin,
+                                 std::uint32_t& left, std::uint64_t* masks) {
+    std::uint32_t* const groups = scratch.group_blocks.data() + list.begin / 64;
+    const std::uint32_t block = groups[begin / 64];
+    if (left % 64 != 0 && groups[left / 64] != block)
+        while (left % 64 != 0)
+            masks[left++] = 0;
+    groups[left / 64] = groups[(left + 63) / 64] = block;
+    return scratch.blocks.data()[block].begin;
 }
 
 /// Makes the words of a supertile's lights in scratch.masks, and ids of their visible indices. Lights that are in none
 /// of the tiles are dropped. Returns how many are left.
 template <Footprint footprint, DepthTest depth_test, class Id>
 LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratch, unsigned x, unsigned top,
-                                          const SupertileList& list, ListIds all_lights) {
+                                          const SupertileList& list, ListId* all_lights) {
     [[maybe_unused]] float arranged[cell_planes<depth_test> * 64];
     const float* cells = nullptr;
     std::uint64_t lit = ~std::uint64_t{0};
@@ -113,16 +128,18 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
     }
     const std::uint8_t* columns = scratch.list_columns.data() + list.begin;
     const std::uint8_t* rows = scratch.list_rows.data() + list.begin;
-    const ListIds lights = all_lights.from(list.begin);
+    ListId* lights = all_lights + list.begin;
     std::uint64_t* masks = scratch.masks.reserve(std::uint64_t{list.count} + 64);
     std::uint32_t left = 0;
     for (std::uint32_t begin = 0; begin < list.count; begin += 64) {
         const std::uint32_t count = (std::min)(list.count - begin, 64u);
+        std::uint32_t first = 0;
+        if constexpr (sizeof(ListId) == 2) first = begin_group(scratch, list, begin, left, masks);
         std::uint64_t words[64];
-        make_64_words<footprint, depth_test>(job, x, top, cells, lit, lights.from(begin), columns + begin,
+        make_64_words<footprint, depth_test>(job, x, top, cells, lit, lights + begin, first, columns + begin,
                                              rows + begin, count, words);
         for (std::uint32_t j = 0; j < count; ++j) {
-            lights.set(left, job.lights.ids[lights.get(begin + j)]);
+            lights[left] = static_cast<ListId>(job.lights.ids[first + lights[begin + j]]);
             masks[left] = words[j];
             left += words[j] != 0;
         }
@@ -134,7 +151,7 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
 /// out of it. Returns whether any is left.
 template <Footprint footprint, DepthTest depth_test, class Id>
 LIGHTBIN_TARGET bool make_words(const BinJob<Id>& job, Scratch& scratch, unsigned top,
-                                const BandLists<ListIds>& band, unsigned width) {
+                                const BandLists<ListId>& band, unsigned width) {
     constexpr bool worded = with_words<footprint, depth_test>;
     const std::uint32_t begin = store_no_words(scratch);
     std::uint32_t used = begin;
@@ -143,8 +160,12 @@ LIGHTBIN_TARGET bool make_words(const BinJob<Id>& job, Scratch& scratch, unsigne
         if constexpr (worded)
             if (list.count > 0)
                 list.count = mask_lights<footprint, depth_test>(job, scratch, x, top, list, band.ids);
-        list.words = list.count == 0 ? 0 : used;
-        if (list.count > 0) used = store_words<worded, Id>(scratch, band, list);
+        if (list.count == 0) {
+            list = {band.lists->begin, 0, 0};
+            continue;
+        }
+        list.words = used;
+        used = store_words<worded, Id>(scratch, band, list);
     }
     return used > begin;
 }
