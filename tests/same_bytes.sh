@@ -1,8 +1,8 @@
 #!/bin/sh
-# sh tests/same_bytes.sh [COMMIT] [--inputs N]: whether the library gives the same light lists as at a COMMIT (HEAD if not
-# named): of N random inputs (20,000) of all families, with each footprint and depth test, on all tiers of this machine, with
-# ids of 16 and 32 bits, on one thread and on several. Says which inputs differ. A version is built and run in build/same_bytes;
-# what a commit gave is kept there. Takes some minutes.
+# sh tests/same_bytes.sh [COMMIT] [--inputs N]: whether the library gives the same light lists as at a COMMIT (HEAD
+# if not named): of N random inputs (20,000) of all families, with each footprint and depth test, on all tiers of
+# this machine, with ids of 16 and 32 bits, on one thread and on several. Says which inputs differ. A version is
+# built and run in build/same_bytes; what a commit gave is kept there. Takes some minutes.
 set -eu
 me=tests/same_bytes.sh
 cd "$(dirname "$0")/.."
@@ -35,7 +35,8 @@ work=build/same_bytes
 make_build_folder
 mkdir -p $work
 
-# build FOLDER PROGRAM: the tests' engine in FOLDER with the library there, and the lines of this working tree's hash.cpp.
+# build FOLDER PROGRAM: the tests' engine in FOLDER with the library there, and the lines of this working tree's
+# hash.cpp.
 build() {
     "$compiler" -std=c++20 -O2 -I"$1/include" -c "$1/tests/oracle/engine.cpp" -o "$2.engine.o"
     # From standard input, so that it does not include the headers that lie beside it.
@@ -68,4 +69,5 @@ if cmp -s $work/then $work/now; then
 fi
 diff $work/then $work/now >$work/differences || true
 sed -n '/^[<>]/s/ lists .*//p' $work/differences | sed 's/^[<>] //' | sort -un | head -n 50
-fail "$(sed -n 's/^> \([0-9]*\) .*/\1/p' $work/differences | sort -u | wc -l) inputs differ; all of them: $work/differences"
+count=$(sed -n 's/^> \([0-9]*\) .*/\1/p' $work/differences | sort -u | wc -l)
+fail "$count inputs differ; all of them: $work/differences"

@@ -180,6 +180,6 @@ private:
     bool shared_ = false;
 };
 
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
 
 #include <lightbin/detail/warnings_on.inl>

@@ -61,8 +61,7 @@ public:
         // One part where 32 bits might not number the places of more.
         constexpr std::size_t chunk = detail::ChunkRects::size, padding = detail::FootprintArrays::padding;
         const std::size_t chunks = lights_ / chunk + 1;
-        const std::size_t parts =
-            lights_ >> 31 == 0 ? detail::project_parts(chunks, parallel.workers()) : 1;
+        const std::size_t parts = lights_ >> 31 == 0 ? detail::project_parts(chunks, parallel.workers()) : 1;
         const auto first_of = [&](std::size_t part) {
             return static_cast<std::size_t>(
                 (std::min<std::uint64_t>)(std::uint64_t{chunks} * part / parts * chunk, lights_));
@@ -134,7 +133,8 @@ private:
     void add_spans(detail::RowSpanKernel kernel, const View& view, const Parallel& threads) {
         constexpr std::uint64_t padding = 8;  // a vector of rows
         // Later lights than 32 bits can number the spans of keep their rectangles.
-        const std::uint64_t capacity = (std::min)(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
+        const std::uint64_t capacity =
+            (std::min)(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
         detail::RowSpan* spans = spans_.reserve(capacity + padding);
         arrays_.spans = spans;
         std::uint64_t place = 0;
@@ -161,6 +161,6 @@ private:
     detail::ProjectCounts counts_;
 };
 
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
 
 #include <lightbin/detail/warnings_on.inl>

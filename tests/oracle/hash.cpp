@@ -62,10 +62,12 @@ unsigned long long hash_of(const Scene& scene) {
 }
 
 Scene scene_on(const Screen& screen, Random& random, std::size_t count) {
-    Scene scene{camera_of("", families::any_lens(aspect_of(screen), random), screen), {}, {}, {}, {}, {}, {}, false};
+    Scene scene{
+        camera_of("", families::any_lens(aspect_of(screen), random), screen), {}, {}, {}, {}, {}, {}, false};
     const Aim aim(scene.camera);
     for (std::size_t i = 0; i < count; ++i)
-        scene.lights.push_back(random.chance(0.8) ? spheres::field(aim, random) : families::any_light(aim, random));
+        scene.lights.push_back(random.chance(0.8) ? spheres::field(aim, random)
+                                                  : families::any_light(aim, random));
     families::set_bounds(scene, aim, random);
     return scene;
 }
@@ -73,7 +75,8 @@ Scene scene_on(const Screen& screen, Random& random, std::size_t count) {
 /// More columns of tiles than a byte counts.
 Scene wide_grid(Random& random, std::size_t count) {
     const int tile = random.integer(1, 16);
-    return scene_on({random.integer(230, 800) * tile, random.integer(1, 40) * tile, tile, false}, random, count);
+    return scene_on({random.integer(230, 800) * tile, random.integer(1, 40) * tile, tile, false}, random,
+                    count);
 }
 
 /// As many tiles as a screen has.

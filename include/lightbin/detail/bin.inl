@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Binning by supertiles of 8x8 tiles, a band of them after another, in three steps. Included once a tier, after its steps.
+// Binning by supertiles of 8x8 tiles, a band of them after another, in three steps. Included once a tier, after its
+// steps.
 //
-//   1. Lists: which lights meet which supertile, with a byte of the columns and a byte of the rows that each covers there
-//      (lists_insert.inl, lists_scan.inl).
+//   1. Lists: which lights meet which supertile, with a byte of the columns and a byte of the rows that each covers
+//      there (lists_insert.inl, lists_scan.inl).
 //   2. Words: which of its tiles each light is in, by its rectangle, row spans and depth (words.inl), as bits.
-//   3. Emit: the lights of each tile, those whose bit is set (emit.inl, emit_compress.inl). Tiles are taken in row-major
-//      order, so the index list is written strictly in sequence: no count pass over tiles, no scatter, no sort.
+//   3. Emit: the lights of each tile, those whose bit is set (emit.inl, emit_compress.inl). Tiles are taken in
+//      row-major order, so the index list is written strictly in sequence: no count pass over tiles, no scatter, no
+//      sort.
 
 /// The number of entries of the grid.
 template <Footprint footprint, DepthTest depth_test, class Id>

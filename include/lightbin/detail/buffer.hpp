@@ -20,8 +20,8 @@ template <class T> class Buffer {
     static_assert(std::is_trivially_copyable_v<T>);
 
 public:
-    /// Returns memory of `size` elements or more. Their values are lost where it has to grow. Where there is no memory
-    /// for them, or `std::size_t` does not count them, it throws as `new` does, and later calls are right.
+    /// Returns memory of `size` elements or more. Their values are lost where it has to grow. Where there is no
+    /// memory for them, or `std::size_t` does not count them, it throws as `new` does, and later calls are right.
     T* reserve(std::uint64_t size) {
         if (size > size_) {
             memory_.reset();
@@ -57,6 +57,6 @@ private:
     std::size_t size_ = 0;
 };
 
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
 
 #include <lightbin/detail/warnings_on.inl>

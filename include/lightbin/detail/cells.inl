@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a depth test needs to know of a supertile's tiles: their depths and the boxes around their cells, see cell_boxes.hpp.
-// Included once a tier whose vectors are no longer than a supertile's row, 8 floats.
+// What a depth test needs to know of a supertile's tiles: their depths and the boxes around their cells, see
+// cell_boxes.hpp. Included once a tier whose vectors are no longer than a supertile's row, 8 floats.
 
 /// See cell_boxes.hpp.
 LIGHTBIN_TARGET inline void store_box(const Camera& camera, float* box, Floats x0, Floats x1, Floats y0,
@@ -79,4 +79,3 @@ LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, u
     }
     return lit;
 }
-

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every threshold and estimate of time in one place. They choose between ways to the same bytes, and were measured with
-// bench/binning on a Zen 5.
+// Every threshold and estimate of time in one place. They choose between ways to the same bytes, and were measured
+// with bench/binning on a Zen 5.
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
@@ -17,15 +17,15 @@ inline double project_ns(Isa isa, double lights) {
     return lights * (isa == Isa::avx512 ? 2 : isa == Isa::avx2 ? 3 : 7);
 }
 
-/// Into how many parts the chunks of lights are cut for so many threads: some a thread, so that a late one costs little.
-/// As many where they are not shared, as more take more memory.
+/// Into how many parts the chunks of lights are cut for so many threads: some a thread, so that a late one costs
+/// little. As many where they are not shared, as more take more memory.
 inline std::size_t project_parts(std::size_t chunks, std::size_t workers) {
     return workers > 1 ? (std::min)(chunks, 4 * (std::min)(chunks, workers)) : 1;
 }
 
 /// Whether rectangles with `area` tiles in all are binned sooner by scattering than by supertiles. A walk over all
-/// supertiles costs as much as scattering some entries a tile; putting a light in their lists, where neither compress nor
-/// scanning does it, as scattering it to 48 tiles.
+/// supertiles costs as much as scattering some entries a tile; putting a light in their lists, where neither
+/// compress nor scanning does it, as scattering it to 48 tiles.
 inline bool scatter_is_faster(Isa isa, std::uint64_t tiles, std::uint64_t lights, std::uint64_t area) {
     switch (isa) {
     case Isa::scalar:
@@ -41,8 +41,8 @@ inline bool scatter_is_faster(Isa isa, std::uint64_t tiles, std::uint64_t lights
     return true;
 }
 
-/// About how many ns one thread of a fast processor takes to bin lights by scattering, apart from what each part of the
-/// work does again. In parts it does more for each light, as it can't predict which lights are in one.
+/// About how many ns one thread of a fast processor takes to bin lights by scattering, apart from what each part of
+/// the work does again. In parts it does more for each light, as it can't predict which lights are in one.
 inline double scatter_ns(double lights, double entries) {
     return (std::max)(0.6 * entries - 8 * lights, 0.0);
 }
@@ -61,10 +61,11 @@ inline std::uint64_t empty_row_cost(std::uint64_t tiles) {
 /// How many rows of tiles are laid out at a time, for the memory that they take.
 inline constexpr unsigned rows_laid_out = 512;
 
-/// How many of `height` rows of tiles get their ids at a time. Long lists have cache lines and pages of their own, and of
-/// all tiles at once too many: then rows of some 512 tiles at a time are faster, unless reading all lights each time takes
-/// longer than putting their ids.
-inline std::size_t rows_scattered(std::size_t height, std::size_t width, std::uint64_t lights, std::uint64_t entries) {
+/// How many of `height` rows of tiles get their ids at a time. Long lists have cache lines and pages of their own,
+/// and of all tiles at once too many: then rows of some 512 tiles at a time are faster, unless reading all lights
+/// each time takes longer than putting their ids.
+inline std::size_t rows_scattered(std::size_t height, std::size_t width, std::uint64_t lights,
+                                  std::uint64_t entries) {
     const std::size_t rows = 512 / width + 1;
     return entries < 256 * std::uint64_t{height} * width + 2 * lights * (height / rows + 1) ? height : rows;
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Step 3 of bin.inl, for tiers without a compress instruction, and the form of the words that it reads. Included once such
-// a tier, after its append().
+// Step 3 of bin.inl, for tiers without a compress instruction, and the form of the words that it reads. Included
+// once such a tier, after its append().
 //
-// Words are 64 lights' columns, 8 words with a bit a light, and their rows, 8 more: the lights of tile (row, column) are
-// rows[row] & columns[column]. With row spans or a depth test they are 8 lights' 64 tiles, a byte per tile with a bit a
-// light.
+// Words are 64 lights' columns, 8 words with a bit a light, and their rows, 8 more: the lights of tile (row,
+// column) are rows[row] & columns[column]. With row spans or a depth test they are 8 lights' 64 tiles, a byte per
+// tile with a bit a light.
 
 /// Stores what stands for the words of empty lists: nothing. Returns where it ends.
 inline std::uint32_t store_no_words(Scratch&) {
@@ -31,7 +31,8 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
     if constexpr (with_words) {
         const std::uint64_t* masks = scratch.masks.data();
         for (std::uint32_t i = 0; i < list.count; i += 8, words += 8)
-            transpose_words(masks + i, (std::min)(list.count - i, 8u), reinterpret_cast<std::uint8_t*>(words));
+            transpose_words(masks + i, (std::min)(list.count - i, 8u),
+                            reinterpret_cast<std::uint8_t*>(words));
     } else {
         std::uint8_t* columns = scratch.list_columns.data() + list.begin;
         const std::uint8_t* rows = scratch.list_rows.data() + list.begin;
@@ -62,7 +63,8 @@ LIGHTBIN_TARGET inline Id* append_64(Id* out, const Ids* ids, std::uint64_t chos
 /// Appends the lights of a tile by its words: bytes[0], bytes[64] ... have 8 lights each. Returns the end. The usual
 /// lengths of a list have no loop to predict.
 template <class Id, class Ids>
-LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count, const std::uint8_t* bytes) {
+LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count,
+                                       const std::uint8_t* bytes) {
     if (count <= 16) {
         out += append(out, ids, bytes[0]);
         if (count > 8) out += append(out, ids + 8, bytes[64]);
@@ -75,8 +77,8 @@ LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t co
 
 /// The same by the words of its column and its row: [0], [16] ... have 64 lights each.
 template <class Id, class Ids>
-LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count, const std::uint64_t* column,
-                                       const std::uint64_t* row) {
+LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count,
+                                       const std::uint64_t* column, const std::uint64_t* row) {
     if (count <= 16) {
         const std::uint64_t chosen = column[0] & row[0];
         out += append(out, ids, static_cast<unsigned>(chosen & 0xff));

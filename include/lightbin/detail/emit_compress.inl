@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Step 3 of bin.inl on AVX-512, and the forms of the words that it reads. A compress instruction moves the places of the
-// set bits of 64 together, and a permutation makes ids of them.
+// Step 3 of bin.inl on AVX-512, and the forms of the words that it reads. A compress instruction moves the places
+// of the set bits of 64 together, and a permutation makes ids of them.
 //
-// - Lists of up to 8, 16 or 31 lights: a compress does 8, 4 or 2 tiles of a row at once. For each row its 8 tiles' bits,
+// - Lists of up to 8, 16 or 31 lights: a compress does 8, 4 or 2 tiles of a row at once. For each row its 8 tiles'
+// bits,
 //   a bit a light, 1, 2 or 4 words a row; before them the running numbers of set bits.
 // - Longer ones: as in emit.inl, a column's, row's or tile's words, 64 lights each, side by side.
 
@@ -72,8 +73,8 @@ template <class Id> LIGHTBIN_TARGET inline void store_32(Id* to, __m512i ids, st
     }
 }
 
-/// Appends the ids of a table with up to `lights` whose bit is set, of one tile after another, `lights` bits each; then more
-/// that mean nothing. Returns how many.
+/// Appends the ids of a table with up to `lights` whose bit is set, of one tile after another, `lights` bits each;
+/// then more that mean nothing. Returns how many.
 template <unsigned lights, class Id>
 LIGHTBIN_TARGET inline std::uint32_t append(Id* to, std::uint64_t lit, const IdTable& table) {
     const std::uint32_t count = static_cast<std::uint32_t>(std::popcount(lit));
@@ -147,7 +148,8 @@ LIGHTBIN_TARGET inline void store_short_words(__m512i (&lights)[eights], std::ui
 /// The same for a list given by the words of its lights, or by their columns and rows.
 template <bool with_words, unsigned eights>
 LIGHTBIN_TARGET inline void store_short_words(const std::uint64_t* masks, const std::uint8_t* columns,
-                                       const std::uint8_t* rows, std::uint32_t count, std::uint64_t* to) {
+                                              const std::uint8_t* rows, std::uint32_t count,
+                                              std::uint64_t* to) {
     __m512i lights[eights];
     for (unsigned i = 0; i < eights; ++i) {
         const std::uint32_t left = count > 8 * i ? count - 8 * i : 0;
@@ -176,7 +178,7 @@ LIGHTBIN_TARGET inline void split_bits(__m512i bytes, __mmask64 valid, std::uint
 
 /// Transposes the words of 64 lights, a bit per tile, to a word per tile, a bit a light.
 LIGHTBIN_TARGET inline void transpose_64_words(const std::uint64_t* lights, std::uint32_t count,
-                                          std::uint64_t* tiles, std::size_t stride) {
+                                               std::uint64_t* tiles, std::size_t stride) {
     // Bytes first: in each vector of 8 lights, the bytes of one tile row side by side ...
     __m512i v[8], w[8];
     const __m512i by_row = load(byte_transpose.data());
@@ -205,7 +207,8 @@ LIGHTBIN_TARGET inline void transpose_64_words(const std::uint64_t* lights, std:
 /// The words of a list of 32 lights or more: a column's, row's or tile's lie side by side.
 template <bool with_words>
 LIGHTBIN_TARGET inline void store_long_words(const std::uint64_t* masks, const std::uint8_t* columns,
-                                             const std::uint8_t* rows, std::uint32_t count, std::uint64_t* words) {
+                                             const std::uint8_t* rows, std::uint32_t count,
+                                             std::uint64_t* words) {
     const std::uint32_t groups = (count + 63) / 64;
     for (std::uint32_t i = 0; i < count; i += 64, ++words) {
         if constexpr (with_words) {
@@ -217,15 +220,16 @@ LIGHTBIN_TARGET inline void store_long_words(const std::uint64_t* masks, const s
     }
 }
 
-/// Stores the words that empty lists, whose `words` is 0, share: of a short one without a bit. Returns where they end.
+/// Stores the words that empty lists, whose `words` is 0, share: of a short one without a bit. Returns where they
+/// end.
 LIGHTBIN_TARGET inline std::uint32_t store_no_words(Scratch& scratch) {
     constexpr std::uint32_t size = 24;
     std::fill_n(scratch.words.reserve(size), size, 0u);
     return size;
 }
 
-/// How many lights a list of the first form has at most. Where most are longer, it has none: it would be one more form to
-/// mispredict.
+/// How many lights a list of the first form has at most. Where most are longer, it has none: it would be one more
+/// form to mispredict.
 LIGHTBIN_TARGET inline std::uint32_t up_to_8(const BandLists<ListId>& band) {
     return band.few ? 8 : 0;
 }
@@ -288,16 +292,16 @@ LIGHTBIN_TARGET inline std::uint32_t append_64(Id* to, Tile* tiles, unsigned col
 /// The same of a longer list.
 template <bool with_words, class Id>
 LIGHTBIN_TARGET inline std::uint32_t append_more(Id* to, Tile* tiles, unsigned columns, std::uint32_t at,
-                                                 const std::uint64_t* words, unsigned row, const GroupedIds& ids,
-                                                 std::size_t lights) {
+                                                 const std::uint64_t* words, unsigned row,
+                                                 const GroupedIds& ids, std::size_t lights) {
     const Id* const begin = to;
     const std::size_t groups = (lights + 63) / 64;
     for (unsigned column = 0; column < columns; ++column) {
         const Id* const from = to;
         for (std::size_t group = 0; group < groups; ++group) {
             const std::uint64_t* w = words + group;
-            const std::uint64_t lit = with_words ? w[(row * 8 + column) * groups]
-                                                 : w[column * groups] & w[(8 + row) * groups];
+            const std::uint64_t lit =
+                with_words ? w[(row * 8 + column) * groups] : w[column * groups] & w[(8 + row) * groups];
             to += append<64>(to, lit, load_table(ids, group));
         }
         const std::uint32_t count = static_cast<std::uint32_t>(to - from);

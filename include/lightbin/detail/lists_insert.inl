@@ -11,14 +11,15 @@ struct RowsHere {
     unsigned first, last;
 };
 template <class Id>
-LIGHTBIN_TARGET inline RowsHere rows_here(const FootprintArrays& lights, std::uint32_t i, const BandJob<Id>& bands) {
+LIGHTBIN_TARGET inline RowsHere rows_here(const FootprintArrays& lights, std::uint32_t i,
+                                          const BandJob<Id>& bands) {
     const unsigned first = (std::max<unsigned>)(lights.y0[i], bands.begin),
                    last = (std::min<unsigned>)(lights.y1[i], bands.end - 1);
     return {first <= last, first - bands.begin, last - bands.begin};
 }
 
-/// Sizes the lists of all bands, `pitch` a band, and gives them their places: from multiples of 64 on, and followed by
-/// at least one free place. Returns where the last one ends. Then scratch.corners has where each list begins.
+/// Sizes the lists of all bands, `pitch` a band, and gives them their places: from multiples of 64 on, and followed
+/// by at least one free place. Returns where the last one ends. Then scratch.corners has where each list begins.
 template <class Id>
 LIGHTBIN_TARGET std::uint64_t size_lists(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands,
                                          std::size_t pitch) {
@@ -87,21 +88,23 @@ LIGHTBIN_TARGET inline void put_light(const ListPlaces& to, std::size_t pitch, s
 
 /// Makes the lists of the band that begins at tile row `top`.
 template <bool with_words, class Id>
-LIGHTBIN_TARGET BandLists<ListId> make_lists(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands,
-                                          unsigned top, unsigned width, ListedBands&) {
+LIGHTBIN_TARGET BandLists<ListId> make_lists(const BinJob<Id>& job, Scratch& scratch,
+                                             const BandJob<Id>& bands, unsigned top, unsigned width,
+                                             ListedBands&) {
     // One more column and row: the difference array closes there, and branch-free writes may go there.
     const std::size_t pitch = width + 2;
     if (top == bands.begin) {
         const std::uint64_t capacity = size_lists(job, scratch, bands, pitch) + 64;
-        const ListPlaces to = {scratch.corners.data(), scratch.list_ids.whole.reserve(capacity), scratch.list_columns.reserve(capacity),
-                               scratch.list_rows.reserve(capacity)};
+        const ListPlaces to = {scratch.corners.data(), scratch.list_ids.whole.reserve(capacity),
+                               scratch.list_columns.reserve(capacity), scratch.list_rows.reserve(capacity)};
         for (const FootprintRun& run : job.runs)
             for (std::uint32_t i = run.begin; i < run.end; ++i) {
                 const RowsHere rows = rows_here(job.lights, i, bands);
                 if (rows.any)
-                    put_light(to, pitch, with_words ? i : job.lights.ids[i], job.lights.x0[i], job.lights.x1[i],
-                              rows.first, rows.last);
+                    put_light(to, pitch, with_words ? i : job.lights.ids[i], job.lights.x0[i],
+                              job.lights.x1[i], rows.first, rows.last);
             }
     }
-    return {scratch.supertile_lists.data() + (top - bands.begin) / 8 * pitch, scratch.list_ids.whole.data(), false};
+    return {scratch.supertile_lists.data() + (top - bands.begin) / 8 * pitch, scratch.list_ids.whole.data(),
+            false};
 }

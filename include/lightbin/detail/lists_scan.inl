@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Step 1 of bin.inl, for tiers with vectors of bytes: each list picks its lights out of many, a vector of them at a time
-// and without a branch on what a light covers. Included once such a tier, see all.inl for what it defines.
+// Step 1 of bin.inl, for tiers with vectors of bytes: each list picks its lights out of many, a vector of them at a
+// time and without a branch on what a light covers. Included once such a tier, see all.inl for what it defines.
 //
 //   1. A vector of lights' rows against each band of 8 tile rows: a saturating subtraction and two byte shuffles
 //      give each light's byte of covered rows, zero if it misses the band. Those that do not are appended to the
@@ -11,9 +11,9 @@
 
 inline constexpr unsigned panel_side = 31;  // in supertiles
 
-/// The lights of some bands, from tile row `begin` to end-1, in `count` lists for each block of ids: one for each band and
-/// panel, number band * panels + panel. Of each light the columns that it covers, x0..x1-1, its byte of rows, and its id
-/// or, for words, its visible index.
+/// The lights of some bands, from tile row `begin` to end-1, in `count` lists for each block of ids: one for each
+/// band and panel, number band * panels + panel. Of each light the columns that it covers, x0..x1-1, its byte of
+/// rows, and its id or, for words, its visible index.
 struct ListedBands {
     unsigned begin = 0, end = 0;
     std::size_t panels = 0, count = 0, block_count = 0;
@@ -64,27 +64,31 @@ template <class Id> std::size_t make_blocks(const BinJob<Id>& job, Scratch& scra
     std::size_t before = 0;
     for (IdBlock *block = scratch.blocks.data(), *const end = block + count; block < end; ++block) {
         block->before = before;
-        block->capacity = std::size_t{(std::min)(block->end - block->begin, job.visible)} + 64;  // of whole vectors
+        block->capacity =
+            std::size_t{(std::min)(block->end - block->begin, job.visible)} + 64;  // of whole vectors
         before += block->capacity;
     }
     return count;
 }
 
-/// Appends a vector of lights, `lights` of it, from visible index i on, to the lists of the bands and panels that they
-/// meet.
+/// Appends a vector of lights, `lights` of it, from visible index i on, to the lists of the bands and panels that
+/// they meet.
 template <bool with_words>
 LIGHTBIN_TARGET inline void add_to_bands(const FootprintArrays& lights, const ListedBands& listed,
                                          std::size_t block, std::uint32_t i, std::size_t count) {
     const ListedBands to = listed;  // a copy, that no store can change
-    const Bytes first_y = coordinates(lights.y0 + i, 0, to.begin), end_y = coordinates(lights.y1 + i, 1, to.begin);
+    const Bytes first_y = coordinates(lights.y0 + i, 0, to.begin),
+                end_y = coordinates(lights.y1 + i, 1, to.begin);
     const ByteIds ids = with_words ? count_ids(i - to.blocks[block].begin) : load_ids(lights.ids + i);
     std::uint32_t* const sizes = to.size + block * to.count;
     const std::size_t first = to.place(block, 0), capacity = to.blocks[block].capacity;
     for (unsigned panel = 0; panel < to.panels; ++panel) {
         const unsigned begin = 8 * panel_side * panel;
-        const Bytes first_x = coordinates(lights.x0 + i, 0, begin), end_x = coordinates(lights.x1 + i, 1, begin);
+        const Bytes first_x = coordinates(lights.x0 + i, 0, begin),
+                    end_x = coordinates(lights.x1 + i, 1, begin);
         ByteMask in_panel = first_bytes(count);
-        if (to.panels > 1) in_panel &= not_zero(end_x) & not_zero(subtract(all_bytes(8 * panel_side), first_x));
+        if (to.panels > 1)
+            in_panel &= not_zero(end_x) & not_zero(subtract(all_bytes(8 * panel_side), first_x));
         unsigned top = 0;
         for (std::size_t list = panel; list < to.count; list += to.panels, top += 8) {
             const Bytes rows = covered_bytes(first_y, end_y, top);
@@ -109,8 +113,8 @@ LIGHTBIN_TARGET void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigne
         to.blocks = scratch.blocks.data();
     }
     to.panels = (width + panel_side - 1) / panel_side;
-    const std::uint64_t together =
-        std::clamp<std::uint64_t>(most_band_places / (std::uint64_t{job.visible} * to.panels + 1), 1, panel_side);
+    const std::uint64_t together = std::clamp<std::uint64_t>(
+        most_band_places / (std::uint64_t{job.visible} * to.panels + 1), 1, panel_side);
     to.begin = begin;
     to.end = (std::min)(begin + 8 * static_cast<unsigned>(together), end);
     to.count = (to.end - to.begin + 7) / 8 * to.panels;
@@ -129,8 +133,8 @@ LIGHTBIN_TARGET void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigne
         }
 }
 
-/// Picks the lights of a supertile out of `size` lights of a list, from a place on, its columns beginning at `begin` in
-/// the panel. Returns how many.
+/// Picks the lights of a supertile out of `size` lights of a list, from a place on, its columns beginning at
+/// `begin` in the panel. Returns how many.
 LIGHTBIN_TARGET inline std::uint32_t pick_lights(const ListedBands& listed, std::size_t at, std::size_t size,
                                                  unsigned begin, std::uint8_t* columns, std::uint8_t* rows,
                                                  ListId* ids) {
@@ -148,10 +152,10 @@ LIGHTBIN_TARGET inline std::uint32_t pick_lights(const ListedBands& listed, std:
     return count;
 }
 
-/// Makes the list of supertile x from place `begin` on, a multiple of 64, out of list `band` + its panel of each block.
-/// Each block begins at a multiple of 64, after lights that cover nothing. Returns how many lights it has.
-LIGHTBIN_TARGET inline std::uint32_t list_supertile(Scratch& scratch, const ListedBands& listed, std::size_t band,
-                                                    unsigned x, std::uint32_t begin) {
+/// Makes the list of supertile x from place `begin` on, a multiple of 64, out of list `band` + its panel of each
+/// block. Each block begins at a multiple of 64, after lights that cover nothing. Returns how many lights it has.
+LIGHTBIN_TARGET inline std::uint32_t list_supertile(Scratch& scratch, const ListedBands& listed,
+                                                    std::size_t band, unsigned x, std::uint32_t begin) {
     const std::size_t list = band + x / panel_side;
     std::uint32_t end = begin;
     for (std::size_t block = 0; block < listed.block_count; ++block) {
@@ -160,8 +164,9 @@ LIGHTBIN_TARGET inline std::uint32_t list_supertile(Scratch& scratch, const List
         std::uint8_t* columns = scratch.list_columns.reserve(capacity, end);
         std::uint8_t* rows = scratch.list_rows.reserve(capacity, end);
         ListId* ids = scratch.list_ids.template reserve<ListId>(capacity, end);
-        const std::uint32_t picked = pick_lights(listed, listed.place(block, list), size, 8 * (x % panel_side),
-                                                 columns + from, rows + from, ids + from);
+        const std::uint32_t picked =
+            pick_lights(listed, listed.place(block, list), size, 8 * (x % panel_side), columns + from,
+                        rows + from, ids + from);
         if (picked == 0) continue;
         std::fill(columns + end, columns + from, std::uint8_t{0});
         std::fill(ids + end, ids + from, ListId{0});
@@ -177,8 +182,9 @@ LIGHTBIN_TARGET inline std::uint32_t list_supertile(Scratch& scratch, const List
 
 /// Makes the lists of the band that begins at tile row `top`. `listed` is kept from band to band.
 template <bool with_words, class Id>
-LIGHTBIN_TARGET BandLists<ListId> make_lists(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands,
-                                         unsigned top, unsigned width, ListedBands& listed) {
+LIGHTBIN_TARGET BandLists<ListId> make_lists(const BinJob<Id>& job, Scratch& scratch,
+                                             const BandJob<Id>& bands, unsigned top, unsigned width,
+                                             ListedBands& listed) {
     if (top >= listed.end) list_bands<with_words>(job, scratch, top, bands.end, width, listed);
     const std::size_t band = (top - listed.begin) / 8 * listed.panels;
     std::uint32_t longest = 0;

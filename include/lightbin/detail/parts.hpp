@@ -68,4 +68,4 @@ void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
     }
 }
 
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

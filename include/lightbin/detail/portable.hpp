@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ways to do, without special instructions, what a tier must define and some tiers do faster: a tier names those it takes.
+// Ways to do, without special instructions, what a tier must define and some tiers do faster: a tier names those it
+// takes.
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>

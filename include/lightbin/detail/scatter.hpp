@@ -100,4 +100,4 @@ std::uint64_t bin_scatter(const BinJob<Id>& job, Scratch& scratch, const BandJob
     return scatter_lights<Id, lay_out_rows>(job, scratch, bands);
 }
 
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The counts and prefix sums of scatter.hpp. A vector is a column of a band, a lane a tile row: sums along rows are
 // then plain additions, where lanes along a row would have to be shuffled up for each. What is shuffled instead is
-// the result, a square of tiles at a time. Also the stores of empty tiles.
-// Included once a tier of vectors, after its Rows: a vector of counts with + and -; all_rows(count); last_row(rows), the last
-// one in all; low_pairs and high_pairs(ends, counts), half of the rows as Tiles each, see BandTiles; and transpose(Tiles*), of a
-// square of tiles.
+// the result, a square of tiles at a time. Also the stores of empty tiles. Included once a tier of vectors, after
+// its Rows: a vector of counts with + and -; all_rows(count); last_row(rows), the last one in all; low_pairs and
+// high_pairs(ends, counts), half of the rows as Tiles each, see BandTiles; and transpose(Tiles*), of a square of
+// tiles.
 
 inline constexpr unsigned band_rows = sizeof(Rows) / 4, tiles_stored = band_rows / 2;
 using EachRow = std::make_integer_sequence<int, band_rows>;
@@ -140,9 +140,9 @@ LIGHTBIN_TARGET inline void fill_lines(Tile* tiles, const Tiles& value) {
         std::memcpy(static_cast<void*>(tiles + i), &value, sizeof value);
 }
 
-/// Tiles without lights, at a place in the index list. Narrow vectors are slower than memset, which can write place 0
-/// alone; others are faster. The lines between the first and the last, which may overlap others, are aligned as far as
-/// the table's address allows.
+/// Tiles without lights, at a place in the index list. Narrow vectors are slower than memset, which can write place
+/// 0 alone; others are faster. The lines between the first and the last, which may overlap others, are aligned as
+/// far as the table's address allows.
 LIGHTBIN_TARGET inline void fill_empty(Tile* tiles, std::size_t count, std::uint32_t at) {
     if constexpr (tiles_stored == 2)
         if (at == 0)

@@ -29,8 +29,9 @@ struct ListIdBuffers {
     }
 };
 
-/// Lights that lists of 16 bits tell apart: those of all runs at begin..end-1, no more than 2^16 places, whose ids share
-/// their upper 16 bits, `upper`. Its lists have room for `capacity` lights, after those of `before` of the blocks before.
+/// Lights that lists of 16 bits tell apart: those of all runs at begin..end-1, no more than 2^16 places, whose ids
+/// share their upper 16 bits, `upper`. Its lists have room for `capacity` lights, after those of `before` of the
+/// blocks before.
 struct IdBlock {
     std::uint32_t begin, end, upper;
     std::size_t before, capacity;
@@ -49,7 +50,7 @@ struct Scratch {
     Buffer<std::uint64_t> masks;      ///< of a supertile: a word a light, a bit per tile
     Buffer<IdBlock> blocks;
     Buffer<std::uint32_t> group_blocks;  ///< of 64 of list_ids each the number of their block
-    Buffer<std::uint64_t> words;      ///< of a band of supertiles, in the form of step 3
+    Buffer<std::uint64_t> words;         ///< of a band of supertiles, in the form of step 3
 
     // The lists of bands, see lists_scan.inl.
     Buffer<std::uint8_t> band_x0, band_x1, band_rows;
@@ -57,4 +58,4 @@ struct Scratch {
     ListIdBuffers band_ids;
 };
 
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

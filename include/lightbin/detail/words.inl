@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Step 2 of bin.inl: which of a supertile's 8x8 tiles each of its lights is in. With row spans or a depth test, as one
-// word a light with a bit per tile: its rectangle, and-ed with its silhouette's row spans and with the tiles whose Z
-// bounds it meets. Included once a tier, after step 3, which says in what form it takes the words.
+// Step 2 of bin.inl: which of a supertile's 8x8 tiles each of its lights is in. With row spans or a depth test, as
+// one word a light with a bit per tile: its rectangle, and-ed with its silhouette's row spans and with the tiles
+// whose Z bounds it meets. Included once a tier, after step 3, which says in what form it takes the words.
 //
 //     bit  0  1 ..  7      . . . . . . . .      rows that the rectangle covers     0 1 1 1 0 0 0 0
 //          8  9 .. 15      . . # # # # . .      columns                            0 0 1 1 1 1 0 0
@@ -74,8 +74,8 @@ LIGHTBIN_TARGET inline std::uint64_t silhouette_tiles(const FootprintArrays& lig
     return tiles & spanned;
 }
 
-/// Makes the words of up to 64 lights of a supertile, given by visible index, counted from `first`, with the columns and
-/// rows that they cover.
+/// Makes the words of up to 64 lights of a supertile, given by visible index, counted from `first`, with the
+/// columns and rows that they cover.
 template <Footprint footprint, DepthTest depth_test, class Id>
 LIGHTBIN_TARGET inline void make_64_words(const BinJob<Id>& job, unsigned x, unsigned top, const float* cells,
                                           std::uint64_t lit, const ListId* lights, std::uint32_t first,
@@ -100,9 +100,9 @@ LIGHTBIN_TARGET inline void make_64_words(const BinJob<Id>& job, unsigned x, uns
     }
 }
 
-/// Of a list in blocks of ids, whose lights before `begin` were masked so that `left` of them are left: lets those that
-/// follow begin at a multiple of 64 if they are of another block, and notes of which one. Returns what their visible
-/// indices are counted from.
+/// Of a list in blocks of ids, whose lights before `begin` were masked so that `left` of them are left: lets those
+/// that follow begin at a multiple of 64 if they are of another block, and notes of which one. Returns what their
+/// visible indices are counted from.
 inline std::uint32_t begin_group(const Scratch& scratch, const SupertileList& list, std::uint32_t begin,
                                  std::uint32_t& left, std::uint64_t* masks) {
     std::uint32_t* const groups = scratch.group_blocks.data() + list.begin / 64;
@@ -114,8 +114,8 @@ inline std::uint32_t begin_group(const Scratch& scratch, const SupertileList& li
     return scratch.blocks.data()[block].begin;
 }
 
-/// Makes the words of a supertile's lights in scratch.masks, and ids of their visible indices. Lights that are in none
-/// of the tiles are dropped. Returns how many are left.
+/// Makes the words of a supertile's lights in scratch.masks, and ids of their visible indices. Lights that are in
+/// none of the tiles are dropped. Returns how many are left.
 template <Footprint footprint, DepthTest depth_test, class Id>
 LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratch, unsigned x, unsigned top,
                                           const SupertileList& list, ListId* all_lights) {
@@ -147,8 +147,8 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
     return left;
 }
 
-/// Makes the words of a band's supertiles, in the form that step 3 takes. Lights that are in no tile of a list are taken
-/// out of it. Returns whether any is left.
+/// Makes the words of a band's supertiles, in the form that step 3 takes. Lights that are in no tile of a list are
+/// taken out of it. Returns whether any is left.
 template <Footprint footprint, DepthTest depth_test, class Id>
 LIGHTBIN_TARGET bool make_words(const BinJob<Id>& job, Scratch& scratch, unsigned top,
                                 const BandLists<ListId>& band, unsigned width) {
