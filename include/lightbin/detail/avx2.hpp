@@ -26,88 +26,45 @@ LIGHTBIN_TARGET inline __m256 all_lanes(float each) {
 LIGHTBIN_TARGET inline __m256 negated(__m256 a) {
     return _mm256_xor_ps(a, _mm256_set1_ps(-0.0f));
 }
+LIGHTBIN_TARGET inline __m256 less_lanes(__m256 a, __m256 b) {
+    return _mm256_cmp_ps(a, b, _CMP_LT_OQ);
+}
+LIGHTBIN_TARGET inline __m256 less_equal_lanes(__m256 a, __m256 b) {
+    return _mm256_cmp_ps(a, b, _CMP_LE_OQ);
+}
+LIGHTBIN_TARGET inline __m256 select_lanes(__m256 mask, __m256 a, __m256 b) {
+    return _mm256_blendv_ps(b, a, mask);
+}
 
 #define LIGHTBIN_VECTOR Floats
+#define LIGHTBIN_MASK Mask
 #define LIGHTBIN_ELEMENT float
 #define LIGHTBIN_REGISTER __m256
 #define LIGHTBIN_OP(name) _mm256_##name##_ps
 #include <lightbin/detail/vector.inl>
 
-/// All ones or all zeros a lane.
-struct Mask {
-    __m256 v;
-};
-LIGHTBIN_TARGET inline Mask less(Floats a, Floats b) {
-    return {_mm256_cmp_ps(a, b, _CMP_LT_OQ)};
-}
-LIGHTBIN_TARGET inline Mask less_equal(Floats a, Floats b) {
-    return {_mm256_cmp_ps(a, b, _CMP_LE_OQ)};
-}
-LIGHTBIN_TARGET inline Mask both(Mask a, Mask b) {
-    return {_mm256_and_ps(a.v, b.v)};
-}
-LIGHTBIN_TARGET inline Mask either(Mask a, Mask b) {
-    return {_mm256_or_ps(a.v, b.v)};
-}
-LIGHTBIN_TARGET inline Mask and_not(Mask a, Mask b) {
-    return {_mm256_andnot_ps(b.v, a.v)};
-}
-LIGHTBIN_TARGET inline Floats select(Mask mask, Floats a, Floats b) {
-    return _mm256_blendv_ps(b, a, mask.v);
-}
-LIGHTBIN_TARGET inline Floats lesser(Floats a, Floats b) {
-    return _mm256_min_ps(a, b);
-}
-LIGHTBIN_TARGET inline Floats greater(Floats a, Floats b) {
-    return _mm256_max_ps(a, b);
-}
-LIGHTBIN_TARGET inline unsigned bits(Mask mask) {
-    return static_cast<unsigned>(_mm256_movemask_ps(mask.v));
-}
 LIGHTBIN_TARGET inline __m256d all_lanes(double each) {
     return _mm256_set1_pd(each);
 }
 LIGHTBIN_TARGET inline __m256d negated(__m256d a) {
     return _mm256_xor_pd(a, _mm256_set1_pd(-0.0));
 }
+LIGHTBIN_TARGET inline __m256d less_lanes(__m256d a, __m256d b) {
+    return _mm256_cmp_pd(a, b, _CMP_LT_OQ);
+}
+LIGHTBIN_TARGET inline __m256d less_equal_lanes(__m256d a, __m256d b) {
+    return _mm256_cmp_pd(a, b, _CMP_LE_OQ);
+}
+LIGHTBIN_TARGET inline __m256d select_lanes(__m256d mask, __m256d a, __m256d b) {
+    return _mm256_blendv_pd(b, a, mask);
+}
 
 #define LIGHTBIN_VECTOR Doubles
+#define LIGHTBIN_MASK DoubleMask
 #define LIGHTBIN_ELEMENT double
 #define LIGHTBIN_REGISTER __m256d
 #define LIGHTBIN_OP(name) _mm256_##name##_pd
 #include <lightbin/detail/vector.inl>
-
-/// All ones or all zeros a lane.
-struct DoubleMask {
-    __m256d v;
-};
-LIGHTBIN_TARGET inline DoubleMask less(Doubles a, Doubles b) {
-    return {_mm256_cmp_pd(a, b, _CMP_LT_OQ)};
-}
-LIGHTBIN_TARGET inline DoubleMask less_equal(Doubles a, Doubles b) {
-    return {_mm256_cmp_pd(a, b, _CMP_LE_OQ)};
-}
-LIGHTBIN_TARGET inline DoubleMask both(DoubleMask a, DoubleMask b) {
-    return {_mm256_and_pd(a.v, b.v)};
-}
-LIGHTBIN_TARGET inline DoubleMask either(DoubleMask a, DoubleMask b) {
-    return {_mm256_or_pd(a.v, b.v)};
-}
-LIGHTBIN_TARGET inline DoubleMask and_not(DoubleMask a, DoubleMask b) {
-    return {_mm256_andnot_pd(b.v, a.v)};
-}
-LIGHTBIN_TARGET inline Doubles select(DoubleMask mask, Doubles a, Doubles b) {
-    return _mm256_blendv_pd(b, a, mask.v);
-}
-LIGHTBIN_TARGET inline Doubles lesser(Doubles a, Doubles b) {
-    return _mm256_min_pd(a, b);
-}
-LIGHTBIN_TARGET inline Doubles greater(Doubles a, Doubles b) {
-    return _mm256_max_pd(a, b);
-}
-LIGHTBIN_TARGET inline unsigned bits(DoubleMask mask) {
-    return static_cast<unsigned>(_mm256_movemask_pd(mask.v));
-}
 
 /// Counts of a column's tiles, and tiles: for scatter.inl.
 struct Rows {

@@ -34,8 +34,10 @@ LIGHTBIN_TARGET inline __m512i halves(__m256i low, __m256i high) {
     return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
 }
 
-/// Up to 64 ids of a list: the lower 16 bits of each in two vectors, and the upper ones that they share.
-struct IdTable {
+/// Up to 64 ids of a list: the lower 16 bits of each in two vectors, and the upper ones that they share. wide: some in the
+/// grid have upper bits.
+template <bool wide> struct IdTable { __m512i low, high; };
+template <> struct IdTable<true> {
     __m512i low, high;
     std::uint32_t upper;
 };
@@ -50,40 +52,52 @@ struct GroupedIds {
 };
 
 /// Those of a group of 64.
-LIGHTBIN_TARGET inline IdTable load_table(const GroupedIds& list, std::size_t group) {
+template <bool wide>
+LIGHTBIN_TARGET inline IdTable<wide> load_table(const GroupedIds& list, std::size_t group) {
     const std::uint16_t* const ids = list.ids + 64 * group;
-    return {load(ids), load(ids + 32), list.blocks[list.group_blocks[group]].upper};
+    if constexpr (wide)
+        return {load(ids), load(ids + 32), list.blocks[list.group_blocks[group]].upper};
+    else
+        return {load(ids), load(ids + 32)};
 }
 
 /// The lower 16 bits of the ids at 32 places of a table with up to `lights`.
-template <unsigned lights> LIGHTBIN_TARGET inline __m512i look_up(const IdTable& table, __m256i places) {
+template <unsigned lights, bool wide>
+LIGHTBIN_TARGET inline __m512i look_up(const IdTable<wide>& table, __m256i places) {
     const __m512i at = _mm512_cvtepu8_epi16(places);
     return lights <= 32 ? _mm512_permutexvar_epi16(at, table.low)
                         : _mm512_permutex2var_epi16(table.low, at, table.high);
 }
 
-/// Stores 32 ids of 16 bits as Ids with the given upper bits.
-template <class Id> LIGHTBIN_TARGET inline void store_32(Id* to, __m512i ids, std::uint32_t upper) {
+/// Stores the ids at 32 places of a table with up to `lights`.
+template <unsigned lights, bool wide, class Id>
+LIGHTBIN_TARGET inline void store_32(Id* to, const IdTable<wide>& table, __m256i places) {
+    const __m512i ids = look_up<lights>(table, places);
     if constexpr (sizeof(Id) == 2) {
         store(to, ids);
     } else {
-        const __m512i base = _mm512_set1_epi32(static_cast<int>(upper));
-        store(to, _mm512_or_si512(base, _mm512_cvtepu16_epi32(_mm512_castsi512_si256(ids))));
-        store(to + 16, _mm512_or_si512(base, _mm512_cvtepu16_epi32(_mm512_extracti64x4_epi64(ids, 1))));
+        __m512i low = _mm512_cvtepu16_epi32(_mm512_castsi512_si256(ids)),
+                high = _mm512_cvtepu16_epi32(_mm512_extracti64x4_epi64(ids, 1));
+        if constexpr (wide) {
+            const __m512i upper = _mm512_set1_epi32(static_cast<int>(table.upper));
+            low = _mm512_or_si512(upper, low);
+            high = _mm512_or_si512(upper, high);
+        }
+        store(to, low);
+        store(to + 16, high);
     }
 }
 
 /// Appends the ids of a table with up to `lights` whose bit is set, of one tile after another, `lights` bits each;
 /// then more that mean nothing. Returns how many.
-template <unsigned lights, class Id>
-LIGHTBIN_TARGET inline std::uint32_t append(Id* to, std::uint64_t lit, const IdTable& table) {
+template <unsigned lights, bool wide, class Id>
+LIGHTBIN_TARGET inline std::uint32_t append(Id* to, std::uint64_t lit, const IdTable<wide>& table) {
     const std::uint32_t count = static_cast<std::uint32_t>(std::popcount(lit));
     const __m512i numbers =
         _mm512_and_si512(load(byte_places.data()), _mm512_set1_epi8(static_cast<char>(lights - 1)));
     const __m512i places = compressed_bytes(lit, numbers);
-    store_32(to, look_up<lights>(table, _mm512_castsi512_si256(places)), table.upper);
-    if (count > 32)
-        store_32(to + 32, look_up<lights>(table, _mm512_extracti64x4_epi64(places, 1)), table.upper);
+    store_32<lights>(to, table, _mm512_castsi512_si256(places));
+    if (count > 32) store_32<lights>(to + 32, table, _mm512_extracti64x4_epi64(places, 1));
     return count;
 }
 
@@ -257,10 +271,10 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
 
 /// Appends a row of a supertile with a short list, `words` from store_short_words, and its `columns` tiles. Returns
 /// how many ids.
-template <unsigned eights, class Id>
+template <unsigned eights, bool wide, class Id>
 LIGHTBIN_TARGET inline std::uint32_t append_row(Id* to, Tile* tiles, __mmask8 columns, std::uint32_t at,
                                                 const std::uint64_t* words, unsigned row,
-                                                const IdTable& table) {
+                                                const IdTable<wide>& table) {
     // Tiles are pairs of 32 bits, offset and count: the difference of running sums.
     const std::uint64_t sums = words[row];
     const __m512i ends = _mm512_cvtepu8_epi64(_mm_cvtsi64_si128(static_cast<long long>(sums))),
@@ -274,10 +288,10 @@ LIGHTBIN_TARGET inline std::uint32_t append_row(Id* to, Tile* tiles, __mmask8 co
 }
 
 /// Appends the tiles of a row of a supertile with a list of 32 to 64 lights. Returns how many ids.
-template <bool with_words, class Id>
+template <bool with_words, bool wide, class Id>
 LIGHTBIN_TARGET inline std::uint32_t append_64(Id* to, Tile* tiles, unsigned columns, std::uint32_t at,
                                                const std::uint64_t* words, unsigned row,
-                                               const IdTable& table) {
+                                               const IdTable<wide>& table) {
     const Id* const begin = to;
     for (unsigned column = 0; column < columns; ++column) {
         const std::uint64_t lit = with_words ? words[row * 8 + column] : words[column] & words[8 + row];
@@ -290,7 +304,7 @@ LIGHTBIN_TARGET inline std::uint32_t append_64(Id* to, Tile* tiles, unsigned col
 }
 
 /// The same of a longer list.
-template <bool with_words, class Id>
+template <bool with_words, bool wide, class Id>
 LIGHTBIN_TARGET inline std::uint32_t append_more(Id* to, Tile* tiles, unsigned columns, std::uint32_t at,
                                                  const std::uint64_t* words, unsigned row,
                                                  const GroupedIds& ids, std::size_t lights) {
@@ -302,7 +316,7 @@ LIGHTBIN_TARGET inline std::uint32_t append_more(Id* to, Tile* tiles, unsigned c
             const std::uint64_t* w = words + group;
             const std::uint64_t lit =
                 with_words ? w[(row * 8 + column) * groups] : w[column * groups] & w[(8 + row) * groups];
-            to += append<64>(to, lit, load_table(ids, group));
+            to += append<64>(to, lit, load_table<wide>(ids, group));
         }
         const std::uint32_t count = static_cast<std::uint32_t>(to - from);
         tiles[column] = {at, count};
@@ -311,11 +325,12 @@ LIGHTBIN_TARGET inline std::uint32_t append_more(Id* to, Tile* tiles, unsigned c
     return static_cast<std::uint32_t>(to - begin);
 }
 
-/// Emits a row of tiles, `row` of its supertiles. `at` is the offset of `out` in the index list. Returns the end. A
-/// function of its own, as in a longer one compilers keep what it needs on the stack.
-template <bool with_words, class Id>
-LIGHTBIN_TARGET Id* emit_row(Id* out, Tile* tiles, unsigned tiles_x, std::uint32_t at, const Scratch& scratch,
-                             const BandLists<ListId>& band, unsigned row) {
+/// Emits a row of tiles as emit_row() does. Not inline, as in a longer function compilers keep what it needs on the
+/// stack.
+template <bool with_words, bool wide, class Id>
+LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, Tile* tiles, unsigned tiles_x, std::uint32_t at,
+                                                 const Scratch& scratch, const BandLists<ListId>& band,
+                                                 unsigned row) {
     const GroupedIds all_ids = {band.ids, scratch.group_blocks.data(), scratch.blocks.data()};
     const std::uint32_t eight = up_to_8(band);
     const SupertileList* list = band.lists;
@@ -328,9 +343,9 @@ LIGHTBIN_TARGET Id* emit_row(Id* out, Tile* tiles, unsigned tiles_x, std::uint32
         const __mmask8 stored = static_cast<__mmask8>(0xff >> (8 - columns));
         std::uint32_t count;
         if (lights > 64) {
-            count = append_more<with_words>(out, tiles, columns, at, words, row, ids, lights);
+            count = append_more<with_words, wide>(out, tiles, columns, at, words, row, ids, lights);
         } else {
-            const IdTable table = load_table(ids, 0);
+            const IdTable<wide> table = load_table<wide>(ids, 0);
             if (lights <= eight)
                 count = append_row<1>(out, tiles, stored, at, words, row, table);
             else if (lights <= 16)
@@ -344,4 +359,13 @@ LIGHTBIN_TARGET Id* emit_row(Id* out, Tile* tiles, unsigned tiles_x, std::uint32
         at += count;
     }
     return out;
+}
+
+/// Emits a row of tiles, `row` of its supertiles. `at` is the offset of `out` in the index list. Returns the end.
+template <bool with_words, class Id>
+LIGHTBIN_TARGET Id* emit_row(Id* out, Tile* tiles, unsigned tiles_x, std::uint32_t at, const Scratch& scratch,
+                             const BandLists<ListId>& band, unsigned row) {
+    if constexpr (sizeof(Id) > 2)
+        if (band.wide) return emit_tiles<with_words, true>(out, tiles, tiles_x, at, scratch, band, row);
+    return emit_tiles<with_words, false>(out, tiles, tiles_x, at, scratch, band, row);
 }

@@ -106,5 +106,5 @@ LIGHTBIN_TARGET BandLists<ListId> make_lists(const BinJob<Id>& job, Scratch& scr
             }
     }
     return {scratch.supertile_lists.data() + (top - bands.begin) / 8 * pitch, scratch.list_ids.whole.data(),
-            false};
+            false, true};
 }

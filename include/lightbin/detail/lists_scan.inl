@@ -43,24 +43,32 @@ LIGHTBIN_TARGET inline ByteMask first_bytes(std::size_t count) {
     return count < byte_lanes ? static_cast<ByteMask>(~(all << count)) : all;
 }
 
-/// Fills scratch.blocks; returns how many there are. Ids that are listed as they are are one block.
-template <class Id> std::size_t make_blocks(const BinJob<Id>& job, Scratch& scratch) {
+/// Fills scratch.blocks, apart from `before` and `capacity`; returns how many there are. Whole ids are one block.
+template <class Id> std::size_t find_blocks(const BinJob<Id>& job, Scratch& scratch) {
     std::size_t count = 0;
+    if constexpr (sizeof(ListId) == 4) {
+        *scratch.blocks.reserve(1) = {0, job.runs.empty() ? 0 : job.runs.back().end, 0, 0, 0};
+        return 1;
+    }
+    const std::uint32_t* ids = job.lights.ids;
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin, end; i < run.end; i = end) {
-            const std::uint32_t* ids = job.lights.ids;
-            const std::uint32_t upper = sizeof(ListId) == 2 ? ids[i] & 0xffff0000 : 0,
-                                last = sizeof(ListId) == 2 ? upper | 0xffff : 0xffffffff;
-            end = ids[run.end - 1] <= last
-                      ? run.end
-                      : static_cast<std::uint32_t>(std::upper_bound(ids + i, ids + run.end, last) - ids);
+            const std::uint32_t upper = ids[i] & 0xffff0000, last = upper | 0xffff;
+            end = run.end;
+            if (ids[end - 1] > last)
+                end = static_cast<std::uint32_t>(std::upper_bound(ids + i, ids + end, last) - ids);
             IdBlock* const blocks = scratch.blocks.reserve(count + 1, count);
-            const std::uint32_t most = sizeof(ListId) == 2 ? 0x10000 : 0xffffffff;
-            if (count > 0 && blocks[count - 1].upper == upper && end - blocks[count - 1].begin <= most)
+            if (count > 0 && blocks[count - 1].upper == upper && end - blocks[count - 1].begin <= 0x10000)
                 blocks[count - 1].end = end;
             else
-                blocks[count++] = {sizeof(ListId) == 2 ? i : 0, end, upper, 0, 0};
+                blocks[count++] = {i, end, upper, 0, 0};
         }
+    return count;
+}
+
+/// Fills scratch.blocks; returns how many there are.
+template <class Id> std::size_t make_blocks(const BinJob<Id>& job, Scratch& scratch) {
+    const std::size_t count = find_blocks(job, scratch);
     std::size_t before = 0;
     for (IdBlock *block = scratch.blocks.data(), *const end = block + count; block < end; ++block) {
         block->before = before;
@@ -152,14 +160,29 @@ LIGHTBIN_TARGET inline std::uint32_t pick_lights(const ListedBands& listed, std:
     return count;
 }
 
-/// Makes the list of supertile x from place `begin` on, a multiple of 64, out of list `band` + its panel of each
-/// block. Each block begins at a multiple of 64, after lights that cover nothing. Returns how many lights it has.
+/// Begins a block's part of a list at place `from`, a multiple of 64, instead of `end`, where the list ends: with lights
+/// that cover nothing. Notes the block of the places from there to `last`.
+inline void begin_block(Scratch& scratch, std::uint32_t end, std::uint32_t from, std::uint32_t last,
+                        std::size_t block) {
+    if (from > end) {
+        std::memset(scratch.list_columns.data() + end, 0, from - end);
+        std::memset(scratch.list_ids.template reserve<ListId>(end) + end, 0, (from - end) * sizeof(ListId));
+    }
+    const std::size_t groups = (std::size_t{last} + 63) / 64;
+    std::uint32_t* const of_groups = scratch.group_blocks.reserve(groups, from / 64);
+    for (std::size_t group = from / 64; group < groups; ++group)
+        of_groups[group] = static_cast<std::uint32_t>(block);
+}
+
+/// Makes the list of supertile x from place `begin` on, a multiple of 64, out of list `band` + its panel of each block.
+/// Returns how many lights it has.
 LIGHTBIN_TARGET inline std::uint32_t list_supertile(Scratch& scratch, const ListedBands& listed,
                                                     std::size_t band, unsigned x, std::uint32_t begin) {
     const std::size_t list = band + x / panel_side;
     std::uint32_t end = begin;
     for (std::size_t block = 0; block < listed.block_count; ++block) {
         const std::uint32_t size = listed.size[block * listed.count + list], from = (end + 63) & ~63u;
+        if (size == 0) continue;
         const std::uint64_t capacity = std::uint64_t{from} + size + 128;
         std::uint8_t* columns = scratch.list_columns.reserve(capacity, end);
         std::uint8_t* rows = scratch.list_rows.reserve(capacity, end);
@@ -168,14 +191,8 @@ LIGHTBIN_TARGET inline std::uint32_t list_supertile(Scratch& scratch, const List
             pick_lights(listed, listed.place(block, list), size, 8 * (x % panel_side), columns + from,
                         rows + from, ids + from);
         if (picked == 0) continue;
-        std::fill(columns + end, columns + from, std::uint8_t{0});
-        std::fill(ids + end, ids + from, ListId{0});
+        if constexpr (sizeof(ListId) == 2) begin_block(scratch, end, from, from + picked, block);
         end = from + picked;
-        if constexpr (sizeof(ListId) == 2) {
-            const std::size_t first = from / 64, last = (end + 63) / 64;
-            std::fill_n(scratch.group_blocks.reserve(last, first) + first, last - first,
-                        static_cast<std::uint32_t>(block));
-        }
     }
     return end - begin;
 }
@@ -198,5 +215,6 @@ LIGHTBIN_TARGET BandLists<ListId> make_lists(const BinJob<Id>& job, Scratch& scr
         lists[x] = {used, list_supertile(scratch, listed, band, x, used), 0};
         used += (lists[x].count + 63) & ~63u;
     }
-    return {lists, scratch.list_ids.template reserve<ListId>(used, used), longest <= 64};
+    return {lists, scratch.list_ids.template reserve<ListId>(used, used), longest <= 64,
+            listed.blocks[listed.block_count - 1].upper != 0};
 }

@@ -29,7 +29,8 @@ inline constexpr unsigned next_box = 64 * cell_planes<DepthTest::box>;  ///< flo
 template <class ListId> struct BandLists {
     SupertileList* lists;  ///< null: no light meets the band
     ListId* ids;
-    bool few;  ///< most lists are of up to 8 lights, as far as is known
+    bool few;   ///< most lists are of up to 8 lights, as far as is known
+    bool wide;  ///< some ids have more than 16 bits
 };
 
 /// The most places that a kernel's lists can take, which it counts in 32 bits: one for each light and supertile that
