@@ -74,13 +74,14 @@ LIGHTBIN_TARGET inline std::uint64_t silhouette_tiles(const FootprintArrays& lig
     return tiles & spanned;
 }
 
-/// Makes the words of up to 64 lights of a supertile, given by visible index, counted from `first`, with the
-/// columns and rows that they cover.
+/// Makes the words of up to 64 lights of a supertile, given by visible index, counted from `first`, with the columns
+/// and rows that they cover; and ids of their indices. Lights that are in none of the tiles are dropped. Returns how
+/// many are left. `ids` may be `lights`, or before it.
 template <Footprint footprint, DepthTest depth_test, class Id>
-LIGHTBIN_TARGET inline void make_64_words(const BinJob<Id>& job, unsigned x, unsigned top, const float* cells,
-                                          std::uint64_t lit, const ListId* lights, std::uint32_t first,
-                                          const std::uint8_t* columns, const std::uint8_t* rows,
-                                          std::uint32_t count, std::uint64_t* words) {
+LIGHTBIN_TARGET inline std::uint32_t
+mask_64_lights(const BinJob<Id>& job, unsigned x, unsigned top, const float* cells, std::uint64_t lit,
+               const ListId* lights, std::uint32_t first, const std::uint8_t* columns,
+               const std::uint8_t* rows, std::uint32_t count, ListId* ids, std::uint64_t* words) {
     std::uint64_t met[64];
     if constexpr (depth_test != DepthTest::none) {
         TestedLight tested[64];
@@ -91,13 +92,18 @@ LIGHTBIN_TARGET inline void make_64_words(const BinJob<Id>& job, unsigned x, uns
         }
         meet_tiles<depth_test>(cells, lit, tested, columns, rows, count, met);
     }
+    std::uint32_t left = 0;
     for (std::uint32_t j = 0; j < count; ++j) {
+        const std::uint32_t light = first + lights[j];
         std::uint64_t tiles = spread_rows(rows[j]) & columns[j] * std::uint64_t{0x0101010101010101};
         if constexpr (footprint == Footprint::silhouette)
-            tiles = silhouette_tiles(job.lights, first + lights[j], x, top, tiles);
+            tiles = silhouette_tiles(job.lights, light, x, top, tiles);
         if constexpr (depth_test != DepthTest::none) tiles &= met[j] & lit;
-        words[j] = tiles;
+        ids[left] = static_cast<ListId>(job.lights.ids[light]);
+        words[left] = tiles;
+        left += tiles != 0;
     }
+    return left;
 }
 
 /// Of a list in blocks of ids, whose lights before `begin` were masked so that `left` of them are left: lets those
@@ -135,14 +141,9 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
         const std::uint32_t count = (std::min)(list.count - begin, 64u);
         std::uint32_t first = 0;
         if constexpr (sizeof(ListId) == 2) first = begin_group(scratch, list, begin, left, masks);
-        std::uint64_t words[64];
-        make_64_words<footprint, depth_test>(job, x, top, cells, lit, lights + begin, first, columns + begin,
-                                             rows + begin, count, words);
-        for (std::uint32_t j = 0; j < count; ++j) {
-            lights[left] = static_cast<ListId>(job.lights.ids[first + lights[begin + j]]);
-            masks[left] = words[j];
-            left += words[j] != 0;
-        }
+        left += mask_64_lights<footprint, depth_test>(job, x, top, cells, lit, lights + begin, first,
+                                                      columns + begin, rows + begin, count, lights + left,
+                                                      masks + left);
     }
     return left;
 }
