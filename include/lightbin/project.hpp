@@ -59,65 +59,44 @@ public:
             force_parallel || parallel.worth(detail::project_ns(isa, static_cast<double>(lights_)));
         const Parallel threads = share ? parallel : Parallel();
         // One part where 32 bits might not number the places of more.
-        constexpr std::size_t chunk = detail::ChunkRects::size, padding = detail::FootprintArrays::padding;
+        constexpr std::size_t chunk = detail::ChunkRects::size;
         const std::size_t chunks = lights_ / chunk + 1;
         const std::size_t parts = lights_ >> 31 == 0 ? detail::project_parts(chunks, parallel.workers()) : 1;
         const auto first_of = [&](std::size_t part) {
             return static_cast<std::size_t>(
                 (std::min<std::uint64_t>)(std::uint64_t{chunks} * part / parts * chunk, lights_));
         };
-        const std::uint64_t capacity = std::uint64_t{lights_} + parts * padding;
-        arrays_ = {.ids = ids_.reserve(capacity),
-                   .x0 = x0_.reserve(capacity),
-                   .y0 = y0_.reserve(capacity),
-                   .x1 = x1_.reserve(capacity),
-                   .y1 = y1_.reserve(capacity),
-                   .span_begin = with_spans ? span_begin_.reserve(capacity) : nullptr,
-                   .spans = nullptr,
-                   .spheres = detail::as_they_are(lights)};
-        const bool move = arrays_.spheres == nullptr;
-        Sphere* kept = nullptr;
+        reserve(parts);
+        arrays_.spheres = detail::as_they_are(lights);
+        Sphere* kept = nullptr;  // where spheres that are not as they are in the caller's array go
         if constexpr (keep)
-            if (move) arrays_.spheres = kept = spheres_.reserve(lights_);
-        detail::FootprintRun* runs = runs_.reserve(parts);
-        detail::ProjectCounts* counts = part_counts_.reserve(parts);
+            if (arrays_.spheres == nullptr) arrays_.spheres = kept = spheres_.reserve(lights_);
+        const bool move = kept != nullptr || arrays_.spheres == nullptr;
         // One light is done sooner than a vector is filled up with copies of it.
         const detail::ProjectKernel kernel = detail::project_kernel(lights_ > 1 ? isa : Isa::scalar);
         threads.run(parts, [&](std::size_t part) {
-            std::size_t first = first_of(part);
-            const std::size_t end = first_of(part + 1), place = first + part * padding;
-            const detail::FootprintArrays out = arrays_.from(place);
-            detail::ProjectCounts sum;
-            const auto consume = [&](const Sphere* spheres, std::size_t first_id, std::size_t count) {
+            const std::size_t first = first_of(part), end = first_of(part + 1);
+            const std::size_t place = first + part * detail::FootprintArrays::padding;
+            const auto project_some = [&, out = arrays_.from(place)](const Sphere* spheres,
+                                                                     std::size_t first_id, std::size_t count,
+                                                                     detail::ProjectCounts& sum) {
                 kernel(view.camera(), spheres, static_cast<std::uint32_t>(count),
                        static_cast<std::uint32_t>(first_id), out, sum);
             };
-            if (!move) {
-                consume(arrays_.spheres + first, first, end - first);
-            } else {
-                std::array<Sphere, detail::ChunkRects::size> moved;
-                for (; first < end; first += moved.size()) {
-                    const std::size_t count = (std::min)(moved.size(), end - first);
-                    Sphere* to = keep ? kept + first : moved.data();
-                    for (std::size_t i = 0; i < count; ++i)
-                        to[i] = std::invoke(lights.to_view_sphere, lights.array[first + i]);
-                    consume(to, first, count);
-                }
-            }
-            if constexpr (with_spans)
-                for (std::uint32_t i = 0; i < sum.visible; ++i)
-                    sum.rows += out.y1[i] - out.y0[i] + 1u;
-            counts[part] = sum;
-            const std::uint32_t begin = static_cast<std::uint32_t>(place);
-            runs[part] = {begin, begin + sum.visible};
+            detail::ProjectCounts sum;
+            if (move)
+                move_each(lights, kept, first, end, project_some, sum);
+            else
+                project_some(arrays_.spheres + first, first, end - first, sum);
+            end_part(part, static_cast<std::uint32_t>(place), sum);
         });
-        run_count_ = parts;
         counts_ = {};
         for (std::size_t part = 0; part < parts; ++part) {
-            counts_.visible += counts[part].visible;
-            counts_.rejected += counts[part].rejected;
-            counts_.area += counts[part].area;
-            counts_.rows += counts[part].rows;
+            const detail::ProjectCounts& counts = part_counts_.data()[part];
+            counts_.visible += counts.visible;
+            counts_.rejected += counts.rejected;
+            counts_.area += counts.area;
+            counts_.rows += counts.rows;
         }
         if constexpr (with_spans) add_spans(detail::row_span_kernel(isa), view, threads);
     }
@@ -130,6 +109,44 @@ public:
     std::span<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
 
 private:
+    void reserve(std::size_t parts) {
+        const std::uint64_t capacity = std::uint64_t{lights_} + parts * detail::FootprintArrays::padding;
+        arrays_ = {.ids = ids_.reserve(capacity),
+                   .x0 = x0_.reserve(capacity),
+                   .y0 = y0_.reserve(capacity),
+                   .x1 = x1_.reserve(capacity),
+                   .y1 = y1_.reserve(capacity),
+                   .span_begin = with_spans ? span_begin_.reserve(capacity) : nullptr,
+                   .spans = nullptr,
+                   .spheres = nullptr};
+        runs_.reserve(parts);
+        part_counts_.reserve(parts);
+        run_count_ = parts;
+    }
+
+    /// Makes spheres of the lights first..end-1, in `kept` or, where that is null, in passing, and projects them.
+    template <class Light, class ToViewSphere, class ProjectSome>
+    static void move_each(const Lights<Light, ToViewSphere>& lights, Sphere* kept, std::size_t first,
+                          std::size_t end, const ProjectSome& project_some, detail::ProjectCounts& sum) {
+        std::array<Sphere, detail::ChunkRects::size> moved;
+        for (; first < end; first += moved.size()) {
+            const std::size_t count = (std::min)(moved.size(), end - first);
+            Sphere* to = keep ? kept + first : moved.data();
+            for (std::size_t i = 0; i < count; ++i)
+                to[i] = std::invoke(lights.to_view_sphere, lights.array[first + i]);
+            project_some(to, first, count, sum);
+        }
+    }
+
+    /// Notes what became of a part, whose lights in view begin at `place` of the arrays.
+    void end_part(std::size_t part, std::uint32_t place, detail::ProjectCounts counts) {
+        if constexpr (with_spans)
+            for (std::uint32_t i = place; i < place + counts.visible; ++i)
+                counts.rows += arrays_.y1[i] - arrays_.y0[i] + 1u;
+        part_counts_.data()[part] = counts;
+        runs_.data()[part] = {place, place + counts.visible};
+    }
+
     void add_spans(detail::RowSpanKernel kernel, const View& view, const Parallel& threads) {
         constexpr std::uint64_t padding = 8;  // a vector of rows
         // Later lights than 32 bits can number the spans of keep their rectangles.

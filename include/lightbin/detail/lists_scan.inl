@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Step 1 of bin.inl, for tiers with vectors of bytes: each list picks its lights out of many, a vector of them at a
-// time and without a branch on what a light covers. Included once such a tier, see all.inl for what it defines.
+// time and without a branch on what a light covers. Included once such a tier, see kernels.inl for what it defines.
 //
 //   1. A vector of lights' rows against each band of 8 tile rows: a saturating subtraction and two byte shuffles
 //      give each light's byte of covered rows, zero if it misses the band. Those that do not are appended to the
