@@ -3,8 +3,7 @@
 // of the set bits of 64 together, and a permutation makes ids of them.
 //
 // - Lists of up to 8, 16 or 31 lights: a compress does 8, 4 or 2 tiles of a row at once. For each row its 8 tiles'
-// bits,
-//   a bit a light, 1, 2 or 4 words a row; before them the running numbers of set bits.
+//   bits, a bit a light, 1, 2 or 4 words a row; before them the running numbers of set bits.
 // - Longer ones: as in emit.inl, a column's, row's or tile's words, 64 lights each, side by side.
 
 /// A vector's worth of place(0), place(1) ...
@@ -34,8 +33,9 @@ LIGHTBIN_TARGET inline __m512i halves(__m256i low, __m256i high) {
     return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
 }
 
-/// Up to 64 ids of a list: the lower 16 bits of each in two vectors, and the upper ones that they share. wide: some in the
-/// grid have upper bits.
+/// Up to 64 ids of a list: the lower 16 bits of each in two vectors, and the upper ones that they share.
+///
+/// wide  some in the grid have upper bits
 template <bool wide> struct IdTable { __m512i low, high; };
 template <> struct IdTable<true> {
     __m512i low, high;
@@ -115,9 +115,9 @@ LIGHTBIN_TARGET inline __m512i transpose_bits(__m512i x) {
     return swap_bits<28>(x, 0x00000000f0f0f0f0);
 }
 
-/// Short lists: `eights` = 1, 2 or 4 vectors of 8 lights' words, a bit per tile. For
-/// each row of the supertile stores, after one another, the 8 tiles' bits, a bit a light: `eights` words a row.
-/// Before them, for each row, 8 bytes: the running number of set bits up to and with each tile, at most 248.
+/// Short lists: `eights` = 1, 2 or 4 vectors of 8 lights' words, a bit per tile. For each row of the supertile stores,
+/// after one another, the 8 tiles' bits, a bit a light: `eights` words a row. Before them, for each row, 8 bytes: the
+/// running number of set bits up to and with each tile, at most 248.
 template <unsigned eights>
 LIGHTBIN_TARGET inline void store_short_words(__m512i (&lights)[eights], std::uint64_t* to) {
     for (__m512i& v : lights)  // a word a row, a byte per tile

@@ -45,12 +45,12 @@ LIGHTBIN_TARGET inline ByteMask first_bytes(std::size_t count) {
 
 /// Fills scratch.blocks, apart from `before` and `capacity`; returns how many there are. Whole ids are one block.
 template <class Id> std::size_t find_blocks(const BinJob<Id>& job, Scratch& scratch) {
-    std::size_t count = 0;
-    if constexpr (sizeof(ListId) == 4) {
+    if (sizeof(ListId) == 4 || job.runs.empty()) {
         *scratch.blocks.reserve(1) = {0, job.runs.empty() ? 0 : job.runs.back().end, 0, 0, 0};
         return 1;
     }
     const std::uint32_t* ids = job.lights.ids;
+    std::size_t count = 0;
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin, end; i < run.end; i = end) {
             const std::uint32_t upper = ids[i] & 0xffff0000, last = upper | 0xffff;
@@ -79,8 +79,8 @@ template <class Id> std::size_t make_blocks(const BinJob<Id>& job, Scratch& scra
     return count;
 }
 
-/// Appends a vector of lights, `lights` of it, from visible index i on, to the lists of the bands and panels that
-/// they meet.
+/// Appends a vector of lights of a block, `count` or as many as it has, from visible index i on, to the lists of the
+/// bands and panels that they meet.
 template <bool with_words>
 LIGHTBIN_TARGET inline void add_to_bands(const FootprintArrays& lights, const ListedBands& listed,
                                          std::size_t block, std::uint32_t i, std::size_t count) {
@@ -160,8 +160,8 @@ LIGHTBIN_TARGET inline std::uint32_t pick_lights(const ListedBands& listed, std:
     return count;
 }
 
-/// Begins a block's part of a list at place `from`, a multiple of 64, instead of `end`, where the list ends: with lights
-/// that cover nothing. Notes the block of the places from there to `last`.
+/// Lets a block's part of a list begin at place `from`, a multiple of 64, where the list ended at `end`: between them are
+/// lights that cover nothing. Notes the block of the places from there to `last`.
 inline void begin_block(Scratch& scratch, std::uint32_t end, std::uint32_t from, std::uint32_t last,
                         std::size_t block) {
     if (from > end) {
