@@ -160,8 +160,8 @@ LIGHTBIN_TARGET inline std::uint32_t pick_lights(const ListedBands& listed, std:
     return count;
 }
 
-/// Lets a block's part of a list begin at place `from`, a multiple of 64, where the list ended at `end`: between them are
-/// lights that cover nothing. Notes the block of the places from there to `last`.
+/// Lets a block's part of a list begin at place `from`, a multiple of 64, where the list ended at `end`: between them
+/// are lights that cover nothing. Notes the block of the places from there to `last`.
 inline void begin_block(Scratch& scratch, std::uint32_t end, std::uint32_t from, std::uint32_t last,
                         std::size_t block) {
     if (from > end) {

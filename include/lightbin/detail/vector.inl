@@ -6,8 +6,8 @@
 //   LIGHTBIN_REGISTER    the compiler's type for the register
 //   LIGHTBIN_OP(name)    the intrinsic of add, sub, mul, div, sqrt
 //
-// and functions all_lanes(element) and negated(register). Where masks lie in such registers too, all ones or all zeros a
-// lane,
+// and functions all_lanes(element) and negated(register). Where masks lie in such registers too, all ones or all
+// zeros a lane,
 //
 //   LIGHTBIN_MASK        the name of their class; LIGHTBIN_OP then has min, max, and, or, andnot, movemask, too
 //
