@@ -43,8 +43,9 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
         }
     }
     if constexpr (packs_ids) {
-        const std::uint64_t before = list.begin - band.lists->begin, size = sizeof(Packed<Id>);
-        scratch.packed_ids.reserve((before + 64 * groups) * size, static_cast<std::size_t>(before * size));
+        const std::size_t before = list.begin - band.lists->begin, size = sizeof(Packed<Id>);
+        const std::uint64_t after = before + 64 * groups;
+        scratch.packed_ids.reserve(after * size, before * size);
         pack(band.ids + list.begin, list.count, packed_ids<Id>(scratch, band, list));
     }
     return end;
