@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/buffer.hpp>
+#include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/kernels.hpp>
 #include <lightbin/detail/parts.hpp>
@@ -31,7 +32,7 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR {
 /// A light grid in memory of its own, kept from call to call.
 template <class Id, Footprint footprint, DepthTest depth_test> class GridLists {
     static constexpr bool with_depth = depth_test != DepthTest::none,
-                          masked = detail::masked<footprint, depth_test>,
+                          worded = detail::with_words<footprint, depth_test>,
                           with_boxes = depth_test == DepthTest::box || depth_test == DepthTest::split_box;
 
 public:
@@ -63,29 +64,30 @@ public:
 
         const unsigned rows = static_cast<unsigned>(view.tiles_y());
         constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
-        std::uint64_t room = footprints.area();
-        if (room > most / 8) {  // with fewer entries lists can't have that many places
+        std::uint64_t capacity = footprints.area();
+        if (capacity > detail::surely_listed_area) {
             const std::uint64_t places = detail::list_places(job);
             if (places > most) return Error{ErrorCode::too_many_list_places, places, most};
         }
         // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.
-        if constexpr (masked)
-            if (room > most)
-                room = detail::scalar::bin_supertiles<footprint, depth_test>(job, scratch[0],
-                                                                             {0, rows, nullptr, 0});
-        if (room > most) return Error{ErrorCode::too_many_entries, room, most};
+        if constexpr (worded)
+            if (capacity > most)
+                capacity = detail::scalar::count_entries<footprint, depth_test>(job, scratch[0]);
+        if (capacity > most) return Error{ErrorCode::too_many_entries, capacity, most};
 
-        job.tiles = tiles_.room(tiles + Job::slack(static_cast<std::size_t>(view.tiles_x())));
+        job.tiles = tiles_.reserve(tiles + Job::slack(static_cast<std::size_t>(view.tiles_x())));
         tile_count_ = tiles;
         const auto kernel =
             detail::bin_kernel<footprint, depth_test, Id>(isa, view, footprints.visible(), footprints.area());
-        Id* list = indices_.room(room + slack);
+        Id* list = indices_.reserve(capacity + slack);
         shared_ = false;
         if constexpr (!std::is_same_v<Threads, Serial>) {
             const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), rows);
-            shared_ =
-                parts > 1 && footprints.area() <= most &&
-                parallel.pays_off(estimate(isa, kernel, footprints.visible(), static_cast<double>(room)));
+            const double lights = footprints.visible(), entries = static_cast<double>(capacity);
+            shared_ = parts > 1 && footprints.area() <= most &&
+                      parallel.pays_off(kernel == detail::scatter_kernel<Id>(isa)
+                                         ? detail::scatter_ns(lights, entries)
+                                         : detail::supertile_ns(isa, worded, lights, entries));
             if (shared_) {
                 entries_ = build_parts(isa, job, kernel, list, scratch, parallel, parts);
                 return std::nullopt;
@@ -105,24 +107,16 @@ private:
     using Job = detail::BinJob<Id>;
     static constexpr std::size_t slack = detail::BandJob<Id>::slack;
 
-    /// About how many ns one thread of a fast processor takes, apart from what each part does again.
-    static double estimate(Isa isa, detail::BinKernel<Id> kernel, double lights, double entries) {
-        // Scattering does more for each light in parts, where it can't predict which lights are in one.
-        if (kernel == detail::scatter_kernel<Id>(isa)) return (std::max)(0.6 * entries - 8 * lights, 0.0);
-        const double slower = isa == Isa::avx512 ? 1 : isa == Isa::avx2 ? 1.5 : 2;
-        return slower * (masked ? 9 * lights + 0.35 * entries : 1.5 * lights + 0.1 * entries);
-    }
-
     /// Builds `count` parts on the caller's threads, see make_parts(). Returns the number of entries.
     std::size_t build_parts(Isa isa, const Job& job, detail::BinKernel<Id> kernel, Id* list,
                             std::vector<detail::Scratch>& scratch, const Parallel& parallel,
                             std::size_t count) {
         if (scratch.size() < count) scratch.resize(count);
         if (spares_.size() < count) spares_.resize(count);
-        detail::Part* parts = parts_.room(count);
+        detail::Part* parts = parts_.reserve(count);
         detail::make_parts(job, parallel, row_sums_, parts, count);
-        if constexpr (!masked) {
-            // Rectangles: a part's place in the list is known. Its last entries go there by way of spare room,
+        if constexpr (!worded) {
+            // Rectangles: a part's place in the list is known. Its last entries go there by way of spare memory,
             // as a kernel writes beyond its end, where the next part is at work.
             parallel.run(count, [&](std::size_t i) {
                 const detail::Part& part = parts[i];
@@ -133,7 +127,7 @@ private:
                            {part.begin, part.end, out, static_cast<std::uint32_t>(part.before)});
                     return;
                 }
-                Id* spare = spares_[i].room(part.spare_area + slack);
+                Id* spare = spares_[i].reserve(part.spare_area + slack);
                 kernel(job, scratch[i],
                        {part.begin, part.end, out, static_cast<std::uint32_t>(part.before), part.spare_row,
                         spare});
@@ -143,7 +137,7 @@ private:
         } else {
             // Otherwise each part but the first makes a list of its own, and then they are put in their places.
             parallel.run(count, [&](std::size_t i) {
-                Id* out = i == 0 ? list : spares_[i].room(parts[i].area + slack);
+                Id* out = i == 0 ? list : spares_[i].reserve(parts[i].area + slack);
                 parts[i].area = kernel(job, scratch[i], {parts[i].begin, parts[i].end, out, 0});
             });
             std::size_t entries = 0;
@@ -167,8 +161,8 @@ private:
     void find_edges(Job& job) {
         const detail::ImageAxis* axes[] = {&job.camera->x, &job.camera->y};
         for (std::size_t i = 0; i < 2; ++i) {
-            const std::size_t room = static_cast<std::size_t>(axes[i]->tiles) + 8;  // vectors are read
-            float *low = edges_[2 * i].room(room), *high = edges_[2 * i + 1].room(room);
+            const std::size_t capacity = static_cast<std::size_t>(axes[i]->tiles) + 8;  // vectors are read
+            float *low = edges_[2 * i].reserve(capacity), *high = edges_[2 * i + 1].reserve(capacity);
             for (int tile = 0; tile < axes[i]->tiles; ++tile)
                 detail::tile_edges(*axes[i], tile, low[tile], high[tile]);
             job.edges[2 * i] = low;
@@ -186,6 +180,6 @@ private:
     bool shared_ = false;
 };
 
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
 
 #include <lightbin/detail/warnings_on.inl>

@@ -31,10 +31,6 @@ struct ListRange {
     std::uint32_t offset, count;
 };
 
-namespace detail {
-using Tile = ListRange;
-}
-
 /// What became of the lights that a grid was made of. The others, lights - rejected - culled, have tiles in their
 /// footprints.
 struct LightCounts {

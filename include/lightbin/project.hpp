@@ -4,6 +4,7 @@
 #pragma once
 
 #include <lightbin/detail/buffer.hpp>
+#include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/kernels.hpp>
@@ -49,77 +50,53 @@ public:
     /// tile that the part of its sphere beyond the near plane projects to; it is the smallest such rectangle
     /// but for the rounding margin of the view.
     ///
-    /// wake  share even what is soon done: there will be more to share, and by then the threads are awake
+    /// force_parallel  share even what is soon done: there will be more to share, and by then the threads are awake
     template <class Light, class ToViewSphere>
     void project(Isa isa, const View& view, const Lights<Light, ToViewSphere>& lights,
-                 const Parallel& parallel, bool wake = false) {
+                 const Parallel& parallel, bool force_parallel = false) {
         lights_ = lights.array.size();
-        const double ns_a_light = isa == Isa::avx512 ? 2 : isa == Isa::avx2 ? 3 : 7;  // in view
-        const bool share = wake || parallel.pays_off(static_cast<double>(lights_) * ns_a_light);
+        const bool share =
+            force_parallel || parallel.pays_off(detail::project_ns(isa, static_cast<double>(lights_)));
         const Parallel threads = share ? parallel : Parallel();
-        // Some parts a worker, so that a late one costs little; as many where they are not shared, as more take
-        // more room; one where 32 bits might not number their places.
-        constexpr std::size_t chunk = detail::ChunkRects::size, padding = detail::FootprintArrays::padding;
+        // One part where 32 bits might not number the places of more.
+        constexpr std::size_t chunk = detail::ChunkRects::size;
         const std::size_t chunks = lights_ / chunk + 1;
-        const std::size_t parts = parallel.workers() > 1 && lights_ >> 31 == 0
-                                      ? (std::min)(chunks, 4 * (std::min)(chunks, parallel.workers()))
-                                      : 1;
+        const std::size_t parts = lights_ >> 31 == 0 ? detail::project_parts(chunks, parallel.workers()) : 1;
         const auto first_of = [&](std::size_t part) {
             return static_cast<std::size_t>(
                 (std::min<std::uint64_t>)(std::uint64_t{chunks} * part / parts * chunk, lights_));
         };
-        const std::uint64_t room = std::uint64_t{lights_} + parts * padding;
-        arrays_ = {.ids = ids_.room(room),
-                   .x0 = x0_.room(room),
-                   .y0 = y0_.room(room),
-                   .x1 = x1_.room(room),
-                   .y1 = y1_.room(room),
-                   .span_begin = with_spans ? span_begin_.room(room) : nullptr,
-                   .spans = nullptr,
-                   .spheres = detail::as_they_are(lights)};
-        const bool move = arrays_.spheres == nullptr;
-        Sphere* kept = nullptr;
+        reserve(parts);
+        arrays_.spheres = detail::as_they_are(lights);
+        Sphere* kept = nullptr;  // where spheres that are not as they are in the caller's array go
         if constexpr (keep)
-            if (move) arrays_.spheres = kept = spheres_.room(lights_);
-        detail::FootprintRun* runs = runs_.room(parts);
-        detail::ProjectCounts* counts = part_counts_.room(parts);
+            if (arrays_.spheres == nullptr) arrays_.spheres = kept = spheres_.reserve(lights_);
+        const bool move = kept != nullptr || arrays_.spheres == nullptr;
         // One light is done sooner than a vector is filled up with copies of it.
         const detail::ProjectKernel kernel = detail::project_kernel(lights_ > 1 ? isa : Isa::scalar);
         threads.run(parts, [&](std::size_t part) {
-            std::size_t first = first_of(part);
-            const std::size_t end = first_of(part + 1), place = first + part * padding;
-            const detail::FootprintArrays out = arrays_.from(place);
-            detail::ProjectCounts sum;
-            const auto consume = [&](const Sphere* spheres, std::size_t first_id, std::size_t count) {
+            const std::size_t first = first_of(part), end = first_of(part + 1);
+            const std::size_t place = first + part * detail::FootprintArrays::padding;
+            const auto project_some = [&, out = arrays_.from(place)](const Sphere* spheres,
+                                                                     std::size_t first_id, std::size_t count,
+                                                                     detail::ProjectCounts& sum) {
                 kernel(detail::camera_of(view), spheres, static_cast<std::uint32_t>(count),
                        static_cast<std::uint32_t>(first_id), out, sum);
             };
-            if (!move) {
-                consume(arrays_.spheres + first, first, end - first);
-            } else {
-                std::array<Sphere, detail::ChunkRects::size> block;
-                for (; first < end; first += block.size()) {
-                    const std::size_t count = (std::min)(block.size(), end - first);
-                    Sphere* to = keep ? kept + first : block.data();
-                    for (std::size_t i = 0; i < count; ++i)
-                        to[i] = std::invoke(lights.to_view_sphere, lights.array[first + i]);
-                    consume(to, first, count);
-                }
-            }
-            if constexpr (with_spans)
-                for (std::uint32_t i = 0; i < sum.visible; ++i)
-                    sum.rows += out.y1[i] - out.y0[i] + 1u;
-            counts[part] = sum;
-            const std::uint32_t begin = static_cast<std::uint32_t>(place);
-            runs[part] = {begin, begin + sum.visible};
+            detail::ProjectCounts sum;
+            if (move)
+                move_each(lights, kept, first, end, project_some, sum);
+            else
+                project_some(arrays_.spheres + first, first, end - first, sum);
+            end_part(part, static_cast<std::uint32_t>(place), sum);
         });
-        run_count_ = parts;
         counts_ = {};
         for (std::size_t part = 0; part < parts; ++part) {
-            counts_.visible += counts[part].visible;
-            counts_.rejected += counts[part].rejected;
-            counts_.area += counts[part].area;
-            counts_.rows += counts[part].rows;
+            const detail::ProjectCounts& counts = part_counts_.data()[part];
+            counts_.visible += counts.visible;
+            counts_.rejected += counts.rejected;
+            counts_.area += counts.area;
+            counts_.rows += counts.rows;
         }
         if constexpr (with_spans) add_spans(detail::row_span_kernel(isa), view, threads);
     }
@@ -132,11 +109,50 @@ public:
     std::span<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
 
 private:
+    void reserve(std::size_t parts) {
+        const std::uint64_t capacity = std::uint64_t{lights_} + parts * detail::FootprintArrays::padding;
+        arrays_ = {.ids = ids_.reserve(capacity),
+                   .x0 = x0_.reserve(capacity),
+                   .y0 = y0_.reserve(capacity),
+                   .x1 = x1_.reserve(capacity),
+                   .y1 = y1_.reserve(capacity),
+                   .span_begin = with_spans ? span_begin_.reserve(capacity) : nullptr,
+                   .spans = nullptr,
+                   .spheres = nullptr};
+        runs_.reserve(parts);
+        part_counts_.reserve(parts);
+        run_count_ = parts;
+    }
+
+    /// Makes spheres of the lights first..end-1, in `kept` or, where that is null, in passing, and projects them.
+    template <class Light, class ToViewSphere, class ProjectSome>
+    static void move_each(const Lights<Light, ToViewSphere>& lights, Sphere* kept, std::size_t first,
+                          std::size_t end, const ProjectSome& project_some, detail::ProjectCounts& sum) {
+        std::array<Sphere, detail::ChunkRects::size> moved;
+        for (; first < end; first += moved.size()) {
+            const std::size_t count = (std::min)(moved.size(), end - first);
+            Sphere* to = keep ? kept + first : moved.data();
+            for (std::size_t i = 0; i < count; ++i)
+                to[i] = std::invoke(lights.to_view_sphere, lights.array[first + i]);
+            project_some(to, first, count, sum);
+        }
+    }
+
+    /// Notes what became of a part, whose lights in view begin at `place` of the arrays.
+    void end_part(std::size_t part, std::uint32_t place, detail::ProjectCounts counts) {
+        if constexpr (with_spans)
+            for (std::uint32_t i = place; i < place + counts.visible; ++i)
+                counts.rows += arrays_.y1[i] - arrays_.y0[i] + 1u;
+        part_counts_.data()[part] = counts;
+        runs_.data()[part] = {place, place + counts.visible};
+    }
+
     void add_spans(detail::RowSpanKernel kernel, const View& view, const Parallel& threads) {
         constexpr std::uint64_t padding = 8;  // a vector of rows
         // Later lights than 32 bits can number the spans of keep their rectangles.
-        const std::uint64_t room = (std::min)(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
-        detail::RowSpan* spans = spans_.room(room + padding);
+        const std::uint64_t capacity =
+            (std::min)(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
+        detail::RowSpan* spans = spans_.reserve(capacity + padding);
         arrays_.spans = spans;
         std::uint64_t place = 0;
         for (std::size_t part = 0; part < run_count_; ++part) {
@@ -163,6 +179,6 @@ private:
     detail::ProjectCounts counts_;
 };
 
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
 
 #include <lightbin/detail/warnings_on.inl>

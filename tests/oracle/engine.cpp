@@ -87,22 +87,36 @@ Lists built(const lightbin::View& view, const Scene& scene, bool flush, std::siz
     return lists;
 }
 
+/// More ways to the same lists, for tests/same_bytes.sh: they take long to compile and to run.
+#if defined(ORACLE_EVERY_WAY)
+constexpr bool every_way = true;
+#else
+constexpr bool every_way = false;
+#endif
+
 template <lightbin::Options options>
 Lists on_all_tiers(const lightbin::View& view, const Scene& scene, bool flush,
                    std::vector<std::string>& complaints) {
     using lightbin::Isa;
-    constexpr auto capped = [](Isa isa) {
+    constexpr auto capped = [](Isa isa, lightbin::IdWidth ids = lightbin::IdWidth::u32) {
         lightbin::Options with_isa = options;
         with_isa.isa = isa;
+        with_isa.ids = ids;
         return with_isa;
     };
     Lists lists = built<capped(Isa::scalar)>(view, scene, flush);
     if (lists.offsets.empty()) complaints.push_back("the lights were refused");
     // An Isa in the options is a cap: one that the machine lacks would be a narrower one again.
-    [[maybe_unused]] const auto compare = [&]<Isa isa>() {
-        if (lightbin::machine_isa(isa) == isa && built<capped(isa)>(view, scene, flush) != lists)
+    const auto compare = [&]<Isa isa>() {
+        if (lightbin::machine_isa(isa) != isa) return;
+        if (built<capped(isa)>(view, scene, flush) != lists)
             complaints.push_back(to_string(isa) + std::string(" differs"));
+        if constexpr (every_way)
+            if (scene.lights.size() <= 0x10000 &&
+                built<capped(isa, lightbin::IdWidth::u16)>(view, scene, flush) != lists)
+                complaints.push_back(to_string(isa) + std::string(" differs with ids of 16 bits"));
     };
+    if constexpr (every_way) compare.template operator()<Isa::scalar>();
 #if defined(LIGHTBIN_X86)
     compare.template operator()<Isa::sse2>();
     compare.template operator()<Isa::avx2>();
@@ -110,7 +124,11 @@ Lists on_all_tiers(const lightbin::View& view, const Scene& scene, bool flush,
 #elif defined(LIGHTBIN_NEON)
     compare.template operator()<Isa::neon>();
 #endif
-    if (built<options>(view, scene, flush, 3) != lists) complaints.push_back("with workers it differs");
+    for (const std::size_t workers : {3, 2, 16}) {
+        if (workers != 3 && !every_way) break;
+        if (built<options>(view, scene, flush, workers) != lists)
+            complaints.push_back("with " + std::to_string(workers) + " workers it differs");
+    }
     return lists;
 }
 

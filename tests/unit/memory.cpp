@@ -130,13 +130,13 @@ TEST_CASE("a buffer refuses what no machine holds, and is as any other after it"
     const auto check = [](auto buffer) {
         for (const std::uint64_t size :
              {~std::uint64_t{0}, (std::uint64_t{1} << 63) + 1, (std::uint64_t{1} << 62) + 1}) {
-            CHECK_THROWS_AS(buffer.room(size), const std::bad_alloc&);
+            CHECK_THROWS_AS(buffer.reserve(size), const std::bad_alloc&);
             CHECK(buffer.data() == nullptr);
-            auto* const few = buffer.room(3);
+            auto* const few = buffer.reserve(3);
             few[0] = few[2] = 7;
-            CHECK_THROWS_AS(buffer.room(size, 3), const std::bad_alloc&);
-            CHECK(buffer.room(3) == few);
-            CHECK(buffer.room(5, 3)[2] == 7);
+            CHECK_THROWS_AS(buffer.reserve(size, 3), const std::bad_alloc&);
+            CHECK(buffer.reserve(3) == few);
+            CHECK(buffer.reserve(5, 3)[2] == 7);
         }
     };
     check(detail::Buffer<std::uint8_t>());

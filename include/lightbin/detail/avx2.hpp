@@ -26,88 +26,45 @@ LIGHTBIN_TARGET inline __m256 all_lanes(float each) {
 LIGHTBIN_TARGET inline __m256 negated(__m256 a) {
     return _mm256_xor_ps(a, _mm256_set1_ps(-0.0f));
 }
+LIGHTBIN_TARGET inline __m256 less_lanes(__m256 a, __m256 b) {
+    return _mm256_cmp_ps(a, b, _CMP_LT_OQ);
+}
+LIGHTBIN_TARGET inline __m256 less_equal_lanes(__m256 a, __m256 b) {
+    return _mm256_cmp_ps(a, b, _CMP_LE_OQ);
+}
+LIGHTBIN_TARGET inline __m256 select_lanes(__m256 mask, __m256 a, __m256 b) {
+    return _mm256_blendv_ps(b, a, mask);
+}
 
 #define LIGHTBIN_VECTOR Floats
+#define LIGHTBIN_MASK Mask
 #define LIGHTBIN_ELEMENT float
 #define LIGHTBIN_REGISTER __m256
 #define LIGHTBIN_OP(name) _mm256_##name##_ps
 #include <lightbin/detail/vector.inl>
 
-/// All ones or all zeros a lane.
-struct Mask {
-    __m256 v;
-};
-LIGHTBIN_TARGET inline Mask less(Floats a, Floats b) {
-    return {_mm256_cmp_ps(a, b, _CMP_LT_OQ)};
-}
-LIGHTBIN_TARGET inline Mask less_equal(Floats a, Floats b) {
-    return {_mm256_cmp_ps(a, b, _CMP_LE_OQ)};
-}
-LIGHTBIN_TARGET inline Mask both(Mask a, Mask b) {
-    return {_mm256_and_ps(a.v, b.v)};
-}
-LIGHTBIN_TARGET inline Mask either(Mask a, Mask b) {
-    return {_mm256_or_ps(a.v, b.v)};
-}
-LIGHTBIN_TARGET inline Mask and_not(Mask a, Mask b) {
-    return {_mm256_andnot_ps(b.v, a.v)};
-}
-LIGHTBIN_TARGET inline Floats select(Mask mask, Floats a, Floats b) {
-    return _mm256_blendv_ps(b, a, mask.v);
-}
-LIGHTBIN_TARGET inline Floats lesser(Floats a, Floats b) {
-    return _mm256_min_ps(a, b);
-}
-LIGHTBIN_TARGET inline Floats greater(Floats a, Floats b) {
-    return _mm256_max_ps(a, b);
-}
-LIGHTBIN_TARGET inline unsigned bits(Mask mask) {
-    return static_cast<unsigned>(_mm256_movemask_ps(mask.v));
-}
 LIGHTBIN_TARGET inline __m256d all_lanes(double each) {
     return _mm256_set1_pd(each);
 }
 LIGHTBIN_TARGET inline __m256d negated(__m256d a) {
     return _mm256_xor_pd(a, _mm256_set1_pd(-0.0));
 }
+LIGHTBIN_TARGET inline __m256d less_lanes(__m256d a, __m256d b) {
+    return _mm256_cmp_pd(a, b, _CMP_LT_OQ);
+}
+LIGHTBIN_TARGET inline __m256d less_equal_lanes(__m256d a, __m256d b) {
+    return _mm256_cmp_pd(a, b, _CMP_LE_OQ);
+}
+LIGHTBIN_TARGET inline __m256d select_lanes(__m256d mask, __m256d a, __m256d b) {
+    return _mm256_blendv_pd(b, a, mask);
+}
 
 #define LIGHTBIN_VECTOR Doubles
+#define LIGHTBIN_MASK DoubleMask
 #define LIGHTBIN_ELEMENT double
 #define LIGHTBIN_REGISTER __m256d
 #define LIGHTBIN_OP(name) _mm256_##name##_pd
 #include <lightbin/detail/vector.inl>
-
-/// All ones or all zeros a lane.
-struct DoubleMask {
-    __m256d v;
-};
-LIGHTBIN_TARGET inline DoubleMask less(Doubles a, Doubles b) {
-    return {_mm256_cmp_pd(a, b, _CMP_LT_OQ)};
-}
-LIGHTBIN_TARGET inline DoubleMask less_equal(Doubles a, Doubles b) {
-    return {_mm256_cmp_pd(a, b, _CMP_LE_OQ)};
-}
-LIGHTBIN_TARGET inline DoubleMask both(DoubleMask a, DoubleMask b) {
-    return {_mm256_and_pd(a.v, b.v)};
-}
-LIGHTBIN_TARGET inline DoubleMask either(DoubleMask a, DoubleMask b) {
-    return {_mm256_or_pd(a.v, b.v)};
-}
-LIGHTBIN_TARGET inline DoubleMask and_not(DoubleMask a, DoubleMask b) {
-    return {_mm256_andnot_pd(b.v, a.v)};
-}
-LIGHTBIN_TARGET inline Doubles select(DoubleMask mask, Doubles a, Doubles b) {
-    return _mm256_blendv_pd(b, a, mask.v);
-}
-LIGHTBIN_TARGET inline Doubles lesser(Doubles a, Doubles b) {
-    return _mm256_min_pd(a, b);
-}
-LIGHTBIN_TARGET inline Doubles greater(Doubles a, Doubles b) {
-    return _mm256_max_pd(a, b);
-}
-LIGHTBIN_TARGET inline unsigned bits(DoubleMask mask) {
-    return static_cast<unsigned>(_mm256_movemask_pd(mask.v));
-}
 
 /// Counts of a column's tiles, and tiles: for scatter.inl.
 struct Rows {
@@ -237,13 +194,11 @@ LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t*
 
 /// Writes those of 8 ids whose bit is set, in order; then up to 8 elements that mean nothing. Returns how
 /// many.
-template <class Id>
-LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, unsigned mask) {
+template <class Id> LIGHTBIN_TARGET inline std::uint32_t append(Id* out, __m256i ids, unsigned mask) {
     std::uint64_t places;
     std::memcpy(&places, set_bits[mask].data(), sizeof places);
-    const __m256i chosen =
-        _mm256_permutevar8x32_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(ids)),
-                                    _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(places))));
+    const __m256i chosen = _mm256_permutevar8x32_epi32(
+        ids, _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(places))));
     if constexpr (sizeof(Id) == 4)
         _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), chosen);
     else
@@ -252,13 +207,88 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
             _mm_packus_epi32(_mm256_castsi256_si128(chosen), _mm256_extracti128_si256(chosen, 1)));
     return static_cast<std::uint32_t>(std::popcount(mask));
 }
+template <class Id>
+LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, unsigned mask) {
+    return append(out, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(ids)), mask);
+}
 
-using portable::pack;
 using portable::Packed;
 using portable::packs_ids;
 
+// Vectors of bytes.
+
+struct Bytes {
+    __m256i v;
+};
+using ByteMask = std::uint32_t;
+using ListId = std::uint32_t;
+inline constexpr std::uint32_t byte_lanes = 32;
+
+LIGHTBIN_TARGET inline Bytes load_bytes(const std::uint8_t* from) {
+    return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from))};
+}
+LIGHTBIN_TARGET inline Bytes all_bytes(unsigned each) {
+    return {_mm256_set1_epi8(static_cast<char>(each))};
+}
+LIGHTBIN_TARGET inline Bytes operator&(Bytes a, Bytes b) {
+    return {_mm256_and_si256(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Bytes lesser(Bytes a, Bytes b) {
+    return {_mm256_min_epu8(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Bytes subtract(Bytes a, Bytes b) {
+    return {_mm256_subs_epu8(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Bytes look_up(const std::uint8_t (&table)[16], Bytes places) {
+    const __m128i once = _mm_loadu_si128(reinterpret_cast<const __m128i*>(table));
+    return {_mm256_shuffle_epi8(_mm256_broadcastsi128_si256(once), places.v)};
+}
+LIGHTBIN_TARGET inline ByteMask not_zero(Bytes bytes) {
+    return ~static_cast<ByteMask>(_mm256_movemask_epi8(_mm256_cmpeq_epi8(bytes.v, _mm256_setzero_si256())));
+}
+LIGHTBIN_TARGET inline Bytes coordinates(const std::uint16_t* from, unsigned more, unsigned begin) {
+    const __m256i add = _mm256_set1_epi16(static_cast<short>(more)),
+                  start = _mm256_set1_epi16(static_cast<short>(begin)), most = _mm256_set1_epi16(255);
+    const __m256i* const halves = reinterpret_cast<const __m256i*>(from);
+    const __m256i low = _mm256_subs_epu16(_mm256_add_epi16(_mm256_loadu_si256(halves), add), start),
+                  high = _mm256_subs_epu16(_mm256_add_epi16(_mm256_loadu_si256(halves + 1), add), start);
+    // Packing takes words as signed, and the end of the last of 32768 rows is 0x8000.
+    return {_mm256_permute4x64_epi64(
+        _mm256_packus_epi16(_mm256_min_epu16(low, most), _mm256_min_epu16(high, most)), 0xd8)};
+}
+
+LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, Bytes from, std::uint8_t* to) {
+    const __m128i halves[] = {_mm256_castsi256_si128(from.v), _mm256_extracti128_si256(from.v, 1)};
+    for (unsigned i = 0; i < 4; ++i, chosen >>= 8) {
+        __m128i places = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_bits[chosen & 0xff].data()));
+        if (i % 2 == 1) places = _mm_add_epi8(places, _mm_set1_epi8(8));
+        _mm_storel_epi64(reinterpret_cast<__m128i*>(to), _mm_shuffle_epi8(halves[i / 2], places));
+        to += std::popcount(chosen & 0xff);
+    }
+}
+struct ByteIds {
+    __m256i eights[4];
+};
+LIGHTBIN_TARGET inline ByteIds load_ids(const std::uint32_t* from) {
+    ByteIds ids;
+    for (unsigned i = 0; i < 4; ++i)
+        ids.eights[i] = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from + 8 * i));
+    return ids;
+}
+LIGHTBIN_TARGET inline ByteIds count_ids(std::uint32_t first) {
+    ByteIds ids;
+    for (unsigned i = 0; i < 4; ++i)
+        ids.eights[i] = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first + 8 * i)),
+                                         _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+    return ids;
+}
+LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, const ByteIds& from, std::uint32_t* to) {
+    for (unsigned i = 0; i < 4; ++i, chosen >>= 8)
+        to += append(to, from.eights[i], chosen & 0xff);
+}
+
 #define LIGHTBIN_TIER_HAS_ROWS
-#define LIGHTBIN_TIER_SCANS
+#define LIGHTBIN_TIER_HAS_BYTES
 #include <lightbin/detail/kernels.inl>
 
 }  // namespace avx2

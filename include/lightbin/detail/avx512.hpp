@@ -177,6 +177,96 @@ LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t*
         words[bit] = _mm512_test_epi8_mask(all_bytes, _mm512_set1_epi8(static_cast<char>(1 << bit)));
 }
 
+/// On Zen 5 the form of a compress instruction that zeroes the rest waits for what its register held before, which
+/// makes a chain of one iteration and the next: it is given fresh zeros.
+LIGHTBIN_TARGET inline __m512i fresh_zeros() {
+    __m512i zeros = _mm512_setzero_si512();
+    LIGHTBIN_FORGET(zeros);  // or the compiler picks that form
+    return zeros;
+}
+/// Those of the chosen elements, then zeros.
+LIGHTBIN_TARGET inline __m512i compressed_bytes(__mmask64 chosen, __m512i from) {
+    return _mm512_mask_compress_epi8(fresh_zeros(), chosen, from);
+}
+
+// Vectors of bytes.
+
+struct Bytes {
+    __m512i v;
+};
+using ByteMask = std::uint64_t;
+using ListId = std::uint16_t;
+inline constexpr std::uint32_t byte_lanes = 64;
+
+LIGHTBIN_TARGET inline Bytes load_bytes(const std::uint8_t* from) {
+    return {_mm512_loadu_si512(from)};
+}
+LIGHTBIN_TARGET inline Bytes all_bytes(unsigned each) {
+    return {_mm512_set1_epi8(static_cast<char>(each))};
+}
+LIGHTBIN_TARGET inline Bytes operator&(Bytes a, Bytes b) {
+    return {_mm512_and_si512(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Bytes lesser(Bytes a, Bytes b) {
+    return {_mm512_min_epu8(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Bytes subtract(Bytes a, Bytes b) {
+    return {_mm512_subs_epu8(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline Bytes look_up(const std::uint8_t (&table)[16], Bytes places) {
+    const __m128i once = _mm_loadu_si128(reinterpret_cast<const __m128i*>(table));
+    return {_mm512_shuffle_epi8(_mm512_broadcast_i32x4(once), places.v)};
+}
+LIGHTBIN_TARGET inline ByteMask not_zero(Bytes bytes) {
+    return _mm512_test_epi8_mask(bytes.v, bytes.v);
+}
+LIGHTBIN_TARGET inline Bytes coordinates(const std::uint16_t* from, unsigned more, unsigned begin) {
+    const __m512i add = _mm512_set1_epi16(static_cast<short>(more)),
+                  start = _mm512_set1_epi16(static_cast<short>(begin));
+    const __m512i low = _mm512_subs_epu16(_mm512_add_epi16(_mm512_loadu_si512(from), add), start),
+                  high = _mm512_subs_epu16(_mm512_add_epi16(_mm512_loadu_si512(from + 32), add), start);
+    return {_mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtusepi16_epi8(low)),
+                               _mm512_cvtusepi16_epi8(high), 1)};
+}
+
+LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, Bytes from, std::uint8_t* to) {
+    _mm512_storeu_si512(to, compressed_bytes(chosen, from.v));
+}
+/// Of 64 lights 16 bits each, in two vectors.
+struct ByteIds {
+    __m512i low, high;
+};
+LIGHTBIN_TARGET inline ByteIds load_ids(const std::uint16_t* from) {
+    return {_mm512_loadu_si512(from), _mm512_loadu_si512(from + 32)};
+}
+LIGHTBIN_TARGET inline ByteIds load_ids(const std::uint32_t* from) {
+    __m256i quarters[4];
+    for (unsigned i = 0; i < 4; ++i)
+        quarters[i] = _mm512_cvtepi32_epi16(_mm512_loadu_si512(from + 16 * i));
+    return {_mm512_inserti64x4(_mm512_castsi256_si512(quarters[0]), quarters[1], 1),
+            _mm512_inserti64x4(_mm512_castsi256_si512(quarters[2]), quarters[3], 1)};
+}
+LIGHTBIN_TARGET inline ByteIds count_ids(std::uint32_t first) {
+    static constexpr auto lane = [] {
+        std::array<std::uint16_t, 64> places = {};
+        for (std::uint16_t i = 0; i < 64; ++i)
+            places[i] = i;
+        return places;
+    }();
+    const __m512i begin = _mm512_set1_epi16(static_cast<short>(first));
+    const ByteIds places = load_ids(lane.data());
+    return {_mm512_add_epi16(places.low, begin), _mm512_add_epi16(places.high, begin)};
+}
+LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, const ByteIds& from, std::uint16_t* to) {
+    const __mmask32 low = static_cast<__mmask32>(chosen), high = static_cast<__mmask32>(chosen >> 32);
+    _mm512_storeu_si512(to, _mm512_mask_compress_epi16(fresh_zeros(), low, from.low));
+    _mm512_storeu_si512(to + std::popcount(low), _mm512_mask_compress_epi16(fresh_zeros(), high, from.high));
+}
+
+using avx2::arrange_cells;
+using avx2::fill_empty;
+
+#define LIGHTBIN_TIER_HAS_BYTES
 #define LIGHTBIN_TIER_COMPRESSES
 #include <lightbin/detail/kernels.inl>
 

@@ -20,9 +20,9 @@ template <class T> class Buffer {
     static_assert(std::is_trivially_copyable_v<T>);
 
 public:
-    /// Returns room for `size` elements. Their values are lost when the room has to grow. Where there is no memory
-    /// for them, or `std::size_t` does not count them, it throws as `new` does, and later calls are right.
-    T* room(std::uint64_t size) {
+    /// Returns memory of `size` elements or more. Their values are lost where it has to grow. Where there is no
+    /// memory for them, or `std::size_t` does not count them, it throws as `new` does, and later calls are right.
+    T* reserve(std::uint64_t size) {
         if (size > size_) {
             memory_.reset();
             size_ = 0;  // should there be no memory
@@ -32,12 +32,12 @@ public:
         return memory_.get();
     }
 
-    /// The same, keeping the first `used` elements; grows in large steps.
-    T* room(std::uint64_t size, std::size_t used) {
+    /// The same, keeping the first `used` elements, or as many as there are; grows in large steps.
+    T* reserve(std::uint64_t size, std::size_t used) {
         if (size > size_) {
             const std::uint64_t larger = sum_of_sizes(size, size);
             std::unique_ptr<T[]> memory = made(larger);
-            std::copy_n(memory_.get(), used, memory.get());
+            std::copy_n(memory_.get(), (std::min)(used, size_), memory.get());
             memory_ = std::move(memory);
             size_ = static_cast<std::size_t>(larger);
         }
@@ -57,6 +57,6 @@ private:
     std::size_t size_ = 0;
 };
 
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
 
 #include <lightbin/detail/warnings_on.inl>

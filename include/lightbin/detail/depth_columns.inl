@@ -6,22 +6,22 @@
 /// one of them is NaN. Samples equal to `skipped` (NaN: none are) do not count; +inf and -inf where none does.
 LIGHTBIN_TARGET inline void column_extremes(const DepthRows& depth, float skipped, float* lower,
                                             float* upper) {
-    const Floats endless = all(HUGE_VALF);
+    const Floats infinite = all(HUGE_VALF);
     for (std::size_t column = 0; column < depth.columns;) {
         // The last vector may overlap the one before it.
         if (depth.columns - column < lanes) column = depth.columns - lanes;
         const float* samples = depth.samples + column;
-        Floats least = endless, most = -endless;
-        auto numbers = less_equal(endless, endless);
+        Floats least = infinite, most = -infinite;
+        auto numbers = less_equal(infinite, infinite);
         for (std::size_t row = 0; row < depth.rows; ++row, samples += depth.pitch) {
             const Floats sample = load_floats(samples);
             const auto out = both(less_equal(sample, all(skipped)), less_equal(all(skipped), sample));
-            least = lesser(select(out, endless, sample), least);
-            most = greater(select(out, -endless, sample), most);
+            least = lesser(select(out, infinite, sample), least);
+            most = greater(select(out, -infinite, sample), most);
             numbers = both(numbers, less_equal(sample, sample));
         }
-        store_floats(lower + column, select(numbers, least, -endless));
-        store_floats(upper + column, select(numbers, most, endless));
+        store_floats(lower + column, select(numbers, least, -infinite));
+        store_floats(upper + column, select(numbers, most, infinite));
         column += lanes;
     }
 }
@@ -30,17 +30,17 @@ LIGHTBIN_TARGET inline void column_extremes(const DepthRows& depth, float skippe
 /// beyond it, -inf and +inf where there are none. Samples equal to `skipped`, and NaN, do not count.
 LIGHTBIN_TARGET inline void column_gaps(const DepthRows& depth, float skipped, const float* split,
                                         float* below, float* above) {
-    const Floats endless = all(HUGE_VALF);
+    const Floats infinite = all(HUGE_VALF);
     for (std::size_t column = 0; column < depth.columns;) {
         if (depth.columns - column < lanes) column = depth.columns - lanes;
         const float* samples = depth.samples + column;
         const Floats middle = load_floats(split + column);
-        Floats most = -endless, least = endless;
+        Floats most = -infinite, least = infinite;
         for (std::size_t row = 0; row < depth.rows; ++row, samples += depth.pitch) {
             const Floats sample = load_floats(samples);
             const auto out = both(less_equal(sample, all(skipped)), less_equal(all(skipped), sample));
-            most = greater(select(and_not(less_equal(sample, middle), out), sample, -endless), most);
-            least = lesser(select(and_not(less(middle, sample), out), sample, endless), least);
+            most = greater(select(and_not(less_equal(sample, middle), out), sample, -infinite), most);
+            least = lesser(select(and_not(less(middle, sample), out), sample, infinite), least);
         }
         store_floats(below + column, most);
         store_floats(above + column, least);

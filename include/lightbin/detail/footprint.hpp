@@ -75,7 +75,7 @@ template <class Id> struct BinJob {
     std::uint32_t visible;   ///< lights in all runs
     const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one
     const float* edges[4];   ///< of the tiles, for boxes: low x, high x, low y, high y; see cell_boxes.hpp
-    Tile* tiles;             ///< the table to write, and `slack` tiles more
+    ListRange* tiles;             ///< the table to write, and `slack` tiles more
 
     /// Whole vectors of columns are stored, of up to 8 rows.
     static constexpr std::size_t slack(std::size_t width) { return 8 * width + 4; }

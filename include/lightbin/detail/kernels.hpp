@@ -4,6 +4,7 @@
 
 #include <lightbin/detail/avx2.hpp>
 #include <lightbin/detail/avx512.hpp>
+#include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/neon.hpp>
@@ -38,7 +39,7 @@ inline RowSpanKernel row_span_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.row_span_kernel(); });
 }
 
-/// For blocks of `columns` columns or more: of this tier or the widest below it whose vectors are no wider.
+/// For rows of `columns` samples or more: of this tier or the widest below it whose vectors are no wider.
 inline DepthKernels depth_kernels(Isa isa, std::size_t columns) {
     if (with_tier(isa, [=](auto tier) { return columns >= tier.vector; }))
         return with_tier(isa, [](auto tier) { return tier.depth_kernels(); });
@@ -53,14 +54,8 @@ template <class Id> BinKernel<Id> scatter_kernel(Isa isa) {
 /// The fastest kernel for `lights` lights in view whose rectangles have `area` tiles in all.
 template <Footprint footprint, DepthTest depth_test, class Id>
 BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint32_t lights, std::uint64_t area) {
-    if constexpr (!masked<footprint, depth_test>) {
-        // A walk over all supertiles costs as much as scattering some entries a tile; putting a light in their lists,
-        // where neither compress nor scanning does it, as scattering it to 48 tiles.
-        const std::uint64_t tiles = view.tile_count();
-        const bool scatter = isa == Isa::avx512 ? area <= tiles && lights < tiles / 16
-                             : isa == Isa::avx2 ? area < 3 * tiles
-                                                : area < 6 * tiles + std::uint64_t{48} * lights;
-        if (isa == Isa::scalar || scatter) return scatter_kernel<Id>(isa);
+    if constexpr (!with_words<footprint, depth_test>) {
+        if (scatter_is_faster(isa, view.tile_count(), lights, area)) return scatter_kernel<Id>(isa);
     }
     return with_tier(isa, [](auto tier) { return tier.template bin_kernel<footprint, depth_test, Id>(); });
 }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The text of all kernels, in one order: a tier is a file that opens a namespace of its own, defines what is named below,
-// includes this once and closes. A new kernel is its text, a line here and a line in Tier; a new tier is a file, and a line
-// in kernels.hpp.
+// The text of all kernels, in one order: a tier is a file that opens a namespace of its own, defines what is named
+// below, includes this once and closes. A new kernel is its text, a line here and a line in Tier; a new tier is a
+// file, and a line in kernels.hpp.
 //
 // A tier defines
 //   LIGHTBIN_TARGET                what its functions are declared with: their instructions
 //   lanes, double_lanes            floats and doubles in a vector
 //   FloatRegister, DoubleRegister  the compiler's types for what they lie in
-//   Floats, Doubles                vectors with + - * / and a sign, made of one number for all lanes (vector.inl); sqrt, mul
+//   Floats, Doubles                vectors with + - * / and a sign, made of one number for all lanes (vector.inl);
+//                                  sqrt, mul
 //   less, less_equal               of two vectors: a mask
 //   both, either, and_not, bits    of masks; bits: a bit a lane
 //   select, lesser, greater        a where the mask is set, else b; with NaN in a, b
@@ -15,12 +16,22 @@
 //   load_spheres                   `lanes` spheres as four vectors
 //   store_tiles, store_spans       numbers of tiles, cut off to 16 bits
 //   append_visible, split_bits     as in portable.hpp, or that
-// and
-//   Packed, packs_ids, append      for supertile.inl: ids in the form that append() takes, see portable.hpp and sse2.hpp
-//   LIGHTBIN_TIER_HAS_ROWS         defined: has Rows and Tiles, for scatter.inl; else a lay_out_rows of its own
-//   LIGHTBIN_TIER_SCANS            defined: lists are made by scan.inl
+//   ListId                         of what the lists are made: std::uint32_t, or std::uint16_t where ids are in blocks
+// for step 3, emit.inl,
+//   Packed, packs_ids, append      ids in the form that append() takes, see portable.hpp and sse2.hpp
 // or
-//   LIGHTBIN_TIER_COMPRESSES       defined: bins by compress.inl, and scatters as AVX2 does
+//   LIGHTBIN_TIER_COMPRESSES       defined: emits by emit_compress.inl; scatters, and arranges cells, as AVX2 does
+// for step 1, lists_scan.inl, where it has fast vectors of bytes,
+//   LIGHTBIN_TIER_HAS_BYTES        defined: and so are these
+//   Bytes, ByteMask, byte_lanes    a vector of bytes without sign, a bit a byte, how many
+//   load_bytes, all_bytes          from memory; every byte the same
+//   &, lesser, subtract            of two vectors; a difference is not less than 0
+//   look_up, not_zero              in a table of 16 bytes; which bytes are not 0
+//   coordinates                    how far as many numbers of 16 bits, plus `more`, are beyond `begin`: 0 to 255
+//   ByteIds, load_ids, count_ids   as many list entries: of ids, of list entries; `first`, first + 1 ...
+//   append_chosen                  stores the chosen bytes or entries side by side, and then what means nothing
+// for scatter.hpp
+//   LIGHTBIN_TIER_HAS_ROWS         defined: has Rows and Tiles, for scatter.inl; else lay_out_rows and fill_empty
 
 #include <lightbin/detail/vectors.inl>
 
@@ -30,21 +41,27 @@
 
 #include <lightbin/detail/silhouette.inl>
 
-#include <lightbin/detail/tile_masks.inl>
-
-#if defined(LIGHTBIN_TIER_COMPRESSES)
-#include <lightbin/detail/compress.inl>
-#else
 #if defined(LIGHTBIN_TIER_HAS_ROWS)
 #include <lightbin/detail/scatter.inl>
 #endif
-#if defined(LIGHTBIN_TIER_SCANS)
-#include <lightbin/detail/scan.inl>
+
+#if defined(LIGHTBIN_TIER_HAS_BYTES)
+#include <lightbin/detail/lists_scan.inl>
 #else
-inline constexpr bool scans_lists = false;
+#include <lightbin/detail/lists_insert.inl>
 #endif
-#include <lightbin/detail/supertile.inl>
+
+#if defined(LIGHTBIN_TIER_COMPRESSES)
+#include <lightbin/detail/emit_compress.inl>
+#else
+#include <lightbin/detail/cells.inl>
+
+#include <lightbin/detail/emit.inl>
 #endif
+
+#include <lightbin/detail/words.inl>
+
+#include <lightbin/detail/bin.inl>
 
 /// What the tier hands out, see kernels.hpp.
 struct Tier {
@@ -55,25 +72,19 @@ struct Tier {
     static DepthKernels depth_kernels() { return {column_extremes, column_gaps}; }
 
     template <Footprint footprint, DepthTest depth_test, class Id> static BinKernel<Id> bin_kernel() {
-#if defined(LIGHTBIN_TIER_COMPRESSES)
-        return bin_compress<footprint, depth_test, Id>;
-#else
         return bin_supertiles<footprint, depth_test, Id>;
-#endif
     }
 
     template <class Id> static BinKernel<Id> scatter_kernel() {
 #if defined(LIGHTBIN_TIER_COMPRESSES)
-        return avx2::bin_rectangles<Id>;
-#elif defined(LIGHTBIN_TIER_HAS_ROWS)
-        return bin_rectangles<Id>;
+        return avx2::Tier::scatter_kernel<Id>();
 #else
-        return bin_scatter<Id, lay_out_rows<Id>>;
+        return bin_scatter<Id, lay_out_rows<Id>, fill_empty>;
 #endif
     }
 };
 
 #undef LIGHTBIN_TARGET
 #undef LIGHTBIN_TIER_HAS_ROWS
-#undef LIGHTBIN_TIER_SCANS
+#undef LIGHTBIN_TIER_HAS_BYTES
 #undef LIGHTBIN_TIER_COMPRESSES

@@ -16,6 +16,7 @@ namespace neon {
 
 using FloatRegister = float32x4_t;
 using DoubleRegister = float64x2_t;
+using ListId = std::uint32_t;
 inline constexpr std::uint32_t lanes = 4, double_lanes = 2;
 
 inline float32x4_t all_lanes(float each) {
@@ -170,7 +171,6 @@ inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, st
     portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);
 }
 using portable::append;
-using portable::pack;
 using portable::Packed;
 using portable::packs_ids;
 using portable::split_bits;

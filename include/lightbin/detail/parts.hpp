@@ -4,6 +4,7 @@
 #pragma once
 
 #include <lightbin/detail/buffer.hpp>
+#include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/parallel.hpp>
@@ -29,7 +30,7 @@ void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
                 std::size_t count) {
     // Each run of lights adds its widths to the steps between rows, in a column of its own.
     const std::size_t rows = static_cast<std::size_t>(job.camera->y.tiles), pitch = rows + 1;
-    std::uint64_t* row_area = sums.room(std::uint64_t{pitch} * job.runs.size());
+    std::uint64_t* row_area = sums.reserve(std::uint64_t{pitch} * job.runs.size());
     parallel.run(job.runs.size(), [&](std::size_t run) {
         std::uint64_t* steps = row_area + run * pitch;
         std::fill_n(steps, pitch, 0u);
@@ -40,8 +41,7 @@ void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
         }
     });
     std::uint64_t step_sum = 0, work = 0;
-    const std::uint64_t row_work =
-        static_cast<std::uint64_t>(job.camera->x.tiles);  // of a row without lights
+    const std::uint64_t row_work = empty_row_cost(static_cast<std::uint64_t>(job.camera->x.tiles));
     for (std::size_t row = 0; row < rows; ++row) {
         for (std::size_t run = 0; run < job.runs.size(); ++run)
             step_sum += row_area[run * pitch + row];
@@ -68,4 +68,4 @@ void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
     }
 }
 
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ways to do, without special instructions, what a tier must define and some tiers do faster: a tier names those it takes.
+// Ways to do, without special instructions, what a tier must define and some tiers do faster: a tier names those it
+// takes.
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
@@ -34,7 +35,7 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     for (unsigned i = 0; i < 64; i += 8) {
         std::uint64_t eight;
         std::memcpy(&eight, bytes + i, 8);
-        eight = turned(eight);
+        eight = transpose_bits(eight);
         for (unsigned bit = 0; bit < 8; ++bit)
             words[bit] = (i == 0 ? 0 : words[bit]) | (eight >> 8 * bit & 0xff) << i;
     }
@@ -43,7 +44,6 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
 /// The form in which append() takes ids, one after another: as they are.
 template <class Id> using Packed = std::uint32_t;
 inline constexpr bool packs_ids = false;
-void pack(const std::uint32_t* ids, std::uint32_t count, std::uint32_t* to);  // not called
 
 /// Writes those of 8 ids whose bit is set, in order, then elements that mean nothing: every id is written, and
 /// the place moves on for those chosen. Returns how many.

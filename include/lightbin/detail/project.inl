@@ -33,7 +33,7 @@ LIGHTBIN_TARGET inline void tangent_slopes(Reals c, Reals z, Reals r, Reals e, R
 /// it exists: the corner is taken only when it is beyond doubt. The smallest slope is the largest of -c.
 LIGHTBIN_TARGET inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, Doubles& low,
                                            Doubles& high) {
-    const Doubles near_z = all(near_depth), zero = all(0.0), endless = all(HUGE_VAL);
+    const Doubles near_z = all(near_depth), zero = all(0.0), infinite = all(HUGE_VAL);
     const Doubles a = abs(c);
     const Doubles h2 = mul(r - (near_z - z), r + (near_z - z));  // half chord, squared
     const Doubles h2_error = mul(r, r) * 0x1p-50;
@@ -62,9 +62,9 @@ LIGHTBIN_TARGET inline void clipped_slopes(Doubles c, Doubles z, Doubles r, doub
     const Doubles outer = (az + rt) / e;
     const Doubles inner = select(behind, rt - az, mul(r - a, r + a)) / select(behind, e, rt + az);
     const Doubles high_outer = select(
-        outer_cut, outer_corner, select(both(sure, less(r, z)), outer + mul(abs(outer), error), endless));
+        outer_cut, outer_corner, select(both(sure, less(r, z)), outer + mul(abs(outer), error), infinite));
     const Doubles high_inner =
-        select(inner_cut, inner_corner, select(sure, inner + mul(abs(inner), error), endless));
+        select(inner_cut, inner_corner, select(sure, inner + mul(abs(inner), error), infinite));
     const auto negative = less(c, zero);
     low = -select(negative, high_outer, high_inner);
     high = select(negative, high_inner, high_outer);
@@ -182,15 +182,15 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const Sphere* spheres,
         }
         std::uint32_t careful_count = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
-            const Sphere* block = spheres + i;
+            const Sphere* from = spheres + i;
             const std::uint32_t used = here - i < lanes ? here - i : lanes;
             if (used < lanes) {
                 for (std::uint32_t lane = 0; lane < lanes; ++lane)
-                    padded[lane] = load_sphere(block + (lane < used ? lane : 0));
-                block = padded;
+                    padded[lane] = load_sphere(from + (lane < used ? lane : 0));
+                from = padded;
             }
             Floats x, y, z, r;
-            load_spheres(block, x, y, z, r);
+            load_spheres(from, x, y, z, r);
             x = x * camera.x.sign;
             y = y * camera.y.sign;
             z = z * camera.z_sign;

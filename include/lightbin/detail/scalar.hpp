@@ -14,6 +14,7 @@ using Floats = float;
 using Doubles = double;
 using FloatRegister = float;
 using DoubleRegister = double;
+using ListId = std::uint32_t;
 inline constexpr std::uint32_t lanes = 1, double_lanes = 1;
 
 // One lane: numbers are their own vectors, and a mask is a bool. Of floats and of doubles.
@@ -75,10 +76,10 @@ inline void store_spans(RowSpan* spans, double first, double last) {
 
 /// See LayOutRows.
 template <class Id>
-std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end, const Tile*,
+std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end, const ListRange*,
                            std::uint32_t at) {
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles), pitch = width + 1;
-    std::uint32_t* steps = scratch.corners.room(pitch * (end - begin));
+    std::uint32_t* steps = scratch.corners.reserve(pitch * (end - begin));
     std::memset(steps, 0, pitch * (end - begin) * sizeof *steps);
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i)
@@ -87,7 +88,7 @@ std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned beg
                 ++steps[(y - begin) * pitch + job.lights.x0[i]];
                 --steps[(y - begin) * pitch + job.lights.x1[i] + 1];
             }
-    Tile* tile = job.tiles + begin * width;
+    ListRange* tile = job.tiles + begin * width;
     for (unsigned y = begin; y < end; ++y, steps += pitch)
         for (std::uint32_t x = 0, count = 0; x < width; ++x) {
             count += steps[x];
@@ -97,12 +98,18 @@ std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned beg
     return at;
 }
 
+inline void fill_empty(ListRange* tiles, std::size_t count, std::uint32_t at) {
+    if (at == 0)
+        std::memset(static_cast<void*>(tiles), 0, count * sizeof *tiles);
+    else
+        std::fill_n(tiles, count, ListRange{at, 0});
+}
+
 inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
                            unsigned visible, const ChunkRects& rects, std::uint32_t first) {
     portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);
 }
 using portable::append;
-using portable::pack;
 using portable::Packed;
 using portable::packs_ids;
 using portable::split_bits;

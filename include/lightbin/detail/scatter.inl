@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The counts and prefix sums of scatter.hpp. A vector is a column of a band, a lane a tile row: sums along rows are
 // then plain additions, where lanes along a row would have to be shuffled up for each. What is shuffled instead is
-// the result, a square of tiles at a time. Also the stores of empty tiles, and the kernel that scatter_kernel() gives.
-// Included once a tier of vectors, after its Rows: a vector of counts with + and -; all_rows(count); last_row(rows), the last
-// one in all; low_pairs and high_pairs(ends, counts), half of the rows as Tiles each, see BandTiles; and transpose(Tiles*), of a
-// square of tiles.
+// the result, a square of tiles at a time. Also the stores of empty tiles. Included once a tier of vectors, after
+// its Rows: a vector of counts with + and -; all_rows(count); last_row(rows), the last one in all; low_pairs and
+// high_pairs(ends, counts), half of the rows as Tiles each, see BandTiles; and transpose(Tiles*), of a square of
+// tiles.
 
 inline constexpr unsigned band_rows = sizeof(Rows) / 4, tiles_stored = band_rows / 2;
 using EachRow = std::make_integer_sequence<int, band_rows>;
@@ -40,7 +40,7 @@ struct BandTiles {
 
 /// Stores transposed tiles, row after row: so what is beyond a row's end is overwritten by the next row.
 template <int... i>
-LIGHTBIN_TARGET inline void store(const BandTiles& tiles, Tile* column, std::size_t width,
+LIGHTBIN_TARGET inline void store(const BandTiles& tiles, ListRange* column, std::size_t width,
                                   std::integer_sequence<int, i...>) {
     (std::memcpy(static_cast<void*>(column + i * width),
                  &(i / 2 % 2 == 0 ? tiles.low : tiles.high)[i / 4 * 2 + i % 2], sizeof(Tiles)),
@@ -68,7 +68,7 @@ LIGHTBIN_TARGET inline void take_column(const std::uint32_t* steps, std::uint32_
 template <int... i>
 LIGHTBIN_TARGET inline void lay_out(const std::uint32_t* steps, std::uint32_t* above,
                                     const std::uint32_t* row_ends, std::size_t columns, std::size_t width,
-                                    Tile* rows, std::integer_sequence<int, i...>) {
+                                    ListRange* rows, std::integer_sequence<int, i...>) {
     constexpr int most = tiles_stored - 1;
     Rows ends = load_rows(row_ends), counts = {};
     BandTiles tiles;
@@ -86,7 +86,7 @@ LIGHTBIN_TARGET inline void lay_out(const std::uint32_t* steps, std::uint32_t* a
 /// See LayOutRows.
 template <class Id>
 LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned begin,
-                                           unsigned end, const Tile* writable, std::uint32_t at) {
+                                           unsigned end, const ListRange* writable, std::uint32_t at) {
     const FootprintArrays lights = job.lights;  // a copy, that no store can change
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
     const std::size_t columns = (width + 3) / 4 * 4;  // in whole vectors
@@ -96,7 +96,7 @@ LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scrat
     // column before its first the opposite.
     const std::size_t pitch = (columns + 1) * band_rows;  // from the column before the first
     const std::size_t size = pitch * (band_count + 1) + band_count * band_rows;
-    std::uint32_t* steps = scratch.corners.room(size + 16);
+    std::uint32_t* steps = scratch.corners.reserve(size + 16);
     steps += -reinterpret_cast<std::uintptr_t>(steps) % 64 / sizeof *steps;
     std::memset(steps, 0, size * sizeof *steps);
     std::uint32_t *above = steps + pitch * band_count, *row_ends = above + pitch;
@@ -123,11 +123,11 @@ LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scrat
     for (std::size_t row = 0; row < band_count * band_rows; ++row)
         row_ends[row] = at += entries += row_ends[row];
 
-    Tile* tile = job.tiles + begin * width;
+    ListRange* tile = job.tiles + begin * width;
     for (std::size_t row = 0; row < height; row += band_rows, steps += pitch, tile += band_rows * width) {
         // Beyond a band's tiles there are others still to be written, or another thread's.
         const std::size_t own = static_cast<std::size_t>(writable - tile), stored = band_rows * width + 4;
-        Tile* rows = own < stored ? scratch.last_rows.room(stored) : tile;
+        ListRange* rows = own < stored ? scratch.last_rows.reserve(stored) : tile;
         lay_out(steps + band_rows, above, row_ends + row, columns, width, rows, EachTile{});
         if (rows != tile) std::copy_n(rows, (std::min)(own, band_rows * width), tile);
     }
@@ -135,49 +135,24 @@ LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scrat
 }
 
 /// Stores sixteen tiles, two cache lines if aligned: with one a loop, what the loop itself takes would show.
-LIGHTBIN_TARGET inline void fill_lines(Tile* tiles, const Tiles& value) {
+LIGHTBIN_TARGET inline void fill_lines(ListRange* tiles, const Tiles& value) {
     for (std::size_t i = 0; i < 16; i += tiles_stored)
         std::memcpy(static_cast<void*>(tiles + i), &value, sizeof value);
 }
 
-/// Tiles without lights, at a place in the index list. Narrow vectors are slower than memset, which can write place 0
-/// alone; others are faster. The lines between the first and the last, which may overlap others, are aligned as far as
-/// the table's address allows.
-LIGHTBIN_TARGET inline void fill_empty(Tile* tiles, std::size_t count, std::uint32_t at) {
+/// Tiles without lights, at a place in the index list. Narrow vectors are slower than memset, which can write place
+/// 0 alone; others are faster. The lines between the first and the last, which may overlap others, are aligned as
+/// far as the table's address allows.
+LIGHTBIN_TARGET inline void fill_empty(ListRange* tiles, std::size_t count, std::uint32_t at) {
     if constexpr (tiles_stored == 2)
         if (at == 0)
             return static_cast<void>(std::memset(static_cast<void*>(tiles), 0, count * sizeof *tiles));
-    if (count < 16) return static_cast<void>(std::fill_n(tiles, count, Tile{at, 0}));
+    if (count < 16) return static_cast<void>(std::fill_n(tiles, count, ListRange{at, 0}));
     const Tiles empty = low_pairs(all_rows(at), Rows{});
-    Tile* const last = tiles + count - 16;
+    ListRange* const last = tiles + count - 16;
     fill_lines(tiles, empty);
     tiles += 8 - reinterpret_cast<std::uintptr_t>(tiles) / sizeof *tiles % 8;
     for (; tiles < last; tiles += 16)
         fill_lines(tiles, empty);
     fill_lines(last, empty);
-}
-
-/// Bins as bin_scatter does. A light that is alone in view, or none, needs no sums, and its list is only its id.
-template <class Id>
-LIGHTBIN_TARGET std::uint64_t bin_rectangles(const BinJob<Id>& job, Scratch& scratch,
-                                             const BandJob<Id>& bands) {
-    const FootprintRun run = job.runs.front();
-    if (job.runs.size() > 1 || run.end - run.begin > 1)
-        return bin_scatter<Id, lay_out_rows<Id>>(job, scratch, bands);
-    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
-    Tile *tile = job.tiles + bands.begin * width, *const end = job.tiles + bands.end * width;
-    std::uint32_t at = bands.at;
-    if (run.begin < run.end) {
-        const std::size_t x0 = job.lights.x0[run.begin], x1 = job.lights.x1[run.begin] + std::size_t{1};
-        const unsigned y1 = (std::min)(job.lights.y1[run.begin] + 1u, bands.end);
-        for (unsigned y = (std::max<unsigned>)(job.lights.y0[run.begin], bands.begin); y < y1; ++y) {
-            Tile* const row = job.tiles + y * width;
-            fill_empty(tile, static_cast<std::size_t>(row + x0 - tile), at);
-            for (tile = row + x0; tile < row + x1; ++tile)
-                *tile = {at++, 1};
-        }
-        std::fill_n(bands.out, at - bands.at, static_cast<Id>(job.lights.ids[run.begin]));
-    }
-    fill_empty(tile, static_cast<std::size_t>(end - tile), at);
-    return at - bands.at;
 }

@@ -18,6 +18,7 @@ namespace sse2 {
 
 using FloatRegister = __m128;
 using DoubleRegister = __m128d;
+using ListId = std::uint32_t;
 inline constexpr std::uint32_t lanes = 4, double_lanes = 2;
 
 LIGHTBIN_TARGET inline __m128 all_lanes(float each) {
@@ -26,88 +27,45 @@ LIGHTBIN_TARGET inline __m128 all_lanes(float each) {
 LIGHTBIN_TARGET inline __m128 negated(__m128 a) {
     return _mm_xor_ps(a, _mm_set1_ps(-0.0f));
 }
+LIGHTBIN_TARGET inline __m128 less_lanes(__m128 a, __m128 b) {
+    return _mm_cmplt_ps(a, b);
+}
+LIGHTBIN_TARGET inline __m128 less_equal_lanes(__m128 a, __m128 b) {
+    return _mm_cmple_ps(a, b);
+}
+LIGHTBIN_TARGET inline __m128 select_lanes(__m128 mask, __m128 a, __m128 b) {
+    return _mm_or_ps(_mm_and_ps(mask, a), _mm_andnot_ps(mask, b));
+}
 
 #define LIGHTBIN_VECTOR Floats
+#define LIGHTBIN_MASK Mask
 #define LIGHTBIN_ELEMENT float
 #define LIGHTBIN_REGISTER __m128
 #define LIGHTBIN_OP(name) _mm_##name##_ps
 #include <lightbin/detail/vector.inl>
 
-/// All ones or all zeros a lane.
-struct Mask {
-    __m128 v;
-};
-LIGHTBIN_TARGET inline Mask less(Floats a, Floats b) {
-    return {_mm_cmplt_ps(a, b)};
-}
-LIGHTBIN_TARGET inline Mask less_equal(Floats a, Floats b) {
-    return {_mm_cmple_ps(a, b)};
-}
-LIGHTBIN_TARGET inline Mask both(Mask a, Mask b) {
-    return {_mm_and_ps(a.v, b.v)};
-}
-LIGHTBIN_TARGET inline Mask either(Mask a, Mask b) {
-    return {_mm_or_ps(a.v, b.v)};
-}
-LIGHTBIN_TARGET inline Mask and_not(Mask a, Mask b) {
-    return {_mm_andnot_ps(b.v, a.v)};
-}
-LIGHTBIN_TARGET inline Floats select(Mask mask, Floats a, Floats b) {
-    return _mm_or_ps(_mm_and_ps(mask.v, a), _mm_andnot_ps(mask.v, b));
-}
-LIGHTBIN_TARGET inline Floats lesser(Floats a, Floats b) {
-    return _mm_min_ps(a, b);
-}
-LIGHTBIN_TARGET inline Floats greater(Floats a, Floats b) {
-    return _mm_max_ps(a, b);
-}
-LIGHTBIN_TARGET inline unsigned bits(Mask mask) {
-    return static_cast<unsigned>(_mm_movemask_ps(mask.v));
-}
 LIGHTBIN_TARGET inline __m128d all_lanes(double each) {
     return _mm_set1_pd(each);
 }
 LIGHTBIN_TARGET inline __m128d negated(__m128d a) {
     return _mm_xor_pd(a, _mm_set1_pd(-0.0));
 }
+LIGHTBIN_TARGET inline __m128d less_lanes(__m128d a, __m128d b) {
+    return _mm_cmplt_pd(a, b);
+}
+LIGHTBIN_TARGET inline __m128d less_equal_lanes(__m128d a, __m128d b) {
+    return _mm_cmple_pd(a, b);
+}
+LIGHTBIN_TARGET inline __m128d select_lanes(__m128d mask, __m128d a, __m128d b) {
+    return _mm_or_pd(_mm_and_pd(mask, a), _mm_andnot_pd(mask, b));
+}
 
 #define LIGHTBIN_VECTOR Doubles
+#define LIGHTBIN_MASK DoubleMask
 #define LIGHTBIN_ELEMENT double
 #define LIGHTBIN_REGISTER __m128d
 #define LIGHTBIN_OP(name) _mm_##name##_pd
 #include <lightbin/detail/vector.inl>
-
-/// All ones or all zeros a lane.
-struct DoubleMask {
-    __m128d v;
-};
-LIGHTBIN_TARGET inline DoubleMask less(Doubles a, Doubles b) {
-    return {_mm_cmplt_pd(a, b)};
-}
-LIGHTBIN_TARGET inline DoubleMask less_equal(Doubles a, Doubles b) {
-    return {_mm_cmple_pd(a, b)};
-}
-LIGHTBIN_TARGET inline DoubleMask both(DoubleMask a, DoubleMask b) {
-    return {_mm_and_pd(a.v, b.v)};
-}
-LIGHTBIN_TARGET inline DoubleMask either(DoubleMask a, DoubleMask b) {
-    return {_mm_or_pd(a.v, b.v)};
-}
-LIGHTBIN_TARGET inline DoubleMask and_not(DoubleMask a, DoubleMask b) {
-    return {_mm_andnot_pd(b.v, a.v)};
-}
-LIGHTBIN_TARGET inline Doubles select(DoubleMask mask, Doubles a, Doubles b) {
-    return _mm_or_pd(_mm_and_pd(mask.v, a), _mm_andnot_pd(mask.v, b));
-}
-LIGHTBIN_TARGET inline Doubles lesser(Doubles a, Doubles b) {
-    return _mm_min_pd(a, b);
-}
-LIGHTBIN_TARGET inline Doubles greater(Doubles a, Doubles b) {
-    return _mm_max_pd(a, b);
-}
-LIGHTBIN_TARGET inline unsigned bits(DoubleMask mask) {
-    return static_cast<unsigned>(_mm_movemask_pd(mask.v));
-}
 
 /// Counts of a column's tiles, and tiles: for scatter.inl.
 struct Rows {
@@ -228,7 +186,6 @@ inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, st
                            unsigned visible, const ChunkRects& rects, std::uint32_t first) {
     portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);
 }
-
 #define LIGHTBIN_TIER_HAS_ROWS
 #include <lightbin/detail/kernels.inl>
 

@@ -6,6 +6,7 @@
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/platform.hpp>
+#include <lightbin/detail/scratch.hpp>
 #include <lightbin/options.hpp>
 
 #include <cstdint>
@@ -13,9 +14,9 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
-/// Lights have a word with a bit a tile in each supertile, rather than a byte of columns and one of rows.
+/// Lights have a word with a bit per tile in each supertile, rather than a byte of columns and one of rows.
 template <Footprint footprint, DepthTest depth_test>
-inline constexpr bool masked = footprint != Footprint::rectangle || depth_test != DepthTest::none;
+inline constexpr bool with_words = footprint != Footprint::rectangle || depth_test != DepthTest::none;
 
 /// Planes of 64 floats that a depth test needs of a supertile, see arrange_cells().
 template <DepthTest depth_test>
@@ -24,18 +25,24 @@ inline constexpr unsigned cell_planes = depth_test == DepthTest::split_box ? 12
                                                                            : 2;
 inline constexpr unsigned next_box = 64 * cell_planes<DepthTest::box>;  ///< floats from a box to the next
 
+/// The lists of a band, one a supertile, and the ids in them.
+template <class ListId> struct BandLists {
+    SupertileList* lists;  ///< null: no light meets the band
+    ListId* ids;
+    bool few;   ///< most lists are of up to 8 lights, as far as is known
+    bool wide;  ///< some ids have more than 16 bits
+};
+
 /// The most places that a kernel's lists can take, which it counts in 32 bits: one for each light and supertile that
-/// its rectangle meets, wherever the supertiles begin, and what fills up a list, or each of a band's blocks of ids.
+/// its rectangle meets, wherever the supertiles begin, and what fills up a list.
 template <class Id> std::uint64_t list_places(const BinJob<Id>& job) {
     const std::uint64_t width = static_cast<std::uint64_t>(job.camera->x.tiles) / 8 + 3,
                         height = static_cast<std::uint64_t>(job.camera->y.tiles) / 8 + 3;
     std::uint64_t places = 64 * width * height;
-    for (const FootprintRun& run : job.runs) {
-        places += 64 * width * ((run.end - run.begin) / 0x10000 + 2);
+    for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i)
             places += (job.lights.x1[i] / 8u - job.lights.x0[i] / 8u + std::uint64_t{1}) *
                       ((job.lights.y1[i] - job.lights.y0[i] + 7u) / 8 + 1);
-    }
     return places;
 }
 
@@ -51,8 +58,8 @@ inline std::uint64_t spread_rows(std::uint8_t rows) {
     return ((one_each + 0x7f7f7f7f7f7f7f7f) >> 7 & 0x0101010101010101) * 0xff;
 }
 
-/// 8x8 bits turned: byte i bit j to byte j bit i (Warren, "Hacker's Delight", 7-3).
-inline std::uint64_t turned(std::uint64_t x) {
+/// 8x8 bits transposed: byte i bit j to byte j bit i (Warren, "Hacker's Delight", 7-3).
+inline std::uint64_t transpose_bits(std::uint64_t x) {
     std::uint64_t t = (x ^ x >> 7) & 0x00aa00aa00aa00aa;
     x ^= t ^ t << 7;
     t = (x ^ x >> 14) & 0x0000cccc0000cccc;
@@ -61,13 +68,13 @@ inline std::uint64_t turned(std::uint64_t x) {
     return x ^ t ^ t << 28;
 }
 
-/// Turns the words of up to 8 lights, a bit a tile, into a byte a tile, a bit a light.
-inline void turn_words(const std::uint64_t* words, std::uint32_t count, std::uint8_t* tiles) {
+/// Transposes the words of up to 8 lights, a bit per tile, to a byte per tile, a bit a light.
+inline void transpose_words(const std::uint64_t* words, std::uint32_t count, std::uint8_t* tiles) {
     for (unsigned row = 0; row < 8; ++row) {
         std::uint64_t of_row = 0;
         for (unsigned light = 0; light < count; ++light)
             of_row |= (words[light] >> 8 * row & 0xff) << 8 * light;
-        of_row = turned(of_row);
+        of_row = transpose_bits(of_row);
         for (unsigned column = 0; column < 8; ++column)
             tiles[8 * row + column] = static_cast<std::uint8_t>(of_row >> 8 * column);
     }

@@ -3,6 +3,7 @@
 // the types of the kernels.
 #pragma once
 
+#include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/platform.hpp>
@@ -25,7 +26,7 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
-// See project.inl, silhouette.inl, depth_columns.inl; supertile.inl, compress.inl and scatter.inl.
+// See project.inl, silhouette.inl, depth_columns.inl; bin.inl and scatter.hpp.
 using ProjectKernel = void (*)(const Camera& camera, const Sphere* spheres, std::uint32_t count,
                                std::uint32_t first_id, const FootprintArrays& out, ProjectCounts& counts);
 using RowSpanKernel = void (*)(const Camera& camera, const FootprintArrays& lights, FootprintRun run,

@@ -6,7 +6,12 @@
 //   LIGHTBIN_REGISTER    the compiler's type for the register
 //   LIGHTBIN_OP(name)    the intrinsic of add, sub, mul, div, sqrt
 //
-// and functions all_lanes(element) and negated(register).
+// and functions all_lanes(element) and negated(register). Where masks lie in such registers too, all ones or all
+// zeros a lane,
+//
+//   LIGHTBIN_MASK        the name of their class; LIGHTBIN_OP then has min, max, and, or, andnot, movemask, too
+//
+// and functions less_lanes, less_equal_lanes and select_lanes of registers.
 
 struct LIGHTBIN_VECTOR {
     LIGHTBIN_VECTOR() = default;
@@ -42,6 +47,40 @@ LIGHTBIN_TARGET inline LIGHTBIN_VECTOR mul(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b)
     LIGHTBIN_FORGET(product.v);
     return product;
 }
+
+#if defined(LIGHTBIN_MASK)
+struct LIGHTBIN_MASK {
+    LIGHTBIN_REGISTER v;
+};
+LIGHTBIN_TARGET inline LIGHTBIN_MASK less(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
+    return {less_lanes(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline LIGHTBIN_MASK less_equal(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
+    return {less_equal_lanes(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline LIGHTBIN_MASK both(LIGHTBIN_MASK a, LIGHTBIN_MASK b) {
+    return {LIGHTBIN_OP(and)(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline LIGHTBIN_MASK either(LIGHTBIN_MASK a, LIGHTBIN_MASK b) {
+    return {LIGHTBIN_OP(or)(a.v, b.v)};
+}
+LIGHTBIN_TARGET inline LIGHTBIN_MASK and_not(LIGHTBIN_MASK a, LIGHTBIN_MASK b) {
+    return {LIGHTBIN_OP(andnot)(b.v, a.v)};
+}
+LIGHTBIN_TARGET inline unsigned bits(LIGHTBIN_MASK mask) {
+    return static_cast<unsigned>(LIGHTBIN_OP(movemask)(mask.v));
+}
+LIGHTBIN_TARGET inline LIGHTBIN_VECTOR select(LIGHTBIN_MASK mask, LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
+    return select_lanes(mask.v, a.v, b.v);
+}
+LIGHTBIN_TARGET inline LIGHTBIN_VECTOR lesser(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
+    return LIGHTBIN_OP(min)(a.v, b.v);
+}
+LIGHTBIN_TARGET inline LIGHTBIN_VECTOR greater(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
+    return LIGHTBIN_OP(max)(a.v, b.v);
+}
+#undef LIGHTBIN_MASK
+#endif
 
 #undef LIGHTBIN_VECTOR
 #undef LIGHTBIN_ELEMENT

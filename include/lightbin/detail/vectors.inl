@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the vectors of all tiers have in common, written once. Included once a tier, after its vectors and masks. Reals is
-// either type of vector.
+// What the vectors of all tiers have in common, written once. Included once a tier, after its vectors and masks.
+// Reals is either type of vector.
 
 template <class Real> struct VectorOf { using Type = Floats; };
 template <> struct VectorOf<double> { using Type = Doubles; };

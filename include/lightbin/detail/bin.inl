@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// Binning by supertiles of 8x8 tiles, a band of them after another, in three steps. Included once a tier, after its
+// steps.
+//
+//   1. Lists: which lights meet which supertile, with a byte of the columns and a byte of the rows that each covers
+//      there (lists_insert.inl, lists_scan.inl).
+//   2. Words: which of its tiles each light is in, by its rectangle, row spans and depth (words.inl), as bits.
+//   3. Emit: the lights of each tile, those whose bit is set (emit.inl, emit_compress.inl). Tiles are taken in
+//      row-major order, so the index list is written strictly in sequence: no count pass over tiles, no scatter, no
+//      sort.
+
+/// The number of entries of the grid.
+template <Footprint footprint, DepthTest depth_test, class Id>
+LIGHTBIN_TARGET std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scratch) {
+    const BandJob<Id> bands = {0, static_cast<unsigned>(job.camera->y.tiles), nullptr, 0};
+    const unsigned width = (static_cast<unsigned>(job.camera->x.tiles) + 7) / 8;
+    ListedBands listed;
+    std::uint64_t entries = 0;
+    for (unsigned top = bands.begin; top < bands.end; top += 8) {
+        const BandLists<ListId> band =
+            make_lists<with_words<footprint, depth_test>>(job, scratch, bands, top, width, listed);
+        for (unsigned x = 0; band.lists != nullptr && x < width; ++x) {
+            if (band.lists[x].count == 0) continue;
+            const std::uint32_t left =
+                mask_lights<footprint, depth_test>(job, scratch, x, top, band.lists[x], band.ids);
+            for (std::uint32_t i = 0; i < left; ++i)
+                entries += static_cast<unsigned>(std::popcount(scratch.masks.data()[i]));
+        }
+    }
+    return entries;
+}
+
+/// Bins the tile rows of `bands`. Returns the number of entries. May write BandJob::slack elements past them.
+template <Footprint footprint, DepthTest depth_test, class Id>
+LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scratch,
+                                             const BandJob<Id>& bands) {
+    constexpr bool worded = with_words<footprint, depth_test>;
+    const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles), width = (tiles_x + 7) / 8;
+    ListedBands listed;
+    Id* out = bands.out;
+    std::uint32_t at = bands.at;
+    for (unsigned top = bands.begin; top < bands.end; top += 8) {
+        const BandLists<ListId> band = make_lists<worded>(job, scratch, bands, top, width, listed);
+        const unsigned end_row = (std::min)(top + 8, bands.end);
+        if (band.lists == nullptr || !make_words<footprint, depth_test>(job, scratch, top, band, width)) {
+            fill_empty(job.tiles + top * std::size_t{tiles_x}, (end_row - top) * std::size_t{tiles_x}, at);
+            if (bands.spare_row >= top && bands.spare_row < end_row) out = bands.spare;
+            continue;
+        }
+        for (unsigned y = top; y < end_row; ++y) {
+            if (y == bands.spare_row) out = bands.spare;
+            ListRange* const tiles = job.tiles + y * std::size_t{tiles_x};
+            Id* const end = emit_row<worded>(out, tiles, tiles_x, at, scratch, band, y - top);
+            at += static_cast<std::uint32_t>(end - out);
+            out = end;
+        }
+    }
+    return at - bands.at;
+}

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// What a depth test needs to know of a supertile's tiles: their depths and the boxes around their cells, see
+// cell_boxes.hpp. Included once a tier whose vectors are no longer than a supertile's row, 8 floats.
+
+/// See cell_boxes.hpp.
+LIGHTBIN_TARGET inline void store_box(const Camera& camera, float* box, Floats x0, Floats x1, Floats y0,
+                                      Floats y1, Floats z0, Floats z1) {
+    const Floats zero = all(0.0f), front = camera.orthographic ? all(1.0f) : z0,
+                 back = camera.orthographic ? all(1.0f) : z1;
+    store_floats(box, z0);
+    store_floats(box + 64, z1);
+    store_floats(box + 128, mul(x0, select(less(x0, zero), back, front)) - all(flushed));
+    store_floats(box + 192, mul(x1, select(less(zero, x1), back, front)) + all(flushed));
+    store_floats(box + 256, mul(y0, select(less(y0, zero), back, front)) - all(flushed));
+    store_floats(box + 320, mul(y1, select(less(zero, y1), back, front)) + all(flushed));
+}
+
+/// Writes the boxes of some tiles' cells, or for split_box the two before and behind each one's gap. The tiles' Z
+/// bounds (minima, maxima, gap_min, gap_max) lie at place `at`.
+///
+/// Boxes are clamped to the near and far plane: lights in view meet the clamped depths just as the given ones.
+template <DepthTest depth_test>
+LIGHTBIN_TARGET inline void store_boxes(const Camera& camera, float* boxes, Floats x0, Floats x1, Floats y0,
+                                        Floats y1, const float* const (&bounds)[4], std::size_t at) {
+    const Floats front = all(camera.near_depth), back = all(camera.far_depth);
+    const Floats min = load_floats(bounds[0] + at), max = load_floats(bounds[1] + at);
+    const Floats largest = all(FLT_MAX);  // 0 * infinity is to be avoided
+    const Floats z0 = lesser(select(less(front, min), min, front), largest);
+    const Floats z1 = select(less(max, back), max, back);
+    if constexpr (depth_test == DepthTest::box) {
+        store_box(camera, boxes, x0, x1, y0, y1, z0, z1);
+    } else {
+        const Floats gap_min = load_floats(bounds[2] + at), gap_max = load_floats(bounds[3] + at);
+        const auto gap = less(gap_min, gap_max);
+        const Floats end = select(both(gap, less(gap_min, z1)), gap_min, z1);
+        const Floats begin = lesser(select(both(gap, less(z0, gap_max)), gap_max, z0), largest);
+        store_box(camera, boxes, x0, x1, y0, y1, z0, end);
+        store_box(camera, boxes + next_box, x0, x1, y0, y1, begin, z1);
+    }
+}
+
+/// Writes what a depth test needs to know of a supertile's tiles, from column 8 x and row `top` on, in planes
+/// of 64 floats: the minimum and maximum depth, for boxes followed by the ends along x and y; split_box has a
+/// second box. Returns a bit for each tile that has anything to light.
+template <DepthTest depth_test, class Id>
+LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, float* cells) {
+    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
+    const unsigned rows = (std::min)(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
+    const unsigned columns = (std::min)(8u, static_cast<unsigned>(width) - 8 * x);
+    constexpr float absent[] = {-infinity, infinity, infinity, -infinity};
+    std::uint64_t lit = 0;
+    for (unsigned row = 0; row < rows; ++row) {
+        float padded[4][8];
+        const float* sides[4];
+        for (unsigned side = 0; side < (depth_test == DepthTest::split_box ? 4 : 2); ++side) {
+            const float* given = job.bounds[side];
+            if (given != nullptr) given += (top + row) * width + 8 * x;
+            sides[side] = given;
+            if (given != nullptr && columns == 8) continue;
+            for (unsigned column = 0; column < 8; ++column)
+                padded[side][column] =
+                    given != nullptr ? given[(std::min)(column, columns - 1)] : absent[side];
+            sides[side] = padded[side];
+        }
+        for (unsigned column = 0; column < 8; column += lanes) {
+            const unsigned place = 8 * row + column;
+            const Floats min = load_floats(sides[0] + column), max = load_floats(sides[1] + column);
+            lit |= (~std::uint64_t{bits(less(max, min))} & ((1u << lanes) - 1)) << place;
+            if constexpr (depth_test == DepthTest::interval) {
+                store_floats(cells + place, min);
+                store_floats(cells + 64 + place, max);
+            } else {
+                const unsigned at_x = 8 * x + column, at_y = top + row;
+                store_boxes<depth_test>(*job.camera, cells + place, load_floats(job.edges[0] + at_x),
+                                        load_floats(job.edges[1] + at_x), all(job.edges[2][at_y]),
+                                        all(job.edges[3][at_y]), sides, column);
+            }
+        }
+    }
+    return lit;
+}

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// Step 3 of bin.inl, for tiers without a compress instruction, and the form of the words that it reads. Included
+// once such a tier, after its append().
+//
+// Words are 64 lights' columns, 8 words with a bit a light, and their rows, 8 more: the lights of tile (row,
+// column) are rows[row] & columns[column]. With row spans or a depth test they are 8 lights' 64 tiles, a byte per
+// tile with a bit a light.
+
+/// Stores what stands for the words of empty lists: nothing. Returns where it ends.
+inline std::uint32_t store_no_words(Scratch&) {
+    return 0;
+}
+
+/// The ids of a list in the form that append() takes.
+template <class Id>
+LIGHTBIN_TARGET inline Packed<Id>* packed_ids(const Scratch& scratch, const BandLists<ListId>& band,
+                                              const SupertileList& list) {
+    if constexpr (packs_ids)
+        return reinterpret_cast<Packed<Id>*>(scratch.packed_ids.data()) + (list.begin - band.lists->begin);
+    else
+        return band.ids + list.begin;
+}
+
+/// Stores the words of a list at list.words of scratch.words. Returns where they end.
+template <bool with_words, class Id>
+LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLists<ListId>& band,
+                                                 const SupertileList& list) {
+    const std::uint32_t groups = (list.count + 63) / 64, eights = (list.count + 7) / 8,
+                        end = list.words + (with_words ? 8 * eights : 16 * groups);
+    std::uint64_t* words = scratch.words.reserve(end, list.words) + list.words;
+    if constexpr (with_words) {
+        const std::uint64_t* masks = scratch.masks.data();
+        for (std::uint32_t i = 0; i < list.count; i += 8, words += 8)
+            transpose_words(masks + i, (std::min)(list.count - i, 8u),
+                            reinterpret_cast<std::uint8_t*>(words));
+    } else {
+        std::uint8_t* columns = scratch.list_columns.data() + list.begin;
+        const std::uint8_t* rows = scratch.list_rows.data() + list.begin;
+        std::memset(columns + list.count, 0, 64 * groups - list.count);
+        for (std::uint32_t i = 0; i < list.count; i += 64, words += 16) {
+            split_bits(columns + i, words);
+            split_bits(rows + i, words + 8);
+        }
+    }
+    if constexpr (packs_ids) {
+        const std::size_t before = list.begin - band.lists->begin, size = sizeof(Packed<Id>);
+        const std::uint64_t after = before + 64 * groups;
+        scratch.packed_ids.reserve(after * size, before * size);
+        pack(band.ids + list.begin, list.count, packed_ids<Id>(scratch, band, list));
+    }
+    return end;
+}
+
+/// Appends those of `count` ids, up to 64, whose bit is set. Returns the end.
+template <class Id, class Ids>
+LIGHTBIN_TARGET inline Id* append_64(Id* out, const Ids* ids, std::uint64_t chosen, std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; i += 16, chosen >>= 16) {
+        out += append(out, ids + i, static_cast<unsigned>(chosen & 0xff));
+        out += append(out, ids + i + 8, static_cast<unsigned>(chosen >> 8 & 0xff));
+    }
+    return out;
+}
+
+/// Appends the lights of a tile by its words: bytes[0], bytes[64] ... have 8 lights each. Returns the end. The usual
+/// lengths of a list have no loop to predict.
+template <class Id, class Ids>
+LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count,
+                                       const std::uint8_t* bytes) {
+    if (count <= 16) {
+        out += append(out, ids, bytes[0]);
+        if (count > 8) out += append(out, ids + 8, bytes[64]);
+        return out;
+    }
+    for (std::size_t i = 0; i < count; i += 8)
+        out += append(out, ids + i, bytes[i * 8]);
+    return out;
+}
+
+/// The same by the words of its column and its row: [0], [16] ... have 64 lights each.
+template <class Id, class Ids>
+LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count,
+                                       const std::uint64_t* column, const std::uint64_t* row) {
+    if (count <= 16) {
+        const std::uint64_t chosen = column[0] & row[0];
+        out += append(out, ids, static_cast<unsigned>(chosen & 0xff));
+        if (count > 8) out += append(out, ids + 8, static_cast<unsigned>(chosen >> 8));
+        return out;
+    }
+    if (count <= 64) return append_64(out, ids, column[0] & row[0], count);
+    for (std::uint32_t i = 0; i < count; i += 64)
+        out = append_64(out, ids + i, column[i / 4] & row[i / 4], (std::min)(count - i, 64u));
+    return out;
+}
+
+/// Emits a row of tiles, `row` of its supertiles. `at` is the offset of `out` in the index list. Returns the end.
+template <bool with_words, class Id>
+LIGHTBIN_TARGET Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t at, const Scratch& scratch,
+                             const BandLists<ListId>& band, unsigned row) {
+    const SupertileList* list = band.lists;
+    const ListRange* const end = tiles + tiles_x;
+    for (; tiles < end; tiles += 8, ++list) {
+        const std::ptrdiff_t columns = (std::min<std::ptrdiff_t>)(end - tiles, 8);
+        const Packed<Id>* const ids = packed_ids<Id>(scratch, band, *list);
+        const std::uint64_t* const words = scratch.words.data() + list->words;
+        const std::uint32_t count = list->count;
+        for (std::ptrdiff_t column = 0; column < columns; ++column) {
+            Id* const from = out;
+            if (count > 0) {
+                if constexpr (with_words)
+                    out = append_tile(out, ids, count,
+                                      reinterpret_cast<const std::uint8_t*>(words) + 8 * row + column);
+                else
+                    out = append_tile(out, ids, count, words + column, words + 8 + row);
+            }
+            const std::uint32_t length = static_cast<std::uint32_t>(out - from);
+            tiles[column] = {at, length};
+            at += length;
+        }
+    }
+    return out;
+}

@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: MIT
+// Step 3 of bin.inl on AVX-512, and the forms of the words that it reads. A compress instruction moves the places
+// of the set bits of 64 together, and a permutation makes ids of them.
+//
+// - Lists of up to 8, 16 or 31 lights: a compress does 8, 4 or 2 tiles of a row at once. For each row its 8 tiles'
+//   bits, a bit a light, 1, 2 or 4 words a row; before them the running numbers of set bits.
+// - Longer ones: as in emit.inl, a column's, row's or tile's words, 64 lights each, side by side.
+
+/// A vector's worth of place(0), place(1) ...
+template <class T, class Place> constexpr std::array<T, 64 / sizeof(T)> table_of(Place place) {
+    std::array<T, 64 / sizeof(T)> table = {};
+    for (unsigned i = 0; i < table.size(); ++i)
+        table[i] = static_cast<T>(place(i));
+    return table;
+}
+/// 0, 1, 2 ...
+inline constexpr auto byte_places = table_of<std::uint8_t>([](unsigned i) { return i; });
+/// 0 eight times, 1 eight times ...
+inline constexpr auto eight_each = table_of<std::uint8_t>([](unsigned i) { return i / 8; });
+/// Permutation of 64 bytes that transposes 8x8 of them.
+inline constexpr auto byte_transpose = table_of<std::uint8_t>([](unsigned i) { return i % 8 * 8 + i / 8; });
+/// Permutation of two vectors that takes an element of each in turn, from the first half of both.
+template <class T>
+inline constexpr auto interleave = table_of<T>([](unsigned i) { return i / 2 + i % 2 * (64 / sizeof(T)); });
+
+LIGHTBIN_TARGET inline __m512i load(const void* p) {
+    return _mm512_loadu_si512(p);
+}
+LIGHTBIN_TARGET inline void store(void* p, __m512i v) {
+    _mm512_storeu_si512(p, v);
+}
+LIGHTBIN_TARGET inline __m512i halves(__m256i low, __m256i high) {
+    return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
+}
+
+/// Up to 64 ids of a list: the lower 16 bits of each in two vectors, and the upper ones that they share.
+///
+/// wide  some in the grid have upper bits
+template <bool wide> struct IdTable { __m512i low, high; };
+template <> struct IdTable<true> {
+    __m512i low, high;
+    std::uint32_t upper;
+};
+
+/// The ids of a list, and of each 64 of them the number of their block.
+struct GroupedIds {
+    const std::uint16_t* ids;
+    const std::uint32_t* group_blocks;
+    const IdBlock* blocks;
+
+    GroupedIds from(std::uint32_t place) const { return {ids + place, group_blocks + place / 64, blocks}; }
+};
+
+/// Those of a group of 64.
+template <bool wide>
+LIGHTBIN_TARGET inline IdTable<wide> load_table(const GroupedIds& list, std::size_t group) {
+    const std::uint16_t* const ids = list.ids + 64 * group;
+    if constexpr (wide)
+        return {load(ids), load(ids + 32), list.blocks[list.group_blocks[group]].upper};
+    else
+        return {load(ids), load(ids + 32)};
+}
+
+/// The lower 16 bits of the ids at 32 places of a table with up to `lights`.
+template <unsigned lights, bool wide>
+LIGHTBIN_TARGET inline __m512i look_up(const IdTable<wide>& table, __m256i places) {
+    const __m512i at = _mm512_cvtepu8_epi16(places);
+    return lights <= 32 ? _mm512_permutexvar_epi16(at, table.low)
+                        : _mm512_permutex2var_epi16(table.low, at, table.high);
+}
+
+/// Stores the ids at 32 places of a table with up to `lights`.
+template <unsigned lights, bool wide, class Id>
+LIGHTBIN_TARGET inline void store_32(Id* to, const IdTable<wide>& table, __m256i places) {
+    const __m512i ids = look_up<lights>(table, places);
+    if constexpr (sizeof(Id) == 2) {
+        store(to, ids);
+    } else {
+        __m512i low = _mm512_cvtepu16_epi32(_mm512_castsi512_si256(ids)),
+                high = _mm512_cvtepu16_epi32(_mm512_extracti64x4_epi64(ids, 1));
+        if constexpr (wide) {
+            const __m512i upper = _mm512_set1_epi32(static_cast<int>(table.upper));
+            low = _mm512_or_si512(upper, low);
+            high = _mm512_or_si512(upper, high);
+        }
+        store(to, low);
+        store(to + 16, high);
+    }
+}
+
+/// Appends the ids of a table with up to `lights` whose bit is set, of one tile after another, `lights` bits each;
+/// then more that mean nothing. Returns how many.
+template <unsigned lights, bool wide, class Id>
+LIGHTBIN_TARGET inline std::uint32_t append(Id* to, std::uint64_t lit, const IdTable<wide>& table) {
+    const std::uint32_t count = static_cast<std::uint32_t>(std::popcount(lit));
+    const __m512i numbers =
+        _mm512_and_si512(load(byte_places.data()), _mm512_set1_epi8(static_cast<char>(lights - 1)));
+    const __m512i places = compressed_bytes(lit, numbers);
+    store_32<lights>(to, table, _mm512_castsi512_si256(places));
+    if (count > 32) store_32<lights>(to + 32, table, _mm512_extracti64x4_epi64(places, 1));
+    return count;
+}
+
+/// The bits of `mask` swapped with those `distance` above.
+template <unsigned distance> LIGHTBIN_TARGET inline __m512i swap_bits(__m512i v, long long mask) {
+    const __m512i t =
+        _mm512_and_si512(_mm512_xor_si512(v, _mm512_srli_epi64(v, distance)), _mm512_set1_epi64(mask));
+    return _mm512_xor_si512(v, _mm512_xor_si512(t, _mm512_slli_epi64(t, distance)));
+}
+
+/// Eight times 8x8 bits, as transpose_bits().
+LIGHTBIN_TARGET inline __m512i transpose_bits(__m512i x) {
+    x = swap_bits<7>(x, 0x00aa00aa00aa00aa);
+    x = swap_bits<14>(x, 0x0000cccc0000cccc);
+    return swap_bits<28>(x, 0x00000000f0f0f0f0);
+}
+
+/// Short lists: `eights` = 1, 2 or 4 vectors of 8 lights' words, a bit per tile. For each row of the supertile stores,
+/// after one another, the 8 tiles' bits, a bit a light: `eights` words a row. Before them, for each row, 8 bytes: the
+/// running number of set bits up to and with each tile, at most 248.
+template <unsigned eights>
+LIGHTBIN_TARGET inline void store_short_words(__m512i (&lights)[eights], std::uint64_t* to) {
+    for (__m512i& v : lights)  // a word a row, a byte per tile
+        v = transpose_bits(_mm512_permutexvar_epi8(load(byte_transpose.data()), v));
+    __m512i sums;
+    if constexpr (eights == 1) {
+        store(to + 8, lights[0]);
+        sums = _mm512_popcnt_epi8(lights[0]);
+    } else {
+        const __m512i bytes = load(interleave<std::uint8_t>.data()),
+                      more_bytes = _mm512_add_epi8(bytes, _mm512_set1_epi8(32));
+        const __m512i low = _mm512_permutex2var_epi8(lights[0], bytes, lights[1]),
+                      high = _mm512_permutex2var_epi8(lights[0], more_bytes, lights[1]);
+        if constexpr (eights == 2) {
+            store(to + 8, low);
+            store(to + 16, high);
+            sums = halves(_mm512_cvtepi16_epi8(_mm512_popcnt_epi16(low)),
+                          _mm512_cvtepi16_epi8(_mm512_popcnt_epi16(high)));
+        } else {
+            const __m512i low2 = _mm512_permutex2var_epi8(lights[2], bytes, lights[3]),
+                          high2 = _mm512_permutex2var_epi8(lights[2], more_bytes, lights[3]);
+            const __m512i pairs = load(interleave<std::uint16_t>.data()),
+                          more_pairs = _mm512_add_epi16(pairs, _mm512_set1_epi16(16));
+            const __m512i rows[] = {_mm512_permutex2var_epi16(low, pairs, low2),
+                                    _mm512_permutex2var_epi16(low, more_pairs, low2),
+                                    _mm512_permutex2var_epi16(high, pairs, high2),
+                                    _mm512_permutex2var_epi16(high, more_pairs, high2)};
+            __m128i sum[4];
+            for (unsigned i = 0; i < 4; ++i) {
+                store(to + 8 + 8 * i, rows[i]);
+                sum[i] = _mm512_cvtepi32_epi8(_mm512_popcnt_epi32(rows[i]));
+            }
+            sums = halves(_mm256_set_m128i(sum[1], sum[0]), _mm256_set_m128i(sum[3], sum[2]));
+        }
+    }
+    sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 8));
+    sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 16));
+    sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 32));
+    store(to, sums);
+}
+
+/// The same for a list given by the words of its lights, or by their columns and rows.
+template <bool with_words, unsigned eights>
+LIGHTBIN_TARGET inline void store_short_words(const std::uint64_t* masks, const std::uint8_t* columns,
+                                              const std::uint8_t* rows, std::uint32_t count,
+                                              std::uint64_t* to) {
+    __m512i lights[eights];
+    for (unsigned i = 0; i < eights; ++i) {
+        const std::uint32_t left = count > 8 * i ? count - 8 * i : 0;
+        if constexpr (with_words) {
+            lights[i] = _mm512_maskz_loadu_epi64(static_cast<__mmask8>(first_bytes(left)), masks + 8 * i);
+        } else {
+            // A light's byte of columns in each row it covers: its byte of rows is the mask.
+            std::uint64_t covered_rows;
+            std::memcpy(&covered_rows, rows + 8 * i, 8);
+            lights[i] = _mm512_maskz_permutexvar_epi8(
+                covered_rows & first_bytes(8 * left),
+                _mm512_add_epi8(load(eight_each.data()), _mm512_set1_epi8(static_cast<char>(8 * i))),
+                load(columns));
+        }
+    }
+    store_short_words(lights, to);
+}
+
+/// For each of 8 bits, which of 64 bytes have it: words[bit * stride], one bit a byte.
+LIGHTBIN_TARGET inline void split_bits(__m512i bytes, __mmask64 valid, std::uint64_t* words,
+                                       std::size_t stride) {
+    for (unsigned bit = 0; bit < 8; ++bit)
+        words[bit * stride] =
+            _mm512_mask_test_epi8_mask(valid, bytes, _mm512_set1_epi8(static_cast<char>(1 << bit)));
+}
+
+/// Transposes the words of 64 lights, a bit per tile, to a word per tile, a bit a light.
+LIGHTBIN_TARGET inline void transpose_64_words(const std::uint64_t* lights, std::uint32_t count,
+                                               std::uint64_t* tiles, std::size_t stride) {
+    // Bytes first: in each vector of 8 lights, the bytes of one tile row side by side ...
+    __m512i v[8], w[8];
+    const __m512i by_row = load(byte_transpose.data());
+    for (unsigned i = 0; i < 8; ++i)
+        v[i] = _mm512_permutexvar_epi8(
+            by_row,
+            _mm512_maskz_loadu_epi64(static_cast<__mmask8>(first_bytes(count > 8 * i ? count - 8 * i : 0)),
+                                     lights + 8 * i));
+    // ... then those of all 64 lights, 8x8 words transposed ...
+    for (unsigned i = 0; i < 8; i += 2) {
+        w[i] = _mm512_unpacklo_epi64(v[i], v[i + 1]);
+        w[i + 1] = _mm512_unpackhi_epi64(v[i], v[i + 1]);
+    }
+    for (unsigned i = 0; i < 8; i += 4)
+        for (unsigned odd = 0; odd < 2; ++odd) {
+            v[i + odd] = _mm512_shuffle_i64x2(w[i + odd], w[i + odd + 2], 0x88);
+            v[i + odd + 2] = _mm512_shuffle_i64x2(w[i + odd], w[i + odd + 2], 0xdd);
+        }
+    for (unsigned i = 0; i < 4; ++i) {
+        split_bits(_mm512_shuffle_i64x2(v[i], v[i + 4], 0x88), ~__mmask64{0}, tiles + 8 * i * stride, stride);
+        split_bits(_mm512_shuffle_i64x2(v[i], v[i + 4], 0xdd), ~__mmask64{0}, tiles + 8 * (i + 4) * stride,
+                   stride);
+    }
+}
+
+/// The words of a list of 32 lights or more: a column's, row's or tile's lie side by side.
+template <bool with_words>
+LIGHTBIN_TARGET inline void store_long_words(const std::uint64_t* masks, const std::uint8_t* columns,
+                                             const std::uint8_t* rows, std::uint32_t count,
+                                             std::uint64_t* words) {
+    const std::uint32_t groups = (count + 63) / 64;
+    for (std::uint32_t i = 0; i < count; i += 64, ++words) {
+        if constexpr (with_words) {
+            transpose_64_words(masks + i, count - i, words, groups);
+        } else {
+            split_bits(load(columns + i), first_bytes(count - i), words, groups);
+            split_bits(load(rows + i), first_bytes(count - i), words + 8 * groups, groups);
+        }
+    }
+}
+
+/// Stores the words that empty lists, whose `words` is 0, share: of a short one without a bit. Returns where they
+/// end.
+LIGHTBIN_TARGET inline std::uint32_t store_no_words(Scratch& scratch) {
+    constexpr std::uint32_t size = 24;
+    std::fill_n(scratch.words.reserve(size), size, 0u);
+    return size;
+}
+
+/// How many lights a list of the first form has at most. Where most are longer, it has none: it would be one more
+/// form to mispredict.
+LIGHTBIN_TARGET inline std::uint32_t up_to_8(const BandLists<ListId>& band) {
+    return band.few ? 8 : 0;
+}
+
+/// Stores the words of a list at list.words of scratch.words. Returns where they end.
+template <bool with_words, class Id>
+LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLists<ListId>& band,
+                                                 const SupertileList& list) {
+    const std::uint32_t count = list.count, groups = (count + 63) / 64;
+    const std::uint32_t end = list.words + (count < 32 ? 40 : (with_words ? 64 : 16) * groups);
+    std::uint64_t* words = scratch.words.reserve(end, list.words) + list.words;
+    const std::uint64_t* masks = scratch.masks.data();
+    const std::uint8_t* columns = scratch.list_columns.data() + list.begin;
+    const std::uint8_t* rows = scratch.list_rows.data() + list.begin;
+    if (count <= up_to_8(band))
+        store_short_words<with_words, 1>(masks, columns, rows, count, words);
+    else if (count <= 16)
+        store_short_words<with_words, 2>(masks, columns, rows, count, words);
+    else if (count < 32)
+        store_short_words<with_words, 4>(masks, columns, rows, count, words);
+    else
+        store_long_words<with_words>(masks, columns, rows, count, words);
+    return end;
+}
+
+/// Appends a row of a supertile with a short list, `words` from store_short_words, and its `columns` tiles. Returns
+/// how many ids.
+template <unsigned eights, bool wide, class Id>
+LIGHTBIN_TARGET inline std::uint32_t append_row(Id* to, ListRange* tiles, __mmask8 columns, std::uint32_t at,
+                                                const std::uint64_t* words, unsigned row,
+                                                const IdTable<wide>& table) {
+    // Tiles are pairs of 32 bits, offset and count: the difference of running sums.
+    const std::uint64_t sums = words[row];
+    const __m512i ends = _mm512_cvtepu8_epi64(_mm_cvtsi64_si128(static_cast<long long>(sums))),
+                  begins = _mm512_cvtepu8_epi64(_mm_cvtsi64_si128(static_cast<long long>(sums << 8)));
+    _mm512_mask_storeu_epi64(tiles, columns,
+                             _mm512_or_si512(_mm512_add_epi32(begins, _mm512_set1_epi64(at)),
+                                             _mm512_slli_epi64(_mm512_sub_epi64(ends, begins), 32)));
+    for (unsigned i = 0; i < eights; ++i)  // a word has 8 / eights tiles
+        to += append<8 * eights>(to, words[8 + eights * row + i], table);
+    return static_cast<std::uint32_t>(sums >> 56);
+}
+
+/// Appends the tiles of a row of a supertile with a list of 32 to 64 lights. Returns how many ids.
+template <bool with_words, bool wide, class Id>
+LIGHTBIN_TARGET inline std::uint32_t append_64(Id* to, ListRange* tiles, unsigned columns, std::uint32_t at,
+                                               const std::uint64_t* words, unsigned row,
+                                               const IdTable<wide>& table) {
+    const Id* const begin = to;
+    for (unsigned column = 0; column < columns; ++column) {
+        const std::uint64_t lit = with_words ? words[row * 8 + column] : words[column] & words[8 + row];
+        const std::uint32_t count = append<64>(to, lit, table);
+        tiles[column] = {at, count};
+        to += count;
+        at += count;
+    }
+    return static_cast<std::uint32_t>(to - begin);
+}
+
+/// The same of a longer list.
+template <bool with_words, bool wide, class Id>
+LIGHTBIN_TARGET inline std::uint32_t append_more(Id* to, ListRange* tiles, unsigned columns, std::uint32_t at,
+                                                 const std::uint64_t* words, unsigned row,
+                                                 const GroupedIds& ids, std::size_t lights) {
+    const Id* const begin = to;
+    const std::size_t groups = (lights + 63) / 64;
+    for (unsigned column = 0; column < columns; ++column) {
+        const Id* const from = to;
+        for (std::size_t group = 0; group < groups; ++group) {
+            const std::uint64_t* w = words + group;
+            const std::uint64_t lit =
+                with_words ? w[(row * 8 + column) * groups] : w[column * groups] & w[(8 + row) * groups];
+            to += append<64>(to, lit, load_table<wide>(ids, group));
+        }
+        const std::uint32_t count = static_cast<std::uint32_t>(to - from);
+        tiles[column] = {at, count};
+        at += count;
+    }
+    return static_cast<std::uint32_t>(to - begin);
+}
+
+/// Emits a row of tiles as emit_row() does. Not inline, as in a longer function compilers keep what it needs on the
+/// stack.
+template <bool with_words, bool wide, class Id>
+LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t at,
+                                                 const Scratch& scratch, const BandLists<ListId>& band,
+                                                 unsigned row) {
+    const GroupedIds all_ids = {band.ids, scratch.group_blocks.data(), scratch.blocks.data()};
+    const std::uint32_t eight = up_to_8(band);
+    const SupertileList* list = band.lists;
+    const std::uint64_t* const all_words = scratch.words.data();
+    for (const ListRange* const end = tiles + tiles_x; tiles < end; tiles += 8, ++list) {
+        const std::uint32_t lights = list->count;
+        const std::uint64_t* words = all_words + list->words;
+        const GroupedIds ids = all_ids.from(list->begin);
+        const unsigned columns = static_cast<unsigned>((std::min<std::ptrdiff_t>)(end - tiles, 8));
+        const __mmask8 stored = static_cast<__mmask8>(0xff >> (8 - columns));
+        std::uint32_t count;
+        if (lights > 64) {
+            count = append_more<with_words, wide>(out, tiles, columns, at, words, row, ids, lights);
+        } else {
+            const IdTable<wide> table = load_table<wide>(ids, 0);
+            if (lights <= eight)
+                count = append_row<1>(out, tiles, stored, at, words, row, table);
+            else if (lights <= 16)
+                count = append_row<2>(out, tiles, stored, at, words, row, table);
+            else if (lights < 32)
+                count = append_row<4>(out, tiles, stored, at, words, row, table);
+            else
+                count = append_64<with_words>(out, tiles, columns, at, words, row, table);
+        }
+        out += count;
+        at += count;
+    }
+    return out;
+}
+
+/// Emits a row of tiles, `row` of its supertiles. `at` is the offset of `out` in the index list. Returns the end.
+template <bool with_words, class Id>
+LIGHTBIN_TARGET Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t at, const Scratch& scratch,
+                             const BandLists<ListId>& band, unsigned row) {
+    if constexpr (sizeof(Id) > 2)
+        if (band.wide) return emit_tiles<with_words, true>(out, tiles, tiles_x, at, scratch, band, row);
+    return emit_tiles<with_words, false>(out, tiles, tiles_x, at, scratch, band, row);
+}

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+// Step 2 of bin.inl: which of a supertile's 8x8 tiles each of its lights is in. With row spans or a depth test, as
+// one word a light with a bit per tile: its rectangle, and-ed with its silhouette's row spans and with the tiles
+// whose Z bounds it meets. Included once a tier, after step 3, which says in what form it takes the words.
+//
+//     bit  0  1 ..  7      . . . . . . . .      rows that the rectangle covers     0 1 1 1 0 0 0 0
+//          8  9 .. 15      . . # # # # . .      columns                            0 0 1 1 1 1 0 0
+//          :               . . # # # # . .
+//         56 57 .. 63      . . # # # # . .      Each pair of a light and a tile is tested once.
+//                          . . . . . . . .
+
+inline constexpr std::uint64_t every_lane = (std::uint64_t{1} << lanes) - 1;
+
+/// The distance of a coordinate from an interval.
+LIGHTBIN_TARGET inline Floats distance(Floats c, const float* ends) {
+    return greater(greater(load_floats(ends) - c, c - load_floats(ends + 64)), all(0.0f));
+}
+
+/// Of the first `lanes` tiles of `cells`, those whose Z bounds or boxes the light meets. NaN tests nothing.
+template <DepthTest depth_test>
+LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedLight& light) {
+    const Floats nearest = all(light.nearest), farthest = all(light.farthest);
+    std::uint64_t met = 0;
+    for (const float* cell = cells; cell < cells + 64 * cell_planes<depth_test>; cell += next_box) {
+        auto missed = either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest));
+        if constexpr (depth_test != DepthTest::interval) {
+            const Floats z = distance(all(light.z), cell), x = distance(all(light.x), cell + 128),
+                         y = distance(all(light.y), cell + 256);
+            const Floats distance2 = mul(x, x) + mul(y, y) + mul(z, z);
+            missed = either(missed, less(all(light.reach2), distance2));
+        }
+        met |= ~bits(missed) & every_lane;
+    }
+    return met;
+}
+
+/// Adds the tiles that they meet to the words of 1 to 64 lights with these bytes of columns and rows; the tiles of a
+/// vector count if any of them is in the rectangle. A vector of tiles stays in registers while its lights pass: loops
+/// over a light's few vectors would be mispredicted once a light.
+template <DepthTest depth_test>
+LIGHTBIN_TARGET inline void meet_tiles(const float* cells, std::uint64_t lit, const TestedLight* lights,
+                                       const std::uint8_t* columns, const std::uint8_t* rows,
+                                       std::uint32_t count, std::uint64_t* met) {
+    std::uint64_t in_column[8], in_row[8];
+    split_bits(columns, in_column);
+    split_bits(rows, in_row);
+    const std::uint64_t valid = ~std::uint64_t{0} >> (64 - count);
+    for (unsigned place = 0; place < 64; place += lanes) {
+        if ((lit >> place & every_lane) == 0) continue;
+        std::uint64_t in_rows = 0, in_columns = 0;
+        for (unsigned lane = 0; lane < lanes; lane += 8)
+            in_rows |= in_row[(place + lane) / 8];
+        for (unsigned lane = 0; lane < lanes && lane < 8; ++lane)
+            in_columns |= in_column[place % 8 + lane];
+        for (std::uint64_t rest = in_rows & in_columns & valid; rest != 0; rest &= rest - 1) {
+            const unsigned light = static_cast<unsigned>(std::countr_zero(rest));
+            met[light] |= tiles_met<depth_test>(cells + place, lights[light]) << place;
+        }
+    }
+}
+
+/// Of the tiles of a supertile, from column 8 x and row `top` on, those within the row spans of visible light i.
+LIGHTBIN_TARGET inline std::uint64_t silhouette_tiles(const FootprintArrays& lights, std::uint32_t i,
+                                                      unsigned x, unsigned top, std::uint64_t tiles) {
+    if (tiles == 0 || lights.span_begin[i] == FootprintArrays::whole_rectangle) return tiles;
+    std::uint64_t spanned = 0;
+    for (unsigned row = static_cast<unsigned>(std::countr_zero(tiles)) / 8,
+                  last = 7 - static_cast<unsigned>(std::countl_zero(tiles)) / 8;
+         row <= last; ++row) {
+        const RowSpan span = lights.spans[lights.span_begin[i] + (top + row - lights.y0[i])];
+        const bool here = span.first <= span.last && span.first < 8 * x + 8 && span.last >= 8 * x;
+        spanned |= std::uint64_t{here ? covered(span.first, span.last, 8 * x) & 0xff : 0} << 8 * row;
+    }
+    return tiles & spanned;
+}
+
+/// Makes the words of up to 64 lights of a supertile, given by visible index, counted from `first`, with the columns
+/// and rows that they cover; and ids of their indices. Lights that are in none of the tiles are dropped. Returns how
+/// many are left. `ids` may be `lights`, or before it.
+template <Footprint footprint, DepthTest depth_test, class Id>
+LIGHTBIN_TARGET inline std::uint32_t
+mask_64_lights(const BinJob<Id>& job, unsigned x, unsigned top, const float* cells, std::uint64_t lit,
+               const ListId* lights, std::uint32_t first, const std::uint8_t* columns,
+               const std::uint8_t* rows, std::uint32_t count, ListId* ids, std::uint64_t* words) {
+    std::uint64_t met[64];
+    if constexpr (depth_test != DepthTest::none) {
+        TestedLight tested[64];
+        for (std::uint32_t j = 0; j < count; ++j) {
+            tested[j] =
+                TestedLight(*job.camera, load_sphere(job.lights.spheres + job.lights.ids[first + lights[j]]));
+            met[j] = 0;
+        }
+        meet_tiles<depth_test>(cells, lit, tested, columns, rows, count, met);
+    }
+    std::uint32_t left = 0;
+    for (std::uint32_t j = 0; j < count; ++j) {
+        const std::uint32_t light = first + lights[j];
+        std::uint64_t tiles = spread_rows(rows[j]) & columns[j] * std::uint64_t{0x0101010101010101};
+        if constexpr (footprint == Footprint::silhouette)
+            tiles = silhouette_tiles(job.lights, light, x, top, tiles);
+        if constexpr (depth_test != DepthTest::none) tiles &= met[j] & lit;
+        ids[left] = static_cast<ListId>(job.lights.ids[light]);
+        words[left] = tiles;
+        left += tiles != 0;
+    }
+    return left;
+}
+
+/// Of a list in blocks of ids, whose lights before `begin` were masked so that `left` of them are left: lets those
+/// that follow begin at a multiple of 64 if they are of another block, and notes of which one. Returns what their
+/// visible indices are counted from.
+inline std::uint32_t begin_group(const Scratch& scratch, const SupertileList& list, std::uint32_t begin,
+                                 std::uint32_t& left, std::uint64_t* masks) {
+    std::uint32_t* const groups = scratch.group_blocks.data() + list.begin / 64;
+    const std::uint32_t block = groups[begin / 64];
+    if (left % 64 != 0 && groups[left / 64] != block)
+        while (left % 64 != 0)
+            masks[left++] = 0;
+    groups[left / 64] = groups[(left + 63) / 64] = block;
+    return scratch.blocks.data()[block].begin;
+}
+
+/// Makes the words of a supertile's lights in scratch.masks, and ids of their visible indices. Lights that are in
+/// none of the tiles are dropped. Returns how many are left.
+template <Footprint footprint, DepthTest depth_test, class Id>
+LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratch, unsigned x, unsigned top,
+                                          const SupertileList& list, ListId* all_lights) {
+    [[maybe_unused]] float arranged[cell_planes<depth_test> * 64];
+    const float* cells = nullptr;
+    std::uint64_t lit = ~std::uint64_t{0};
+    if constexpr (depth_test != DepthTest::none) {
+        lit = arrange_cells<depth_test>(job, x, top, arranged);
+        cells = arranged;
+    }
+    const std::uint8_t* columns = scratch.list_columns.data() + list.begin;
+    const std::uint8_t* rows = scratch.list_rows.data() + list.begin;
+    ListId* lights = all_lights + list.begin;
+    std::uint64_t* masks = scratch.masks.reserve(std::uint64_t{list.count} + 64);
+    std::uint32_t left = 0;
+    for (std::uint32_t begin = 0; begin < list.count; begin += 64) {
+        const std::uint32_t count = (std::min)(list.count - begin, 64u);
+        std::uint32_t first = 0;
+        if constexpr (sizeof(ListId) == 2) first = begin_group(scratch, list, begin, left, masks);
+        left += mask_64_lights<footprint, depth_test>(job, x, top, cells, lit, lights + begin, first,
+                                                      columns + begin, rows + begin, count, lights + left,
+                                                      masks + left);
+    }
+    return left;
+}
+
+/// Makes the words of a band's supertiles, in the form that step 3 takes. Lights that are in no tile of a list are
+/// taken out of it. Returns whether any is left.
+template <Footprint footprint, DepthTest depth_test, class Id>
+LIGHTBIN_TARGET bool make_words(const BinJob<Id>& job, Scratch& scratch, unsigned top,
+                                const BandLists<ListId>& band, unsigned width) {
+    constexpr bool worded = with_words<footprint, depth_test>;
+    const std::uint32_t begin = store_no_words(scratch);
+    std::uint32_t used = begin;
+    for (unsigned x = 0; x < width; ++x) {
+        SupertileList& list = band.lists[x];
+        if constexpr (worded)
+            if (list.count > 0)
+                list.count = mask_lights<footprint, depth_test>(job, scratch, x, top, list, band.ids);
+        if (list.count == 0) {
+            list = {band.lists->begin, 0, 0};
+            continue;
+        }
+        list.words = used;
+        used = store_words<worded, Id>(scratch, band, list);
+    }
+    return used > begin;
+}
