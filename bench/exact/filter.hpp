@@ -81,19 +81,19 @@ public:
     /// Whether the ball meets the block of tiles [x0, x1) x [y0, y1) between these depths; nothing: unknown.
     std::optional<bool> meets(int x0, int x1, int y0, int y1, const FlatDepths& depths,
                               const FlatBall& ball) {
-        if (reaches({{{column(x0), column(x1)}, {row(y0), row(y1)}}}, depths, ball)) return true;
         if (apart(x0, x1, y0, y1, depths, ball)) return false;
+        if (reaches({{{column(x0), column(x1)}, {row(y0), row(y1)}}}, depths, ball)) return true;
         return std::nullopt;
     }
     /// The same of the wedge of whole columns or rows of tiles.
     std::optional<bool> meets_columns(int x0, int x1, const FlatDepths& depths, const FlatBall& ball) {
-        if (reaches({{{column(x0), column(x1)}, {nowhere(-1), nowhere(1)}}}, depths, ball)) return true;
         if (apart_from_columns(x0, x1, depths, ball)) return false;
+        if (reaches({{{column(x0), column(x1)}, {nowhere(-1), nowhere(1)}}}, depths, ball)) return true;
         return std::nullopt;
     }
     std::optional<bool> meets_rows(int y0, int y1, const FlatDepths& depths, const FlatBall& ball) {
-        if (reaches({{{nowhere(-1), nowhere(1)}, {row(y0), row(y1)}}}, depths, ball)) return true;
         if (apart_from_rows(y0, y1, depths, ball)) return false;
+        if (reaches({{{nowhere(-1), nowhere(1)}, {row(y0), row(y1)}}}, depths, ball)) return true;
         return std::nullopt;
     }
 
