@@ -5,7 +5,7 @@
 // Decided in double precision where that proves the answer, else in rationals.
 #pragma once
 
-#include "exact/filter.hpp"
+#include "exact/truth.hpp"
 #include "raster.hpp"
 
 #include <lightbin/z_bounds.hpp>
@@ -44,20 +44,20 @@ class ExactDecider {
 public:
     /// A symmetric perspective matrix; tiles from the lower left corner.
     ExactDecider(const glm::mat4& projection, lightbin::Extent screen, int tile_size)
-        : oracle_(camera(projection, screen, tile_size)), filter_(oracle_), view_(oracle_.range()) {}
+        : truth_(camera(projection, screen, tile_size)) {}
 
     /// Decides every pair of a tile and a light. Gap spans may be empty.
     ExactPairs pairs(const Lights& lights, const lightbin::ZBounds& bounds) {
-        const int nx = oracle_.tiles_x(), ny = oracle_.tiles_y();
+        const int nx = truth_.oracle.tiles_x(), ny = truth_.oracle.tiles_y();
         const std::size_t tiles = static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny);
         ExactPairs result{std::vector<std::vector<Pair>>(tiles), tiles * lights.size(), 0};
-        by_rationals_ = 0;
+        const std::uint64_t before = truth_.by_rationals();
         for (std::size_t id = 0; id < lights.size(); ++id) {
             const oracle::FlatBall ball = {
                 static_cast<double>(lights[id].x), static_cast<double>(lights[id].y),
                 -static_cast<double>(lights[id].z), static_cast<double>(lights[id].w)};
-            const Span across = met(nx, [&](int x) { return meets_column(x, ball); }),
-                       up = met(ny, [&](int y) { return meets_row(y, ball); });
+            const Span across = met(nx, [&](int x) { return truth_.meets_columns(x, x + 1, ball, Exactly{ball}); }),
+                       up = met(ny, [&](int y) { return truth_.meets_rows(y, y + 1, ball, Exactly{ball}); });
             for (int y = up.first; y < up.end; ++y)
                 for (int x = across.first; x < across.end; ++x) {
                     const std::size_t tile = static_cast<std::size_t>(y * nx + x);
@@ -65,16 +65,23 @@ public:
                         {static_cast<std::uint32_t>(id), facts(ball, x, y, tile, bounds)});
                 }
         }
-        result.by_rationals = by_rationals_;
+        result.by_rationals = truth_.by_rationals() - before;
         return result;
     }
 
 private:
     using Ball = oracle::FlatBall;
-    using Range = oracle::FlatDepths;  ///< the ends are floats, so exact, or those of view_
+    using Range = oracle::FlatDepths;  ///< the ends are floats, so exact, or those of the view
     using Rational = oracle::Rational;
     struct Span {
         int first, end;
+    };
+    /// A ball in rationals, once they are asked for.
+    struct Exactly {
+        const Ball& ball;
+        oracle::CameraBall operator()() const {
+            return {Rational(ball.x), Rational(ball.y), Rational(ball.depth), Rational(ball.radius)};
+        }
     };
 
     static oracle::Camera camera(const glm::mat4& projection, lightbin::Extent screen, int tile_size) {
@@ -87,7 +94,7 @@ private:
     }
 
     Range within_view(float min, float max) const {
-        return {std::max(static_cast<double>(min), view_.min), std::min(static_cast<double>(max), view_.max)};
+        return {std::max(static_cast<double>(min), truth_.range.min), std::min(static_cast<double>(max), truth_.range.max)};
     }
     static bool empty(const Range& range) { return !(range.min <= range.max); }
 
@@ -103,7 +110,7 @@ private:
 
     std::uint32_t facts(const Ball& ball, int x, int y, std::size_t tile, const lightbin::ZBounds& bounds) {
         const float min = bounds.min[tile], max = bounds.max[tile];
-        const bool pyramid = meets(x, y, view_, ball);
+        const bool pyramid = meets(x, y, truth_.range, ball);
         std::uint32_t facts = pyramid ? +in_pyramid : 0;
         // Exact in double: two floats of 24 bits that are not 2^29 times apart.
         if (!(min <= max) || ball.depth + ball.radius < static_cast<double>(min) ||
@@ -126,41 +133,19 @@ private:
         return facts;
     }
 
-    bool meets_column(int x, const Ball& ball) {
-        return settle(filter_.meets_columns(x, x + 1, view_, ball), [&] {
-            return oracle::meets({column(x), {}}, oracle_.range(), exact(ball));
-        });
-    }
-    bool meets_row(int y, const Ball& ball) {
-        return settle(filter_.meets_rows(y, y + 1, view_, ball), [&] {
-            return oracle::meets({{}, row(y)}, oracle_.range(), exact(ball));
-        });
-    }
     /// Whether the ball meets the cell of tile (x, y) in this range.
     bool meets(int x, int y, const Range& range, const Ball& ball) {
-        return settle(filter_.meets(x, x + 1, y, y + 1, range, ball), [&] {
-            return oracle::meets({column(x), row(y)}, exact(range), exact(ball));
-        });
+        return truth_.meets({x, x + 1, y, y + 1}, range, ball, [&] { return exact(range); }, Exactly{ball});
     }
     /// Whether it meets the view-space box around the cell.
     bool meets_box(int x, int y, const Range& range, const Ball& ball) {
-        return settle(filter_.meets_box(x, y, range, ball),
-                      [&] { return exactly_meets_box(x, y, range, ball); });
-    }
-
-    /// The answer in double precision, or where there is none, and now and then as a check, the exact one.
-    template <class Exact> bool settle(std::optional<bool> proven, Exact by_rationals) {
-        const bool checked = ++questions_ % 1009 == 0;
-        by_rationals_ += !proven;
-        if (proven && !checked) return *proven;
-        const bool truth = by_rationals();
-        if (proven && *proven != truth) throw std::logic_error("the exact set's two deciders disagree");
-        return truth;
+        return truth_.settle(truth_.filter.meets_box(x, y, range, ball),
+                             [&] { return exactly_meets_box(x, y, range, ball); });
     }
 
     bool exactly_meets_box(int x, int y, const Range& range, const Ball& ball) const {
         const oracle::Depths depths = exact(range);
-        const oracle::CameraBall centre = exact(ball);
+        const oracle::CameraBall centre = Exactly{ball}();
         Rational distance = 0;
         const auto add = [&](const Rational& low, const Rational& high, const Rational& c) {
             if (c < low) distance += oracle::square(low - c);
@@ -170,25 +155,16 @@ private:
             add(slab.low.at(slab.low.slope < 0 ? *depths.max : *depths.min),
                 slab.high.at(slab.high.slope < 0 ? *depths.min : *depths.max), c);
         };
-        add_slab(column(x), centre.x);
-        add_slab(row(y), centre.y);
+        add_slab(truth_.columns(x, x + 1), centre.x);
+        add_slab(truth_.rows(y, y + 1), centre.y);
         add(*depths.min, *depths.max, centre.depth);
         return distance <= oracle::square(centre.radius);
     }
 
-    oracle::Slab column(int x) const { return oracle_.column_slab(oracle_.columns(x, x + 1)); }
-    oracle::Slab row(int y) const { return oracle_.row_slab(oracle_.rows(y, y + 1)); }
     oracle::Depths exact(const Range& range) const {
-        const oracle::Depths& all = oracle_.range();
-        return {range.min == view_.min ? *all.min : Rational(range.min),
-                range.max == view_.max ? *all.max : Rational(range.max)};
+        const oracle::Depths& all = truth_.oracle.range();
+        return {range.min == truth_.range.min ? *all.min : Rational(range.min),
+                range.max == truth_.range.max ? *all.max : Rational(range.max)};
     }
-    static oracle::CameraBall exact(const Ball& ball) {
-        return {Rational(ball.x), Rational(ball.y), Rational(ball.depth), Rational(ball.radius)};
-    }
-
-    oracle::Oracle oracle_;
-    oracle::Filter filter_;
-    Range view_;
-    std::uint64_t questions_ = 0, by_rationals_ = 0;
+    oracle::Truth truth_;
 };

@@ -45,7 +45,7 @@ struct FlatDepths {
     bool surely_empty() const { return min - max > 0x1p-50 * (std::abs(min) + std::abs(max)); }
     /// Beyond doubt some do.
     bool surely_some() const {
-        return std::isinf(max) ? max > 0 : max - min > 0x1p-50 * (std::abs(min) + std::abs(max));
+        return min < max && (std::isinf(max) || max - min > 0x1p-50 * (std::abs(min) + std::abs(max)));
     }
 };
 
@@ -81,19 +81,19 @@ public:
     /// Whether the ball meets the block of tiles [x0, x1) x [y0, y1) between these depths; nothing: unknown.
     std::optional<bool> meets(int x0, int x1, int y0, int y1, const FlatDepths& depths,
                               const FlatBall& ball) {
-        if (reaches({{{column(x0), column(x1)}, {row(y0), row(y1)}}}, depths, ball)) return true;
         if (apart(x0, x1, y0, y1, depths, ball)) return false;
+        if (reaches({{{column(x0), column(x1)}, {row(y0), row(y1)}}}, depths, ball)) return true;
         return std::nullopt;
     }
     /// The same of the wedge of whole columns or rows of tiles.
     std::optional<bool> meets_columns(int x0, int x1, const FlatDepths& depths, const FlatBall& ball) {
-        if (reaches({{{column(x0), column(x1)}, {nowhere(-1), nowhere(1)}}}, depths, ball)) return true;
         if (apart_from_columns(x0, x1, depths, ball)) return false;
+        if (reaches({{{column(x0), column(x1)}, {nowhere(-1), nowhere(1)}}}, depths, ball)) return true;
         return std::nullopt;
     }
     std::optional<bool> meets_rows(int y0, int y1, const FlatDepths& depths, const FlatBall& ball) {
-        if (reaches({{{nowhere(-1), nowhere(1)}, {row(y0), row(y1)}}}, depths, ball)) return true;
         if (apart_from_rows(y0, y1, depths, ball)) return false;
+        if (reaches({{{nowhere(-1), nowhere(1)}, {row(y0), row(y1)}}}, depths, ball)) return true;
         return std::nullopt;
     }
 
@@ -116,7 +116,7 @@ public:
         across(row(y), row(y + 1), ball.y);
         add(depths.min, depths.max, ball.depth);
         const double reach = ball.radius * ball.radius;
-        if (reach > 0x1p-800 && depths.surely_some() && most * (1 + 0x1p-48) <= reach) return true;
+        if (reach > 0x1p-800 && some(depths) && most * (1 + 0x1p-48) <= reach) return true;
         if (least > 0x1p-800 && least > reach * (1 + 0x1p-48)) return false;
         return std::nullopt;
     }
@@ -223,6 +223,9 @@ private:
         return apart_at_edge(wedge, cell, depths, ball);
     }
 
+    /// Beyond doubt there are such depths in view. A camera may have none at all between its planes.
+    bool some(const FlatDepths& depths) const { return !oracle_.range().empty && depths.surely_some(); }
+
     static double clamped(double v, double low, double high) { return v < low ? low : v > high ? high : v; }
 
     /// The squared distance from the cell, and the depth it is taken at; found as meets() of oracle.hpp does.
@@ -262,8 +265,8 @@ private:
     }
 
     /// Beyond doubt a point of the cell, that at the depth of the nearest one, is in the ball.
-    static bool reaches(const Cell& cell, const FlatDepths& depths, const FlatBall& c) {
-        if (!depths.surely_some()) return false;
+    bool reaches(const Cell& cell, const FlatDepths& depths, const FlatBall& c) const {
+        if (!some(depths)) return false;
         const double centre[2] = {c.x, c.y};
         double d = 0;
         nearest(cell, depths, c, d);

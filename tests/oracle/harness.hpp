@@ -5,7 +5,7 @@
 #include "library_view.hpp"
 #include "spheres.hpp"
 
-#include "../../bench/exact/filter.hpp"
+#include "../../bench/exact/truth.hpp"
 
 #include <lightbin/binner.hpp>
 
@@ -97,12 +97,11 @@ struct Tally {
 /// All questions about one camera.
 class Examiner {
 public:
-    Examiner(const Camera& camera, Tally& counts) : oracle(camera), tally(counts), filter_(oracle) {
+    Examiner(const Camera& camera, Tally& counts) : truth(camera), oracle(truth.oracle), tally(counts) {
         for (int x = 0; x < oracle.tiles_x(); ++x)
             columns_.push_back(oracle.column_slab(oracle.columns(x, x + 1)));
         for (int y = 0; y < oracle.tiles_y(); ++y)
             rows_.push_back(oracle.row_slab(oracle.rows(y, y + 1)));
-        range_ = FlatDepths(oracle.range());
         // The image-plane margin that rounding explains, in pixels. The library states 16 u (|O| + tiles)
         // tiles, u = 2^-24, for its error and adds as much: twice that.
         const auto margin = [&](const Rational& offset, int tiles) {
@@ -147,8 +146,8 @@ public:
     class Cell {
     public:
         Cell(const Examiner& examiner, float min = -INFINITY, float max = INFINITY)
-            : flat{std::max(static_cast<double>(min), examiner.range_.min),
-                   std::min(static_cast<double>(max), examiner.range_.max)},
+            : flat{std::max(static_cast<double>(min), examiner.truth.range.min),
+                   std::min(static_cast<double>(max), examiner.truth.range.max)},
               empty(min == INFINITY || max == -INFINITY), oracle_(&examiner.oracle), min_(min), max_(max) {}
         FlatDepths flat;
         bool empty;
@@ -164,12 +163,18 @@ public:
         mutable std::optional<Depths> depths_;
     };
 
+    /// A subject's ball for Truth.
+    static auto exactly(const Subject& s) {
+        return [&s]() -> const CameraBall& { return s.seen; };
+    }
+
     /// In three dimensions: does the light meet the block of tiles [x0, x1) x [y0, y1)? In every 97th case decided exactly,
     /// by both deciders.
     bool meets_block(const Subject& s, int x0, int x1, int y0, int y1) {
         const bool both = ++asked_ % 97 == 0;
-        if (!both && filter_.apart(x0, x1, y0, y1, range_, s.flat)) return false;
         const Depths& depths = oracle.range();
+        const auto exact_depths = [&] { return depths; };
+        if (!both) return truth.meets({x0, x1, y0, y1}, truth.range, s.flat, exact_depths, exactly(s));
         const Edges columns = oracle.columns(x0, x1), rows = oracle.rows(y0, y1);
         const bool verdict = meets({{oracle.column_slab(columns)}, {oracle.row_slab(rows)}}, depths, s.seen);
         if (both) {
@@ -179,18 +184,16 @@ public:
         return verdict;
     }
     bool meets_tile(const Subject& s, int x, int y, const Cell& cell) {
-        if (cell.empty || filter_.apart(x, x + 1, y, y + 1, cell.flat, s.flat)) return false;
-        return meets({columns_[static_cast<std::size_t>(x)], rows_[static_cast<std::size_t>(y)]}, cell.depths(),
-                     s.seen);
+        const auto exact_depths = [&] { return cell.depths(); };
+        return !cell.empty &&
+               truth.meets({x, x + 1, y, y + 1}, cell.flat, s.flat, exact_depths, exactly(s));
     }
     /// What a rectangle tests, one image axis at a time: the wedge of whole columns (rows) of tiles.
     bool meets_columns(const Subject& s, int x0, int x1) {
-        if (x0 >= x1 || filter_.apart_from_columns(x0, x1, range_, s.flat)) return false;
-        return meets({oracle.column_slab(oracle.columns(x0, x1)), {}}, oracle.range(), s.seen);
+        return truth.meets_columns(x0, x1, s.flat, exactly(s));
     }
     bool meets_rows(const Subject& s, int y0, int y1) {
-        if (y0 >= y1 || filter_.apart_from_rows(y0, y1, range_, s.flat)) return false;
-        return meets({{}, oracle.row_slab(oracle.rows(y0, y1))}, oracle.range(), s.seen);
+        return truth.meets_rows(y0, y1, s.flat, exactly(s));
     }
 
     /// A light without Z bounds: no tile outside `emitted` may be met, and the rectangle must be the method's
@@ -246,13 +249,13 @@ public:
         ball.radius *= 1 + Rational(1) / (std::int64_t{1} << 40);
         // What double precision gets wrong is nothing beside the margins.
         const double end = std::abs(s.flat.depth) + s.flat.radius, reach = s.flat.radius * s.flat.radius;
-        const FlatDepths flat = {beyond_near_.min ? range_.min : -2 * end, 2 * end};
+        const FlatDepths flat = {beyond_near_.min ? truth.range.min : -2 * end, 2 * end};
         const auto column = [&](int x) {
-            return filter_.column_distance2(x, flat, s.flat) <= reach ||
+            return truth.filter.column_distance2(x, flat, s.flat) <= reach ||
                    meets({grown_columns_[static_cast<std::size_t>(x)], {}}, beyond_near_, ball);
         };
         const auto row = [&](int y) {
-            return filter_.row_distance2(y, flat, s.flat) <= reach ||
+            return truth.filter.row_distance2(y, flat, s.flat) <= reach ||
                    meets({{}, grown_rows_[static_cast<std::size_t>(y)]}, beyond_near_, ball);
         };
         return (eye_on_surface(ball.x, ball) || (column(e.x0) && column(e.x1))) &&
@@ -285,8 +288,8 @@ public:
         Depths beyond_near;
         if (!oracle.orthographic()) beyond_near.min = oracle.range().min;
         const double end = std::abs(b.depth) + b.radius;
-        const FlatDepths flat = {beyond_near.min ? range_.min : -2 * end, 2 * end};
-        if (filter_.cell_distance2(x, y, flat, b) <= b.radius * b.radius) return true;
+        const FlatDepths flat = {beyond_near.min ? truth.range.min : -2 * end, 2 * end};
+        if (truth.filter.cell_distance2(x, y, flat, b) <= b.radius * b.radius) return true;
 
         const auto larger = [](const Slab& slab) {
             return nearly(std::max(abs(slab.low.slope), abs(slab.high.slope)));
@@ -323,7 +326,7 @@ public:
     bool box_meets(const Subject& s, int x, int y, const std::vector<Cell>& cells) {
         if (s.flat.radius > 0x1p63) return true;  // its square is infinite in float
         const auto surely = [&](const Cell& cell) {
-            return !cell.empty && filter_.box_distance2(x, y, cell.flat, s.flat) <= s.flat.radius * s.flat.radius;
+            return !cell.empty && truth.filter.box_distance2(x, y, cell.flat, s.flat) <= s.flat.radius * s.flat.radius;
         };
         const auto barely = [&](const Cell& cell) { return !cell.empty && box_meets(s, x, y, cell.depths()); };
         return std::any_of(cells.begin(), cells.end(), surely) || std::any_of(cells.begin(), cells.end(), barely);
@@ -356,10 +359,11 @@ public:
 
     /// Beyond doubt the ball does not meet the block of tiles within the cell's depths.
     bool apart(int x0, int x1, int y0, int y1, const Cell& cell, const FlatBall& ball) {
-        return filter_.apart(x0, x1, y0, y1, cell.flat, ball);
+        return truth.filter.apart(x0, x1, y0, y1, cell.flat, ball);
     }
 
-    Oracle oracle;
+    Truth truth;
+    const Oracle& oracle;
     Tally& tally;
 
 private:
@@ -377,8 +381,6 @@ private:
         return size * (abs(offset) + tiles + 1) / (std::int64_t{1} << 47);
     }
 
-    Filter filter_;
-    FlatDepths range_;
     std::vector<Slab> columns_, rows_, grown_columns_, grown_rows_;
     std::vector<Rational> column_slacks_, row_slacks_;
     Depths beyond_near_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "judge.hpp"
 
-#include "../../bench/exact/filter.hpp"
+#include "../../bench/exact/truth.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -67,9 +67,8 @@ struct Range {
 
 class Judge::Impl {
 public:
-    explicit Impl(const Scene& scene) : scene_(scene), oracle_(scene.camera), filter_(oracle_) {
-        whole_ = FlatDepths(oracle_.range());
-        const CameraBall signs = oracle_.in_camera({{1, 1, 1}, 0});
+    explicit Impl(const Scene& scene) : scene_(scene), truth_(scene.camera) {
+        const CameraBall signs = truth_.oracle.in_camera({{1, 1, 1}, 0});
         sign_[0] = signs.x.convert_to<double>(), sign_[1] = signs.y.convert_to<double>();
         sign_[2] = signs.depth.convert_to<double>();
     }
@@ -108,29 +107,26 @@ public:
             if (is_bad(light)) continue;
             const std::size_t tile = random.bits() % tile_count();
             Block block = one_tile(tile);
-            if (random.chance(0.3)) block.x1 = random.integer(block.x1, oracle_.tiles_x());
+            if (random.chance(0.3)) block.x1 = random.integer(block.x1, truth_.oracle.tiles_x());
             if (random.chance(0.3)) block.y0 = random.integer(0, block.y0);
             const std::span<const Range> ranges = ranges_of(tile);
             const Range range =
-                ranges.empty() ? Range{whole_, NAN, NAN} : ranges[random.bits() % ranges.size()];
+                ranges.empty() ? Range{truth_.range, NAN, NAN} : ranges[random.bits() % ranges.size()];
             const FlatBall ball = flat(light);
-            const bool apart = filter_.apart(block.x0, block.x1, block.y0, block.y1, range.flat, ball);
-            const auto met = filter_.meets(block.x0, block.x1, block.y0, block.y1, range.flat, ball);
+            const bool apart = truth_.filter.apart(block.x0, block.x1, block.y0, block.y1, range.flat, ball);
+            const auto met = truth_.filter.meets(block.x0, block.x1, block.y0, block.y1, range.flat, ball);
             if (!apart && !met) continue;
             ++answered;
-            const bool truth = meets_exactly(block, range, light);
+            const bool truth = meets({truth_.columns(block.x0, block.x1), truth_.rows(block.y0, block.y1)},
+                                     exact_depths(range), seen(light));
             wrong += (apart && truth) || (met && *met != truth);
         }
         return answered;
     }
 
 private:
-    struct Block {
-        int x0, x1, y0, y1;
-    };
-
     std::size_t tile_count() const {
-        return static_cast<std::size_t>(oracle_.tiles_x()) * static_cast<std::size_t>(oracle_.tiles_y());
+        return static_cast<std::size_t>(truth_.oracle.tiles_x()) * static_cast<std::size_t>(truth_.oracle.tiles_y());
     }
 
     bool ascending(const Lists& lists) const {
@@ -149,11 +145,11 @@ private:
 
     /// Rung rectangle: all tiles but the light's own, in as few blocks as they come.
     void outside(std::size_t i, std::span<const std::uint32_t> tiles, Verdicts& verdicts) {
-        const int nx = oracle_.tiles_x(), ny = oracle_.tiles_y();
-        if (tiles.empty()) return prove(i, {0, nx, 0, ny}, {whole_, NAN, NAN}, verdicts);
+        const int nx = truth_.oracle.tiles_x(), ny = truth_.oracle.tiles_y();
+        if (tiles.empty()) return prove(i, {0, nx, 0, ny}, {truth_.range, NAN, NAN}, verdicts);
         const int top = static_cast<int>(tiles.front()) / nx, bottom = static_cast<int>(tiles.back()) / nx;
-        prove(i, {0, nx, 0, top}, {whole_, NAN, NAN}, verdicts);
-        prove(i, {0, nx, bottom + 1, ny}, {whole_, NAN, NAN}, verdicts);
+        prove(i, {0, nx, 0, top}, {truth_.range, NAN, NAN}, verdicts);
+        prove(i, {0, nx, bottom + 1, ny}, {truth_.range, NAN, NAN}, verdicts);
         const int x0 = static_cast<int>(tiles.front()) % nx, x1 = static_cast<int>(tiles.back()) % nx + 1;
         const auto area = static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(bottom + 1 - top);
         bool rectangle = x0 < x1 && tiles.size() == area;
@@ -162,8 +158,8 @@ private:
             rectangle = rectangle && x >= x0 && x < x1;
         }
         if (!rectangle) return complain(verdicts, "not a rectangle: light " + std::to_string(i));
-        prove(i, {0, x0, top, bottom + 1}, {whole_, NAN, NAN}, verdicts);
-        prove(i, {x1, nx, top, bottom + 1}, {whole_, NAN, NAN}, verdicts);
+        prove(i, {0, x0, top, bottom + 1}, {truth_.range, NAN, NAN}, verdicts);
+        prove(i, {x1, nx, top, bottom + 1}, {truth_.range, NAN, NAN}, verdicts);
     }
 
     /// Other rungs: the tiles of the light's rectangle that its list lacks.
@@ -176,7 +172,7 @@ private:
                 continue;
             }
             if (rung_ == Rung::silhouette) {
-                prove(i, one_tile(tile), {whole_, NAN, NAN}, verdicts);
+                prove(i, one_tile(tile), {truth_.range, NAN, NAN}, verdicts);
                 continue;
             }
             for (const Range& range : ranges_of(tile))
@@ -187,18 +183,20 @@ private:
     }
 
     Block one_tile(std::size_t tile) const {
-        const int x = static_cast<int>(tile) % oracle_.tiles_x(),
-                  y = static_cast<int>(tile) / oracle_.tiles_x();
+        const int x = static_cast<int>(tile) % truth_.oracle.tiles_x(),
+                  y = static_cast<int>(tile) / truth_.oracle.tiles_x();
         return {x, x + 1, y, y + 1};
     }
 
     void prove(std::size_t i, const Block& block, const Range& range, Verdicts& verdicts) {
-        if (block.x0 >= block.x1 || block.y0 >= block.y1) return;
+        if (block.empty()) return;
         const Light& light = scene_.lights[i];
+        const std::uint64_t before = truth_.by_rationals();
+        const bool met = truth_.meets(
+            block, range.flat, flat(light), [&] { return exact_depths(range); }, [&] { return seen(light); });
         ++verdicts.proven;
-        if (filter_.apart(block.x0, block.x1, block.y0, block.y1, range.flat, flat(light))) return;
-        ++verdicts.exact;
-        if (!meets_exactly(block, range, light)) return;
+        verdicts.exact += truth_.by_rationals() - before;
+        if (!met) return;
         if (++verdicts.misses <= 5)
             complain(verdicts, "MISS: light " + std::to_string(i) + " " + text(light) + " tiles " +
                                    std::to_string(block.x0) + ".." + std::to_string(block.x1 - 1) + " x " +
@@ -212,17 +210,19 @@ private:
                 sign_[2] * static_cast<double>(light.z), static_cast<double>(light.w)};
     }
 
-    bool meets_exactly(const Block& block, const Range& range, const Light& light) const {
-        const Slabs slabs = {oracle_.column_slab(oracle_.columns(block.x0, block.x1)),
-                             oracle_.row_slab(oracle_.rows(block.y0, block.y1))};
+    CameraBall seen(const Light& light) const {
+        return truth_.oracle.in_camera(exact_ball(light.x, light.y, light.z, light.w));
+    }
+
+    Depths exact_depths(const Range& range) const {
         Depths depths;
         if (range.window >= 0) {
-            depths.min = depths.max = oracle_.view_depth(exact(range.window));
+            depths.min = depths.max = truth_.oracle.view_depth(exact(range.window));
         } else {
             const auto given = [](float v) { return std::isnan(v) ? std::nullopt : std::optional(v); };
-            depths = oracle_.depths(given(range.min), given(range.max));
+            depths = truth_.oracle.depths(given(range.min), given(range.max));
         }
-        return meets(slabs, depths, oracle_.in_camera(exact_ball(light.x, light.y, light.z, light.w)));
+        return depths;
     }
 
     void complain(Verdicts& verdicts, const std::string& what) const {
@@ -242,7 +242,7 @@ private:
         constexpr float inf = std::numeric_limits<float>::infinity();
         if (min > max || min == inf || max == -inf) return;
         const double low = static_cast<double>(min), high = static_cast<double>(max);
-        const FlatDepths flat = {low > whole_.min ? low : whole_.min, high < whole_.max ? high : whole_.max};
+        const FlatDepths flat = {low > truth_.range.min ? low : truth_.range.min, high < truth_.range.max ? high : truth_.range.max};
         if (!flat.surely_empty()) ranges_.push_back({flat, min, max});
     }
 
@@ -257,20 +257,20 @@ private:
             if (scene_.skip_background && sample == background) continue;
             const int x = static_cast<int>(pixel) % camera.width / camera.tile,
                       y = static_cast<int>(pixel) / camera.width / camera.tile;
-            auto& tile = seen[static_cast<std::size_t>(y * oracle_.tiles_x() + x)];
+            auto& tile = seen[static_cast<std::size_t>(y * truth_.oracle.tiles_x() + x)];
             const auto same = [&](float v) { return v == sample || (std::isnan(v) && std::isnan(sample)); };
             if (std::none_of(tile.begin(), tile.end(), same)) tile.push_back(sample);
         }
         for (const std::vector<float>& samples : seen) {
             for (const float sample : samples) {
                 if (std::isnan(sample)) {  // anything
-                    ranges_.push_back({whole_, NAN, NAN});
+                    ranges_.push_back({truth_.range, NAN, NAN});
                     continue;
                 }
                 const float window = std::clamp(sample, 0.0f, 1.0f);
                 const auto [at, is_new] = view_depths.try_emplace(window);
                 if (is_new)
-                    if (const auto depth = oracle_.view_depth(exact(static_cast<double>(window))))
+                    if (const auto depth = truth_.oracle.view_depth(exact(static_cast<double>(window))))
                         at->second = depth->convert_to<double>();
                 if (!at->second) continue;  // at infinity
                 ranges_.push_back({{*at->second, *at->second}, NAN, NAN, static_cast<double>(window)});
@@ -280,7 +280,7 @@ private:
     }
 
     float far_window_depth() const {
-        const auto at_0 = oracle_.view_depth(0), at_1 = oracle_.view_depth(1);
+        const auto at_0 = truth_.oracle.view_depth(0), at_1 = truth_.oracle.view_depth(1);
         return !at_0 || (at_1 && *at_0 > *at_1) ? 0.0f : 1.0f;
     }
 
@@ -303,9 +303,7 @@ private:
     }
 
     const Scene& scene_;
-    Oracle oracle_;
-    Filter filter_;
-    FlatDepths whole_;
+    Truth truth_;
     double sign_[3];  ///< view space to the camera's axes
     Rung rung_ = Rung::rectangle;
     std::unique_ptr<TilesOfLights> rectangles_;
