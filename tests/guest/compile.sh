@@ -1,8 +1,8 @@
 #!/bin/sh
 # compile.sh COMPILER [alone]: the headers give no warning, used all of them, with and without exceptions and assertions, as
-# C++20 and as C++23. What g++ says may depend on how it optimises, so the tuned_unit of CMakeLists.txt, which it compiles
-# with the same warnings and all that this script leaves out, belongs to this. What clang says comes from reading and from
-# the first, unoptimised code, so the older one is asked to optimise, and the younger is not.
+# C++20 and as C++23. What g++ says may depend on how it optimises, so plain_unit and tuned_unit of CMakeLists.txt, which are
+# compiled with the same warnings and all that this script leaves out, belong to this. What clang says comes from reading
+# and from the first, unoptimised code, so the older one is asked to optimise, and the younger is not.
 # By one compiler each public header is read alone, too: where one lacks an include, it does so with all that read the same
 # standard library. What lies in detail/, which users do not include, is read alone with `alone`.
 set -eu
@@ -18,10 +18,7 @@ clang*) # all but what no C++20 of any length is without, and what an older one 
     warnings="-Weverything -Wno-c++98-compat -Wno-c++98-compat-pedantic -Wno-padded -Wno-unsafe-buffer-usage
         -Wno-switch-default -Wno-unknown-warning-option" ;;
 *)
-    warnings="-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wuseless-cast -Wcast-align=strict -Wfloat-equal
-        -Wswitch-enum -Wdouble-promotion -Wsign-conversion -Wold-style-cast -Wduplicated-cond -Wduplicated-branches
-        -Wlogical-op -Wundef -Wextra-semi -Wformat=2 -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-qual
-        -Wmissing-declarations -Wredundant-decls -Wzero-as-null-pointer-constant -Wunused-macros" ;;
+    warnings="@$here/gcc_warnings.txt" ;;
 esac
 
 compile() {
@@ -56,14 +53,13 @@ all -std=c++2b -fsyntax-only
 all -std=c++20 -fsyntax-only -DLIGHTBIN_NO_SIMD
 case $compiler in
 clang++-14)
-    all -std=c++20 -O2 -c -DNDEBUG -fno-exceptions -fno-rtti
-    all -std=c++20 -O0 -c -march=native
-    ;;
-clang*)
-    all -std=c++20 -O0 -c -DNDEBUG -fno-exceptions -fno-rtti
+    all -std=c++20 -O1 -c -DNDEBUG -fno-exceptions -fno-rtti
     all -std=c++20 -fsyntax-only -march=native
     ;;
-*) all -std=c++20 -O1 -c ;;
+clang*)
+    all -std=c++20 -fsyntax-only -DNDEBUG -fno-exceptions -fno-rtti
+    all -std=c++20 -O0 -c -march=native
+    ;;
 esac
 compile -w -std=c++20 -fsyntax-only "$here/hostile_macros.cpp"
 

@@ -4,8 +4,19 @@ set -eu
 compiler=$1
 here=$(cd "$(dirname "$0")" && pwd)
 
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# All that the mistakes have in common, compiled once.
+case $compiler in
+clang*) compiled=pch ;;
+*) compiled=gch ;;
+esac
+sed -n '/^#include/p' "$here/refused.cpp" >"$work/headers.hpp"
+"$compiler" -std=c++20 -I "$here/../../include" -x c++-header "$work/headers.hpp" -o "$work/headers.hpp.$compiled"
+
 compile() {
-    "$compiler" -std=c++20 -I "$here/../../include" -fsyntax-only "$here/refused.cpp" "$@" 2>&1
+    "$compiler" -std=c++20 -I "$here/../../include" -include "$work/headers.hpp" -fsyntax-only "$here/refused.cpp" "$@" 2>&1
 }
 compile -DMISTAKE=0
 

@@ -12,7 +12,6 @@ namespace hunt {
 namespace {
 
 using Long = long double;
-constexpr float endless = std::numeric_limits<float>::infinity();
 constexpr lightbin::Isa tiers[] = {lightbin::Isa::scalar, lightbin::Isa::sse2, lightbin::Isa::avx2,
                                    lightbin::Options{}.isa};
 
@@ -124,11 +123,11 @@ std::string reduce(const Camera& camera, const lightbin::View& view, const std::
             const auto side = [&](int k, float none) {
                 return bounds.sides[k].empty() ? none : bounds.sides[k][tile];
             };
-            if (surely_less(at, side(0, -endless)) || surely_less(side(1, endless), at))
+            if (surely_less(at, side(0, -infinite)) || surely_less(side(1, infinite), at))
                 return text("MISS: a drawn point is out of its tile's reduced bounds", tile, at.value,
-                            side(0, -endless), side(1, endless)) +
+                            side(0, -infinite), side(1, infinite)) +
                        " (" + to_string(buffer.format) + ", stored " + std::to_string(depth[drawn[i]]) + ")";
-            if (surely_less(side(2, endless), at) && surely_less(at, side(3, -endless)))
+            if (surely_less(side(2, infinite), at) && surely_less(at, side(3, -infinite)))
                 return text("MISS: a drawn point is in its tile's reduced gap", tile, at.value, side(2, 0),
                             side(3, 0));
         }
@@ -150,7 +149,7 @@ std::string reduce(const Camera& camera, const lightbin::View& view, const std::
             return bounds.sides[side].empty() || test(bounds.sides[side][tile]);
         };
         if (!any &&
-            !(is(0, [](float z) { return z == endless; }) && is(1, [](float z) { return z == -endless; })))
+            !(is(0, [](float z) { return z == infinite; }) && is(1, [](float z) { return z == -infinite; })))
             return "a tile where nothing is drawn has bounds";
         if (any && !bounds.sides[0].empty() && !bounds.sides[1].empty() &&
             bounds.sides[0][tile] > bounds.sides[1][tile])
@@ -207,7 +206,7 @@ std::string make_bounds(int kind, const Camera& camera, const lightbin::View& vi
             for (int i = 0; i < 4; ++i)
                 side(i, tile) = nasty_float(random);
         else if (random.one_in(3))
-            side(0, tile) = endless, side(1, tile) = -endless;  // nothing is drawn
+            side(0, tile) = infinite, side(1, tile) = -infinite;  // nothing is drawn
         else
             side(0, tile) = view.near_depth(), side(1, tile) = view.far_depth();
     }
@@ -225,7 +224,7 @@ std::string make_bounds(int kind, const Camera& camera, const lightbin::View& vi
         side(1, tile) = float_up(most.high());
         side(2, tile) = float_up(least.high());
         side(3, tile) = float_down(most.low());
-        if (name == "gaps" && random.one_in(4)) side(0, tile) = -endless, side(1, tile) = endless;
+        if (name == "gaps" && random.one_in(4)) side(0, tile) = -infinite, side(1, tile) = infinite;
     }
     return {};
 }

@@ -15,7 +15,6 @@ namespace {
 
 using lightbin::ErrorCode;
 using lightbin::View;
-constexpr float endless = std::numeric_limits<float>::infinity();
 constexpr lightbin::Options plain = {}, narrow = {.ids = IdWidth::u16},
                             interval = {.depth_test = DepthTest::interval};
 
@@ -75,7 +74,7 @@ public:
         expect(all && all->ids().size() == 65536 && all->ids()[65535] == 65535, "65,536 lights with 16 bits");
         expect_error(binner.bin(view, many), ErrorCode::too_many_lights, "65,537 lights with 16 bits", 65537,
                      65536);
-        for (const float bad : {std::nanf(""), endless}) {
+        for (const float bad : {std::nanf(""), infinite}) {
             glm::dmat4 matrix(1);
             matrix[3][0] = bad;
             expect_error(binner.bin(view, world_space(std::span(many).first(1), matrix)),
@@ -85,7 +84,7 @@ public:
 
     void entries() {
         lightbin::Binner<plain> binner;
-        const std::vector<Sphere> covering(4096, Sphere{0, 0, 0, endless});
+        const std::vector<Sphere> covering(4096, Sphere{0, 0, 0, infinite});
         const std::uint64_t most = 0xffffffff;
         expect_error(binner.bin(unit_view(1024, 1024, 1), covering), ErrorCode::too_many_entries,
                      "2^32 entries", std::uint64_t{1} << 32, most);
@@ -132,7 +131,7 @@ public:
             scene.lights.push_back({static_cast<float>((corner % 2 == 0 ? -1 : 1) * (1 - half_x)),
                                     static_cast<float>((corner / 2 == 0 ? -1 : 1) * (1 - half_y)), 1,
                                     static_cast<float>(0.25 * std::min(half_x, half_y))});
-        scene.lights.push_back({0, 0, 1, endless});
+        scene.lights.push_back({0, 0, 1, infinite});
         scene.lights.push_back({0, 0, 1, 10});
         for (int more = 0; more < 70; ++more)  // in few tiles, but enough for other kernels
             scene.lights.push_back(
@@ -177,7 +176,7 @@ public:
         longest(2048, 32768);
         // Rectangles out of reach, of which Z leaves next to nothing.
         const View view = unit_view(1024, 1024, 1);
-        const std::vector<Sphere> covering(4096, Sphere{0, 0, 0, endless});
+        const std::vector<Sphere> covering(4096, Sphere{0, 0, 0, infinite});
         std::vector<float> least(view.tile_count(), 1), most(view.tile_count(), 0);
         most[12345] = 1;
         lightbin::Binner<interval> binner;

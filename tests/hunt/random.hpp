@@ -10,6 +10,8 @@
 
 namespace hunt {
 
+inline constexpr float infinite = std::numeric_limits<float>::infinity();
+
 class Random {
 public:
     explicit Random(std::uint64_t seed) : state_(seed) {}

@@ -271,8 +271,8 @@ private:
     /// Whether a bound is infinite the wrong way: nothing is there, and a test may have it either way.
     bool at_no_depth(std::size_t tile) const {
         const auto& [min, max, gap_min, gap_max] = bounds_.sides;
-        constexpr float endless = std::numeric_limits<float>::infinity();
-        return (!min.empty() && min[tile] == endless) || (!max.empty() && max[tile] == -endless);
+        constexpr float infinite = std::numeric_limits<float>::infinity();
+        return (!min.empty() && min[tile] == infinite) || (!max.empty() && max[tile] == -infinite);
     }
 
     /// Every footprint and depth test: one grid that is looked into, and others, of other tiers, ids, threads and

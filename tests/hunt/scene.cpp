@@ -7,7 +7,6 @@
 namespace hunt {
 namespace {
 
-constexpr float endless = std::numeric_limits<float>::infinity();
 using Long = long double;
 
 Long dot(const Point& a, const Point& b) {
@@ -200,13 +199,13 @@ public:
             if (random_.one_in(4)) light.z = random_.coin() ? 0x1p-149f : -0x1p-130f;
             return light;
         }
-        if (kind == "infinite") return {nasty[0], nasty[1], nasty[2], endless};
+        if (kind == "infinite") return {nasty[0], nasty[1], nasty[2], infinite};
         if (kind == "bad input") {
             Sphere light = moved(at, reach);
             float* const numbers[] = {&light.x, &light.y, &light.z, &light.radius};
             const int which = random_.below(4);
-            *numbers[which] = which == 3 ? random_.pick({-1.0f, -0x1p-149f, -endless, std::nanf("")})
-                                         : random_.pick({endless, -endless, std::nanf("")});
+            *numbers[which] = which == 3 ? random_.pick({-1.0f, -0x1p-149f, -infinite, std::nanf("")})
+                                         : random_.pick({infinite, -infinite, std::nanf("")});
             return light;
         }
         if (kind == "on an axis") {
@@ -305,7 +304,7 @@ bool is_bad(const Sphere& light) {
 
 bool surely_inside(const Sphere& light, const Point& point) {
     if (is_bad(light)) return false;
-    if (light.radius == endless) return true;
+    if (light.radius == infinite) return true;
     const Long centre[] = {light.x, light.y, light.z};
     Real square = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -370,7 +369,7 @@ Scene make_scene(const Camera& camera, int space, std::uint32_t count, std::uint
     // One of infinite radius reaches each end of the grid.
     if (large > 0 && random.coin()) {
         const std::size_t id = random.below(std::size_t{large});
-        scene.lights[id].radius = endless;
+        scene.lights[id].radius = infinite;
     }
     // Lights that may be anywhere among those that are small.
     if (large > 0 && large < count)
@@ -389,7 +388,7 @@ void find_points(const Camera& camera, const Scene& scene, Random& random, std::
     for (int i = 0; i < 40; ++i) {
         const std::uint32_t id = static_cast<std::uint32_t>(random.below(std::size_t{count}));
         const Sphere& light = scene.lights[id];
-        if (is_bad(light) || light.radius == endless) continue;
+        if (is_bad(light) || light.radius == infinite) continue;
         points.push_back({id, {light.x, light.y, light.z}});
         points.push_back({id, extreme_point(camera, scene, light, random)});
         const Long reach = static_cast<Long>(light.radius) * random.log_between(1e-3, 1);

@@ -10,7 +10,7 @@ using namespace lightbin;
 
 namespace {
 
-constexpr Options interval = {.depth_test = DepthTest::interval};
+constexpr Options by_interval = {.depth_test = DepthTest::interval};
 
 std::vector<float> random_floats(std::size_t count, float low, float high, std::uint32_t seed) {
     std::mt19937 random(seed);
@@ -82,14 +82,14 @@ struct Plain {
     test::Lists expected;
 };
 
-template <Isa isa, DepthTest depth_test = DepthTest::none> void check_plain(const Plain& plain) {
+template <Isa isa, DepthTest depth_test = DepthTest::none> void check_plain(const Plain& given) {
     constexpr Options options = {.depth_test = depth_test, .isa = isa};
     static Binner<options> binner;
     for (const std::size_t workers : {1u, 2u, 5u}) {
         const Parallel parallel(workers, test::backwards, 0);
-        const auto grid = binner.bin(plain.view, plain.spheres, inputs_for<options>({}), parallel);
+        const auto grid = binner.bin(given.view, given.spheres, inputs_for<options>({}), parallel);
         REQUIRE(grid);
-        CHECK((test::to_lists(*grid) == plain.expected));
+        CHECK((test::to_lists(*grid) == given.expected));
     }
 }
 
@@ -101,35 +101,35 @@ TEST_CASE("lights straight on are listed where they are, in grids of any shape, 
         for (const int tiles_y : {1, 2, 7, 8, 9, 70, 513, 1040})
             for (const std::size_t count : {0u, 1u, 2u, 15u, 16u, 60u}) {
                 if (++seed % test::share_of_cases(1) != 0) continue;
-                const Plain plain(tiles_x, tiles_y, count, seed);
-                check_plain<Isa::scalar>(plain);
-                check_plain<Isa::sse2>(plain);
-                check_plain<Isa::avx2>(plain);
-                check_plain<Isa::avx512>(plain);
+                const Plain given(tiles_x, tiles_y, count, seed);
+                check_plain<Isa::scalar>(given);
+                check_plain<Isa::sse2>(given);
+                check_plain<Isa::avx2>(given);
+                check_plain<Isa::avx512>(given);
             }
 }
 
 TEST_CASE("lights straight on are listed where they are, more than 16 bits number and projected in parts") {
     for (const std::uint32_t seed : {1u, 2u}) {
-        Plain plain(9, 11, 0, seed);
+        Plain given(9, 11, 0, seed);
         const Plain few(9, 11, 400, seed);
         // In view are each 500th, or the first and the last 200.
         constexpr std::uint32_t count = 200000;
-        plain.spheres.assign(count, glm::vec4(0, 0, 50, 1));
+        given.spheres.assign(count, glm::vec4(0, 0, 50, 1));
         std::vector<std::uint32_t> ids;
         for (std::uint32_t i = 0; i < few.spheres.size(); ++i) {
             ids.push_back(seed == 1 ? 500 * i : i < 200 ? i : 199800 + (i - 200));
-            plain.spheres[ids[i]] = few.spheres[i];
+            given.spheres[ids[i]] = few.spheres[i];
         }
-        plain.expected = few.expected;
-        for (std::vector<std::uint32_t>& list : plain.expected)
+        given.expected = few.expected;
+        for (std::vector<std::uint32_t>& list : given.expected)
             for (std::uint32_t& id : list)
                 id = ids[id];
-        check_plain<Isa::scalar>(plain);
-        check_plain<Isa::sse2>(plain);
-        check_plain<Isa::avx2>(plain);
-        check_plain<Isa::avx512>(plain);
-        check_plain<Isa::avx512, DepthTest::interval>(plain);
+        check_plain<Isa::scalar>(given);
+        check_plain<Isa::sse2>(given);
+        check_plain<Isa::avx2>(given);
+        check_plain<Isa::avx512>(given);
+        check_plain<Isa::avx512, DepthTest::interval>(given);
     }
 }
 
@@ -195,12 +195,12 @@ TEST_CASE("interval: minimum, maximum, both, each as [z - r, z + r] against the 
     const auto z_min = [&](std::uint32_t id) { return -lights[id].z - lights[id].w; };
     const auto z_max = [&](std::uint32_t id) { return -lights[id].z + lights[id].w; };
 
-    CHECK(test::lists<interval>(view, lights, ZBounds{}) == everywhere);
-    CHECK(test::lists<interval>(view, lights, ZBounds{.min = min, .max = {}}) ==
+    CHECK(test::lists<by_interval>(view, lights, ZBounds{}) == everywhere);
+    CHECK(test::lists<by_interval>(view, lights, ZBounds{.min = min, .max = {}}) ==
           filter(everywhere, [&](std::size_t tile, std::uint32_t id) { return z_max(id) >= min[tile]; }));
-    CHECK(test::lists<interval>(view, lights, ZBounds{.min = {}, .max = max}) ==
+    CHECK(test::lists<by_interval>(view, lights, ZBounds{.min = {}, .max = max}) ==
           filter(everywhere, [&](std::size_t tile, std::uint32_t id) { return z_min(id) <= max[tile]; }));
-    const auto both = test::lists<interval>(view, lights, ZBounds{.min = min, .max = max});
+    const auto both = test::lists<by_interval>(view, lights, ZBounds{.min = min, .max = max});
     CHECK(both == filter(everywhere, [&](std::size_t tile, std::uint32_t id) {
               return z_max(id) >= min[tile] && z_min(id) <= max[tile] && min[tile] <= max[tile];
           }));
@@ -214,11 +214,11 @@ TEST_CASE("a NaN bound tests nothing; infinite bounds mean what they say") {
     const std::vector<glm::vec4> lights = {{0, 0, -5, 1}, {0, 0, 0, HUGE_VALF}};
     const auto everywhere = test::lists(view, lights);
     const std::vector<float> nan(tiles, std::nanf("")), inf(tiles, HUGE_VALF), minus_inf(tiles, -HUGE_VALF);
-    CHECK(test::lists<interval>(view, lights, ZBounds{.min = nan, .max = nan}) == everywhere);
-    CHECK(test::lists<interval>(view, lights, ZBounds{.min = minus_inf, .max = inf}) == everywhere);
-    CHECK(test::entries(test::lists<interval>(view, lights, ZBounds{.min = inf, .max = minus_inf})) ==
+    CHECK(test::lists<by_interval>(view, lights, ZBounds{.min = nan, .max = nan}) == everywhere);
+    CHECK(test::lists<by_interval>(view, lights, ZBounds{.min = minus_inf, .max = inf}) == everywhere);
+    CHECK(test::entries(test::lists<by_interval>(view, lights, ZBounds{.min = inf, .max = minus_inf})) ==
           0);  // empty tiles
-    CHECK(test::entries(test::lists<interval>(view, lights, ZBounds{.min = inf, .max = inf})) ==
+    CHECK(test::entries(test::lists<by_interval>(view, lights, ZBounds{.min = inf, .max = inf})) ==
           tiles);  // the infinite one
 }
 

@@ -233,10 +233,11 @@ TEST_CASE("more lights than 16 bits count, and more tiles than 8 bits count") {
         Tiers<plain>().compare(input);
         Tiers<box>().compare(input);
     };
-    check({1280, 720}, 40, 70000, 0.05f);
     check({992, 300}, 4, 1500, 0.2f);  // the widest grid of one panel of lists_scan.inl, and one tile more
     check({996, 300}, 4, 1500, 0.2f);
     check({3000, 300}, 4, 1500, 0.2f);
     check({300, 3000}, 4, 1500, 0.2f);
+    if (test::share_of_cases(1) > 1) return;  // an emulator takes seconds for as many lights
+    check({1280, 720}, 40, 70000, 0.05f);
     check({40000 / 2, 8}, 8, 70000, 0.01f);
 }

@@ -8,7 +8,7 @@ using namespace lightbin;
 
 namespace {
 
-constexpr float inf = std::numeric_limits<float>::infinity();
+constexpr float infinite = std::numeric_limits<float>::infinity();
 
 struct Reduced {
     std::vector<float> min, max;
@@ -80,8 +80,8 @@ TEST_CASE("background, NaN and out-of-range samples") {
     CHECK(kept.min[0] == doctest::Approx(1000).epsilon(0.01));
     CHECK(kept.max[1] == far);
     const Reduced skipped = reduce(view, {.depth = depth, .skip_background = true});
-    CHECK(skipped.min[0] == inf);
-    CHECK(skipped.max[0] == -inf);
+    CHECK(skipped.min[0] == infinite);
+    CHECK(skipped.max[0] == -infinite);
     CHECK(skipped.min[1] == doctest::Approx(10).epsilon(1e-3));
     CHECK(skipped.max[1] == doctest::Approx(10).epsilon(1e-3));
 
@@ -93,11 +93,11 @@ TEST_CASE("background, NaN and out-of-range samples") {
         depth[left] = -std::nanf("");
         CHECK(reduce(view, {.depth = depth, .skip_background = skip}).min[0] == near);
     }
-    for (const float beyond : {-1.0f, -inf, -0.0f}) {
+    for (const float beyond : {-1.0f, -infinite, -0.0f}) {
         depth[left] = beyond;
         CHECK(reduce(view, {.depth = depth, .skip_background = true}).min[0] == near);
     }
-    for (const float beyond : {1.5f, inf}) {
+    for (const float beyond : {1.5f, infinite}) {
         depth[left] = beyond;
         CHECK(reduce(view, {.depth = depth, .skip_background = true}).max[0] == far);
     }
@@ -115,7 +115,7 @@ TEST_CASE("reversed Z: the far end is zero") {
     depth[6] = 0.1f / 40;
     const Reduced kept = reduce(view, {.depth = depth});
     CHECK(kept.min[0] == doctest::Approx(20));
-    CHECK(kept.max[0] == inf);
+    CHECK(kept.max[0] == infinite);
     const Reduced skipped = reduce(view, {.depth = depth, .skip_background = true});
     CHECK(skipped.min[0] == doctest::Approx(20));
     CHECK(skipped.max[0] == doctest::Approx(40));

@@ -1,0 +1,115 @@
+#!/bin/sh
+# sh tests/mutants.sh [NUMBER...]: can the proof fail? Breaks a line of the library at a time, each as somebody might by
+# mistake, builds a proof with it, and expects that to complain. Some ten minutes on two cores. In build/mutants is what
+# each proof said; with NUMBERs those mutants alone.
+set -eu
+me=tests/mutants.sh
+cd "$(dirname "$0")/.."
+. tests/packages.sh
+work=build/mutants
+
+# mutant PROOF FILE EXPRESSION: sed's EXPRESSION breaks include/lightbin/FILE, and the PROOF must see it: families (every
+# rung, tier and number of workers against the exact judge and each other), cells or world.
+list() {
+    # Rounding outward.
+    mutant cells view.hpp 's/detail::float_above(0x1p-20 \* (std::fabs(axis.offset) + axis.tiles) + 0x1p-80 \* axis.scale)/0.0f/'
+    mutant families detail/rounding.hpp 's/return static_cast<double>(nearest) > value ? next_below(nearest) : nearest;/return nearest;/'
+    mutant families detail/cell_boxes.hpp 's/from -= std::fabs(from) \* 0x1p-21 + 0x1p-100;/from += std::fabs(from) * 0x1p-21;/'
+    mutant families detail/cell_boxes.hpp 's/(1 + 0x1p-20f)) + 0x1p-125f/(1 - 0x1p-20f))/'
+    mutant world lights.hpp 's/\* stretch_ + error) \* (1 + 0x1p-23) +/* stretch_) +/'
+    # Projection.
+    mutant families detail/project.inl 's/either(either(less(farthest, all(camera.near_depth)),/either(either(less(nearest, all(camera.near_depth)),/'
+    mutant families detail/project.inl 's/less(size \* 0x1p-21f, aside - r)/less(size * -0x1p-19f, aside - r)/'
+    mutant families detail/project.inl 's/+ offset - margin;/+ offset + margin;/'
+    mutant families detail/project.inl 's/less_equal(size, all(0x1p40f))/less_equal(size, all(0x1p100f))/'
+    mutant families detail/project.inl 's/const auto behind = less(z, zero);/const auto behind = less(zero, z);/'
+    mutant families detail/project.inl 's/const auto whole = less(all(near_depth), nearest);/const auto whole = less(all(0.0), nearest);/'
+    mutant families detail/project.inl 's/const Doubles h = sqrt(greater(h2, zero) + h2_error);/const Doubles h = sqrt(greater(h2, zero)) * 0.999;/'
+    # Silhouettes.
+    mutant families detail/silhouette.inl 's/+ mul(reach, right_s) + all/+ mul(reach, right_s) * all(0.999) + all/'
+    mutant families detail/silhouette.inl 's/right_v = select(negative, inner_v, outer_v);/right_v = select(negative, outer_v, inner_v);/'
+    # Depth.
+    mutant families detail/depth_columns.inl 's/store_floats(upper + column, select(numbers, most, infinite));/store_floats(upper + column, most);/'
+    mutant families detail/cells.inl 's/mul(x0, select(less(x0, zero), back, front))/mul(x0, select(less(zero, x0), back, front))/'
+    mutant families detail/cells.inl 's/select(both(gap, less(z0, gap_max)), gap_max, z0)/select(both(gap, less(z0, gap_max)), gap_max, z1)/'
+    mutant families detail/words.inl 's/either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest))/either(less(nearest, load_floats(cell)), less(load_floats(cell + 64), nearest))/'
+    # Lists.
+    mutant families detail/lists_insert.inl 's/(rows.last \/ 8 + 1) \* pitch/(rows.last \/ 8) * pitch/'
+    mutant families detail/lists_insert.inl 's/to.put(list\[1\], id, column_bits >> 8, row_bits);/to.put(list[1], id, column_bits >> 7, row_bits);/'
+    mutant families detail/lists_scan.inl 's/coordinates(lights.y1 + i, 1, to.begin)/coordinates(lights.y1 + i, 0, to.begin)/'
+    mutant families detail/lists_scan.inl 's/unsigned begin = 8 \* panel_side \* panel;/unsigned begin = 8 * panel_side * panel + 8;/'
+    mutant families detail/lists_scan.inl 's/const ByteMask chosen = not_zero(here) & first_bytes(end - at);/const ByteMask chosen = not_zero(here);/'
+    # Words and entries.
+    mutant families detail/words.inl 's/span.first < 8 \* x + 8 \&\& span.last >= 8 \* x;/span.first < 8 * x + 8 \&\& span.last > 8 * x;/'
+    mutant families detail/emit.inl 's/if (count > 8) out += append(out, ids + 8, bytes\[64\]);/if (count > 9) out += append(out, ids + 8, bytes[64]);/'
+    mutant families detail/emit_compress.inl 's/if (count > 32) store_32/if (count > 33) store_32/'
+    mutant families detail/emit_compress.inl 's/else if (count < 32)/else if (count <= 32)/'
+    # Scattering, and the caller's threads.
+    mutant families detail/scatter.inl 's/lights.x1\[i\] - lights.x0\[i\] + 1u;/lights.x1[i] - lights.x0[i];/'
+    mutant families detail/scatter.inl 's/(std::min)(lights.y1\[i\] + 1u, end)/(std::min)(lights.y1[i] + 0u, end)/'
+    mutant families detail/parts.hpp 's/        ++row;$/        row += done < goal ? 1 : 2;/'
+}
+
+# The proof of mutant $number, which is expected to fail. Says what came of it; a line that does not start with "caught" is
+# a hole in the proof, or a mutant that is out of date.
+try() {
+    proof=$1 file=$2 expression=$3
+    place=$work/$number
+    rm -rf "$place"
+    mkdir -p "$place"
+    cp -r include "$place/include"
+    sed -i "$expression" "$place/include/lightbin/$file"
+    if cmp -s "include/lightbin/$file" "$place/include/lightbin/$file"; then
+        echo "OUT OF DATE, it changes nothing: $number $file $expression"
+        return
+    fi
+    flags="-std=c++20 -O1 -w -I$place/include"
+    # shellcheck disable=SC2086  # several flags
+    case $proof in
+    families)
+        g++ $flags -c tests/oracle/engine.cpp -o "$place/engine.o" 2>"$place/log" &&
+            g++ "$place/engine.o" $work/judge.o $work/campaign.o -lgmp -o "$place/proof"
+        arguments=2000
+        ;;
+    *)
+        g++ $flags tests/oracle/$proof.cpp $work/doctest_main.o -lgmp -o "$place/proof" 2>"$place/log"
+        arguments='--test-case=cells: symmetric,world space*'
+        ;;
+    esac || {
+        echo "DOES NOT COMPILE: $number $file $expression"
+        return
+    }
+    if "$place/proof" "$arguments" >"$place/log" 2>&1; then
+        echo "SURVIVES $proof: $number $file $expression"
+    else
+        echo "caught by $proof: $number $file $expression"
+    fi
+    rm -rf "$place/include" "$place/proof" "$place/engine.o"
+}
+
+if [ "${1-}" = --one ]; then
+    wanted=$2 number=0
+    mutant() {
+        number=$((number + 1))
+        [ $number -ne "$wanted" ] || try "$@"
+    }
+    list
+    exit
+fi
+
+install_packages g++ libboost-dev libgmp-dev doctest-dev libglm-dev
+make_build_folder
+mkdir -p $work
+for part in judge campaign; do
+    g++ -std=c++20 -O1 -Iinclude -c tests/oracle/$part.cpp -o $work/$part.o
+done
+g++ -std=c++20 -O1 -c tests/doctest_main.cpp -o $work/doctest_main.o
+count=0
+mutant() { count=$((count + 1)); }
+list
+numbers=${*:-$(seq "$count")}
+echo "$me: $(echo "$numbers" | wc -w) of $count mutants"
+# shellcheck disable=SC2086  # several numbers
+printf '%s\n' $numbers | xargs -P "$(nproc)" -n 1 sh $me --one | tee $work/report
+! grep -v '^caught' $work/report >/dev/null || fail "not every mutant is caught"
+echo "$me: every mutant is caught"
