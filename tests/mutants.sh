@@ -23,7 +23,7 @@ list() {
     mutant families detail/project.inl 's/+ offset - margin;/+ offset + margin;/'
     mutant families detail/project.inl 's/less_equal(size, all(0x1p40f))/less_equal(size, all(0x1p100f))/'
     mutant families detail/project.inl 's/const auto behind = less(z, zero);/const auto behind = less(zero, z);/'
-    mutant families detail/project.inl 's/const auto whole = less(all(near_depth), nearest);/const auto whole = less(all(0.0), nearest);/'
+    mutant cells detail/project.inl 's/const auto whole = less(all(near_depth), nearest);/const auto whole = less(all(0.0), nearest);/'
     mutant families detail/project.inl 's/const Doubles h = sqrt(greater(h2, zero) + h2_error);/const Doubles h = sqrt(greater(h2, zero)) * 0.999;/'
     # Silhouettes.
     mutant families detail/silhouette.inl 's/+ mul(reach, right_s) + all/+ mul(reach, right_s) * all(0.999) + all/'
