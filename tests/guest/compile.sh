@@ -2,7 +2,7 @@
 # compile.sh COMPILER [alone]: the headers give no warning, used all of them, with and without exceptions and assertions, as
 # C++20 and as C++23. What g++ says may depend on how it optimises, so plain_unit and tuned_unit of CMakeLists.txt, which are
 # compiled with the same warnings and all that this script leaves out, belong to this. What clang says comes from reading
-# and from the first, unoptimised code, so the older one is asked to optimise, and the younger is not.
+# and from the first, unoptimised code; microsoft.sh has it optimise.
 # By one compiler each public header is read alone, too: where one lacks an include, it does so with all that read the same
 # standard library. What lies in detail/, which users do not include, is read alone with `alone`.
 set -eu
@@ -52,10 +52,6 @@ esac
 all -std=c++2b -fsyntax-only
 all -std=c++20 -fsyntax-only -DLIGHTBIN_NO_SIMD
 case $compiler in
-clang++-14)
-    all -std=c++20 -O1 -c -DNDEBUG -fno-exceptions -fno-rtti
-    all -std=c++20 -fsyntax-only -march=native
-    ;;
 clang*)
     all -std=c++20 -fsyntax-only -DNDEBUG -fno-exceptions -fno-rtti
     all -std=c++20 -O0 -c -march=native

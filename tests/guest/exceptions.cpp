@@ -62,12 +62,12 @@ template <class Exception> bool throws(std::size_t& left, std::size_t place, con
     return false;
 }
 
-struct Scene {
+struct Input {
     View view;
     std::vector<glm::vec4> lights;
     std::vector<float> min, max, gap_min, gap_max;
 
-    Scene(Extent viewport, int tile_size, std::size_t count, float largest)
+    Input(Extent viewport, int tile_size, std::size_t count, float largest)
         : view(*View::from_projection(glm::perspective(1.0f, 1.5f, 0.1f, 100.0f), viewport,
                                       {.tile_size = tile_size})),
           lights(count), min(view.tile_count(), 5), max(min), gap_min(min), gap_max(min) {
@@ -102,7 +102,7 @@ struct Bytes {
 enum class Call { bin, bin_transparency };
 
 template <Options options>
-void use(Binner<options>& binner, Call call, const Scene& scene, const Parallel& parallel, Bytes* bytes) {
+void use(Binner<options>& binner, Call call, const Input& scene, const Parallel& parallel, Bytes* bytes) {
     const auto lights = view_space(scene.lights, as_sphere);
     const auto inputs = inputs_for<options>(scene.bounds());
     if (call == Call::bin) {
@@ -116,11 +116,11 @@ void use(Binner<options>& binner, Call call, const Scene& scene, const Parallel&
 }
 
 template <Options options> struct Survival {
-    const Scene &scene, &less;
+    const Input &scene, &less;
     Call call;
     Parallel parallel;
 
-    std::vector<std::uint32_t> made(Binner<options>& binner, const Scene& of) const {
+    std::vector<std::uint32_t> made(Binner<options>& binner, const Input& of) const {
         Bytes bytes;
         use(binner, call, of, parallel, &bytes);
         return bytes.words;
@@ -148,7 +148,7 @@ template <Options options> struct Survival {
     }
 };
 
-template <Options options> void check_options(const Scene& scene, const Scene& less, bool all = true) {
+template <Options options> void check_options(const Input& scene, const Input& less, bool all = true) {
     CAPTURE(static_cast<int>(options.isa));
     for (const Call call : {Call::bin, Call::bin_transparency}) {
         if (call == Call::bin_transparency && options.depth_test == DepthTest::none) continue;
@@ -163,8 +163,8 @@ template <Options options> void check_options(const Scene& scene, const Scene& l
 
 template <Isa isa> void check_tier() {
     // Large lights and small ones; wide rows of tiles, for which lists are made in another way.
-    const Scene scene({160, 104}, 8, 150, 20), less({160, 120}, 16, 40, 20);
-    const Scene scattered({160, 104}, 8, 40, 1), wide({980, 24}, 4, 100, 20);
+    const Input scene({160, 104}, 8, 150, 20), less({160, 120}, 16, 40, 20);
+    const Input scattered({160, 104}, 8, 40, 1), wide({980, 24}, 4, 100, 20);
     check_options<Options{.isa = isa}>(scene, less);
     check_options<Options{.isa = isa}>(scattered, less, false);
     check_options<Options{.isa = isa}>(wide, less, false);
@@ -206,7 +206,7 @@ TEST_CASE("a Binner is as good as new after an exception: SSE2") {
 #endif
 
 TEST_CASE("a Binner is as good as new after an exception: more lights than 16 bits number") {
-    Scene scene({64, 48}, 8, 70000, 1), less({64, 48}, 8, 10, 1);
+    Input scene({64, 48}, 8, 70000, 1), less({64, 48}, 8, 10, 1);
     for (std::size_t i = 1; i < scene.lights.size(); ++i)
         if (i % 1000 != 0) scene.lights[i].z = 50;  // behind the eye
     for (const std::size_t workers : {1u, 3u}) {
@@ -216,7 +216,7 @@ TEST_CASE("a Binner is as good as new after an exception: more lights than 16 bi
 }
 
 TEST_CASE("what keeps nothing from call to call loses nothing, either") {
-    const Scene scene({320, 200}, 8, 300, 20);
+    const Input scene({320, 200}, 8, 300, 20);
     check_function([&] {
         const Advice advice = *advise(scene.view, scene.lights, {}, scene.bounds());
         std::string entries =
