@@ -60,14 +60,6 @@ public:
         : oracle_(exact), columns_(static_cast<std::size_t>(exact.tiles_x()) + 1),
           rows_(static_cast<std::size_t>(exact.tiles_y()) + 1) {}
 
-    /// True: the ball does not meet the wedge of whole columns [x0, x1) between these depths. False: unknown.
-    bool apart_from_columns(int x0, int x1, const FlatDepths& depths, const FlatBall& ball) {
-        return apart_from_wedge(0, {column(x0), column(x1)}, depths, ball);
-    }
-    bool apart_from_rows(int y0, int y1, const FlatDepths& depths, const FlatBall& ball) {
-        return apart_from_wedge(1, {row(y0), row(y1)}, depths, ball);
-    }
-
     /// True: the ball does not meet the block of tiles [x0, x1) x [y0, y1) between these depths. False: unknown.
     bool apart(int x0, int x1, int y0, int y1, const FlatDepths& depths, const FlatBall& ball) {
         if (separates({0, 0, ball.depth < depths.min ? 1.0 : -1.0}, {}, depths, ball)) return true;
@@ -87,14 +79,10 @@ public:
     }
     /// The same of the wedge of whole columns or rows of tiles.
     std::optional<bool> meets_columns(int x0, int x1, const FlatDepths& depths, const FlatBall& ball) {
-        if (apart_from_columns(x0, x1, depths, ball)) return false;
-        if (reaches({{{column(x0), column(x1)}, {nowhere(-1), nowhere(1)}}}, depths, ball)) return true;
-        return std::nullopt;
+        return meets_wedge(0, {column(x0), column(x1)}, depths, ball);
     }
     std::optional<bool> meets_rows(int y0, int y1, const FlatDepths& depths, const FlatBall& ball) {
-        if (apart_from_rows(y0, y1, depths, ball)) return false;
-        if (reaches({{{nowhere(-1), nowhere(1)}, {row(y0), row(y1)}}}, depths, ball)) return true;
-        return std::nullopt;
+        return meets_wedge(1, {row(y0), row(y1)}, depths, ball);
     }
 
     /// Whether the ball meets the box around a tile's cell; nothing: unknown.
@@ -130,11 +118,11 @@ public:
     /// The same from the wedge of a whole column or row of tiles.
     double column_distance2(int x, const FlatDepths& depths, const FlatBall& ball) {
         double at = 0;
-        return nearest({{{column(x), column(x + 1)}, {nowhere(-1), nowhere(1)}}}, depths, ball, at);
+        return nearest(wedge(0, {column(x), column(x + 1)}), depths, ball, at);
     }
     double row_distance2(int y, const FlatDepths& depths, const FlatBall& ball) {
         double at = 0;
-        return nearest({{{nowhere(-1), nowhere(1)}, {row(y), row(y + 1)}}}, depths, ball, at);
+        return nearest(wedge(1, {row(y), row(y + 1)}), depths, ball, at);
     }
 
     /// The squared distance of the ball's centre from the box around a tile's cell, give or take 2^-48 of the
@@ -210,6 +198,20 @@ private:
         return gap > 0x1p-800 && gap - 0x1p-47 * sizes > c.radius * length * (1 + 0x1p-47);
     }
 
+    /// What lies between two lines of an axis, wherever it is along the other.
+    static Cell wedge(std::size_t axis, const FlatLine (&lines)[2]) {
+        Cell cell = {{{nowhere(-1), nowhere(1)}, {nowhere(-1), nowhere(1)}}};
+        cell.side[axis][0] = lines[0], cell.side[axis][1] = lines[1];
+        return cell;
+    }
+
+    std::optional<bool> meets_wedge(std::size_t axis, const FlatLine (&lines)[2], const FlatDepths& depths,
+                                    const FlatBall& ball) {
+        if (apart_from_wedge(axis, lines, depths, ball)) return false;
+        if (reaches(wedge(axis, lines), depths, ball)) return true;
+        return std::nullopt;
+    }
+
     /// The lines of the other axis count for nothing, as the direction has no part along it.
     static bool apart_from_wedge(std::size_t axis, const FlatLine (&lines)[2], const FlatDepths& depths,
                                  const FlatBall& ball) {
@@ -218,9 +220,7 @@ private:
         cell.side[axis][0] = lines[0], cell.side[axis][1] = lines[1];
         for (const double towards : {1.0, -1.0})
             if (separates(of_planes(static_cast<int>(axis), towards, cell), cell, depths, ball)) return true;
-        Cell wedge = {{{nowhere(-1), nowhere(1)}, {nowhere(-1), nowhere(1)}}};
-        wedge.side[axis][0] = lines[0], wedge.side[axis][1] = lines[1];
-        return apart_at_edge(wedge, cell, depths, ball);
+        return apart_at_edge(wedge(axis, lines), cell, depths, ball);
     }
 
     /// Beyond doubt there are such depths in view. A camera may have none at all between its planes.

@@ -171,16 +171,14 @@ public:
     /// In three dimensions: does the light meet the block of tiles [x0, x1) x [y0, y1)? In every 97th case decided exactly,
     /// by both deciders.
     bool meets_block(const Subject& s, int x0, int x1, int y0, int y1) {
-        const bool both = ++asked_ % 97 == 0;
         const Depths& depths = oracle.range();
         const auto exact_depths = [&] { return depths; };
-        if (!both) return truth.meets({x0, x1, y0, y1}, truth.range, s.flat, exact_depths, exactly(s));
+        if (++asked_ % 97 != 0)
+            return truth.meets({x0, x1, y0, y1}, truth.range, s.flat, exact_depths, exactly(s));
         const Edges columns = oracle.columns(x0, x1), rows = oracle.rows(y0, y1);
         const bool verdict = meets({{oracle.column_slab(columns)}, {oracle.row_slab(rows)}}, depths, s.seen);
-        if (both) {
-            ++tally.twice;
-            REQUIRE(verdict == meets(oracle.half_spaces(columns, rows, depths), s.ball));
-        }
+        ++tally.twice;
+        REQUIRE(verdict == meets(oracle.half_spaces(columns, rows, depths), s.ball));
         return verdict;
     }
     bool meets_tile(const Subject& s, int x, int y, const Cell& cell) {
@@ -241,6 +239,13 @@ public:
             tally.report(tally.unexplained, "unexplained", oracle.camera(), set, id, light, at());
     }
 
+    /// Depths that hold all of a ball that a rectangle or silhouette is made of: beyond the near plane of a perspective,
+    /// and not cut elsewhere.
+    FlatDepths seen_depths(const FlatBall& ball) const {
+        const double end = 2 * (std::abs(ball.depth) + ball.radius);
+        return {oracle.orthographic() ? -end : truth.range.min, end};
+    }
+
     bool explained(const Subject& s, const Emitted& e) {
         if (s.seen.all) return true;
         if (!depths_within(s, oracle.range().min, oracle.range().max)) return false;
@@ -248,8 +253,8 @@ public:
         CameraBall ball = s.seen;
         ball.radius *= 1 + Rational(1) / (std::int64_t{1} << 40);
         // What double precision gets wrong is nothing beside the margins.
-        const double end = std::abs(s.flat.depth) + s.flat.radius, reach = s.flat.radius * s.flat.radius;
-        const FlatDepths flat = {beyond_near_.min ? truth.range.min : -2 * end, 2 * end};
+        const double reach = s.flat.radius * s.flat.radius;
+        const FlatDepths flat = seen_depths(s.flat);
         const auto column = [&](int x) {
             return truth.filter.column_distance2(x, flat, s.flat) <= reach ||
                    meets({grown_columns_[static_cast<std::size_t>(x)], {}}, beyond_near_, ball);
@@ -287,9 +292,7 @@ public:
         const FlatBall& b = s.flat;
         Depths beyond_near;
         if (!oracle.orthographic()) beyond_near.min = oracle.range().min;
-        const double end = std::abs(b.depth) + b.radius;
-        const FlatDepths flat = {beyond_near.min ? truth.range.min : -2 * end, 2 * end};
-        if (truth.filter.cell_distance2(x, y, flat, b) <= b.radius * b.radius) return true;
+        if (truth.filter.cell_distance2(x, y, seen_depths(b), b) <= b.radius * b.radius) return true;
 
         const auto larger = [](const Slab& slab) {
             return nearly(std::max(abs(slab.low.slope), abs(slab.high.slope)));
