@@ -20,12 +20,6 @@ using FloatRegister = __m256;
 using DoubleRegister = __m256d;
 inline constexpr std::uint32_t lanes = 8, double_lanes = 4;
 
-LIGHTBIN_TARGET inline __m256 all_lanes(float each) {
-    return _mm256_set1_ps(each);
-}
-LIGHTBIN_TARGET inline __m256 negated(__m256 a) {
-    return _mm256_xor_ps(a, _mm256_set1_ps(-0.0f));
-}
 LIGHTBIN_TARGET inline __m256 less_lanes(__m256 a, __m256 b) {
     return _mm256_cmp_ps(a, b, _CMP_LT_OQ);
 }
@@ -43,12 +37,6 @@ LIGHTBIN_TARGET inline __m256 select_lanes(__m256 mask, __m256 a, __m256 b) {
 #define LIGHTBIN_OP(name) _mm256_##name##_ps
 #include <lightbin/detail/vector.inl>
 
-LIGHTBIN_TARGET inline __m256d all_lanes(double each) {
-    return _mm256_set1_pd(each);
-}
-LIGHTBIN_TARGET inline __m256d negated(__m256d a) {
-    return _mm256_xor_pd(a, _mm256_set1_pd(-0.0));
-}
 LIGHTBIN_TARGET inline __m256d less_lanes(__m256d a, __m256d b) {
     return _mm256_cmp_pd(a, b, _CMP_LT_OQ);
 }

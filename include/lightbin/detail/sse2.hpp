@@ -21,12 +21,6 @@ using DoubleRegister = __m128d;
 using ListId = std::uint32_t;
 inline constexpr std::uint32_t lanes = 4, double_lanes = 2;
 
-LIGHTBIN_TARGET inline __m128 all_lanes(float each) {
-    return _mm_set1_ps(each);
-}
-LIGHTBIN_TARGET inline __m128 negated(__m128 a) {
-    return _mm_xor_ps(a, _mm_set1_ps(-0.0f));
-}
 LIGHTBIN_TARGET inline __m128 less_lanes(__m128 a, __m128 b) {
     return _mm_cmplt_ps(a, b);
 }
@@ -44,12 +38,6 @@ LIGHTBIN_TARGET inline __m128 select_lanes(__m128 mask, __m128 a, __m128 b) {
 #define LIGHTBIN_OP(name) _mm_##name##_ps
 #include <lightbin/detail/vector.inl>
 
-LIGHTBIN_TARGET inline __m128d all_lanes(double each) {
-    return _mm_set1_pd(each);
-}
-LIGHTBIN_TARGET inline __m128d negated(__m128d a) {
-    return _mm_xor_pd(a, _mm_set1_pd(-0.0));
-}
 LIGHTBIN_TARGET inline __m128d less_lanes(__m128d a, __m128d b) {
     return _mm_cmplt_pd(a, b);
 }

@@ -6,12 +6,21 @@
 //   LIGHTBIN_REGISTER    the compiler's type for the register
 //   LIGHTBIN_OP(name)    the intrinsic of add, sub, mul, div, sqrt
 //
-// and functions all_lanes(element) and negated(register). Where masks lie in such registers too, all ones or all
+// and functions all_lanes(element) and negated(register), or where masks lie in such registers too, all ones or all
 // zeros a lane,
 //
-//   LIGHTBIN_MASK        the name of their class; LIGHTBIN_OP then has min, max, and, or, andnot, movemask, too
+//   LIGHTBIN_MASK        the name of their class; LIGHTBIN_OP then has set1, xor, min, max, and, or, andnot, movemask, too
 //
 // and functions less_lanes, less_equal_lanes and select_lanes of registers.
+
+#if defined(LIGHTBIN_MASK)
+LIGHTBIN_TARGET inline LIGHTBIN_REGISTER all_lanes(LIGHTBIN_ELEMENT each) {
+    return LIGHTBIN_OP(set1)(each);
+}
+LIGHTBIN_TARGET inline LIGHTBIN_REGISTER negated(LIGHTBIN_REGISTER a) {
+    return LIGHTBIN_OP(xor)(a, all_lanes(LIGHTBIN_ELEMENT(-0.0)));
+}
+#endif
 
 struct LIGHTBIN_VECTOR {
     LIGHTBIN_VECTOR() = default;
