@@ -290,7 +290,7 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
         const float aside = static_cast<float>((2.0 * turn / (turns - 1) - 1) / 32 * view.tiles_x() /
                                                detail::camera_of(view).x.scale);
         const auto moved = view_space(source.array, [&](const auto& light) {
-            Sphere sphere = std::invoke(source.to_view_sphere, light);
+            Sphere sphere = source.view_sphere(light);
             sphere.x += aside * (view.orthographic() ? 1 : sphere.z);
             return sphere;
         });

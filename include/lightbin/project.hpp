@@ -15,7 +15,6 @@
 #include <lightbin/view.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -29,11 +28,19 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR {
 namespace detail {
 
 /// The lights that no stage takes, ids being 32 bits at most.
-template <class Light, class ToViewSphere>
-std::optional<Error> refuse(const Lights<Light, ToViewSphere>& lights, std::uint64_t most = 0xffffffff) {
-    if (!lights.valid) return Error{ErrorCode::view_matrix_not_affine};
+template <class Light, class ToSphere>
+std::optional<Error> refuse(const Lights<Light, ToSphere>& lights, std::uint64_t most = 0xffffffff) {
+    if (lights.to_view && !lights.to_view->affine()) return Error{ErrorCode::view_matrix_not_affine};
     if (lights.array.size() > most) return Error{ErrorCode::too_many_lights, lights.array.size(), most};
     return std::nullopt;
+}
+
+/// See LightSource.
+template <class Light, class ToSphere>
+void copy_spheres(const void* lights, std::size_t first, std::size_t count, Sphere* to) {
+    const auto& from = *static_cast<const Lights<Light, ToSphere>*>(lights);
+    for (std::size_t i = 0; i < count; ++i)
+        to[i] = std::invoke(from.to_sphere, from.array[first + i]);
 }
 
 }  // namespace detail
@@ -51,8 +58,8 @@ public:
     /// but for the rounding margin of the view.
     ///
     /// force_parallel  share even what is soon done: there will be more to share, and by then the threads are awake
-    template <class Light, class ToViewSphere>
-    void project(Isa isa, const View& view, const Lights<Light, ToViewSphere>& lights,
+    template <class Light, class ToSphere>
+    void project(Isa isa, const View& view, const Lights<Light, ToSphere>& lights,
                  const Parallel& parallel, bool force_parallel = false) {
         lights_ = lights.array.size();
         const bool share =
@@ -67,27 +74,24 @@ public:
                 (std::min<std::uint64_t>)(std::uint64_t{chunks} * part / parts * chunk, lights_));
         };
         reserve(parts);
-        arrays_.spheres = detail::as_they_are(lights);
-        Sphere* kept = nullptr;  // where spheres that are not as they are in the caller's array go
+        detail::LightSource source = {.spheres = detail::as_they_are(lights),
+                                      .lights = &lights,
+                                      .copy = nullptr,
+                                      .to_view = lights.to_view ? &*lights.to_view : nullptr,
+                                      .kept = nullptr};
+        if (source.spheres == nullptr) source.copy = detail::copy_spheres<Light, ToSphere>;
+        arrays_.spheres = source.spheres;
         if constexpr (keep)
-            if (arrays_.spheres == nullptr) arrays_.spheres = kept = spheres_.reserve(lights_);
-        const bool move = kept != nullptr || arrays_.spheres == nullptr;
+            if (source.copy != nullptr || source.to_view != nullptr)
+                arrays_.spheres = source.kept = spheres_.reserve(std::uint64_t{lights_} + chunk);
         // One light is done sooner than a vector is filled up with copies of it.
         const detail::ProjectKernel kernel = detail::project_kernel(lights_ > 1 ? isa : Isa::scalar);
         threads.run(parts, [&](std::size_t part) {
             const std::size_t first = first_of(part), end = first_of(part + 1);
             const std::size_t place = first + part * detail::FootprintArrays::padding;
-            const auto project_some = [&, out = arrays_.from(place)](const Sphere* spheres,
-                                                                     std::size_t first_id, std::size_t count,
-                                                                     detail::ProjectCounts& sum) {
-                kernel(detail::camera_of(view), spheres, static_cast<std::uint32_t>(count),
-                       static_cast<std::uint32_t>(first_id), out, sum);
-            };
             detail::ProjectCounts sum;
-            if (move)
-                move_each(lights, kept, first, end, project_some, sum);
-            else
-                project_some(arrays_.spheres + first, first, end - first, sum);
+            kernel(detail::camera_of(view), source, static_cast<std::uint32_t>(first),
+                   static_cast<std::uint32_t>(end - first), arrays_.from(place), sum);
             end_part(part, static_cast<std::uint32_t>(place), sum);
         });
         counts_ = {};
@@ -122,20 +126,6 @@ private:
         runs_.reserve(parts);
         part_counts_.reserve(parts);
         run_count_ = parts;
-    }
-
-    /// Makes spheres of the lights first..end-1, in `kept` or, where that is null, in passing, and projects them.
-    template <class Light, class ToViewSphere, class ProjectSome>
-    static void move_each(const Lights<Light, ToViewSphere>& lights, Sphere* kept, std::size_t first,
-                          std::size_t end, const ProjectSome& project_some, detail::ProjectCounts& sum) {
-        std::array<Sphere, detail::ChunkRects::size> moved;
-        for (; first < end; first += moved.size()) {
-            const std::size_t count = (std::min)(moved.size(), end - first);
-            Sphere* to = keep ? kept + first : moved.data();
-            for (std::size_t i = 0; i < count; ++i)
-                to[i] = std::invoke(lights.to_view_sphere, lights.array[first + i]);
-            project_some(to, first, count, sum);
-        }
     }
 
     /// Notes what became of a part, whose lights in view begin at `place` of the arrays.

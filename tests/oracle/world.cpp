@@ -212,7 +212,7 @@ void examine_rectangles(const Camera& camera, Tally& tally, std::uint64_t& seed)
                 const Vector &p = ball.centre, &t = exact_view.column[3];
                 const Rational terms =
                     exact(matrix.stretch) * (abs(p.x) + abs(p.y) + abs(p.z)) + abs(t.x) + abs(t.y) + abs(t.z);
-                image.radius += (image.radius + abs(c.x) + abs(c.y) + abs(c.z)) / (1 << 21) +
+                image.radius += (image.radius + abs(c.x) + abs(c.y) + abs(c.z)) / (1 << 20) +
                                 terms / (std::int64_t{1} << 44) + exact(0x1p-125);
                 ++tally.explained;
                 if (!examiner.explained(examiner.subject(image), e))

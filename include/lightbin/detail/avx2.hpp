@@ -93,20 +93,38 @@ LIGHTBIN_TARGET inline Doubles widened(Floats a, unsigned half) {
     return _mm256_cvtps_pd(half == 0 ? _mm256_castps256_ps128(a) : _mm256_extractf128_ps(a, 1));
 }
 
-LIGHTBIN_TARGET inline Floats pair(const Sphere* sphere) {  // it and the fourth after it
+/// Four by four, in either half of the vectors.
+LIGHTBIN_TARGET inline void transpose(Floats& a, Floats& b, Floats& c, Floats& d) {
+    const Floats low = _mm256_unpacklo_ps(a, b), high = _mm256_unpackhi_ps(a, b);
+    const Floats low_after = _mm256_unpacklo_ps(c, d), high_after = _mm256_unpackhi_ps(c, d);
+    a = _mm256_shuffle_ps(low, low_after, 0x44);
+    b = _mm256_shuffle_ps(low, low_after, 0xee);
+    c = _mm256_shuffle_ps(high, high_after, 0x44);
+    d = _mm256_shuffle_ps(high, high_after, 0xee);
+}
+LIGHTBIN_TARGET inline Floats load_pair(const Sphere* sphere) {  // it and the fourth after it
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(&sphere->x)), _mm_loadu_ps(&sphere[4].x),
                                 1);
+}
+LIGHTBIN_TARGET inline void store_pair(Sphere* sphere, Floats pair) {
+    _mm_storeu_ps(&sphere->x, _mm256_castps256_ps128(pair));
+    _mm_storeu_ps(&sphere[4].x, _mm256_extractf128_ps(pair, 1));
 }
 
 LIGHTBIN_TARGET inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z,
                                          Floats& radius) {
-    const Floats a = pair(spheres), b = pair(spheres + 1), c = pair(spheres + 2), d = pair(spheres + 3);
-    const Floats xy_low = _mm256_unpacklo_ps(a, b), zr_low = _mm256_unpackhi_ps(a, b);
-    const Floats xy_high = _mm256_unpacklo_ps(c, d), zr_high = _mm256_unpackhi_ps(c, d);
-    x = _mm256_shuffle_ps(xy_low, xy_high, 0x44);
-    y = _mm256_shuffle_ps(xy_low, xy_high, 0xee);
-    z = _mm256_shuffle_ps(zr_low, zr_high, 0x44);
-    radius = _mm256_shuffle_ps(zr_low, zr_high, 0xee);
+    x = load_pair(spheres);
+    y = load_pair(spheres + 1);
+    z = load_pair(spheres + 2);
+    radius = load_pair(spheres + 3);
+    transpose(x, y, z, radius);
+}
+LIGHTBIN_TARGET inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
+    transpose(x, y, z, radius);
+    store_pair(spheres, x);
+    store_pair(spheres + 1, y);
+    store_pair(spheres + 2, z);
+    store_pair(spheres + 3, radius);
 }
 
 LIGHTBIN_TARGET inline void store_tiles(std::uint16_t* tiles, Floats values) {

@@ -108,24 +108,38 @@ LIGHTBIN_TARGET inline Doubles widened(Floats a, unsigned half) {
     return _mm512_cvtps_pd(half == 0 ? _mm512_castps512_ps256(a) : _mm512_extractf32x8_ps(a, 1));
 }
 
+/// Four by four, in each quarter of the vectors.
+LIGHTBIN_TARGET inline void transpose(Floats& a, Floats& b, Floats& c, Floats& d) {
+    const Floats low = _mm512_unpacklo_ps(a, b), high = _mm512_unpackhi_ps(a, b);
+    const Floats low_after = _mm512_unpacklo_ps(c, d), high_after = _mm512_unpackhi_ps(c, d);
+    a = _mm512_shuffle_ps(low, low_after, 0x44);
+    b = _mm512_shuffle_ps(low, low_after, 0xee);
+    c = _mm512_shuffle_ps(high, high_after, 0x44);
+    d = _mm512_shuffle_ps(high, high_after, 0xee);
+}
+
+/// From quarters' first lanes, second lanes ... to the lanes of the first quarter, of the second ...; and back.
+LIGHTBIN_TARGET inline Floats swap_quarters(Floats a) {
+    return _mm512_permutexvar_ps(_mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15), a);
+}
+
 LIGHTBIN_TARGET inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z,
                                          Floats& radius) {
-    const float* p = &spheres->x;
-    const Floats s0 = _mm512_loadu_ps(p), s4 = _mm512_loadu_ps(p + 16);
-    const Floats s8 = _mm512_loadu_ps(p + 32), s12 = _mm512_loadu_ps(p + 48);
-    const Floats even_low = _mm512_shuffle_f32x4(s0, s4, 0x88), odd_low = _mm512_shuffle_f32x4(s0, s4, 0xdd);
-    const Floats even_high = _mm512_shuffle_f32x4(s8, s12, 0x88),
-                 odd_high = _mm512_shuffle_f32x4(s8, s12, 0xdd);
-    const Floats a = _mm512_shuffle_f32x4(even_low, even_high, 0x88);  // spheres 0 4 8 12
-    const Floats b = _mm512_shuffle_f32x4(odd_low, odd_high, 0x88);    // 1 5 9 13
-    const Floats c = _mm512_shuffle_f32x4(even_low, even_high, 0xdd);  // 2 6 10 14
-    const Floats d = _mm512_shuffle_f32x4(odd_low, odd_high, 0xdd);    // 3 7 11 15
-    const Floats xy_low = _mm512_unpacklo_ps(a, b), zr_low = _mm512_unpackhi_ps(a, b);
-    const Floats xy_high = _mm512_unpacklo_ps(c, d), zr_high = _mm512_unpackhi_ps(c, d);
-    x = _mm512_shuffle_ps(xy_low, xy_high, 0x44);
-    y = _mm512_shuffle_ps(xy_low, xy_high, 0xee);
-    z = _mm512_shuffle_ps(zr_low, zr_high, 0x44);
-    radius = _mm512_shuffle_ps(zr_low, zr_high, 0xee);
+    Floats a = _mm512_loadu_ps(&spheres[0].x), b = _mm512_loadu_ps(&spheres[4].x),
+           c = _mm512_loadu_ps(&spheres[8].x), d = _mm512_loadu_ps(&spheres[12].x);
+    transpose(a, b, c, d);
+    x = swap_quarters(a);
+    y = swap_quarters(b);
+    z = swap_quarters(c);
+    radius = swap_quarters(d);
+}
+LIGHTBIN_TARGET inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
+    Floats a = swap_quarters(x), b = swap_quarters(y), c = swap_quarters(z), d = swap_quarters(radius);
+    transpose(a, b, c, d);
+    _mm512_storeu_ps(&spheres[0].x, a);
+    _mm512_storeu_ps(&spheres[4].x, b);
+    _mm512_storeu_ps(&spheres[8].x, c);
+    _mm512_storeu_ps(&spheres[12].x, d);
 }
 
 LIGHTBIN_TARGET inline void store_tiles(std::uint16_t* tiles, Floats values) {

@@ -20,7 +20,7 @@
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/rounding.hpp>
-#include <lightbin/lights.hpp>
+#include <lightbin/sphere.hpp>
 #include <lightbin/view.hpp>
 
 #include <algorithm>

@@ -3,8 +3,9 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/world_to_view.hpp>
 #include <lightbin/light_grid.hpp>
-#include <lightbin/lights.hpp>
+#include <lightbin/sphere.hpp>
 #include <lightbin/view.hpp>
 
 #include <cstddef>
@@ -12,6 +13,15 @@
 #include <span>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
+
+/// Where the projection finds the lights, by id: spheres as they are, or what makes spheres of them.
+struct LightSource {
+    const Sphere* spheres;  ///< or null; to be read with load_sphere
+    const void* lights;
+    void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* to);  ///< where `spheres` is null
+    const WorldToView* to_view;  ///< null: they are in view space
+    Sphere* kept;  ///< where spheres that are copied or moved stay, by id, and some more behind them; or null
+};
 
 /// The tiles first..last of one tile row that a light's silhouette reaches; none if first > last.
 struct RowSpan {
@@ -63,7 +73,7 @@ struct ProjectCounts {
 
 /// The tiles of as many lights as are projected at a time, before those out of view are dropped.
 struct ChunkRects {
-    static constexpr std::uint32_t size = 256;
+    static constexpr std::uint32_t size = 64;
     alignas(64) std::uint16_t x0[size], y0[size], x1[size], y1[size];
 };
 

@@ -13,7 +13,7 @@
 //   both, either, and_not, bits    of masks; bits: a bit a lane
 //   select, lesser, greater        a where the mask is set, else b; with NaN in a, b
 //   widened                        half 0 or 1 of Floats as Doubles
-//   load_spheres                   `lanes` spheres as four vectors
+//   load_spheres, store_spheres    `lanes` spheres as four vectors, and back
 //   store_tiles, store_spans       numbers of tiles, cut off to 16 bits
 //   append_visible, split_bits     as in portable.hpp, or that
 //   ListId                         of what the lists are made: std::uint32_t, or std::uint16_t where ids are in blocks
@@ -36,6 +36,8 @@
 #include <lightbin/detail/vectors.inl>
 
 #include <lightbin/detail/depth_columns.inl>
+
+#include <lightbin/detail/move.inl>
 
 #include <lightbin/detail/project.inl>
 

@@ -152,6 +152,9 @@ inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z,
     z = columns.val[2];
     radius = columns.val[3];
 }
+inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
+    vst4q_f32(&spheres->x, {{x.v, y.v, z.v, radius.v}});
+}
 
 inline void store_tiles(std::uint16_t* tiles, Floats values) {
     vst1_u16(tiles, vmovn_u32(vcvtq_u32_f32(values)));

@@ -13,9 +13,11 @@
 // The instructions that a function may use beyond those of the compiler's flags. Microsoft's compiler asks for no leave.
 #if defined(_MSC_VER) && !defined(__clang__)
 #define LIGHTBIN_NOINLINE __declspec(noinline)
+#define LIGHTBIN_INLINE __forceinline
 #define LIGHTBIN_INSTRUCTIONS(names)
 #else
 #define LIGHTBIN_NOINLINE __attribute__((noinline))
+#define LIGHTBIN_INLINE __attribute__((always_inline)) inline
 #define LIGHTBIN_INSTRUCTIONS(names) __attribute__((target(names)))
 #endif
 

@@ -139,50 +139,82 @@ LIGHTBIN_TARGET inline void project_carefully(const Camera& camera, const Sphere
     }
 }
 
-/// Whether eight spheres are out of view beyond doubt, for the scalar tier: a loop that compilers make vectors of,
+/// Whether eight spheres are out of view beyond doubt, for the scalar tier: loops that compilers make vectors of,
 /// and not inline, as within another they don't. They may fuse products and sums there, so it asks for twice the
-/// distance to a side plane that project does: what is out here is out there.
-LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline bool eight_out_of_view(const Camera& camera, const Sphere* spheres) {
-    Sphere eight[8];
-    std::memcpy(eight, spheres, sizeof eight);
+/// distance to a side plane that project does, and takes a moved centre to be off by four times as much: what is out here
+/// is out there.
+LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline bool eight_out_of_view(const Camera& camera, const Sphere* spheres,
+                                                                const WorldToView* to_view) {
+    float x[8], y[8], z[8], given[8], radius[8], away[8];
+    for (int i = 0; i < 8; ++i) {
+        const Sphere sphere = load_sphere(spheres + i);
+        x[i] = sphere.x;
+        y[i] = sphere.y;
+        z[i] = sphere.z;
+        given[i] = radius[i] = sphere.radius;
+        away[i] = 0;
+    }
+    float farthest = 0;
+    if (to_view != nullptr) {
+        const FloatMove move = to_view->floats();
+        farthest = move.most;
+        for (int i = 0; i < 8; ++i) {
+            const float dx = x[i] - move.origin[0], dy = y[i] - move.origin[1], dz = z[i] - move.origin[2];
+            const auto moved = [&](int row) {
+                return dx * move.columns[0][row] + dy * move.columns[1][row] + dz * move.columns[2][row] +
+                       move.at_origin[row];
+            };
+            away[i] = std::fabs(dx) + std::fabs(dy) + std::fabs(dz);
+            x[i] = moved(0);
+            y[i] = moved(1);
+            z[i] = moved(2);
+            radius[i] = radius[i] * move.stretch + 4 * (away[i] * move.error + move.least_error);
+        }
+    }
     int out = 1;
-    for (const Sphere& sphere : eight) {
-        const float a = std::fabs(sphere.x), b = std::fabs(sphere.y), z = sphere.z * camera.z_sign;
-        const float r = sphere.radius, size = a + b + std::fabs(z) + r;
-        const float aside_x = a * camera.x.side + z * camera.x.side_z - r;
-        const float aside_y = b * camera.y.side + z * camera.y.side_z - r;
-        out &= (size <= 0x1p40f) & (r >= 0x1p-40f) &
-               ((z + r < camera.near_depth) | (z - r > camera.far_depth) |
+    for (int i = 0; i < 8; ++i) {
+        const float a = std::fabs(x[i]), b = std::fabs(y[i]), depth = z[i] * camera.z_sign;
+        const float r = radius[i], size = a + b + std::fabs(depth) + r;
+        const float aside_x = a * camera.x.side + depth * camera.x.side_z - r;
+        const float aside_y = b * camera.y.side + depth * camera.y.side_z - r;
+        out &= (away[i] <= farthest) & (given[i] >= 0x1p-40f) & (size <= 0x1p40f) &
+               ((depth + r < camera.near_depth) | (depth - r > camera.far_depth) |
                 ((aside_x > aside_y ? aside_x : aside_y) > size * 0x1p-20f));
     }
     return out != 0;
 }
 
-/// Appends the footprints of those of the `count` spheres that are in view. The first sphere has id
-/// `first_id`.
+/// Appends the footprints of those of the lights first..first + count - 1 that are in view.
 ///
 /// In float where the error bound of tangent_slopes holds: no over- or underflow (sizes of 2^-40 to 2^40) and
 /// the whole sphere beyond the near plane. Comparisons are arranged so that NaN goes the careful way.
-LIGHTBIN_TARGET inline void project(const Camera& camera, const Sphere* spheres, std::uint32_t count,
-                                    std::uint32_t first_id, const FootprintArrays& out,
-                                    ProjectCounts& counts) {
+LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& source, std::uint32_t first,
+                                    std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts) {
     ChunkRects rects;
     unsigned visible[ChunkRects::size / lanes];
     std::uint8_t careful[ChunkRects::size];
-    Sphere padded[lanes];
-    std::uint32_t most = lanes == 1 ? 8 : ChunkRects::size;
-    for (std::uint32_t here; count > 0; count -= here, spheres += here, first_id += here) {
+    Sphere chunk[ChunkRects::size], padded[lanes];
+    const MoveLanes move(source.to_view);
+    // Copies are made a few at a time, so that the next lights are fetched while these are projected.
+    const std::uint32_t usual = source.copy != nullptr ? 32 : ChunkRects::size;
+    std::uint32_t most = lanes == 1 ? 8 : usual;
+    for (std::uint32_t here; count > 0; count -= here, first += here) {
         here = count < most ? count : most;
+        // Where spheres come from, and where they are in view space.
+        Sphere* const own = source.kept != nullptr ? source.kept + first : chunk;
+        const Sphere* const given = source.spheres != nullptr ? source.spheres + first : own;
+        const Sphere* const spheres = source.to_view != nullptr ? own : given;
+        if (source.copy != nullptr) source.copy(source.lights, first, here, own);
         if constexpr (lanes == 1) {
-            if (here >= 8 && eight_out_of_view(camera, spheres)) {
+            if (here >= 8 && eight_out_of_view(camera, given, source.to_view)) {
                 here = most = 8;
                 continue;
             }
-            if (most < ChunkRects::size) most *= 2;  // ask less often where the answer is no
+            if (most < usual) most *= 2;  // ask less often where the answer is no
         }
         std::uint32_t careful_count = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
-            const Sphere* from = spheres + i;
+            const Sphere* from = given + i;
             const std::uint32_t used = here - i < lanes ? here - i : lanes;
             if (used < lanes) {
                 for (std::uint32_t lane = 0; lane < lanes; ++lane)
@@ -191,6 +223,8 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const Sphere* spheres,
             }
             Floats x, y, z, r;
             load_spheres(from, x, y, z, r);
+            if (move.to_view != nullptr) move_spheres(move, x, y, z, r);
+            const Floats at[] = {x, y, z};
             x = x * camera.x.sign;
             y = y * camera.y.sign;
             z = z * camera.z_sign;
@@ -206,7 +240,6 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const Sphere* spheres,
             const unsigned valid = used < 32 ? (1u << used) - 1 : ~0u;
             unsigned& in_view = visible[i / lanes] = 0;
             if ((~bits(culled) & valid) == 0) continue;
-
             auto plain = and_not(usable, culled);
             Floats left = x - r, right = x + r, bottom = y - r, top = y + r;
             if (!camera.orthographic) {
@@ -215,7 +248,10 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const Sphere* spheres,
                 tangent_slopes(x, z, r, e, per_e, left, right);
                 tangent_slopes(y, z, r, e, per_e, bottom, top);
             }
-            for (unsigned rest = ~bits(either(plain, culled)) & valid; rest != 0; rest &= rest - 1)
+            unsigned rest = ~bits(either(plain, culled)) & valid;
+            if (move.to_view != nullptr && (source.kept != nullptr || rest != 0))
+                store_spheres(own + i, at[0], at[1], at[2], r);
+            for (; rest != 0; rest &= rest - 1)
                 careful[careful_count++] =
                     static_cast<std::uint8_t>(i + static_cast<unsigned>(std::countr_zero(rest)));
             plain = tile_span(camera.x, camera.x.scale_f, camera.x.offset_f, left, right, plain, rects.x0 + i,
@@ -228,6 +264,6 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const Sphere* spheres,
             project_carefully(camera, spheres, careful + i,
                               careful_count - i < lanes ? careful_count - i : lanes, rects, visible, counts);
         for (std::uint32_t i = 0; i < here; i += lanes)
-            if (visible[i / lanes] != 0) append_visible(out, counts, first_id, visible[i / lanes], rects, i);
+            if (visible[i / lanes] != 0) append_visible(out, counts, first, visible[i / lanes], rects, i);
     }
 }

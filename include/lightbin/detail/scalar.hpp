@@ -67,6 +67,10 @@ inline void load_spheres(const Sphere* spheres, float& x, float& y, float& z, fl
     z = sphere.z;
     radius = sphere.radius;
 }
+inline void store_spheres(Sphere* spheres, float x, float y, float z, float radius) {
+    const Sphere sphere = {x, y, z, radius};
+    std::memcpy(spheres, &sphere, sizeof sphere);
+}
 template <class Real> void store_tiles(std::uint16_t* tiles, Real value) {
     *tiles = static_cast<std::uint16_t>(value);
 }

@@ -97,6 +97,14 @@ inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z,
     radius = _mm_loadu_ps(p + 12);
     _MM_TRANSPOSE4_PS(x.v, y.v, z.v, radius.v);
 }
+inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
+    _MM_TRANSPOSE4_PS(x.v, y.v, z.v, radius.v);
+    float* p = &spheres->x;
+    _mm_storeu_ps(p, x);
+    _mm_storeu_ps(p + 4, y);
+    _mm_storeu_ps(p + 8, z);
+    _mm_storeu_ps(p + 12, radius);
+}
 
 inline void store_tiles(std::uint16_t* tiles, Floats values) {
     const __m128i whole = _mm_cvttps_epi32(values);

@@ -5,6 +5,9 @@
 template <class Real> struct VectorOf { using Type = Floats; };
 template <> struct VectorOf<double> { using Type = Doubles; };
 
+/// A bit a lane.
+inline constexpr std::uint64_t every_lane = (std::uint64_t{1} << lanes) - 1;
+
 /// Every lane the same.
 template <class Real> LIGHTBIN_TARGET inline typename VectorOf<Real>::Type all(Real value) {
     return typename VectorOf<Real>::Type(value);

@@ -9,8 +9,6 @@
 //         56 57 .. 63      . . # # # # . .      Each pair of a light and a tile is tested once.
 //                          . . . . . . . .
 
-inline constexpr std::uint64_t every_lane = (std::uint64_t{1} << lanes) - 1;
-
 /// The distance of a coordinate from an interval.
 LIGHTBIN_TARGET inline Floats distance(Floats c, const float* ends) {
     return greater(greater(load_floats(ends) - c, c - load_floats(ends + 64)), all(0.0f));

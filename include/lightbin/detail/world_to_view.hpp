@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// World to view space: the moved sphere holds the exact image of the given one. Its radius takes in the matrix's
+// largest stretch and the rounding of the moved centre.
+//
+// In floats a vector of lights at a time (move.inl), by way of an origin o near the eye, which keeps the rounding as
+// small far from the world's origin as near it:  A p + t = A (p - o) + (A o + t).  With u = 2^-24 the unit roundoff,
+// A's entries, p - o and the products are within u each and three sums follow, so a centre is within 6u of the sum of
+// |A_j| |p_j - o_j|, A_j being the columns of A. In doubles one by one where floats can't hold or would blur it.
+#pragma once
+
+#include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/matrix.hpp>
+#include <lightbin/detail/rounding.hpp>
+#include <lightbin/sphere.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <lightbin/detail/warnings_off.inl>
+
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
+
+/// An affine map in floats.
+struct FloatMove {
+    float origin[3];
+    float columns[3][3];  ///< A
+    float at_origin[3];   ///< A origin + t
+    float stretch;        ///< the most that it makes a length longer, rounded up
+    float error;          ///< of the moved centre, by |x| + |y| + |z| from the origin
+    float least_error;    ///< and of at_origin
+    /// As far from the origin it serves; less than 0 where doubles must.
+    float most = -1;
+};
+
+class WorldToView {
+public:
+    template <class Matrix> explicit WorldToView(const Matrix& matrix) {
+        copy_matrix(matrix, m_);
+        affine_ = finite(m_) && m_[0][3] == 0 && m_[1][3] == 0 && m_[2][3] == 0 && m_[3][3] == 1;
+        // The largest singular value is at most the root of the largest row sum of M^T M. Where a product overflows, sums
+        // are infinite or NaN, which no comparison takes for the largest: then there is no bound.
+        double square = 0, all = 0;
+        for (int i = 0; i < 3; ++i) {
+            double row_sum = 0;
+            for (int j = 0; j < 3; ++j)
+                row_sum += std::fabs(m_[i][0] * m_[j][0] + m_[i][1] * m_[j][1] + m_[i][2] * m_[j][2]);
+            square = (std::max)(square, row_sum);
+            all += row_sum;
+        }
+        stretch_ = std::isfinite(all) ? std::sqrt(square) * (1 + 0x1p-48) : HUGE_VAL;
+        if (affine_) find_floats();
+    }
+
+    bool affine() const { return affine_; }
+    const FloatMove& floats() const { return floats_; }
+
+    /// The image of any sphere, in doubles. Bad input stays bad.
+    Sphere operator()(const Sphere& light) const {
+        if (!std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) ||
+            !(light.radius >= 0))
+            return light;
+        const double x = static_cast<double>(light.x), y = static_cast<double>(light.y),
+                     z = static_cast<double>(light.z);
+        double centre[3], error = 0;
+        for (int row = 0; row < 3; ++row) {
+            const double a = m_[0][row] * x, b = m_[1][row] * y, c = m_[2][row] * z, d = m_[3][row];
+            centre[row] = a + b + c + d;
+            if (!(std::fabs(centre[row]) <= static_cast<double>(FLT_MAX))) return {0, 0, 0, infinity};
+            // 2^-24 to round the centre to float, 2^-50 for the sum in double
+            error += 0x1p-24 * std::fabs(centre[row]) +
+                     0x1p-50 * (std::fabs(a) + std::fabs(b) + std::fabs(c) + std::fabs(d));
+        }
+        const double radius = (static_cast<double>(light.radius) * stretch_ + error) * (1 + 0x1p-23) +
+                              static_cast<double>(FLT_MIN);
+        return {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2]),
+                radius <= static_cast<double>(FLT_MAX) ? static_cast<float>(radius) : infinity};
+    }
+
+private:
+    /// Only for maps near to a rotation and a scale: others can take p - o far beyond the image, and its rounding too.
+    void find_floats() {
+        double inverse[3][3], det = 0, norm2 = 0, inverse_norm2 = 0, longest2 = 0;
+        for (int c = 0; c < 3; ++c)
+            for (int r = 0; r < 3; ++r) {
+                const int c1 = (c + 1) % 3, c2 = (c + 2) % 3, r1 = (r + 1) % 3, r2 = (r + 2) % 3;
+                inverse[r][c] = m_[c1][r1] * m_[c2][r2] - m_[c1][r2] * m_[c2][r1];
+            }
+        for (int r = 0; r < 3; ++r)
+            det += m_[0][r] * inverse[r][0];
+        for (int c = 0; c < 3; ++c) {
+            double length2 = 0;
+            for (int r = 0; r < 3; ++r) {
+                inverse[r][c] /= det;
+                inverse_norm2 += inverse[r][c] * inverse[r][c];
+                length2 += m_[c][r] * m_[c][r];
+            }
+            norm2 += length2;
+            longest2 = (std::max)(longest2, length2);
+        }
+        if (!(norm2 * inverse_norm2 <= 1024) || !(norm2 >= 0x1p-40) || !(norm2 <= 0x1p40)) return;
+        double origin[3], before = 0, offset = 0;
+        for (int c = 0; c < 3; ++c) {
+            origin[c] = 0;
+            for (int r = 0; r < 3; ++r)
+                origin[c] -= inverse[r][c] * m_[3][r];
+            if (!(std::fabs(origin[c]) <= 0x1p60)) return;
+            floats_.origin[c] = static_cast<float>(origin[c]);
+            origin[c] = static_cast<double>(floats_.origin[c]);
+        }
+        for (int r = 0; r < 3; ++r) {
+            double at = m_[3][r];
+            before += std::fabs(at);
+            for (int c = 0; c < 3; ++c) {
+                at += m_[c][r] * origin[c];
+                before += std::fabs(m_[c][r] * origin[c]);
+                floats_.columns[c][r] = static_cast<float>(m_[c][r]);
+            }
+            offset += std::fabs(at);
+            floats_.at_origin[r] = static_cast<float>(at);
+        }
+        // Each a little more than it must be, for the rounding of the moved radius; 2^-100 for what is flushed to zero.
+        floats_.stretch = float_above(stretch_ * (1 + 0x1p-22));
+        floats_.error = float_above(std::sqrt(longest2) * (6 * 0x1p-24) * (1 + 0x1p-18));
+        floats_.least_error = float_above((offset * 0x1p-23 + before * 0x1p-50) * (1 + 0x1p-18) + 0x1p-100);
+        floats_.most = 0x1p40f;
+    }
+
+    double m_[4][4];
+    double stretch_;  ///< the most that it makes a length longer
+    bool affine_;
+    FloatMove floats_;
+};
+
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
+
+#include <lightbin/detail/warnings_on.inl>

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// A light as the library takes it, and how one becomes that.
+#pragma once
+
+#include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/rounding.hpp>
+
+#include <cmath>
+#include <concepts>
+#include <cstring>
+#include <type_traits>
+
+#include <lightbin/detail/warnings_off.inl>
+
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
+
+/// A light's sphere of influence: centre and radius (the papers' range), in the units of the space that the lights are
+/// given in. That is the space that the projection matrix takes, unless they go through world_space().
+///
+/// Radius 0 is a point; radius +inf covers everything. A light with a NaN or infinite centre, or a NaN or
+/// negative radius, is bad input: it is skipped and counted, and the others are right.
+struct Sphere {
+    float x, y, z, radius;
+};
+
+/// Returns the distance at which a point light of `intensity` candela (lumen per steradian) has fallen to
+/// `cutoff` lux (lumen per square metre, on a surface that faces it), rounded up: sqrt(intensity / cutoff),
+/// in metres. What a light gives beyond its range is lost, so the cutoff is the largest error that one
+/// light's missing tail can make.
+///
+/// intensity  0 or less gives range 0, infinite an infinite one, NaN gives NaN
+/// cutoff     0 or less gives an infinite range
+inline float light_range(float intensity, float cutoff) {
+    if (intensity <= 0) return 0;
+    if (cutoff <= 0 || (intensity > FLT_MAX && !std::isnan(cutoff))) return detail::infinity;
+    return detail::float_above(std::sqrt(static_cast<double>(intensity) / static_cast<double>(cutoff)) *
+                               (1 + 0x1p-50));
+}
+
+namespace detail {
+
+/// Returns the smallest sphere found around one of doubles: exact where floats hold it. A centre out of their range gives
+/// one that covers everything; bad input stays bad.
+inline Sphere sphere_around(double x, double y, double z, double radius) {
+    if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z) || !(radius >= 0)) return {0, 0, 0, -1};
+    constexpr double most = static_cast<double>(FLT_MAX);
+    if (std::fabs(x) > most || std::fabs(y) > most || std::fabs(z) > most) return {0, 0, 0, infinity};
+    const Sphere nearest = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 0};
+    const double error = std::fabs(x - static_cast<double>(nearest.x)) +
+                         std::fabs(y - static_cast<double>(nearest.y)) +
+                         std::fabs(z - static_cast<double>(nearest.z));
+    const double reach = error > 0 ? (radius + error) * (1 + 0x1p-50) : radius;
+    return {nearest.x, nearest.y, nearest.z, float_above(reach)};
+}
+
+/// Reads bytes, which may be of any type.
+inline Sphere load_sphere(const Sphere* from) {
+    Sphere sphere;
+    std::memcpy(&sphere, from, sizeof sphere);
+    return sphere;
+}
+
+template <class Light, class Number>
+concept Vec4Of = requires(const Light& light) {
+    requires std::same_as<std::remove_cvref_t<decltype(light.x)>, Number>;
+    requires std::same_as<std::remove_cvref_t<decltype(light.y)>, Number>;
+    requires std::same_as<std::remove_cvref_t<decltype(light.z)>, Number>;
+    requires std::same_as<std::remove_cvref_t<decltype(light.w)>, Number>;
+};
+
+}  // namespace detail
+
+/// How a light becomes a Sphere by default: what is one, derives from one or converts to one, as it is; else the x, y, z
+/// and w of a vec4 of floats, or of doubles, which are rounded outward.
+struct AsSphere {
+    template <class Light> constexpr Sphere operator()(const Light& light) const {
+        if constexpr (std::convertible_to<const Light&, Sphere>) {
+            return light;
+        } else if constexpr (detail::Vec4Of<Light, float>) {
+            return {light.x, light.y, light.z, light.w};
+        } else {
+            static_assert(detail::Vec4Of<Light, double>,
+                          "lightbin: this light is no Sphere and has no float or double x, y, z and w (the "
+                          "radius): pass "
+                          "view_space(lights, to_sphere) or world_space(lights, view_matrix, to_sphere), "
+                          "where to_sphere "
+                          "makes a lightbin::Sphere of a light");
+            return detail::sphere_around(light.x, light.y, light.z, light.w);
+        }
+    }
+};
+
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+
+#include <lightbin/detail/warnings_on.inl>
