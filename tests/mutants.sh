@@ -4,6 +4,12 @@
 # each proof said; with NUMBERs those mutants alone.
 set -eu
 me=tests/mutants.sh
+case ${1-} in
+-h | --help)
+    sed -n '2,/^set/s/^# \{0,1\}//p' "$0"
+    exit
+    ;;
+esac
 cd "$(dirname "$0")/.."
 . tests/packages.sh
 work=build/mutants
@@ -16,7 +22,11 @@ list() {
     mutant families detail/rounding.hpp 's/return static_cast<double>(nearest) > value ? next_below(nearest) : nearest;/return nearest;/'
     mutant families detail/cell_boxes.hpp 's/from -= std::fabs(from) \* 0x1p-21 + 0x1p-100;/from += std::fabs(from) * 0x1p-21;/'
     mutant families detail/cell_boxes.hpp 's/(1 + 0x1p-20f)) + 0x1p-125f/(1 - 0x1p-20f))/'
-    mutant world lights.hpp 's/\* stretch_ + error) \* (1 + 0x1p-23) +/* stretch_) +/'
+    mutant world detail/world_to_view.hpp 's/\* stretch_ + error) \* (1 + 0x1p-23) +/* stretch_) +/'
+    mutant world detail/world_to_view.hpp 's/float_above(stretch_ \* (1 + 0x1p-22))/static_cast<float>(stretch_ * (1 - 0x1p-18))/'
+    mutant world detail/move.inl 's/(mul(away, move.error) + move.least_error)/move.least_error/'
+    mutant world detail/move.inl 's/less_equal(away, move.most)/less_equal(away, all(0x1p40f))/'
+    mutant world detail/project.inl 's/source.kept != nullptr || rest != 0/source.kept != nullptr/'
     # Projection.
     mutant families detail/project.inl 's/either(either(less(farthest, all(camera.near_depth)),/either(either(less(nearest, all(camera.near_depth)),/'
     mutant families detail/project.inl 's/less(size \* 0x1p-21f, aside - r)/less(size * -0x1p-19f, aside - r)/'

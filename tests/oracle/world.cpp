@@ -63,7 +63,9 @@ std::vector<ViewMatrix> view_matrices(Random& random) {
             random_view("centimetres", random, 100, {0.01, 0.01, 0.01}, 0),
             random_view("enlarged", random, 10, {3000, 3000, 3000}, 0),
             random_view("stretched", random, 10, {1, 0.3, 4}, 0),
-            random_view("sheared", random, 10, {1, 1, 1}, 1.7)};
+            random_view("mirrored, far away", random, 1e4, {-2, 2, 2}, 0),
+            random_view("sheared", random, 10, {1, 1, 1}, 1.7),
+            random_view("nearly flat", random, 10, {1, 1e-3, 1}, 0)};
 }
 
 /// World-space lights that land, more or less, where a set wants them in view space. Solved in double; the

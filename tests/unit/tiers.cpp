@@ -1,8 +1,11 @@
 // Every instruction set that this machine has gives the same bytes as the scalar kernels.
 #include "scene.hpp"
 
+#include <glm/ext/matrix_transform.hpp>
+
 #include <cstdlib>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <thread>
 #include <tuple>
@@ -11,10 +14,17 @@ using namespace lightbin;
 
 namespace {
 
+struct Struct {
+    float intensity;
+    glm::vec4 sphere;
+};
+
 struct Input {
     View view;
     std::vector<glm::vec4> lights;
     std::vector<float> min, max, gap_min, gap_max;
+    bool structs = false;                ///< are binned as structs, through a callable
+    std::optional<glm::mat4> to_view{};  ///< of lights in world space
 };
 
 /// Cameras, screens, tile sizes and lights of every order of magnitude, with some bad ones among them.
@@ -78,7 +88,20 @@ Input random_input(std::uint32_t seed) {
         bound = between(0, 1) < 0.01f ? std::nanf("") : between(-10, 80);
     for (float& bound : gap_max)
         bound = between(0, 1) < 0.01f ? HUGE_VALF : between(0, 100);
-    return {view, lights, min, max, gap_min, gap_max};
+    // Whole vectors out of view.
+    if (seed % 5 == 0)
+        std::sort(lights.begin(), lights.end(), [](glm::vec4 a, glm::vec4 b) { return a.z < b.z || (a.z == b.z && a.x < b.x); });
+    Input input = {view, lights, min, max, gap_min, gap_max};
+    input.structs = seed % 3 == 0;
+    if (seed % 2 == 0) {
+        // From rotations to what floats can't undo, near and far.
+        glm::mat4 m = glm::rotate(glm::mat4(1), between(-3, 3), glm::normalize(glm::vec3(1, between(-1, 1), between(-1, 1))));
+        const float stretch = std::exp(between(-1, 1) * static_cast<float>(seed / 2 % 8 == 0 ? 40 : 1));
+        m = glm::scale(m, stretch * glm::vec3(seed % 10 == 2 ? -1 : 1, 1, seed % 10 == 4 ? 1e-6f : 1));
+        m = glm::translate(m, between(-1, 1) * glm::vec3(1, 2, 3) * (seed % 8 == 0 ? 1e6f : 1.0f));
+        input.to_view = m;
+    }
+    return input;
 }
 
 /// Runs the bodies on this thread in a shuffled order: what threads may do, and the same every time.
@@ -102,7 +125,22 @@ template <Options options> class Tier {
 public:
     std::vector<std::uint32_t> bytes(const Input& input, const Parallel& parallel = {}) {
         const ZBounds bounds = {input.min, input.max, input.gap_min, input.gap_max};
-        const auto grid = binner_.bin(input.view, input.lights, inputs_for<options>(bounds), parallel);
+        const auto bin = [&](const auto& lights, const auto& to_sphere) {
+            return input.to_view ? binner_.bin(input.view, world_space(lights, *input.to_view, to_sphere),
+                                               inputs_for<options>(bounds), parallel)
+                                 : binner_.bin(input.view, view_space(lights, to_sphere),
+                                               inputs_for<options>(bounds), parallel);
+        };
+        std::vector<Struct> structs;
+        if (input.structs)
+            for (const glm::vec4& light : input.lights)
+                structs.push_back({1, light});
+        const auto grid = input.structs ? bin(structs,
+                                              [](const Struct& light) {
+                                                  return Sphere{light.sphere.x, light.sphere.y, light.sphere.z,
+                                                                light.sphere.w};
+                                              })
+                                        : bin(input.lights, AsSphere());
         REQUIRE(grid);
         std::vector<std::uint32_t> all = {grid->light_counts().rejected};
         for (const ListRange range : grid->ranges())
