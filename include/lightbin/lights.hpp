@@ -64,8 +64,7 @@ const Lights<Light, ToSphere>& as_lights(const Lights<Light, ToSphere>& lights) 
 
 /// The caller's array as spheres, if its elements are Spheres, or vec4s laid out like them; else null. Read it with
 /// load_sphere.
-template <class Light, class ToSphere>
-const Sphere* as_they_are(const Lights<Light, ToSphere>& lights) {
+template <class Light, class ToSphere> const Sphere* as_they_are(const Lights<Light, ToSphere>& lights) {
     if constexpr (std::is_same_v<ToSphere, AsSphere> && sizeof(Light) == sizeof(Sphere) &&
                   std::is_trivially_copyable_v<Light>) {
         if (lights.array.empty()) return nullptr;

@@ -59,8 +59,8 @@ public:
     ///
     /// force_parallel  share even what is soon done: there will be more to share, and by then the threads are awake
     template <class Light, class ToSphere>
-    void project(Isa isa, const View& view, const Lights<Light, ToSphere>& lights,
-                 const Parallel& parallel, bool force_parallel = false) {
+    void project(Isa isa, const View& view, const Lights<Light, ToSphere>& lights, const Parallel& parallel,
+                 bool force_parallel = false) {
         lights_ = lights.array.size();
         const bool share =
             force_parallel || parallel.pays_off(detail::project_ns(isa, static_cast<double>(lights_)));

@@ -149,7 +149,8 @@ public:
 
     /// Rounding moves the centre by less than 2^-48 of its terms.
     FlatBall operator()(const Light& light) const {
-        const double from[] = {static_cast<double>(light.x), static_cast<double>(light.y), static_cast<double>(light.z), 1};
+        const double from[] = {static_cast<double>(light.x), static_cast<double>(light.y),
+                               static_cast<double>(light.z), 1};
         double at[3] = {}, terms = 0;
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 4; ++c)
@@ -279,10 +280,11 @@ void examine_pairs(const Camera& camera, Tally& tally, std::uint64_t& seed) {
                         const bool exactly = ++tally.verdicts % 97 == 0;
                         const FlatBall around = around_image(lights[i]);
                         for (const Examiner::Cell& cell : lit) {
-                            if (cell.empty || (!exactly && examiner.apart(x, x + 1, y, y + 1, cell, around))) continue;
+                            if (cell.empty || (!exactly && examiner.apart(x, x + 1, y, y + 1, cell, around)))
+                                continue;
                             const Ball ball = exact_ball(lights[i].x, lights[i].y, lights[i].z, lights[i].w);
-                            const auto planes =
-                                oracle.half_spaces(oracle.columns(x, x + 1), oracle.rows(y, y + 1), cell.depths());
+                            const auto planes = oracle.half_spaces(oracle.columns(x, x + 1),
+                                                                   oracle.rows(y, y + 1), cell.depths());
                             if (image_meets(exact_view, planes, ball))
                                 tally.report(tally.misses, "MISS", camera, matrix.name + ", " + set.name, i,
                                              lights[i],

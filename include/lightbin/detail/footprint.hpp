@@ -14,13 +14,15 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
-/// Where the projection finds the lights, by id: spheres as they are, or what makes spheres of them.
+/// Where the projection finds the lights, by id: `spheres` as they are, or null and `copy`, which makes spheres of some
+/// of `lights`. They are moved by `to_view`, if not null. Those that are copied or moved stay in `kept`, if not null,
+/// which has some more places behind them.
 struct LightSource {
-    const Sphere* spheres;  ///< or null; to be read with load_sphere
+    const Sphere* spheres;  ///< to be read with load_sphere
     const void* lights;
-    void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* to);  ///< where `spheres` is null
-    const WorldToView* to_view;  ///< null: they are in view space
-    Sphere* kept;  ///< where spheres that are copied or moved stay, by id, and some more behind them; or null
+    void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* to);
+    const WorldToView* to_view;
+    Sphere* kept;
 };
 
 /// The tiles first..last of one tile row that a light's silhouette reaches; none if first > last.
@@ -85,7 +87,7 @@ template <class Id> struct BinJob {
     std::uint32_t visible;   ///< lights in all runs
     const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one
     const float* edges[4];   ///< of the tiles, for boxes: low x, high x, low y, high y; see cell_boxes.hpp
-    ListRange* tiles;             ///< the table to write, and `slack` tiles more
+    ListRange* tiles;        ///< the table to write, and `slack` tiles more
 
     /// Whole vectors of columns are stored, of up to 8 rows.
     static constexpr std::size_t slack(std::size_t width) { return 8 * width + 4; }
@@ -104,4 +106,4 @@ template <class Id> struct BandJob {
     Id* spare = nullptr;
 };
 
-}  // namespace lightbin::detail
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

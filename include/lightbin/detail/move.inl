@@ -34,13 +34,15 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void move_carefully(const WorldToView& 
     load_spheres(after, moved[0], moved[1], moved[2], moved[3]);
 }
 
-LIGHTBIN_TARGET inline Floats moved_centre(const MoveLanes& move, unsigned row, Floats x, Floats y, Floats z) {
+LIGHTBIN_TARGET inline Floats moved_centre(const MoveLanes& move, unsigned row, Floats x, Floats y,
+                                           Floats z) {
     return mul(x, move.columns[0][row]) + mul(y, move.columns[1][row]) + mul(z, move.columns[2][row]) +
            move.at_origin[row];
 }
 
 /// Moves spheres. Left to themselves, compilers make it a call, by way of memory.
-LIGHTBIN_TARGET LIGHTBIN_INLINE void move_spheres(const MoveLanes& move, Floats& x, Floats& y, Floats& z, Floats& radius) {
+LIGHTBIN_TARGET LIGHTBIN_INLINE void move_spheres(const MoveLanes& move, Floats& x, Floats& y, Floats& z,
+                                                  Floats& radius) {
     const Floats dx = x - move.origin[0], dy = y - move.origin[1], dz = z - move.origin[2];
     const Floats away = abs(dx) + abs(dy) + abs(dz);
     const auto plain = both(less_equal(away, move.most),

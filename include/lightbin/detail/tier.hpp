@@ -27,8 +27,8 @@
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 // See project.inl, silhouette.inl, depth_columns.inl; bin.inl and scatter.hpp.
-using ProjectKernel = void (*)(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
-                               const FootprintArrays& out, ProjectCounts& counts);
+using ProjectKernel = void (*)(const Camera& camera, const LightSource& source, std::uint32_t first,
+                               std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts);
 using RowSpanKernel = void (*)(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
                                RowSpan* spans, std::uint64_t place);
 struct DepthKernels {
