@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// A whole build, spheres in to lists out, against the flat baseline measured in turns in the same run, on
-// rotating light sets. Prints Google Benchmark's table, what falls short of the project's goals, and writes
-// binning.csv.
+// A whole build, spheres in to lists out, against the flat baseline measured in turns in the same run, on rotating light
+// sets; from world space and structs against view-space vec4s; of several views. Prints each as it ends, then what falls
+// short of the project's goals, and writes binning.csv and binning_sources.csv.
 #include "flat.hpp"
 #include "frames.hpp"
+#include "gains.hpp"
 #include "glb_scenes.hpp"
 #include "goals.hpp"
 #include "measure.hpp"
+#include "memory.hpp"
 #include "reference.hpp"
 #include "several_views.hpp"
 #include "sources.hpp"
@@ -15,16 +17,11 @@
 #include <lightbin/binner.hpp>
 
 #include <benchmark/benchmark.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <exception>
 #include <functional>
-#include <memory>
 #include <string>
 #include <thread>
 
@@ -51,18 +48,6 @@ struct Case {
     int threads = 1;
 };
 
-/// lightbin's work on at most so many of oneTBB's threads.
-class TbbLoop {
-public:
-    explicit TbbLoop(int threads) : arena_(threads) {}
-    template <class Body> void operator()(std::size_t n, const Body& body) {
-        arena_.execute([&] { tbb::parallel_for(std::size_t{0}, n, body); });
-    }
-
-private:
-    tbb::task_arena arena_;
-};
-
 /// What `make` makes, kept while those who follow ask for the same.
 template <class Frame>
 const std::vector<Frame>& keep_frames(const std::string& key, const Make<Frame>& make) {
@@ -78,70 +63,6 @@ const std::vector<Frame>& keep_frames(const std::string& key, const Make<Frame>&
 
 const std::vector<Frame>& frames_of(const Case& which) {
     return keep_frames(which.set + "/" + std::to_string(which.lights), which.frames);
-}
-
-/// Writes the memory once, in order, with the machine's widest stores.
-void fill(char* memory, std::size_t size) {
-    std::memset(memory, 0, size);
-    benchmark::ClobberMemory();
-}
-
-constexpr std::size_t steps_a_ms = 400000;  // of churn, about
-
-/// Arithmetic in registers, for the given number of steps.
-void churn(std::size_t steps) {
-    std::uint32_t sums[32] = {};
-    for (std::size_t i = 0; i < steps; ++i)
-        for (std::uint32_t& sum : sums)
-            sum += (sum << 1) + 1;
-    benchmark::DoNotOptimize(sums);
-}
-
-/// Reads all of the lights once, with loads as wide as the compiler makes them.
-void read(const Lights& lights) {
-    typedef std::uint32_t Wide [[gnu::vector_size(64), gnu::may_alias, gnu::aligned(4)]];
-    const std::size_t count = lights.size() / 16;
-    const Wide* const all = reinterpret_cast<const Wide*>(lights.data());
-    Wide sums[4] = {};
-    for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t j = 0; j < 4; ++j)
-            sums[j] += all[4 * i + j];
-    benchmark::DoNotOptimize(sums);
-}
-
-/// What threads gain: in turns, the same by one thread alone and by all. `bin(threads, turn)` builds and returns how many
-/// bytes the list has.
-template <class Bin> Gains measure_gains(const lightbin::Parallel& parallel, Bin bin) {
-    double alone = 0;
-    const auto gain = [&](bool asleep, auto work) {
-        std::vector<double> times[2];
-        const double end = time_now() + seconds_a_case / 2;
-        for (std::size_t turn = 0; time_now() < end || times[1].size() < 5; ++turn) {
-            // A few turns each: 14 in all, which do not divide the 48 frames.
-            const bool sharing = turn / 7 % 2 == 1;
-            const lightbin::Parallel threads = sharing ? parallel : lightbin::Parallel();
-            // Threads come from other work, as in a frame they would, or they have slept.
-            if (asleep)
-                std::this_thread::sleep_for(std::chrono::milliseconds(1));
-            else
-                threads.run(threads.workers(), [](std::size_t) { churn(steps_a_ms); });
-            times[sharing].push_back(seconds([&] { work(threads, turn); }));
-        }
-        alone = median(times[0]);
-        return alone / median(times[1]);
-    };
-    Gains gains = {.awake = gain(false, bin), .asleep = gain(true, bin), .stores = 0, .sums = 0};
-    const double steps = alone / seconds([] { churn(steps_a_ms); }) * steps_a_ms;
-    gains.sums = gain(false, [&](const lightbin::Parallel& threads, std::size_t) {
-        const std::size_t share = std::size_t(steps) / threads.workers();
-        threads.run(threads.workers(), [&](std::size_t) { churn(share); });
-    });
-    std::vector<char> list(bin(parallel, 0));
-    gains.stores = gain(false, [&](const lightbin::Parallel& threads, std::size_t) {
-        const std::size_t share = list.size() / threads.workers();
-        threads.run(threads.workers(), [&](std::size_t i) { fill(list.data() + i * share, share); });
-    });
-    return gains;
 }
 
 /// The frames of a case, ready to be built by lightbin and by the baseline.
@@ -277,9 +198,10 @@ template <Options options> void build(benchmark::State& state, const Case& which
     }
     Result result = result_of(which, options, times);
     if (which.threads > 1)
-        result.gains = measure_gains(parallel, [&](const lightbin::Parallel& threads, std::size_t turn) {
-            return builds.ours(threads, turn % builds.count()).ids().size_bytes();
-        });
+        result.gains =
+            measure_gains(parallel, seconds_a_case, [&](const lightbin::Parallel& threads, std::size_t turn) {
+                return builds.ours(threads, turn % builds.count()).ids().size_bytes();
+            });
     if (results.empty()) print_header();
     results.push_back(result);
     print_row(result);

@@ -2,6 +2,7 @@
 // What was measured, as a file and held against the project's goals.
 #pragma once
 
+#include "gains.hpp"
 #include "measure.hpp"
 
 #include <algorithm>
@@ -13,13 +14,6 @@
 #include <tuple>
 #include <utility>
 #include <vector>
-
-/// How many times as fast threads are as one alone.
-struct Gains {
-    double awake, asleep;  ///< at a build, coming from other work or from sleep
-    double stores;         ///< at storing its light index list
-    double sums;           ///< at arithmetic in registers that takes one thread as long
-};
 
 struct Result {
     std::string set;
@@ -94,9 +88,9 @@ struct GoalRow {
 
 inline constexpr GoalRow goal_rows[] = {
     {"field20, 32 px", "field20", 32, "none", {{0.16, 0.09}, {}, {0.48, 0.38}, {1.0, 0.6}}},
-    {"  4,096 and 10,000", "field20", 32, "none", {{}, {0.28, 0.18}}, 4096},
-    {"  1,000", "field20", 32, "none", {{}, {0.38, 0.25}}, 1000, 1000},
-    {"  256", "field20", 32, "none", {{}, {0.51, 0.30}}, 256, 256},
+    {"field20, 4,096 and more", "field20", 32, "none", {{}, {0.28, 0.18}}, 4096},
+    {"field20, 1,000 lights", "field20", 32, "none", {{}, {0.38, 0.25}}, 1000, 1000},
+    {"field20, 256 lights", "field20", 32, "none", {{}, {0.51, 0.30}}, 256, 256},
     {"field20, 16 px", "field20", 16, "none", {{0.20, 0.11}, {0.33, 0.22}, {0.55, 0.40}, {1.0, 0.7}}},
     {"field200", "field200", 32, "none", {{0.17, 0.10}, {0.36, 0.18}, {0.50, 0.32}, {1.0, 0.7}}},
     {"real scenes", nullptr, 32, "none", {{0.17, 0.10}, {0.36, 0.18}, {0.50, 0.32}, {1.0, 0.7}}},
