@@ -413,11 +413,13 @@ int run(int argc, char** argv) {
     benchmark::RunSpecifiedBenchmarks(&lines);
     write_csv(results, "binning.csv");
     write_sources_csv(source_results, "binning_sources.csv");
-    print_goals(results);
-    print_scale_goals(results);
-    print_source_goals(source_results);
-    print_slower_tiers(results);
-    print_threads(results);
+    if (!results.empty()) {
+        print_goals(results);
+        print_scale_goals(results);
+        print_slower_tiers(results);
+        print_threads(results);
+    }
+    if (!source_results.empty()) print_source_goals(source_results);
     std::puts("\nwrote binning.csv and binning_sources.csv");
     return EXIT_SUCCESS;
 }
