@@ -10,10 +10,10 @@
 
 #include <lightbin/binner.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdio>
 #include <iterator>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -102,7 +102,7 @@ private:
     Lights moved_;
 };
 
-/// Times each source in turns. In one turn each takes another frame, so that none finds its lights where another one left
+/// Times each source in turns. In a turn they take different frames, so that none finds its lights where another one left
 /// them in the cache; all take every frame.
 template <lightbin::Options options>
 SourceResult time_sources(const std::string& set, int tile_size, const std::vector<WorldFrame>& frames,
@@ -142,7 +142,10 @@ inline void print_source_row(const SourceResult& r) {
     std::printf("%-16s%8zu%4d %-10s%-7s%10.2f", r.set.c_str(), r.lights, r.tile_size, r.depth_test.c_str(),
                 r.tier.c_str(), 1e9 * r.seconds[view_vec4s] / double(r.lights));
     for (std::size_t i = 1; i < source_count; ++i)
-        if (r.seconds[i] > 0) std::printf("%14.2f", r.ratio(Source(i)));
+        if (r.seconds[i] > 0)
+            std::printf("%14.2f", r.ratio(Source(i)));
+        else
+            std::printf("%14s", "");
     std::printf("\n");
     std::fflush(stdout);
 }
