@@ -5,7 +5,7 @@
 #   binning [--quick] [SCENE.glb ...] [--benchmark_filter=REGEX]
 #       (the default) Whole builds as a ratio to the flat baseline; from world space and from structs as a ratio to
 #       view-space vec4s (^sources), of several views as a ratio to one (^views); then what is short of the goals, and
-#       where a wider instruction set is slower than a narrower one. About 6 minutes, --quick half a minute. Writes
+#       where a wider instruction set is slower than a narrower one. About 5 minutes, --quick half a minute. Writes
 #       build/bench/binning.csv: the sets fieldN have a mean footprint of N tiles of 32 pixels; `footprint` and
 #       `depth_test` are the options; box and split_box are held against the baseline without Z; for n = 0 the times are
 #       of a whole build. And binning_sources.csv: `source` is what the lights were; loop_... was moved to view space by
