@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: MIT
-// A whole build, spheres in to lists out, against the flat baseline measured in turns in the same run, on
-// rotating light sets. Prints Google Benchmark's table, what falls short of the project's goals, and writes
-// binning.csv.
+// A whole build, spheres in to lists out, against the flat baseline measured in turns in the same run, on rotating light
+// sets; from world space and structs against view-space vec4s; of several views. Prints each as it ends, then what falls
+// short of the project's goals, and writes binning.csv and binning_sources.csv.
 #include "flat.hpp"
 #include "frames.hpp"
+#include "gains.hpp"
 #include "glb_scenes.hpp"
 #include "goals.hpp"
 #include "measure.hpp"
+#include "memory.hpp"
 #include "reference.hpp"
+#include "several_views.hpp"
+#include "sources.hpp"
+#include "world.hpp"
 
 #include <lightbin/binner.hpp>
 
 #include <benchmark/benchmark.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <exception>
 #include <functional>
-#include <memory>
 #include <string>
 #include <thread>
 
@@ -35,141 +35,34 @@ using lightbin::Options;
 
 double seconds_a_case = 0.3;
 std::vector<Result> results;
+std::vector<SourceResult> source_results;
+std::vector<SeveralViewsResult> several_views_results;
+
+template <class Frame> using Make = std::function<std::vector<Frame>()>;
 
 struct Case {
     std::string set;
     std::size_t lights;
     int tile_size;
-    std::function<std::vector<Frame>()> frames;
+    Make<Frame> frames;
     int threads = 1;
 };
 
-/// lightbin's work on at most so many of oneTBB's threads.
-class TbbLoop {
-public:
-    explicit TbbLoop(int threads) : arena_(threads) {}
-    template <class Body> void operator()(std::size_t n, const Body& body) {
-        arena_.execute([&] { tbb::parallel_for(std::size_t{0}, n, body); });
-    }
-
-private:
-    tbb::task_arena arena_;
-};
-
-/// The frames of a case, kept while the cases that follow have the same.
-const std::vector<Frame>& frames_of(const Case& which) {
+/// What `make` makes, kept while those who follow ask for the same.
+template <class Frame>
+const std::vector<Frame>& keep_frames(const std::string& key, const Make<Frame>& make) {
     static std::vector<Frame> frames;
     static std::string kept;
-    const std::string key = which.set + "/" + std::to_string(which.lights);
     if (kept != key) {
         frames.clear();
-        frames = which.frames();
+        frames = make();
         kept = key;
     }
     return frames;
 }
 
-/// Z bounds of the made depth buffer, which all field sets have in common.
-struct MadeBounds {
-    std::vector<float> min, max, gap_min, gap_max;
-    lightbin::ZBounds bounds;
-
-    explicit MadeBounds(int tile_size) {
-        static const std::vector<float> depth = made_depth();
-        const lightbin::View view = Lens().view(tile_size);
-        for (auto* side : {&min, &max, &gap_min, &gap_max})
-            side->resize(view.tile_count());
-        bounds = *lightbin::reduce_depth(view, {.depth = depth}, {min, max, gap_min, gap_max});
-    }
-};
-
-/// Stops the run unless the lists of a frame hold what the double-precision two-pass finds, and next to nothing else.
-template <class Grid>
-void verify(const Frame& frame, int tile_size, const Grid& grid, const Options& options,
-            const lightbin::ZBounds& bounds) {
-    const FlatView view = frame.lens.flat_view(tile_size);
-    const Lights& lights = frame.lights;
-    Flat<double> flat;
-    flat.build<false>(view, lights, nullptr, nullptr);
-    PairTest pair(frame.lens, tile_size, bounds);
-    // A light that crosses the near plane may keep its rectangle.
-    const auto may_be_there = [&](std::uint32_t id) {
-        return options.footprint == Footprint::silhouette &&
-               -double(lights[id].z) - double(lights[id].w) <= view.near_depth;
-    };
-    std::size_t missing = 0, extra = 0, common = 0;
-    for (std::size_t tile = 0; tile < grid.ranges().size(); ++tile) {
-        const int x = int(tile) % view.tiles_x, y = int(tile) / view.tiles_x;
-        const auto ours = grid.ids().subspan(grid.ranges()[tile].offset, grid.ranges()[tile].count);
-        auto next = ours.begin();
-        for (std::uint32_t i = flat.offsets[tile]; i < flat.offsets[tile + 1]; ++i) {
-            const std::uint32_t id = flat.indices[i];
-            if (!pair.passes(options.footprint, options.depth_test, lights[id], x, y)) continue;
-            for (; next != ours.end() && *next < id; ++next)
-                extra += may_be_there(*next) ? 0 : 1;
-            const bool found = next != ours.end() && *next == id;
-            ++(found ? common : missing);
-            if (found) ++next;
-        }
-        for (; next != ours.end(); ++next)
-            extra += may_be_there(*next) ? 0 : 1;
-    }
-    if (missing * 100000 <= common && extra * 500 <= common + 1000) return;
-    std::fprintf(stderr, "binning: wrong lists: %zu entries are missing, %zu are extra, %zu are right\n",
-                 missing, extra, common);
-    std::exit(EXIT_FAILURE);
-}
-
-/// Writes the memory once, in order, with the machine's widest stores.
-void fill(char* memory, std::size_t size) {
-    std::memset(memory, 0, size);
-    benchmark::ClobberMemory();
-}
-
-constexpr std::size_t steps_a_ms = 400000;  // of churn, about
-
-/// Arithmetic in registers, for the given number of steps.
-void churn(std::size_t steps) {
-    std::uint32_t sums[32] = {};
-    for (std::size_t i = 0; i < steps; ++i)
-        for (std::uint32_t& sum : sums)
-            sum += (sum << 1) + 1;
-    benchmark::DoNotOptimize(sums);
-}
-
-/// What threads gain: in turns, the same by one thread alone and by all. `bin(threads, turn)` builds and returns how many
-/// bytes the list has.
-template <class Bin> Gains measure_gains(const lightbin::Parallel& parallel, Bin bin) {
-    double alone = 0;
-    const auto gain = [&](bool asleep, auto work) {
-        std::vector<double> times[2];
-        const double end = time_now() + seconds_a_case / 2;
-        for (std::size_t turn = 0; time_now() < end || times[1].size() < 5; ++turn) {
-            // A few turns each: 14 in all, which do not divide the 48 frames.
-            const bool sharing = turn / 7 % 2 == 1;
-            const lightbin::Parallel threads = sharing ? parallel : lightbin::Parallel();
-            // Threads come from other work, as in a frame they would, or they have slept.
-            if (asleep)
-                std::this_thread::sleep_for(std::chrono::milliseconds(1));
-            else
-                threads.run(threads.workers(), [](std::size_t) { churn(steps_a_ms); });
-            times[sharing].push_back(seconds([&] { work(threads, turn); }));
-        }
-        alone = median(times[0]);
-        return alone / median(times[1]);
-    };
-    Gains gains = {.awake = gain(false, bin), .asleep = gain(true, bin), .stores = 0, .sums = 0};
-    const double steps = alone / seconds([] { churn(steps_a_ms); }) * steps_a_ms;
-    gains.sums = gain(false, [&](const lightbin::Parallel& threads, std::size_t) {
-        const std::size_t share = std::size_t(steps) / threads.workers();
-        threads.run(threads.workers(), [&](std::size_t) { churn(share); });
-    });
-    std::vector<char> list(bin(parallel, 0));
-    gains.stores = gain(false, [&](const lightbin::Parallel& threads, std::size_t) {
-        const std::size_t share = list.size() / threads.workers();
-        threads.run(threads.workers(), [&](std::size_t i) { fill(list.data() + i * share, share); });
-    });
-    return gains;
+const std::vector<Frame>& frames_of(const Case& which) {
+    return keep_frames(which.set + "/" + std::to_string(which.lights), which.frames);
 }
 
 /// The frames of a case, ready to be built by lightbin and by the baseline.
@@ -190,6 +83,7 @@ public:
     }
 
     std::size_t count() const { return frames_.size(); }
+    const Lights& lights(std::size_t frame) const { return frames_[frame].lights; }
     std::size_t table_bytes() const { return sizeof(lightbin::ListRange) * views_[0].tile_count(); }
 
     lightbin::LightGrid<Id> ours(const lightbin::Parallel& threads, std::size_t frame) {
@@ -218,14 +112,14 @@ private:
 
 /// Seconds of each turn.
 struct Times {
-    std::vector<double> ours, theirs, stores, clears, ratios;
+    std::vector<double> ours, theirs, stores, clears, reads, ratios;
     double entries = 0;        ///< that ours made in a turn, in the mean
     std::size_t together = 1;  ///< frames a turn
 };
 
-/// Times one case. In turns: the baseline, ours, storing the list once, clearing the tile table. Each time a few frames
-/// together where one is too short for the clock. Whether ours comes first alternates, as the second finds the lights in
-/// the cache.
+/// Times one case. In turns: the baseline, ours, storing the list once, clearing the tile table, and of a million lights
+/// reading them. Each time a few frames together where one is too short for the clock. Whether ours comes first
+/// alternates, as the second finds the lights in the cache; reading them comes where ours does not.
 template <Options options>
 Times time_in_turns(Builds<options>& builds, std::size_t lights, const lightbin::Parallel& parallel) {
     constexpr std::size_t id_size = sizeof(typename Builds<options>::Id);
@@ -246,9 +140,13 @@ Times time_in_turns(Builds<options>& builds, std::size_t lights, const lightbin:
                 each([&](std::size_t frame) { written += builds.ours(parallel, frame).ids().size(); });
             }));
         };
-        if (turn % 2 == 0) time_ours();
+        const auto time_reads = [&] {
+            if (lights >= 1000000)
+                times.reads.push_back(seconds([&] { read(builds.lights(first % builds.count())); }));
+        };
+        turn % 2 == 0 ? time_ours() : time_reads();
         times.theirs.push_back(seconds([&] { each([&](std::size_t frame) { builds.theirs(frame); }); }));
-        if (turn % 2 == 1) time_ours();
+        turn % 2 == 1 ? time_ours() : time_reads();
         times.entries += double(written);
         written *= id_size;
         list.resize(std::max(list.size(), written));
@@ -282,6 +180,7 @@ Result result_of(const Case& which, const Options& options, const Times& times) 
             .entries_per_light = times.entries / lights,
             .store_ratio = ns / (1e9 * median(times.stores)),
             .clear_ratio = ns / (1e9 * median(times.clears)),
+            .read_ratio = times.reads.empty() ? 0 : ns / (1e9 * median(times.reads)),
             .gains = {}};
 }
 
@@ -299,62 +198,107 @@ template <Options options> void build(benchmark::State& state, const Case& which
     }
     Result result = result_of(which, options, times);
     if (which.threads > 1)
-        result.gains = measure_gains(parallel, [&](const lightbin::Parallel& threads, std::size_t turn) {
-            return builds.ours(threads, turn % builds.count()).ids().size_bytes();
-        });
+        result.gains =
+            measure_gains(parallel, seconds_a_case, [&](const lightbin::Parallel& threads, std::size_t turn) {
+                return builds.ours(threads, turn % builds.count()).ids().size_bytes();
+            });
+    if (results.empty()) print_header();
     results.push_back(result);
+    print_row(result);
 }
 
-/// Google Benchmark's rows, narrow enough to read.
-class Table : public benchmark::BenchmarkReporter {
-public:
-    bool ReportContext(const Context&) override {
-        std::printf(
-            "this machine's tier: %s\n"
-            "ratio: of the medians, to the flat baseline (interval: to its interval twin); spread: 10th to "
-            "90th\n"
-            "percentile of the turns' ratios; entries: a light; x store: to writing the index list once, "
-            "with as\n"
-            "many threads\n\n",
-            to_string(lightbin::machine_isa()));
-        std::printf("%-16s%8s%4s %-11s%-10s%-7s%2s%10s%10s%8s%8s%9s%9s\n", "set", "n", "px", "footprint",
-                    "depth", "tier", "th", "ns/light", "ns/entry", "ratio", "spread", "entries", "x store");
-        return true;
-    }
-    void ReportRuns(const std::vector<Run>&) override {
-        const Result& r = results.back();
-        std::printf("%-16s%8zu%4d %-11s%-10s%-7s%2d%10.2f%10.3f%8.3f%8.3f%9.2f%9.1f\n", r.set.c_str(),
-                    r.lights, r.tile_size, r.footprint.c_str(), r.depth_test.c_str(), r.tier.c_str(),
-                    r.threads, r.ns_per_light, r.ns_per_entry, r.ratio, r.spread, r.entries_per_light,
-                    r.store_ratio);
-        std::fflush(stdout);
-    }
+/// The same set in world space and in structs.
+struct SourceCase {
+    std::string set;
+    Make<WorldFrame> frames;
 };
 
-template <Options options> void add(const Case& which) {
-    if (lightbin::machine_isa(options.isa) != options.isa) return;  // not on this machine
-    const std::string label = which.set + "/" + std::to_string(which.lights) + "/" +
-                              std::to_string(which.tile_size) + "px/" + to_string(options.footprint) + "/" +
-                              to_string(options.depth_test) + "/" + to_string(options.isa) + "/" +
-                              std::to_string(which.threads);
-    benchmark::RegisterBenchmark(label.c_str(), build<options>, which)->Iterations(1)->UseManualTime();
+template <Options options> void build_sources(benchmark::State& state, const SourceCase& which) {
+    const std::vector<WorldFrame>& frames = keep_frames(which.set, which.frames);
+    if (source_results.empty()) print_source_header();
+    for (auto _ : state) {
+        source_results.push_back(time_sources<options>(which.set, 32, frames, seconds_a_case));
+        state.SetIterationTime(source_results.back().seconds[world_vec4s]);
+    }
+    print_source_row(source_results.back());
 }
+
+template <Options options> void build_views(benchmark::State& state, const SourceCase& which) {
+    const std::vector<WorldFrame>& frames = keep_frames(which.set, which.frames);
+    if (several_views_results.empty()) print_several_views_header();
+    for (auto _ : state) {
+        for (const SeveralViews& views : {two_eyes(frames[0].view.lens), cube_faces()}) {
+            several_views_results.push_back(
+                time_several_views<options>(views, which.set, 32, frames, seconds_a_case));
+            print_several_views_row(several_views_results.back());
+        }
+        state.SetIterationTime(several_views_results.back().all);
+    }
+}
+
+/// Google Benchmark's lines, left to the cases: each prints its own as it ends.
+class Lines : public benchmark::BenchmarkReporter {
+public:
+    bool ReportContext(const Context&) override {
+        std::printf("this machine's tier: %s\n", to_string(lightbin::machine_isa()));
+        return true;
+    }
+    void ReportRuns(const std::vector<Run>&) override {}
+};
 
 constexpr Options with(Options options, Isa isa) {
     options.isa = isa;
     return options;
 }
 
+/// Calls `visit` for the options' tier, if this machine has it.
+template <Options options, class Visit> void visit_tier(Visit visit) {
+    if (lightbin::machine_isa(options.isa) == options.isa) visit.template operator()<options>();
+}
+
+/// Calls `visit` for each tier up to the widest that was compiled in.
+template <Options options, class Visit> void each_tier(Visit visit) {
+    visit_tier<with(options, Isa::scalar)>(visit);
+#if defined(LIGHTBIN_X86)
+    visit_tier<with(options, Isa::sse2)>(visit);
+    visit_tier<with(options, Isa::avx2)>(visit);
+#endif
+    visit_tier<options>(visit);
+}
+
+/// `name` is what a filter finds it by.
+template <class Which>
+void add(const std::string& name, void (*run)(benchmark::State&, const Which&), const Which& which) {
+    benchmark::RegisterBenchmark(name.c_str(), run, which)->Iterations(1)->UseManualTime();
+}
+
+template <Options options> void add_build(const Case& which) {
+    visit_tier<options>([&]<Options one>() {
+        add(which.set + "/" + std::to_string(which.lights) + "/" + std::to_string(which.tile_size) + "px/" +
+                to_string(one.footprint) + "/" + to_string(one.depth_test) + "/" + to_string(one.isa) + "/" +
+                std::to_string(which.threads),
+            build<one>, which);
+    });
+}
+
 template <DepthTest depth_test = DepthTest::none, Footprint footprint = Footprint::rectangle,
           IdWidth ids = IdWidth::u32>
 void add_tiers(const Case& which) {
-    constexpr Options options = {.ids = ids, .footprint = footprint, .depth_test = depth_test};
-    add<with(options, Isa::scalar)>(which);
-#if defined(LIGHTBIN_X86)
-    add<with(options, Isa::sse2)>(which);
-    add<with(options, Isa::avx2)>(which);
-#endif
-    add<options>(which);  // the widest that was compiled in
+    each_tier<{.ids = ids, .footprint = footprint, .depth_test = depth_test}>(
+        [&]<Options one>() { add_build<one>(which); });
+}
+
+template <DepthTest depth_test = DepthTest::none> void add_sources(const SourceCase& which) {
+    each_tier<{.depth_test = depth_test}>([&]<Options one>() {
+        add("sources/" + which.set + "/" + to_string(depth_test) + "/" + to_string(one.isa),
+            build_sources<one>, which);
+    });
+}
+
+void add_views(const SourceCase& which) {
+    each_tier<{}>([&]<Options one>() {
+        add("views/" + which.set + "/" + to_string(one.isa), build_views<one>, which);
+    });
 }
 
 void add_rungs(const Case& which) {
@@ -370,15 +314,14 @@ void add_threads(Case which) {
     const int most = int(std::thread::hardware_concurrency());
     for (which.threads = 2; which.threads <= most; which.threads *= 2) {
 #if defined(LIGHTBIN_X86)
-        add<Options{.isa = Isa::avx2}>(which);
+        add_build<Options{.isa = Isa::avx2}>(which);
 #endif
-        add<Options{}>(which);
+        add_build<Options{}>(which);
     }
 }
 
 /// Frames of `count` lights each of one of the made sets.
-template <class Make>
-std::function<std::vector<Frame>()> made_frames(std::size_t count, Lens lens, Make make) {
+template <class MakeLights> Make<Frame> made_frames(std::size_t count, Lens lens, MakeLights make) {
     return [=] {
         std::vector<Frame> frames;
         for (std::uint32_t seed = 0; seed < rotation(count); ++seed)
@@ -457,13 +400,27 @@ int run(int argc, char** argv) {
                 add_tiers({set, lights, tile, [=] { return scene_frames(views, lights); }});
     }
     add_tiers({"away", 1000000, 32, made_frames(1000000, {}, away)});
-    Table table;
-    benchmark::RunSpecifiedBenchmarks(&table);
+    const SourceCase field4 = {"field4", [] { return world_frames(10000, field4_median); }},
+                     field20 = {"field20", [] { return world_frames(10000, field20_median); }},
+                     many_lights = {"many_lights", many_lights_frames};
+    add_sources(field4);
+    add_sources(field20);
+    add_sources<DepthTest::box>(field20);
+    add_sources(many_lights);
+    add_views(many_lights);
+    add_views(field20);
+    Lines lines;
+    benchmark::RunSpecifiedBenchmarks(&lines);
     write_csv(results, "binning.csv");
-    print_goals(results);
-    print_scale_goals(results);
-    print_threads(results);
-    std::puts("\nwrote binning.csv");
+    write_sources_csv(source_results, "binning_sources.csv");
+    if (!results.empty()) {
+        print_goals(results);
+        print_scale_goals(results);
+        print_slower_tiers(results);
+        print_threads(results);
+    }
+    if (!source_results.empty()) print_source_goals(source_results);
+    std::puts("\nwrote binning.csv and binning_sources.csv");
     return EXIT_SUCCESS;
 }
 

@@ -8,6 +8,7 @@
 #include "sets.hpp"
 
 #include <lightbin/view.hpp>
+#include <lightbin/z_bounds.hpp>
 
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/mat4x4.hpp>
@@ -86,3 +87,17 @@ inline std::vector<float> made_depth() {
                      Lens().screen)
         .depth;
 }
+
+/// Z bounds of the made depth buffer, which all field sets have in common.
+struct MadeBounds {
+    std::vector<float> min, max, gap_min, gap_max;
+    lightbin::ZBounds bounds;
+
+    explicit MadeBounds(int tile_size) {
+        static const std::vector<float> depth = made_depth();
+        const lightbin::View view = Lens().view(tile_size);
+        for (auto* side : {&min, &max, &gap_min, &gap_max})
+            side->resize(view.tile_count());
+        bounds = *lightbin::reduce_depth(view, {.depth = depth}, {min, max, gap_min, gap_max});
+    }
+};

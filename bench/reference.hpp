@@ -8,6 +8,9 @@
 #include <lightbin/binner.hpp>
 
 #include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 
 /// One light and one tile, as the rungs of the ladder see them.
 class PairTest {
@@ -54,3 +57,40 @@ private:
     oracle::FlatDepths pyramid_;
     const lightbin::ZBounds& bounds_;
 };
+
+/// Stops the run unless the lists of a frame hold what the double-precision two-pass finds, and next to nothing else.
+template <class Grid>
+void verify(const Frame& frame, int tile_size, const Grid& grid, const lightbin::Options& options,
+            const lightbin::ZBounds& bounds) {
+    const FlatView view = frame.lens.flat_view(tile_size);
+    const Lights& lights = frame.lights;
+    Flat<double> flat;
+    flat.build<false>(view, lights, nullptr, nullptr);
+    PairTest pair(frame.lens, tile_size, bounds);
+    // A light that crosses the near plane may keep its rectangle.
+    const auto may_be_there = [&](std::uint32_t id) {
+        return options.footprint == lightbin::Footprint::silhouette &&
+               -double(lights[id].z) - double(lights[id].w) <= view.near_depth;
+    };
+    std::size_t missing = 0, extra = 0, common = 0;
+    for (std::size_t tile = 0; tile < grid.ranges().size(); ++tile) {
+        const int x = int(tile) % view.tiles_x, y = int(tile) / view.tiles_x;
+        const auto ours = grid.ids().subspan(grid.ranges()[tile].offset, grid.ranges()[tile].count);
+        auto next = ours.begin();
+        for (std::uint32_t i = flat.offsets[tile]; i < flat.offsets[tile + 1]; ++i) {
+            const std::uint32_t id = flat.indices[i];
+            if (!pair.passes(options.footprint, options.depth_test, lights[id], x, y)) continue;
+            for (; next != ours.end() && *next < id; ++next)
+                extra += may_be_there(*next) ? 0 : 1;
+            const bool found = next != ours.end() && *next == id;
+            ++(found ? common : missing);
+            if (found) ++next;
+        }
+        for (; next != ours.end(); ++next)
+            extra += may_be_there(*next) ? 0 : 1;
+    }
+    if (missing * 100000 <= common && extra * 500 <= common + 1000) return;
+    std::fprintf(stderr, "binning: wrong lists: %zu entries are missing, %zu are extra, %zu are right\n",
+                 missing, extra, common);
+    std::exit(EXIT_FAILURE);
+}
