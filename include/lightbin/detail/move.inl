@@ -61,3 +61,55 @@ LIGHTBIN_TARGET LIGHTBIN_INLINE void move_spheres(const MoveLanes& move, Floats&
     z = moved[2];
     radius = moved[3];
 }
+
+/// Moves eight spheres as move_spheres does, for the scalar tier: loops that compilers make vectors of, if the products
+/// are kept apart from the sums.
+LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void move_eight(const WorldToView& to_view, const Sphere* given,
+                                                         Sphere* moved) {
+    const FloatMove move = to_view.floats();
+    float away[8], radius[8], from_origin[3][8], products[11][8];
+    for (int i = 0; i < 8; ++i) {
+        const Sphere sphere = load_sphere(given + i);
+        from_origin[0][i] = sphere.x - move.origin[0];
+        from_origin[1][i] = sphere.y - move.origin[1];
+        from_origin[2][i] = sphere.z - move.origin[2];
+        radius[i] = sphere.radius;
+    }
+    int plain = 1;
+    for (int i = 0; i < 8; ++i) {
+        away[i] = std::fabs(from_origin[0][i]) + std::fabs(from_origin[1][i]) + std::fabs(from_origin[2][i]);
+        plain &= (away[i] <= move.most) & (radius[i] >= 0x1p-40f) & (radius[i] <= 0x1p40f);
+    }
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
+            for (int i = 0; i < 8; ++i)
+                products[3 * row + column][i] = from_origin[column][i] * move.columns[column][row];
+    for (int i = 0; i < 8; ++i) {
+        products[9][i] = radius[i] * move.stretch;
+        products[10][i] = away[i] * move.error;
+    }
+    LIGHTBIN_FORGET_ARRAY(products);
+    float centre[3][8];
+    for (int row = 0; row < 3; ++row)
+        for (int i = 0; i < 8; ++i)
+            centre[row][i] = products[3 * row][i] + products[3 * row + 1][i] + products[3 * row + 2][i] +
+                             move.at_origin[row];
+    for (int i = 0; i < 8; ++i) {
+        const float reach = products[9][i] + (products[10][i] + move.least_error);
+        const bool sure =
+            plain != 0 || ((away[i] <= move.most) & (radius[i] >= 0x1p-40f) & (radius[i] <= 0x1p40f));
+        moved[i] =
+            sure ? Sphere{centre[0][i], centre[1][i], centre[2][i], reach} : to_view(load_sphere(given + i));
+    }
+}
+LIGHTBIN_TARGET inline void move_in_eights(const WorldToView& to_view, const Sphere* given,
+                                           std::uint32_t count, Sphere* moved) {
+    for (; count >= 8; count -= 8, given += 8, moved += 8)
+        move_eight(to_view, given, moved);
+    if (count == 0) return;
+    Sphere rest[8] = {};
+    for (std::uint32_t i = 0; i < count; ++i)
+        rest[i] = load_sphere(given + i);
+    move_eight(to_view, rest, rest);
+    std::copy_n(rest, count, moved);
+}

@@ -139,46 +139,20 @@ LIGHTBIN_TARGET inline void project_carefully(const Camera& camera, const Sphere
     }
 }
 
-/// Whether eight spheres are out of view beyond doubt, for the scalar tier: loops that compilers make vectors of,
+/// Whether eight spheres are out of view beyond doubt, for the scalar tier: a loop that compilers make vectors of,
 /// and not inline, as within another they don't. They may fuse products and sums there, so it asks for twice the
-/// distance to a side plane that project does, and takes a moved centre to be off by four times as much: what is out here
-/// is out there.
-LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline bool eight_out_of_view(const Camera& camera, const Sphere* spheres,
-                                                                const WorldToView* to_view) {
-    float x[8], y[8], z[8], given[8], radius[8], away[8];
-    for (int i = 0; i < 8; ++i) {
-        const Sphere sphere = load_sphere(spheres + i);
-        x[i] = sphere.x;
-        y[i] = sphere.y;
-        z[i] = sphere.z;
-        given[i] = radius[i] = sphere.radius;
-        away[i] = 0;
-    }
-    float farthest = 0;
-    if (to_view != nullptr) {
-        const FloatMove move = to_view->floats();
-        farthest = move.most;
-        for (int i = 0; i < 8; ++i) {
-            const float dx = x[i] - move.origin[0], dy = y[i] - move.origin[1], dz = z[i] - move.origin[2];
-            const auto moved = [&](int row) {
-                return dx * move.columns[0][row] + dy * move.columns[1][row] + dz * move.columns[2][row] +
-                       move.at_origin[row];
-            };
-            away[i] = std::fabs(dx) + std::fabs(dy) + std::fabs(dz);
-            x[i] = moved(0);
-            y[i] = moved(1);
-            z[i] = moved(2);
-            radius[i] = radius[i] * move.stretch + 4 * (away[i] * move.error + move.least_error);
-        }
-    }
+/// distance to a side plane that project does: what is out here is out there.
+LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline bool eight_out_of_view(const Camera& camera, const Sphere* spheres) {
+    Sphere eight[8];
+    std::memcpy(eight, spheres, sizeof eight);
     int out = 1;
-    for (int i = 0; i < 8; ++i) {
-        const float a = std::fabs(x[i]), b = std::fabs(y[i]), depth = z[i] * camera.z_sign;
-        const float r = radius[i], size = a + b + std::fabs(depth) + r;
-        const float aside_x = a * camera.x.side + depth * camera.x.side_z - r;
-        const float aside_y = b * camera.y.side + depth * camera.y.side_z - r;
-        out &= (away[i] <= farthest) & (given[i] >= 0x1p-40f) & (size <= 0x1p40f) &
-               ((depth + r < camera.near_depth) | (depth - r > camera.far_depth) |
+    for (const Sphere& sphere : eight) {
+        const float a = std::fabs(sphere.x), b = std::fabs(sphere.y), z = sphere.z * camera.z_sign;
+        const float r = sphere.radius, size = a + b + std::fabs(z) + r;
+        const float aside_x = a * camera.x.side + z * camera.x.side_z - r;
+        const float aside_y = b * camera.y.side + z * camera.y.side_z - r;
+        out &= (size <= 0x1p40f) & (r >= 0x1p-40f) &
+               ((z + r < camera.near_depth) | (z - r > camera.far_depth) |
                 ((aside_x > aside_y ? aside_x : aside_y) > size * 0x1p-20f));
     }
     return out != 0;
@@ -206,7 +180,8 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
         const Sphere* const spheres = source.to_view != nullptr ? own : given;
         if (source.copy != nullptr) source.copy(source.lights, first, here, own);
         if constexpr (lanes == 1) {
-            if (here >= 8 && eight_out_of_view(camera, given, source.to_view)) {
+            if (source.to_view != nullptr) move_in_eights(*source.to_view, given, here, own);
+            if (here >= 8 && eight_out_of_view(camera, spheres)) {
                 here = most = 8;
                 continue;
             }
@@ -214,7 +189,7 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
         }
         std::uint32_t careful_count = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
-            const Sphere* from = given + i;
+            const Sphere* from = (lanes == 1 ? spheres : given) + i;
             const std::uint32_t used = here - i < lanes ? here - i : lanes;
             if (used < lanes) {
                 for (std::uint32_t lane = 0; lane < lanes; ++lane)
@@ -223,7 +198,7 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
             }
             Floats x, y, z, r;
             load_spheres(from, x, y, z, r);
-            if (move.to_view != nullptr) move_spheres(move, x, y, z, r);
+            if (lanes > 1 && move.to_view != nullptr) move_spheres(move, x, y, z, r);
             const Floats at[] = {x, y, z};
             x = x * camera.x.sign;
             y = y * camera.y.sign;
@@ -249,7 +224,7 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
                 tangent_slopes(y, z, r, e, per_e, bottom, top);
             }
             unsigned rest = ~bits(either(plain, culled)) & valid;
-            if (move.to_view != nullptr && (source.kept != nullptr || rest != 0))
+            if (lanes > 1 && move.to_view != nullptr && (source.kept != nullptr || rest != 0))
                 store_spheres(own + i, at[0], at[1], at[2], r);
             for (; rest != 0; rest &= rest - 1)
                 careful[careful_count++] =
