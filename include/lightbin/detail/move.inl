@@ -94,13 +94,17 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void move_eight(const WorldToView& to_v
         for (int i = 0; i < 8; ++i)
             centre[row][i] = products[3 * row][i] + products[3 * row + 1][i] + products[3 * row + 2][i] +
                              move.at_origin[row];
-    for (int i = 0; i < 8; ++i) {
-        const float reach = products[9][i] + (products[10][i] + move.least_error);
-        const bool sure =
-            plain != 0 || ((away[i] <= move.most) & (radius[i] >= 0x1p-40f) & (radius[i] <= 0x1p40f));
-        moved[i] =
-            sure ? Sphere{centre[0][i], centre[1][i], centre[2][i], reach} : to_view(load_sphere(given + i));
-    }
+    for (int i = 0; i < 8; ++i)
+        radius[i] = products[9][i] + (products[10][i] + move.least_error);
+    Sphere after[8];
+    for (int i = 0; i < 8; ++i)
+        after[i] = {centre[0][i], centre[1][i], centre[2][i], radius[i]};
+    if (plain == 0)
+        for (int i = 0; i < 8; ++i)
+            if (const Sphere before = load_sphere(given + i);
+                !(away[i] <= move.most && before.radius >= 0x1p-40f && before.radius <= 0x1p40f))
+                after[i] = to_view(before);
+    std::copy_n(after, 8, moved);
 }
 LIGHTBIN_TARGET inline void move_in_eights(const WorldToView& to_view, const Sphere* given,
                                            std::uint32_t count, Sphere* moved) {
