@@ -34,9 +34,10 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
             transpose_words(masks + i, (std::min)(list.count - i, 8u),
                             reinterpret_cast<std::uint8_t*>(words));
     } else {
-        std::uint8_t* columns = scratch.list_columns.data() + list.begin;
-        const std::uint8_t* rows = scratch.list_rows.data() + list.begin;
+        std::uint8_t *const columns = scratch.list_columns.data() + list.begin,
+                     *const rows = scratch.list_rows.data() + list.begin;
         std::memset(columns + list.count, 0, 64 * groups - list.count);
+        std::memset(rows + list.count, 0, 64 * groups - list.count);
         for (std::uint32_t i = 0; i < list.count; i += 64, words += 16) {
             split_bits(columns + i, words);
             split_bits(rows + i, words + 8);
@@ -129,15 +130,17 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id* append_tiles(Id* out, ListRange* tiles, st
 
 /// Emits a row of tiles, `row` of its supertiles. `at` is the offset of `out` in the index list. Returns the end.
 template <bool with_words, class Id>
-LIGHTBIN_TARGET Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t at, const Scratch& scratch,
+LIGHTBIN_TARGET Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t at, Scratch& scratch,
                              const BandLists<ListId>& band, unsigned row) {
     const SupertileList* list = band.lists;
-    const ListRange* const end = tiles + tiles_x;
-    for (; tiles < end; tiles += 8, ++list) {
+    for (const ListRange* const end = tiles + tiles_x; tiles < end; tiles += 8, ++list) {
         const std::ptrdiff_t columns = (std::min<std::ptrdiff_t>)(end - tiles, 8);
-        const Packed<Id>* const ids = packed_ids<Id>(scratch, band, *list);
-        const std::uint64_t* const words = scratch.words.data() + list->words;
-        const std::uint32_t count = list->count;
+        const Packed<Id>* ids = packed_ids<Id>(scratch, band, *list);
+        const std::uint64_t* words = scratch.words.data() + list->words;
+        std::uint32_t count = list->count;
+#if defined(LIGHTBIN_TIER_HAS_BYTES)
+        if (!with_words && count > 64) pick_row(scratch, *list, row, ids, words, count);
+#endif
         Id* const from = out;
         if (count == 0)
             std::fill_n(tiles, columns, ListRange{at, 0});
