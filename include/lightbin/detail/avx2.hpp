@@ -286,6 +286,8 @@ LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, const ByteIds& from, 
         to += append(to, from.eights[i], chosen & 0xff);
 }
 
+#include <lightbin/detail/transpose_x86.inl>
+
 #define LIGHTBIN_TIER_HAS_ROWS
 #define LIGHTBIN_TIER_HAS_BYTES
 #include <lightbin/detail/kernels.inl>

@@ -29,10 +29,10 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
                         end = list.words + (with_words ? 8 * eights : 16 * groups);
     std::uint64_t* words = scratch.words.reserve(end, list.words) + list.words;
     if constexpr (with_words) {
-        const std::uint64_t* masks = scratch.masks.data();
+        std::uint64_t* const masks = scratch.masks.data();
+        std::fill_n(masks + list.count, 8 * eights - list.count, 0u);
         for (std::uint32_t i = 0; i < list.count; i += 8, words += 8)
-            transpose_words(masks + i, (std::min)(list.count - i, 8u),
-                            reinterpret_cast<std::uint8_t*>(words));
+            transpose_words(masks + i, words);
     } else {
         std::uint8_t *const columns = scratch.list_columns.data() + list.begin,
                      *const rows = scratch.list_rows.data() + list.begin;

@@ -18,6 +18,7 @@
 //   append_visible, split_bits     as in portable.hpp, or that
 //   ListId                         of what the lists are made: std::uint32_t, or std::uint16_t where ids are in blocks
 // for step 3, emit.inl,
+//   transpose_words                as in portable.hpp, or that
 //   Packed, packs_ids, append      ids in the form that append() takes, see portable.hpp and sse2.hpp
 //   append_lights                  with vectors of bytes: the same of ids and columns, for pick_rows.inl
 // or
