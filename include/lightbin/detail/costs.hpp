@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Every threshold and estimate of time in one place. They choose between ways to the same bytes, and were measured
-// with bench/binning on a Zen 5.
+// with bench/binning on a Zen 4 and a Zen 5.
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
