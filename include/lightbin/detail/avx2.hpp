@@ -218,6 +218,17 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
     return append(out, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(ids)), mask);
 }
 
+
+/// The same of 8 lights' ids and columns.
+LIGHTBIN_TARGET inline std::uint32_t append_lights(std::uint32_t* to_ids, std::uint8_t* to_columns,
+                                                   const std::uint32_t* ids, const std::uint8_t* columns,
+                                                   unsigned mask) {
+    const __m128i places = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_bits[mask].data())),
+                  eight = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(columns));
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(to_columns), _mm_shuffle_epi8(eight, places));
+    return append(to_ids, ids, mask);
+}
+
 using portable::Packed;
 using portable::packs_ids;
 
@@ -292,6 +303,8 @@ LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, const ByteIds& from, 
     for (unsigned i = 0; i < 4; ++i, chosen >>= 8)
         to += append(to, from.eights[i], chosen & 0xff);
 }
+
+#include <lightbin/detail/transpose_x86.inl>
 
 #define LIGHTBIN_TIER_HAS_ROWS
 #define LIGHTBIN_TIER_HAS_BYTES

@@ -29,14 +29,15 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
                         end = list.words + (with_words ? 8 * eights : 16 * groups);
     std::uint64_t* words = scratch.words.reserve(end, list.words) + list.words;
     if constexpr (with_words) {
-        const std::uint64_t* masks = scratch.masks.data();
+        std::uint64_t* const masks = scratch.masks.data();
+        std::fill_n(masks + list.count, 8 * eights - list.count, 0u);
         for (std::uint32_t i = 0; i < list.count; i += 8, words += 8)
-            transpose_words(masks + i, (std::min)(list.count - i, 8u),
-                            reinterpret_cast<std::uint8_t*>(words));
+            transpose_words(masks + i, words);
     } else {
-        std::uint8_t* columns = scratch.list_columns.data() + list.begin;
-        const std::uint8_t* rows = scratch.list_rows.data() + list.begin;
+        std::uint8_t *const columns = scratch.list_columns.data() + list.begin,
+                     *const rows = scratch.list_rows.data() + list.begin;
         std::memset(columns + list.count, 0, 64 * groups - list.count);
+        std::memset(rows + list.count, 0, 64 * groups - list.count);
         for (std::uint32_t i = 0; i < list.count; i += 64, words += 16) {
             split_bits(columns + i, words);
             split_bits(rows + i, words + 8);
@@ -51,22 +52,36 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
     return end;
 }
 
-/// Appends those of `count` ids, up to 64, whose bit is set. Returns the end.
+/// Appends those of 8 ids whose bit is set in the lowest byte, then those of 8 more by the next. Returns the end.
+template <class Id, class Ids> LIGHTBIN_TARGET inline Id* append_16(Id* out, const Ids* ids, std::uint64_t chosen) {
+    out += append(out, ids, static_cast<unsigned>(chosen & 0xff));
+    return out + append(out, ids + 8, static_cast<unsigned>(chosen >> 8 & 0xff));
+}
+template <class Id, class Ids> LIGHTBIN_TARGET inline Id* append_32(Id* out, const Ids* ids, std::uint64_t chosen) {
+    return append_16(append_16(out, ids, chosen), ids + 16, chosen >> 16);
+}
+
+/// Appends those of `count` ids, up to 64, whose bit is set. Returns the end. No loop, whose end is predicted worse
+/// than these branches.
 template <class Id, class Ids>
 LIGHTBIN_TARGET inline Id* append_64(Id* out, const Ids* ids, std::uint64_t chosen, std::uint32_t count) {
-    for (std::uint32_t i = 0; i < count; i += 16, chosen >>= 16) {
-        out += append(out, ids + i, static_cast<unsigned>(chosen & 0xff));
-        out += append(out, ids + i + 8, static_cast<unsigned>(chosen >> 8 & 0xff));
-    }
-    return out;
+    out = append_16(out, ids, chosen);
+    if (count <= 16) return out;
+    out = append_16(out, ids + 16, chosen >> 16);
+    if (count <= 32) return out;
+    out = append_16(out, ids + 32, chosen >> 32);
+    if (count <= 48) return out;
+    return append_16(out, ids + 48, chosen >> 48);
 }
+
+/// How the lists of tiles are appended, by the length of the supertile's list.
+enum class Length { up_to_16, up_to_64, any };
 
 /// Appends the lights of a tile by its words: bytes[0], bytes[64] ... have 8 lights each. Returns the end. The usual
 /// lengths of a list have no loop to predict.
-template <class Id, class Ids>
-LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count,
-                                       const std::uint8_t* bytes) {
-    if (count <= 16) {
+template <Length length, class Id, class Ids>
+LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count, const std::uint8_t* bytes) {
+    if constexpr (length == Length::up_to_16) {
         out += append(out, ids, bytes[0]);
         if (count > 8) out += append(out, ids + 8, bytes[64]);
         return out;
@@ -77,45 +92,65 @@ LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t co
 }
 
 /// The same by the words of its column and its row: [0], [16] ... have 64 lights each.
-template <class Id, class Ids>
-LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count,
-                                       const std::uint64_t* column, const std::uint64_t* row) {
-    if (count <= 16) {
-        const std::uint64_t chosen = column[0] & row[0];
+template <Length length, class Id, class Ids>
+LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count, const std::uint64_t* column,
+                                       const std::uint64_t* row) {
+    if constexpr (length == Length::up_to_16) {
+        const std::uint64_t chosen = *column & *row;
         out += append(out, ids, static_cast<unsigned>(chosen & 0xff));
         if (count > 8) out += append(out, ids + 8, static_cast<unsigned>(chosen >> 8));
         return out;
     }
-    if (count <= 64) return append_64(out, ids, column[0] & row[0], count);
-    for (std::uint32_t i = 0; i < count; i += 64)
-        out = append_64(out, ids + i, column[i / 4] & row[i / 4], (std::min)(count - i, 64u));
+    if constexpr (length == Length::any)
+        for (; count > 64; count -= 64, ids += 64, column += 16, row += 16) {
+            const std::uint64_t chosen = *column & *row;
+            out = append_32(append_32(out, ids, chosen), ids + 32, chosen >> 32);
+        }
+    return append_64(out, ids, *column & *row, count);
+}
+
+/// Appends a row of a supertile's tiles. Returns the end. Not inline, as in a longer function compilers keep what it
+/// needs on the stack.
+template <bool with_words, Length length, class Id>
+LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id* append_tiles(Id* out, ListRange* tiles, std::ptrdiff_t columns, std::uint32_t at,
+                                                   const Packed<Id>* ids, std::uint32_t count,
+                                                   const std::uint64_t* words, unsigned row) {
+    for (std::ptrdiff_t column = 0; column < columns; ++column) {
+        Id* const from = out;
+        if constexpr (with_words)
+            out = append_tile<length>(out, ids, count, reinterpret_cast<const std::uint8_t*>(words) + 8 * row + column);
+        else
+            out = append_tile<length>(out, ids, count, words + column, words + 8 + row);
+        const std::uint32_t lights = static_cast<std::uint32_t>(out - from);
+        tiles[column] = {at, lights};
+        at += lights;
+    }
     return out;
 }
 
 /// Emits a row of tiles, `row` of its supertiles. `at` is the offset of `out` in the index list. Returns the end.
 template <bool with_words, class Id>
-LIGHTBIN_TARGET Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t at, const Scratch& scratch,
+LIGHTBIN_TARGET Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t at, Scratch& scratch,
                              const BandLists<ListId>& band, unsigned row) {
     const SupertileList* list = band.lists;
-    const ListRange* const end = tiles + tiles_x;
-    for (; tiles < end; tiles += 8, ++list) {
+    for (const ListRange* const end = tiles + tiles_x; tiles < end; tiles += 8, ++list) {
         const std::ptrdiff_t columns = (std::min<std::ptrdiff_t>)(end - tiles, 8);
-        const Packed<Id>* const ids = packed_ids<Id>(scratch, band, *list);
-        const std::uint64_t* const words = scratch.words.data() + list->words;
-        const std::uint32_t count = list->count;
-        for (std::ptrdiff_t column = 0; column < columns; ++column) {
-            Id* const from = out;
-            if (count > 0) {
-                if constexpr (with_words)
-                    out = append_tile(out, ids, count,
-                                      reinterpret_cast<const std::uint8_t*>(words) + 8 * row + column);
-                else
-                    out = append_tile(out, ids, count, words + column, words + 8 + row);
-            }
-            const std::uint32_t length = static_cast<std::uint32_t>(out - from);
-            tiles[column] = {at, length};
-            at += length;
-        }
+        const Packed<Id>* ids = packed_ids<Id>(scratch, band, *list);
+        const std::uint64_t* words = scratch.words.data() + list->words;
+        std::uint32_t count = list->count;
+#if defined(LIGHTBIN_TIER_HAS_BYTES)
+        if (!with_words && count > 64) pick_row(scratch, *list, row, ids, words, count);
+#endif
+        Id* const from = out;
+        if (count == 0)
+            std::fill_n(tiles, columns, ListRange{at, 0});
+        else if (count <= 16)
+            out = append_tiles<with_words, Length::up_to_16>(out, tiles, columns, at, ids, count, words, row);
+        else if (count <= 64)
+            out = append_tiles<with_words, Length::up_to_64>(out, tiles, columns, at, ids, count, words, row);
+        else
+            out = append_tiles<with_words, Length::any>(out, tiles, columns, at, ids, count, words, row);
+        at += static_cast<std::uint32_t>(out - from);
     }
     return out;
 }

@@ -18,7 +18,9 @@
 //   append_visible, split_bits     as in portable.hpp, or that
 //   ListId                         of what the lists are made: std::uint32_t, or std::uint16_t where ids are in blocks
 // for step 3, emit.inl,
+//   transpose_words                as in portable.hpp, or that
 //   Packed, packs_ids, append      ids in the form that append() takes, see portable.hpp and sse2.hpp
+//   append_lights                  with vectors of bytes: the same of ids and columns, for pick_rows.inl
 // or
 //   LIGHTBIN_TIER_COMPRESSES       defined: emits by emit_compress.inl; scatters, and arranges cells, as AVX2 does
 // for step 1, lists_scan.inl, where it has fast vectors of bytes,
@@ -57,6 +59,10 @@
 #include <lightbin/detail/emit_compress.inl>
 #else
 #include <lightbin/detail/cells.inl>
+
+#if defined(LIGHTBIN_TIER_HAS_BYTES)
+#include <lightbin/detail/pick_rows.inl>
+#endif
 
 #include <lightbin/detail/emit.inl>
 #endif

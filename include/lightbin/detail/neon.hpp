@@ -177,6 +177,7 @@ using portable::append;
 using portable::Packed;
 using portable::packs_ids;
 using portable::split_bits;
+using portable::transpose_words;
 
 #define LIGHTBIN_TIER_HAS_ROWS
 #include <lightbin/detail/kernels.inl>

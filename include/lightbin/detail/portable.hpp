@@ -41,6 +41,16 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     }
 }
 
+/// Transposes the words of 8 lights, a bit per tile, to a byte per tile, a bit a light.
+inline void transpose_words(const std::uint64_t* words, std::uint64_t* tiles) {
+    for (unsigned row = 0; row < 8; ++row) {
+        std::uint64_t of_row = 0;
+        for (unsigned light = 0; light < 8; ++light)
+            of_row |= (words[light] >> 8 * row & 0xff) << 8 * light;
+        tiles[row] = transpose_bits(of_row);
+    }
+}
+
 /// The form in which append() takes ids, one after another: as they are.
 template <class Id> using Packed = std::uint32_t;
 inline constexpr bool packs_ids = false;

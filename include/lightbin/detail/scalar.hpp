@@ -117,6 +117,7 @@ using portable::append;
 using portable::Packed;
 using portable::packs_ids;
 using portable::split_bits;
+using portable::transpose_words;
 
 #include <lightbin/detail/kernels.inl>
 

@@ -52,6 +52,11 @@ struct Scratch {
     Buffer<std::uint32_t> group_blocks;  ///< of 64 of list_ids each the number of their block
     Buffer<std::uint64_t> words;         ///< of a band of supertiles, in the form of step 3
 
+    // Of a list, those picked for a row, see pick_rows.inl.
+    Buffer<std::uint32_t> row_ids;
+    Buffer<std::uint8_t> row_columns;
+    Buffer<std::uint64_t> row_words;
+
     // The lists of bands, see lists_scan.inl.
     Buffer<std::uint8_t> band_x0, band_x1, band_rows;
     Buffer<std::uint32_t> band_size;

@@ -182,6 +182,8 @@ inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, st
                            unsigned visible, const ChunkRects& rects, std::uint32_t first) {
     portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);
 }
+#include <lightbin/detail/transpose_x86.inl>
+
 #define LIGHTBIN_TIER_HAS_ROWS
 #include <lightbin/detail/kernels.inl>
 

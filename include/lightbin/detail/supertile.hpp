@@ -68,16 +68,4 @@ inline std::uint64_t transpose_bits(std::uint64_t x) {
     return x ^ t ^ t << 28;
 }
 
-/// Transposes the words of up to 8 lights, a bit per tile, to a byte per tile, a bit a light.
-inline void transpose_words(const std::uint64_t* words, std::uint32_t count, std::uint8_t* tiles) {
-    for (unsigned row = 0; row < 8; ++row) {
-        std::uint64_t of_row = 0;
-        for (unsigned light = 0; light < count; ++light)
-            of_row |= (words[light] >> 8 * row & 0xff) << 8 * light;
-        of_row = transpose_bits(of_row);
-        for (unsigned column = 0; column < 8; ++column)
-            tiles[8 * row + column] = static_cast<std::uint8_t>(of_row >> 8 * column);
-    }
-}
-
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

@@ -32,17 +32,37 @@ LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedL
     return met;
 }
 
-/// Adds the tiles that they meet to the words of 1 to 64 lights with these bytes of columns and rows; the tiles of a
-/// vector count if any of them is in the rectangle. A vector of tiles stays in registers while its lights pass: loops
+/// The depths of all boxes of some tiles of a supertile.
+struct DepthRange {
+    float min, max;
+};
+
+/// Those of the vectors of tiles of which any is `lit`. Boxes have no NaN.
+template <DepthTest depth_test>
+LIGHTBIN_TARGET inline DepthRange depth_range(const float* cells, std::uint64_t lit) {
+    float min[lanes], max[lanes];
+    Floats least = all(infinity), most = all(-infinity);
+    for (unsigned place = 0; place < 64; place += lanes)
+        if ((lit >> place & every_lane) != 0)
+            for (unsigned plane = 0; plane < 64 * cell_planes<depth_test>; plane += next_box) {
+                least = lesser(load_floats(cells + plane + place), least);
+                most = greater(load_floats(cells + plane + 64 + place), most);
+            }
+    store_floats(min, least);
+    store_floats(max, most);
+    return {*std::min_element(min, min + lanes), *std::max_element(max, max + lanes)};
+}
+
+/// Adds the tiles that they meet to the words of some of 64 lights with these bytes of columns and rows; the tiles of
+/// a vector count if any of them is in the rectangle. A vector of tiles stays in registers while its lights pass: loops
 /// over a light's few vectors would be mispredicted once a light.
 template <DepthTest depth_test>
 LIGHTBIN_TARGET inline void meet_tiles(const float* cells, std::uint64_t lit, const TestedLight* lights,
                                        const std::uint8_t* columns, const std::uint8_t* rows,
-                                       std::uint32_t count, std::uint64_t* met) {
+                                       std::uint64_t some, std::uint64_t* met) {
     std::uint64_t in_column[8], in_row[8];
     split_bits(columns, in_column);
     split_bits(rows, in_row);
-    const std::uint64_t valid = ~std::uint64_t{0} >> (64 - count);
     for (unsigned place = 0; place < 64; place += lanes) {
         if ((lit >> place & every_lane) == 0) continue;
         std::uint64_t in_rows = 0, in_columns = 0;
@@ -50,7 +70,7 @@ LIGHTBIN_TARGET inline void meet_tiles(const float* cells, std::uint64_t lit, co
             in_rows |= in_row[(place + lane) / 8];
         for (unsigned lane = 0; lane < lanes && lane < 8; ++lane)
             in_columns |= in_column[place % 8 + lane];
-        for (std::uint64_t rest = in_rows & in_columns & valid; rest != 0; rest &= rest - 1) {
+        for (std::uint64_t rest = in_rows & in_columns & some; rest != 0; rest &= rest - 1) {
             const unsigned light = static_cast<unsigned>(std::countr_zero(rest));
             met[light] |= tiles_met<depth_test>(cells + place, lights[light]) << place;
         }
@@ -78,25 +98,28 @@ LIGHTBIN_TARGET inline std::uint64_t silhouette_tiles(const FootprintArrays& lig
 template <Footprint footprint, DepthTest depth_test, class Id>
 LIGHTBIN_TARGET inline std::uint32_t
 mask_64_lights(const BinJob<Id>& job, unsigned x, unsigned top, const float* cells, std::uint64_t lit,
-               const ListId* lights, std::uint32_t first, const std::uint8_t* columns,
+               const DepthRange& range, const ListId* lights, std::uint32_t first, const std::uint8_t* columns,
                const std::uint8_t* rows, std::uint32_t count, ListId* ids, std::uint64_t* words) {
     std::uint64_t met[64];
     if constexpr (depth_test != DepthTest::none) {
         TestedLight tested[64];
+        std::uint64_t in_range = 0;
         for (std::uint32_t j = 0; j < count; ++j) {
             tested[j] =
                 TestedLight(*job.camera, load_sphere(job.lights.spheres + job.lights.ids[first + lights[j]]));
             met[j] = 0;
+            const bool missed = (tested[j].farthest < range.min) | (range.max < tested[j].nearest);
+            in_range |= std::uint64_t{!missed} << j;
         }
-        meet_tiles<depth_test>(cells, lit, tested, columns, rows, count, met);
+        if (in_range != 0) meet_tiles<depth_test>(cells, lit, tested, columns, rows, in_range, met);
     }
     std::uint32_t left = 0;
     for (std::uint32_t j = 0; j < count; ++j) {
         const std::uint32_t light = first + lights[j];
         std::uint64_t tiles = spread_rows(rows[j]) & columns[j] * std::uint64_t{0x0101010101010101};
+        if constexpr (depth_test != DepthTest::none) tiles &= met[j] & lit;
         if constexpr (footprint == Footprint::silhouette)
             tiles = silhouette_tiles(job.lights, light, x, top, tiles);
-        if constexpr (depth_test != DepthTest::none) tiles &= met[j] & lit;
         ids[left] = static_cast<ListId>(job.lights.ids[light]);
         words[left] = tiles;
         left += tiles != 0;
@@ -126,9 +149,12 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
     [[maybe_unused]] float arranged[cell_planes<depth_test> * 64];
     const float* cells = nullptr;
     std::uint64_t lit = ~std::uint64_t{0};
+    DepthRange range = {-infinity, infinity};
     if constexpr (depth_test != DepthTest::none) {
         lit = arrange_cells<depth_test>(job, x, top, arranged);
         cells = arranged;
+        // Most lights that miss all tiles are beyond all of them. The interval test is itself not more than this.
+        if constexpr (depth_test != DepthTest::interval) range = depth_range<depth_test>(cells, lit);
     }
     const std::uint8_t* columns = scratch.list_columns.data() + list.begin;
     const std::uint8_t* rows = scratch.list_rows.data() + list.begin;
@@ -139,7 +165,7 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
         const std::uint32_t count = (std::min)(list.count - begin, 64u);
         std::uint32_t first = 0;
         if constexpr (sizeof(ListId) == 2) first = begin_group(scratch, list, begin, left, masks);
-        left += mask_64_lights<footprint, depth_test>(job, x, top, cells, lit, lights + begin, first,
+        left += mask_64_lights<footprint, depth_test>(job, x, top, cells, lit, range, lights + begin, first,
                                                       columns + begin, rows + begin, count, lights + left,
                                                       masks + left);
     }
