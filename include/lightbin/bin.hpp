@@ -29,6 +29,31 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
+namespace detail {
+
+/// The edges of all tiles, for boxes.
+class TileEdges {
+public:
+    void find(const Camera& camera) {
+        const ImageAxis* axes[] = {&camera.x, &camera.y};
+        for (std::size_t i = 0; i < 2; ++i) {
+            const std::size_t capacity = static_cast<std::size_t>(axes[i]->tiles) + 8;  // vectors are read
+            float *low = sides_[2 * i].reserve(capacity), *high = sides_[2 * i + 1].reserve(capacity);
+            for (int tile = 0; tile < axes[i]->tiles; ++tile)
+                tile_edges(*axes[i], tile, low[tile], high[tile]);
+        }
+    }
+    void give(const float* (&edges)[4]) const {
+        for (std::size_t i = 0; i < 4; ++i)
+            edges[i] = sides_[i].data();
+    }
+
+private:
+    Buffer<float> sides_[4];
+};
+
+}  // namespace detail
+
 /// A light grid in memory of its own, kept from call to call.
 template <class Id, Footprint footprint, DepthTest depth_test> class GridLists {
     static constexpr bool with_depth = depth_test != DepthTest::none,
@@ -51,6 +76,7 @@ public:
                    .runs = footprints.runs(),
                    .visible = footprints.visible(),
                    .bounds = {},
+                   .slab = {-detail::infinity, detail::infinity},
                    .edges = {},
                    .tiles = nullptr};
         const std::span<const float> sides[] = {bounds.min, bounds.max, bounds.gap_min, bounds.gap_max};
@@ -60,7 +86,10 @@ public:
                 return Error{ErrorCode::z_bounds_too_small, tiles, sides[side].size()};
             job.bounds[side] = sides[side].data();
         }
-        if constexpr (with_boxes) find_edges(job);
+        if constexpr (with_boxes) {
+            edges_.find(*job.camera);
+            edges_.give(job.edges);
+        }
 
         const unsigned rows = static_cast<unsigned>(view.tiles_y());
         constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
@@ -140,39 +169,14 @@ private:
                 Id* out = i == 0 ? list : spares_[i].reserve(parts[i].area + slack);
                 parts[i].area = kernel(job, scratch[i], {parts[i].begin, parts[i].end, out, 0});
             });
-            std::size_t entries = 0;
-            for (std::size_t i = 0; i < count; ++i) {
-                parts[i].before = entries;
-                entries += static_cast<std::size_t>(parts[i].area);
-            }
-            parallel.run(count - 1, [&](std::size_t previous) {
-                const detail::Part& part = parts[previous + 1];
-                const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
-                for (ListRange *tile = job.tiles + width * part.begin, *end = job.tiles + width * part.end;
-                     tile < end; ++tile)
-                    tile->offset += static_cast<std::uint32_t>(part.before);
-                std::copy_n(spares_[previous + 1].data(), static_cast<std::size_t>(part.area),
-                            list + part.before);
-            });
-            return entries;
-        }
-    }
-
-    void find_edges(Job& job) {
-        const detail::ImageAxis* axes[] = {&job.camera->x, &job.camera->y};
-        for (std::size_t i = 0; i < 2; ++i) {
-            const std::size_t capacity = static_cast<std::size_t>(axes[i]->tiles) + 8;  // vectors are read
-            float *low = edges_[2 * i].reserve(capacity), *high = edges_[2 * i + 1].reserve(capacity);
-            for (int tile = 0; tile < axes[i]->tiles; ++tile)
-                detail::tile_edges(*axes[i], tile, low[tile], high[tile]);
-            job.edges[2 * i] = low;
-            job.edges[2 * i + 1] = high;
+            return detail::join_parts(parallel, std::span(parts, count), job.tiles,
+                                      static_cast<std::size_t>(job.camera->x.tiles), spares_.data(), list);
         }
     }
 
     detail::Buffer<ListRange> tiles_;
     detail::Buffer<Id> indices_;
-    detail::Buffer<float> edges_[4];
+    detail::TileEdges edges_;
     detail::Buffer<detail::Part> parts_;
     std::vector<detail::Buffer<Id>> spares_;  ///< one a part: what it can't put in its place at once
     detail::Buffer<std::uint64_t> row_sums_;

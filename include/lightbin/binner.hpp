@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/bin.hpp>
+#include <lightbin/clusters.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/isa.hpp>
@@ -42,15 +43,19 @@ template <DepthTest depth_test> ZBounds z_bounds_left_out() {
 
 /// What Binner::bin() reads beside the lights: a member for each option that needs one, which must be given.
 /// What no option needs has no member, so giving it does not compile.
-template <DepthTest depth_test> struct Inputs {
+template <DepthTest depth_test, bool slices = false> struct Inputs {
     /// Minimum, maximum or both. See ZBounds for what an empty side means.
     ZBounds bounds = detail::z_bounds_left_out<depth_test>();
 };
 template <> struct Inputs<DepthTest::none> {};
+template <DepthTest depth_test> struct Inputs<depth_test, true> {
+    const Slices& slices;
+};
 
 /// Returns the inputs of a Binner whose options vary, such as with_options() gives them: what they don't need is
 /// left out.
-template <Options options> Inputs<options.depth_test> inputs_for([[maybe_unused]] const ZBounds& bounds) {
+template <Options options>
+requires(!options.slices) Inputs<options.depth_test> inputs_for([[maybe_unused]] const ZBounds& bounds) {
     if constexpr (options.depth_test == DepthTest::none)
         return {};
     else
@@ -68,11 +73,11 @@ template <Options options = Options{}> class Binner {
     static_assert(options.ids != IdWidth::u8,
                   "lightbin: a Binner's ids have 16 or 32 bits: take Options{.ids = IdWidth::u16} and have "
                   "encode() make 8 bits of them");
-    static constexpr bool with_depth = options.depth_test != DepthTest::none;
+    static constexpr bool with_depth = options.depth_test != DepthTest::none && !options.slices;
 
 public:
     using Id = std::conditional_t<options.ids == IdWidth::u16, std::uint16_t, std::uint32_t>;
-    using Inputs = lightbin::Inputs<options.depth_test>;
+    using Inputs = lightbin::Inputs<options.depth_test, options.slices>;
 
     Binner() = default;
     /// Takes over the other's memory and grid. The other is as new.
@@ -86,7 +91,7 @@ public:
     ///
     /// lights   a contiguous range of vec4 (x, y, z, radius) or Sphere in view space, view_space(...) or
     ///          world_space(...)
-    /// inputs   {.bounds = ...} with a depth test, else {} or nothing
+    /// inputs   {.slices = ...} with slices, else {.bounds = ...} with a depth test, else {} or nothing
     /// threads  a Parallel: threads to share the work among. The grid is the same with any number of them.
     ///
     /// After it, every tile lists every light whose sphere meets the tile's cell (no miss), in ascending
@@ -97,10 +102,12 @@ public:
     Result<LightGrid<Id>> bin(const View& view, const LightRange& lights, const Inputs& inputs = {},
                               const Threads& threads = {}) {
         if (const auto error = project(view, lights, threads)) return *error;
-        if constexpr (with_depth)
+        if constexpr (options.slices)
+            return build(lists_, view, inputs.slices, threads, inputs.slices.count());
+        else if constexpr (with_depth)
             return build(lists_, view, inputs.bounds, threads);
         else
-            return build(lists_, view, {}, threads);
+            return build(lists_, view, ZBounds(), threads);
     }
 
     /// Returns both grids of a scene with transparent geometry from one projection, valid until the Binner's
@@ -127,7 +134,8 @@ public:
     }
 
 private:
-    using Lists = GridLists<Id, options.footprint, options.depth_test>;
+    using Lists = std::conditional_t<options.slices, ClusterLists<Id, options.footprint, options.depth_test>,
+                                     GridLists<Id, options.footprint, options.depth_test>>;
     struct Nothing {};
 
     template <class LightRange>
@@ -141,14 +149,14 @@ private:
         return std::nullopt;
     }
 
-    template <class Threads>
-    Result<LightGrid<Id>> build(Lists& lists, const View& view, const ZBounds& bounds,
-                                const Threads& threads) {
-        if (const auto error = lists.build(isa_, view, footprints_, bounds, scratch_, threads)) return *error;
+    template <class Depths, class Threads>
+    Result<LightGrid<Id>> build(Lists& lists, const View& view, const Depths& depths, const Threads& threads,
+                                int slices = 1) {
+        if (const auto error = lists.build(isa_, view, footprints_, depths, scratch_, threads)) return *error;
         const auto all = static_cast<std::uint32_t>(footprints_.lights());
         const LightCounts counts = {all, footprints_.rejected(),
                                     all - footprints_.rejected() - footprints_.visible()};
-        return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), counts);
+        return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), counts, slices);
     }
 
     void swap(Binner& other) noexcept {
@@ -161,7 +169,7 @@ private:
 
     Isa isa_ = Isa::scalar;
     std::vector<detail::Scratch> scratch_;  ///< one a worker
-    Footprints<options.footprint, with_depth> footprints_;
+    Footprints<options.footprint, with_depth || options.slices> footprints_;
     Lists lists_;
     std::conditional_t<with_depth, Lists, Nothing> transparent_;
 };

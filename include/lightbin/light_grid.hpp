@@ -43,24 +43,27 @@ struct LightCounts {
 template <class Id> class LightGrid {
 public:
     LightGrid(int tiles_x, int tiles_y, std::span<const ListRange> ranges, std::span<const Id> ids,
-              const LightCounts& counts = {})
-        : ranges_(ranges), ids_(ids), tiles_x_(tiles_x), tiles_y_(tiles_y), counts_(counts) {}
+              const LightCounts& counts = {}, int slices = 1)
+        : ranges_(ranges), ids_(ids), tiles_x_(tiles_x), tiles_y_(tiles_y), slices_(slices), counts_(counts) {}
 
     int tiles_x() const { return tiles_x_; }
     int tiles_y() const { return tiles_y_; }
+    int slices() const { return slices_; }  ///< 1 without
 
-    /// The parts of ids() that are the tiles' lists: tiles_x() * tiles_y() of them, row-major. Offsets ascend and leave
-    /// no gap.
+    /// The parts of ids() that are the tiles' lists: tiles_x() * tiles_y() of them, row-major; of each slice, one slice
+    /// after another. Offsets ascend and leave no gap.
     std::span<const ListRange> ranges() const { return ranges_; }
 
     /// The light index list. A light's id is its position in the caller's array; ids ascend within a tile.
     std::span<const Id> ids() const { return ids_; }
 
-    /// Returns the ids of the lights of tile (x, y), 0 <= x < tiles_x(), 0 <= y < tiles_y().
-    std::span<const Id> lights_in(int x, int y) const {
-        LIGHTBIN_ASSERT(x >= 0 && x < tiles_x_ && y >= 0 && y < tiles_y_);
-        const ListRange range = ranges_[static_cast<std::size_t>(y) * static_cast<std::size_t>(tiles_x_) +
-                                        static_cast<std::size_t>(x)];
+    /// Returns the ids of the lights of tile (x, y), 0 <= x < tiles_x(), 0 <= y < tiles_y(), in a slice.
+    std::span<const Id> lights_in(int x, int y, int slice = 0) const {
+        LIGHTBIN_ASSERT(x >= 0 && x < tiles_x_ && y >= 0 && y < tiles_y_ && slice >= 0 && slice < slices_);
+        const std::size_t row = static_cast<std::size_t>(slice) * static_cast<std::size_t>(tiles_y_) +
+                                static_cast<std::size_t>(y);
+        const ListRange range =
+            ranges_[row * static_cast<std::size_t>(tiles_x_) + static_cast<std::size_t>(x)];
         return ids_.subspan(range.offset, range.count);
     }
 
@@ -75,13 +78,14 @@ public:
         if (ids.size() < ids_.size()) return Error{ErrorCode::id_buffer_too_small, ids_.size(), ids.size()};
         std::ranges::copy(ranges_, ranges.begin());
         std::ranges::copy(ids_, ids.begin());
-        return LightGrid(tiles_x_, tiles_y_, ranges.first(ranges_.size()), ids.first(ids_.size()), counts_);
+        return LightGrid(tiles_x_, tiles_y_, ranges.first(ranges_.size()), ids.first(ids_.size()), counts_,
+                         slices_);
     }
 
 private:
     std::span<const ListRange> ranges_;
     std::span<const Id> ids_;
-    int tiles_x_, tiles_y_;
+    int tiles_x_, tiles_y_, slices_;
     LightCounts counts_;
 };
 

@@ -37,7 +37,8 @@ constexpr const char* to_string(DepthTest test) {
 struct Options {
     IdWidth ids = IdWidth::u32;  ///< u16 or u32
     Footprint footprint = Footprint::rectangle;
-    DepthTest depth_test = DepthTest::none;
+    DepthTest depth_test = DepthTest::none;  ///< with slices none or box, of the cells in each slice
+    bool slices = false;                     ///< lists for each tile in each slice of depth: clusters
     /// Use no wider instructions than these, even where the machine has them. The result is the same.
     Isa isa = compiled_isa;
 };

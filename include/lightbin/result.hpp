@@ -45,6 +45,10 @@ enum class ErrorCode : std::uint8_t {
     samples_out_of_range,
     row_pitch_too_small,
     no_transparent_max,
+    // slices
+    no_slices,
+    slices_do_not_ascend,
+    too_many_cells,
     // encodings and shader text
     ids_too_narrow,
     list_buffer_too_small,
@@ -118,6 +122,13 @@ constexpr const char* to_string(ErrorCode code) {
     case ErrorCode::no_transparent_max:
         return "the Z bounds leave out the background, before which transparent geometry is seen too: have "
                "reduce_depth() write ZBoundsBuffers::transparent_max, or count the background";
+    case ErrorCode::no_slices:
+        return "there must be at least 1 slice, not {given}";
+    case ErrorCode::slices_do_not_ascend:
+        return "the boundaries of slices must be finite and ascend, and boundary {needed} does not";
+    case ErrorCode::too_many_cells:
+        return "tiles times slices are {needed} cells, and 32-bit numbers reach {available}: use larger tiles or fewer "
+               "slices";
     case ErrorCode::ids_too_narrow:
         return "the lists' format numbers {available} lights and {needed} are needed: use wider ids, or a "
                "larger ListFormat::max_lights";

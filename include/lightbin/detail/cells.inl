@@ -47,7 +47,7 @@ LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, u
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
     const unsigned rows = (std::min)(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
     const unsigned columns = (std::min)(8u, static_cast<unsigned>(width) - 8 * x);
-    constexpr float absent[] = {-infinity, infinity, infinity, -infinity};
+    const float absent[] = {job.slab[0], job.slab[1], infinity, -infinity};
     std::uint64_t lit = 0;
     for (unsigned row = 0; row < rows; ++row) {
         float padded[4][8];

@@ -86,6 +86,7 @@ template <class Id> struct BinJob {
     std::span<const FootprintRun> runs;
     std::uint32_t visible;   ///< lights in all runs
     const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one
+    float slab[2];           ///< what takes the place of absent min and max: -inf and +inf, or a slice's depths
     const float* edges[4];   ///< of the tiles, for boxes: low x, high x, low y, high y; see cell_boxes.hpp
     ListRange* tiles;        ///< the table to write, and `slack` tiles more
 

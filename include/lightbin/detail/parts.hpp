@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
@@ -66,6 +67,25 @@ void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
         before += part.area;
         parts[i] = part;
     }
+}
+
+/// Puts the lists of parts side by side in `list`, where the first one is; the others are in `spares`. Their areas are
+/// the numbers of their entries; steps `begin` to `end` have `width` ranges each. Returns the number of all entries.
+template <class Id>
+std::size_t join_parts(const Parallel& parallel, std::span<Part> parts, ListRange* ranges, std::size_t width,
+                       const Buffer<Id>* spares, Id* list) {
+    std::uint64_t entries = 0;
+    for (Part& part : parts) {
+        part.before = entries;
+        entries += part.area;
+    }
+    parallel.run(parts.size() - 1, [&](std::size_t previous) {
+        const Part& part = parts[previous + 1];
+        for (ListRange *range = ranges + width * part.begin, *end = ranges + width * part.end; range < end; ++range)
+            range->offset += static_cast<std::uint32_t>(part.before);
+        std::copy_n(spares[previous + 1].data(), static_cast<std::size_t>(part.area), list + part.before);
+    });
+    return static_cast<std::size_t>(entries);
 }
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

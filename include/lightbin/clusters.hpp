@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+// Stage 3b: footprints in slices -> the light grid of clusters. Each slice is a grid of tiles of its own.
+#pragma once
+
+#include <lightbin/bin.hpp>
+#include <lightbin/detail/buffer.hpp>
+#include <lightbin/detail/costs.hpp>
+#include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/kernels.hpp>
+#include <lightbin/detail/parts.hpp>
+#include <lightbin/detail/scratch.hpp>
+#include <lightbin/light_grid.hpp>
+#include <lightbin/options.hpp>
+#include <lightbin/parallel.hpp>
+#include <lightbin/project.hpp>
+#include <lightbin/result.hpp>
+#include <lightbin/sliced_footprints.hpp>
+#include <lightbin/slices.hpp>
+#include <lightbin/view.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include <lightbin/detail/warnings_off.inl>
+
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
+
+/// A light grid of clusters in memory of its own, kept from call to call.
+template <class Id, Footprint footprint, DepthTest depth_test> class ClusterLists {
+    static_assert(depth_test == DepthTest::none || depth_test == DepthTest::box,
+                  "lightbin: with slices the depth test is none, as lights are in the slices that they meet, or box");
+    static constexpr bool with_boxes = depth_test == DepthTest::box,
+                          worded = detail::with_words<footprint, depth_test>;
+
+public:
+    /// Builds the grid: the tiles of the first slice row by row, then those of the next one. Errors: more than 2^32 - 1
+    /// cells, pairs of a light and a slice, or entries; then there is no grid.
+    template <class Threads>
+    std::optional<Error> build(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
+                               const Slices& slices, std::vector<detail::Scratch>& scratch,
+                               [[maybe_unused]] const Threads& parallel) {
+        cell_count_ = entries_ = 0;  // until there is a grid
+        constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
+        const std::size_t tiles = view.tile_count(), count = static_cast<std::size_t>(slices.count());
+        const std::uint64_t cells = std::uint64_t{tiles} * count;
+        if (cells > most) return Error{ErrorCode::too_many_cells, cells, most};
+        const std::uint64_t pairs = footprints_.cut(view, footprints, slices);
+        if (pairs > most) return Error{ErrorCode::too_many_list_places, pairs, most};
+        if constexpr (with_boxes) edges_.find(detail::camera_of(view));
+        cells_.reserve(cells + Job::slack(static_cast<std::size_t>(view.tiles_x())));
+
+        std::uint64_t capacity = 0;
+        for (std::size_t slice = 0; slice < count; ++slice) {
+            const std::uint64_t area = footprints_.runs()[slice].area;
+            capacity += area;
+            if (area <= detail::surely_listed_area) continue;
+            const std::uint64_t places = detail::list_places(job_of(view, slices, slice));
+            if (places > most) return Error{ErrorCode::too_many_list_places, places, most};
+        }
+        // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.
+        if constexpr (worded)
+            if (capacity > most) {
+                capacity = 0;
+                for (std::size_t slice = 0; slice < count; ++slice)
+                    capacity += detail::scalar::count_entries<footprint, depth_test>(
+                        job_of(view, slices, slice), scratch[0]);
+            }
+        if (capacity > most) return Error{ErrorCode::too_many_entries, capacity, most};
+
+        Id* const list = ids_.reserve(capacity + detail::BandJob<Id>::slack);
+        const auto build_some = [&](std::size_t begin, std::size_t end, Id* out, detail::Scratch& memory) {
+            std::uint32_t at = 0;
+            for (std::size_t slice = begin; slice < end; ++slice) {
+                const Job job = job_of(view, slices, slice);
+                const auto kernel = detail::bin_kernel<footprint, depth_test, Id>(
+                    isa, view, job.visible, footprints_.runs()[slice].area);
+                const unsigned rows = static_cast<unsigned>(view.tiles_y());
+                at += static_cast<std::uint32_t>(kernel(job, memory, {0, rows, out + at, at}));
+            }
+            return std::uint64_t{at};
+        };
+        cell_count_ = static_cast<std::size_t>(cells);
+        shared_ = false;
+        if constexpr (!std::is_same_v<Threads, Serial>) {
+            const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), count);
+            shared_ = parts > 1 &&
+                      parallel.pays_off(detail::supertile_ns(isa, worded, static_cast<double>(pairs),
+                                                             static_cast<double>(capacity)));
+            if (shared_) {
+                if (scratch.size() < parts) scratch.resize(parts);
+                if (spares_.size() < parts) spares_.resize(parts);
+                const std::span<detail::Part> shares = make_parts(parts, tiles, capacity);
+                parallel.run(parts, [&](std::size_t i) {
+                    detail::Part& part = shares[i];
+                    Id* const out = i == 0 ? list : spares_[i].reserve(part.area + detail::BandJob<Id>::slack);
+                    part.area = build_some(part.begin, part.end, out, scratch[i]);
+                });
+                entries_ = detail::join_parts(parallel, shares, cells_.data(), tiles, spares_.data(), list);
+                return std::nullopt;
+            }
+        }
+        entries_ = static_cast<std::size_t>(build_some(0, count, list, scratch[0]));
+        return std::nullopt;
+    }
+
+    std::span<const ListRange> tiles() const { return {cells_.data(), cell_count_}; }
+    std::span<const Id> indices() const { return {ids_.data(), entries_}; }
+
+    /// Whether the last grid was built on several threads.
+    bool shared() const { return shared_; }
+
+private:
+    using Job = detail::BinJob<Id>;
+
+    /// A slice as a grid of its own.
+    Job job_of(const View& view, const Slices& slices, std::size_t slice) {
+        const detail::FootprintRun& run = footprints_.runs()[slice].run;
+        const std::span<const float> boundaries = slices.boundaries();
+        Job job = {.camera = &detail::camera_of(view),
+                   .lights = footprints_.arrays(),
+                   .runs = {&run, 1},
+                   .visible = run.end - run.begin,
+                   .bounds = {},
+                   .slab = {slice == 0 ? -detail::infinity : boundaries[slice - 1],
+                            slice == boundaries.size() ? detail::infinity : boundaries[slice]},
+                   .edges = {},
+                   .tiles = cells_.data() + slice * view.tile_count()};
+        if constexpr (with_boxes) edges_.give(job.edges);
+        return job;
+    }
+
+    /// Returns parts of whole slices with about equal work.
+    std::span<detail::Part> make_parts(std::size_t count, std::size_t tiles, std::uint64_t work) {
+        detail::Part* const parts = parts_.reserve(count);
+        const std::span<const detail::SliceRun> runs = footprints_.runs();
+        work += std::uint64_t{tiles} * runs.size();
+        std::uint64_t done = 0;
+        unsigned slice = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            parts[i] = {.begin = slice, .end = slice, .before = 0, .area = 0, .spare_row = 0, .spare_area = 0};
+            const std::size_t last = runs.size() - (count - 1 - i);  // leave a slice for each later part
+            while (slice < last && (slice == parts[i].begin || i + 1 == count || done < work / count * (i + 1))) {
+                parts[i].area += runs[slice].area;
+                done += runs[slice].area + tiles;
+                ++slice;
+            }
+            parts[i].end = slice;
+        }
+        return {parts, count};
+    }
+
+    SlicedFootprints<footprint> footprints_;
+    detail::TileEdges edges_;
+    detail::Buffer<detail::Part> parts_;
+    std::vector<detail::Buffer<Id>> spares_;  ///< one a part: its list
+    detail::Buffer<ListRange> cells_;
+    detail::Buffer<Id> ids_;
+    std::size_t cell_count_ = 0, entries_ = 0;
+    bool shared_ = false;
+};
+
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+
+#include <lightbin/detail/warnings_on.inl>

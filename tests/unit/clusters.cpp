@@ -1,0 +1,157 @@
+// Clusters against the tile lists of each slice by itself, and against what others publish of their own.
+#include "scene.hpp"
+
+#include <glm/ext/matrix_transform.hpp>
+
+#include <limits>
+
+using namespace lightbin;
+
+namespace {
+
+constexpr float infinite = std::numeric_limits<float>::infinity();
+
+/// The lists of a slice as a Binner of tiles makes them: of the lights whose depths meet it, with the slice as Z bounds.
+template <Options options>
+std::vector<std::vector<std::uint32_t>> lists_of_slice(const View& view, const std::vector<glm::vec4>& lights, float begin,
+                                                       float end) {
+    std::vector<glm::vec4> there;
+    std::vector<std::uint32_t> ids;
+    for (std::uint32_t i = 0; i < lights.size(); ++i) {
+        const float z = -lights[i].z;
+        if (!(z + lights[i].w < begin || end < z - lights[i].w)) {
+            there.push_back(lights[i]);
+            ids.push_back(i);
+        }
+    }
+    const std::vector<float> min(view.tile_count(), begin), max(view.tile_count(), end);
+    constexpr Options of_tiles = {.footprint = options.footprint, .depth_test = options.depth_test};
+    Binner<of_tiles> binner;
+    auto lists = test::to_lists(*binner.bin(view, there, inputs_for<of_tiles>({.min = min, .max = max})));
+    for (auto& list : lists)
+        for (std::uint32_t& id : list)
+            id = ids[id];
+    return lists;
+}
+
+template <Options options>
+void compare(const View& view, const std::vector<glm::vec4>& lights, const Slices& slices) {
+    Binner<options> binner;
+    const auto grid = binner.bin(view, lights, {.slices = slices});
+    REQUIRE(grid);
+    REQUIRE(grid->slices() == slices.count());
+    const auto lists = test::to_lists(*grid);
+    REQUIRE(lists.size() == view.tile_count() * static_cast<std::size_t>(slices.count()));
+    for (int slice = 0; slice < slices.count(); ++slice) {
+        const auto at = [&](int i) { return slices.boundaries()[static_cast<std::size_t>(i)]; };
+        const float begin = slice == 0 ? -infinite : at(slice - 1),
+                    end = slice + 1 == slices.count() ? infinite : at(slice);
+        const auto expected = lists_of_slice<options>(view, lights, begin, end);
+        const auto first = lists.begin() + static_cast<std::ptrdiff_t>(view.tile_count()) * slice;
+        CHECK((std::equal(expected.begin(), expected.end(), first)));
+    }
+}
+
+template <Options options> void compare_all() {
+    const auto lights = test::random_lights(1500, 31);
+    for (const int tile : {32, 64, 200}) {
+        const View view = test::view({800, 600}, tile);
+        compare<options>(view, lights, *Slices::exponential(24, 5, 60));
+        compare<options>(view, lights, *Slices::linear(7, -3, 40));
+        compare<options>(view, lights, *Slices::from_boundaries({}));
+        compare<options>(view, lights, *Slices::from_boundaries(std::vector<float>{-2, 1e-30f, 10, 1e30f}));
+    }
+    compare<options>(test::view({64, 64}, 64), {}, *Slices::linear(3, 0, 10));
+    compare<options>(test::view({0, 0}, 64), lights, *Slices::linear(3, 0, 10));
+}
+
+}  // namespace
+
+TEST_CASE("a slice of clusters holds what tile lists of the slice alone do") {
+    compare_all<Options{.slices = true}>();
+    compare_all<Options{.depth_test = DepthTest::box, .slices = true}>();
+    compare_all<Options{.footprint = Footprint::silhouette, .slices = true}>();
+    compare_all<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slices = true}>();
+}
+
+TEST_CASE("slices of exponential and linear depth end where they should") {
+    const Slices law = *Slices::exponential(16, 5, 100);
+    CHECK(law.count() == 16);
+    CHECK(law.boundaries()[0] == 5);
+    for (std::size_t i = 1; i < 15; ++i)
+        CHECK(law.boundaries()[i] / law.boundaries()[i - 1] == doctest::Approx(std::pow(20.0, 1 / 15.0)));
+    CHECK(100 / law.boundaries()[14] == doctest::Approx(std::pow(20.0, 1 / 15.0)));
+    const Slices even = *Slices::linear(4, 2, 10);
+    CHECK(std::vector<float>(even.boundaries().begin(), even.boundaries().end()) == std::vector<float>{4, 6, 8});
+    CHECK(Slices::linear(1, 5, 5)->boundaries().empty());
+}
+
+TEST_CASE("a depth is in the slice between its boundaries") {
+    for (const Slices& slices : {*Slices::exponential(24, 0.5f, 2500), *Slices::linear(100, -20, 1000)}) {
+        CHECK(slices.slice_at(-infinite) == 0);
+        CHECK(slices.slice_at(infinite) == slices.count() - 1);
+        for (int i = 1; i < slices.count(); ++i) {
+            const float boundary = slices.boundaries()[static_cast<std::size_t>(i - 1)];
+            CHECK(slices.slice_at(boundary) == i);
+            CHECK(slices.slice_at(std::nextafter(boundary, -infinite)) == i - 1);
+        }
+    }
+}
+
+TEST_CASE("slices that are none, or do not ascend, are refused by name") {
+    const auto code = [](const Result<Slices>& slices) { return slices.error().code; };
+    CHECK(code(Slices::linear(0, 1, 2)) == ErrorCode::no_slices);
+    CHECK(Slices::exponential(-3, 1, 2).error().message() == "there must be at least 1 slice, not -3");
+    CHECK(code(Slices::linear(2, 2, 1)) == ErrorCode::slices_do_not_ascend);
+    CHECK(code(Slices::linear(3, 0, infinite)) == ErrorCode::slices_do_not_ascend);
+    CHECK(code(Slices::linear(1000, 1, 1.00001f)) == ErrorCode::slices_do_not_ascend);  // more than there are floats
+    const float nan = std::nanf("");
+    for (const float bad : {0.0f, -1.0f, nan, infinite, 7.0f})
+        CHECK(code(Slices::exponential(2, bad, 7)) == ErrorCode::slices_do_not_ascend);
+    CHECK(code(Slices::exponential(5, 1, nan)) == ErrorCode::slices_do_not_ascend);
+    CHECK(code(Slices::from_boundaries(std::vector<float>{1, nan})) == ErrorCode::slices_do_not_ascend);
+    const auto twice = Slices::from_boundaries(std::vector<float>{1, 3, 3});
+    CHECK(twice.error().needed == 2);
+}
+
+TEST_CASE("more cells than 32 bits number are refused") {
+    const View view = test::view({16384, 16384}, 1);
+    Binner<Options{.slices = true}> binner;
+    const auto grid = binner.bin(view, std::vector<Sphere>(), {.slices = *Slices::linear(16, 0, 1)});
+    REQUIRE_FALSE(grid);
+    CHECK(grid.error().code == ErrorCode::too_many_cells);
+    CHECK(grid.error().needed == std::uint64_t{1} << 32);
+}
+
+// Filament's own test: 1280 x 640, 90 degrees across, near 0.1, far 100.
+TEST_CASE("two lights before one another are each in some clusters, once") {
+    const View view = test::view({1280, 640}, 64);
+    const std::vector<Sphere> lights = {{0, 0, -5, 1}, {0, 0, -3, 1}};
+    Binner<Options{.depth_test = DepthTest::box, .slices = true}> binner;
+    const auto grid = binner.bin(view, lights, {.slices = *Slices::exponential(16, 5, 100)});
+    REQUIRE(grid);
+    std::size_t cells[2] = {};
+    for (const auto& list : test::to_lists(*grid))
+        for (std::uint32_t id : {0u, 1u}) {
+            const auto times = std::count(list.begin(), list.end(), id);
+            CHECK(times <= 1);
+            cells[id] += times == 1;
+        }
+    CHECK(cells[0] > 0);
+    CHECK(cells[1] > 0);
+}
+
+// OloEngine's: 2 x 2 tiles and 2 slices, 90 degrees, near 1, far 5.
+TEST_CASE("two small lights in opposite corners are in the first and the last cluster") {
+    const View view = *View::from_projection(glm::perspective(glm::radians(90.0f), 1.0f, 1.0f, 5.0f), {2, 2},
+                                             {.tile_size = 1, .origin = WindowOrigin::upper_left});
+    const std::vector<Sphere> lights = {{-1, 0.5f, -2, 0.1f}, {2, -0.5f, -4, 0.1f}};
+    Binner<Options{.depth_test = DepthTest::box, .slices = true}> binner;
+    const auto grid = binner.bin(view, lights, {.slices = *Slices::linear(2, 1, 5)});
+    REQUIRE(grid);
+    const auto lists = test::to_lists(*grid);
+    for (std::size_t cell = 0; cell < 8; ++cell)
+        CHECK(lists[cell] == (cell == 0   ? std::vector<std::uint32_t>{0}
+                              : cell == 7 ? std::vector<std::uint32_t>{1}
+                                          : std::vector<std::uint32_t>{}));
+}
