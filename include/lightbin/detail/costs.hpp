@@ -25,8 +25,7 @@ inline std::size_t project_parts(std::size_t chunks, std::size_t workers) {
 
 /// Whether rectangles with `area` tiles in all are binned sooner by scattering than by supertiles. A walk over all
 /// supertiles costs as much as scattering some entries a tile; putting a light in their lists, where neither
-/// compress nor scanning does it, as scattering it to 48 tiles; or to 16 where the ids are too many for a core's own
-/// cache, as scattering goes back and forth in them.
+/// compress nor scanning does it, as scattering it to 48 tiles.
 inline bool scatter_is_faster(Isa isa, std::uint64_t tiles, std::uint64_t lights, std::uint64_t area) {
     switch (isa) {
     case Isa::scalar:
@@ -37,7 +36,7 @@ inline bool scatter_is_faster(Isa isa, std::uint64_t tiles, std::uint64_t lights
         return area < 3 * tiles;
     case Isa::sse2:
     case Isa::neon:
-        return area < 6 * tiles + (area < 0x20000 ? 48 : 16) * lights;
+        return area < 6 * tiles + 48 * lights;
     }
     return true;
 }
