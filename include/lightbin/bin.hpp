@@ -78,7 +78,8 @@ public:
                    .bounds = {},
                    .slab = {-detail::infinity, detail::infinity},
                    .edges = {},
-                   .tiles = nullptr};
+                   .tiles = nullptr,
+                   .spare_tiles = Job::slack(static_cast<std::size_t>(view.tiles_x()))};
         const std::span<const float> sides[] = {bounds.min, bounds.max, bounds.gap_min, bounds.gap_max};
         for (std::size_t side = 0; side < 4; ++side) {
             if (sides[side].empty()) continue;
@@ -104,7 +105,7 @@ public:
                 capacity = detail::scalar::count_entries<footprint, depth_test>(job, scratch[0]);
         if (capacity > most) return Error{ErrorCode::too_many_entries, capacity, most};
 
-        job.tiles = tiles_.reserve(tiles + Job::slack(static_cast<std::size_t>(view.tiles_x())));
+        job.tiles = tiles_.reserve(tiles + job.spare_tiles);
         tile_count_ = tiles;
         const auto kernel =
             detail::bin_kernel<footprint, depth_test, Id>(isa, view, footprints.visible(), footprints.area());
@@ -115,8 +116,8 @@ public:
             const double lights = footprints.visible(), entries = static_cast<double>(capacity);
             shared_ = parts > 1 && footprints.area() <= most &&
                       parallel.pays_off(kernel == detail::scatter_kernel<Id>(isa)
-                                         ? detail::scatter_ns(lights, entries)
-                                         : detail::supertile_ns(isa, worded, lights, entries));
+                                            ? detail::scatter_ns(lights, entries)
+                                            : detail::supertile_ns(isa, worded, lights, entries));
             if (shared_) {
                 entries_ = build_parts(isa, job, kernel, list, scratch, parallel, parts);
                 return std::nullopt;

@@ -48,9 +48,7 @@ template <DepthTest depth_test, bool slices = false> struct Inputs {
     ZBounds bounds = detail::z_bounds_left_out<depth_test>();
 };
 template <> struct Inputs<DepthTest::none> {};
-template <DepthTest depth_test> struct Inputs<depth_test, true> {
-    const Slices& slices;
-};
+template <DepthTest depth_test> struct Inputs<depth_test, true> { const Slices& slices; };
 
 /// Returns the inputs of a Binner whose options vary, such as with_options() gives them: what they don't need is
 /// left out.
@@ -174,6 +172,6 @@ private:
     std::conditional_t<with_depth, Lists, Nothing> transparent_;
 };
 
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
 
 #include <lightbin/detail/warnings_on.inl>

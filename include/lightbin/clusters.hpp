@@ -33,8 +33,9 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// A light grid of clusters in memory of its own, kept from call to call.
 template <class Id, Footprint footprint, DepthTest depth_test> class ClusterLists {
-    static_assert(depth_test == DepthTest::none || depth_test == DepthTest::box,
-                  "lightbin: with slices the depth test is none, as lights are in the slices that they meet, or box");
+    static_assert(
+        depth_test == DepthTest::none || depth_test == DepthTest::box,
+        "lightbin: with slices the depth test is none, as lights are in the slices that they meet, or box");
     static constexpr bool with_boxes = depth_test == DepthTest::box,
                           worded = detail::with_words<footprint, depth_test>;
 
@@ -53,7 +54,8 @@ public:
         const std::uint64_t pairs = footprints_.cut(view, footprints, slices);
         if (pairs > most) return Error{ErrorCode::too_many_list_places, pairs, most};
         if constexpr (with_boxes) edges_.find(detail::camera_of(view));
-        cells_.reserve(cells + Job::slack(static_cast<std::size_t>(view.tiles_x())));
+        const std::size_t slack = Job::slack(static_cast<std::size_t>(view.tiles_x()));
+        cells_.reserve(cells + slack);
 
         std::uint64_t capacity = 0;
         for (std::size_t slice = 0; slice < count; ++slice) {
@@ -77,7 +79,8 @@ public:
         const auto build_some = [&](std::size_t begin, std::size_t end, Id* out, detail::Scratch& memory) {
             std::uint32_t at = 0;
             for (std::size_t slice = begin; slice < end; ++slice) {
-                const Job job = job_of(view, slices, slice);
+                Job job = job_of(view, slices, slice);
+                if (slice + 1 < end || end == count) job.spare_tiles = slack;  // not another thread's
                 const auto kernel = detail::bin_kernel<footprint, depth_test, Id>(
                     isa, view, job.visible, footprints_.runs()[slice].area);
                 const unsigned rows = static_cast<unsigned>(view.tiles_y());
@@ -89,16 +92,17 @@ public:
         shared_ = false;
         if constexpr (!std::is_same_v<Threads, Serial>) {
             const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), count);
-            shared_ = parts > 1 &&
-                      parallel.pays_off(detail::supertile_ns(isa, worded, static_cast<double>(pairs),
-                                                             static_cast<double>(capacity)));
+            shared_ =
+                parts > 1 && parallel.pays_off(detail::supertile_ns(isa, worded, static_cast<double>(pairs),
+                                                                    static_cast<double>(capacity)));
             if (shared_) {
                 if (scratch.size() < parts) scratch.resize(parts);
                 if (spares_.size() < parts) spares_.resize(parts);
                 const std::span<detail::Part> shares = make_parts(parts, tiles, capacity);
                 parallel.run(parts, [&](std::size_t i) {
                     detail::Part& part = shares[i];
-                    Id* const out = i == 0 ? list : spares_[i].reserve(part.area + detail::BandJob<Id>::slack);
+                    Id* const out =
+                        i == 0 ? list : spares_[i].reserve(part.area + detail::BandJob<Id>::slack);
                     part.area = build_some(part.begin, part.end, out, scratch[i]);
                 });
                 entries_ = detail::join_parts(parallel, shares, cells_.data(), tiles, spares_.data(), list);
@@ -130,7 +134,8 @@ private:
                    .slab = {slice == 0 ? -detail::infinity : boundaries[slice - 1],
                             slice == boundaries.size() ? detail::infinity : boundaries[slice]},
                    .edges = {},
-                   .tiles = cells_.data() + slice * view.tile_count()};
+                   .tiles = cells_.data() + slice * view.tile_count(),
+                   .spare_tiles = 0};
         if constexpr (with_boxes) edges_.give(job.edges);
         return job;
     }
@@ -143,9 +148,11 @@ private:
         std::uint64_t done = 0;
         unsigned slice = 0;
         for (std::size_t i = 0; i < count; ++i) {
-            parts[i] = {.begin = slice, .end = slice, .before = 0, .area = 0, .spare_row = 0, .spare_area = 0};
+            parts[i] = {
+                .begin = slice, .end = slice, .before = 0, .area = 0, .spare_row = 0, .spare_area = 0};
             const std::size_t last = runs.size() - (count - 1 - i);  // leave a slice for each later part
-            while (slice < last && (slice == parts[i].begin || i + 1 == count || done < work / count * (i + 1))) {
+            while (slice < last &&
+                   (slice == parts[i].begin || i + 1 == count || done < work / count * (i + 1))) {
                 parts[i].area += runs[slice].area;
                 done += runs[slice].area + tiles;
                 ++slice;

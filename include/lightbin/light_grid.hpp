@@ -44,7 +44,8 @@ template <class Id> class LightGrid {
 public:
     LightGrid(int tiles_x, int tiles_y, std::span<const ListRange> ranges, std::span<const Id> ids,
               const LightCounts& counts = {}, int slices = 1)
-        : ranges_(ranges), ids_(ids), tiles_x_(tiles_x), tiles_y_(tiles_y), slices_(slices), counts_(counts) {}
+        : ranges_(ranges), ids_(ids), tiles_x_(tiles_x), tiles_y_(tiles_y), slices_(slices), counts_(counts) {
+    }
 
     int tiles_x() const { return tiles_x_; }
     int tiles_y() const { return tiles_y_; }
@@ -106,4 +107,4 @@ template <class Id> ListLengths list_lengths(const LightGrid<Id>& grid) {
     return lengths;
 }
 
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR

@@ -23,6 +23,8 @@
 //        or world_space(yours, view_matrix[, to_sphere])                                       lights.hpp
 //   4. Upload grid->ranges() and grid->ids(), or have grid->copy_to(ranges, ids)               light_grid.hpp
 //      write them to buffers of yours.
+//   For lists at all depths without a depth buffer, clusters: Slices::exponential(24, 5, 200)     slices.hpp
+//      once, a Binner<Options{.slices = true}>, and binner.bin(view, lights, {.slices = slices}).
 //   5. #include <lightbin/shader.hpp>. Put shader_snippet({...})->text in your shader, and bind what its
 //      bindings list. shader.md has it step by step.
 //
@@ -53,6 +55,7 @@
 #include <lightbin/options.hpp>
 #include <lightbin/parallel.hpp>
 #include <lightbin/result.hpp>
+#include <lightbin/slices.hpp>
 #include <lightbin/version.hpp>
 #include <lightbin/view.hpp>
 #include <lightbin/z_bounds.hpp>

@@ -5,6 +5,7 @@
 #include <lightbin/detail/buffer.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/slice_table.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/project.hpp>
 #include <lightbin/slices.hpp>
@@ -38,49 +39,56 @@ public:
     /// pairs of a light and a slice; if 32 bits don't count them, there are no runs.
     std::uint64_t cut(const View& view, const Footprints<footprint, true>& footprints, const Slices& slices) {
         const detail::FootprintArrays& lights = footprints.arrays();
-        detail::SliceRun* const runs = runs_.reserve(static_cast<std::size_t>(slices.count()));
         run_count_ = static_cast<std::size_t>(slices.count());
-        std::fill_n(runs, run_count_, detail::SliceRun{});
+        detail::SliceRun* const runs = runs_.reserve(run_count_ + 1);
+        std::fill_n(runs, run_count_ + 1, detail::SliceRun{});
         Met* const met = met_.reserve(footprints.visible());
-        const auto each = [&](auto visit) {  // visit(place among the lights, in the arrays)
-            std::uint32_t light = 0;
-            for (const detail::FootprintRun& run : footprints.runs())
-                for (std::uint32_t i = run.begin; i < run.end; ++i)
-                    visit(met[light++], i);
-        };
+        table_.set(slices.boundaries());
+        const float z_sign = detail::camera_of(view).z_sign;
+
+        // First the steps of the lights' and tiles' numbers from slice to slice.
         std::uint64_t pairs = 0;
-        each([&](Met& light, std::uint32_t i) {
-            light = slices_met(view, slices.boundaries(), detail::load_sphere(lights.spheres + lights.ids[i]));
-            const std::uint64_t area =
-                (lights.x1[i] - lights.x0[i] + std::uint64_t{1}) * (lights.y1[i] - lights.y0[i] + 1u);
-            pairs += light.last - light.first + std::uint64_t{1};
-            for (std::uint32_t slice = light.first; slice <= light.last; ++slice) {
-                ++runs[slice].run.end;
-                runs[slice].area += area;
+        std::uint32_t light = 0;
+        for (const detail::FootprintRun& run : footprints.runs())
+            for (std::uint32_t i = run.begin; i < run.end; ++i) {
+                // Rounding is monotone and boundaries are floats, so rounded depths are on the same side of them, or on one.
+                const Sphere sphere = detail::load_sphere(lights.spheres + lights.ids[i]);
+                const float z = sphere.z * z_sign;
+                const Met here = {table_.before(z - sphere.radius), table_.up_to(z + sphere.radius)};
+                const std::uint64_t area =
+                    (lights.x1[i] - lights.x0[i] + std::uint64_t{1}) * (lights.y1[i] - lights.y0[i] + 1u);
+                met[light++] = here;
+                pairs += here.last - here.first + std::uint64_t{1};
+                ++runs[here.first].run.end;
+                --runs[here.last + 1].run.end;  // sums wrap, and come out right
+                runs[here.first].area += area;
+                runs[here.last + 1].area -= area;
             }
-        });
         if (pairs > 0xffffffff) {
             run_count_ = 0;
             return pairs;
         }
-        std::uint32_t place = 0;
-        for (std::size_t slice = 0; slice < run_count_; ++slice) {
-            const std::uint32_t count = runs[slice].run.end;
-            runs[slice].run = {place, place};
+        std::uint32_t place = 0, count = 0;
+        std::uint64_t area = 0;
+        for (detail::SliceRun* run = runs; run < runs + run_count_; ++run) {
+            count += run->run.end;
+            area += run->area;
+            *run = {{place, place}, area};
             place += count;
         }
         reserve(lights, pairs);
-        each([&](const Met& light, std::uint32_t i) {
-            for (std::uint32_t slice = light.first; slice <= light.last; ++slice) {
-                const std::uint32_t to = runs[slice].run.end++;
-                arrays_.ids[to] = lights.ids[i];
-                arrays_.x0[to] = lights.x0[i];
-                arrays_.y0[to] = lights.y0[i];
-                arrays_.x1[to] = lights.x1[i];
-                arrays_.y1[to] = lights.y1[i];
-                if constexpr (with_spans) arrays_.span_begin[to] = lights.span_begin[i];
-            }
-        });
+        light = 0;
+        for (const detail::FootprintRun& run : footprints.runs())
+            for (std::uint32_t i = run.begin; i < run.end; ++i, ++light)
+                for (std::uint32_t slice = met[light].first; slice <= met[light].last; ++slice) {
+                    const std::uint32_t to = runs[slice].run.end++;
+                    arrays_.ids[to] = lights.ids[i];
+                    arrays_.x0[to] = lights.x0[i];
+                    arrays_.y0[to] = lights.y0[i];
+                    arrays_.x1[to] = lights.x1[i];
+                    arrays_.y1[to] = lights.y1[i];
+                    if constexpr (with_spans) arrays_.span_begin[to] = lights.span_begin[i];
+                }
         return pairs;
     }
 
@@ -93,14 +101,6 @@ private:
         std::uint32_t first, last;
     };
 
-    /// Rounding is monotone and boundaries are floats, so rounded depths are on the same side of them, or on one.
-    static Met slices_met(const View& view, std::span<const float> boundaries, const Sphere& light) {
-        const float z = light.z * detail::camera_of(view).z_sign;
-        const auto begin = boundaries.begin(), end = boundaries.end();
-        return {static_cast<std::uint32_t>(std::lower_bound(begin, end, z - light.radius) - begin),
-                static_cast<std::uint32_t>(std::upper_bound(begin, end, z + light.radius) - begin)};
-    }
-
     void reserve(const detail::FootprintArrays& lights, std::uint64_t pairs) {
         const std::uint64_t capacity = pairs + detail::FootprintArrays::padding;
         arrays_ = lights;
@@ -112,6 +112,7 @@ private:
         if constexpr (with_spans) arrays_.span_begin = span_begin_.reserve(capacity);
     }
 
+    detail::SliceTable table_;
     detail::Buffer<Met> met_;
     detail::Buffer<detail::SliceRun> runs_;
     detail::Buffer<std::uint32_t> ids_, span_begin_;

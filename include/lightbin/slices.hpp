@@ -22,25 +22,25 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR {
 class Slices {
 public:
     /// Returns slices of which the first ends at depth `first`, and each of the others is as many times as deep as the
-    /// one before it as make the last one end at `far`; it is open all the same. So cells are about as deep as wide.
+    /// one before it as make the last one end at `last`; it is open all the same. So cells are about as deep as wide.
     ///
-    /// count  from 1 on. Errors: it is less; not 0 < first < far, where there are two slices or more
-    static Result<Slices> exponential(int count, float first, float far) {
-        if (count > 1 && !(0 < first && first < far)) return Error{ErrorCode::slices_do_not_ascend};
-        const double ratio = static_cast<double>(far) / static_cast<double>(first);
+    /// count  from 1 on. Errors: it is less; not 0 < first < last, where there are two slices or more
+    static Result<Slices> exponential(int count, float first, float last) {
+        if (count > 1 && !(0 < first && first < last)) return Error{ErrorCode::slices_do_not_ascend};
+        const double ratio = static_cast<double>(last) / static_cast<double>(first);
         return from_law(count, [=](int i) {
             return static_cast<double>(first) * std::pow(ratio, (i - 1.0) / (count - 1.0));
         });
     }
 
-    /// Returns slices that are equally deep from depth `near` to `far`; the last one is open.
+    /// Returns slices that are equally deep from depth `begin` to `end`; the last one is open.
     ///
-    /// count  from 1 on. Errors: it is less; not near < far, where there are two slices or more
-    static Result<Slices> linear(int count, float near, float far) {
-        if (count > 1 && !(near < far)) return Error{ErrorCode::slices_do_not_ascend};
+    /// count  from 1 on. Errors: it is less; not begin < end, where there are two slices or more
+    static Result<Slices> linear(int count, float begin, float end) {
+        if (count > 1 && !(begin < end)) return Error{ErrorCode::slices_do_not_ascend};
         return from_law(count, [=](int i) {
-            const double begin = static_cast<double>(near), end = static_cast<double>(far);
-            return begin + (end - begin) * i / count;
+            return static_cast<double>(begin) +
+                   (static_cast<double>(end) - static_cast<double>(begin)) * i / count;
         });
     }
 
@@ -49,7 +49,10 @@ public:
         for (std::size_t i = 0; i < boundaries.size(); ++i)
             if (!std::isfinite(boundaries[i]) || (i > 0 && !(boundaries[i - 1] < boundaries[i])))
                 return Error{ErrorCode::slices_do_not_ascend, i};
-        return Slices({boundaries.begin(), boundaries.end()});
+        std::vector<float> own(boundaries.begin(), boundaries.end());
+        for (float& boundary : own)
+            boundary += 0.0f;  // not -0
+        return Slices(std::move(own));
     }
 
     int count() const { return static_cast<int>(boundaries_.size()) + 1; }

@@ -45,6 +45,7 @@ struct Scene {
     View view;
     std::vector<glm::vec4> lights;
     std::vector<float> depth, min, max;
+    Slices slices = *Slices::exponential(9, 1, 50);
 
     Scene(int width, int height, std::size_t light_count)
         : view(make_view(width, height, 32)), lights(random_lights(light_count)),
@@ -68,14 +69,20 @@ std::size_t frame(Binner<options>& binner, Scene& scene, std::vector<ListRange>&
     std::size_t entries = 0;
     const ZBounds bounds = scene.reduce();
     const auto use = [&](const auto& lights) {
-        const auto grid = binner.bin(scene.view, lights, inputs_for<options>(bounds));
+        const auto inputs = [&] {
+            if constexpr (options.slices)
+                return Inputs<options.depth_test, true>{.slices = scene.slices};
+            else
+                return inputs_for<options>(bounds);
+        };
+        const auto grid = binner.bin(scene.view, lights, inputs());
         if (!grid) return;
         entries += grid->ids().size() + list_lengths(*grid).longest;
         if (const auto copy = grid->copy_to(ranges, ids)) entries += copy->ids().size();
     };
     use(scene.lights);
     use(world_space(scene.lights, glm::mat4(1.0f)));
-    if constexpr (options.depth_test != DepthTest::none)
+    if constexpr (options.depth_test != DepthTest::none && !options.slices)
         if (const auto grids = binner.bin_transparency(scene.view, scene.lights, {.bounds = bounds}))
             entries += grids->opaque.ids().size() + grids->transparent.ids().size();
     return entries;
@@ -83,7 +90,7 @@ std::size_t frame(Binner<options>& binner, Scene& scene, std::vector<ListRange>&
 
 template <Options options> void check_options() {
     Scene scene(640, 360, 500), smaller(320, 200, 300);
-    std::vector<ListRange> ranges(scene.view.tile_count());
+    std::vector<ListRange> ranges(scene.view.tile_count() * static_cast<std::size_t>(scene.slices.count()));
     std::vector<typename Binner<options>::Id> ids(500 * ranges.size());
     Binner<options> binner;
 
@@ -105,6 +112,7 @@ TEST_CASE("a warm Binner does not allocate") {
     check_options<Options{.ids = IdWidth::u32, .depth_test = DepthTest::none}>();
     check_options<Options{.ids = IdWidth::u16, .depth_test = DepthTest::interval}>();
     check_options<Options{.ids = IdWidth::u32, .depth_test = DepthTest::interval}>();
+    check_options<Options{.depth_test = DepthTest::box, .slices = true}>();
 }
 
 TEST_CASE("nor does one that shares more of the same work the second time") {

@@ -13,8 +13,8 @@ constexpr float infinite = std::numeric_limits<float>::infinity();
 
 /// The lists of a slice as a Binner of tiles makes them: of the lights whose depths meet it, with the slice as Z bounds.
 template <Options options>
-std::vector<std::vector<std::uint32_t>> lists_of_slice(const View& view, const std::vector<glm::vec4>& lights, float begin,
-                                                       float end) {
+std::vector<std::vector<std::uint32_t>> lists_of_slice(const View& view, const std::vector<glm::vec4>& lights,
+                                                       float begin, float end) {
     std::vector<glm::vec4> there;
     std::vector<std::uint32_t> ids;
     for (std::uint32_t i = 0; i < lights.size(); ++i) {
@@ -82,7 +82,8 @@ TEST_CASE("slices of exponential and linear depth end where they should") {
         CHECK(law.boundaries()[i] / law.boundaries()[i - 1] == doctest::Approx(std::pow(20.0, 1 / 15.0)));
     CHECK(100 / law.boundaries()[14] == doctest::Approx(std::pow(20.0, 1 / 15.0)));
     const Slices even = *Slices::linear(4, 2, 10);
-    CHECK(std::vector<float>(even.boundaries().begin(), even.boundaries().end()) == std::vector<float>{4, 6, 8});
+    CHECK(std::vector<float>(even.boundaries().begin(), even.boundaries().end()) ==
+          std::vector<float>{4, 6, 8});
     CHECK(Slices::linear(1, 5, 5)->boundaries().empty());
 }
 
@@ -104,7 +105,8 @@ TEST_CASE("slices that are none, or do not ascend, are refused by name") {
     CHECK(Slices::exponential(-3, 1, 2).error().message() == "there must be at least 1 slice, not -3");
     CHECK(code(Slices::linear(2, 2, 1)) == ErrorCode::slices_do_not_ascend);
     CHECK(code(Slices::linear(3, 0, infinite)) == ErrorCode::slices_do_not_ascend);
-    CHECK(code(Slices::linear(1000, 1, 1.00001f)) == ErrorCode::slices_do_not_ascend);  // more than there are floats
+    CHECK(code(Slices::linear(1000, 1, 1.00001f)) ==
+          ErrorCode::slices_do_not_ascend);  // more than there are floats
     const float nan = std::nanf("");
     for (const float bad : {0.0f, -1.0f, nan, infinite, 7.0f})
         CHECK(code(Slices::exponential(2, bad, 7)) == ErrorCode::slices_do_not_ascend);

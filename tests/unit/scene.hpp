@@ -78,11 +78,12 @@ using Lists = std::vector<std::vector<std::uint32_t>>;
 
 template <class Id> Lists to_lists(const lightbin::LightGrid<Id>& grid) {
     Lists lists;
-    for (int y = 0; y < grid.tiles_y(); ++y)
-        for (int x = 0; x < grid.tiles_x(); ++x) {
-            const auto ids = grid.lights_in(x, y);
-            lists.emplace_back(ids.begin(), ids.end());
-        }
+    for (int slice = 0; slice < grid.slices(); ++slice)
+        for (int y = 0; y < grid.tiles_y(); ++y)
+            for (int x = 0; x < grid.tiles_x(); ++x) {
+                const auto ids = grid.lights_in(x, y, slice);
+                lists.emplace_back(ids.begin(), ids.end());
+            }
     return lists;
 }
 

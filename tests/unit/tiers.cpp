@@ -126,11 +126,16 @@ template <Options options> class Tier {
 public:
     std::vector<std::uint32_t> bytes(const Input& input, const Parallel& parallel = {}) {
         const ZBounds bounds = {input.min, input.max, input.gap_min, input.gap_max};
+        const auto inputs = [&] {
+            if constexpr (options.slices)
+                return Inputs<options.depth_test, true>{.slices = slices_};
+            else
+                return inputs_for<options>(bounds);
+        };
         const auto bin = [&](const auto& lights, const auto& to_sphere) {
             return input.to_view ? binner_.bin(input.view, world_space(lights, *input.to_view, to_sphere),
-                                               inputs_for<options>(bounds), parallel)
-                                 : binner_.bin(input.view, view_space(lights, to_sphere),
-                                               inputs_for<options>(bounds), parallel);
+                                               inputs(), parallel)
+                                 : binner_.bin(input.view, view_space(lights, to_sphere), inputs(), parallel);
         };
         std::vector<Struct> structs;
         if (input.structs)
@@ -148,6 +153,7 @@ public:
 
 private:
     Binner<options> binner_;
+    Slices slices_ = *Slices::exponential(11, 2, 80);
 };
 
 constexpr Options with(Options options, Isa isa) {
@@ -214,7 +220,8 @@ template <Options options> void compare(std::uint32_t seeds, std::uint32_t first
 }
 
 constexpr Options plain = {}, interval = {.depth_test = DepthTest::interval},
-                  box = {.depth_test = DepthTest::box}, split_box = {.depth_test = DepthTest::split_box};
+                  box = {.depth_test = DepthTest::box}, split_box = {.depth_test = DepthTest::split_box},
+                  clusters = {.slices = true}, box_clusters = {.depth_test = DepthTest::box, .slices = true};
 
 }  // namespace
 
@@ -233,6 +240,9 @@ TEST_CASE("all tiers give the same bytes, on any number of workers") {
     compare<Options{.footprint = Footprint::silhouette}>(100, 6000);
     compare<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>(50, 7000);
     compare<Options{.ids = IdWidth::u16, .depth_test = DepthTest::split_box}>(100, 5000);
+    compare<clusters>(50, 8000);
+    compare<box_clusters>(50, 9000);
+    compare<Options{.ids = IdWidth::u16, .footprint = Footprint::silhouette, .slices = true}>(30, 10000);
 }
 
 TEST_CASE("each tier scatters by its own text, the scalar one without vectors") {
@@ -252,6 +262,8 @@ TEST_CASE("threads write their own parts only") {
     input.gap_max.assign(input.view.tile_count(), 20.0f);
     Tiers<plain>().compare_on_threads(input);
     Tiers<split_box>().compare_on_threads(input);
+    Tiers<clusters>().compare_on_threads(input);
+    Tiers<box_clusters>().compare_on_threads(input);
 }
 
 TEST_CASE("more lights than 16 bits count, and more tiles than 8 bits count") {

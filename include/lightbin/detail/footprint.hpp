@@ -86,9 +86,11 @@ template <class Id> struct BinJob {
     std::span<const FootprintRun> runs;
     std::uint32_t visible;   ///< lights in all runs
     const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one
-    float slab[2];           ///< what takes the place of absent min and max: -inf and +inf, or a slice's depths
-    const float* edges[4];   ///< of the tiles, for boxes: low x, high x, low y, high y; see cell_boxes.hpp
-    ListRange* tiles;        ///< the table to write, and `slack` tiles more
+    float slab[2];  ///< what takes the place of absent min and max: -inf and +inf, or a slice's depths
+    const float* edges[4];  ///< of the tiles, for boxes: low x, high x, low y, high y; see cell_boxes.hpp
+    ListRange* tiles;       ///< the table to write
+    std::size_t
+        spare_tiles;  ///< behind it, that may be written too: slack(), or 0 where they are another thread's
 
     /// Whole vectors of columns are stored, of up to 8 rows.
     static constexpr std::size_t slack(std::size_t width) { return 8 * width + 4; }

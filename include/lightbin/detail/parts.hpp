@@ -81,7 +81,8 @@ std::size_t join_parts(const Parallel& parallel, std::span<Part> parts, ListRang
     }
     parallel.run(parts.size() - 1, [&](std::size_t previous) {
         const Part& part = parts[previous + 1];
-        for (ListRange *range = ranges + width * part.begin, *end = ranges + width * part.end; range < end; ++range)
+        for (ListRange *range = ranges + width * part.begin, *end = ranges + width * part.end; range < end;
+             ++range)
             range->offset += static_cast<std::uint32_t>(part.before);
         std::copy_n(spares[previous + 1].data(), static_cast<std::size_t>(part.area), list + part.before);
     });

@@ -56,7 +56,7 @@ template <class Id, LayOutRows<Id> lay_out_rows>
 std::uint64_t scatter_lights(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands) {
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
     const bool to_the_end = bands.end == static_cast<unsigned>(job.camera->y.tiles);
-    const ListRange* const writable = job.tiles + bands.end * width + (to_the_end ? job.slack(width) : 0);
+    const ListRange* const writable = job.tiles + bands.end * width + (to_the_end ? job.spare_tiles : 0);
     std::uint32_t at = bands.at;
     for (unsigned begin = bands.begin; begin < bands.end; begin += rows_laid_out)
         at = lay_out_rows(job, scratch, begin, (std::min)(begin + rows_laid_out, bands.end), writable, at);
