@@ -80,7 +80,8 @@ public:
             std::uint32_t at = 0;
             for (std::size_t slice = begin; slice < end; ++slice) {
                 Job job = job_of(view, slices, slice);
-                if (slice + 1 < end || end == count) job.spare_tiles = slack;  // not another thread's
+                // What is behind the last of these slices may be another thread's.
+                job.spare_tiles = end == count ? slack : (std::min)(slack, (end - slice - 1) * tiles);
                 const auto kernel = detail::bin_kernel<footprint, depth_test, Id>(
                     isa, view, job.visible, footprints_.runs()[slice].area);
                 const unsigned rows = static_cast<unsigned>(view.tiles_y());

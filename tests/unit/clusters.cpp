@@ -9,7 +9,7 @@ using namespace lightbin;
 
 namespace {
 
-constexpr float infinite = std::numeric_limits<float>::infinity();
+constexpr float endless = std::numeric_limits<float>::infinity();
 
 /// The lists of a slice as a Binner of tiles makes them: of the lights whose depths meet it, with the slice as Z bounds.
 template <Options options>
@@ -44,8 +44,8 @@ void compare(const View& view, const std::vector<glm::vec4>& lights, const Slice
     REQUIRE(lists.size() == view.tile_count() * static_cast<std::size_t>(slices.count()));
     for (int slice = 0; slice < slices.count(); ++slice) {
         const auto at = [&](int i) { return slices.boundaries()[static_cast<std::size_t>(i)]; };
-        const float begin = slice == 0 ? -infinite : at(slice - 1),
-                    end = slice + 1 == slices.count() ? infinite : at(slice);
+        const float begin = slice == 0 ? -endless : at(slice - 1),
+                    end = slice + 1 == slices.count() ? endless : at(slice);
         const auto expected = lists_of_slice<options>(view, lights, begin, end);
         const auto first = lists.begin() + static_cast<std::ptrdiff_t>(view.tile_count()) * slice;
         CHECK((std::equal(expected.begin(), expected.end(), first)));
@@ -89,12 +89,12 @@ TEST_CASE("slices of exponential and linear depth end where they should") {
 
 TEST_CASE("a depth is in the slice between its boundaries") {
     for (const Slices& slices : {*Slices::exponential(24, 0.5f, 2500), *Slices::linear(100, -20, 1000)}) {
-        CHECK(slices.slice_at(-infinite) == 0);
-        CHECK(slices.slice_at(infinite) == slices.count() - 1);
+        CHECK(slices.slice_at(-endless) == 0);
+        CHECK(slices.slice_at(endless) == slices.count() - 1);
         for (int i = 1; i < slices.count(); ++i) {
             const float boundary = slices.boundaries()[static_cast<std::size_t>(i - 1)];
             CHECK(slices.slice_at(boundary) == i);
-            CHECK(slices.slice_at(std::nextafter(boundary, -infinite)) == i - 1);
+            CHECK(slices.slice_at(std::nextafter(boundary, -endless)) == i - 1);
         }
     }
 }
@@ -104,11 +104,11 @@ TEST_CASE("slices that are none, or do not ascend, are refused by name") {
     CHECK(code(Slices::linear(0, 1, 2)) == ErrorCode::no_slices);
     CHECK(Slices::exponential(-3, 1, 2).error().message() == "there must be at least 1 slice, not -3");
     CHECK(code(Slices::linear(2, 2, 1)) == ErrorCode::slices_do_not_ascend);
-    CHECK(code(Slices::linear(3, 0, infinite)) == ErrorCode::slices_do_not_ascend);
+    CHECK(code(Slices::linear(3, 0, endless)) == ErrorCode::slices_do_not_ascend);
     CHECK(code(Slices::linear(1000, 1, 1.00001f)) ==
           ErrorCode::slices_do_not_ascend);  // more than there are floats
     const float nan = std::nanf("");
-    for (const float bad : {0.0f, -1.0f, nan, infinite, 7.0f})
+    for (const float bad : {0.0f, -1.0f, nan, endless, 7.0f})
         CHECK(code(Slices::exponential(2, bad, 7)) == ErrorCode::slices_do_not_ascend);
     CHECK(code(Slices::exponential(5, 1, nan)) == ErrorCode::slices_do_not_ascend);
     CHECK(code(Slices::from_boundaries(std::vector<float>{1, nan})) == ErrorCode::slices_do_not_ascend);
