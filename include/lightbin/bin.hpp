@@ -170,8 +170,9 @@ private:
                 Id* out = i == 0 ? list : spares_[i].reserve(parts[i].area + slack);
                 parts[i].area = kernel(job, scratch[i], {parts[i].begin, parts[i].end, out, 0});
             });
-            return detail::join_parts(parallel, std::span(parts, count), job.tiles,
-                                      static_cast<std::size_t>(job.camera->x.tiles), spares_.data(), list);
+            return static_cast<std::size_t>(detail::join_parts(parallel, std::span(parts, count), job.tiles,
+                                                               static_cast<std::size_t>(job.camera->x.tiles),
+                                                               spares_.data(), list));
         }
     }
 

@@ -106,7 +106,8 @@ public:
                         i == 0 ? list : spares_[i].reserve(part.area + detail::BandJob<Id>::slack);
                     part.area = build_some(part.begin, part.end, out, scratch[i]);
                 });
-                entries_ = detail::join_parts(parallel, shares, cells_.data(), tiles, spares_.data(), list);
+                entries_ = static_cast<std::size_t>(
+                    detail::join_parts(parallel, shares, cells_.data(), tiles, spares_.data(), list));
                 return std::nullopt;
             }
         }

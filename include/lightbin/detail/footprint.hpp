@@ -50,7 +50,7 @@ struct FootprintArrays {
     std::uint32_t* span_begin;
     const RowSpan* spans;
 
-    /// With silhouettes or a depth test, by id, of all lights: view space as the caller has it. To be read with
+    /// With silhouettes or a depth test, by id, of all lights here: view space as the caller has it. To be read with
     /// load_sphere.
     const Sphere* spheres;
 

@@ -45,8 +45,9 @@ LIGHTBIN_TARGET LIGHTBIN_INLINE void move_spheres(const MoveLanes& move, Floats&
                                                   Floats& radius) {
     const Floats dx = x - move.origin[0], dy = y - move.origin[1], dz = z - move.origin[2];
     const Floats away = abs(dx) + abs(dy) + abs(dz);
-    const auto plain = both(less_equal(away, move.most),
-                            both(less_equal(all(0x1p-40f), radius), less_equal(radius, all(0x1p40f))));
+    const auto plain =
+        both(less_equal(away, move.most), both(less_equal(all(FloatMove::least_radius), radius),
+                                               less_equal(radius, all(FloatMove::most_radius))));
     const Floats given[] = {x, y, z, radius};
     x = moved_centre(move, 0, dx, dy, dz);
     y = moved_centre(move, 1, dx, dy, dz);
@@ -78,7 +79,8 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void move_eight(const WorldToView& to_v
     int plain = 1;
     for (int i = 0; i < 8; ++i) {
         away[i] = std::fabs(from_origin[0][i]) + std::fabs(from_origin[1][i]) + std::fabs(from_origin[2][i]);
-        plain &= (away[i] <= move.most) & (radius[i] >= 0x1p-40f) & (radius[i] <= 0x1p40f);
+        plain &= (away[i] <= move.most) & (radius[i] >= FloatMove::least_radius) &
+                 (radius[i] <= FloatMove::most_radius);
     }
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
@@ -102,7 +104,8 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void move_eight(const WorldToView& to_v
     if (plain == 0)
         for (int i = 0; i < 8; ++i)
             if (const Sphere before = load_sphere(given + i);
-                !(away[i] <= move.most && before.radius >= 0x1p-40f && before.radius <= 0x1p40f))
+                !(away[i] <= move.most && before.radius >= FloatMove::least_radius &&
+                  before.radius <= FloatMove::most_radius))
                 after[i] = to_view(before);
     std::copy_n(after, 8, moved);
 }
@@ -111,9 +114,9 @@ LIGHTBIN_TARGET inline void move_in_eights(const WorldToView& to_view, const Sph
     for (; count >= 8; count -= 8, given += 8, moved += 8)
         move_eight(to_view, given, moved);
     if (count == 0) return;
-    Sphere rest[8] = {};
-    for (std::uint32_t i = 0; i < count; ++i)
-        rest[i] = load_sphere(given + i);
+    Sphere rest[8];
+    for (std::uint32_t i = 0; i < 8; ++i)
+        rest[i] = load_sphere(given + (i < count ? i : 0));
     move_eight(to_view, rest, rest);
     std::copy_n(rest, count, moved);
 }

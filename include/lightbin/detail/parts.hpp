@@ -72,8 +72,8 @@ void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
 /// Puts the lists of parts side by side in `list`, where the first one is; the others are in `spares`. Their areas are
 /// the numbers of their entries; steps `begin` to `end` have `width` ranges each. Returns the number of all entries.
 template <class Id>
-std::size_t join_parts(const Parallel& parallel, std::span<Part> parts, ListRange* ranges, std::size_t width,
-                       const Buffer<Id>* spares, Id* list) {
+std::uint64_t join_parts(const Parallel& parallel, std::span<Part> parts, ListRange* ranges,
+                         std::size_t width, const Buffer<Id>* spares, Id* list) {
     std::uint64_t entries = 0;
     for (Part& part : parts) {
         part.before = entries;
@@ -86,7 +86,7 @@ std::size_t join_parts(const Parallel& parallel, std::span<Part> parts, ListRang
             range->offset += static_cast<std::uint32_t>(part.before);
         std::copy_n(spares[previous + 1].data(), static_cast<std::size_t>(part.area), list + part.before);
     });
-    return static_cast<std::size_t>(entries);
+    return entries;
 }
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

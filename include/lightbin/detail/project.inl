@@ -158,6 +158,13 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline bool eight_out_of_view(const Camera& ca
     return out != 0;
 }
 
+/// Copies and moves lights to `to`, for the scalar tier.
+inline void take(const LightSource& source, std::uint32_t first, std::uint32_t count, const Sphere* given,
+                 Sphere* to) {
+    if (source.copy != nullptr) source.copy(source.lights, first, count, to);
+    if (source.to_view != nullptr) move_in_eights(*source.to_view, given, count, to);
+}
+
 /// Appends the footprints of those of the lights first..first + count - 1 that are in view.
 ///
 /// In float where the error bound of tangent_slopes holds: no over- or underflow (sizes of 2^-40 to 2^40) and
@@ -178,14 +185,17 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
         Sphere* const own = source.kept != nullptr ? source.kept + first : chunk;
         const Sphere* const given = source.spheres != nullptr ? source.spheres + first : own;
         const Sphere* const spheres = source.to_view != nullptr ? own : given;
-        if (source.copy != nullptr) source.copy(source.lights, first, here, own);
         if constexpr (lanes == 1) {
-            if (source.to_view != nullptr) move_in_eights(*source.to_view, given, here, own);
-            if (here >= 8 && eight_out_of_view(camera, spheres)) {
+            const std::uint32_t eight = here < 8 ? here : 8;
+            take(source, first, eight, given, own);
+            if (eight == 8 && eight_out_of_view(camera, spheres)) {
                 here = most = 8;
                 continue;
             }
+            take(source, first + eight, here - eight, given + eight, own + eight);
             if (most < usual) most *= 2;  // ask less often where the answer is no
+        } else if (source.copy != nullptr) {
+            source.copy(source.lights, first, here, own);
         }
         std::uint32_t careful_count = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {

@@ -10,6 +10,7 @@
 
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/matrix.hpp>
+#include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/sphere.hpp>
 
@@ -30,6 +31,8 @@ struct FloatMove {
     float least_error;    ///< and of at_origin
     /// As far from the origin it serves; less than 0 where doubles must.
     float most = -1;
+    /// And so it does for radii from one to the other.
+    static constexpr float least_radius = 0x1p-40f, most_radius = 0x1p40f;
 };
 
 class WorldToView {
@@ -54,8 +57,9 @@ public:
     bool affine() const { return affine_; }
     const FloatMove& floats() const { return floats_; }
 
-    /// The image of any sphere, in doubles. Bad input stays bad.
-    Sphere operator()(const Sphere& light) const {
+    /// The image of any sphere, in doubles. Bad input stays bad. Not inline: within a tier's kernel, compilers fuse its
+    /// products and sums by that tier's instructions.
+    LIGHTBIN_NOINLINE Sphere operator()(const Sphere& light) const {
         if (!std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) ||
             !(light.radius >= 0))
             return light;
@@ -77,7 +81,8 @@ public:
     }
 
 private:
-    /// Only for maps near to a rotation and a scale: others can take p - o far beyond the image, and its rounding too.
+    /// Only for maps near to a rotation and a scale: others can take p - o far beyond the image, and its rounding too. So
+    /// a column is no shorter than 2^-26, and an entry of it that is flushed to zero is no more than 2^-100 of that.
     void find_floats() {
         double inverse[3][3], det = 0, norm2 = 0, inverse_norm2 = 0, longest2 = 0;
         for (int c = 0; c < 3; ++c)
@@ -128,7 +133,7 @@ private:
     double m_[4][4];
     double stretch_;  ///< the most that it makes a length longer
     bool affine_;
-    FloatMove floats_;
+    FloatMove floats_ = {};
 };
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
