@@ -28,7 +28,7 @@ list() {
     mutant world detail/move.inl 's/less_equal(away, move.most)/less_equal(away, all(0x1p40f))/'
     mutant world detail/project.inl 's/source.kept != nullptr || rest != 0/source.kept != nullptr/'
     # Projection.
-    mutant families detail/project.inl 's/either(either(less(farthest, all(camera.near_depth)),/either(either(less(nearest, all(camera.near_depth)),/'
+    mutant families detail/project.inl 's/either(either(less(farthest, front)/either(either(less(nearest, front)/'
     mutant families detail/project.inl 's/less(size \* 0x1p-21f, aside - r)/less(size * -0x1p-19f, aside - r)/'
     mutant families detail/project.inl 's/+ offset - margin;/+ offset + margin;/'
     mutant families detail/project.inl 's/less_equal(size, all(0x1p40f))/less_equal(size, all(0x1p100f))/'

@@ -176,6 +176,11 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
     std::uint8_t careful[ChunkRects::size];
     Sphere chunk[ChunkRects::size], padded[lanes];
     const MoveLanes move(source.to_view);
+    // What each vector is asked first, in every lane: broadcasting it again would take narrow vectors as long as asking.
+    const Floats sign_x = all(camera.x.sign), sign_y = all(camera.y.sign), sign_z = all(camera.z_sign);
+    const Floats side_x = all(camera.x.side), side_xz = all(camera.x.side_z), side_y = all(camera.y.side),
+                 side_yz = all(camera.y.side_z);
+    const Floats front = all(camera.near_depth), back = all(camera.far_depth);
     // Copies are made a few at a time, so that the next lights are fetched while these are projected.
     const std::uint32_t usual = source.copy != nullptr ? 32 : ChunkRects::size;
     std::uint32_t most = lanes == 1 ? 8 : usual;
@@ -210,17 +215,15 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
             load_spheres(from, x, y, z, r);
             if (lanes > 1 && move.to_view != nullptr) move_spheres(move, x, y, z, r);
             const Floats at[] = {x, y, z};
-            x = x * camera.x.sign;
-            y = y * camera.y.sign;
-            z = z * camera.z_sign;
+            x = x * sign_x;
+            y = y * sign_y;
+            z = z * sign_z;
             const Floats nearest = z - r, farthest = z + r, a = abs(x), b = abs(y), size = a + b + abs(z) + r;
             const auto usable = both(less_equal(size, all(0x1p40f)), less_equal(all(0x1p-40f), r));
             // Rounding is monotone and near and far are floats, so comparing rounded sums with them is exact.
             // The distance to a side plane is within 4u of the sizes that it is made of.
-            const Floats aside = greater(mul(a, all(camera.x.side)) + mul(z, all(camera.x.side_z)),
-                                         mul(b, all(camera.y.side)) + mul(z, all(camera.y.side_z)));
-            const auto culled = both(usable, either(either(less(farthest, all(camera.near_depth)),
-                                                           less(all(camera.far_depth), nearest)),
+            const Floats aside = greater(mul(a, side_x) + mul(z, side_xz), mul(b, side_y) + mul(z, side_yz));
+            const auto culled = both(usable, either(either(less(farthest, front), less(back, nearest)),
                                                     less(size * 0x1p-21f, aside - r)));
             const unsigned valid = used < 32 ? (1u << used) - 1 : ~0u;
             unsigned& in_view = visible[i / lanes] = 0;
