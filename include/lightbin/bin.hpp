@@ -142,10 +142,10 @@ private:
                             std::vector<detail::Scratch>& scratch, const Parallel& parallel,
                             std::size_t count) {
         if (scratch.size() < count) scratch.resize(count);
-        if (spares_.size() < count) spares_.resize(count);
         detail::Part* parts = parts_.reserve(count);
         detail::make_parts(job, parallel, row_sums_, parts, count);
         if constexpr (!worded) {
+            if (spares_.size() < count) spares_.resize(count);
             // Rectangles: a part's place in the list is known. Its last entries go there by way of spare memory,
             // as a kernel writes beyond its end, where the next part is at work.
             parallel.run(count, [&](std::size_t i) {
@@ -165,14 +165,11 @@ private:
             });
             return static_cast<std::size_t>(parts[count - 1].before + parts[count - 1].area);
         } else {
-            // Otherwise each part but the first makes a list of its own, and then they are put in their places.
-            parallel.run(count, [&](std::size_t i) {
-                Id* out = i == 0 ? list : spares_[i].reserve(parts[i].area + slack);
-                parts[i].area = kernel(job, scratch[i], {parts[i].begin, parts[i].end, out, 0});
-            });
-            return static_cast<std::size_t>(detail::join_parts(parallel, std::span(parts, count), job.tiles,
-                                                               static_cast<std::size_t>(job.camera->x.tiles),
-                                                               spares_.data(), list));
+            return static_cast<std::size_t>(detail::build_apart(
+                parallel, std::span(parts, count), job.tiles, static_cast<std::size_t>(job.camera->x.tiles),
+                spares_, list, [&](std::size_t i, Id* out) {
+                    return kernel(job, scratch[i], {parts[i].begin, parts[i].end, out, 0});
+                }));
         }
     }
 

@@ -60,6 +60,16 @@ requires(!options.slices) Inputs<options.depth_test> inputs_for([[maybe_unused]]
         return {.bounds = bounds};
 }
 
+/// The same where slices are among the options that vary.
+template <Options options>
+Inputs<options.depth_test, options.slices> inputs_for([[maybe_unused]] const ZBounds& bounds,
+                                                      [[maybe_unused]] const Slices& slices) {
+    if constexpr (options.slices)
+        return {.slices = slices};
+    else
+        return inputs_for<options>(bounds);
+}
+
 /// The two grids of Tiled Forward Shading, Listing 4.2: `opaque` is pruned by minimum and maximum depth;
 /// `transparent` by the maximum alone, as transparent geometry may lie anywhere in front of the opaque.
 template <class Id> struct TransparencyGrids { LightGrid<Id> opaque, transparent; };

@@ -98,16 +98,13 @@ public:
                                                                     static_cast<double>(capacity)));
             if (shared_) {
                 if (scratch.size() < parts) scratch.resize(parts);
-                if (spares_.size() < parts) spares_.resize(parts);
-                const std::span<detail::Part> shares = make_parts(parts, tiles, capacity);
-                parallel.run(parts, [&](std::size_t i) {
-                    detail::Part& part = shares[i];
-                    Id* const out =
-                        i == 0 ? list : spares_[i].reserve(part.area + detail::BandJob<Id>::slack);
-                    part.area = build_some(part.begin, part.end, out, scratch[i]);
-                });
-                entries_ = static_cast<std::size_t>(
-                    detail::join_parts(parallel, shares, cells_.data(), tiles, spares_.data(), list));
+                const std::span shares(parts_.reserve(parts), parts);
+                detail::share_steps(shares.data(), parts, count, detail::empty_row_cost(tiles),
+                                    [&](std::size_t slice) { return footprints_.runs()[slice].area; });
+                entries_ = static_cast<std::size_t>(detail::build_apart(
+                    parallel, shares, cells_.data(), tiles, spares_, list, [&](std::size_t i, Id* out) {
+                        return build_some(shares[i].begin, shares[i].end, out, scratch[i]);
+                    }));
                 return std::nullopt;
             }
         }
@@ -140,28 +137,6 @@ private:
                    .spare_tiles = 0};
         if constexpr (with_boxes) edges_.give(job.edges);
         return job;
-    }
-
-    /// Returns parts of whole slices with about equal work.
-    std::span<detail::Part> make_parts(std::size_t count, std::size_t tiles, std::uint64_t work) {
-        detail::Part* const parts = parts_.reserve(count);
-        const std::span<const detail::SliceRun> runs = footprints_.runs();
-        work += std::uint64_t{tiles} * runs.size();
-        std::uint64_t done = 0;
-        unsigned slice = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            parts[i] = {
-                .begin = slice, .end = slice, .before = 0, .area = 0, .spare_row = 0, .spare_area = 0};
-            const std::size_t last = runs.size() - (count - 1 - i);  // leave a slice for each later part
-            while (slice < last &&
-                   (slice == parts[i].begin || i + 1 == count || done < work / count * (i + 1))) {
-                parts[i].area += runs[slice].area;
-                done += runs[slice].area + tiles;
-                ++slice;
-            }
-            parts[i].end = slice;
-        }
-        return {parts, count};
     }
 
     SlicedFootprints<footprint> footprints_;

@@ -69,13 +69,7 @@ std::size_t frame(Binner<options>& binner, Scene& scene, std::vector<ListRange>&
     std::size_t entries = 0;
     const ZBounds bounds = scene.reduce();
     const auto use = [&](const auto& lights) {
-        const auto inputs = [&] {
-            if constexpr (options.slices)
-                return Inputs<options.depth_test, true>{.slices = scene.slices};
-            else
-                return inputs_for<options>(bounds);
-        };
-        const auto grid = binner.bin(scene.view, lights, inputs());
+        const auto grid = binner.bin(scene.view, lights, inputs_for<options>(bounds, scene.slices));
         if (!grid) return;
         entries += grid->ids().size() + list_lengths(*grid).longest;
         if (const auto copy = grid->copy_to(ranges, ids)) entries += copy->ids().size();

@@ -126,16 +126,11 @@ template <Options options> class Tier {
 public:
     std::vector<std::uint32_t> bytes(const Input& input, const Parallel& parallel = {}) {
         const ZBounds bounds = {input.min, input.max, input.gap_min, input.gap_max};
-        const auto inputs = [&] {
-            if constexpr (options.slices)
-                return Inputs<options.depth_test, true>{.slices = slices_};
-            else
-                return inputs_for<options>(bounds);
-        };
+        const auto inputs = inputs_for<options>(bounds, slices_);
         const auto bin = [&](const auto& lights, const auto& to_sphere) {
             return input.to_view ? binner_.bin(input.view, world_space(lights, *input.to_view, to_sphere),
-                                               inputs(), parallel)
-                                 : binner_.bin(input.view, view_space(lights, to_sphere), inputs(), parallel);
+                                               inputs, parallel)
+                                 : binner_.bin(input.view, view_space(lights, to_sphere), inputs, parallel);
         };
         std::vector<Struct> structs;
         if (input.structs)

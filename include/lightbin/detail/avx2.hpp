@@ -218,7 +218,6 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
     return append(out, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(ids)), mask);
 }
 
-
 /// The same of 8 lights' ids and columns.
 LIGHTBIN_TARGET inline std::uint32_t append_lights(std::uint32_t* to_ids, std::uint8_t* to_columns,
                                                    const std::uint32_t* ids, const std::uint8_t* columns,

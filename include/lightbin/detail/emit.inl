@@ -34,8 +34,9 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
         for (std::uint32_t i = 0; i < list.count; i += 8, words += 8)
             transpose_words(masks + i, words);
     } else {
-        std::uint8_t *const columns = scratch.list_columns.data() + list.begin,
-                     *const rows = scratch.list_rows.data() + list.begin;
+        std::uint8_t *const columns = scratch.list_columns.data() + list.begin, *const rows =
+                                                                                    scratch.list_rows.data() +
+                                                                                    list.begin;
         std::memset(columns + list.count, 0, 64 * groups - list.count);
         std::memset(rows + list.count, 0, 64 * groups - list.count);
         for (std::uint32_t i = 0; i < list.count; i += 64, words += 16) {
@@ -53,11 +54,13 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
 }
 
 /// Appends those of 8 ids whose bit is set in the lowest byte, then those of 8 more by the next. Returns the end.
-template <class Id, class Ids> LIGHTBIN_TARGET inline Id* append_16(Id* out, const Ids* ids, std::uint64_t chosen) {
+template <class Id, class Ids>
+LIGHTBIN_TARGET inline Id* append_16(Id* out, const Ids* ids, std::uint64_t chosen) {
     out += append(out, ids, static_cast<unsigned>(chosen & 0xff));
     return out + append(out, ids + 8, static_cast<unsigned>(chosen >> 8 & 0xff));
 }
-template <class Id, class Ids> LIGHTBIN_TARGET inline Id* append_32(Id* out, const Ids* ids, std::uint64_t chosen) {
+template <class Id, class Ids>
+LIGHTBIN_TARGET inline Id* append_32(Id* out, const Ids* ids, std::uint64_t chosen) {
     return append_16(append_16(out, ids, chosen), ids + 16, chosen >> 16);
 }
 
@@ -80,7 +83,8 @@ enum class Length { up_to_16, up_to_64, any };
 /// Appends the lights of a tile by its words: bytes[0], bytes[64] ... have 8 lights each. Returns the end. The usual
 /// lengths of a list have no loop to predict.
 template <Length length, class Id, class Ids>
-LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count, const std::uint8_t* bytes) {
+LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count,
+                                       const std::uint8_t* bytes) {
     if constexpr (length == Length::up_to_16) {
         out += append(out, ids, bytes[0]);
         if (count > 8) out += append(out, ids + 8, bytes[64]);
@@ -93,8 +97,8 @@ LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t co
 
 /// The same by the words of its column and its row: [0], [16] ... have 64 lights each.
 template <Length length, class Id, class Ids>
-LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count, const std::uint64_t* column,
-                                       const std::uint64_t* row) {
+LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count,
+                                       const std::uint64_t* column, const std::uint64_t* row) {
     if constexpr (length == Length::up_to_16) {
         const std::uint64_t chosen = *column & *row;
         out += append(out, ids, static_cast<unsigned>(chosen & 0xff));
@@ -112,13 +116,14 @@ LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t co
 /// Appends a row of a supertile's tiles. Returns the end. Not inline, as in a longer function compilers keep what it
 /// needs on the stack.
 template <bool with_words, Length length, class Id>
-LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id* append_tiles(Id* out, ListRange* tiles, std::ptrdiff_t columns, std::uint32_t at,
-                                                   const Packed<Id>* ids, std::uint32_t count,
-                                                   const std::uint64_t* words, unsigned row) {
+LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id*
+append_tiles(Id* out, ListRange* tiles, std::ptrdiff_t columns, std::uint32_t at, const Packed<Id>* ids,
+             std::uint32_t count, const std::uint64_t* words, unsigned row) {
     for (std::ptrdiff_t column = 0; column < columns; ++column) {
         Id* const from = out;
         if constexpr (with_words)
-            out = append_tile<length>(out, ids, count, reinterpret_cast<const std::uint8_t*>(words) + 8 * row + column);
+            out = append_tile<length>(out, ids, count,
+                                      reinterpret_cast<const std::uint8_t*>(words) + 8 * row + column);
         else
             out = append_tile<length>(out, ids, count, words + column, words + 8 + row);
         const std::uint32_t lights = static_cast<std::uint32_t>(out - from);

@@ -76,11 +76,12 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void move_eight(const WorldToView& to_v
         from_origin[2][i] = sphere.z - move.origin[2];
         radius[i] = sphere.radius;
     }
-    int plain = 1;
+    int plain[8], all_plain = 1;
     for (int i = 0; i < 8; ++i) {
         away[i] = std::fabs(from_origin[0][i]) + std::fabs(from_origin[1][i]) + std::fabs(from_origin[2][i]);
-        plain &= (away[i] <= move.most) & (radius[i] >= FloatMove::least_radius) &
-                 (radius[i] <= FloatMove::most_radius);
+        plain[i] = (away[i] <= move.most) & (radius[i] >= FloatMove::least_radius) &
+                   (radius[i] <= FloatMove::most_radius);
+        all_plain &= plain[i];
     }
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
@@ -101,12 +102,9 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void move_eight(const WorldToView& to_v
     Sphere after[8];
     for (int i = 0; i < 8; ++i)
         after[i] = {centre[0][i], centre[1][i], centre[2][i], radius[i]};
-    if (plain == 0)
+    if (all_plain == 0)
         for (int i = 0; i < 8; ++i)
-            if (const Sphere before = load_sphere(given + i);
-                !(away[i] <= move.most && before.radius >= FloatMove::least_radius &&
-                  before.radius <= FloatMove::most_radius))
-                after[i] = to_view(before);
+            if (plain[i] == 0) after[i] = to_view(load_sphere(given + i));
     std::copy_n(after, 8, moved);
 }
 LIGHTBIN_TARGET inline void move_in_eights(const WorldToView& to_view, const Sphere* given,

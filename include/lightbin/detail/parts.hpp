@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How binning is shared among threads: each part is some tile rows and everything in them, so parts share nothing
+// How binning is shared among threads: each part is some tile rows, or slices, and everything in them, so parts share nothing
 // but the lights they read.
 #pragma once
 
@@ -13,10 +13,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
-/// Tile rows begin..end-1, and the tiles of all rectangles in them.
+/// Tile rows begin..end-1, or slices, and the tiles of all rectangles in them.
 struct Part {
     unsigned begin, end;
     std::uint64_t before, area;  ///< of the parts before it, of its own
@@ -24,6 +25,29 @@ struct Part {
     unsigned spare_row;
     std::uint64_t spare_area;
 };
+
+/// Writes `count` parts of about equal work of `steps` tile rows or slices, no more parts than those. A step has area(step)
+/// tiles in rectangles, and takes as long as `each` more of them.
+template <class Area>
+void share_steps(Part* parts, std::size_t count, std::size_t steps, std::uint64_t each, Area area) {
+    std::uint64_t work = 0, before = 0, done = 0;
+    for (std::size_t step = 0; step < steps; ++step)
+        work += area(step) + each;
+    unsigned step = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        Part part = {step, step, before, 0, 0, 0};
+        const std::uint64_t goal = work / count * (i + 1);
+        const std::size_t last = steps - (count - 1 - i);  // leave a step for each later part
+        while (step < last && (step == part.begin || i + 1 == count || done < goal)) {
+            part.area += area(step);
+            done += area(step) + each;
+            ++step;
+        }
+        part.end = part.spare_row = step;
+        before += part.area;
+        parts[i] = part;
+    }
+}
 
 /// Writes `count` parts of about equal work, no more than there are tile rows.
 template <class Id>
@@ -41,39 +65,29 @@ void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
             steps[job.lights.y1[i] + 1u] -= width;  // sums wrap, and come out right
         }
     });
-    std::uint64_t step_sum = 0, work = 0;
-    const std::uint64_t row_work = empty_row_cost(static_cast<std::uint64_t>(job.camera->x.tiles));
+    std::uint64_t step_sum = 0;
     for (std::size_t row = 0; row < rows; ++row) {
         for (std::size_t run = 0; run < job.runs.size(); ++run)
             step_sum += row_area[run * pitch + row];
         row_area[row] = step_sum;
-        work += step_sum + row_work;
     }
-
-    std::uint64_t before = 0, done = 0;
-    unsigned row = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        Part part = {row, row, before, 0, 0, 0};
-        const std::uint64_t goal = work / count * (i + 1);
-        const std::size_t last = rows - (count - 1 - i);  // leave a row for each later part
-        while (row < last && (row == part.begin || i + 1 == count || done < goal)) {
-            part.area += row_area[row];
-            done += row_area[row] + row_work;
-            ++row;
-        }
-        part.end = part.spare_row = row;
-        while (part.spare_row > part.begin && part.spare_area < BandJob<Id>::slack)
-            part.spare_area += row_area[--part.spare_row];
-        before += part.area;
-        parts[i] = part;
-    }
+    share_steps(parts, count, rows, empty_row_cost(static_cast<std::uint64_t>(job.camera->x.tiles)),
+                [&](std::size_t row) { return row_area[row]; });
+    for (Part* part = parts; part < parts + count; ++part)
+        while (part->spare_row > part->begin && part->spare_area < BandJob<Id>::slack)
+            part->spare_area += row_area[--part->spare_row];
 }
 
-/// Puts the lists of parts side by side in `list`, where the first one is; the others are in `spares`. Their areas are
-/// the numbers of their entries; steps `begin` to `end` have `width` ranges each. Returns the number of all entries.
-template <class Id>
-std::uint64_t join_parts(const Parallel& parallel, std::span<Part> parts, ListRange* ranges,
-                         std::size_t width, const Buffer<Id>* spares, Id* list) {
+/// Has build(part, out) make a list of its own of each part, the first one in `list`, and puts the others in their places
+/// after it. A step's ranges are `width`. Returns the number of all entries.
+template <class Id, class Build>
+std::uint64_t build_apart(const Parallel& parallel, std::span<Part> parts, ListRange* ranges,
+                          std::size_t width, std::vector<Buffer<Id>>& spares, Id* list, Build build) {
+    if (spares.size() < parts.size()) spares.resize(parts.size());
+    parallel.run(parts.size(), [&](std::size_t i) {
+        Id* const out = i == 0 ? list : spares[i].reserve(parts[i].area + BandJob<Id>::slack);
+        parts[i].area = build(i, out);
+    });
     std::uint64_t entries = 0;
     for (Part& part : parts) {
         part.before = entries;

@@ -4,8 +4,9 @@
 
 /// Where that is faster, replaces a supertile's list, its ids and words by those of its lights in a row. In their words
 /// that row has all of them.
-LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void pick_row(Scratch& scratch, const SupertileList& list, unsigned row,
-                                     const std::uint32_t*& ids, const std::uint64_t*& words, std::uint32_t& count) {
+LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void pick_row(Scratch& scratch, const SupertileList& list,
+                                                       unsigned row, const std::uint32_t*& ids,
+                                                       const std::uint64_t*& words, std::uint32_t& count) {
     std::uint32_t in_row = 0;
     for (std::uint32_t i = 0; i < count; i += 64)
         in_row += static_cast<unsigned>(std::popcount(words[i / 4 + 8 + row]));

@@ -176,6 +176,8 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
     std::uint8_t careful[ChunkRects::size];
     Sphere chunk[ChunkRects::size], padded[lanes];
     const MoveLanes move(source.to_view);
+    const bool by_vectors =
+        lanes > 1 && source.to_view != nullptr;  // the scalar tier moves them before, see take()
     // What each vector is asked first, in every lane: broadcasting it again would take narrow vectors as long as asking.
     const Floats sign_x = all(camera.x.sign), sign_y = all(camera.y.sign), sign_z = all(camera.z_sign);
     const Floats side_x = all(camera.x.side), side_xz = all(camera.x.side_z), side_y = all(camera.y.side),
@@ -213,7 +215,7 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
             }
             Floats x, y, z, r;
             load_spheres(from, x, y, z, r);
-            if (lanes > 1 && move.to_view != nullptr) move_spheres(move, x, y, z, r);
+            if (by_vectors) move_spheres(move, x, y, z, r);
             const Floats at[] = {x, y, z};
             x = x * sign_x;
             y = y * sign_y;
@@ -237,7 +239,7 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
                 tangent_slopes(y, z, r, e, per_e, bottom, top);
             }
             unsigned rest = ~bits(either(plain, culled)) & valid;
-            if (lanes > 1 && move.to_view != nullptr && (source.kept != nullptr || rest != 0))
+            if (by_vectors && (source.kept != nullptr || rest != 0))
                 store_spheres(own + i, at[0], at[1], at[2], r);
             for (; rest != 0; rest &= rest - 1)
                 careful[careful_count++] =

@@ -39,7 +39,7 @@ struct IdBlock {
 
 struct Scratch {
     Buffer<std::uint32_t> corners;  ///< difference array of rectangles, over tiles or supertiles
-    Buffer<ListRange> last_rows;         ///< of a part, where whole vectors of them have room
+    Buffer<ListRange> last_rows;    ///< of a part, where whole vectors of them have room
 
     // The lists of a band's supertiles, or of all: ids or, until words are made, visible indices; and which of the
     // supertile's columns and rows each light covers.
