@@ -56,18 +56,17 @@ private:
 
 /// A light grid in memory of its own, kept from call to call.
 template <class Id, Footprint footprint, DepthTest depth_test> class GridLists {
-    static constexpr bool with_depth = depth_test != DepthTest::none,
-                          worded = detail::with_words<footprint, depth_test>,
+    static constexpr bool worded = detail::with_words<footprint, depth_test>,
                           with_boxes = depth_test == DepthTest::box || depth_test == DepthTest::split_box;
 
 public:
     /// Builds the grid of the footprints with a kernel of an instruction set. Returns an Error if Z bounds
     /// are shorter than the grid, or 32-bit offsets can't reach the list's end; then there is no grid.
     ///
-    /// parallel  Serial or Parallel
-    template <class Threads>
-    std::optional<Error> build(Isa isa, const View& view, const Footprints<footprint, with_depth>& footprints,
-                               const ZBounds& bounds, std::vector<detail::Scratch>& scratch,
+    /// footprints  Footprints or RankedFootprints, with spheres for a depth test
+    /// parallel    Serial or Parallel
+    template <class Lit, class Threads>
+    std::optional<Error> build(Isa isa, const View& view, const Lit& footprints, const ZBounds& bounds, std::vector<detail::Scratch>& scratch,
                                [[maybe_unused]] const Threads& parallel) {
         tile_count_ = entries_ = 0;  // until there is a grid
         const std::size_t tiles = view.tile_count();

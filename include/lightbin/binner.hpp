@@ -12,7 +12,9 @@
 #include <lightbin/options.hpp>
 #include <lightbin/parallel.hpp>
 #include <lightbin/project.hpp>
+#include <lightbin/ranked_footprints.hpp>
 #include <lightbin/result.hpp>
+#include <lightbin/slices.hpp>
 #include <lightbin/view.hpp>
 #include <lightbin/z_bounds.hpp>
 
@@ -43,17 +45,22 @@ template <DepthTest depth_test> ZBounds z_bounds_left_out() {
 
 /// What Binner::bin() reads beside the lights: a member for each option that needs one, which must be given.
 /// What no option needs has no member, so giving it does not compile.
-template <DepthTest depth_test, bool slices = false> struct Inputs {
+template <DepthTest depth_test, Slicing slicing = Slicing::none> struct Inputs {
     /// Minimum, maximum or both. See ZBounds for what an empty side means.
     ZBounds bounds = detail::z_bounds_left_out<depth_test>();
 };
 template <> struct Inputs<DepthTest::none> {};
-template <DepthTest depth_test> struct Inputs<depth_test, true> { const Slices& slices; };
+template <DepthTest depth_test> struct Inputs<depth_test, Slicing::clusters> { const Slices& slices; };
+template <> struct Inputs<DepthTest::none, Slicing::z_bins> { const Slices& slices; };
+template <DepthTest depth_test> struct Inputs<depth_test, Slicing::z_bins> {
+    const Slices& slices;
+    ZBounds bounds = detail::z_bounds_left_out<depth_test>();
+};
 
 /// Returns the inputs of a Binner whose options vary, such as with_options() gives them: what they don't need is
 /// left out.
 template <Options options>
-requires(!options.slices) Inputs<options.depth_test> inputs_for([[maybe_unused]] const ZBounds& bounds) {
+requires(options.slicing == Slicing::none) Inputs<options.depth_test> inputs_for([[maybe_unused]] const ZBounds& bounds) {
     if constexpr (options.depth_test == DepthTest::none)
         return {};
     else
@@ -62,12 +69,14 @@ requires(!options.slices) Inputs<options.depth_test> inputs_for([[maybe_unused]]
 
 /// The same where slices are among the options that vary.
 template <Options options>
-Inputs<options.depth_test, options.slices> inputs_for([[maybe_unused]] const ZBounds& bounds,
-                                                      [[maybe_unused]] const Slices& slices) {
-    if constexpr (options.slices)
-        return {.slices = slices};
-    else
+Inputs<options.depth_test, options.slicing> inputs_for([[maybe_unused]] const ZBounds& bounds,
+                                                       [[maybe_unused]] const Slices& slices) {
+    if constexpr (options.slicing == Slicing::none)
         return inputs_for<options>(bounds);
+    else if constexpr (options.slicing == Slicing::z_bins && options.depth_test != DepthTest::none)
+        return {.slices = slices, .bounds = bounds};
+    else
+        return {.slices = slices};
 }
 
 /// The two grids of Tiled Forward Shading, Listing 4.2: `opaque` is pruned by minimum and maximum depth;
@@ -81,11 +90,13 @@ template <Options options = Options{}> class Binner {
     static_assert(options.ids != IdWidth::u8,
                   "lightbin: a Binner's ids have 16 or 32 bits: take Options{.ids = IdWidth::u16} and have "
                   "encode() make 8 bits of them");
-    static constexpr bool with_depth = options.depth_test != DepthTest::none && !options.slices;
+    static constexpr bool clusters = options.slicing == Slicing::clusters,
+                          z_bins = options.slicing == Slicing::z_bins,
+                          with_depth = options.depth_test != DepthTest::none && !clusters;
 
 public:
     using Id = std::conditional_t<options.ids == IdWidth::u16, std::uint16_t, std::uint32_t>;
-    using Inputs = lightbin::Inputs<options.depth_test, options.slices>;
+    using Inputs = lightbin::Inputs<options.depth_test, options.slicing>;
 
     Binner() = default;
     /// Takes over the other's memory and grid. The other is as new.
@@ -99,7 +110,8 @@ public:
     ///
     /// lights   a contiguous range of vec4 (x, y, z, radius) or Sphere in view space, view_space(...) or
     ///          world_space(...)
-    /// inputs   {.slices = ...} with slices, else {.bounds = ...} with a depth test, else {} or nothing
+    /// inputs   {.slices = ...} with clusters; else {.slices = ...} with z_bins, {.bounds = ...} with a depth test, both in
+    ///          this order with both, else {} or nothing
     /// threads  a Parallel: threads to share the work among. The grid is the same with any number of them.
     ///
     /// After it, every tile lists every light whose sphere meets the tile's cell (no miss), in ascending
@@ -109,8 +121,8 @@ public:
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     Result<LightGrid<Id>> bin(const View& view, const LightRange& lights, const Inputs& inputs = {},
                               const Threads& threads = {}) {
-        if (const auto error = project(view, lights, threads)) return *error;
-        if constexpr (options.slices)
+        if (const auto error = project(view, lights, inputs, threads)) return *error;
+        if constexpr (clusters)
             return build(lists_, view, inputs.slices, threads, inputs.slices.count());
         else if constexpr (with_depth)
             return build(lists_, view, inputs.bounds, threads);
@@ -132,7 +144,7 @@ public:
         const bool own_max = !bounds.transparent_max.empty();
         if (bounds.background_skipped && !bounds.max.empty() && !own_max)
             return Error{ErrorCode::no_transparent_max};
-        if (const auto error = project(view, lights, threads)) return *error;
+        if (const auto error = project(view, lights, inputs, threads)) return *error;
         const ZBounds in_front = {.max = own_max ? bounds.transparent_max : bounds.max};
         const auto transparent = build(transparent_, view, in_front, threads);
         if (!transparent) return transparent.error();
@@ -142,42 +154,56 @@ public:
     }
 
 private:
-    using Lists = std::conditional_t<options.slices, ClusterLists<Id, options.footprint, options.depth_test>,
+    using Lists = std::conditional_t<clusters, ClusterLists<Id, options.footprint, options.depth_test>,
                                      GridLists<Id, options.footprint, options.depth_test>>;
     struct Nothing {};
 
     template <class LightRange>
-    std::optional<Error> project(const View& view, const LightRange& lights, const Parallel& threads) {
+    std::optional<Error> project(const View& view, const LightRange& lights,
+                                 [[maybe_unused]] const Inputs& inputs, const Parallel& threads) {
         const auto& source = detail::as_lights(lights);
         if (const auto error = detail::refuse(source, options.ids == IdWidth::u16 ? 0x10000 : 0xffffffff))
             return error;
         if (scratch_.empty()) scratch_.resize(1);
         isa_ = machine_isa(options.isa);
         footprints_.project(isa_, view, source, threads, lists_.shared());
+        if constexpr (z_bins) ranked_.rank(view, footprints_, inputs.slices);
         return std::nullopt;
+    }
+
+    const auto& lit() const {
+        if constexpr (z_bins)
+            return ranked_;
+        else
+            return footprints_;
     }
 
     template <class Depths, class Threads>
     Result<LightGrid<Id>> build(Lists& lists, const View& view, const Depths& depths, const Threads& threads,
                                 int slices = 1) {
-        if (const auto error = lists.build(isa_, view, footprints_, depths, scratch_, threads)) return *error;
+        if (const auto error = lists.build(isa_, view, lit(), depths, scratch_, threads)) return *error;
         const auto all = static_cast<std::uint32_t>(footprints_.lights());
         const LightCounts counts = {all, footprints_.rejected(),
                                     all - footprints_.rejected() - footprints_.visible()};
-        return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), counts, slices);
+        LightRanks ranks;
+        if constexpr (z_bins) ranks = ranked_.ranks();
+        return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), counts, slices,
+                             ranks);
     }
 
     void swap(Binner& other) noexcept {
         std::swap(isa_, other.isa_);
         scratch_.swap(other.scratch_);
         std::swap(footprints_, other.footprints_);
+        std::swap(ranked_, other.ranked_);
         std::swap(lists_, other.lists_);
         std::swap(transparent_, other.transparent_);
     }
 
     Isa isa_ = Isa::scalar;
     std::vector<detail::Scratch> scratch_;  ///< one a worker
-    Footprints<options.footprint, with_depth || options.slices> footprints_;
+    Footprints<options.footprint, with_depth || options.slicing != Slicing::none> footprints_;
+    std::conditional_t<z_bins, RankedFootprints<options.footprint, with_depth>, Nothing> ranked_;
     Lists lists_;
     std::conditional_t<with_depth, Lists, Nothing> transparent_;
 };

@@ -39,23 +39,41 @@ struct LightCounts {
     std::uint32_t culled = 0;    ///< out of the view
 };
 
+/// The ranks of the lights in a depth bin: from the least to the greatest, with others possibly between them. A bin without
+/// lights has least > greatest.
+struct BinRange {
+    std::uint32_t least, greatest;
+};
+
+/// What Slicing::z_bins adds to a grid.
+struct LightRanks {
+    std::span<const std::uint32_t> order;  ///< the light of each rank, as its position in the caller's array
+    std::span<const BinRange> bins;        ///< one a slice
+};
+
 /// A finished light grid. It does not own its memory: see the call that returned it for how long that lives.
 template <class Id> class LightGrid {
 public:
     LightGrid(int tiles_x, int tiles_y, std::span<const ListRange> ranges, std::span<const Id> ids,
-              const LightCounts& counts = {}, int slices = 1)
-        : ranges_(ranges), ids_(ids), tiles_x_(tiles_x), tiles_y_(tiles_y), slices_(slices), counts_(counts) {
-    }
+              const LightCounts& counts = {}, int slices = 1, const LightRanks& ranks = {})
+        : ranges_(ranges),
+          ids_(ids),
+          tiles_x_(tiles_x),
+          tiles_y_(tiles_y),
+          slices_(slices),
+          counts_(counts),
+          ranks_(ranks) {}
 
     int tiles_x() const { return tiles_x_; }
     int tiles_y() const { return tiles_y_; }
-    int slices() const { return slices_; }  ///< 1 without
+    int slices() const { return slices_; }  ///< 1 without clusters
 
     /// The parts of ids() that are the tiles' lists: tiles_x() * tiles_y() of them, row-major; of each slice, one slice
     /// after another. Offsets ascend and leave no gap.
     std::span<const ListRange> ranges() const { return ranges_; }
 
-    /// The light index list. A light's id is its position in the caller's array; ids ascend within a tile.
+    /// The light index list. A light's id is its position in the caller's array, or with Slicing::z_bins its rank; ids
+    /// ascend within a tile.
     std::span<const Id> ids() const { return ids_; }
 
     /// Returns the ids of the lights of tile (x, y), 0 <= x < tiles_x(), 0 <= y < tiles_y(), in a slice.
@@ -70,9 +88,12 @@ public:
 
     const LightCounts& light_counts() const { return counts_; }
 
+    /// With Slicing::z_bins. Upload the lights in this order, or read them by way of it.
+    const LightRanks& ranks() const { return ranks_; }
+
     /// Copies ranges() and ids() to the beginning of the caller's memory, and returns the grid there, which is valid as
     /// long as that memory. Only writes there, in order, so it may be a mapped GPU buffer. Errors: a buffer is smaller
-    /// than ranges() or ids(); then nothing is written.
+    /// than ranges() or ids(); then nothing is written. ranks() stay where they are.
     Result<LightGrid> copy_to(std::span<ListRange> ranges, std::span<Id> ids) const {
         if (ranges.size() < ranges_.size())
             return Error{ErrorCode::range_buffer_too_small, ranges_.size(), ranges.size()};
@@ -80,7 +101,7 @@ public:
         std::ranges::copy(ranges_, ranges.begin());
         std::ranges::copy(ids_, ids.begin());
         return LightGrid(tiles_x_, tiles_y_, ranges.first(ranges_.size()), ids.first(ids_.size()), counts_,
-                         slices_);
+                         slices_, ranks_);
     }
 
 private:
@@ -88,6 +109,7 @@ private:
     std::span<const Id> ids_;
     int tiles_x_, tiles_y_, slices_;
     LightCounts counts_;
+    LightRanks ranks_;
 };
 
 /// How long a grid's lists are.

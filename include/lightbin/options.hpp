@@ -25,6 +25,16 @@ enum class DepthTest : std::uint8_t {
     split_box,  ///< the same with two boxes, before and behind the tile's gap (see ZBounds)
 };
 
+/// How depth is cut without a depth buffer, by the Slices that bin() is given.
+enum class Slicing : std::uint8_t {
+    none,
+    /// Lists for each tile in each slice. The depth test, none or box, is then of those cells.
+    clusters,
+    /// Each slice is a bin: ids are ranks in order of depth, and each bin has the least and greatest rank of the lights in
+    /// it (Drobot, "Improved Culling for Tiled and Clustered Rendering", SIGGRAPH 2017).
+    z_bins,
+};
+
 constexpr const char* to_string(Footprint footprint) {
     return detail::name_at(footprint, {"rectangle", "silhouette"});
 }
@@ -33,12 +43,16 @@ constexpr const char* to_string(DepthTest test) {
     return detail::name_at(test, {"none", "interval", "box", "split_box"});
 }
 
+constexpr const char* to_string(Slicing slicing) {
+    return detail::name_at(slicing, {"none", "clusters", "z_bins"});
+}
+
 /// What a Binner does.
 struct Options {
     IdWidth ids = IdWidth::u32;  ///< u16 or u32
     Footprint footprint = Footprint::rectangle;
-    DepthTest depth_test = DepthTest::none;  ///< with slices none or box, of the cells in each slice
-    bool slices = false;                     ///< lists for each tile in each slice of depth: clusters
+    DepthTest depth_test = DepthTest::none;
+    Slicing slicing = Slicing::none;
     /// Use no wider instructions than these, even where the machine has them. The result is the same.
     Isa isa = compiled_isa;
 };

@@ -76,8 +76,9 @@ std::size_t frame(Binner<options>& binner, Scene& scene, std::vector<ListRange>&
     };
     use(scene.lights);
     use(world_space(scene.lights, glm::mat4(1.0f)));
-    if constexpr (options.depth_test != DepthTest::none && !options.slices)
-        if (const auto grids = binner.bin_transparency(scene.view, scene.lights, {.bounds = bounds}))
+    if constexpr (options.depth_test != DepthTest::none && options.slicing != Slicing::clusters)
+        if (const auto grids = binner.bin_transparency(scene.view, scene.lights,
+                                                       inputs_for<options>(bounds, scene.slices)))
             entries += grids->opaque.ids().size() + grids->transparent.ids().size();
     return entries;
 }
@@ -106,7 +107,8 @@ TEST_CASE("a warm Binner does not allocate") {
     check_options<Options{.ids = IdWidth::u32, .depth_test = DepthTest::none}>();
     check_options<Options{.ids = IdWidth::u16, .depth_test = DepthTest::interval}>();
     check_options<Options{.ids = IdWidth::u32, .depth_test = DepthTest::interval}>();
-    check_options<Options{.depth_test = DepthTest::box, .slices = true}>();
+    check_options<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
+    check_options<Options{.depth_test = DepthTest::box, .slicing = Slicing::z_bins}>();
 }
 
 TEST_CASE("nor does one that shares more of the same work the second time") {

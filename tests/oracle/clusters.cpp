@@ -33,7 +33,7 @@ void examine_clusters(const Camera& camera, Tally& tally, std::uint64_t& seed) {
     const Oracle& oracle = examiner.oracle;
     const lightbin::View view = view_of(camera);
     lightbin::Binner<> rectangles;
-    lightbin::Binner<lightbin::Options{.depth_test = depth_test, .slices = true}> binner;
+    lightbin::Binner<lightbin::Options{.depth_test = depth_test, .slicing = lightbin::Slicing::clusters}> binner;
     const std::size_t tiles = view.tile_count();
     for (const SphereSet& set : sphere_sets()) {
         const std::vector<Light> lights =

@@ -68,10 +68,10 @@ template <Options options> void compare_all() {
 }  // namespace
 
 TEST_CASE("a slice of clusters holds what tile lists of the slice alone do") {
-    compare_all<Options{.slices = true}>();
-    compare_all<Options{.depth_test = DepthTest::box, .slices = true}>();
-    compare_all<Options{.footprint = Footprint::silhouette, .slices = true}>();
-    compare_all<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slices = true}>();
+    compare_all<Options{.slicing = Slicing::clusters}>();
+    compare_all<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
+    compare_all<Options{.footprint = Footprint::silhouette, .slicing = Slicing::clusters}>();
+    compare_all<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
 }
 
 TEST_CASE("slices of exponential and linear depth end where they should") {
@@ -118,7 +118,7 @@ TEST_CASE("slices that are none, or do not ascend, are refused by name") {
 
 TEST_CASE("more cells than 32 bits number are refused") {
     const View view = test::view({16384, 16384}, 1);
-    Binner<Options{.slices = true}> binner;
+    Binner<Options{.slicing = Slicing::clusters}> binner;
     const auto grid = binner.bin(view, std::vector<Sphere>(), {.slices = *Slices::linear(16, 0, 1)});
     REQUIRE_FALSE(grid);
     CHECK(grid.error().code == ErrorCode::too_many_cells);
@@ -129,7 +129,7 @@ TEST_CASE("more cells than 32 bits number are refused") {
 TEST_CASE("two lights before one another are each in some clusters, once") {
     const View view = test::view({1280, 640}, 64);
     const std::vector<Sphere> lights = {{0, 0, -5, 1}, {0, 0, -3, 1}};
-    Binner<Options{.depth_test = DepthTest::box, .slices = true}> binner;
+    Binner<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}> binner;
     const auto grid = binner.bin(view, lights, {.slices = *Slices::exponential(16, 5, 100)});
     REQUIRE(grid);
     std::size_t cells[2] = {};
@@ -148,7 +148,7 @@ TEST_CASE("two small lights in opposite corners are in the first and the last cl
     const View view = *View::from_projection(glm::perspective(glm::radians(90.0f), 1.0f, 1.0f, 5.0f), {2, 2},
                                              {.tile_size = 1, .origin = WindowOrigin::upper_left});
     const std::vector<Sphere> lights = {{-1, 0.5f, -2, 0.1f}, {2, -0.5f, -4, 0.1f}};
-    Binner<Options{.depth_test = DepthTest::box, .slices = true}> binner;
+    Binner<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}> binner;
     const auto grid = binner.bin(view, lights, {.slices = *Slices::linear(2, 1, 5)});
     REQUIRE(grid);
     const auto lists = test::to_lists(*grid);

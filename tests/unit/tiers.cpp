@@ -143,6 +143,9 @@ public:
         for (const ListRange range : grid->ranges())
             all.insert(all.end(), {range.offset, range.count});
         all.insert(all.end(), grid->ids().begin(), grid->ids().end());
+        all.insert(all.end(), grid->ranks().order.begin(), grid->ranks().order.end());
+        for (const BinRange range : grid->ranks().bins)
+            all.insert(all.end(), {range.least, range.greatest});
         return all;
     }
 
@@ -216,7 +219,9 @@ template <Options options> void compare(std::uint32_t seeds, std::uint32_t first
 
 constexpr Options plain = {}, interval = {.depth_test = DepthTest::interval},
                   box = {.depth_test = DepthTest::box}, split_box = {.depth_test = DepthTest::split_box},
-                  clusters = {.slices = true}, box_clusters = {.depth_test = DepthTest::box, .slices = true};
+                  clusters = {.slicing = Slicing::clusters},
+                  box_clusters = {.depth_test = DepthTest::box, .slicing = Slicing::clusters},
+                  z_bins = {.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::z_bins};
 
 }  // namespace
 
@@ -237,7 +242,9 @@ TEST_CASE("all tiers give the same bytes, on any number of workers") {
     compare<Options{.ids = IdWidth::u16, .depth_test = DepthTest::split_box}>(100, 5000);
     compare<clusters>(50, 8000);
     compare<box_clusters>(50, 9000);
-    compare<Options{.ids = IdWidth::u16, .footprint = Footprint::silhouette, .slices = true}>(30, 10000);
+    compare<Options{.ids = IdWidth::u16, .footprint = Footprint::silhouette, .slicing = Slicing::clusters}>(30, 10000);
+    compare<Options{.slicing = Slicing::z_bins}>(50, 11000);
+    compare<z_bins>(30, 12000);
 }
 
 TEST_CASE("each tier scatters by its own text, the scalar one without vectors") {
@@ -259,6 +266,7 @@ TEST_CASE("threads write their own parts only") {
     Tiers<split_box>().compare_on_threads(input);
     Tiers<clusters>().compare_on_threads(input);
     Tiers<box_clusters>().compare_on_threads(input);
+    Tiers<z_bins>().compare_on_threads(input);
 }
 
 TEST_CASE("more lights than 16 bits count, and more tiles than 8 bits count") {

@@ -1,0 +1,135 @@
+// Z-bins: the lists against those of a Binner without, and the bins against every light asked in every bin.
+#include "scene.hpp"
+
+#include <limits>
+#include <numeric>
+
+using namespace lightbin;
+
+namespace {
+
+/// Whether a light's depths meet a slice, both with their ends. In doubles, which hold what these tests add up.
+bool meets(const glm::vec4& light, const Slices& slices, int slice) {
+    const auto at = [&](int i) { return double{slices.boundaries()[static_cast<std::size_t>(i)]}; };
+    const double z = -double{light.z}, r = double{light.w};
+    return (slice == 0 || z + r >= at(slice - 1)) && (slice + 1 == slices.count() || z - r <= at(slice));
+}
+
+template <class Id>
+void check_bins(const LightGrid<Id>& grid, const std::vector<glm::vec4>& lights, const Slices& slices) {
+    const auto [order, bins] = grid.ranks();
+    REQUIRE(bins.size() == static_cast<std::size_t>(slices.count()));
+    const LightCounts& counts = grid.light_counts();
+    REQUIRE(order.size() == counts.lights - counts.rejected - counts.culled);
+    std::vector<std::uint32_t> once(order.begin(), order.end());
+    std::sort(once.begin(), once.end());
+    CHECK((std::adjacent_find(once.begin(), once.end()) == once.end()));
+
+    bool all = true;
+    int before = 0;
+    for (int slice = 0; slice < slices.count(); ++slice) {
+        BinRange truth = {1, 0};
+        for (std::uint32_t rank = 0; rank < order.size(); ++rank)
+            if (meets(lights[order[rank]], slices, slice))
+                truth = truth.least > truth.greatest ? BinRange{rank, rank} : BinRange{truth.least, rank};
+        const BinRange bin = bins[static_cast<std::size_t>(slice)];
+        all = all && bin.least == truth.least && bin.greatest == truth.greatest;
+    }
+    CHECK(all);
+    for (const std::uint32_t light : order) {
+        int begin = 0;
+        while (!meets(lights[light], slices, begin))
+            ++begin;
+        CHECK(begin >= before);
+        before = begin;
+    }
+}
+
+/// The lists of a grid of ranks, with the lights' own ids.
+template <class Id> std::vector<std::vector<std::uint32_t>> own_ids(const LightGrid<Id>& grid) {
+    auto lists = test::to_lists(grid);
+    for (auto& list : lists) {
+        CHECK((std::is_sorted(list.begin(), list.end())));
+        for (std::uint32_t& id : list)
+            id = grid.ranks().order[id];
+        std::sort(list.begin(), list.end());
+    }
+    return lists;
+}
+
+constexpr Options without(Options options) {
+    options.slicing = Slicing::none;
+    return options;
+}
+
+template <Options options> void compare(const Slices& slices) {
+    // Depths and radii of few bits, so that ends are exact and often boundaries.
+    auto lights = test::random_lights(700, 41);
+    for (glm::vec4& light : lights)
+        light = glm::vec4(light.x, light.y, std::round(8 * light.z) / 8, std::round(8 * light.w) / 8);
+    lights[3].w = std::numeric_limits<float>::quiet_NaN();
+    lights[5].w = 1000;
+    const View view = test::view({640, 480}, 32);
+    std::vector<float> min(view.tile_count(), 5), max(view.tile_count(), 30), all(view.tile_count(), 50);
+    const ZBounds bounds = {.min = min, .max = max, .transparent_max = all};
+    Binner<options> binner;
+    Binner<without(options)> plain;
+    const auto grid = binner.bin(view, lights, inputs_for<options>(bounds, slices));
+    const auto expected = plain.bin(view, lights, inputs_for<without(options)>(bounds));
+    REQUIRE(grid);
+    REQUIRE(expected);
+    check_bins(*grid, lights, slices);
+    CHECK((own_ids(*grid) == test::to_lists(*expected)));
+    if constexpr (options.depth_test != DepthTest::none) {
+        const auto grids = binner.bin_transparency(view, lights, {.slices = slices, .bounds = bounds});
+        const auto both = plain.bin_transparency(view, lights, {.bounds = bounds});
+        REQUIRE(grids);
+        REQUIRE(both);
+        check_bins(grids->transparent, lights, slices);
+        CHECK((own_ids(grids->opaque) == test::to_lists(both->opaque)));
+        CHECK((own_ids(grids->transparent) == test::to_lists(both->transparent)));
+    }
+}
+
+template <Options options> void compare_all() {
+    compare<options>(*Slices::linear(200, 0, 50));
+    compare<options>(*Slices::exponential(64, 0.5f, 40));
+    compare<options>(*Slices::linear(1, 0, 1));
+    compare<options>(*Slices::from_boundaries(std::vector<float>{-1, 0, 12, 12.125f, 1e30f}));
+}
+
+}  // namespace
+
+TEST_CASE("z-bins have the least and greatest rank of the lights in them, and the lists are the same lights") {
+    compare_all<Options{.slicing = Slicing::z_bins}>();
+    compare_all<Options{.ids = IdWidth::u16, .slicing = Slicing::z_bins}>();
+    compare_all<Options{.footprint = Footprint::silhouette, .slicing = Slicing::z_bins}>();
+    compare_all<Options{.depth_test = DepthTest::interval, .slicing = Slicing::z_bins}>();
+    compare_all<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::z_bins}>();
+}
+
+TEST_CASE("z-bins of no light are empty, and so they are after a scene of many") {
+    const View view = test::view({64, 64}, 16);
+    const Slices slices = *Slices::linear(16, 0, 100);
+    Binner<Options{.slicing = Slicing::z_bins}> binner;
+    for (const std::size_t count : {0u, 300u, 0u}) {
+        const auto lights = test::random_lights(count, 7);
+        const auto grid = binner.bin(view, lights, {.slices = slices});
+        REQUIRE(grid);
+        check_bins(*grid, lights, slices);
+    }
+}
+
+TEST_CASE("a copy of a grid of ranks has its ranks") {
+    const View view = test::view({64, 64}, 16);
+    const Slices slices = *Slices::linear(16, 0, 100);
+    Binner<Options{.slicing = Slicing::z_bins}> binner;
+    const auto grid = binner.bin(view, test::random_lights(50, 7), {.slices = slices});
+    REQUIRE(grid);
+    std::vector<ListRange> ranges(grid->ranges().size());
+    std::vector<std::uint32_t> ids(grid->ids().size());
+    const auto copy = grid->copy_to(ranges, ids);
+    REQUIRE(copy);
+    CHECK(copy->ranks().order.data() == grid->ranks().order.data());
+    CHECK(copy->ranks().bins.size() == 16);
+}
