@@ -96,7 +96,7 @@ void main() {
     for (int id = 0; id < light_count; ++id)
         light += irradiance(id, position, normal);
 #else
-    lightbin_for_each_light(listed, uvec2(gl_FragCoord.xy))
+    lightbin_for_each_light(listed, uvec2(gl_FragCoord.xy), -position.z)
         light += irradiance(int(listed.id), position, normal);
 #endif
 
@@ -175,7 +175,7 @@ out vec4 pixel;
 
 void main() {
     uvec2 here = uvec2(gl_FragCoord.xy);
-    pixel = vec4(lightbin_heat(here, longest_list), lightbin_count(here) > 0u ? 0.6 : 0.0);
+    pixel = vec4(lightbin_heat(here, 0.0, longest_list), lightbin_count(here, 0.0) > 0u ? 0.6 : 0.0);
 }
 )";
 }

@@ -139,8 +139,8 @@ constexpr const char* to_string(ErrorCode code) {
     case ErrorCode::max_lights_unknown:
         return "bitmasks need ListFormat::max_lights, which fixes the words a tile";
     case ErrorCode::block_size_unknown:
-        return "uniform blocks have a fixed size: ShaderOptions::max_tiles must be given, and max_entries "
-               "where the light index list lies in one";
+        return "uniform blocks have a fixed size: ShaderOptions::max_tiles must be given, max_entries "
+               "for offsets and counts, and max_slices for slicing";
     case ErrorCode::uniform_block_too_small:
         return "a uniform block would need {needed} bytes and holds {available}: use larger tiles, narrower "
                "ids or another storage, or raise uniform_block_bytes to what the device has";

@@ -5,12 +5,19 @@
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/names.hpp>
 #include <lightbin/encode.hpp>
+#include <lightbin/options.hpp>
 #include <lightbin/shader_text.hpp>
+#include <lightbin/slices.hpp>
 #include <lightbin/view.hpp>
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +38,38 @@ constexpr const char* to_string(ListStorage value) {
                            {"storage_buffer", "texel_buffer", "texture_2d", "uniform_block", "byte_address"});
 }
 
+namespace detail {
+
+/// About which slice a depth is in: by_log2 * log2(depth) + by_depth * depth + offset.
+struct SliceGuess {
+    float by_log2, by_depth, offset;
+};
+
+/// Returns what is exact for Slices::exponential or linear but for rounding, and for other boundaries goes through the first and
+/// the last.
+inline SliceGuess best_guess(std::span<const float> boundaries) {
+    SliceGuess best = {0, 0, 0};
+    if (boundaries.empty()) return best;
+    double least_error = std::numeric_limits<double>::infinity();
+    for (const bool by_log2 : {false, true}) {
+        const auto place = [&](float depth) { return by_log2 ? std::log2(double{depth}) : double{depth}; };
+        const double first = place(boundaries.front()), last = place(boundaries.back());
+        const double slope =
+            boundaries.size() == 1 ? 0 : (static_cast<double>(boundaries.size()) - 1) / (last - first);
+        const double offset = 1 - slope * first;
+        double error = 0;
+        for (std::size_t i = 0; i < boundaries.size(); ++i)
+            error += std::fabs(slope * place(boundaries[i]) + offset - static_cast<double>(i + 1));
+        if (!(error < least_error)) continue;  // nor if it is NaN: what is not positive has no logarithm
+        least_error = error;
+        const float factor = static_cast<float>(slope);
+        best = {by_log2 ? factor : 0, by_log2 ? 0 : factor, static_cast<float>(offset)};
+    }
+    return best;
+}
+
+}  // namespace detail
+
 struct ShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     ListStorage storage = ListStorage::storage_buffer;
@@ -42,17 +81,20 @@ struct ShaderOptions {
     /// of their own width.
     bool packed_ids = false;
 
+    Slicing slicing = Slicing::none;  ///< as Options::slicing of the Binner
+
     int tile_size = 0;             ///< in pixels, as a constant of the text; 0: a uniform
     bool flip_y = false;           ///< the shader's pixel rows count against those of the view's WindowOrigin
     bool viewport_corner = false;  ///< pixels are the window's, and the viewport's corner a uniform
     bool heat_map = false;         ///< also `count` and `heat`
 
     std::uint32_t texture_width = 2048;  ///< texture_2d: texels a row, 1 to 16384; a power of two is best
-    std::uint32_t max_tiles = 0;         ///< uniform blocks: the most tiles they hold,
-    std::uint32_t max_entries = 0;       ///< and offset_count: the most list entries
+    std::uint32_t max_tiles = 0;         ///< uniform blocks: the most tiles they hold, those of all slices,
+    std::uint32_t max_entries = 0;       ///< and offset_count: the most list entries,
+    std::uint32_t max_slices = 0;        ///< and slicing: the most slices
     std::uint32_t uniform_block_bytes = 16384;  ///< the most that the device allows; every one has 16384
 
-    ShaderSlot tiles = {0}, lists = {1}, grid = {2};
+    ShaderSlot tiles = {0}, lists = {1}, grid = {2}, slices = {3}, bins = {4};
     bool push_constants = false;  ///< Vulkan: `grid` as push constants
     std::string_view prefix = "lightbin_";
 };
@@ -74,7 +116,28 @@ inline ShaderGrid shader_grid(const View& view, int corner_x = 0, int corner_y =
     return {u(view.tile_size()), u(view.tiles_x()), u(size.width), u(size.height), corner_x, corner_y};
 }
 
+/// Returns the words of the buffer `slices`: how to guess the slice of a depth, the last slice, and the boundaries, as
+/// numbers that order as they do. Four and one a boundary: slices.count() + 3.
+inline std::vector<std::uint32_t> shader_slices(const Slices& slices) {
+    const std::span<const float> boundaries = slices.boundaries();
+    const detail::SliceGuess guess = detail::best_guess(boundaries);
+    std::vector<std::uint32_t> words = {std::bit_cast<std::uint32_t>(guess.by_log2),
+                                        std::bit_cast<std::uint32_t>(guess.by_depth),
+                                        std::bit_cast<std::uint32_t>(guess.offset),
+                                        static_cast<std::uint32_t>(boundaries.size())};
+    for (const float boundary : boundaries) {
+        const std::uint32_t bits = std::bit_cast<std::uint32_t>(boundary), sign = 0x80000000;
+        words.push_back(bits & sign ? ~bits : bits | sign);
+    }
+    return words;
+}
+
 namespace detail {
+
+/// The words of shader_slices().
+inline std::uint64_t slice_words(std::uint32_t slices) {
+    return slices + std::uint64_t{3};
+}
 
 inline bool is_prefix(std::string_view prefix) {
     const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -100,8 +163,9 @@ inline std::optional<Error> refuse_names(const Dialect& dialect, std::string_vie
 
 inline std::optional<Error> refuse(const ShaderOptions& options) {
     const Dialect dialect = detail::dialect(options.language);
-    if (auto error = refuse_names(dialect, options.prefix, {options.tiles, options.lists, options.grid},
-                                  options.push_constants))
+    if (auto error = refuse_names(
+            dialect, options.prefix,
+            {options.tiles, options.lists, options.grid, options.slices, options.bins}, options.push_constants))
         return error;
     if (options.storage == ListStorage::storage_buffer && !dialect.storage_buffers)
         return Error{ErrorCode::no_storage_buffers};
@@ -121,7 +185,9 @@ inline std::optional<Error> refuse(const ShaderOptions& options) {
     const bool tiles_in_block =
                    options.storage == ListStorage::uniform_block || (table && options.tiles_in_uniform_block),
                lists_in_block = options.storage == ListStorage::uniform_block;
-    if ((tiles_in_block && options.max_tiles == 0) || (lists_in_block && table && options.max_entries == 0))
+    const bool slices_in_block = lists_in_block && options.slicing != Slicing::none;
+    if ((tiles_in_block && options.max_tiles == 0) || (lists_in_block && table && options.max_entries == 0) ||
+        (slices_in_block && options.max_slices == 0))
         return Error{ErrorCode::block_size_unknown};
     // Blocks are made of whole vectors of 16 bytes.
     const std::uint64_t most = options.uniform_block_bytes > 65536 && dialect.hlsl
@@ -130,8 +196,11 @@ inline std::optional<Error> refuse(const ShaderOptions& options) {
                         tile_bytes = table && tiles_in_block ? 8ull * options.max_tiles : 0,
                         list_bytes = lists_in_block
                                          ? encoded_bytes(format, options.max_tiles, options.max_entries)
-                                         : 0;
-    for (const std::uint64_t bytes : {tile_bytes, list_bytes})
+                                         : 0,
+                        slice_bytes = slices_in_block ? slice_words(options.max_slices) * 4 : 0,
+                        bin_bytes =
+                            slices_in_block && options.slicing == Slicing::z_bins ? 8ull * options.max_slices : 0;
+    for (const std::uint64_t bytes : {tile_bytes, list_bytes, slice_bytes, bin_bytes})
         if (bytes > most) return Error{ErrorCode::uniform_block_too_small, bytes, most};
     return std::nullopt;
 }
@@ -152,11 +221,35 @@ inline void add_tile(ShaderWriter& writer, const ShaderOptions& options) {
                (options.tile_size == 0 ? "$grid.x" : std::to_string(options.tile_size) + "u") + ";\n}\n");
 }
 
-/// The expression that reads the id at a place of the lists.
-inline std::string read_id(const ShaderWriter& writer, const ShaderBuffer& lists, IdWidth ids) {
-    if (ids == IdWidth::u32 || lists.format != TexelFormat::r32ui) return writer.read(lists, "c.at");
-    return ids == IdWidth::u16 ? "(" + writer.read(lists, "c.at >> 1u") + " >> ((c.at & 1u) * 16u)) & 0xffffu"
-                               : "(" + writer.read(lists, "c.at >> 2u") + " >> ((c.at & 3u) * 8u)) & 0xffu";
+/// `slice`: the slice of a view depth. A guess, by a logarithm that a device may round as it likes, and from there to where
+/// the boundaries have it. They and the depth are compared as words: devices may take tiny floats for zero.
+inline void add_slice(ShaderWriter& writer, const ShaderBuffer& slices) {
+    const auto word = [&](const std::string& index) { return writer.read(slices, index); };
+    const auto number = [&](const std::string& index) { return "uintBitsToFloat(" + word(index) + ")"; };
+    writer.add("\n// The slice that a view depth lies in.\nuint $slice(float view_depth) {\n    float guess = " +
+               number("0u") + " * log2(max(view_depth, 1e-37)) + " + number("1u") + " * view_depth + " +
+               number("2u") + ";\n    uint last = " + word("3u") +
+               R"(;
+    uint slice = min(uint(clamp(guess, 0.0, 1e9)), last);
+    uint bits = floatBitsToUint(view_depth);
+    uint key = (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
+    while (slice > 0u && key < )" +
+               word("slice + 3u") + R"() slice -= 1u;
+    while (slice < last && key >= )" +
+               word("slice + 4u") + R"() slice += 1u;
+    return slice;
+}
+)");
+}
+
+/// `id_at`: the id at a place of the lists.
+inline void add_id_at(ShaderWriter& writer, const ShaderBuffer& lists, IdWidth ids) {
+    const bool whole = ids == IdWidth::u32 || lists.format != TexelFormat::r32ui;
+    writer.add("\nuint $id_at(uint at) {\n    return " +
+               (whole                 ? writer.read(lists, "at")
+                : ids == IdWidth::u16 ? "(" + writer.read(lists, "at >> 1u") + " >> ((at & 1u) * 16u)) & 0xffffu"
+                                      : "(" + writer.read(lists, "at >> 2u") + " >> ((at & 3u) * 8u)) & 0xffu") +
+               ";\n}\n");
 }
 
 }  // namespace detail
@@ -165,16 +258,20 @@ inline std::string read_id(const ShaderWriter& writer, const ShaderBuffer& lists
 /// options break. `lightbin_` stands for options.prefix, with which every name begins:
 ///
 ///     uvec2 lightbin_tile(uvec2 pixel);                   // the tile that a pixel lies in
+///     uint lightbin_slice(float view_depth);              // with slicing: the slice that a depth lies in
 ///     struct lightbin_cursor { uint id; ... };            // a light of a list
-///     lightbin_cursor lightbin_begin(uvec2 pixel);        // before the first light of the pixel's tile
+///     lightbin_cursor lightbin_begin(uvec2 pixel, float view_depth);  // before the first light of the pixel's list
 ///     bool lightbin_next(inout lightbin_cursor cursor);   // moves on to the next light; false: there is none
-///     #define lightbin_for_each_light(cursor, pixel)      // the loop
-///     uint lightbin_count(uvec2 pixel);                   // with heat_map: the length of the list, and as
-///     vec3 lightbin_heat(uvec2 pixel, float most);        // a colour: blue, cyan, green, yellow, red = most
+///     #define lightbin_for_each_light(cursor, pixel, view_depth)      // the loop
+///     uint lightbin_count(uvec2 pixel, float view_depth);             // with heat_map: the number of lights, and as
+///     vec3 lightbin_heat(uvec2 pixel, float view_depth, float most);  // a colour: blue, cyan, green, yellow, red = most
 ///
-/// The same in every language and for every encoding and storage:
+/// The same in every language and for every encoding, storage and slicing:
 ///
-///     lightbin_for_each_light(light, uvec2(gl_FragCoord.xy)) { colour += shade(light.id, position); }
+///     lightbin_for_each_light(light, uvec2(gl_FragCoord.xy), depth) { colour += shade(light.id, position); }
+///
+/// view_depth is the depth of what is lit, as in Slices; it is read with slicing only. With clusters the list is that of the
+/// tile in the depth's slice; with z_bins that of the tile from the least to the greatest rank of the depth's bin.
 ///
 /// `break`, `continue` and `return` work in the loop's body, and loops nest. A pixel must lie in the
 /// viewport. Ids come in ascending order, each once.
@@ -200,30 +297,60 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
         "tiles", resource(tile_storage), options.tiles, TexelFormat::rg32ui, (options.max_tiles + 1) / 2, 0};
     const ShaderBuffer lists = {"lists", resource(options.storage), options.lists, texels,
                                 vectors, options.texture_width};
+    const ShaderBuffer slices = {"slices", resource(options.storage), options.slices, TexelFormat::r32ui,
+                                 static_cast<std::uint32_t>((slice_words(options.max_slices) + 3) / 4),
+                                 options.texture_width};
+    const ShaderBuffer bins = {"bins", resource(options.storage), options.bins, TexelFormat::rg32ui,
+                               options.max_slices / 2 + 1, options.texture_width};
+    const bool sliced = options.slicing != Slicing::none, clusters = options.slicing == Slicing::clusters,
+               binned = options.slicing == Slicing::z_bins;
     std::vector<ShaderConstant> constants = {{"uvec4", "grid"}};
     if (options.viewport_corner) constants.push_back({"ivec2", "corner"});
     writer.declare_constants(constants, options.grid, options.push_constants);
     if (table) writer.declare(tiles);
     writer.declare(lists);
+    if (sliced) writer.declare(slices);
+    if (binned) writer.declare(bins);
     add_tile(writer, options);
+    if (sliced) add_slice(writer, slices);
+    if (!bits) add_id_at(writer, lists, format.ids);
 
-    const std::string index = "tile.y * $grid.y + tile.x";
+    const std::string size =
+        options.tile_size == 0 ? "$grid.x" : std::to_string(options.tile_size) + "u";
     const auto number = [](std::uint64_t n) { return std::to_string(n) + "u"; };
     writer.add("\nstruct $cursor {\n    uint id;\n    uint at;\n    uint end;\n");
     if (bits) writer.add("    uint bits;\n");
-    writer.add("};\n\n$cursor $begin(uvec2 pixel) {\n    uvec2 tile = $tile(pixel);\n    $cursor c;\n");
-    if (table) {
+    if (binned) writer.add("    uint last;\n");
+    writer.add("};\n\n$cursor $begin(uvec2 pixel, float view_depth) {\n    uvec2 tile = $tile(pixel);\n");
+    if (sliced) writer.add("    uint slice = $slice(view_depth);\n");
+    if (clusters) writer.add("    tile.y += slice * (($grid.w - 1u) / " + size + " + 1u);\n");
+    if (binned) writer.add("    uvec2 bin = " + writer.read(bins, "slice") + ";\n");
+    writer.add("    uint place = tile.y * $grid.y + tile.x;\n    $cursor c;\n");
+    if (table)
         writer.add("    uvec2 list = " +
                    (tiles.resource == ShaderResource::texture_2d
                         ? writer.read_texel(tiles, "int(tile.x), int(tile.y)")
-                        : writer.read(tiles, "(" + index + ")")) +
-                   ";\n    c.id = 0u;\n    c.at = list.x;\n    c.end = list.x + list.y;\n");
-    } else {
-        const std::string each = number(places_a_tile(format));
-        writer.add(std::string("    c.id = ") + (bits ? "0u - 32u" : "0u") + ";\n    c.at = (" + index +
-                   ") * " + each + ";\n    c.end = c.at + " + each + ";\n");
-        if (bits) writer.add("    c.bits = 0u;\n");
+                        : writer.read(tiles, "place")) +
+                   ";\n    c.at = list.x;\n    c.end = list.x + list.y;\n");
+    else
+        writer.add("    c.at = place * " + number(places_a_tile(format)) + ";\n    c.end = c.at + " +
+                   number(places_a_tile(format)) + ";\n");
+    writer.add(bits && !binned ? "    c.id = 0u - 32u;\n    c.bits = 0u;\n" : "    c.id = 0u;\n");
+    if (binned) writer.add("    c.last = bin.y;\n");
+    // The list is entered at the bin's first light.
+    if (binned && bits)
+        writer.add("    c.at += bin.x >> 5u;\n    c.id = bin.x & ~31u;\n    c.bits = " + writer.read(lists, "c.at") +
+                   " & (0xffffffffu << (bin.x & 31u));\n    c.at += 1u;\n");
+    else if (binned && table)
+        writer.add(R"(    uint end = c.end;
+    while (c.at < end) {
+        uint middle = c.at + ((end - c.at) >> 1u);
+        if ($id_at(middle) < bin.x) c.at = middle + 1u;
+        else end = middle;
     }
+)");
+    else if (binned)
+        writer.add("    while (c.at < c.end && $id_at(c.at) < bin.x) c.at += 1u;\n");
     // One return: fxc's shader model 5.1 takes a second one for a value that was not set.
     writer.add("    return c;\n}\n\nbool $next(inout $cursor c) {\n");
     if (bits) {
@@ -235,24 +362,27 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
                    (writer.dialect().storage_buffers
                         ? "uint(findLSB(c.bits))"
                         : "(floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u") +
-                   ";\n        c.bits &= c.bits - 1u;\n    }\n    return more;\n}\n");
+                   ";\n        c.bits &= c.bits - 1u;\n");
     } else {
-        writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = " +
-                   read_id(writer, lists, format.ids) + ";\n        c.at += 1u;\n" +
-                   (table ? "" : "        more = c.id != " + number(countable_lights(format)) + ";\n") +
-                   "    }\n    return more;\n}\n");
+        writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = $id_at(c.at);\n        "
+                   "c.at += 1u;\n");
+        if (!table) writer.add("        more = c.id != " + number(countable_lights(format)) + ";\n");
     }
-    writer.add("\n#define $for_each_light(cursor, pixel) for ($cursor cursor = $begin(pixel); "
+    if (binned) writer.add("        more = more && c.id <= c.last;\n");
+    writer.add("    }\n    return more;\n}\n");
+    writer.add("\n#define $for_each_light(cursor, pixel, view_depth) for ($cursor cursor = $begin(pixel, view_depth); "
                "$next(cursor);)\n");
 
     if (options.heat_map)
-        writer.add(std::string("\nuint $count(uvec2 pixel) {\n    $cursor c = $begin(pixel);\n") +
-                   (table ? "    return c.end - c.at;\n"
-                          : "    uint count = 0u;\n    while ($next(c)) count += 1u;\n    return count;\n") +
+        writer.add(std::string("\nuint $count(uvec2 pixel, float view_depth) {\n    $cursor c = $begin(pixel, "
+                               "view_depth);\n") +
+                   (table && !binned ? "    return c.end - c.at;\n"
+                                     : "    uint count = 0u;\n    while ($next(c)) count += 1u;\n    return "
+                                       "count;\n") +
                    R"(}
 
-vec3 $heat(uvec2 pixel, float most) {
-    float heat = float($count(pixel)) / most;
+vec3 $heat(uvec2 pixel, float view_depth, float most) {
+    float heat = float($count(pixel, view_depth)) / most;
     return clamp(vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat), 0.0, 1.0);
 }
 )");

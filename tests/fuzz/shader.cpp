@@ -263,6 +263,8 @@ void fuzz_snippet(Bytes& bytes) {
     options.max_entries = take_size(bytes);
     if ((flags & 64) != 0) options.uniform_block_bytes = take_size(bytes);
     take_rest(bytes, options, {&options.tiles, &options.lists, &options.grid}, question);
+    options.slicing = take_enum(bytes, Slicing::z_bins);
+    options.max_slices = take_size(bytes);
 
     const ListFormat& format = options.format;
     const Language language(options.language);
@@ -289,18 +291,25 @@ void fuzz_snippet(Bytes& bytes) {
     refuse_if(bits && format.max_lights == 0, ErrorCode::max_lights_unknown);
     refuse_if((lists_in_block || tiles_in_block) && tiles == 0, ErrorCode::block_size_unknown);
     refuse_if(lists_in_block && table && options.max_entries == 0, ErrorCode::block_size_unknown);
+    const bool sliced = options.slicing != Slicing::none, binned = options.slicing == Slicing::z_bins;
+    refuse_if(lists_in_block && sliced && options.max_slices == 0, ErrorCode::block_size_unknown);
     const double list_bytes = bits    ? tiles * 4 * std::ceil(format.max_lights / 32.0)
                               : table ? options.max_entries * id_bytes
                                       : tiles * format.capacity * id_bytes;
     question.block_bytes =
         language.hlsl ? std::min(options.uniform_block_bytes, 65536u) : options.uniform_block_bytes;
     const auto too_large = [&](double size) { return std::ceil(size / 16) * 16 > question.block_bytes; };
-    refuse_if((tiles_in_block && too_large(8 * tiles)) || (lists_in_block && too_large(list_bytes)),
+    const double slices = options.max_slices;
+    refuse_if((tiles_in_block && too_large(8 * tiles)) || (lists_in_block && too_large(list_bytes)) ||
+                  (lists_in_block && sliced && too_large(4 * (slices + 3))) ||
+                  (lists_in_block && binned && too_large(8 * slices)),
               ErrorCode::uniform_block_too_small);
 
     if (options.viewport_corner) question.constants.push_back("corner");
     if (table) question.wanted.push_back({"tiles", options.tiles});
     question.wanted.push_back({"lists", options.lists});
+    if (sliced) question.wanted.push_back({"slices", options.slices});
+    if (binned) question.wanted.push_back({"bins", options.bins});
     question.names = {"tile", "cursor", "begin", "next", "for_each_light"};
     if (options.heat_map) question.names.insert(question.names.end(), {"count", "heat"});
     check(shader_snippet(options), question);

@@ -8,7 +8,10 @@
 #include <lightbin/shader.hpp>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <random>
 #include <span>
 #include <string>
@@ -32,6 +35,7 @@ inline std::string name_of(const lightbin::ShaderOptions& options) {
     option(options.flip_y, "flipped");
     option(options.viewport_corner, "corner");
     option(options.heat_map, "heat map");
+    option(options.slicing != lightbin::Slicing::none, to_string(options.slicing));
     return name;
 }
 
@@ -72,36 +76,82 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions o
 
 constexpr unsigned switch_count = 16;  // sets of the options that are on or off
 
-/// Every set of options for a language: switch_count of each list, the two of `flip_y` side by side. Bindings
-/// are numbered so that no two kinds share a number: glslang puts the registers t, u and b of HLSL in one row.
-inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguage language) {
+inline lightbin::ShaderOptions with_switches(lightbin::ShaderOptions options, unsigned switches) {
+    options.flip_y = switches & 1;
+    options.viewport_corner = switches & 2;
+    options.tile_size = switches & 4 ? 16 : 0;
+    options.heat_map = switches & 8;
+    return options;
+}
+
+/// Every list of a language, and where the constants are, with no switch on. Bindings are numbered so that no two kinds
+/// share a number: glslang puts the registers t, u and b of HLSL in one row.
+inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderLanguage language,
+                                                       lightbin::Slicing slicing) {
     const lightbin::detail::Dialect dialect = lightbin::detail::dialect(language);
     const int set = dialect.spaces ? 1 : 0;
     lightbin::ShaderOptions options;
     options.language = language;
+    options.slicing = slicing;
     options.texture_width = 37;  // no power of two
     options.max_tiles = 100;
     options.max_entries = 400;
+    options.max_slices = 30;
     options.uniform_block_bytes = 65536;
     options.tiles = {3, set};
     options.lists = {4, set};
     options.grid = {5, 0};
+    options.slices = {6, set};
+    options.bins = {7, set};
     if (set != 0) options.prefix = "my_";
 
+    std::vector<lightbin::ShaderOptions> every = every_list(options);
+    options.push_constants = dialect.vulkan;
+    if (dialect.vulkan)
+        for (const lightbin::ShaderOptions& list : every_list(options))
+            every.push_back(list);
+    return every;
+}
+
+/// Every list of a language with every set of switches; with slicing two sets of each, which take turns and between them
+/// have every switch on and off.
+inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguage language) {
+    using lightbin::Slicing;
     std::vector<lightbin::ShaderOptions> every;
-    for (const bool push : {false, true}) {
-        if (push && !dialect.vulkan) continue;
-        options.push_constants = push;
-        for (lightbin::ShaderOptions list : every_list(options))
-            for (unsigned switches = 0; switches < switch_count; ++switches) {
-                list.flip_y = switches & 1;
-                list.viewport_corner = switches & 2;
-                list.tile_size = switches & 4 ? 16 : 0;
-                list.heat_map = switches & 8;
-                every.push_back(list);
-            }
+    for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
+        unsigned turn = 0;
+        for (const lightbin::ShaderOptions& list : every_list(language, slicing)) {
+            ++turn;
+            for (unsigned switches = 0; switches < switch_count; ++switches)
+                if (slicing == Slicing::none || switches == turn % switch_count ||
+                    (switches ^ turn % switch_count) == switch_count - 1)
+                    every.push_back(with_switches(list, switches));
+        }
     }
     return every;
+}
+
+/// Where depth is cut, by no law.
+inline lightbin::Slices reader_slices() {
+    constexpr float boundaries[] = {-1, 0, 2.5f, 4, 4.5f, 8, 12, 13};
+    return *lightbin::Slices::from_boundaries(boundaries);
+}
+
+/// The depths that pixels have in turns: the boundaries, the floats beside them, and others.
+inline std::vector<float> reader_depths() {
+    constexpr float endless = std::numeric_limits<float>::infinity();
+    std::vector<float> depths = {1e-41f, -1e-41f, 3.3f, 7, 10, 1e30f, endless, -endless};
+    for (const float boundary : reader_slices().boundaries()) {
+        depths.push_back(boundary);
+        depths.push_back(std::nextafter(boundary, -endless));
+        depths.push_back(std::nextafter(boundary, endless));
+    }
+    return depths;
+}
+
+/// The depth of a pixel, as its place in reader_depths().
+inline std::size_t depth_of_pixel(std::size_t x, std::size_t y) {
+    return (5 * x + 3 * y) % reader_depths().size();
 }
 
 /// Where in the window the viewport begins.
@@ -118,23 +168,41 @@ inline std::string reader_text(const lightbin::ShaderOptions& options, const lig
     const auto pair = [](auto x, auto y) {
         return "uvec2(" + std::to_string(x) + "u, " + std::to_string(y) + "u)";
     };
-    std::string text = version_line(options.language) + snippet.text + "\n";
-    if (dialect.hlsl) text += "#define highp\n#define uvec2 uint2\n#define uvec4 uint4\n";
+    std::string text = version_line(options.language);
+    const bool sliced = options.slicing != lightbin::Slicing::none;
+    // A device's logarithm may be as wrong as it likes.
+    if (sliced && options.heat_map) text += "#define log2(x) (0.6 * log2(x) - 1.0)\n";
+    text += snippet.text + "\n";
+    if (dialect.hlsl)
+        text += "#define highp\n#define uvec2 uint2\n#define uvec4 uint4\n#define uintBitsToFloat asfloat\n";
+    const std::vector<float> depths = reader_depths();
+    std::string depth = "0.0", words;
+    for (const float value : depths)
+        words += (words.empty() ? "" : ", ") + std::to_string(std::bit_cast<std::uint32_t>(value)) + "u";
+    if (sliced) {
+        const std::string count = std::to_string(depths.size());
+        const std::string of_pixel =
+            options.viewport_corner ? "(pixel - " + pair(corner_x, corner_y) + ")" : "pixel";
+        text += dialect.hlsl ? "static const uint depths[" + count + "] = {" + words + "};\n"
+                             : "const highp uint depths[" + count + "] = uint[" + count + "](" + words + ");\n";
+        depth = "uintBitsToFloat(depths[(5u * " + of_pixel + ".x + 3u * " + of_pixel + ".y) % " + count + "u])";
+    }
     text += R"(
 uvec4 read_list(highp uvec2 pixel) {
+    highp float depth = )" + depth + R"(;
     highp uint hash = 2166136261u;
     highp uint sum = 0u;
     highp uint count = 0u;
     )" + prefix +
-            R"(for_each_light(light, pixel) {
+            R"(for_each_light(light, pixel, depth) {
         hash = (hash ^ light.id) * 16777619u;
         count += 1u;
         sum += count * light.id;
     }
 )";
     if (options.heat_map)
-        text += "    if (" + prefix + "count(pixel) != count || " + prefix +
-                "heat(pixel, 8.0).x > 1.0) hash += 1u;\n";
+        text += "    if (" + prefix + "count(pixel, depth) != count || " + prefix +
+                "heat(pixel, depth, 8.0).x > 1.0) hash += 1u;\n";
     text += "    highp uvec2 tile = " + prefix +
             "tile(pixel);\n    return uvec4(tile.x + (tile.y << 16u), count, hash, sum);\n}\n\n";
 
@@ -182,23 +250,28 @@ inline std::vector<lightbin::Sphere> reader_lights(std::size_t count) {
 
 /// The bytes of what a snippet binds.
 inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin::ShaderOptions& options,
-                          const lightbin::ShaderGrid& constants, const lightbin::View& view,
-                          std::span<const lightbin::ListRange> tiles, std::span<const std::byte> lists) {
+                          const lightbin::ShaderGrid& constants,
+                          const lightbin::LightGrid<std::uint32_t>& grid, std::span<const std::byte> lists) {
     const std::string name = binding.name.substr(options.prefix.size());
     Input input;
     input.binding = binding;
+    const std::vector<std::uint32_t> slices = lightbin::shader_slices(reader_slices());
     std::span<const std::byte> data = lists;
     if (name.starts_with("grid"))
         data = std::as_bytes(std::span(&constants, 1));
     else if (name.starts_with("corner"))
         data = std::as_bytes(std::span(&constants.corner_x, 2));
     else if (name.starts_with("tiles"))
-        data = std::as_bytes(tiles);
+        data = std::as_bytes(grid.ranges());
+    else if (name.starts_with("slices"))
+        data = std::as_bytes(std::span(slices));
+    else if (name.starts_with("bins"))
+        data = std::as_bytes(grid.ranks().bins);
     if (binding.bytes != 0 && data.size() > binding.bytes) data = data.first(binding.bytes);
     input.bytes.assign(data.begin(), data.end());
     std::size_t size = (std::max)({input.bytes.size(), std::size_t{binding.bytes}, std::size_t{16}});
     if (binding.resource == lightbin::ShaderResource::texture_2d) {
-        input.width = binding.width ? binding.width : static_cast<std::uint32_t>(view.tiles_x());
+        input.width = binding.width ? binding.width : static_cast<std::uint32_t>(grid.tiles_x());
         const std::size_t row = std::size_t{input.width} * binding.stride;
         input.height = static_cast<std::uint32_t>((size + row - 1) / row);
         size = row * input.height;
@@ -208,18 +281,21 @@ inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin
 }
 
 /// Returns a run of a snippet, fit to a screen: options.tile_size other than 0 becomes that of the screen.
-inline Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& screen) {
+template <lightbin::Slicing slicing>
+Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& screen) {
     using namespace lightbin;
     constexpr float projection[4][4] = {
         {1.2f, 0, 0, 0}, {0, 1.7f, 0, 0}, {0, 0, -1.01f, -1}, {0, 0, -0.2f, 0}};
     const auto view =
         View::from_projection(projection, {screen.width, screen.height}, {.tile_size = screen.tile_size});
-    Binner<> binner;
+    constexpr Options of_binner = {.slicing = slicing};
+    const Slices slices = reader_slices();
+    Binner<of_binner> binner;
     const std::size_t lights = options.format.encoding == ListEncoding::bitmask ? options.format.max_lights
                                : options.format.ids == IdWidth::u8              ? 200
                                : options.format.ids == IdWidth::u16             ? 50000
                                                                                 : 100000;
-    const auto grid = binner.bin(*view, reader_lights(lights));
+    const auto grid = binner.bin(*view, reader_lights(lights), inputs_for<of_binner>({}, slices));
     std::vector<std::byte> lists(encoded_bytes(options.format, grid->ranges().size(), grid->ids().size()));
     Job job;
     job.name = name_of(options) + (stage == Stage::compute ? ", compute, " : ", fragment, ") +
@@ -240,16 +316,24 @@ inline Job reader_job(lightbin::ShaderOptions options, Stage stage, const Screen
     job.text = reader_text(options, *snippet, stage, job.width, job.height);
     const ShaderGrid constants = shader_grid(*view, corner_x, corner_y);
     for (const ShaderBinding& binding : snippet->bindings)
-        job.inputs.push_back(reader_input(binding, options, constants, *view, grid->ranges(), lists));
+        job.inputs.push_back(reader_input(binding, options, constants, *grid, lists));
 
     for (int y = 0; y < screen.height; ++y)
         for (int x = 0; x < screen.width; ++x) {
             const int tx = x / screen.tile_size,
                       ty = (options.flip_y ? screen.height - 1 - y : y) / screen.tile_size;
-            std::uint32_t hash = 2166136261u, sum = 0, count = 0;
-            for (const std::uint32_t id : grid->lights_in(tx, ty)) {
-                if (options.format.encoding == ListEncoding::sentinel && count == options.format.capacity)
+            std::uint32_t hash = 2166136261u, sum = 0, count = 0, listed = 0;
+            const float depth =
+                reader_depths()[depth_of_pixel(static_cast<std::size_t>(x), static_cast<std::size_t>(y))];
+            const int slice = slices.slice_at(depth);
+            const BinRange all = {0, 0xffffffff};
+            const BinRange bin =
+                slicing == Slicing::z_bins ? grid->ranks().bins[static_cast<std::size_t>(slice)] : all;
+            for (const std::uint32_t id :
+                 grid->lights_in(tx, ty, slicing == Slicing::clusters ? slice : 0)) {
+                if (options.format.encoding == ListEncoding::sentinel && listed++ == options.format.capacity)
                     break;
+                if (id < bin.least || id > bin.greatest) continue;
                 hash = (hash ^ id) * 16777619u;
                 sum += ++count * id;
             }
@@ -277,33 +361,46 @@ struct ReaderRun {
     lightbin::ShaderOptions options;
     Stage stage;
     ScreenSize screen;
-    Job job() const { return reader_job(options, stage, screen); }
+    Job job() const {
+        using lightbin::Slicing;
+        return options.slicing == Slicing::none       ? reader_job<Slicing::none>(options, stage, screen)
+               : options.slicing == Slicing::clusters ? reader_job<Slicing::clusters>(options, stage, screen)
+                                                      : reader_job<Slicing::z_bins>(options, stage, screen);
+    }
 };
 
 /// What a language runs: every list, flipped and not, in fragment and compute shaders, at each small screen;
-/// the other options take turns. At the large screen: one width of ids.
+/// the other options take turns. At the large screen: one width of ids. With slicing: at two small screens.
 /// each_flip  false: half of the small screens are flipped, the other half not; the next list has it the other way round
 inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, bool each_flip = true) {
-    constexpr ScreenSize small[] = {{33, 17, 1},  {33, 17, 7}, {33, 17, 16},
-                                    {33, 17, 64}, {1, 1, 1},   {1, 1, 64}};
+    using lightbin::Slicing;
+    constexpr ScreenSize small[] = {{33, 17, 7},  {33, 17, 16}, {33, 17, 1},
+                                    {33, 17, 64}, {1, 1, 1},    {1, 1, 64}};
     constexpr ScreenSize large = {1919, 1079, 32};
     std::vector<ReaderRun> runs;
-    const auto every = every_reader(language);
     const bool computes = lightbin::detail::dialect(language).storage_buffers;
     unsigned turn = 0;
-    for (std::size_t list = 0; list < every.size(); list += switch_count)
-        for (unsigned flip = 0; flip < 2; ++flip)
-            for (const Stage stage : {Stage::fragment, Stage::compute}) {
-                if (stage == Stage::compute && !computes) continue;
-                const auto add = [&](const ScreenSize& screen) {
-                    turn = (turn + 1) % (switch_count / 2);
-                    runs.push_back({every[list + 2 * turn + flip], stage, screen});
-                };
-                for (std::size_t i = 0; i < std::size(small); ++i)
-                    if (each_flip || (i + flip + list / switch_count) % 2 == 0) add(small[i]);
-                if (every[list].format.ids == lightbin::IdWidth::u16 ||
-                    every[list].format.encoding == lightbin::ListEncoding::bitmask)
-                    add(large);
-            }
+    const auto add_list = [&](const lightbin::ShaderOptions& list, unsigned place, unsigned flip,
+                              Stage stage) {
+        const auto add = [&](const ScreenSize& screen) {
+            turn = (turn + 1) % (switch_count / 2);
+            runs.push_back({with_switches(list, 2 * turn + flip), stage, screen});
+        };
+        const bool sliced = list.slicing != Slicing::none;
+        for (unsigned i = 0; i < (sliced ? 2 : std::size(small)); ++i)
+            if (each_flip || (i + flip + place) % 2 == 0) add(small[i]);
+        if (!sliced && (list.format.ids == lightbin::IdWidth::u16 ||
+                        list.format.encoding == lightbin::ListEncoding::bitmask))
+            add(large);
+    };
+    for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
+        unsigned place = 0;
+        for (const lightbin::ShaderOptions& list : every_list(language, slicing)) {
+            for (unsigned flip = 0; flip < 2; ++flip)
+                for (const Stage stage : {Stage::fragment, Stage::compute})
+                    if (stage == Stage::fragment || computes) add_list(list, place, flip, stage);
+            ++place;
+        }
+    }
     return runs;
 }

@@ -8,7 +8,14 @@
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/mat4x4.hpp>
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
+#include <vector>
 
 using namespace lightbin;
 
@@ -35,7 +42,7 @@ TEST_CASE("each option brings its own lines and no others") {
     CHECK(has(storage, "layout(std430, binding = 0)"));
     CHECK(has(storage, "layout(std430, binding = 1)"));
     for (const char* absent : {"sampler", "pixel.y =", "0xffff", "#version", "corner", "heat", "count",
-                               "bits", "highp", "set =", "precision"})
+                               "bits", "highp", "set =", "precision", "slice", "bin."})
         CHECK(!has(storage, absent));
 
     const std::string texture = text_of({.language = ShaderLanguage::glsl_330,
@@ -48,6 +55,9 @@ TEST_CASE("each option brings its own lines and no others") {
     CHECK(has(text_of({.format = {.ids = IdWidth::u16}}), "0xffff"));
     CHECK(has(text_of({.flip_y = true}), "pixel.y ="));
     CHECK(has(text_of({.viewport_corner = true}), "lightbin_corner"));
+    CHECK(has(text_of({.slicing = Slicing::clusters}), "lightbin_slice(view_depth)"));
+    CHECK(!has(text_of({.slicing = Slicing::clusters}), "bins"));
+    CHECK(has(text_of({.slicing = Slicing::z_bins}), "lightbin_bins["));
     CHECK(has(text_of({.heat_map = true}), "lightbin_heat"));
     CHECK(!has(text_of({.tile_size = 16}), "grid.x"));
     const std::string bound = text_of({.tiles = {5}, .lists = {9}});
@@ -122,6 +132,8 @@ TEST_CASE("a wrong option set is refused with a sentence that names the limit") 
     CHECK(has(refusal({.push_constants = true}), "Vulkan"));
     CHECK(has(refusal({.storage = ListStorage::texture_2d, .texture_width = 16385}), "16384"));
     CHECK(has(refusal({.tile_size = -1}), "-1"));
+    CHECK(has(refusal({.storage = ListStorage::uniform_block, .slicing = Slicing::clusters, .max_tiles = 9, .max_entries = 9}),
+              "max_slices"));
     for (const char* prefix : {"", "1a", "gl_a", "a__", "a-b", "_a"})
         CHECK(has(refusal({.prefix = prefix}), "prefix"));
 }
@@ -146,6 +158,33 @@ TEST_CASE("shader_grid") {
     CHECK(grid.height == 1079);
     CHECK(grid.corner_x == 3);
     CHECK(grid.corner_y == -5);
+}
+
+TEST_CASE("shader_slices: the last slice, and boundaries as words that ascend as they do") {
+    const std::vector<float> boundaries = {-1e30f, -1, -1e-41f, 0, 1e-41f, 1, 1.0000001f, 1e30f};
+    const std::vector<std::uint32_t> words = shader_slices(*Slices::from_boundaries(boundaries));
+    REQUIRE(words.size() == 4 + boundaries.size());
+    CHECK(words[3] == boundaries.size());
+    CHECK((std::is_sorted(words.begin() + 4, words.end(), std::less_equal<>())));  // none twice
+    CHECK(shader_slices(*Slices::linear(1, 0, 1)) == std::vector<std::uint32_t>{0, 0, 0, 0});
+}
+
+TEST_CASE("shader_slices: the guess of a law is right but beside its boundaries") {
+    for (const Slices& slices :
+         {*Slices::exponential(24, 5, 200), *Slices::linear(1024, 0, 200), *Slices::exponential(256, 0.1f, 1e6f),
+          *Slices::linear(32, -40, 70), *Slices::linear(2, 0, 1)}) {
+        const std::vector<std::uint32_t> words = shader_slices(slices);
+        const auto factor = [&](std::size_t i) { return std::bit_cast<float>(words[i]); };
+        const std::span<const float> ends = slices.boundaries();
+        int wrong = 0;
+        for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+            const float depth = ends[i] + 0.5f * (ends[i + 1] - ends[i]);
+            const float by_log2 = factor(0) != 0 ? factor(0) * std::log2(depth) : 0;
+            wrong += static_cast<int>(by_log2 + factor(1) * depth + factor(2)) != slices.slice_at(depth);
+        }
+        CAPTURE(ends.size());
+        CHECK(wrong == 0);
+    }
 }
 
 TEST_CASE("reduction and build shaders: what is off leaves no line, what can't be is refused") {
