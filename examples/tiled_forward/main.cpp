@@ -46,12 +46,17 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
     app.add_option("--tile", options.frame.tile_size, "Side of a tile in pixels")
         ->check(CLI::Range(1, 32768))
         ->capture_default_str();
-    bool no_pre_pass = false;
-    app.add_flag("--no-pre-pass", no_pre_pass, "No depth pre-pass (only with --z-bounds none)");
-    std::string z_bounds = "both";
-    app.add_option("--z-bounds", z_bounds, "Depth bounds of a tile: none, max or both")
-        ->check(CLI::IsMember({"none", "max", "both"}))
+    std::string depth = "pre-pass";
+    app.add_option("--depth", depth,
+                   "What keeps a light from what is at other depths: none; a depth pre-pass; or without one z-bins or "
+                   "clusters")
+        ->check(CLI::IsMember({"none", "pre-pass", "z-bins", "clusters"}))
         ->capture_default_str();
+    std::string z_bounds = "both";
+    const CLI::Option* const bounds_option =
+        app.add_option("--z-bounds", z_bounds, "Depth bounds of a tile, from the pre-pass: none, max or both")
+            ->check(CLI::IsMember({"none", "max", "both"}))
+            ->capture_default_str();
     app.add_flag("--gpu-z-bounds", options.frame.gpu_reduction,
                  "Reduce depth to Z bounds on the GPU (OpenGL ES does in any case)");
     app.add_option("--glsl", options.glsl,
@@ -74,13 +79,15 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
     exit_code = 0;
     try {
         app.parse(argc, argv);
-        options.frame.pre_pass = !no_pre_pass;
+        options.frame.depth = depth == "none"     ? DepthUse::none
+                              : depth == "z-bins" ? DepthUse::z_bins
+                              : depth == "clusters" ? DepthUse::clusters
+                                                  : DepthUse::pre_pass;
         options.frame.z_bounds = z_bounds == "none"  ? ZBoundsUse::none
                                  : z_bounds == "max" ? ZBoundsUse::max
                                                      : ZBoundsUse::both;
-        if (no_pre_pass && options.frame.z_bounds != ZBoundsUse::none)
-            throw CLI::ValidationError("--no-pre-pass",
-                                       "Z bounds come from the pre-pass, so it needs --z-bounds none");
+        if (bounds_option->count() > 0 && options.frame.depth != DepthUse::pre_pass)
+            throw CLI::ValidationError("--z-bounds", "they come from the pre-pass, so not with --depth " + depth);
         int end = -1;
         if (!size.empty() &&
             (std::sscanf(size.c_str(), "%5dx%5d%n", &options.frame.width, &options.frame.height, &end) != 2 ||
@@ -160,11 +167,12 @@ int draw_picture(const Options& options, const Scene& scene) {
     FrameSettings frame = options.frame;
     frame.exposure = renderer.meter(camera, frame) * std::exp2(options.stops);
     renderer.draw(camera, frame);  // waits for shader compilers and memory; the times are the second frame's
+    frame.count_evaluations = true;
     const FrameReport report = renderer.draw(camera, frame);
     print(scene, frame, camera, report);
 
     const Picture tiled = renderer.read_picture();
-    if (options.heat_map) renderer.draw_heat_map(report);
+    if (options.heat_map) renderer.draw_heat_map(report, frame);
     write_png(options.heat_map ? renderer.read_picture() : tiled, options.output);
     std::printf("picture      %s\n", options.output.c_str());
     std::fflush(stdout);

@@ -62,6 +62,12 @@ GLuint new_texture(GLuint old, GLenum format, int width, int height) {
     return made;
 }
 
+lightbin::Slicing slicing_of(const FrameSettings& settings) {
+    return settings.depth == DepthUse::z_bins     ? lightbin::Slicing::z_bins
+           : settings.depth == DepthUse::clusters ? lightbin::Slicing::clusters
+                                                  : lightbin::Slicing::none;
+}
+
 // Mesa's software renderer ends a shader's loops after 65,535 rounds, and says nothing.
 void check_loop(std::size_t lights) {
     if (lights > 65000)
@@ -86,8 +92,9 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
         projection_, {settings.width, settings.height}, {.tile_size = settings.tile_size}));
 
     // 2. Depth alone, and from it the depths between which each tile has anything to light.
-    if (settings.pre_pass) draw_depth();
-    const bool bounded = settings.z_bounds != ZBoundsUse::none;
+    const bool pre_pass = settings.depth == DepthUse::pre_pass;
+    if (pre_pass) draw_depth();
+    const bool bounded = pre_pass && settings.z_bounds != ZBoundsUse::none;
     const bool on_gpu = settings.gpu_reduction || glsl_ < 330;
     if (bounded && !on_gpu) {
         depth_buffer_.resize(static_cast<std::size_t>(settings.width) *
@@ -119,20 +126,8 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     }
     report.milliseconds.reduce = watch.lap();
 
-    // 3. The lists: which lights can reach which tile. The lights are read as they go to the GPU.
-    // Glass may stand anywhere before the opaque surfaces, so it has lists of its own.
-    const std::span local_lights(gpu_lights_.data(), scene_.lights.size());
-    const auto lights = lightbin::view_space(local_lights, [&](const GpuLight& light) {
-        const bool dropped = &light - gpu_lights_.data() == settings.dropped_light;
-        const glm::vec4& s = light.sphere;
-        return lightbin::Sphere{s.x, s.y, s.z, dropped ? -1.0f : s.w};
-    });
-    const auto bin_once = [&]() -> lightbin::TransparencyGrids<std::uint32_t> {
-        const auto lists = value_of(binner_.bin(view, lights, {.bounds = z_bounds}));
-        return {lists, lists};
-    };
-    const auto [opaque, transparent] =
-        glass ? value_of(binner_.bin_transparency(view, lights, {.bounds = z_bounds})) : bin_once();
+    // 3. The lists: which lights can reach which tile.
+    const auto [opaque, transparent] = bin_lights(view, z_bounds, glass, settings);
     report.milliseconds.bin = watch.lap();
 
     // 4. To the GPU.
@@ -140,12 +135,19 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     upload_lights();
     upload_lists(opaque_lists_, opaque);
     if (glass) upload_lists(transparent_lists_, transparent);
+    if (slices_) {
+        const std::vector<std::uint32_t> words = lightbin::shader_slices(*slices_);
+        const auto bins = std::as_bytes(opaque.ranks().bins);
+        const int width = static_cast<int>(list_binding_.width);
+        upload(slices_buffer_, words.data(), 4 * words.size(), width, "slices");
+        upload(bins_buffer_, bins.data(), bins.size(), width, "bins");
+    }
     report.milliseconds.upload = watch.lap();
 
     // 5. The picture.
     const std::uint32_t longest = list_lengths(opaque).longest;
     check_loop(glass ? list_lengths(transparent).longest : longest);  // no shorter than the opaque one
-    draw_triangles(tiled_program_, settings);
+    draw_triangles(tiled_program(slicing_of(settings)), true, settings);
     report.milliseconds.draw = watch.lap();
 
     const lightbin::LightCounts& counts = opaque.light_counts();
@@ -156,15 +158,7 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     report.entries = opaque.ids().size();
     report.longest_list = longest;
     report.transparent_entries = glass ? transparent.ids().size() : 0;
-    const int t = settings.tile_size;
-    double evaluations = 0;
-    for (int ty = 0; ty < view.tiles_y(); ++ty)
-        for (int tx = 0; tx < view.tiles_x(); ++tx) {
-            const double pixels = static_cast<double>(std::min(t, settings.width - tx * t)) *
-                                  std::min(t, settings.height - ty * t);
-            evaluations += pixels * static_cast<double>(opaque.lights_in(tx, ty).size());
-        }
-    report.evaluations_per_pixel = evaluations / settings.width / settings.height;
+    if (settings.count_evaluations) report.evaluations_per_pixel = count_evaluations(settings, opaque);
     if (const GLenum error = glGetError(); error != GL_NO_ERROR)
         throw std::runtime_error("OpenGL reports error " + std::to_string(error));
     return report;
@@ -175,20 +169,97 @@ void Renderer::draw_every_light(const Camera& camera, const FrameSettings& setti
     set_size(settings.width, settings.height, GL_RGBA8);
     set_camera(camera);
     clear();
-    if (settings.pre_pass) draw_depth();
+    if (settings.depth == DepthUse::pre_pass) draw_depth();
     upload_lights();
-    draw_triangles(brute_force_program_, settings);
+    draw_triangles(brute_force_program_, false, settings);
 }
 
-void Renderer::draw_heat_map(const FrameReport& report) {
-    glUseProgram(heat_map_program_);
-    bind_lists(heat_map_program_, opaque_lists_);
-    glUniform1f(uniform(heat_map_program_, "longest_list"),
-                static_cast<float>(std::max(report.longest_list, 1u)));
-    glDisable(GL_DEPTH_TEST);
+// Which lights can reach which tile, and at what depths. The lights are read as they go to the GPU.
+Renderer::Grids Renderer::bin_lights(const lightbin::View& view, const lightbin::ZBounds& z_bounds,
+                                     bool glass, const FrameSettings& settings) {
+    const std::span local_lights(gpu_lights_.data(), scene_.lights.size());
+    const auto lights = lightbin::view_space(local_lights, [&](const GpuLight& light) {
+        const bool dropped = &light - gpu_lights_.data() == settings.dropped_light;
+        const glm::vec4& s = light.sphere;
+        return lightbin::Sphere{s.x, s.y, s.z, dropped ? -1.0f : s.w};
+    });
+    light_order_.clear();
+    slices_.reset();
+    if (settings.depth == DepthUse::none || settings.depth == DepthUse::pre_pass) {
+        // Glass may stand anywhere before the opaque surfaces, so it has lists of its own.
+        if (glass) return value_of(binner_.bin_transparency(view, lights, {.bounds = z_bounds}));
+        const auto grid = value_of(binner_.bin(view, lights, {.bounds = z_bounds}));
+        return {grid, grid};
+    }
+
+    // As deep as any light reaches. What is at any depth has its lights, glass too.
+    float last = 0;
+    for (const GpuLight& light : local_lights)
+        last = std::max(last, light.sphere.w - light.sphere.z);
+    if (!(last < 1e30f)) last = 1e30f;  // a light without an end
+    if (last == 0) last = 1;            // all lights are behind the eye
+    if (settings.depth == DepthUse::clusters) {
+        slices_ = value_of(view.orthographic() ? lightbin::Slices::linear(24, 0, last)
+                                               : lightbin::Slices::exponential(24, last / 40, last));
+        const auto grid = value_of(cluster_binner_.bin(view, lights, {.slices = *slices_}));
+        return {grid, grid};
+    }
+    slices_ = value_of(lightbin::Slices::linear(1024, 0, last));
+    const auto grid = value_of(bin_binner_.bin(view, lights, {.slices = *slices_}));
+    light_order_.assign(grid.ranks().order.begin(), grid.ranks().order.end());
+    std::vector<bool> ranked(scene_.lights.size());
+    for (const std::uint32_t light : light_order_)
+        ranked[light] = true;
+    for (std::uint32_t light = 0; light < ranked.size(); ++light)
+        if (!ranked[light]) light_order_.push_back(light);
+    return {grid, grid};
+}
+
+// Counted for each pixel, from its depth, by the lists themselves.
+double Renderer::count_evaluations(const FrameSettings& settings,
+                                   const lightbin::LightGrid<std::uint32_t>& grid) {
+    const lightbin::View pixels = value_of(lightbin::View::from_projection(
+        projection_, {settings.width, settings.height}, {.tile_size = 1}));
+    pixel_depth_.resize(pixels.tile_count());
+    reduce_on_gpu(pixels, true, {}, pixel_depth_);
+    std::uint64_t evaluations = 0;
+    for (int y = 0; y < settings.height; ++y)
+        for (int x = 0; x < settings.width; ++x) {
+            const float depth = pixel_depth_[static_cast<std::size_t>(y) *
+                                                 static_cast<std::size_t>(settings.width) +
+                                             static_cast<std::size_t>(x)];
+            if (depth < 0 && std::isinf(depth)) continue;  // nothing is seen there
+            const int slice = slices_ ? slices_->slice_at(depth) : 0;
+            const auto list = grid.lights_in(x / settings.tile_size, y / settings.tile_size,
+                                             grid.slices() > 1 ? slice : 0);
+            if (settings.depth != DepthUse::z_bins) {
+                evaluations += list.size();
+                continue;
+            }
+            const lightbin::BinRange bin = grid.ranks().bins[static_cast<std::size_t>(slice)];
+            const auto begin = std::lower_bound(list.begin(), list.end(), bin.least);
+            if (bin.least <= bin.greatest)
+                evaluations += static_cast<std::uint64_t>(
+                    std::upper_bound(begin, list.end(), bin.greatest) - begin);
+        }
+    return static_cast<double>(evaluations) / settings.width / settings.height;
+}
+
+void Renderer::draw_heat_map(const FrameReport& report, const FrameSettings& settings) {
+    const GLuint program = heat_map_program(slicing_of(settings));
+    glUseProgram(program);
+    bind_lists(program, opaque_lists_);
+    glUniform1f(uniform(program, "longest_list"), static_cast<float>(std::max(report.longest_list, 1u)));
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    if (slices_) {
+        set_matrices(program);
+        glDepthFunc(GL_EQUAL);
+        glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(scene_.triangles.size()));
+    } else {
+        glDisable(GL_DEPTH_TEST);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
     glDisable(GL_BLEND);
 }
 
@@ -231,15 +302,13 @@ void Renderer::show() const {
 }
 
 Renderer::Renderer(const Scene& scene, int glsl)
-    : scene_(scene), glsl_(glsl), list_binding_(list_binding(glsl)) {
-    const bool spots =
-        std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return l.spot; });
+    : scene_(scene), glsl_(glsl), list_binding_(list_binding(glsl)),
+      has_spots_(
+          std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return l.spot; })) {
     const std::string geometry = geometry_vertex_shader(glsl);
     depth_program_ = link_program(geometry, depth_fragment_shader(glsl));
-    tiled_program_ = link_program(geometry, forward_fragment_shader(glsl, LightLoop::tile_list, spots));
     brute_force_program_ =
-        link_program(geometry, forward_fragment_shader(glsl, LightLoop::every_light, spots));
-    heat_map_program_ = link_program(overlay_vertex_shader(glsl), heat_map_fragment_shader(glsl));
+        link_program(geometry, forward_fragment_shader(glsl, LightLoop::every_light, has_spots_));
 
     glGenVertexArrays(1, &vertex_array_);
     glBindVertexArray(vertex_array_);
@@ -260,8 +329,10 @@ Renderer::Renderer(const Scene& scene, int glsl)
     opaque_lists_ = {{list_binding_.resource, GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, 8},
                      {list_binding_.resource, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4}};
     transparent_lists_ = opaque_lists_;
+    slices_buffer_ = opaque_lists_.indices;
+    bins_buffer_ = opaque_lists_.tiles;
     for (GpuBuffer* made : {&lights_, &opaque_lists_.tiles, &opaque_lists_.indices, &transparent_lists_.tiles,
-                            &transparent_lists_.indices}) {
+                            &transparent_lists_.indices, &slices_buffer_, &bins_buffer_}) {
         glGenBuffers(1, &made->buffer);
         glGenTextures(1, &made->texture);
     }
@@ -333,10 +404,32 @@ void Renderer::draw_depth() const {
     glDepthFunc(GL_LEQUAL);  // what follows is at the depths already there
 }
 
-void Renderer::draw_triangles(GLuint program, const FrameSettings& settings) const {
-    glUseProgram(program);
+GLuint Renderer::tiled_program(lightbin::Slicing slicing) {
+    GLuint& program = tiled_programs_[static_cast<std::size_t>(slicing)];
+    if (program == 0)
+        program = link_program(geometry_vertex_shader(glsl_),
+                               forward_fragment_shader(glsl_, LightLoop::tile_list, has_spots_, slicing));
+    return program;
+}
+
+GLuint Renderer::heat_map_program(lightbin::Slicing slicing) {
+    GLuint& program = heat_map_programs_[static_cast<std::size_t>(slicing)];
+    const bool over_picture = slicing == lightbin::Slicing::none;
+    if (program == 0)
+        program = link_program(over_picture ? overlay_vertex_shader(glsl_) : geometry_vertex_shader(glsl_),
+                               heat_map_fragment_shader(glsl_, slicing));
+    return program;
+}
+
+// What places the triangles.
+void Renderer::set_matrices(GLuint program) const {
     glUniformMatrix4fv(uniform(program, "view"), 1, GL_FALSE, glm::value_ptr(view_));
     glUniformMatrix4fv(uniform(program, "projection"), 1, GL_FALSE, glm::value_ptr(projection_));
+}
+
+void Renderer::draw_triangles(GLuint program, bool with_lists, const FrameSettings& settings) const {
+    glUseProgram(program);
+    set_matrices(program);
     glUniform2f(uniform(program, "picture_size"), static_cast<float>(width_), static_cast<float>(height_));
     glUniform3fv(uniform(program, "moon"), 1,
                  glm::value_ptr(glm::mat3(view_) * glm::normalize(glm::vec3(0.3f, 0.8f, 0.5f))));
@@ -345,7 +438,7 @@ void Renderer::draw_triangles(GLuint program, const FrameSettings& settings) con
     glUniform1i(uniform(program, "sun_count"), static_cast<int>(scene_.suns.size()));
     bind_texture(program, 2, lights_, "lights");
     const auto opaque = static_cast<GLsizei>(scene_.triangles.size());
-    if (program == tiled_program_) bind_lists(program, opaque_lists_);
+    if (with_lists) bind_lists(program, opaque_lists_);
     glDrawArrays(GL_TRIANGLES, 0, opaque);
     if (!shows_glass(settings)) return;
 
@@ -353,7 +446,7 @@ void Renderer::draw_triangles(GLuint program, const FrameSettings& settings) con
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_COLOR);
     glDepthMask(GL_FALSE);
-    if (program == tiled_program_) bind_lists(program, transparent_lists_);
+    if (with_lists) bind_lists(program, transparent_lists_);
     glDrawArrays(GL_TRIANGLES, opaque, static_cast<GLsizei>(scene_.transparent.size()));
     glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
@@ -370,9 +463,13 @@ void Renderer::bind_lists(GLuint program, const Lists& lists) const {
     if (list_binding_.resource == lightbin::ShaderResource::storage_buffer) {
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, lists.tiles.buffer);
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, lists.indices.buffer);
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, slices_buffer_.buffer);
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, bins_buffer_.buffer);
     } else {
         bind_texture(program, 0, lists.tiles, "lightbin_tiles");
         bind_texture(program, 1, lists.indices, "lightbin_lists");
+        bind_texture(program, 4, slices_buffer_, "lightbin_slices");
+        bind_texture(program, 5, bins_buffer_, "lightbin_bins");
     }
 }
 
@@ -383,11 +480,17 @@ void Renderer::bind_texture(GLuint program, int unit, const GpuBuffer& source, c
     glUniform1i(glGetUniformLocation(program, name), unit);
 }
 
-void Renderer::upload_lights() const {
-    upload(lights_, gpu_lights_.data(), gpu_lights_.size() * sizeof(GpuLight), lights_width, "lights");
+// In the order of their ranks where the lists name those; suns follow.
+void Renderer::upload_lights() {
+    ordered_lights_ = gpu_lights_;
+    for (std::size_t rank = 0; rank < light_order_.size(); ++rank)
+        ordered_lights_[rank] = gpu_lights_[light_order_[rank]];
+    upload(lights_, ordered_lights_.data(), ordered_lights_.size() * sizeof(GpuLight), lights_width,
+           "lights");
 }
 
 void Renderer::upload_lists(const Lists& target, const lightbin::LightGrid<std::uint32_t>& grid) const {
+    // A 2D texture has a row for each tile row, of each slice.
     upload(target.tiles, grid.ranges().data(), grid.ranges().size_bytes(), grid.tiles_x(), "tiles");
     upload(target.indices, grid.ids().data(), grid.ids().size_bytes(), static_cast<int>(list_binding_.width),
            "light lists");

@@ -12,9 +12,17 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+// What is known of depth before the lights are drawn.
+enum class DepthUse {
+    none,      // nothing: each fragment has the list of its tile
+    pre_pass,  // a depth buffer: so does it, with Z bounds from that buffer
+    z_bins,    // nothing, but the list is entered and left by the bin of the fragment's depth
+    clusters   // nothing, but each tile has a list for each slice of depth
+};
 enum class ZBoundsUse { none, max, both };
 
 struct FrameSettings {
@@ -22,8 +30,9 @@ struct FrameSettings {
     int height = 720;
     int tile_size = 16;
     bool gpu_reduction = false;              // Z bounds on the GPU; OpenGL ES has it so in any case
-    bool pre_pass = true;                    // depth first, so that only what is seen is shaded
-    ZBoundsUse z_bounds = ZBoundsUse::both;  // need the pre-pass
+    DepthUse depth = DepthUse::pre_pass;
+    ZBoundsUse z_bounds = ZBoundsUse::both;  // of the pre-pass
+    bool count_evaluations = false;          // takes longer than the picture
     float exposure = 1;                      // 0: linear radiance, see Renderer::meter
     int dropped_light = -1;                  // left out of the lists, to see --check fail
 };
@@ -36,7 +45,7 @@ struct FrameReport {
     std::uint64_t entries = 0;
     std::uint32_t longest_list = 0;
     std::uint64_t transparent_entries = 0;  // 0: no lists are needed
-    double evaluations_per_pixel = 0;       // of opaque surfaces
+    double evaluations_per_pixel = 0;       // of the opaque surfaces that are seen, if they were counted
     struct {
         double pre_pass, reduce, bin, upload, draw;
     } milliseconds{};
@@ -53,8 +62,8 @@ public:
     // Draws the same with every light in every fragment.
     void draw_every_light(const Camera& camera, const FrameSettings& settings);
 
-    // Lays the length of each tile's list, as of the last draw(), over the picture.
-    void draw_heat_map(const FrameReport& report);
+    // Lays the number of each fragment's lights, as of the last draw(), over the picture.
+    void draw_heat_map(const FrameReport& report, const FrameSettings& settings);
 
     // Returns the exposure that shows this view well, from a small picture of it.
     float meter(const Camera& camera, const FrameSettings& settings);
@@ -86,19 +95,26 @@ private:
     struct Lists {
         GpuBuffer tiles, indices;
     };
+    using Grids = lightbin::TransparencyGrids<std::uint32_t>;
 
     void set_size(int width, int height, GLenum colour_format);
     void set_camera(const Camera& camera);
     bool shows_glass(const FrameSettings& settings) const;
     void clear() const;
     void draw_depth() const;
-    void draw_triangles(GLuint program, const FrameSettings& settings) const;
+    Grids bin_lights(const lightbin::View& view, const lightbin::ZBounds& z_bounds, bool glass,
+                     const FrameSettings& settings);
+    GLuint tiled_program(lightbin::Slicing slicing);
+    GLuint heat_map_program(lightbin::Slicing slicing);
+    void set_matrices(GLuint program) const;
+    void draw_triangles(GLuint program, bool with_lists, const FrameSettings& settings) const;
     void bind_lists(GLuint program, const Lists& lists) const;
     void bind_texture(GLuint program, int unit, const GpuBuffer& source, const char* name) const;
     void upload(const GpuBuffer& target, const void* data, std::size_t bytes, int width,
                 const char* what) const;
-    void upload_lights() const;
+    void upload_lights();
     void upload_lists(const Lists& target, const lightbin::LightGrid<std::uint32_t>& grid) const;
+    double count_evaluations(const FrameSettings& settings, const lightbin::LightGrid<std::uint32_t>& grid);
     void reduce_on_gpu(const lightbin::View& view, bool skip_background, std::span<float> min,
                        std::span<float> max);
 
@@ -106,20 +122,29 @@ private:
     int glsl_;
 
     lightbin::ShaderBinding list_binding_;
-    GLuint depth_program_, tiled_program_, brute_force_program_, heat_map_program_;
+    bool has_spots_;
+    GLuint depth_program_, brute_force_program_;
+    GLuint tiled_programs_[3] = {}, heat_map_programs_[3] = {};  // [slicing]
     GLuint vertex_array_ = 0;
     GLuint reduce_programs_[2][2] = {};  // [orthographic][skip_background]
     GLuint framebuffer_ = 0, colour_ = 0, depth_ = 0;
     GLuint reduce_framebuffer_ = 0, reduced_ = 0;
     GpuBuffer lights_;
     Lists opaque_lists_, transparent_lists_;
+    GpuBuffer slices_buffer_, bins_buffer_;
 
     // Of the frame
     int width_ = 0, height_ = 0;
     GLenum colour_format_ = 0;
     glm::mat4 projection_{1}, view_{1};
     lightbin::ShaderGrid grid_{};
-    std::vector<GpuLight> gpu_lights_;
-    std::vector<float> depth_buffer_, min_depth_, max_depth_, transparent_max_;
+    std::vector<GpuLight> gpu_lights_, ordered_lights_;
+    std::vector<std::uint32_t> light_order_;  // z-bins: in which the lights are uploaded, those out of view last
+    std::vector<float> depth_buffer_, min_depth_, max_depth_, transparent_max_, pixel_depth_;
+    std::optional<lightbin::Slices> slices_;
     lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner_;
+    lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::z_bins}> bin_binner_;
+    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::box,
+                                       .slicing = lightbin::Slicing::clusters}>
+        cluster_binner_;
 };

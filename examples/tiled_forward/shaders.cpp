@@ -26,8 +26,9 @@ lightbin::ShaderOptions list_options(int glsl) {
 }
 
 // Declares lightbin_for_each_light() and what it reads.
-std::string tile_lists(int glsl, bool heat_map = false) {
+std::string tile_lists(int glsl, lightbin::Slicing slicing, bool heat_map = false) {
     lightbin::ShaderOptions options = list_options(glsl);
+    options.slicing = slicing;
     options.heat_map = heat_map;
     return lightbin::shader_snippet(options)->text;
 }
@@ -63,17 +64,9 @@ vec3 irradiance(int id, vec3 position, vec3 normal) {
 }
 )";
 
-const char* const forward_main = R"(
+const char* const surface = R"(
 uniform mat4 projection;
 uniform vec2 picture_size;
-uniform vec3 moon;       // the way to it, in view space
-uniform float exposure;  // 0: write linear radiance, for the light meter
-uniform int light_count;
-uniform int sun_count;   // the directional lights follow the others
-
-in vec3 surface_normal;
-in vec3 base_colour;
-out vec4 pixel;
 
 // From gl_FragCoord, the very numbers that tiles and Z bounds are made of: an interpolated position differs
 // from the depth buffer's by the rasteriser's rounding, which can be much at a triangle seen edge-on.
@@ -84,6 +77,17 @@ vec3 view_position() {
     vec2 offset = vec2(projection[2][0], projection[2][1]) * z + vec2(projection[3][0], projection[3][1]);
     return vec3((ndc.xy * w - offset) / vec2(projection[0][0], projection[1][1]), z);
 }
+)";
+
+const char* const forward_main = R"(
+uniform vec3 moon;       // the way to it, in view space
+uniform float exposure;  // 0: write linear radiance, for the light meter
+uniform int light_count;
+uniform int sun_count;   // the directional lights follow the others
+
+in vec3 surface_normal;
+in vec3 base_colour;
+out vec4 pixel;
 
 void main() {
     vec3 position = view_position();
@@ -150,14 +154,14 @@ std::string depth_fragment_shader(int glsl) {
     return version_line(glsl) + "void main() {}\n";
 }
 
-std::string forward_fragment_shader(int glsl, LightLoop loop, bool has_spots) {
+std::string forward_fragment_shader(int glsl, LightLoop loop, bool has_spots, lightbin::Slicing slicing) {
     std::string text = version_line(glsl) + "#define LIGHTS_WIDTH " + std::to_string(lights_width) + "\n";
     if (has_spots) text += "#define SPOTS\n";
     if (loop == LightLoop::every_light)
         text += "#define EVERY_LIGHT\n";
     else
-        text += tile_lists(glsl);
-    return text + lighting + forward_main;
+        text += tile_lists(glsl, slicing);
+    return text + lighting + surface + forward_main;
 }
 
 std::string overlay_vertex_shader(int glsl) {
@@ -168,14 +172,17 @@ void main() {
 )";
 }
 
-std::string heat_map_fragment_shader(int glsl) {
-    return version_line(glsl) + tile_lists(glsl, true) + R"(
+std::string heat_map_fragment_shader(int glsl, lightbin::Slicing slicing) {
+    const bool sliced = slicing != lightbin::Slicing::none;
+    return version_line(glsl) + tile_lists(glsl, slicing, true) + (sliced ? surface : "") + R"(
 uniform float longest_list;
 out vec4 pixel;
 
 void main() {
     uvec2 here = uvec2(gl_FragCoord.xy);
-    pixel = vec4(lightbin_heat(here, 0.0, longest_list), lightbin_count(here, 0.0) > 0u ? 0.6 : 0.0);
+    float depth = )" + (sliced ? "-view_position().z" : "0.0") +
+           R"(;
+    pixel = vec4(lightbin_heat(here, depth, longest_list), lightbin_count(here, depth) > 0u ? 0.6 : 0.0);
 }
 )";
 }

@@ -12,7 +12,7 @@ std::string depth_fragment_shader(int glsl);
 // Texels a row of the lights' texture: whole lights, and no more than every device has.
 constexpr int lights_width = 1536;
 
-// Where the light index list lies: 330: buffer textures, 300: 2D textures, 430 and 310: storage buffers.
+// Where lists, slices and bins lie: 330: buffer textures, 300: 2D textures, 430 and 310: storage buffers.
 lightbin::ShaderBinding list_binding(int glsl);
 
 // Z bounds of the tiles from a depth texture: a fragment a tile.
@@ -21,11 +21,14 @@ std::string reduce_fragment_shader(int glsl, bool orthographic, bool skip_backgr
 // How the lights of a fragment are found. Both call the same function for each of them, in ascending order of
 // their ids.
 enum class LightLoop {
-    tile_list,   // the list of the fragment's tile
+    tile_list,   // the list of the fragment's tile, or as much of it as its depth needs
     every_light  // all there are, without any list: what --check compares with
 };
-std::string forward_fragment_shader(int glsl, LightLoop loop, bool has_spots);
+std::string forward_fragment_shader(int glsl, LightLoop loop, bool has_spots,
+                                    lightbin::Slicing slicing = lightbin::Slicing::none);
 
-// A triangle that covers the picture, and on it the length of each tile's list as a colour.
+// A triangle that covers the picture.
 std::string overlay_vertex_shader(int glsl);
-std::string heat_map_fragment_shader(int glsl);
+
+// The number of a fragment's lights as a colour. Without slicing to be drawn over the picture, with it over the surfaces.
+std::string heat_map_fragment_shader(int glsl, lightbin::Slicing slicing);

@@ -139,7 +139,7 @@ void show_in_window(const Scene& scene, int wanted_glsl, int view, FrameSettings
             continue;
         }
         const FrameReport report = renderer.draw(walker.camera(), settings);
-        if (heat_map) renderer.draw_heat_map(report);
+        if (heat_map) renderer.draw_heat_map(report, settings);
         renderer.show();
         glfwSwapBuffers(window);
 

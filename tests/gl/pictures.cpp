@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // pictures GLSL DROPPED_LIGHT [SCENE.glb]: one renderer draws the scene with tiles of many sizes and all uses of Z
-// bounds, and each picture is that of every light in every fragment, which is drawn once. Without the dropped light it
+// bounds, and by clusters, and each picture is that of every light in every fragment, which is drawn once, or once without a pre-pass. Without the dropped light it
 // is not, so that the comparison is known to see a light that is missing from the lists.
 #include "gl_context.hpp"
 #include "renderer.hpp"
@@ -17,8 +17,8 @@ int wrong = 0;
 void check(bool good, const FrameSettings& frame, const char* what) {
     if (good) return;
     ++wrong;
-    std::printf("tiles of %d, Z bounds %d, dropped light %d: %s\n", frame.tile_size,
-                static_cast<int>(frame.z_bounds), frame.dropped_light, what);
+    std::printf("tiles of %d, depth %d, Z bounds %d, dropped light %d: %s\n", frame.tile_size,
+                static_cast<int>(frame.depth), static_cast<int>(frame.z_bounds), frame.dropped_light, what);
 }
 
 int draw_all(int glsl, int dropped_light, const Scene& scene) {
@@ -29,23 +29,37 @@ int draw_all(int glsl, int dropped_light, const Scene& scene) {
     frame.width = 333;
     frame.height = 217;
     frame.exposure = renderer.meter(camera, frame);
-    renderer.draw(camera, frame);
-    renderer.draw_every_light(camera, frame);
-    const Picture expected = renderer.read_picture();
+    const auto every_light = [&](DepthUse depth) {
+        frame.depth = depth;
+        renderer.draw(camera, frame);
+        renderer.draw_every_light(camera, frame);
+        return renderer.read_picture();
+    };
+    // Of surfaces in one place, the last one is seen after a pre-pass, and the first one without.
+    const Picture without_pre_pass = every_light(DepthUse::clusters),
+                  expected = every_light(DepthUse::pre_pass);
 
+    frame.count_evaluations = true;
     int pictures = 0;
-    for (const int tile : {1, 8, 13, 16, 32, 64})
+    const auto draw_one = [&](const Picture& wanted) {
+        const FrameReport report = renderer.draw(camera, frame);
+        check(report.entries > 0 && report.evaluations_per_pixel > 0, frame, "the lists are empty");
+        check(report.evaluations_per_pixel < static_cast<double>(scene.lights.size()), frame,
+              "the lists have every light");
+        check(compare(wanted, renderer.read_picture()).pixels == 0, frame, "another picture");
+        ++pictures;
+    };
+    for (const int tile : {1, 8, 13, 16, 32, 64}) {
+        if (glsl < 330 && tile != 13) continue;  // the lists are made and read as elsewhere
+        frame.tile_size = tile;
         for (const ZBoundsUse use : {ZBoundsUse::none, ZBoundsUse::max, ZBoundsUse::both}) {
-            if (glsl < 330 && tile != 13) continue;  // the lists are made and read as elsewhere
-            frame.tile_size = tile;
             frame.z_bounds = use;
-            const FrameReport report = renderer.draw(camera, frame);
-            check(report.entries > 0 && report.evaluations_per_pixel > 0, frame, "the lists are empty");
-            check(report.evaluations_per_pixel < static_cast<double>(scene.lights.size()), frame,
-                  "the lists have every light");
-            check(compare(expected, renderer.read_picture()).pixels == 0, frame, "another picture");
-            ++pictures;
+            draw_one(expected);
         }
+        frame.depth = DepthUse::clusters;
+        draw_one(without_pre_pass);
+        frame.depth = DepthUse::pre_pass;
+    }
     frame.tile_size = 16;
     frame.dropped_light = dropped_light;
     renderer.draw(camera, frame);

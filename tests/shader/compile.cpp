@@ -106,10 +106,14 @@ void compile_example(Compiler& compiler, int glsl) {
     compile(EShLangVertex, geometry_vertex_shader(glsl));
     compile(EShLangFragment, depth_fragment_shader(glsl));
     compile(EShLangVertex, overlay_vertex_shader(glsl));
-    compile(EShLangFragment, heat_map_fragment_shader(glsl));
+    using lightbin::Slicing;
+    for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
+        compile(EShLangFragment, heat_map_fragment_shader(glsl, slicing));
+        for (const bool spots : {false, true})
+            compile(EShLangFragment, forward_fragment_shader(glsl, LightLoop::tile_list, spots, slicing));
+    }
     for (const bool spots : {false, true})
-        for (const LightLoop loop : {LightLoop::tile_list, LightLoop::every_light})
-            compile(EShLangFragment, forward_fragment_shader(glsl, loop, spots));
+        compile(EShLangFragment, forward_fragment_shader(glsl, LightLoop::every_light, spots));
 }
 
 }  // namespace

@@ -73,16 +73,16 @@ template <Options options> void compare(const Slices& slices) {
     std::vector<float> min(view.tile_count(), 5), max(view.tile_count(), 30), all(view.tile_count(), 50);
     const ZBounds bounds = {.min = min, .max = max, .transparent_max = all};
     Binner<options> binner;
-    Binner<without(options)> plain;
+    Binner<without(options)> unranked;
     const auto grid = binner.bin(view, lights, inputs_for<options>(bounds, slices));
-    const auto expected = plain.bin(view, lights, inputs_for<without(options)>(bounds));
+    const auto expected = unranked.bin(view, lights, inputs_for<without(options)>(bounds));
     REQUIRE(grid);
     REQUIRE(expected);
     check_bins(*grid, lights, slices);
     CHECK((own_ids(*grid) == test::to_lists(*expected)));
     if constexpr (options.depth_test != DepthTest::none) {
         const auto grids = binner.bin_transparency(view, lights, {.slices = slices, .bounds = bounds});
-        const auto both = plain.bin_transparency(view, lights, {.bounds = bounds});
+        const auto both = unranked.bin_transparency(view, lights, {.bounds = bounds});
         REQUIRE(grids);
         REQUIRE(both);
         check_bins(grids->transparent, lights, slices);
@@ -91,7 +91,7 @@ template <Options options> void compare(const Slices& slices) {
     }
 }
 
-template <Options options> void compare_all() {
+template <Options options> void compare_laws() {
     compare<options>(*Slices::linear(200, 0, 50));
     compare<options>(*Slices::exponential(64, 0.5f, 40));
     compare<options>(*Slices::linear(1, 0, 1));
@@ -101,11 +101,11 @@ template <Options options> void compare_all() {
 }  // namespace
 
 TEST_CASE("z-bins have the least and greatest rank of the lights in them, and the lists are the same lights") {
-    compare_all<Options{.slicing = Slicing::z_bins}>();
-    compare_all<Options{.ids = IdWidth::u16, .slicing = Slicing::z_bins}>();
-    compare_all<Options{.footprint = Footprint::silhouette, .slicing = Slicing::z_bins}>();
-    compare_all<Options{.depth_test = DepthTest::interval, .slicing = Slicing::z_bins}>();
-    compare_all<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::z_bins}>();
+    compare_laws<Options{.slicing = Slicing::z_bins}>();
+    compare_laws<Options{.ids = IdWidth::u16, .slicing = Slicing::z_bins}>();
+    compare_laws<Options{.footprint = Footprint::silhouette, .slicing = Slicing::z_bins}>();
+    compare_laws<Options{.depth_test = DepthTest::interval, .slicing = Slicing::z_bins}>();
+    compare_laws<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::z_bins}>();
 }
 
 TEST_CASE("z-bins of no light are empty, and so they are after a scene of many") {
