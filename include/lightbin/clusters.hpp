@@ -51,8 +51,8 @@ public:
         const std::size_t tiles = view.tile_count(), count = static_cast<std::size_t>(slices.count());
         const std::uint64_t cells = std::uint64_t{tiles} * count;
         if (cells > most) return Error{ErrorCode::too_many_cells, cells, most};
-        const std::uint64_t pairs = footprints_.cut(view, footprints, slices);
-        if (pairs > most) return Error{ErrorCode::too_many_list_places, pairs, most};
+        const std::uint64_t places = footprints_.cut(view, footprints, slices);
+        if (places > most) return Error{ErrorCode::too_many_list_places, places, most};
         if constexpr (with_boxes) edges_.find(detail::camera_of(view));
         const std::size_t slack = Job::slack(static_cast<std::size_t>(view.tiles_x()));
         cells_.reserve(cells + slack);
@@ -62,8 +62,8 @@ public:
             const std::uint64_t area = footprints_.runs()[slice].area;
             capacity += area;
             if (area <= detail::surely_listed_area) continue;
-            const std::uint64_t places = detail::list_places(job_of(view, slices, slice));
-            if (places > most) return Error{ErrorCode::too_many_list_places, places, most};
+            const std::uint64_t listed = detail::list_places(job_of(view, slices, slice));
+            if (listed > most) return Error{ErrorCode::too_many_list_places, listed, most};
         }
         // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.
         if constexpr (worded)
@@ -94,7 +94,7 @@ public:
         if constexpr (!std::is_same_v<Threads, Serial>) {
             const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), count);
             shared_ =
-                parts > 1 && parallel.pays_off(detail::supertile_ns(isa, worded, static_cast<double>(pairs),
+                parts > 1 && parallel.pays_off(detail::supertile_ns(isa, worded, static_cast<double>(places),
                                                                     static_cast<double>(capacity)));
             if (shared_) {
                 if (scratch.size() < parts) scratch.resize(parts);

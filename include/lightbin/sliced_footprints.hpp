@@ -36,60 +36,32 @@ template <Footprint footprint> class SlicedFootprints {
 
 public:
     /// Takes each light to the slices that its depths, z - r to z + r, meet, their ends included. Returns the number of
-    /// pairs of a light and a slice; if 32 bits don't count them, there are no runs.
+    /// places that they take: for pairs of a light and a slice, and one more a slice; if 32 bits don't count them,
+    /// there are no runs.
     std::uint64_t cut(const View& view, const Footprints<footprint, true>& footprints, const Slices& slices) {
         const detail::FootprintArrays& lights = footprints.arrays();
         run_count_ = static_cast<std::size_t>(slices.count());
-        detail::SliceRun* const runs = runs_.reserve(run_count_ + 1);
-        std::fill_n(runs, run_count_ + 1, detail::SliceRun{});
-        Met* const met = met_.reserve(footprints.visible());
         table_.set(slices.boundaries());
-        const float z_sign = detail::camera_of(view).z_sign;
-
-        // First the steps of the lights' and tiles' numbers from slice to slice.
-        std::uint64_t pairs = 0;
-        std::uint32_t light = 0;
+        const std::uint64_t places = find_slices(lights, footprints.runs(), footprints.visible(),
+                                                detail::camera_of(view).z_sign);
+        if (places > 0xffffffff) {
+            run_count_ = 0;
+            return places;
+        }
+        reserve(lights, places);
+        const Met* met = met_.data();
         for (const detail::FootprintRun& run : footprints.runs())
-            for (std::uint32_t i = run.begin; i < run.end; ++i) {
-                // Rounding is monotone and boundaries are floats, so rounded depths are on the same side of them, or on one.
-                const Sphere sphere = detail::load_sphere(lights.spheres + lights.ids[i]);
-                const float z = sphere.z * z_sign;
-                const Met here = {table_.before(z - sphere.radius), table_.up_to(z + sphere.radius)};
+            for (std::uint32_t i = run.begin; i < run.end; ++i, ++met) {
                 const std::uint64_t area =
                     (lights.x1[i] - lights.x0[i] + std::uint64_t{1}) * (lights.y1[i] - lights.y0[i] + 1u);
-                met[light++] = here;
-                pairs += here.last - here.first + std::uint64_t{1};
-                ++runs[here.first].run.end;
-                --runs[here.last + 1].run.end;  // sums wrap, and come out right
-                runs[here.first].area += area;
-                runs[here.last + 1].area -= area;
+                // A first slice and another one are written without a branch, which would be mispredicted.
+                const std::uint32_t more = met->first < met->last;
+                put(lights, i, area, met->first, 1);
+                put(lights, i, area * more, met->first + 1, more);
+                for (std::uint32_t slice = met->first + 2; slice <= met->last; ++slice)
+                    put(lights, i, area, slice, 1);
             }
-        if (pairs > 0xffffffff) {
-            run_count_ = 0;
-            return pairs;
-        }
-        std::uint32_t place = 0, count = 0;
-        std::uint64_t area = 0;
-        for (detail::SliceRun* run = runs; run < runs + run_count_; ++run) {
-            count += run->run.end;
-            area += run->area;
-            *run = {{place, place}, area};
-            place += count;
-        }
-        reserve(lights, pairs);
-        light = 0;
-        for (const detail::FootprintRun& run : footprints.runs())
-            for (std::uint32_t i = run.begin; i < run.end; ++i, ++light)
-                for (std::uint32_t slice = met[light].first; slice <= met[light].last; ++slice) {
-                    const std::uint32_t to = runs[slice].run.end++;
-                    arrays_.ids[to] = lights.ids[i];
-                    arrays_.x0[to] = lights.x0[i];
-                    arrays_.y0[to] = lights.y0[i];
-                    arrays_.x1[to] = lights.x1[i];
-                    arrays_.y1[to] = lights.y1[i];
-                    if constexpr (with_spans) arrays_.span_begin[to] = lights.span_begin[i];
-                }
-        return pairs;
+        return places;
     }
 
     const detail::FootprintArrays& arrays() const { return arrays_; }
@@ -101,8 +73,50 @@ private:
         std::uint32_t first, last;
     };
 
-    void reserve(const detail::FootprintArrays& lights, std::uint64_t pairs) {
-        const std::uint64_t capacity = pairs + detail::FootprintArrays::padding;
+    /// Finds the slices of each light, and where their runs begin, with a place between two. Returns where they end.
+    std::uint64_t find_slices(const detail::FootprintArrays& lights, std::span<const detail::FootprintRun> all,
+                              std::uint32_t visible, float z_sign) {
+        detail::SliceRun* const runs = runs_.reserve(run_count_ + 1);
+        std::fill_n(runs, run_count_ + 1, detail::SliceRun{});
+        Met* met = met_.reserve(visible);
+        // First the steps of the lights' number from slice to slice: sums wrap, and come out right.
+        for (const detail::FootprintRun& run : all)
+            for (std::uint32_t i = run.begin; i < run.end; ++i) {
+                // Rounding is monotone and boundaries are floats, so rounded depths are on the same side of them, or on one.
+                const Sphere sphere = detail::load_sphere(lights.spheres + lights.ids[i]);
+                const float z = sphere.z * z_sign;
+                *met = {table_.before(z - sphere.radius), table_.up_to(z + sphere.radius)};
+                ++runs[met->first].run.end;
+                --runs[met->last + 1].run.end;
+                ++met;
+            }
+        std::uint64_t places = 0;
+        std::uint32_t count = 0;
+        for (detail::SliceRun* run = runs; run <= runs + run_count_; ++run) {
+            count += run->run.end;
+            run->run.begin = run->run.end = static_cast<std::uint32_t>(places);
+            places += count + std::uint64_t{1};
+        }
+        return places;
+    }
+
+    /// Puts light i in a slice; or, if `count` and `area` are 0, writes what the next one overwrites.
+    void put(const detail::FootprintArrays& lights, std::uint32_t i, std::uint64_t area, std::uint32_t slice,
+             std::uint32_t count) {
+        detail::SliceRun& run = runs_.data()[slice];
+        const std::uint32_t to = run.run.end;
+        run.run.end += count;
+        run.area += area;
+        arrays_.ids[to] = lights.ids[i];
+        arrays_.x0[to] = lights.x0[i];
+        arrays_.y0[to] = lights.y0[i];
+        arrays_.x1[to] = lights.x1[i];
+        arrays_.y1[to] = lights.y1[i];
+        if constexpr (with_spans) arrays_.span_begin[to] = lights.span_begin[i];
+    }
+
+    void reserve(const detail::FootprintArrays& lights, std::uint64_t places) {
+        const std::uint64_t capacity = places + detail::FootprintArrays::padding;
         arrays_ = lights;
         arrays_.ids = ids_.reserve(capacity);
         arrays_.x0 = x0_.reserve(capacity);

@@ -24,13 +24,15 @@ public:
         boundaries_.assign(boundaries.begin(), boundaries.end());
         boundaries_.push_back(std::numeric_limits<float>::quiet_NaN());  // neither before nor behind anything
         least_ = boundaries.empty() ? 0 : ascending(boundaries.front());
-        span_ = boundaries.empty() ? 0 : static_cast<std::uint32_t>(ascending(boundaries.back()) - least_);
-        shift_ = (std::max)(static_cast<int>(std::bit_width(span_)) - 9, 0);
+        most_ = boundaries.empty() ? 0 : ascending(boundaries.back());
+        const std::uint32_t span = beyond_least(most_);
+        // Some ten places a boundary, so that few depths share theirs with one; no fewer than are in the cache anyway.
+        const int bits = (std::max)(static_cast<int>(std::bit_width(boundaries.size())) + 3, 9);
+        shift_ = (std::max)(static_cast<int>(std::bit_width(span)) - bits, 0);
         before_.clear();
-        for (std::uint32_t place = 0, before = 0; place <= span_ >> shift_; ++place) {
+        for (std::uint32_t place = 0, before = 0; place <= span >> shift_; ++place) {
             while (before < boundaries.size() &&
-                   static_cast<std::uint64_t>(ascending(boundaries[before]) - least_) < std::uint64_t{place}
-                                                                                            << shift_)
+                   beyond_least(ascending(boundaries[before])) >> shift_ < place)
                 ++before;
             before_.push_back(before);
         }
@@ -39,6 +41,7 @@ public:
     /// Returns how many boundaries are less than a depth that is not NaN.
     std::uint32_t before(float depth) const {
         std::uint32_t slice = surely_before(depth);
+        slice += boundaries_[slice] < depth;  // rarely more than one, so the loop's branch is predicted
         while (boundaries_[slice] < depth)
             ++slice;
         return slice;
@@ -46,25 +49,28 @@ public:
     /// The same of those that are not greater.
     std::uint32_t up_to(float depth) const {
         std::uint32_t slice = surely_before(depth);
+        slice += boundaries_[slice] <= depth;
         while (boundaries_[slice] <= depth)
             ++slice;
         return slice;
     }
 
 private:
-    static std::int64_t ascending(float value) {
-        const std::int32_t bits = std::bit_cast<std::int32_t>(value + 0.0f);  // not -0
-        return bits < 0 ? std::int64_t{-0x7fffffff} - 1 - bits : bits;
+    /// The bits of a float as a number that ascends with it; that of -0 is just less than that of 0.
+    static std::int32_t ascending(float value) {
+        const std::int32_t bits = std::bit_cast<std::int32_t>(value);
+        return bits ^ (bits >> 31 & 0x7fffffff);
+    }
+    std::uint32_t beyond_least(std::int32_t bits) const {
+        return static_cast<std::uint32_t>(bits) - static_cast<std::uint32_t>(least_);
     }
     std::uint32_t surely_before(float depth) const {
-        const std::int64_t beyond = std::clamp<std::int64_t>(ascending(depth) - least_, 0, span_);
-        return before_[static_cast<std::size_t>(beyond >> shift_)];
+        return before_[beyond_least(std::clamp(ascending(depth), least_, most_)) >> shift_];
     }
 
     std::vector<float> boundaries_;      ///< and NaN
     std::vector<std::uint32_t> before_;  ///< by the upper bits of what depths are beyond the first boundary
-    std::int64_t least_ = 0;
-    std::uint32_t span_ = 0;
+    std::int32_t least_ = 0, most_ = 0;
     int shift_ = 0;
 };
 
