@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <span>
 
 #include <lightbin/detail/warnings_off.inl>
@@ -30,14 +31,14 @@ template <Footprint footprint, bool with_spheres> class RankedFootprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette;
 
 public:
-    /// Takes each light to the bins that its depths, z - r to z + r, meet, their ends included.
+    /// Takes each light to the bins that its depths, z - r to z + r, meet, their ends included; also to the one before or
+    /// behind them where they end close to the boundary.
     void rank(const View& view, const Footprints<footprint, true>& footprints, const Slices& slices) {
-        const detail::FootprintArrays& lights = footprints.arrays();
         run_ = {0, footprints.visible()};
         area_ = footprints.area();
         bin_count_ = static_cast<std::size_t>(slices.count());
-        reserve(lights);
         table_.set(slices.boundaries());
+        reserve(footprints.arrays(), footprints.runs().back().end);
         find_bins(view, footprints);
 
         // Sorted by counting: how many lights begin in a bin, where those begin, and then where they end.
@@ -47,13 +48,11 @@ public:
             before += ends_.data()[bin];
             ends_.data()[bin] = begin;
         }
-        const Met* met = met_.data();
+        // Only this is written here and there: what is read so is sooner at hand than what is written.
         for (const detail::FootprintRun& run : footprints.runs())
-            for (std::uint32_t i = run.begin; i < run.end; ++i, ++met) {
-                const std::uint32_t rank = ends_.data()[met->first]++;
-                last_bins_.data()[rank] = met->last;
-                put(lights, i, rank);
-            }
+            for (std::uint32_t i = run.begin; i < run.end; ++i)
+                places_.data()[ends_.data()[first_bins_.data()[i]]++] = i;
+        put_lights(footprints.arrays());
         find_ranges();
     }
 
@@ -64,63 +63,75 @@ public:
     LightRanks ranks() const { return {{order_.data(), run_.end}, {bins_.data(), bin_count_}}; }
 
 private:
-    /// Bins first..last.
-    struct Met {
-        std::uint32_t first, last;
-    };
-
     /// Finds the bins that each light meets, and counts in `ends_` those that begin in each.
     void find_bins(const View& view, const Footprints<footprint, true>& footprints) {
         const detail::FootprintArrays& lights = footprints.arrays();
         const float z_sign = detail::camera_of(view).z_sign;
-        std::fill_n(ends_.data(), bin_count_, 0u);
-        Met* met = met_.data();
+        const bool shared = table_.shared();
+        std::uint32_t *const ends = ends_.data(), *const first = first_bins_.data(),
+                             *const last = last_bins_.data();
+        std::fill_n(ends, bin_count_, 0u);
         for (const detail::FootprintRun& run : footprints.runs())
-            for (std::uint32_t i = run.begin; i < run.end; ++i, ++met) {
+            for (std::uint32_t i = run.begin; i < run.end; ++i) {
                 const Sphere sphere = detail::load_sphere(lights.spheres + lights.ids[i]);
-                const float z = sphere.z * z_sign;
-                *met = {table_.before(z - sphere.radius), table_.up_to(z + sphere.radius)};
-                ++ends_.data()[met->first];
+                const float z = sphere.z * z_sign, begin = z - sphere.radius, end = z + sphere.radius;
+                first[i] = shared ? table_.before(begin) : table_.surely_before(begin);
+                last[i] = shared ? table_.up_to(end) : table_.surely_up_to(end);
+                ++ends[first[i]];
             }
+    }
+
+    /// Writes the lights in their order, the last one first, and of those that end in a bin the least rank.
+    void put_lights(const detail::FootprintArrays& lights) {
+        std::fill_n(bins_.data(), bin_count_, BinRange{0xffffffff, 0});
+        for (std::uint32_t rank = run_.end; rank-- > 0;) {
+            const std::uint32_t i = places_.data()[rank], id = lights.ids[i];
+            order_.data()[rank] = id;
+            arrays_.x0[rank] = lights.x0[i];
+            arrays_.y0[rank] = lights.y0[i];
+            arrays_.x1[rank] = lights.x1[i];
+            arrays_.y1[rank] = lights.y1[i];
+            if constexpr (with_spans) arrays_.span_begin[rank] = lights.span_begin[i];
+            if constexpr (with_spheres) spheres_.data()[rank] = detail::load_sphere(lights.spheres + id);
+            bins_.data()[last_bins_.data()[i]].least = rank;
+        }
     }
 
     /// Finds the least and the greatest rank in each bin.
     void find_ranges() {
-        std::fill_n(bins_.data(), bin_count_, BinRange{0xffffffff, 0});
-        for (std::uint32_t rank = run_.end; rank-- > 0;)
-            bins_.data()[last_bins_.data()[rank]].least = rank;
         // Of the lights that end in a bin or behind it, the one of least rank begins first: in the bin, before it, or none
         // of them does.
         for (std::size_t bin = bin_count_ - 1; bin-- > 0;)
             bins_.data()[bin].least = (std::min)(bins_.data()[bin].least, bins_.data()[bin + 1].least);
-
-        // The lights that have begun and may not have ended, the last one on top; it stays until a bin finds it ended.
-        std::uint32_t* const open = open_.data();
-        std::uint32_t count = 0, rank = 0;
+        // The last one that begins in a bin or before it, or the one before that where it has ended, and so on; what has
+        // ended is passed by once.
+        std::uint32_t* const passed = first_bins_.data();
+        std::fill_n(passed, run_.end, 0u);
         for (std::size_t bin = 0; bin < bin_count_; ++bin) {
-            while (rank < ends_.data()[bin])
-                open[count++] = rank++;
-            while (count > 0 && last_bins_.data()[open[count - 1]] < bin)
-                --count;
-            bins_.data()[bin] = count > 0 ? BinRange{bins_.data()[bin].least, open[count - 1]} : BinRange{1, 0};
+            BinRange& range = bins_.data()[bin];
+            if (ends_.data()[bin] <= range.least) {
+                range = {1, 0};
+                continue;
+            }
+            const std::uint32_t begin = ends_.data()[bin] - 1;
+            std::uint32_t rank = begin;
+            while (last_bins_.data()[places_.data()[rank]] < bin)
+                rank -= 1 + passed[rank];
+            if (rank < begin) passed[begin] = begin - rank - 1;
+            range.greatest = rank;
         }
     }
 
-    void put(const detail::FootprintArrays& lights, std::uint32_t i, std::uint32_t rank) {
-        const std::uint32_t id = lights.ids[i];
-        order_.data()[rank] = id;
-        arrays_.ids[rank] = rank;
-        arrays_.x0[rank] = lights.x0[i];
-        arrays_.y0[rank] = lights.y0[i];
-        arrays_.x1[rank] = lights.x1[i];
-        arrays_.y1[rank] = lights.y1[i];
-        if constexpr (with_spans) arrays_.span_begin[rank] = lights.span_begin[i];
-        if constexpr (with_spheres) spheres_.data()[rank] = detail::load_sphere(lights.spheres + id);
-    }
-
-    void reserve(const detail::FootprintArrays& lights) {
+    /// places  of the lights in their arrays
+    void reserve(const detail::FootprintArrays& lights, std::uint32_t places) {
         const std::uint64_t capacity = std::uint64_t{run_.end} + detail::FootprintArrays::padding;
-        arrays_ = {.ids = ids_.reserve(capacity),
+        if (capacity > numbered_) {
+            numbered_ = 0;  // should there be no memory
+            std::uint32_t* const ids = ids_.reserve(capacity);
+            std::iota(ids, ids + capacity, 0u);
+            numbered_ = capacity;
+        }
+        arrays_ = {.ids = ids_.data(),
                    .x0 = x0_.reserve(capacity),
                    .y0 = y0_.reserve(capacity),
                    .x1 = x1_.reserve(capacity),
@@ -128,24 +139,25 @@ private:
                    .span_begin = with_spans ? span_begin_.reserve(capacity) : nullptr,
                    .spans = lights.spans,
                    .spheres = with_spheres ? spheres_.reserve(capacity) : nullptr};
+        first_bins_.reserve(places);
+        last_bins_.reserve(places);
+        places_.reserve(run_.end);
         order_.reserve(run_.end);
-        met_.reserve(run_.end);
-        last_bins_.reserve(run_.end);
-        open_.reserve(run_.end);
         ends_.reserve(bin_count_);
         bins_.reserve(bin_count_);
     }
 
     detail::SliceTable table_;
-    detail::Buffer<Met> met_;
-    detail::Buffer<std::uint32_t> ends_, order_, last_bins_, open_;
+    detail::Buffer<std::uint32_t> first_bins_, last_bins_;   ///< of the lights in their old places
+    detail::Buffer<std::uint32_t> places_, order_;           ///< of each rank: its light's old place, its id
+    detail::Buffer<std::uint32_t> ends_;                     ///< of each bin: the first rank that begins behind it
     detail::Buffer<BinRange> bins_;
     detail::Buffer<std::uint32_t> ids_, span_begin_;
     detail::Buffer<std::uint16_t> x0_, y0_, x1_, y1_;
     detail::Buffer<Sphere> spheres_;
     detail::FootprintArrays arrays_ = {};
     detail::FootprintRun run_ = {};
-    std::uint64_t area_ = 0;
+    std::uint64_t area_ = 0, numbered_ = 0;
     std::size_t bin_count_ = 0;
 };
 

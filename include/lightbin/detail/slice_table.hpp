@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// From a depth to its slice: the bits of a float, which ascend with it, begin with what a logarithm would say.
+// From a depth to its slice: by a table of places, which are equally long in depth, or in the bits of a float, which
+// ascend with it and begin with what a logarithm would say.
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -14,7 +16,7 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
-/// The slices of one list of boundaries, which ascend, are finite and not -0.
+/// The slices of one list of boundaries, which ascend and are finite.
 class SliceTable {
 public:
     void set(std::span<const float> boundaries) {
@@ -23,20 +25,15 @@ public:
             return;
         boundaries_.assign(boundaries.begin(), boundaries.end());
         boundaries_.push_back(std::numeric_limits<float>::quiet_NaN());  // neither before nor behind anything
-        least_ = boundaries.empty() ? 0 : ascending(boundaries.front());
-        most_ = boundaries.empty() ? 0 : ascending(boundaries.back());
-        const std::uint32_t span = beyond_least(most_);
-        // Some ten places a boundary, so that few depths share theirs with one; no fewer than are in the cache anyway.
-        const int bits = (std::max)(static_cast<int>(std::bit_width(boundaries.size())) + 3, 9);
-        shift_ = (std::max)(static_cast<int>(std::bit_width(span)) - bits, 0);
-        before_.clear();
-        for (std::uint32_t place = 0, before = 0; place <= span >> shift_; ++place) {
-            while (before < boundaries.size() &&
-                   beyond_least(ascending(boundaries[before])) >> shift_ < place)
-                ++before;
-            before_.push_back(before);
-        }
+        // Linear slices are alike in depth, exponential ones in their bits.
+        fill_places(boundaries, false);
+        const std::size_t shared_by_depth = shared_;
+        fill_places(boundaries, true);
+        if (shared_ > shared_by_depth) fill_places(boundaries, false);
     }
+
+    /// Whether any two boundaries are in one place.
+    bool shared() const { return shared_ > 0; }
 
     /// Returns how many boundaries are less than a depth that is not NaN.
     std::uint32_t before(float depth) const {
@@ -55,23 +52,49 @@ public:
         return slice;
     }
 
+    /// The same without a look at the boundaries: those in the place of the depth are left out, or counted.
+    std::uint32_t surely_before(float depth) const { return before_[place(depth)]; }
+    std::uint32_t surely_up_to(float depth) const { return before_[place(depth) + 1]; }
+
 private:
-    /// The bits of a float as a number that ascends with it; that of -0 is just less than that of 0.
-    static std::int32_t ascending(float value) {
-        const std::int32_t bits = std::bit_cast<std::int32_t>(value);
-        return bits ^ (bits >> 31 & 0x7fffffff);
+    /// Finds how many boundaries are before each place.
+    void fill_places(std::span<const float> boundaries, bool by_bits) {
+        by_bits_ = by_bits;
+        // So many that few boundaries share one; no fewer than are in the cache anyway.
+        const std::size_t places = (std::max)(std::bit_ceil(4 * boundaries.size()), std::size_t{512});
+        last_place_ = static_cast<float>(places - 1);
+        begin_ = boundaries.empty() ? 0 : coordinate(boundaries.front());
+        scale_ = boundaries.empty() ? 0 : last_place_ / (coordinate(boundaries.back()) - begin_);
+        if (!std::isfinite(scale_)) scale_ = 0;  // they are one
+
+        before_.assign(places + 1, 0);
+        for (const float boundary : boundaries)
+            ++before_[place(boundary) + 1];
+        shared_ = 0;
+        for (std::size_t i = 1; i <= places; ++i) {
+            shared_ += before_[i] > 1 ? before_[i] - 1 : 0;
+            before_[i] += before_[i - 1];
+        }
     }
-    std::uint32_t beyond_least(std::int32_t bits) const {
-        return static_cast<std::uint32_t>(bits) - static_cast<std::uint32_t>(least_);
+
+    /// Ascends with the depth.
+    float coordinate(float depth) const {
+        if (!by_bits_) return depth;
+        const std::int32_t bits = std::bit_cast<std::int32_t>(depth + 0.0f);  // not -0
+        return static_cast<float>(bits ^ (bits >> 31 & 0x7fffffff));
     }
-    std::uint32_t surely_before(float depth) const {
-        return before_[beyond_least(std::clamp(ascending(depth), least_, most_)) >> shift_];
+    /// Each step rounds the same everywhere and is monotone, so a depth in a later place is greater.
+    std::size_t place(float depth) const {
+        const float place = (coordinate(depth) - begin_) * scale_;
+        return static_cast<std::size_t>(static_cast<std::int32_t>(
+            place > 0 ? (std::min)(place, last_place_) : 0));  // NaN, of an infinite depth, is of one place only
     }
 
     std::vector<float> boundaries_;      ///< and NaN
-    std::vector<std::uint32_t> before_;  ///< by the upper bits of what depths are beyond the first boundary
-    std::int32_t least_ = 0, most_ = 0;
-    int shift_ = 0;
+    std::vector<std::uint32_t> before_;  ///< how many boundaries are before a place, and in all of them
+    std::size_t shared_ = 0;             ///< boundaries that are in the place of another
+    float begin_ = 0, scale_ = 0, last_place_ = 0;
+    bool by_bits_ = false;
 };
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
