@@ -87,6 +87,9 @@ struct ShaderOptions {
     bool flip_y = false;           ///< the shader's pixel rows count against those of the view's WindowOrigin
     bool viewport_corner = false;  ///< pixels are the window's, and the viewport's corner a uniform
     bool heat_map = false;         ///< also `count` and `heat`
+    /// The lanes of a wave go through the lights of all their lists together, so that what is read of a light is read once
+    /// for all of them (Drobot 2017). GLSL 4.30, ES 3.10: with GL_KHR_shader_subgroup_arithmetic; Vulkan 1.1; HLSL 6.0.
+    bool wave_loop = false;
 
     std::uint32_t texture_width = 2048;  ///< texture_2d: texels a row, 1 to 16384; a power of two is best
     std::uint32_t max_tiles = 0;         ///< uniform blocks: the most tiles they hold, those of all slices,
@@ -172,6 +175,9 @@ inline std::optional<Error> refuse(const ShaderOptions& options) {
     if (options.storage == ListStorage::texel_buffer && dialect.es) return Error{ErrorCode::no_texel_buffers};
     if (options.storage == ListStorage::byte_address && !dialect.hlsl)
         return Error{ErrorCode::no_byte_address_buffers};
+    if (options.wave_loop &&
+        (!dialect.storage_buffers || options.language == ShaderLanguage::hlsl_5_0))
+        return Error{ErrorCode::no_wave_operations};
     if (options.tile_size < 0)
         return Error{ErrorCode::tile_size_out_of_range, static_cast<std::uint64_t>(options.tile_size)};
     if (options.storage == ListStorage::texture_2d &&
@@ -252,6 +258,153 @@ inline void add_id_at(ShaderWriter& writer, const ShaderBuffer& lists, IdWidth i
                ";\n}\n");
 }
 
+/// What a text reads.
+struct ListBuffers {
+    ShaderBuffer tiles, lists, slices, bins;
+};
+
+inline ListBuffers list_buffers(const ShaderOptions& options) {
+    const bool typed =
+        !options.packed_ids && options.format.encoding != ListEncoding::bitmask &&
+        (options.storage == ListStorage::texel_buffer || options.storage == ListStorage::texture_2d);
+    const TexelFormat texels = typed && options.format.ids == IdWidth::u8    ? TexelFormat::r8ui
+                               : typed && options.format.ids == IdWidth::u16 ? TexelFormat::r16ui
+                                                                             : TexelFormat::r32ui;
+    const auto vectors = [](std::uint64_t bytes) { return static_cast<std::uint32_t>((bytes + 15) / 16); };
+    const ShaderResource there = resource(options.storage);
+    return {.tiles = {"tiles",
+                      options.tiles_in_uniform_block ? ShaderResource::uniform_block : there,
+                      options.tiles, TexelFormat::rg32ui, vectors(8ull * options.max_tiles), 0},
+            .lists = {"lists", there, options.lists, texels,
+                      vectors(encoded_bytes(options.format, options.max_tiles, options.max_entries)),
+                      options.texture_width},
+            .slices = {"slices", there, options.slices, TexelFormat::r32ui,
+                       vectors(4 * slice_words(options.max_slices)), options.texture_width},
+            .bins = {"bins", there, options.bins, TexelFormat::rg32ui, vectors(8ull * options.max_slices),
+                     options.texture_width}};
+}
+
+inline std::string number_text(std::uint64_t number) {
+    return std::to_string(number) + "u";
+}
+
+/// `cursor` and `begin`, their names led by `own`.
+inline void add_begin(ShaderWriter& writer, const ShaderOptions& options, const ListBuffers& buffers,
+                      const std::string& own) {
+    const ListFormat& format = options.format;
+    const bool table = format.encoding == ListEncoding::offset_count,
+               bits = format.encoding == ListEncoding::bitmask, binned = options.slicing == Slicing::z_bins;
+    writer.add("\nstruct $" + own + "cursor {\n    uint id;\n    uint at;\n    uint end;\n");
+    if (bits) writer.add("    uint bits;\n");
+    if (binned) writer.add("    uint last;\n");
+    writer.add("};\n\n$" + own + "cursor $" + own +
+               "begin(uvec2 pixel, float view_depth) {\n    uvec2 tile = $tile(pixel);\n");
+    if (options.slicing != Slicing::none) writer.add("    uint slice = $slice(view_depth);\n");
+    if (options.slicing == Slicing::clusters)
+        writer.add("    tile.y += slice * (($grid.w - 1u) / " +
+                   (options.tile_size == 0 ? "$grid.x" : number_text(static_cast<std::uint64_t>(options.tile_size))) +
+                   " + 1u);\n");
+    if (binned) writer.add("    uvec2 bin = " + writer.read(buffers.bins, "slice") + ";\n");
+    writer.add("    uint place = tile.y * $grid.y + tile.x;\n    $" + own + "cursor c;\n");
+    const std::string each = number_text(places_a_tile(format));
+    if (table)
+        writer.add("    uvec2 list = " +
+                   (buffers.tiles.resource == ShaderResource::texture_2d
+                        ? writer.read_texel(buffers.tiles, "int(tile.x), int(tile.y)")
+                        : writer.read(buffers.tiles, "place")) +
+                   ";\n    c.at = list.x;\n    c.end = list.x + list.y;\n");
+    else
+        writer.add("    c.at = place * " + each + ";\n    c.end = c.at + " + each + ";\n");
+    writer.add(bits && !binned ? "    c.id = 0u - 32u;\n    c.bits = 0u;\n" : "    c.id = 0u;\n");
+    if (binned) writer.add("    c.last = bin.y;\n");
+    // The list is entered at the bin's first light.
+    if (binned && bits)
+        writer.add("    c.at += bin.x >> 5u;\n    c.id = bin.x & ~31u;\n    c.bits = " +
+                   writer.read(buffers.lists, "c.at") +
+                   " & (0xffffffffu << (bin.x & 31u));\n    c.at += 1u;\n");
+    else if (binned && table)
+        writer.add(R"(    uint end = c.end;
+    while (c.at < end) {
+        uint middle = c.at + ((end - c.at) >> 1u);
+        if ($id_at(middle) < bin.x) c.at = middle + 1u;
+        else end = middle;
+    }
+)");
+    else if (binned)
+        writer.add("    while (c.at < c.end && $id_at(c.at) < bin.x) c.at += 1u;\n");
+    writer.add("    return c;\n}\n");
+}
+
+/// `next`, its name led by `own`. One return: fxc's shader model 5.1 takes a second one for a value that was not set.
+inline void add_next(ShaderWriter& writer, const ShaderOptions& options, const ListBuffers& buffers,
+                     const std::string& own) {
+    writer.add("\nbool $" + own + "next(inout $" + own + "cursor c) {\n");
+    if (options.format.encoding == ListEncoding::bitmask) {
+        // id is that of the word's bit 0, less what was passed: kept in its upper 27 bits.
+        writer.add("    c.id &= ~31u;\n    while (c.bits == 0u && c.at < c.end) {\n        c.bits = " +
+                   writer.read(buffers.lists, "c.at") +
+                   ";\n        c.at += 1u;\n        c.id += 32u;\n    }\n"
+                   "    bool more = c.bits != 0u;\n    if (more) {\n        c.id += " +
+                   (writer.dialect().storage_buffers
+                        ? "uint(findLSB(c.bits))"
+                        : "(floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u") +
+                   ";\n        c.bits &= c.bits - 1u;\n");
+    } else {
+        writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = $id_at(c.at);\n        "
+                   "c.at += 1u;\n");
+        if (options.format.encoding == ListEncoding::sentinel)
+            writer.add("        more = c.id != " + number_text(countable_lights(options.format)) + ";\n");
+    }
+    if (options.slicing == Slicing::z_bins) writer.add("        more = more && c.id <= c.last;\n");
+    writer.add("    }\n    return more;\n}\n");
+}
+
+/// `cursor`, `begin` and `next` of a wave: its next light is the least of those that its lanes have next.
+inline void add_wave_cursor(ShaderWriter& writer) {
+    writer.add(R"(
+struct $cursor {
+    uint id;
+    bool own;
+    bool more;
+    $own_cursor ahead;
+};
+
+$cursor $begin(uvec2 pixel, float view_depth) {
+    $cursor c;
+    c.id = 0u;
+    c.own = false;
+    c.ahead = $own_begin(pixel, view_depth);
+    c.more = $own_next(c.ahead);
+    return c;
+}
+
+bool $next(inout $cursor c) {
+    if (c.own) c.more = $own_next(c.ahead);
+    c.id = subgroupMin(c.more ? c.ahead.id : 0xffffffffu);
+    c.own = c.more && c.ahead.id == c.id;
+    return c.id != 0xffffffffu;
+}
+)");
+}
+
+/// `count` and `heat`.
+inline void add_heat_map(ShaderWriter& writer, const ShaderOptions& options, const std::string& own) {
+    const bool counted =
+        options.format.encoding == ListEncoding::offset_count && options.slicing != Slicing::z_bins;
+    writer.add("\nuint $count(uvec2 pixel, float view_depth) {\n    $" + own + "cursor c = $" + own +
+               "begin(pixel, view_depth);\n" +
+               (counted ? "    return c.end - c.at;\n"
+                        : "    uint count = 0u;\n    while ($" + own +
+                              "next(c)) count += 1u;\n    return count;\n") +
+               R"(}
+
+vec3 $heat(uvec2 pixel, float view_depth, float most) {
+    float heat = float($count(pixel, view_depth)) / most;
+    return clamp(vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat), 0.0, 1.0);
+}
+)");
+}
+
 }  // namespace detail
 
 /// Returns text to insert before its use and after `#version`, or an Error that names the limit that the
@@ -274,118 +427,36 @@ inline void add_id_at(ShaderWriter& writer, const ShaderBuffer& lists, IdWidth i
 /// tile in the depth's slice; with z_bins that of the tile from the least to the greatest rank of the depth's bin.
 ///
 /// `break`, `continue` and `return` work in the loop's body, and loops nest. A pixel must lie in the
-/// viewport. Ids come in ascending order, each once.
+/// viewport. Ids come in ascending order, each once. With wave_loop no `else` can follow the body, and what depends on the
+/// id alone is the same in the whole wave; `begin` and `next` then give the wave's lights, and cursor.own tells whether one
+/// is the lane's own.
 inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
     using namespace detail;
     if (const auto error = refuse(options)) return *error;
     ShaderWriter writer(options.language, options.prefix);
-    const ListFormat& format = options.format;
-    const bool table = format.encoding == ListEncoding::offset_count,
-               bits = format.encoding == ListEncoding::bitmask;
-    const bool typed =
-        !options.packed_ids && !bits &&
-        (options.storage == ListStorage::texel_buffer || options.storage == ListStorage::texture_2d);
-
-    const ListStorage tile_storage =
-        options.tiles_in_uniform_block ? ListStorage::uniform_block : options.storage;
-    const TexelFormat texels = typed && format.ids == IdWidth::u8    ? TexelFormat::r8ui
-                               : typed && format.ids == IdWidth::u16 ? TexelFormat::r16ui
-                                                                     : TexelFormat::r32ui;
-    const std::uint64_t bytes = encoded_bytes(format, options.max_tiles, options.max_entries);
-    const std::uint32_t vectors = static_cast<std::uint32_t>((bytes + 15) / 16);
-    const ShaderBuffer tiles = {
-        "tiles", resource(tile_storage), options.tiles, TexelFormat::rg32ui, (options.max_tiles + 1) / 2, 0};
-    const ShaderBuffer lists = {"lists", resource(options.storage), options.lists, texels,
-                                vectors, options.texture_width};
-    const ShaderBuffer slices = {"slices", resource(options.storage), options.slices, TexelFormat::r32ui,
-                                 static_cast<std::uint32_t>((slice_words(options.max_slices) + 3) / 4),
-                                 options.texture_width};
-    const ShaderBuffer bins = {"bins", resource(options.storage), options.bins, TexelFormat::rg32ui,
-                               options.max_slices / 2 + 1, options.texture_width};
-    const bool sliced = options.slicing != Slicing::none, clusters = options.slicing == Slicing::clusters,
-               binned = options.slicing == Slicing::z_bins;
+    const ListBuffers buffers = list_buffers(options);
+    if (options.wave_loop && !writer.dialect().hlsl)
+        writer.add("#extension GL_KHR_shader_subgroup_arithmetic : require\n");
     std::vector<ShaderConstant> constants = {{"uvec4", "grid"}};
     if (options.viewport_corner) constants.push_back({"ivec2", "corner"});
     writer.declare_constants(constants, options.grid, options.push_constants);
-    if (table) writer.declare(tiles);
-    writer.declare(lists);
-    if (sliced) writer.declare(slices);
-    if (binned) writer.declare(bins);
+    if (options.format.encoding == ListEncoding::offset_count) writer.declare(buffers.tiles);
+    writer.declare(buffers.lists);
+    if (options.slicing != Slicing::none) writer.declare(buffers.slices);
+    if (options.slicing == Slicing::z_bins) writer.declare(buffers.bins);
+
     add_tile(writer, options);
-    if (sliced) add_slice(writer, slices);
-    if (!bits) add_id_at(writer, lists, format.ids);
-
-    const std::string size =
-        options.tile_size == 0 ? "$grid.x" : std::to_string(options.tile_size) + "u";
-    const auto number = [](std::uint64_t n) { return std::to_string(n) + "u"; };
-    writer.add("\nstruct $cursor {\n    uint id;\n    uint at;\n    uint end;\n");
-    if (bits) writer.add("    uint bits;\n");
-    if (binned) writer.add("    uint last;\n");
-    writer.add("};\n\n$cursor $begin(uvec2 pixel, float view_depth) {\n    uvec2 tile = $tile(pixel);\n");
-    if (sliced) writer.add("    uint slice = $slice(view_depth);\n");
-    if (clusters) writer.add("    tile.y += slice * (($grid.w - 1u) / " + size + " + 1u);\n");
-    if (binned) writer.add("    uvec2 bin = " + writer.read(bins, "slice") + ";\n");
-    writer.add("    uint place = tile.y * $grid.y + tile.x;\n    $cursor c;\n");
-    if (table)
-        writer.add("    uvec2 list = " +
-                   (tiles.resource == ShaderResource::texture_2d
-                        ? writer.read_texel(tiles, "int(tile.x), int(tile.y)")
-                        : writer.read(tiles, "place")) +
-                   ";\n    c.at = list.x;\n    c.end = list.x + list.y;\n");
-    else
-        writer.add("    c.at = place * " + number(places_a_tile(format)) + ";\n    c.end = c.at + " +
-                   number(places_a_tile(format)) + ";\n");
-    writer.add(bits && !binned ? "    c.id = 0u - 32u;\n    c.bits = 0u;\n" : "    c.id = 0u;\n");
-    if (binned) writer.add("    c.last = bin.y;\n");
-    // The list is entered at the bin's first light.
-    if (binned && bits)
-        writer.add("    c.at += bin.x >> 5u;\n    c.id = bin.x & ~31u;\n    c.bits = " + writer.read(lists, "c.at") +
-                   " & (0xffffffffu << (bin.x & 31u));\n    c.at += 1u;\n");
-    else if (binned && table)
-        writer.add(R"(    uint end = c.end;
-    while (c.at < end) {
-        uint middle = c.at + ((end - c.at) >> 1u);
-        if ($id_at(middle) < bin.x) c.at = middle + 1u;
-        else end = middle;
-    }
-)");
-    else if (binned)
-        writer.add("    while (c.at < c.end && $id_at(c.at) < bin.x) c.at += 1u;\n");
-    // One return: fxc's shader model 5.1 takes a second one for a value that was not set.
-    writer.add("    return c;\n}\n\nbool $next(inout $cursor c) {\n");
-    if (bits) {
-        // id is that of the word's bit 0, less what was passed: kept in its upper 27 bits.
-        writer.add("    c.id &= ~31u;\n    while (c.bits == 0u && c.at < c.end) {\n        c.bits = " +
-                   writer.read(lists, "c.at") +
-                   ";\n        c.at += 1u;\n        c.id += 32u;\n    }\n"
-                   "    bool more = c.bits != 0u;\n    if (more) {\n        c.id += " +
-                   (writer.dialect().storage_buffers
-                        ? "uint(findLSB(c.bits))"
-                        : "(floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u") +
-                   ";\n        c.bits &= c.bits - 1u;\n");
-    } else {
-        writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = $id_at(c.at);\n        "
-                   "c.at += 1u;\n");
-        if (!table) writer.add("        more = c.id != " + number(countable_lights(format)) + ";\n");
-    }
-    if (binned) writer.add("        more = more && c.id <= c.last;\n");
-    writer.add("    }\n    return more;\n}\n");
-    writer.add("\n#define $for_each_light(cursor, pixel, view_depth) for ($cursor cursor = $begin(pixel, view_depth); "
-               "$next(cursor);)\n");
-
-    if (options.heat_map)
-        writer.add(std::string("\nuint $count(uvec2 pixel, float view_depth) {\n    $cursor c = $begin(pixel, "
-                               "view_depth);\n") +
-                   (table && !binned ? "    return c.end - c.at;\n"
-                                     : "    uint count = 0u;\n    while ($next(c)) count += 1u;\n    return "
-                                       "count;\n") +
-                   R"(}
-
-vec3 $heat(uvec2 pixel, float view_depth, float most) {
-    float heat = float($count(pixel, view_depth)) / most;
-    return clamp(vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat), 0.0, 1.0);
-}
-)");
+    if (options.slicing != Slicing::none) add_slice(writer, buffers.slices);
+    if (options.format.encoding != ListEncoding::bitmask)
+        add_id_at(writer, buffers.lists, options.format.ids);
+    const std::string own = options.wave_loop ? "own_" : "";
+    add_begin(writer, options, buffers, own);
+    add_next(writer, options, buffers, own);
+    if (options.wave_loop) add_wave_cursor(writer);
+    writer.add(std::string("\n#define $for_each_light(cursor, pixel, view_depth) for ($cursor cursor = "
+                           "$begin(pixel, view_depth); $next(cursor);)") +
+               (options.wave_loop ? " if (cursor.own)\n" : "\n"));
+    if (options.heat_map) add_heat_map(writer, options, own);
     return writer.finish();
 }
 

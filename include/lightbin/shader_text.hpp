@@ -112,6 +112,7 @@ inline std::string_view hlsl_word(std::string_view word) {
         {"atomicMin", "InterlockedMin"},
         {"atomicMax", "InterlockedMax"},
         {"atomicOr", "InterlockedOr"},
+        {"subgroupMin", "WaveActiveMin"},
         {"sync_group", "GroupMemoryBarrierWithGroupSync"},
     };
     for (const auto& [glsl, hlsl] : words)

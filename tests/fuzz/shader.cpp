@@ -265,6 +265,7 @@ void fuzz_snippet(Bytes& bytes) {
     take_rest(bytes, options, {&options.tiles, &options.lists, &options.grid}, question);
     options.slicing = take_enum(bytes, Slicing::z_bins);
     options.max_slices = take_size(bytes);
+    options.wave_loop = (bytes.byte() & 1) != 0;
 
     const ListFormat& format = options.format;
     const Language language(options.language);
@@ -279,6 +280,8 @@ void fuzz_snippet(Bytes& bytes) {
     refuse_if(options.storage == ListStorage::texel_buffer && language.es, ErrorCode::no_texel_buffers);
     refuse_if(options.storage == ListStorage::byte_address && !language.hlsl,
               ErrorCode::no_byte_address_buffers);
+    refuse_if(options.wave_loop && (language.old || options.language == ShaderLanguage::hlsl_5_0),
+              ErrorCode::no_wave_operations);
     refuse_if(options.tile_size < 0, ErrorCode::tile_size_out_of_range);
     refuse_if(options.storage == ListStorage::texture_2d &&
                   (options.texture_width == 0 || options.texture_width > 16384),

@@ -35,8 +35,9 @@ class Compiler {
 public:
     Compiler() {
         glslang::InitializeProcess();
-        validator_.SetMessageConsumer([this](spv_message_level_t, const char*, const spv_position_t&,
-                                             const char* text) { error_ = text; });
+        for (spvtools::SpirvTools* const validator : {&validator_, &wave_validator_})
+            validator->SetMessageConsumer([this](spv_message_level_t, const char*, const spv_position_t&,
+                                                 const char* text) { error_ = text; });
     }
 
     void compile(ShaderLanguage language, EShLanguage stage, const std::string& text) {
@@ -58,14 +59,15 @@ public:
 private:
     bool is_valid(const std::string& text, EShLanguage stage, bool hlsl) {
         try {
-            return validator_.Validate(compile_spirv(text, stage, hlsl));
+            return (needs_waves(text) ? wave_validator_ : validator_)
+                .Validate(compile_spirv(text, stage, hlsl));
         } catch (const std::runtime_error& error) {
             error_ = error.what();
             return false;
         }
     }
 
-    spvtools::SpirvTools validator_{SPV_ENV_VULKAN_1_0};
+    spvtools::SpirvTools validator_{SPV_ENV_VULKAN_1_0}, wave_validator_{SPV_ENV_VULKAN_1_1};
     std::string error_;
 };
 

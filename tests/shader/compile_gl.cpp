@@ -44,6 +44,7 @@ int main(int count, char** arguments) {
         const ShaderLanguage language = glsl_language(glsl);
         const bool computes = lightbin::detail::dialect(language).storage_buffers;
         for (const lightbin::ShaderOptions& options : every_reader(language)) {
+            if (options.wave_loop) continue;  // Mesa's software renderer has no subgroups in OpenGL
             const auto snippet = shader_snippet(options);
             compile(Stage::fragment, reader_text(options, *snippet, Stage::fragment, 9, 9));
             if (computes) compile(Stage::compute, reader_text(options, *snippet, Stage::compute, 9, 9));

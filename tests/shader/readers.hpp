@@ -36,6 +36,7 @@ inline std::string name_of(const lightbin::ShaderOptions& options) {
     option(options.viewport_corner, "corner");
     option(options.heat_map, "heat map");
     option(options.slicing != lightbin::Slicing::none, to_string(options.slicing));
+    option(options.wave_loop, "wave loop");
     return name;
 }
 
@@ -113,8 +114,19 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderLanguage 
     return every;
 }
 
+/// The same with wave loops, if the language has them.
+inline std::vector<lightbin::ShaderOptions> every_wave_list(lightbin::ShaderLanguage language,
+                                                            lightbin::Slicing slicing) {
+    std::vector<lightbin::ShaderOptions> every;
+    for (lightbin::ShaderOptions list : every_list(language, slicing)) {
+        list.wave_loop = true;
+        if (shader_snippet(list)) every.push_back(list);
+    }
+    return every;
+}
+
 /// Every list of a language with every set of switches; with slicing two sets of each, which take turns and between them
-/// have every switch on and off.
+/// have every switch on and off; with wave loops one.
 inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguage language) {
     using lightbin::Slicing;
     std::vector<lightbin::ShaderOptions> every;
@@ -127,6 +139,8 @@ inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguag
                     (switches ^ turn % switch_count) == switch_count - 1)
                     every.push_back(with_switches(list, switches));
         }
+        for (const lightbin::ShaderOptions& list : every_wave_list(language, slicing))
+            every.push_back(with_switches(list, ++turn % switch_count));
     }
     return every;
 }
@@ -372,7 +386,9 @@ struct ReaderRun {
 /// What a language runs: every list, flipped and not, in fragment and compute shaders, at each small screen;
 /// the other options take turns. At the large screen: one width of ids. With slicing: at two small screens.
 /// each_flip  false: half of the small screens are flipped, the other half not; the next list has it the other way round
-inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, bool each_flip = true) {
+/// waves      the device has what wave loops need: they are run, too, at two small screens
+inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, bool each_flip = true,
+                                          bool waves = false) {
     using lightbin::Slicing;
     constexpr ScreenSize small[] = {{33, 17, 7},  {33, 17, 16}, {33, 17, 1},
                                     {33, 17, 64}, {1, 1, 1},    {1, 1, 64}};
@@ -386,16 +402,20 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
             turn = (turn + 1) % (switch_count / 2);
             runs.push_back({with_switches(list, 2 * turn + flip), stage, screen});
         };
-        const bool sliced = list.slicing != Slicing::none;
-        for (unsigned i = 0; i < (sliced ? 2 : std::size(small)); ++i)
+        const bool few = list.slicing != Slicing::none || list.wave_loop;
+        for (unsigned i = 0; i < (few ? 2 : std::size(small)); ++i)
             if (each_flip || (i + flip + place) % 2 == 0) add(small[i]);
-        if (!sliced && (list.format.ids == lightbin::IdWidth::u16 ||
+        if (!few && (list.format.ids == lightbin::IdWidth::u16 ||
                         list.format.encoding == lightbin::ListEncoding::bitmask))
             add(large);
     };
     for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
         unsigned place = 0;
-        for (const lightbin::ShaderOptions& list : every_list(language, slicing)) {
+        std::vector<lightbin::ShaderOptions> lists = every_list(language, slicing);
+        if (waves)
+            for (const lightbin::ShaderOptions& list : every_wave_list(language, slicing))
+                lists.push_back(list);
+        for (const lightbin::ShaderOptions& list : lists) {
             for (unsigned flip = 0; flip < 2; ++flip)
                 for (const Stage stage : {Stage::fragment, Stage::compute})
                     if (stage == Stage::fragment || computes) add_list(list, place, flip, stage);

@@ -46,8 +46,8 @@ struct Tally {
 
 template <class Device>
 void run_readers(Device& device, lightbin::ShaderLanguage language, const Share& share, Tally& tally,
-                 bool each_flip = true) {
-    const std::vector<ReaderRun> runs = reader_runs(language, each_flip);
+                 bool each_flip = true, bool waves = false) {
+    const std::vector<ReaderRun> runs = reader_runs(language, each_flip, waves);
     for (std::size_t i = share.first; i < runs.size(); i += share.count)
         tally.run(device, runs[i].job());
 }

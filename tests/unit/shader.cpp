@@ -42,7 +42,7 @@ TEST_CASE("each option brings its own lines and no others") {
     CHECK(has(storage, "layout(std430, binding = 0)"));
     CHECK(has(storage, "layout(std430, binding = 1)"));
     for (const char* absent : {"sampler", "pixel.y =", "0xffff", "#version", "corner", "heat", "count",
-                               "bits", "highp", "set =", "precision", "slice", "bin."})
+                               "bits", "highp", "set =", "precision", "slice", "bin.", "own", "#extension"})
         CHECK(!has(storage, absent));
 
     const std::string texture = text_of({.language = ShaderLanguage::glsl_330,
@@ -58,6 +58,9 @@ TEST_CASE("each option brings its own lines and no others") {
     CHECK(has(text_of({.slicing = Slicing::clusters}), "lightbin_slice(view_depth)"));
     CHECK(!has(text_of({.slicing = Slicing::clusters}), "bins"));
     CHECK(has(text_of({.slicing = Slicing::z_bins}), "lightbin_bins["));
+    CHECK(has(text_of({.wave_loop = true}), "subgroupMin"));
+    CHECK(has(text_of({.language = ShaderLanguage::hlsl_5_1, .wave_loop = true}), "WaveActiveMin"));
+    CHECK(has(refusal({.language = ShaderLanguage::hlsl_5_0, .wave_loop = true}), "HLSL 6"));
     CHECK(has(text_of({.heat_map = true}), "lightbin_heat"));
     CHECK(!has(text_of({.tile_size = 16}), "grid.x"));
     const std::string bound = text_of({.tiles = {5}, .lists = {9}});

@@ -30,12 +30,14 @@ template <class Compiler> int compile_all(const std::string& model, const Share&
     const auto language =
         model == "5_0" ? lightbin::ShaderLanguage::hlsl_5_0 : lightbin::ShaderLanguage::hlsl_5_1;
     const auto readers = every_reader(language);
-    for (std::size_t i = share.first; i < readers.size(); i += share.count)
+    for (std::size_t i = share.first; i < readers.size(); i += share.count) {
+        if (readers[i].wave_loop && model < "6") continue;
         for (const Stage stage : {Stage::fragment, Stage::compute}) {
             const auto snippet = lightbin::shader_snippet(readers[i]);
             compiles(name_of(readers[i]), snippet ? reader_text(readers[i], *snippet, stage, 100, 100) : "",
                      stage);
         }
+    }
     for (std::size_t i = share.first; const auto& options : every_reduction(language))
         if (i++ % share.count == 0) {
             const auto shader = lightbin::reduce_shader(options);

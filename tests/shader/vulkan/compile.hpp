@@ -11,7 +11,12 @@
 #include <string>
 #include <vector>
 
-/// Returns SPIR-V for Vulkan 1.0, or throws std::runtime_error with what glslang says.
+/// Whether a text needs Vulkan 1.1: wave loops do.
+inline bool needs_waves(const std::string& text) {
+    return text.find("subgroupMin") != std::string::npos || text.find("WaveActiveMin") != std::string::npos;
+}
+
+/// Returns SPIR-V for Vulkan 1.0, or 1.1 where the text needs it, or throws std::runtime_error with what glslang says.
 inline std::vector<std::uint32_t> compile_spirv(const std::string& text, EShLanguage stage, bool hlsl) {
     static const bool ready = glslang::InitializeProcess();
     const auto language = hlsl ? glslang::EShSourceHlsl : glslang::EShSourceGlsl;
@@ -20,8 +25,10 @@ inline std::vector<std::uint32_t> compile_spirv(const std::string& text, EShLang
     shader.setStrings(&begin, 1);
     shader.setEntryPoint("main");
     shader.setEnvInput(language, stage, glslang::EShClientVulkan, 100);
-    shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_0);
-    shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_0);
+    const bool waves = needs_waves(text);
+    shader.setEnvClient(glslang::EShClientVulkan,
+                        waves ? glslang::EShTargetVulkan_1_1 : glslang::EShTargetVulkan_1_0);
+    shader.setEnvTarget(glslang::EShTargetSpv, waves ? glslang::EShTargetSpv_1_3 : glslang::EShTargetSpv_1_0);
     auto rules = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
     if (hlsl) rules = static_cast<EShMessages>(rules | EShMsgReadHlsl);
     glslang::TProgram program;

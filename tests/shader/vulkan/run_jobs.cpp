@@ -13,7 +13,7 @@ int main(int count, char** arguments) {
     }
     Tally tally;
     for (const auto language : {lightbin::ShaderLanguage::glsl_vulkan, lightbin::ShaderLanguage::hlsl_5_1}) {
-        run_readers(device, language, share, tally);
+        run_readers(device, language, share, tally, true, true);
         run_builders(device, language, false, share, tally);
     }
     std::printf("%s on %s, %d validation messages\n", tally.text().c_str(), device.name().c_str(),
