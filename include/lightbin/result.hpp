@@ -63,6 +63,7 @@ enum class ErrorCode : std::uint8_t {
     no_push_constants,
     no_multisample_textures,
     no_split_box_shader,
+    no_such_slicing_shader,
     no_wave_operations,
     texture_width_out_of_range,
     bindings_overlap,
@@ -160,6 +161,8 @@ constexpr const char* to_string(ErrorCode code) {
         return "push constants are Vulkan GLSL's: set ShaderOptions::push_constants to false";
     case ErrorCode::no_multisample_textures:
         return "GLSL ES 3.00 has no multisample textures: resolve the depth buffer first";
+    case ErrorCode::no_such_slicing_shader:
+        return "the build shaders have clusters, with none or box, and no z-bins: a Binner has those";
     case ErrorCode::no_wave_operations:
         return "wave loops need GLSL 4.30, ES 3.10, Vulkan or HLSL 6 (hlsl_5_1)";
     case ErrorCode::no_split_box_shader:

@@ -72,9 +72,9 @@ inline ShaderReduce shader_reduce(const View& view, int corner_x = 0, int corner
 
 /// One of the three shaders that build a light grid, in the order of their dispatches.
 enum class BuildPass : std::uint8_t {
-    count,    ///< tiles_x * tiles_y groups: the lights of each tile
+    count,    ///< tiles_x * tiles_y groups, with clusters tiles_x * (slices * tiles_y): the lights of each tile
     offsets,  ///< one group: where each list begins, and the length of the light index list
-    fill,     ///< tiles_x * tiles_y groups: the lists
+    fill,     ///< as many groups as count: the lists
 };
 
 constexpr const char* to_string(BuildPass value) {
@@ -86,7 +86,8 @@ struct BuildShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     BuildPass pass = BuildPass::count;
     DepthTest depth_test = DepthTest::none;  ///< none, interval or box
-    bool max_only = false;                   ///< Z bounds: no minimum is tested (transparency)
+    Slicing slicing = Slicing::none;         ///< none or clusters (with none or box)
+    bool max_only = false;                   ///< Z bounds, not clusters: no minimum is tested (transparency)
     bool orthographic = false;               ///< box: as View::orthographic()
 
     ShaderSlot footprints = {0}, z_bounds = {1}, edges = {2}, tiles = {3}, lists = {4}, total = {5};
@@ -95,18 +96,19 @@ struct BuildShaderOptions {
     std::string_view prefix = "lightbin_";
 };
 
-/// The constants of build_shader(): `grid` and, for box, `planes`. In a uniform block: this struct, 16 bytes
-/// of it without box.
+/// The constants of build_shader(): `grid` and, for box or clusters, `planes`. In a uniform block: this struct, 16 bytes
+/// of it with neither.
 struct ShaderBuild {
-    std::uint32_t tiles_x, tiles_y, footprints, room;  ///< grid; room: ids that the buffer for lists holds
-    float near_depth, far_depth, unused[2] = {};       ///< planes
+    std::uint32_t tiles_x, rows, footprints, room;  ///< grid; rows: of all slices; room: ids that the buffer for lists holds
+    float near_depth, far_depth, tiles_y, unused = {};  ///< planes
 };
 static_assert(sizeof(ShaderBuild) == 32);
 
-inline ShaderBuild shader_build(const View& view, std::uint32_t footprints, std::uint32_t room) {
-    const std::uint32_t columns = static_cast<std::uint32_t>(view.tiles_x()),
-                        rows = static_cast<std::uint32_t>(view.tiles_y());
-    return {columns, rows, footprints, room, view.near_depth(), view.far_depth()};
+/// slices  as Slices::count(), with clusters
+inline ShaderBuild shader_build(const View& view, std::uint32_t footprints, std::uint32_t room,
+                                int slices = 1) {
+    return {static_cast<std::uint32_t>(view.tiles_x()), static_cast<std::uint32_t>(view.tiles_y() * slices),
+            footprints, room, view.near_depth(), view.far_depth(), static_cast<float>(view.tiles_y())};
 }
 
 /// A light in view, as build_shader() reads it: tiles x0..x1, y0..y1, both ends included, and the sphere with
@@ -157,6 +159,9 @@ inline std::optional<Error> refuse(const BuildShaderOptions& options) {
         return error;
     if (!dialect.storage_buffers) return Error{ErrorCode::no_storage_buffers};
     if (options.depth_test == DepthTest::split_box) return Error{ErrorCode::no_split_box_shader};
+    if (options.slicing == Slicing::z_bins ||
+        (options.slicing == Slicing::clusters && options.depth_test == DepthTest::interval))
+        return Error{ErrorCode::no_such_slicing_shader};
     return std::nullopt;
 }
 
@@ -324,6 +329,18 @@ inline std::vector<ShaderEdges> shader_edges(const View& view) {
     return edges;
 }
 
+/// Returns the depths of the slices: with clusters, what build_shader() reads in place of the tiles' Z bounds.
+inline std::vector<ShaderEdges> shader_slabs(const Slices& slices) {
+    std::vector<ShaderEdges> slabs;
+    float low = -detail::infinity;
+    for (const float boundary : slices.boundaries()) {
+        slabs.push_back({low, boundary});
+        low = boundary;
+    }
+    slabs.push_back({low, detail::infinity});
+    return slabs;
+}
+
 /// Returns one of the shaders that build the grid of the footprints, a group of 64 threads a tile testing
 /// every light, or an Error that names the limit that the options break. After the three passes, with a
 /// barrier between them, `tiles` and `lists` hold what Binner's grid has in ranges() and ids() (32-bit
@@ -333,12 +350,14 @@ inline std::vector<ShaderEdges> shader_edges(const View& view) {
 /// interval  the same entries as the Binner's, the device's sums being correctly rounded
 /// box       the same but for the device's rounding of sums and products: no light of the exact set is
 ///           missing, and none is listed whose distance from the box exceeds its radius by more than 2^-19 of it
+/// clusters  the same of cells of tiles and slices; `none` tests the slices' depths as interval does
 inline Result<ShaderText> build_shader(const BuildShaderOptions& options = {}) {
     using namespace detail;
     if (const auto error = refuse(options)) return *error;
     ShaderWriter writer(options.language, options.prefix);
-    const bool depths = options.depth_test != DepthTest::none, box = options.depth_test == DepthTest::box,
-               fill = options.pass == BuildPass::fill;
+    const bool clusters = options.slicing == Slicing::clusters, box = options.depth_test == DepthTest::box,
+               depths = clusters || options.depth_test != DepthTest::none,
+               max_only = options.max_only && !clusters, fill = options.pass == BuildPass::fill;
     std::vector<ShaderConstant> constants = {{"uvec4", "grid"}};
     if (options.pass == BuildPass::offsets) {
         writer.declare_constants(constants, options.grid, options.push_constants);
@@ -377,7 +396,7 @@ void $run(uvec2 group, uint thread) {
         return writer.finish();
     }
 
-    if (box) constants.push_back({"vec4", "planes"});
+    if (box || clusters) constants.push_back({"vec4", "planes"});
     writer.declare_constants(constants, options.grid, options.push_constants);
     writer.add(
         "struct $footprint {\n    uint id;\n    uint low;\n    uint high;\n    float reach2;\n    vec4 "
@@ -396,7 +415,7 @@ void $run(uvec2 group, uint thread) {
 )");
     if (depths)
         writer.add(std::string("    if (f.sphere.z - f.sphere.w > z.y") +
-                   (options.max_only ? "" : " || f.sphere.z + f.sphere.w < z.x") + ") met = false;\n");
+                   (max_only ? "" : " || f.sphere.z + f.sphere.w < z.x") + ") met = false;\n");
     if (box)
         writer.add(R"(    float x = max(max(cell.x - f.sphere.x, f.sphere.x - cell.y), 0.0);
     float y = max(max(cell.z - f.sphere.y, f.sphere.y - cell.w), 0.0);
@@ -405,12 +424,13 @@ void $run(uvec2 group, uint thread) {
 )");
     writer.add("    return met;\n}\n\nshared uint $hits[2];\n\nvoid $run(uvec2 tile, uint thread) {\n"
                "    uint place = tile.y * $grid.x + tile.x;\n");
+    if (clusters) writer.add("    uint slice = tile.y / uint($planes.z);\n    tile.y %= uint($planes.z);\n");
     std::string arguments = "tile";
     if (depths) {
         // NaN tests nothing. It is told by its bits, as compilers may take it that no float is one.
         const std::string endless = shader_infinity, if_nan = "if ((floatBitsToUint(z.",
                           above = ") & 0x7fffffffu) > 0x7f800000u) ";
-        writer.add("    vec2 z = $z_bounds[place];\n    " + (options.max_only ? "" : if_nan + "x" + above) +
+        writer.add(std::string("    vec2 z = $z_bounds[") + (clusters ? "slice" : "place") + "];\n    " + (max_only ? "" : if_nan + "x" + above) +
                    "z.x = -" + endless + ";\n    " + if_nan + "y" + above + "z.y = " + endless +
                    ";\n    bool lit = z.x <= z.y;\n");
         arguments += ", z";

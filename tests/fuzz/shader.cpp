@@ -357,6 +357,7 @@ void fuzz_build(Bytes& bytes) {
     options.max_only = (flags & 1) != 0;
     options.orthographic = (flags & 2) != 0;
     options.push_constants = (flags & 4) != 0;
+    options.slicing = static_cast<Slicing>((flags >> 3) % 3);
     take_rest(bytes, options,
               {&options.footprints, &options.z_bounds, &options.edges, &options.tiles, &options.lists,
                &options.total, &options.grid},
@@ -364,11 +365,14 @@ void fuzz_build(Bytes& bytes) {
 
     if (Language(options.language).old) question.reasons.insert(ErrorCode::no_storage_buffers);
     if (options.depth_test == DepthTest::split_box) question.reasons.insert(ErrorCode::no_split_box_shader);
+    const bool clusters = options.slicing == Slicing::clusters;
+    if (options.slicing == Slicing::z_bins || (clusters && options.depth_test == DepthTest::interval))
+        question.reasons.insert(ErrorCode::no_such_slicing_shader);
     const bool offsets = options.pass == BuildPass::offsets,
                box = !offsets && options.depth_test == DepthTest::box;
-    if (box) question.constants.push_back("planes");
+    if (box || (clusters && !offsets)) question.constants.push_back("planes");
     if (!offsets) question.wanted.push_back({"footprints", options.footprints});
-    if (!offsets && options.depth_test != DepthTest::none)
+    if (!offsets && (clusters || options.depth_test != DepthTest::none))
         question.wanted.push_back({"z_bounds", options.z_bounds});
     if (box) question.wanted.push_back({"edges", options.edges});
     question.wanted.push_back({"tiles", options.tiles});

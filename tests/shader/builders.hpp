@@ -47,7 +47,7 @@ inline std::vector<lightbin::BuildShaderOptions> every_build(lightbin::ShaderLan
     std::vector<BuildShaderOptions> every;
     for (const BuildPass pass : {BuildPass::count, BuildPass::offsets, BuildPass::fill})
         for (const DepthTest depth_test : {DepthTest::none, DepthTest::interval, DepthTest::box})
-            for (unsigned switches = 0; switches < 8; ++switches) {
+            for (unsigned switches = 0; switches < 16; ++switches) {
                 BuildShaderOptions options;
                 options.language = language;
                 options.pass = pass;
@@ -55,6 +55,7 @@ inline std::vector<lightbin::BuildShaderOptions> every_build(lightbin::ShaderLan
                 options.max_only = switches & 1;
                 options.orthographic = switches & 2;
                 options.push_constants = switches & 4;
+                options.slicing = switches & 8 ? Slicing::clusters : Slicing::none;
                 if (switches & 1) options.prefix = "my_";
                 if (build_shader(options)) every.push_back(options);
             }
@@ -172,7 +173,14 @@ inline std::vector<Job> build_jobs(lightbin::BuildShaderOptions options, int cam
     Binner<> none;
     Binner<Options{.depth_test = DepthTest::interval}> interval;
     Binner<Options{.depth_test = DepthTest::box}> box;
-    const auto grid = options.depth_test == DepthTest::none ? none.bin(view, lights)
+    Binner<Options{.slicing = Slicing::clusters}> clusters;
+    Binner<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}> box_clusters;
+    const Slices slices = *Slices::from_boundaries(std::vector<float>{0, 3.5f, 9, 20, 50});
+    const bool sliced = options.slicing == Slicing::clusters;
+    const auto grid = sliced && options.depth_test == DepthTest::none
+                          ? clusters.bin(view, lights, {.slices = slices})
+                      : sliced                                ? box_clusters.bin(view, lights, {.slices = slices})
+                      : options.depth_test == DepthTest::none ? none.bin(view, lights)
                       : options.depth_test == DepthTest::interval
                           ? interval.bin(view, lights, {.bounds = bounds})
                           : box.bin(view, lights, {.bounds = bounds});
@@ -183,24 +191,28 @@ inline std::vector<Job> build_jobs(lightbin::BuildShaderOptions options, int cam
     const auto footprints = *shader_footprints(view, lights);
     BuilderData data;
     data.put("footprints", footprints);
-    data.put("z_bounds", both);
+    if (sliced)
+        data.put("z_bounds", shader_slabs(slices));
+    else
+        data.put("z_bounds", both);
     data.put("edges", shader_edges(view));
     std::vector<Job> jobs;
     const auto add = [&](BuildPass pass, std::string_view result, std::uint32_t room,
                          std::span<const std::byte> expected) {
         options.pass = pass;
-        const ShaderBuild constants = shader_build(view, static_cast<std::uint32_t>(footprints.size()), room);
+        const ShaderBuild constants = shader_build(view, static_cast<std::uint32_t>(footprints.size()), room,
+                                                    grid->slices());
         constexpr const char* names[] = {"grid", "planes"};
         data.put_constants(std::as_bytes(std::span(&constants, 1)), names);
         Job job = builder_job(*build_shader(options), options.language, options.prefix, data, result);
         job.name = "build, pass " + std::to_string(static_cast<int>(pass)) + ", test " +
                    std::to_string(static_cast<int>(options.depth_test)) + ", camera " +
-                   std::to_string(camera) + (options.max_only ? ", max only, " : ", ") + std::string(result) +
+                   std::to_string(camera) + (sliced ? ", clusters" : options.max_only ? ", max only" : "") + ", " + std::string(result) +
                    " " + std::to_string(width) + "x" + std::to_string(height) + ", tile " +
                    std::to_string(tile_size);
         if (pass != BuildPass::offsets)
             job.groups = {static_cast<std::uint32_t>(view.tiles_x()),
-                          static_cast<std::uint32_t>(view.tiles_y())};
+                          static_cast<std::uint32_t>(view.tiles_y() * grid->slices())};
         job.expected.resize((std::max)(expected.size(), std::size_t{16}) / 4);
         std::memset(job.expected.data(), 0xee, job.expected.size() * 4);
         std::memcpy(job.expected.data(), expected.data(), expected.size());
@@ -242,24 +254,32 @@ inline std::vector<Job> build_jobs(lightbin::ShaderLanguage language) {
     using namespace lightbin;
     std::vector<Job> jobs;
     if (!detail::dialect(language).storage_buffers) return jobs;
+    struct Size {
+        int width, height, tile_size;
+        std::size_t lights;
+    };
+    const auto add = [&](int camera, const BuildShaderOptions& options, const Size& size) {
+        for (Job& job : build_jobs(options, camera, size.width, size.height, size.tile_size, size.lights))
+            jobs.push_back(std::move(job));
+    };
     for (const DepthTest depth_test : {DepthTest::none, DepthTest::interval, DepthTest::box})
-        for (int camera = 0; camera < camera_count; ++camera)
+        for (int camera = 0; camera < camera_count; ++camera) {
+            BuildShaderOptions options;
+            options.language = language;
+            options.depth_test = depth_test;
             for (const bool max_only : {false, true}) {
-                if (max_only && depth_test == DepthTest::none) continue;
-                BuildShaderOptions options;
-                options.language = language;
-                options.depth_test = depth_test;
                 options.max_only = max_only;
-                struct Size {
-                    int width, height, tile_size;
-                    std::size_t lights;
-                };
+                if (max_only && depth_test == DepthTest::none) continue;
                 for (const Size& size :
                      {Size{1, 1, 32, 0}, Size{33, 17, 1, 40}, Size{333, 217, 16, 300}, Size{640, 360, 8, 64}})
-                    for (Job& job :
-                         build_jobs(options, camera, size.width, size.height, size.tile_size, size.lights))
-                        jobs.push_back(std::move(job));
+                    add(camera, options, size);
             }
+            options.max_only = false;
+            options.slicing = Slicing::clusters;
+            if (!build_shader(options)) continue;
+            for (const Size& size : {Size{1, 1, 32, 0}, Size{33, 17, 7, 40}, Size{333, 217, 32, 300}})
+                add(camera, options, size);
+        }
     return jobs;
 }
 

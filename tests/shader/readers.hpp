@@ -385,7 +385,8 @@ struct ReaderRun {
 
 /// What a language runs: every list, flipped and not, in fragment and compute shaders, at each small screen;
 /// the other options take turns. At the large screen: one width of ids. With slicing: at two small screens.
-/// each_flip  false: half of the small screens are flipped, the other half not; the next list has it the other way round
+/// each_flip  false: half of the small screens are flipped, the other half not; the next list has it the other way round;
+///            with slicing the one half in fragment shaders, the other in compute shaders
 /// waves      the device has what wave loops need: they are run, too, at two small screens
 inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, bool each_flip = true,
                                           bool waves = false) {
@@ -417,8 +418,12 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
                 lists.push_back(list);
         for (const lightbin::ShaderOptions& list : lists) {
             for (unsigned flip = 0; flip < 2; ++flip)
-                for (const Stage stage : {Stage::fragment, Stage::compute})
-                    if (stage == Stage::fragment || computes) add_list(list, place, flip, stage);
+                for (const Stage stage : {Stage::fragment, Stage::compute}) {
+                    const bool turn_of_other = !each_flip && computes && slicing != Slicing::none &&
+                                               (stage == Stage::compute) != (flip == 1);
+                    if ((stage == Stage::fragment || computes) && !turn_of_other)
+                        add_list(list, place, flip, stage);
+                }
             ++place;
         }
     }

@@ -213,6 +213,8 @@ TEST_CASE("reduction and build shaders: what is off leaves no line, what can't b
     CHECK(!has(build_shader({.depth_test = DepthTest::interval})->text, "edges"));
     CHECK(has(build_shader({.depth_test = DepthTest::box})->text, "edges"));
     CHECK(has(build_shader({.depth_test = DepthTest::split_box}).error().message(), "split_box"));
+    CHECK(has(build_shader({.slicing = Slicing::clusters})->text, "z_bounds[slice]"));
+    CHECK(has(build_shader({.slicing = Slicing::z_bins}).error().message(), "z-bins"));
     CHECK(has(build_shader({.language = ShaderLanguage::essl_300}).error().message(), "compute"));
     CHECK(has(build_shader({.pass = BuildPass::fill, .lists = {0}}).error().message(), "binding 0"));
 }
