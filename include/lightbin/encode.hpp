@@ -107,16 +107,20 @@ void encode_ids(const LightGrid<Id>& grid, const ListFormat& format, std::byte* 
 }
 
 template <class Id> void encode_bits(const LightGrid<Id>& grid, std::size_t bytes_a_tile, std::byte* out) {
-    for (const ListRange range : grid.ranges()) {
-        std::memset(out, 0, bytes_a_tile);
-        for (std::uint32_t i = 0; i < range.count; ++i) {
-            const std::uint32_t id = grid.ids()[range.offset + i];
+    // Cleared some tiles at a time, so that they are still at hand when their bits are set.
+    constexpr std::size_t at_hand = 1024;
+    const std::span<const ListRange> ranges = grid.ranges();
+    const std::size_t some = at_hand / bytes_a_tile + 1;
+    for (std::size_t tile = 0; tile < ranges.size(); ++tile, out += bytes_a_tile) {
+        if (tile % some == 0)
+            std::memset(out, 0, bytes_a_tile * (std::min)(some, ranges.size() - tile));
+        for (const Id id : grid.ids().subspan(ranges[tile].offset, ranges[tile].count)) {
+            std::byte* const place = out + id / 32u * 4;
             std::uint32_t word = 0;
-            std::memcpy(&word, out + id / 32 * 4, 4);
-            word |= std::uint32_t{1} << id % 32;
-            std::memcpy(out + id / 32 * 4, &word, 4);
+            std::memcpy(&word, place, 4);
+            word |= std::uint32_t{1} << id % 32u;
+            std::memcpy(place, &word, 4);
         }
-        out += bytes_a_tile;
     }
 }
 
@@ -136,11 +140,12 @@ Result<Encoded> encode(const LightGrid<Id>& grid, const ListFormat& format, std:
     if (out.size() < bytes) return Error{ErrorCode::list_buffer_too_small, bytes, out.size()};
     const std::uint64_t most = countable_lights(format);
     const std::uint64_t limit = format.max_lights ? (std::min<std::uint64_t>)(format.max_lights, most) : most;
-    for (const Id id : grid.ids())
-        if (id >= limit) return Error{ErrorCode::ids_too_narrow, id + std::uint64_t{1}, limit};
 
     Encoded encoded;
     for (const ListRange range : grid.ranges()) {
+        if (range.count > 0)  // ids ascend: the last one is the greatest
+            if (const Id last = grid.ids()[range.offset + range.count - 1]; last >= limit)
+                return Error{ErrorCode::ids_too_narrow, last + std::uint64_t{1}, limit};
         encoded.capacity_needed = (std::max)(encoded.capacity_needed, range.count);
         if (format.encoding != ListEncoding::sentinel || range.count <= format.capacity) continue;
         encoded.entries_cut += range.count - format.capacity;
