@@ -37,7 +37,8 @@ template <class Id, Footprint footprint, DepthTest depth_test> class ClusterList
         depth_test == DepthTest::none || depth_test == DepthTest::box,
         "lightbin: with slices the depth test is none, as lights are in the slices that they meet, or box");
     static constexpr bool with_boxes = depth_test == DepthTest::box,
-                          worded = detail::with_words<footprint, depth_test>;
+                          worded = detail::with_words<footprint, depth_test>,
+                          by_slab = with_boxes && footprint == Footprint::rectangle;
 
 public:
     /// Builds the grid: the tiles of the first slice row by row, then those of the next one. Errors: more than 2^32 - 1
@@ -70,7 +71,7 @@ public:
             if (capacity > most) {
                 capacity = 0;
                 for (std::size_t slice = 0; slice < count; ++slice)
-                    capacity += detail::scalar::count_entries<footprint, depth_test>(
+                    capacity += detail::scalar::count_entries<footprint, depth_test, by_slab>(
                         job_of(view, slices, slice), scratch[0]);
             }
         if (capacity > most) return Error{ErrorCode::too_many_entries, capacity, most};
@@ -82,7 +83,7 @@ public:
                 Job job = job_of(view, slices, slice);
                 // What is behind the last of these slices may be another thread's.
                 job.spare_tiles = end == count ? slack : (std::min)(slack, (end - slice - 1) * tiles);
-                const auto kernel = detail::bin_kernel<footprint, depth_test, Id>(
+                const auto kernel = detail::bin_kernel<footprint, depth_test, Id, by_slab>(
                     isa, view, job.visible, footprints_.runs()[slice].area);
                 const unsigned rows = static_cast<unsigned>(view.tiles_y());
                 at += static_cast<std::uint32_t>(kernel(job, memory, {0, rows, out + at, at}));

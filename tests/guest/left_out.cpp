@@ -19,7 +19,9 @@ std::uint64_t bin(const lightbin::View& view, std::span<const lightbin::Sphere> 
                                        .depth_test = lightbin::DepthTest::split_box}>
         binner;
     const auto grid = binner.bin(view, lights, {.bounds = bounds}, lightbin::Parallel(4, loop));
-    lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::clusters}> cluster_binner;
+    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::box,
+                                       .slicing = lightbin::Slicing::clusters}>
+        cluster_binner;
     const auto clusters = cluster_binner.bin(view, lights, {.slices = *lightbin::Slices::linear(8, 0, 100)});
     lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::z_bins}> ranking_binner;
     const auto ranked = ranking_binner.bin(view, lights, {.slices = *lightbin::Slices::linear(8, 0, 100)});

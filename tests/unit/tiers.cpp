@@ -282,6 +282,7 @@ TEST_CASE("more lights than 16 bits count, and more tiles than 8 bits count") {
         input.max.assign(input.view.tile_count(), 9.0f);
         Tiers<plain>().compare(input);
         Tiers<box>().compare(input);
+        Tiers<box_clusters>().compare(input);
     };
     check({992, 300}, 4, 1500, 0.2f);  // the widest grid of one panel of lists_scan.inl, and one tile more
     check({996, 300}, 4, 1500, 0.2f);

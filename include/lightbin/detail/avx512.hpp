@@ -123,15 +123,21 @@ LIGHTBIN_TARGET inline Floats swap_quarters(Floats a) {
     return _mm512_permutexvar_ps(_mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15), a);
 }
 
+/// From 4 spheres each to coordinates.
+LIGHTBIN_TARGET inline void separate(Floats& x, Floats& y, Floats& z, Floats& radius) {
+    transpose(x, y, z, radius);
+    x = swap_quarters(x);
+    y = swap_quarters(y);
+    z = swap_quarters(z);
+    radius = swap_quarters(radius);
+}
 LIGHTBIN_TARGET inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z,
                                          Floats& radius) {
-    Floats a = _mm512_loadu_ps(&spheres[0].x), b = _mm512_loadu_ps(&spheres[4].x),
-           c = _mm512_loadu_ps(&spheres[8].x), d = _mm512_loadu_ps(&spheres[12].x);
-    transpose(a, b, c, d);
-    x = swap_quarters(a);
-    y = swap_quarters(b);
-    z = swap_quarters(c);
-    radius = swap_quarters(d);
+    x = _mm512_loadu_ps(&spheres[0].x);
+    y = _mm512_loadu_ps(&spheres[4].x);
+    z = _mm512_loadu_ps(&spheres[8].x);
+    radius = _mm512_loadu_ps(&spheres[12].x);
+    separate(x, y, z, radius);
 }
 LIGHTBIN_TARGET inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
     Floats a = swap_quarters(x), b = swap_quarters(y), c = swap_quarters(z), d = swap_quarters(radius);
@@ -277,7 +283,31 @@ LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, const ByteIds& from, 
     _mm512_storeu_si512(to + std::popcount(low), _mm512_mask_compress_epi16(fresh_zeros(), high, from.high));
 }
 
+/// Of the spheres at 4 places, four floats each.
+LIGHTBIN_TARGET inline Floats load_4_spheres(const Sphere* spheres, const ListId* places) {
+    __m512 four = _mm512_castps128_ps512(_mm_loadu_ps(&spheres[places[0]].x));
+    four = _mm512_insertf32x4(four, _mm_loadu_ps(&spheres[places[1]].x), 1);
+    four = _mm512_insertf32x4(four, _mm_loadu_ps(&spheres[places[2]].x), 2);
+    return _mm512_insertf32x4(four, _mm_loadu_ps(&spheres[places[3]].x), 3);
+}
+
+/// As load_spheres(), of the spheres at `count` places, or as many as a vector has; if those are fewer, others are
+/// the first of all.
+LIGHTBIN_TARGET inline void load_listed_spheres(const Sphere* spheres, const ListId* places,
+                                                std::uint32_t count, Floats& x, Floats& y, Floats& z,
+                                                Floats& radius) {
+    ListId listed[lanes];
+    const __mmask16 first = static_cast<__mmask16>(0xffff >> (lanes - (std::min)(count, lanes)));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(listed), _mm256_maskz_loadu_epi16(first, places));
+    x = load_4_spheres(spheres, listed);
+    y = load_4_spheres(spheres, listed + 4);
+    z = load_4_spheres(spheres, listed + 8);
+    radius = load_4_spheres(spheres, listed + 12);
+    separate(x, y, z, radius);
+}
+
 using avx2::arrange_cells;
+using avx2::arrange_slab;
 using avx2::fill_empty;
 
 #define LIGHTBIN_TIER_HAS_BYTES

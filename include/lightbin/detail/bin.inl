@@ -10,39 +10,58 @@
 //      sort.
 
 /// The number of entries of the grid.
-template <Footprint footprint, DepthTest depth_test, class Id>
+template <Footprint footprint, DepthTest depth_test, bool by_slab = false, class Id>
 LIGHTBIN_TARGET std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scratch) {
     const BandJob<Id> bands = {0, static_cast<unsigned>(job.camera->y.tiles), nullptr, 0};
     const unsigned width = (static_cast<unsigned>(job.camera->x.tiles) + 7) / 8;
+    if constexpr (by_slab) arrange_slab(job, scratch);
     ListedBands listed;
     std::uint64_t entries = 0;
     for (unsigned top = bands.begin; top < bands.end; top += 8) {
-        const BandLists<ListId> band =
-            make_lists<with_words<footprint, depth_test>>(job, scratch, bands, top, width, listed);
+        const BandLists<ListId> band = make_lists < with_words<footprint, depth_test> &&
+                                       !by_slab > (job, scratch, bands, top, width, listed);
         for (unsigned x = 0; band.lists != nullptr && x < width; ++x) {
-            if (band.lists[x].count == 0) continue;
-            const std::uint32_t left =
-                mask_lights<footprint, depth_test>(job, scratch, x, top, band.lists[x], band.ids);
-            for (std::uint32_t i = 0; i < left; ++i)
-                entries += static_cast<unsigned>(std::popcount(scratch.masks.data()[i]));
+            const SupertileList& list = band.lists[x];
+            if (list.count == 0) continue;
+            const std::uint64_t* words;
+            std::uint32_t count;
+            if constexpr (by_slab) {
+                count = store_slab_words(job, scratch, x, top, band, list);
+                words = scratch.words.data();
+            } else {
+                count = mask_lights<footprint, depth_test>(job, scratch, x, top, list, band.ids);
+                words = scratch.masks.data();
+            }
+            for (std::uint32_t i = 0; i < count; ++i)
+                entries += static_cast<unsigned>(std::popcount(words[i]));
         }
     }
     return entries;
 }
 
 /// Bins the tile rows of `bands`. Returns the number of entries. May write BandJob::slack elements past them.
-template <Footprint footprint, DepthTest depth_test, class Id>
+template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab>
 LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scratch,
                                              const BandJob<Id>& bands) {
     constexpr bool worded = with_words<footprint, depth_test>;
     const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles), width = (tiles_x + 7) / 8;
+    if constexpr (by_slab) {
+        if (job.visible == 0) {
+            fill_empty(job.tiles + bands.begin * std::size_t{tiles_x},
+                       (bands.end - bands.begin) * std::size_t{tiles_x}, bands.at);
+            return 0;
+        }
+        arrange_slab(job, scratch);
+    }
     ListedBands listed;
     Id* out = bands.out;
     std::uint32_t at = bands.at;
     for (unsigned top = bands.begin; top < bands.end; top += 8) {
-        const BandLists<ListId> band = make_lists<worded>(job, scratch, bands, top, width, listed);
+        const BandLists<ListId> band =
+            make_lists < worded && !by_slab > (job, scratch, bands, top, width, listed);
         const unsigned end_row = (std::min)(top + 8, bands.end);
-        if (band.lists == nullptr || !make_words<footprint, depth_test>(job, scratch, top, band, width)) {
+        if (band.lists == nullptr ||
+            !make_words<footprint, depth_test, by_slab>(job, scratch, top, band, width)) {
             fill_empty(job.tiles + top * std::size_t{tiles_x}, (end_row - top) * std::size_t{tiles_x}, at);
             if (bands.spare_row >= top && bands.spare_row < end_row) out = bands.spare;
             continue;

@@ -15,6 +15,10 @@
 //   terms of one sign). The squared radius loses 3u. 2^-20 = 16u makes up for the 8u, and 2^-125 for squares
 //   that are flushed to zero. What overflows to infinity did so in both or in the sphere's favour, since all
 //   roundings are monotone; infinity is not beyond infinity.
+// - in a slice (slab.inl) the squared distances along z and y are subtracted from the squared radius, and the rest is
+//   compared with that along x. Where it could be more, each difference is off by u of the squared radius, as much
+//   as a sum above. One that is flushed to zero is off by 2^-126, two by 2^-125: squares don't need that
+//   then, as a squared radius that is flushed leaves 2^-125 - 0 - 0, which is not.
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
@@ -25,6 +29,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 inline constexpr float flushed = 0x1p-120f;
@@ -40,6 +45,15 @@ inline void tile_edges(const ImageAxis& axis, int tile, float& low, float& high)
     low = from < -most ? -infinity : static_cast<float>((std::min)(from, most));
     high = to > most ? infinity : static_cast<float>((std::max)(to, -most));
 }
+
+/// The boxes around the cells of a slice, which share their depths z0 to z1: their ends, low x and high x by column,
+/// low y and high y by row. Readable (not meaningful) up to `padding` elements past the last.
+struct SlabBoxes {
+    static constexpr std::size_t padding = 8;
+
+    const float* ends[4] = {};
+    float z0 = 0, z1 = 0;
+};
 
 /// A light as the depth tests see it: the tile index grows with x and y, and z is the view depth.
 struct TestedLight {

@@ -2,17 +2,24 @@
 // What a depth test needs to know of a supertile's tiles: their depths and the boxes around their cells, see
 // cell_boxes.hpp. Included once a tier whose vectors are no longer than a supertile's row, 8 floats.
 
+/// The ends of boxes along an axis, from the edges of tiles. See cell_boxes.hpp.
+LIGHTBIN_TARGET inline Floats low_ends(Floats edges, Floats front, Floats back) {
+    return mul(edges, select(less(edges, all(0.0f)), back, front)) - all(flushed);
+}
+LIGHTBIN_TARGET inline Floats high_ends(Floats edges, Floats front, Floats back) {
+    return mul(edges, select(less(all(0.0f), edges), back, front)) + all(flushed);
+}
+
 /// See cell_boxes.hpp.
 LIGHTBIN_TARGET inline void store_box(const Camera& camera, float* box, Floats x0, Floats x1, Floats y0,
                                       Floats y1, Floats z0, Floats z1) {
-    const Floats zero = all(0.0f), front = camera.orthographic ? all(1.0f) : z0,
-                 back = camera.orthographic ? all(1.0f) : z1;
+    const Floats front = camera.orthographic ? all(1.0f) : z0, back = camera.orthographic ? all(1.0f) : z1;
     store_floats(box, z0);
     store_floats(box + 64, z1);
-    store_floats(box + 128, mul(x0, select(less(x0, zero), back, front)) - all(flushed));
-    store_floats(box + 192, mul(x1, select(less(zero, x1), back, front)) + all(flushed));
-    store_floats(box + 256, mul(y0, select(less(y0, zero), back, front)) - all(flushed));
-    store_floats(box + 320, mul(y1, select(less(zero, y1), back, front)) + all(flushed));
+    store_floats(box + 128, low_ends(x0, front, back));
+    store_floats(box + 192, high_ends(x1, front, back));
+    store_floats(box + 256, low_ends(y0, front, back));
+    store_floats(box + 320, high_ends(y1, front, back));
 }
 
 /// Writes the boxes of some tiles' cells, or for split_box the two before and behind each one's gap. The tiles' Z
@@ -78,4 +85,41 @@ LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, u
         }
     }
     return lit;
+}
+
+/// Fills scratch.slab with the boxes of a slice's cells: those of store_boxes(), which differ by column and by row.
+template <class Id> LIGHTBIN_TARGET void arrange_slab(const BinJob<Id>& job, Scratch& scratch) {
+    const Camera& camera = *job.camera;
+    SlabBoxes& slab = scratch.slab;
+    slab.z0 = (std::min)((std::max)(job.slab[0], camera.near_depth), FLT_MAX);
+    slab.z1 = (std::min)(job.slab[1], camera.far_depth);
+    const Floats front = all(camera.orthographic ? 1.0f : slab.z0),
+                 back = all(camera.orthographic ? 1.0f : slab.z1);
+    const std::size_t tiles[] = {static_cast<std::size_t>(camera.x.tiles),
+                                 static_cast<std::size_t>(camera.y.tiles)};
+    float* ends =
+        scratch.slab_ends.reserve(2 * (tiles[0] + std::uint64_t{tiles[1]} + 2 * SlabBoxes::padding));
+    for (unsigned side = 0; side < 4; ++side) {
+        const std::size_t count = tiles[side / 2];
+        for (std::size_t i = 0; i < count; i += lanes) {
+            // The last vector overlaps the one before it: what follows the edges may be numbers that take long.
+            const std::size_t place = i + lanes <= count || count < lanes ? i : count - lanes;
+            const Floats edges = load_floats(job.edges[side] + place);
+            store_floats(ends + place,
+                         side % 2 == 0 ? low_ends(edges, front, back) : high_ends(edges, front, back));
+        }
+        slab.ends[side] = ends;
+        ends += count + SlabBoxes::padding;
+    }
+}
+
+/// As load_spheres(), of the spheres at `count` places, or as many as a vector has; if those are fewer, others are
+/// the last of them.
+LIGHTBIN_TARGET inline void load_listed_spheres(const Sphere* spheres, const ListId* places,
+                                                std::uint32_t count, Floats& x, Floats& y, Floats& z,
+                                                Floats& radius) {
+    Sphere some[lanes];
+    for (std::uint32_t i = 0; i < lanes; ++i)
+        some[i] = load_sphere(spheres + places[(std::min)(i, count - 1)]);
+    load_spheres(some, x, y, z, radius);
 }

@@ -21,6 +21,18 @@ LIGHTBIN_TARGET inline Packed<Id>* packed_ids(const Scratch& scratch, const Band
         return band.ids + list.begin;
 }
 
+/// Packs the ids of a list.
+template <class Id>
+LIGHTBIN_TARGET inline void pack_ids(Scratch& scratch, const BandLists<ListId>& band,
+                                     const SupertileList& list) {
+    if constexpr (packs_ids) {
+        const std::size_t before = list.begin - band.lists->begin, size = sizeof(Packed<Id>);
+        const std::uint64_t after = before + ((list.count + std::uint64_t{63}) & ~std::uint64_t{63});
+        scratch.packed_ids.reserve(after * size, before * size);
+        pack(band.ids + list.begin, list.count, packed_ids<Id>(scratch, band, list));
+    }
+}
+
 /// Stores the words of a list at list.words of scratch.words. Returns where they end.
 template <bool with_words, class Id>
 LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLists<ListId>& band,
@@ -44,12 +56,56 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
             split_bits(rows + i, words + 8);
         }
     }
-    if constexpr (packs_ids) {
-        const std::size_t before = list.begin - band.lists->begin, size = sizeof(Packed<Id>);
-        const std::uint64_t after = before + 64 * groups;
-        scratch.packed_ids.reserve(after * size, before * size);
-        pack(band.ids + list.begin, list.count, packed_ids<Id>(scratch, band, list));
+    pack_ids<Id>(scratch, band, list);
+    return end;
+}
+
+/// Of 8 lights at most, those that miss the boxes of a supertile's first `rows` rows: a byte per tile, a bit a light.
+/// slab  its ends are those from the supertile on
+LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SlabBoxes& slab, const Sphere* spheres,
+                                         const ListId* ids, std::uint32_t count, unsigned rows,
+                                         std::uint64_t* words) {
+    std::fill_n(words, 8, 0u);
+    for (std::uint32_t first = 0; first < 8 && first < count; first += lanes) {
+        const SlabLights lights = load_slab_lights(camera, slab, spheres, ids + first, count - first);
+        float x2[8][lanes];
+        for (unsigned column = 0; column < 8; ++column)
+            store_floats(x2[column], distance2(lights.x, slab.ends[0][column], slab.ends[1][column]));
+        for (unsigned row = 0; row < rows; ++row) {
+            const Floats reach2 = lights.reach2 - distance2(lights.y, slab.ends[2][row], slab.ends[3][row]);
+            words[row] |= bits_of_8_less(reach2, x2[0]) << first;
+        }
     }
+}
+
+/// Makes the words of a list, by the boxes of the supertile from column 8 x and row `top` on, and stores them as
+/// store_words() does.
+template <class Id>
+LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scratch& scratch, unsigned x,
+                                                      unsigned top, const BandLists<ListId>& band,
+                                                      const SupertileList& list) {
+    const std::uint32_t end = list.words + (list.count + 7) / 8 * 8;
+    std::uint64_t* words = scratch.words.reserve(end, list.words) + list.words;
+    std::uint8_t *const columns = scratch.list_columns.data() + list.begin, *const rows =
+                                                                                scratch.list_rows.data() +
+                                                                                list.begin;
+    std::memset(columns + list.count, 0, end - list.words - list.count);
+    const ListId* const ids = band.ids + list.begin;
+    const unsigned height = (std::min)(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
+    SlabBoxes slab = scratch.slab;
+    for (unsigned side = 0; side < 4; ++side)
+        slab.ends[side] += side < 2 ? 8 * x : top;
+    for (std::uint32_t i = 0; i < list.count; i += 8, words += 8) {
+        store_missed(*job.camera, slab, job.lights.spheres, ids + i, list.count - i, height, words);
+        std::uint64_t in_columns, in_rows;
+        std::memcpy(&in_columns, columns + i, 8);
+        std::memcpy(&in_rows, rows + i, 8);
+        in_columns = transpose_bits(in_columns);
+        in_rows = transpose_bits(in_rows);
+        for (unsigned row = 0; row < height; ++row)
+            words[row] = ~words[row] & in_columns & (in_rows >> 8 * row & 0xff) * 0x0101010101010101;
+    }
+    pack_ids<Id>(scratch, band, list);
     return end;
 }
 

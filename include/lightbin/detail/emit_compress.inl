@@ -234,6 +234,36 @@ LIGHTBIN_TARGET inline void store_long_words(const std::uint64_t* masks, const s
     }
 }
 
+/// Of 16 lights at most, those that miss the boxes of a supertile's first `rows` rows: missed[4 * tile], a bit a light.
+/// slab  its ends are those from the supertile on
+LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SlabBoxes& slab, const Sphere* spheres,
+                                         const ListId* places, std::uint32_t count, unsigned rows,
+                                         std::uint16_t* missed) {
+    const SlabLights lights = load_slab_lights(camera, slab, spheres, places, count);
+    Floats x2[8];
+    for (unsigned column = 0; column < 8; ++column)
+        x2[column] = distance2(lights.x, slab.ends[0][column], slab.ends[1][column]);
+    for (unsigned row = 0; row < rows; ++row) {
+        const Floats reach2 = lights.reach2 - distance2(lights.y, slab.ends[2][row], slab.ends[3][row]);
+        for (unsigned column = 0; column < 8; ++column, missed += 4)
+            *missed = less(reach2, x2[column]);
+    }
+}
+
+/// Stores a row's words of a short list, see store_short_words(): `tiles` has the bits of each.
+template <unsigned eights>
+LIGHTBIN_TARGET inline void store_short_row(__m512i tiles, unsigned row, std::uint64_t* to) {
+    const __m128i sizes = _mm512_cvtepi64_epi8(_mm512_popcnt_epi64(tiles));
+    to[row] = static_cast<std::uint64_t>(_mm_cvtsi128_si64(sizes)) * 0x0101010101010101;  // running sums
+    std::uint64_t* const words = to + 8 + eights * row;
+    if constexpr (eights == 1)
+        _mm_storel_epi64(reinterpret_cast<__m128i*>(words), _mm512_cvtepi64_epi8(tiles));
+    else if constexpr (eights == 2)
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(words), _mm512_cvtepi64_epi16(tiles));
+    else
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(words), _mm512_cvtepi64_epi32(tiles));
+}
+
 /// Stores the words that empty lists, whose `words` is 0, share: of a short one without a bit. Returns where they
 /// end.
 LIGHTBIN_TARGET inline std::uint32_t store_no_words(Scratch& scratch) {
@@ -266,6 +296,50 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
         store_short_words<with_words, 4>(masks, columns, rows, count, words);
     else
         store_long_words<with_words>(masks, columns, rows, count, words);
+    return end;
+}
+
+/// Makes the words of a list, by the boxes of the supertile from column 8 x and row `top` on, and stores them as
+/// store_words() does.
+template <class Id>
+LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scratch& scratch, unsigned x,
+                                                      unsigned top, const BandLists<ListId>& band,
+                                                      const SupertileList& list) {
+    const std::uint32_t count = list.count, groups = (count + 63) / 64;
+    const std::uint32_t end = list.words + (count < 32 ? 40 : 64 * groups);
+    std::uint64_t* const words = scratch.words.reserve(end, list.words) + list.words;
+    const unsigned height = (std::min)(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
+    SlabBoxes slab = scratch.slab;
+    for (unsigned side = 0; side < 4; ++side)
+        slab.ends[side] += side < 2 ? 8 * x : top;
+    for (std::uint32_t group = 0; group < groups; ++group) {
+        const std::uint32_t begin = list.begin + 64 * group, left = count - 64 * group;
+        const IdBlock& block = scratch.blocks.data()[scratch.group_blocks.data()[begin / 64]];
+        const Sphere* const spheres = job.lights.spheres + block.upper;
+        std::uint16_t missed[4 * 64];
+        for (std::uint32_t i = 0; i < 64 && i < left; i += 16)
+            store_missed(*job.camera, slab, spheres, band.ids + begin + i, left - i, height, missed + i / 16);
+        std::uint64_t in_column[8], in_row[8];
+        split_bits(load(scratch.list_columns.data() + begin), first_bytes(left), in_column, 1);
+        split_bits(load(scratch.list_rows.data() + begin), first_bytes(left), in_row, 1);
+        for (unsigned row = 0; row < height; ++row) {
+            const __m512i in = _mm512_and_si512(load(in_column),
+                                                _mm512_set1_epi64(static_cast<long long>(in_row[row]))),
+                          tiles = _mm512_andnot_si512(load(missed + 32 * row), in);
+            if (count <= up_to_8(band)) {
+                store_short_row<1>(tiles, row, words);
+            } else if (count <= 16) {
+                store_short_row<2>(tiles, row, words);
+            } else if (count < 32) {
+                store_short_row<4>(tiles, row, words);
+            } else {
+                std::uint64_t of_tile[8];
+                store(of_tile, tiles);
+                for (unsigned column = 0; column < 8; ++column)
+                    words[(8 * row + column) * groups + group] = of_tile[column];
+            }
+        }
+    }
     return end;
 }
 

@@ -52,12 +52,15 @@ template <class Id> BinKernel<Id> scatter_kernel(Isa isa) {
 }
 
 /// The fastest kernel for `lights` lights in view whose rectangles have `area` tiles in all.
-template <Footprint footprint, DepthTest depth_test, class Id>
+///
+/// by_slab  there are no Z bounds, and boxes are those of job.slab: see slab.inl
+template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab = false>
 BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint32_t lights, std::uint64_t area) {
     if constexpr (!with_words<footprint, depth_test>) {
         if (scatter_is_faster(isa, view.tile_count(), lights, area)) return scatter_kernel<Id>(isa);
     }
-    return with_tier(isa, [](auto tier) { return tier.template bin_kernel<footprint, depth_test, Id>(); });
+    return with_tier(
+        isa, [](auto tier) { return tier.template bin_kernel<footprint, depth_test, Id, by_slab>(); });
 }
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

@@ -22,7 +22,8 @@
 //   Packed, packs_ids, append      ids in the form that append() takes, see portable.hpp and sse2.hpp
 //   append_lights                  with vectors of bytes: the same of ids and columns, for pick_rows.inl
 // or
-//   LIGHTBIN_TIER_COMPRESSES       defined: emits by emit_compress.inl; scatters, and arranges cells, as AVX2 does
+//   LIGHTBIN_TIER_COMPRESSES       defined: emits by emit_compress.inl; scatters, and arranges cells, as AVX2 does;
+//                                  load_listed_spheres as in cells.inl
 // for step 1, lists_scan.inl, where it has fast vectors of bytes,
 //   LIGHTBIN_TIER_HAS_BYTES        defined: and so are these
 //   Bytes, ByteMask, byte_lanes    a vector of bytes without sign, a bit a byte, how many
@@ -56,9 +57,13 @@
 #endif
 
 #if defined(LIGHTBIN_TIER_COMPRESSES)
+#include <lightbin/detail/slab.inl>
+
 #include <lightbin/detail/emit_compress.inl>
 #else
 #include <lightbin/detail/cells.inl>
+
+#include <lightbin/detail/slab.inl>
 
 #if defined(LIGHTBIN_TIER_HAS_BYTES)
 #include <lightbin/detail/pick_rows.inl>
@@ -79,8 +84,9 @@ struct Tier {
     static RowSpanKernel row_span_kernel() { return row_spans; }
     static DepthKernels depth_kernels() { return {column_extremes, column_gaps}; }
 
-    template <Footprint footprint, DepthTest depth_test, class Id> static BinKernel<Id> bin_kernel() {
-        return bin_supertiles<footprint, depth_test, Id>;
+    template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab>
+    static BinKernel<Id> bin_kernel() {
+        return bin_supertiles<footprint, depth_test, Id, by_slab>;
     }
 
     template <class Id> static BinKernel<Id> scatter_kernel() {

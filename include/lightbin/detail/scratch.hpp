@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/buffer.hpp>
+#include <lightbin/detail/cell_boxes.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/light_grid.hpp>
 
@@ -51,6 +52,10 @@ struct Scratch {
     Buffer<IdBlock> blocks;
     Buffer<std::uint32_t> group_blocks;  ///< of 64 of list_ids each the number of their block
     Buffer<std::uint64_t> words;         ///< of a band of supertiles, in the form of step 3
+
+    // The boxes of a slice, see cells.inl.
+    SlabBoxes slab;
+    Buffer<float> slab_ends;
 
     // Of a list, those picked for a row, see pick_rows.inl.
     Buffer<std::uint32_t> row_ids;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Step 2 of bin.inl: which of a supertile's 8x8 tiles each of its lights is in. With row spans or a depth test, as
 // one word a light with a bit per tile: its rectangle, and-ed with its silhouette's row spans and with the tiles
-// whose Z bounds it meets. Included once a tier, after step 3, which says in what form it takes the words.
+// whose Z bounds it meets. Included once a tier, after step 3, which says in what form it takes the words, and makes
+// those of a slice's boxes (slab.inl).
 //
 //     bit  0  1 ..  7      . . . . . . . .      rows that the rectangle covers     0 1 1 1 0 0 0 0
 //          8  9 .. 15      . . # # # # . .      columns                            0 0 1 1 1 1 0 0
@@ -172,9 +173,9 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
     return left;
 }
 
-/// Makes the words of a band's supertiles, in the form that step 3 takes. Lights that are in no tile of a list are
-/// taken out of it. Returns whether any is left.
-template <Footprint footprint, DepthTest depth_test, class Id>
+/// Makes the words of a band's supertiles, in the form that step 3 takes. Lights in no tile of a list are taken out of
+/// it, where that is known of each by itself: by mask_lights(). Returns whether any is left.
+template <Footprint footprint, DepthTest depth_test, bool by_slab, class Id>
 LIGHTBIN_TARGET bool make_words(const BinJob<Id>& job, Scratch& scratch, unsigned top,
                                 const BandLists<ListId>& band, unsigned width) {
     constexpr bool worded = with_words<footprint, depth_test>;
@@ -182,7 +183,7 @@ LIGHTBIN_TARGET bool make_words(const BinJob<Id>& job, Scratch& scratch, unsigne
     std::uint32_t used = begin;
     for (unsigned x = 0; x < width; ++x) {
         SupertileList& list = band.lists[x];
-        if constexpr (worded)
+        if constexpr (worded && !by_slab)
             if (list.count > 0)
                 list.count = mask_lights<footprint, depth_test>(job, scratch, x, top, list, band.ids);
         if (list.count == 0) {
@@ -190,7 +191,10 @@ LIGHTBIN_TARGET bool make_words(const BinJob<Id>& job, Scratch& scratch, unsigne
             continue;
         }
         list.words = used;
-        used = store_words<worded, Id>(scratch, band, list);
+        if constexpr (by_slab)
+            used = store_slab_words(job, scratch, x, top, band, list);
+        else
+            used = store_words<worded, Id>(scratch, band, list);
     }
     return used > begin;
 }
