@@ -52,7 +52,7 @@ public:
         const std::size_t tiles = view.tile_count(), count = static_cast<std::size_t>(slices.count());
         const std::uint64_t cells = std::uint64_t{tiles} * count;
         if (cells > most) return Error{ErrorCode::too_many_cells, cells, most};
-        const std::uint64_t places = footprints_.cut(view, footprints, slices);
+        const std::uint64_t places = footprints_.cut(isa, view, footprints, slices);
         if (places > most) return Error{ErrorCode::too_many_list_places, places, most};
         if constexpr (with_boxes) edges_.find(detail::camera_of(view));
         const std::size_t slack = Job::slack(static_cast<std::size_t>(view.tiles_x()));

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <lightbin/detail/buffer.hpp>
+#include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/kernels.hpp>
 #include <lightbin/detail/slice_table.hpp>
+#include <lightbin/isa.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/project.hpp>
 #include <lightbin/slices.hpp>
@@ -38,12 +41,13 @@ public:
     /// Takes each light to the slices that its depths, z - r to z + r, meet, their ends included. Returns the number of
     /// places that they take: for pairs of a light and a slice, and one more a slice; if 32 bits don't count them,
     /// there are no runs.
-    std::uint64_t cut(const View& view, const Footprints<footprint, true>& footprints, const Slices& slices) {
+    std::uint64_t cut(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
+                      const Slices& slices) {
         const detail::FootprintArrays& lights = footprints.arrays();
         run_count_ = static_cast<std::size_t>(slices.count());
-        table_.set(slices.boundaries());
-        const std::uint64_t places = find_slices(lights, footprints.runs(), footprints.visible(),
-                                                detail::camera_of(view).z_sign);
+        const std::uint64_t places =
+            find_slices(isa, detail::camera_of(view).z_sign, lights, footprints.runs(), footprints.visible(),
+                        slices.boundaries());
         if (places > 0xffffffff) {
             run_count_ = 0;
             return places;
@@ -68,27 +72,44 @@ public:
     std::span<const detail::SliceRun> runs() const { return {runs_.data(), run_count_}; }
 
 private:
+    static constexpr std::uint32_t chunk = 64;  ///< lights, whole vectors
+
     /// Slices first..last.
     struct Met {
         std::uint32_t first, last;
     };
 
     /// Finds the slices of each light, and where their runs begin, with a place between two. Returns where they end.
-    std::uint64_t find_slices(const detail::FootprintArrays& lights, std::span<const detail::FootprintRun> all,
-                              std::uint32_t visible, float z_sign) {
+    std::uint64_t find_slices(Isa isa, float z_sign, const detail::FootprintArrays& lights,
+                              std::span<const detail::FootprintRun> all, std::uint32_t visible,
+                              std::span<const float> boundaries) {
         detail::SliceRun* const runs = runs_.reserve(run_count_ + 1);
         std::fill_n(runs, run_count_ + 1, detail::SliceRun{});
         Met* met = met_.reserve(visible);
-        // First the steps of the lights' number from slice to slice: sums wrap, and come out right.
+        const bool compare = boundaries.size() <= detail::most_boundaries_compared(isa);
+        if (!compare) table_.set(boundaries);
+        const detail::SlicesKernel kernel = detail::slices_kernel(isa);
         for (const detail::FootprintRun& run : all)
-            for (std::uint32_t i = run.begin; i < run.end; ++i) {
-                // Rounding is monotone and boundaries are floats, so rounded depths are on the same side of them, or on one.
-                const Sphere sphere = detail::load_sphere(lights.spheres + lights.ids[i]);
-                const float z = sphere.z * z_sign;
-                *met = {table_.before(z - sphere.radius), table_.up_to(z + sphere.radius)};
-                ++runs[met->first].run.end;
-                --runs[met->last + 1].run.end;
-                ++met;
+            for (std::uint32_t i = run.begin; i < run.end; i += chunk) {
+                const std::uint32_t count = (std::min)(run.end - i, chunk);
+                float nearest[chunk], farthest[chunk];
+                std::uint16_t first[chunk], last[chunk];
+                for (std::uint32_t j = 0; j < count; ++j) {
+                    // Rounding is monotone and boundaries are floats, so rounded depths are on the same side of
+                    // them, or on one.
+                    const Sphere sphere = detail::load_sphere(lights.spheres + lights.ids[i + j]);
+                    const float z = sphere.z * z_sign;
+                    nearest[j] = z - sphere.radius;
+                    farthest[j] = z + sphere.radius;
+                }
+                if (compare) kernel(nearest, farthest, count, boundaries, first, last);
+                for (std::uint32_t j = 0; j < count; ++j, ++met) {
+                    *met = compare ? Met{first[j], last[j]}
+                                   : Met{table_.before(nearest[j]), table_.up_to(farthest[j])};
+                    // First the steps of the lights' number from slice to slice: sums wrap, and come out right.
+                    ++runs[met->first].run.end;
+                    --runs[met->last + 1].run.end;
+                }
             }
         std::uint64_t places = 0;
         std::uint32_t count = 0;

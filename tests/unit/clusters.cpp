@@ -61,6 +61,7 @@ template <Options options> void compare_all() {
         compare<options>(view, lights, *Slices::from_boundaries({}));
         compare<options>(view, lights, *Slices::from_boundaries(std::vector<float>{-2, 1e-30f, 10, 1e30f}));
     }
+    compare<options>(test::view({640, 480}, 100), lights, *Slices::linear(120, -2, 50));  // by a table
     compare<options>(test::view({64, 64}, 64), {}, *Slices::linear(3, 0, 10));
     compare<options>(test::view({0, 0}, 64), lights, *Slices::linear(3, 0, 10));
 }

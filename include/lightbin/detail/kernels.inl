@@ -46,6 +46,8 @@
 
 #include <lightbin/detail/silhouette.inl>
 
+#include <lightbin/detail/slices_met.inl>
+
 #if defined(LIGHTBIN_TIER_HAS_ROWS)
 #include <lightbin/detail/scatter.inl>
 #endif
@@ -82,6 +84,7 @@ struct Tier {
 
     static ProjectKernel project_kernel() { return project; }
     static RowSpanKernel row_span_kernel() { return row_spans; }
+    static SlicesKernel slices_kernel() { return slices_met; }
     static DepthKernels depth_kernels() { return {column_extremes, column_gaps}; }
 
     template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab>

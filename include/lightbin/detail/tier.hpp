@@ -31,6 +31,8 @@ using ProjectKernel = void (*)(const Camera& camera, const LightSource& source, 
                                std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts);
 using RowSpanKernel = void (*)(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
                                RowSpan* spans, std::uint64_t place);
+using SlicesKernel = void (*)(const float* nearest, const float* farthest, std::uint32_t count,
+                              std::span<const float> boundaries, std::uint16_t* first, std::uint16_t* last);
 struct DepthKernels {
     void (*extremes)(const DepthRows& depth, float skipped, float* lower, float* upper);
     void (*gaps)(const DepthRows& depth, float skipped, const float* split, float* below, float* above);
