@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <span>
 
 #include <lightbin/detail/warnings_off.inl>
@@ -128,7 +127,8 @@ private:
         if (capacity > numbered_) {
             numbered_ = 0;  // should there be no memory
             std::uint32_t* const ids = ids_.reserve(capacity);
-            std::iota(ids, ids + capacity, 0u);
+            for (std::uint32_t rank = 0; rank < capacity; ++rank)
+                ids[rank] = rank;
             numbered_ = capacity;
         }
         arrays_ = {.ids = ids_.data(),

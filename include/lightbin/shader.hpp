@@ -52,7 +52,10 @@ inline SliceGuess best_guess(std::span<const float> boundaries) {
     if (boundaries.empty()) return best;
     double least_error = std::numeric_limits<double>::infinity();
     for (const bool by_log2 : {false, true}) {
-        const auto place = [&](float depth) { return by_log2 ? std::log2(double{depth}) : double{depth}; };
+        const auto place = [&](float depth) {
+            const double exact = static_cast<double>(depth);
+            return by_log2 ? std::log2(exact) : exact;
+        };
         const double first = place(boundaries.front()), last = place(boundaries.back());
         const double slope =
             boundaries.size() == 1 ? 0 : (static_cast<double>(boundaries.size()) - 1) / (last - first);
