@@ -167,7 +167,7 @@ private:
         if (scratch_.empty()) scratch_.resize(1);
         isa_ = machine_isa(options.isa);
         footprints_.project(isa_, view, source, threads, lists_.shared());
-        if constexpr (z_bins) ranked_.rank(view, footprints_, inputs.slices);
+        if constexpr (z_bins) ranked_.rank(isa_, view, footprints_, inputs.slices);
         return std::nullopt;
     }
 

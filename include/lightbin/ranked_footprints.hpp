@@ -6,7 +6,9 @@
 #include <lightbin/detail/buffer.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/kernels.hpp>
 #include <lightbin/detail/slice_table.hpp>
+#include <lightbin/isa.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/project.hpp>
@@ -32,13 +34,13 @@ template <Footprint footprint, bool with_spheres> class RankedFootprints {
 public:
     /// Takes each light to the bins that its depths, z - r to z + r, meet, their ends included; also to the one before or
     /// behind them where they end close to the boundary.
-    void rank(const View& view, const Footprints<footprint, true>& footprints, const Slices& slices) {
+    void rank(Isa isa, const View& view, const Footprints<footprint, true>& footprints, const Slices& slices) {
         run_ = {0, footprints.visible()};
         area_ = footprints.area();
         bin_count_ = static_cast<std::size_t>(slices.count());
         table_.set(slices.boundaries());
         reserve(footprints.arrays(), footprints.runs().back().end);
-        find_bins(view, footprints);
+        find_bins(isa, detail::camera_of(view).z_sign, footprints.arrays(), footprints.runs());
 
         // Sorted by counting: how many lights begin in a bin, where those begin, and then where they end.
         std::uint32_t before = 0;
@@ -62,21 +64,35 @@ public:
     LightRanks ranks() const { return {{order_.data(), run_.end}, {bins_.data(), bin_count_}}; }
 
 private:
+    static constexpr std::uint32_t chunk = 64;  ///< lights, whole vectors
+
     /// Finds the bins that each light meets, and counts in `ends_` those that begin in each.
-    void find_bins(const View& view, const Footprints<footprint, true>& footprints) {
-        const detail::FootprintArrays& lights = footprints.arrays();
-        const float z_sign = detail::camera_of(view).z_sign;
-        const bool shared = table_.shared();
-        std::uint32_t *const ends = ends_.data(), *const first = first_bins_.data(),
-                             *const last = last_bins_.data();
-        std::fill_n(ends, bin_count_, 0u);
-        for (const detail::FootprintRun& run : footprints.runs())
-            for (std::uint32_t i = run.begin; i < run.end; ++i) {
-                const Sphere sphere = detail::load_sphere(lights.spheres + lights.ids[i]);
-                const float z = sphere.z * z_sign, begin = z - sphere.radius, end = z + sphere.radius;
-                first[i] = shared ? table_.before(begin) : table_.surely_before(begin);
-                last[i] = shared ? table_.up_to(end) : table_.surely_up_to(end);
-                ++ends[first[i]];
+    void find_bins(Isa isa, float z_sign, const detail::FootprintArrays& lights,
+                   std::span<const detail::FootprintRun> runs) {
+        const detail::SlicePlacesKernel kernel = detail::slice_places_kernel(isa);
+        const bool by_places = table_.places_tell();
+        std::fill_n(ends_.data(), bin_count_, 0u);
+        for (const detail::FootprintRun& run : runs)
+            for (std::uint32_t i = run.begin; i < run.end; i += chunk) {
+                const std::uint32_t count = (std::min)(run.end - i, chunk);
+                float depths[2][chunk];
+                std::uint16_t places[2][chunk];
+                for (std::uint32_t j = 0; j < count; ++j) {
+                    const Sphere sphere = detail::load_sphere(lights.spheres + lights.ids[i + j]);
+                    const float z = sphere.z * z_sign;
+                    depths[0][j] = z - sphere.radius;
+                    depths[1][j] = z + sphere.radius;
+                }
+                if (by_places)
+                    for (std::size_t end = 0; end < 2; ++end)
+                        kernel(table_.places(), depths[end], count, places[end]);
+                std::uint32_t *const first = first_bins_.data() + i, *const last = last_bins_.data() + i;
+                for (std::uint32_t j = 0; j < count; ++j) {
+                    first[j] = by_places ? table_.before_place(places[0][j]) : table_.before(depths[0][j]);
+                    last[j] =
+                        by_places ? table_.before_place(places[1][j] + 1u) : table_.up_to(depths[1][j]);
+                    ++ends_.data()[first[j]];
+                }
             }
     }
 

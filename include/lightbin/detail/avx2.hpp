@@ -144,6 +144,10 @@ LIGHTBIN_TARGET inline void store_spheres(Sphere* spheres, Floats x, Floats y, F
     store_pair(spheres + 3, radius);
 }
 
+LIGHTBIN_TARGET inline Floats ascending_bits(Floats values) {
+    const __m256i bits = _mm256_castps_si256(values);
+    return _mm256_cvtepi32_ps(_mm256_xor_si256(bits, _mm256_srli_epi32(_mm256_srai_epi32(bits, 31), 1)));
+}
 LIGHTBIN_TARGET inline void store_tiles(std::uint16_t* tiles, Floats values) {
     const __m256i whole = _mm256_cvttps_epi32(values);
     _mm_storeu_si128(reinterpret_cast<__m128i*>(tiles),

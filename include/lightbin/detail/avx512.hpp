@@ -148,6 +148,10 @@ LIGHTBIN_TARGET inline void store_spheres(Sphere* spheres, Floats x, Floats y, F
     _mm512_storeu_ps(&spheres[12].x, d);
 }
 
+LIGHTBIN_TARGET inline Floats ascending_bits(Floats values) {
+    const __m512i bits = _mm512_castps_si512(values);
+    return _mm512_cvtepi32_ps(_mm512_xor_si512(bits, _mm512_srli_epi32(_mm512_srai_epi32(bits, 31), 1)));
+}
 LIGHTBIN_TARGET inline void store_tiles(std::uint16_t* tiles, Floats values) {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(tiles),
                         _mm512_cvtusepi32_epi16(_mm512_cvttps_epi32(values)));

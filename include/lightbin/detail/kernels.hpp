@@ -43,6 +43,10 @@ inline SlicesKernel slices_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.slices_kernel(); });
 }
 
+inline SlicePlacesKernel slice_places_kernel(Isa isa) {
+    return with_tier(isa, [](auto tier) { return tier.slice_places_kernel(); });
+}
+
 /// For rows of `columns` samples or more: of this tier or the widest below it whose vectors are no wider.
 inline DepthKernels depth_kernels(Isa isa, std::size_t columns) {
     if (with_tier(isa, [=](auto tier) { return columns >= tier.vector; }))

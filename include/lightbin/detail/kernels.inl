@@ -15,6 +15,7 @@
 //   widened                        half 0 or 1 of Floats as Doubles
 //   load_spheres, store_spheres    `lanes` spheres as four vectors, and back
 //   store_tiles, store_spans       numbers of tiles, cut off to 16 bits
+//   ascending_bits                 floats' bits as numbers that ascend with them, rounded to floats
 //   append_visible, split_bits     as in portable.hpp, or that
 //   ListId                         of what the lists are made: std::uint32_t, or std::uint16_t where ids are in blocks
 // for step 3, emit.inl,
@@ -47,6 +48,8 @@
 #include <lightbin/detail/silhouette.inl>
 
 #include <lightbin/detail/slices_met.inl>
+
+#include <lightbin/detail/slice_places.inl>
 
 #if defined(LIGHTBIN_TIER_HAS_ROWS)
 #include <lightbin/detail/scatter.inl>
@@ -85,6 +88,7 @@ struct Tier {
     static ProjectKernel project_kernel() { return project; }
     static RowSpanKernel row_span_kernel() { return row_spans; }
     static SlicesKernel slices_kernel() { return slices_met; }
+    static SlicePlacesKernel slice_places_kernel() { return slice_places; }
     static DepthKernels depth_kernels() { return {column_extremes, column_gaps}; }
 
     template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab>

@@ -156,6 +156,11 @@ inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats 
     vst4q_f32(&spheres->x, {{x.v, y.v, z.v, radius.v}});
 }
 
+inline Floats ascending_bits(Floats values) {
+    const int32x4_t bits = vreinterpretq_s32_f32(values);
+    const uint32x4_t but_sign = vshrq_n_u32(vreinterpretq_u32_s32(vshrq_n_s32(bits, 31)), 1);
+    return vcvtq_f32_s32(veorq_s32(bits, vreinterpretq_s32_u32(but_sign)));
+}
 inline void store_tiles(std::uint16_t* tiles, Floats values) {
     vst1_u16(tiles, vmovn_u32(vcvtq_u32_f32(values)));
 }

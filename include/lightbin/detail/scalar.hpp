@@ -71,6 +71,10 @@ inline void store_spheres(Sphere* spheres, float x, float y, float z, float radi
     const Sphere sphere = {x, y, z, radius};
     std::memcpy(spheres, &sphere, sizeof sphere);
 }
+inline float ascending_bits(float value) {
+    const std::int32_t bits = std::bit_cast<std::int32_t>(value);
+    return static_cast<float>(bits ^ (bits >> 31 & 0x7fffffff));
+}
 template <class Real> void store_tiles(std::uint16_t* tiles, Real value) {
     *tiles = static_cast<std::uint16_t>(value);
 }

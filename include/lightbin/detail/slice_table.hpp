@@ -16,6 +16,25 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
+/// From a depth to its place in a table.
+struct SlicePlaces {
+    float begin = 0, scale = 0, last = 0;
+    bool by_bits = false;
+
+    /// Ascends with the depth.
+    float coordinate(float depth) const {
+        if (!by_bits) return depth;
+        const std::int32_t bits = std::bit_cast<std::int32_t>(depth + 0.0f);  // not -0
+        return static_cast<float>(bits ^ (bits >> 31 & 0x7fffffff));
+    }
+    /// Each step rounds the same everywhere and is monotone, so a depth in a later place is greater.
+    std::size_t of(float depth) const {
+        const float place = (coordinate(depth) - begin) * scale;
+        return static_cast<std::size_t>(static_cast<std::int32_t>(
+            place > 0 ? (std::min)(place, last) : 0));  // NaN, of an infinite depth, is of one place only
+    }
+};
+
 /// The slices of one list of boundaries, which ascend and are finite.
 class SliceTable {
 public:
@@ -32,12 +51,12 @@ public:
         if (shared_ > shared_by_depth) fill_places(boundaries, false);
     }
 
-    /// Whether any two boundaries are in one place.
-    bool shared() const { return shared_ > 0; }
+    /// Whether no two boundaries are in one place, and 15 bits number those.
+    bool places_tell() const { return shared_ == 0 && places_.last < 0x7fff; }
 
     /// Returns how many boundaries are less than a depth that is not NaN.
     std::uint32_t before(float depth) const {
-        std::uint32_t slice = surely_before(depth);
+        std::uint32_t slice = before_[places_.of(depth)];
         slice += boundaries_[slice] < depth;  // rarely more than one, so the loop's branch is predicted
         while (boundaries_[slice] < depth)
             ++slice;
@@ -45,31 +64,33 @@ public:
     }
     /// The same of those that are not greater.
     std::uint32_t up_to(float depth) const {
-        std::uint32_t slice = surely_before(depth);
+        std::uint32_t slice = before_[places_.of(depth)];
         slice += boundaries_[slice] <= depth;
         while (boundaries_[slice] <= depth)
             ++slice;
         return slice;
     }
 
-    /// The same without a look at the boundaries: those in the place of the depth are left out, or counted.
-    std::uint32_t surely_before(float depth) const { return before_[place(depth)]; }
-    std::uint32_t surely_up_to(float depth) const { return before_[place(depth) + 1]; }
+    /// For slice_places.inl: then before_place() is how many boundaries are surely less than a depth, before_place() of the next
+    /// place how many are greater neither surely nor perhaps.
+    const SlicePlaces& places() const { return places_; }
+    std::uint32_t before_place(std::size_t place) const { return before_[place]; }
 
 private:
     /// Finds how many boundaries are before each place.
     void fill_places(std::span<const float> boundaries, bool by_bits) {
-        by_bits_ = by_bits;
+        places_.by_bits = by_bits;
         // So many that few boundaries share one; no fewer than are in the cache anyway.
         const std::size_t places = (std::max)(std::bit_ceil(4 * boundaries.size()), std::size_t{512});
-        last_place_ = static_cast<float>(places - 1);
-        begin_ = boundaries.empty() ? 0 : coordinate(boundaries.front());
-        scale_ = boundaries.empty() ? 0 : last_place_ / (coordinate(boundaries.back()) - begin_);
-        if (!std::isfinite(scale_)) scale_ = 0;  // they are one
+        places_.last = static_cast<float>(places - 1);
+        places_.begin = boundaries.empty() ? 0 : places_.coordinate(boundaries.front());
+        const float span = boundaries.empty() ? 0 : places_.coordinate(boundaries.back()) - places_.begin;
+        places_.scale = places_.last / span;
+        if (!std::isfinite(places_.scale)) places_.scale = 0;  // there is one at most, or as good as one
 
         before_.assign(places + 1, 0);
         for (const float boundary : boundaries)
-            ++before_[place(boundary) + 1];
+            ++before_[places_.of(boundary) + 1];
         shared_ = 0;
         for (std::size_t i = 1; i <= places; ++i) {
             shared_ += before_[i] > 1 ? before_[i] - 1 : 0;
@@ -77,24 +98,10 @@ private:
         }
     }
 
-    /// Ascends with the depth.
-    float coordinate(float depth) const {
-        if (!by_bits_) return depth;
-        const std::int32_t bits = std::bit_cast<std::int32_t>(depth + 0.0f);  // not -0
-        return static_cast<float>(bits ^ (bits >> 31 & 0x7fffffff));
-    }
-    /// Each step rounds the same everywhere and is monotone, so a depth in a later place is greater.
-    std::size_t place(float depth) const {
-        const float place = (coordinate(depth) - begin_) * scale_;
-        return static_cast<std::size_t>(static_cast<std::int32_t>(
-            place > 0 ? (std::min)(place, last_place_) : 0));  // NaN, of an infinite depth, is of one place only
-    }
-
     std::vector<float> boundaries_;      ///< and NaN
     std::vector<std::uint32_t> before_;  ///< how many boundaries are before a place, and in all of them
     std::size_t shared_ = 0;             ///< boundaries that are in the place of another
-    float begin_ = 0, scale_ = 0, last_place_ = 0;
-    bool by_bits_ = false;
+    SlicePlaces places_;
 };
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

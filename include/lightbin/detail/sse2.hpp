@@ -106,6 +106,10 @@ inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats 
     _mm_storeu_ps(p + 12, radius);
 }
 
+inline Floats ascending_bits(Floats values) {
+    const __m128i bits = _mm_castps_si128(values);
+    return _mm_cvtepi32_ps(_mm_xor_si128(bits, _mm_srli_epi32(_mm_srai_epi32(bits, 31), 1)));
+}
 inline void store_tiles(std::uint16_t* tiles, Floats values) {
     const __m128i whole = _mm_cvttps_epi32(values);
     _mm_storel_epi64(reinterpret_cast<__m128i*>(tiles), _mm_packs_epi32(whole, whole));
