@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A whole build, spheres in to lists out, against the flat baseline measured in turns in the same run, on rotating light
-// sets; from world space and structs against view-space vec4s; of several views. Prints each as it ends, then what falls
-// short of the project's goals, and writes binning.csv and binning_sources.csv.
+// sets; with clusters and z-bins; from world space and structs against view-space vec4s; of several views. Prints each as
+// it ends, then what falls short of the project's goals, and writes binning.csv, binning_slices.csv and
+// binning_sources.csv.
 #include "flat.hpp"
 #include "frames.hpp"
 #include "gains.hpp"
@@ -11,6 +12,7 @@
 #include "memory.hpp"
 #include "reference.hpp"
 #include "several_views.hpp"
+#include "slicing.hpp"
 #include "sources.hpp"
 #include "world.hpp"
 
@@ -32,9 +34,11 @@ using lightbin::Footprint;
 using lightbin::IdWidth;
 using lightbin::Isa;
 using lightbin::Options;
+using lightbin::Slicing;
 
 double seconds_a_case = 0.3;
 std::vector<Result> results;
+std::vector<SlicingResult> slicing_results;
 std::vector<SourceResult> source_results;
 std::vector<SeveralViewsResult> several_views_results;
 
@@ -207,6 +211,19 @@ template <Options options> void build(benchmark::State& state, const Case& which
     print_row(result);
 }
 
+template <Options options> void build_slices(benchmark::State& state, const Case& which) {
+    const std::vector<Frame>& frames = frames_of(which);
+    if (slicing_results.empty()) print_slicing_header();
+    for (auto _ : state) {
+        if constexpr (options.slicing == Slicing::clusters)
+            slicing_results.push_back(time_clusters<options>(which.set, frames, seconds_a_case));
+        else
+            slicing_results.push_back(time_z_bins<options>(which.set, frames, seconds_a_case));
+        state.SetIterationTime(1e-9 * slicing_results.back().ns_per_light * double(which.lights));
+    }
+    print_slicing_row(slicing_results.back());
+}
+
 /// The same set in world space and in structs.
 struct SourceCase {
     std::string set;
@@ -295,6 +312,14 @@ template <DepthTest depth_test = DepthTest::none> void add_sources(const SourceC
     });
 }
 
+template <Slicing slicing, DepthTest depth_test = DepthTest::none> void add_slices(const Case& which) {
+    each_tier<{.depth_test = depth_test, .slicing = slicing}>([&]<Options one>() {
+        add("slices/" + which.set + "/" + std::to_string(which.lights) + "/" + to_string(slicing) + "/" +
+                to_string(depth_test) + "/" + to_string(one.isa),
+            build_slices<one>, which);
+    });
+}
+
 void add_views(const SourceCase& which) {
     each_tier<{}>([&]<Options one>() {
         add("views/" + which.set + "/" + to_string(one.isa), build_views<one>, which);
@@ -360,6 +385,30 @@ void add_set(const std::string& set, float median, double footprint, bool quick)
         if (!quick || n <= 1) add_number(n, false);
 }
 
+/// Clusters and z-bins of the field sets.
+void add_all_slices(bool quick) {
+    const auto set = [](const char* name, float median, std::size_t n) {
+        const auto make = [median](std::size_t count, std::uint32_t seed) {
+            return field(count, median, seed);
+        };
+        return Case{name, n, 0, made_frames(n, {}, make)};
+    };
+    const auto add_clusters = [](const Case& which) {
+        add_slices<Slicing::clusters>(which);
+        add_slices<Slicing::clusters, DepthTest::box>(which);
+    };
+    for (const std::size_t n : {256u, 1000u, 4096u, 10000u}) {
+        const Case which = set("field20", field20_median, n);
+        const bool round = n == 1000 || n == 10000;
+        if (!quick || round) add_clusters(which);
+        if (round) add_slices<Slicing::z_bins>(which);
+    }
+    if (quick) return;
+    add_clusters(set("field4", field4_median, 4096));
+    add_clusters(set("field200", field200_median, 4096));
+    add_slices<Slicing::z_bins>(set("field4", field4_median, 10000));
+}
+
 /// Lights 99 % of which are out of view: behind the eye, or to the side.
 Lights away(std::size_t count, std::uint32_t seed) {
     Lights lights = field(count, field4_median, seed);
@@ -399,6 +448,7 @@ int run(int argc, char** argv) {
             if (!quick || tile == 32)
                 add_tiers({set, lights, tile, [=] { return scene_frames(views, lights); }});
     }
+    add_all_slices(quick);
     add_tiers({"away", 1000000, 32, made_frames(1000000, {}, away)});
     const SourceCase field4 = {"field4", [] { return world_frames(10000, field4_median); }},
                      field20 = {"field20", [] { return world_frames(10000, field20_median); }},
@@ -412,6 +462,7 @@ int run(int argc, char** argv) {
     Lines lines;
     benchmark::RunSpecifiedBenchmarks(&lines);
     write_csv(results, "binning.csv");
+    write_slicing_csv(slicing_results, "binning_slices.csv");
     write_sources_csv(source_results, "binning_sources.csv");
     if (!results.empty()) {
         print_goals(results);
@@ -419,8 +470,9 @@ int run(int argc, char** argv) {
         print_slower_tiers(results);
         print_threads(results);
     }
+    if (!slicing_results.empty()) print_slicing_goals(slicing_results);
     if (!source_results.empty()) print_source_goals(source_results);
-    std::puts("\nwrote binning.csv and binning_sources.csv");
+    std::puts("\nwrote binning.csv, binning_slices.csv and binning_sources.csv");
     return EXIT_SUCCESS;
 }
 

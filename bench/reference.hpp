@@ -35,8 +35,9 @@ public:
         const auto meets_box = [&](double from, double to) {
             return from <= to && filter_.box_distance2(x, y, {from, to}, ball) <= reach;
         };
+        if (test == DepthTest::box) return meets_box(min, max);
         const double gap_min = double(bounds_.gap_min[tile]), gap_max = double(bounds_.gap_max[tile]);
-        if (test == DepthTest::box || !(gap_min < gap_max)) return meets_box(min, max);
+        if (!(gap_min < gap_max)) return meets_box(min, max);
         return meets_box(min, gap_min) || meets_box(gap_max, max);
     }
 
