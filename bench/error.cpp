@@ -17,6 +17,7 @@
 //                   every rung with a depth test), on rotating light sets; Z bounds not included
 //   reduce_us       what making the Z bounds of one view takes
 #include "arguments.hpp"
+#include "cluster_error.hpp"
 #include "exact_pairs.hpp"
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
@@ -121,15 +122,11 @@ void count(const SeenScene& seen, int tile_size, Report& report) {
         row.evaluations += view.all_evaluations(grid.ranges());
         for (std::size_t tile = 0; tile < truth.tiles.size(); ++tile) {
             const lightbin::ListRange list = grid.ranges()[tile];
-            const std::uint32_t* id = grid.ids().data() + list.offset;
-            const std::uint32_t* const end = id + list.count;
-            for (const Pair& pair : truth.tiles[tile]) {
-                row.unrounded += keeps(method, pair.facts);
-                while (id != end && *id < pair.id)
-                    ++id;
-                const bool listed = id != end && *id == pair.id;
-                row.misses += !listed && must_keep(method, pair.facts);
-            }
+            for_each_listed(truth.tiles[tile], grid.ids().subspan(list.offset, list.count),
+                            [&](const Pair& pair, bool listed) {
+                                row.unrounded += keeps(method, pair.facts);
+                                row.misses += !listed && must_keep(method, pair.facts);
+                            });
         }
     });
 }
@@ -233,6 +230,7 @@ int main(int argc, char** argv) try {
                 misses += row.misses;
         }
     std::fclose(csv);
+    misses += report_cluster_errors(quick);
     return misses == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 } catch (const std::exception& problem) {
     std::fprintf(stderr, "error: %s\n", problem.what());

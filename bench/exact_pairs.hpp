@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -39,6 +40,17 @@ struct ExactPairs {
     std::uint64_t verdicts = 0;            ///< pairs of a tile and a light decided: all there are
     std::uint64_t by_rationals = 0;        ///< questions that double precision left open
 };
+
+/// Calls visit(pair, whether the tile's list has its light) for each of a tile's pairs. The list's ids ascend.
+template <class Visit>
+void for_each_listed(std::span<const Pair> pairs, std::span<const std::uint32_t> list, Visit visit) {
+    auto id = list.begin();
+    for (const Pair& pair : pairs) {
+        while (id != list.end() && *id < pair.id)
+            ++id;
+        visit(pair, id != list.end() && *id == pair.id);
+    }
+}
 
 class ExactDecider {
 public:

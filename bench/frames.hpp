@@ -7,6 +7,7 @@
 #include "scenes.hpp"
 #include "sets.hpp"
 
+#include <lightbin/slices.hpp>
 #include <lightbin/view.hpp>
 #include <lightbin/z_bounds.hpp>
 
@@ -48,6 +49,14 @@ struct Lens {
                 .far_depth = far_depth};
     }
 };
+
+/// The slices of clusters and of z-bins, for lights that reach so far. As they stand, those of the field sets.
+inline lightbin::Slices cluster_slices(float reach = 200) {
+    return *lightbin::Slices::exponential(24, reach / 40, reach);
+}
+inline lightbin::Slices z_bin_slices(float reach = 200) {
+    return *lightbin::Slices::linear(1024, 0, reach);
+}
 
 struct Frame {
     Lens lens;

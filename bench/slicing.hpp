@@ -17,14 +17,6 @@
 #include <string>
 #include <vector>
 
-/// The clusters' slices, over tiles of 64 pixels.
-inline lightbin::Slices cluster_slices() {
-    return *lightbin::Slices::exponential(24, 5, 200);
-}
-inline lightbin::Slices z_bin_slices() {
-    return *lightbin::Slices::linear(1024, 0, 200);
-}
-
 struct SlicingResult {
     std::string set;
     std::size_t lights;
