@@ -3,11 +3,12 @@
 // row. Writes ablation.csv and prints it as a table.
 //
 // Columns: us: median time of a build on rotating light sets; evals: light evaluations a drawn pixel;
-// index_bytes: of the light index list; us_more, evals_less: against the row named; pays_ns: what one light
+// bytes: of what a shader reads beside the lights; us_more, evals_less: against the row named; pays_ns: what one light
 // evaluation must cost, in nanoseconds of the same clock, for the change to save time as a whole;
 // z_bounds_us: what reduce_depth takes here for these tiles, in no other column (a GPU makes them where the
 // depth buffer lies).
 #include "arguments.hpp"
+#include "built.hpp"
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
 
@@ -20,12 +21,6 @@
 #include <memory>
 
 namespace {
-
-/// What a build gave: the lists' lengths and what an id takes.
-struct Built {
-    std::span<const lightbin::ListRange> tiles;
-    std::size_t index_bytes;
-};
 
 /// One way to bin, and the row that it is compared with.
 struct Part {
@@ -50,21 +45,22 @@ auto build_with(Bounds sides, std::shared_ptr<tbb::task_arena> threads = nullptr
                 : lightbin::Parallel(static_cast<std::size_t>(threads->max_concurrency()), loop);
         lightbin::ZBounds bounds = view.bounds();
         if (sides == Bounds::max) bounds = {.min = {}, .max = bounds.max};
-        const auto grid = *binner->bin(view.view, lights, lightbin::inputs_for<options>(bounds), parallel);
-        return Built{grid.ranges(), grid.ids().size_bytes()};
+        return build<options>(*binner, view, lights, bounds, parallel);
     };
 }
 
 std::vector<Part> parts() {
-    using lightbin::IdWidth, lightbin::Options;
+    using lightbin::IdWidth, lightbin::Options, lightbin::Slicing;
     constexpr Options plain, interval = {.depth_test = DepthTest::interval},
                              box = {.depth_test = DepthTest::box},
                              split_box = {.depth_test = DepthTest::split_box},
                              narrow = {.ids = IdWidth::u16, .depth_test = DepthTest::box},
                              outline = {.footprint = Footprint::silhouette},
-                             outline_box = {.footprint = Footprint::silhouette, .depth_test = DepthTest::box};
+                             outline_box = {.footprint = Footprint::silhouette, .depth_test = DepthTest::box},
+                             z_bins = {.slicing = Slicing::z_bins}, clusters = {.slicing = Slicing::clusters},
+                             cluster_boxes = {.depth_test = DepthTest::box, .slicing = Slicing::clusters};
     const auto two = std::make_shared<tbb::task_arena>(2);
-    enum { everything, tiles, interval_both = 4, box_both = 5 };  // places in the list
+    enum { everything, tiles, interval_both = 4, box_both = 5, clusters_none = 16 };  // places in the list
     return {
         {"no tiling", everything, 0, nullptr},
         {"16 px tiles, rectangles, no Z", everything, 16, build_with<plain>(Bounds::none)},
@@ -81,6 +77,9 @@ std::vector<Part> parts() {
         {"64 px tiles", box_both, 64, build_with<box>(Bounds::both)},
         {"2 threads", box_both, 16, build_with<box>(Bounds::both, two)},
         {"2 threads, no Z", tiles, 16, build_with<plain>(Bounds::none, two)},
+        {"1,024 z-bins, no Z", tiles, 16, build_with<z_bins>(Bounds::none)},
+        {"64 px tiles in 24 slices, no Z", tiles, 64, build_with<clusters>(Bounds::none)},
+        {"the same with boxes", clusters_none, 64, build_with<cluster_boxes>(Bounds::none)},
     };
 }
 
@@ -98,8 +97,8 @@ std::vector<Measured> measure(const std::vector<Part>& parts, const BenchScene& 
     for (std::size_t i = 1; i < parts.size(); ++i) {
         const TiledView& view = views.of(parts[i].tile_size);
         const Built built = parts[i].build(view, lights);
-        result[i].evaluations = view.evaluations(built.tiles);
-        result[i].bytes = built.index_bytes;
+        result[i].evaluations = all_evaluations(view, picture, built) / static_cast<double>(view.all_drawn);
+        result[i].bytes = built.bytes;
         result[i].z_bounds_us = 1e6 * view.reduce_seconds;
     }
 
@@ -136,7 +135,7 @@ int main(int argc, char** argv) try {
 
     std::FILE* const csv = open_report(
         "ablation.csv",
-        "scene,lights,part,against,tile_px,us,evals,index_bytes,us_more,evals_less,pays_ns,z_bounds_us");
+        "scene,lights,part,against,tile_px,us,evals,bytes,us_more,evals_less,pays_ns,z_bounds_us");
     const std::vector<Part> all = parts();
     std::vector<std::string> rows(all.size());
     std::string head = "| part | against |", line = "| --- | --- |",

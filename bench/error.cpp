@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Error against run time: what each rung of the ladder lists that no pixel needs, and what it takes to build,
-// by tile size. Writes error_vs_time.csv, which plot.gp draws.
+// by tile size. Writes error_vs_time.csv, which plot.gp draws; no_pre_pass.csv: the same of grids that need no depth
+// buffer, z-bins and clusters among them; cluster_error.csv: what clusters list too much.
 //
-// Columns of the table, a row for each scene (all views of it together), tile size and rung:
+// Columns of the first, a row for each scene (all views of it together), tile size and rung:
 //   misses          entries that the rung must have by exact arithmetic and lacks, in `verdicts` pairs of a
 //                   tile and a light: every pair there is (by_rationals: questions left to the rationals)
 //   exact           pairs whose sphere meets the tile's cell between its Z bounds, its gap left out
@@ -21,6 +22,7 @@
 #include "exact_pairs.hpp"
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
+#include "no_pre_pass.hpp"
 
 #include <exception>
 
@@ -28,10 +30,6 @@ namespace {
 
 bool quick = false;
 
-struct SeenScene {
-    BenchScene scene;
-    Picture picture;
-};
 struct Case {
     std::string name;
     std::vector<SeenScene> views;
@@ -187,11 +185,6 @@ void write(std::FILE* csv, const Case& scene, int tile_size, const Report& repor
     std::fflush(stdout);
 }
 
-SeenScene see(BenchScene scene) {
-    Picture picture = rasterise(scene, screen);
-    return {std::move(scene), std::move(picture)};
-}
-
 std::vector<Case> cases(const std::vector<std::string>& paths) {
     std::vector<Case> all;
     for (BenchScene& scene : std::vector{scenes::field_with_depth(), scenes::foliage(), scenes::top_down()}) {
@@ -218,10 +211,13 @@ int main(int argc, char** argv) try {
         open_report("error_vs_time.csv", "scene,views,tile_px,footprint,depth_test,misses,verdicts,by_"
                                          "rationals,entries,exact,excess,lit,excess_lit,"
                                          "margin,evals,evals_beyond,index_bytes,us,ratio,reduce_us");
+    std::FILE* const ways_csv =
+        open_report("no_pre_pass.csv", "scene,way,tile_px,evals,evals_beyond,bytes,us");
     std::uint64_t misses = 0;
-    for (const Case& scene : cases(arguments.scenes_or_fixtures()))
+    for (const Case& scene : cases(arguments.scenes_or_fixtures())) {
+        Report report;
         for (const int tile_size : {8, 16, 32, 64}) {
-            Report report;
+            report = {};
             time(scene, tile_size, report);
             for (const SeenScene& seen : scene.views)
                 count(seen, tile_size, report);
@@ -229,6 +225,10 @@ int main(int argc, char** argv) try {
             for (const Row& row : report.rows)
                 misses += row.misses;
         }
+        report_ways(ways_csv, scene.name, scene.views,
+                    static_cast<double>(report.needed) / static_cast<double>(report.drawn), quick);
+    }
+    std::fclose(ways_csv);
     std::fclose(csv);
     misses += report_cluster_errors(quick);
     return misses == 0 ? EXIT_SUCCESS : EXIT_FAILURE;

@@ -13,8 +13,9 @@
 #       the lights were; loop_... was moved to view space by a loop of the bench's own before it was binned.
 #   error [--quick] [SCENE.glb ...]
 #       What each rung of the ladder lists too much, against the exact set, and what it takes to build, on made scenes
-#       and real ones (those of the tests, or the named ones); writes build/bench/error_vs_time.csv, .svg and .png. The
-#       same of clusters, of made lights: cluster_error.csv.
+#       and real ones (those of the tests, or the named ones); writes build/bench/error_vs_time.csv, .svg and .png. Of
+#       grids that need no depth buffer, evaluations, bytes and times: no_pre_pass.csv. What clusters list too much, of
+#       made lights: cluster_error.csv.
 #   cutoff [--quick] [SCENE.glb ...]
 #       What ending lights at a finite range does to the picture, and what it saves; writes build/bench/cutoff.csv, .svg
 #       and .png.

@@ -13,9 +13,20 @@
 #include <cstdint>
 #include <cstdlib>
 #include <span>
+#include <utility>
 #include <vector>
 
 inline constexpr lightbin::Extent screen = {1920, 1080};
+
+struct SeenScene {
+    BenchScene scene;
+    Picture picture;
+};
+
+inline SeenScene see(BenchScene scene) {
+    Picture picture = rasterise(scene, screen);
+    return {std::move(scene), std::move(picture)};
+}
 
 /// A view of a scene on a tile grid, with its Z bounds and how much is drawn in its tiles.
 struct TiledView {
@@ -24,12 +35,14 @@ struct TiledView {
     std::vector<float> min, max, gap_min, gap_max;
     std::vector<std::uint32_t> drawn;  ///< pixels a tile that show something
     std::uint64_t all_drawn = 0;
-    double reduce_seconds = 0;  ///< what making minimum and maximum takes
+    double reduce_seconds = 0;          ///< what making minimum and maximum takes
+    lightbin::Slices clusters, z_bins;  ///< as far as the lights reach
 
     TiledView(const BenchScene& scene, const Picture& picture, int tile_size)
         : view(*lightbin::View::from_projection(scene.projection, picture.size, {.tile_size = tile_size})),
           flat(lens_of(Frustum(scene.projection), picture.size).flat_view(tile_size)), min(view.tile_count()),
-          max(min), gap_min(min), gap_max(min), drawn(view.tile_count()) {
+          max(min), gap_min(min), gap_max(min), drawn(view.tile_count()),
+          clusters(cluster_slices(reach_of(scene))), z_bins(z_bin_slices(reach_of(scene))) {
         const lightbin::DepthBuffer buffer = {.depth = picture.depth, .skip_background = true};
         if (!lightbin::reduce_depth(view, buffer, {min, max, gap_min, gap_max})) std::abort();
         std::vector<float> again_min(min), again_max(max);
@@ -65,6 +78,15 @@ private:
             ++drawn[i / width / t * static_cast<std::size_t>(view.tiles_x()) + i % width / t];
             ++all_drawn;
         }
+    }
+
+    /// The depth to which lights reach in view, which a renderer knows of the frame before.
+    static float reach_of(const BenchScene& scene) {
+        const Frustum frustum(scene.projection);
+        double reach = 2 * frustum.near_depth;
+        for (const glm::vec4& light : scene.lights(0))
+            reach = std::max(reach, static_cast<double>(light.w) - static_cast<double>(light.z));
+        return static_cast<float>(std::min(reach, frustum.far_depth));
     }
 
     static Lens lens_of(const Frustum& frustum, lightbin::Extent size) {

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// A grid of any options, and how many lights each pixel evaluates of it.
+#pragma once
+
+#include "raster.hpp"
+#include "tiled_view.hpp"
+
+#include <lightbin/lightbin.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+/// What a build gave, in its Binner's memory.
+struct Built {
+    std::span<const lightbin::ListRange> ranges;
+    std::size_t bytes;  ///< of all that a shader reads, but the lights: tiles or cells, ids, bins
+    const lightbin::Slices* slices = nullptr;       ///< with slices
+    std::span<const std::uint32_t> ids = {};        ///< with z-bins
+    std::span<const lightbin::BinRange> bins = {};  ///< with z-bins
+};
+
+/// Builds with the slices that the view has for them.
+template <lightbin::Options options>
+Built build(lightbin::Binner<options>& binner, const TiledView& view, const Lights& lights,
+            const lightbin::ZBounds& bounds, const lightbin::Parallel& threads = {}) {
+    constexpr bool z_bins = options.slicing == lightbin::Slicing::z_bins;
+    const lightbin::Slices& slices = z_bins ? view.z_bins : view.clusters;
+    const auto grid = *binner.bin(view.view, lights, lightbin::inputs_for<options>(bounds, slices), threads);
+    Built built = {grid.ranges(), grid.ranges().size_bytes() + grid.ids().size_bytes()};
+    if constexpr (options.slicing != lightbin::Slicing::none) built.slices = &slices;
+    if constexpr (z_bins) {
+        built.ids = grid.ids();
+        built.bins = grid.ranks().bins;
+        built.bytes += built.bins.size_bytes();
+    }
+    return built;
+}
+
+/// Light evaluations of all drawn pixels: with clusters those of the pixel's cell, with z-bins those of its tile whose
+/// ranks its bin has.
+inline double all_evaluations(const TiledView& view, const Picture& picture, const Built& built) {
+    if (built.slices == nullptr) return view.all_evaluations(built.ranges);
+    const std::size_t width = static_cast<std::size_t>(picture.size.width),
+                      t = static_cast<std::size_t>(view.view.tile_size()),
+                      tiles_x = static_cast<std::size_t>(view.view.tiles_x());
+    std::uint64_t sum = 0;
+    for (std::size_t i = 0; i < picture.triangle.size(); ++i) {
+        if (picture.triangle[i] == Picture::nothing) continue;
+        const std::size_t tile = i / width / t * tiles_x + i % width / t,
+                          slice = static_cast<std::size_t>(built.slices->slice_at(picture.view_depth[i]));
+        if (built.bins.empty()) {
+            sum += built.ranges[slice * view.view.tile_count() + tile].count;
+            continue;
+        }
+        const auto list = built.ids.subspan(built.ranges[tile].offset, built.ranges[tile].count);
+        const auto [least, greatest] = built.bins[slice];
+        if (least <= greatest)
+            sum += static_cast<std::uint64_t>(std::ranges::upper_bound(list, greatest) -
+                                              std::ranges::lower_bound(list, least));
+    }
+    return static_cast<double>(sum);
+}
