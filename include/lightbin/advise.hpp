@@ -10,6 +10,7 @@
 #include <lightbin/lights.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/result.hpp>
+#include <lightbin/slices.hpp>
 #include <lightbin/view.hpp>
 #include <lightbin/z_bounds.hpp>
 
@@ -22,6 +23,7 @@
 #include <cstdio>
 #include <functional>
 #include <iterator>
+#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
@@ -39,14 +41,15 @@ struct Costs {
     double z_bounds_ns = 0;
 };
 
-/// One way to light a view, and what it costs a frame. with_options() applies its options, and View::with_tile_size()
-/// its tile size.
+/// One way to light a view, and what it costs a frame. with_options() or with_sliced_options() applies its options, and
+/// View::with_tile_size() its tile size.
 struct Plan {
-    bool tiled = true;  ///< false: every pixel evaluates every light; the next three are without meaning
+    bool tiled = true;  ///< false: every pixel evaluates every light; the next four are without meaning
     Footprint footprint = Footprint::rectangle;
     DepthTest depth_test = DepthTest::none;
+    Slicing slicing = Slicing::none;  ///< advise_slices(): with the slices that it was given for this
     int tile_size = 0;
-    double build_ns = 0;        ///< with Costs::z_bounds_ns where there is a depth test
+    double build_ns = 0;        ///< with Costs::z_bounds_ns where there are Z bounds
     std::uint64_t entries = 0;  ///< length of the light index list
     double evaluations = 0;     ///< sum over the pixels with something to light of their lists' lengths
     double total_ns = 0;        ///< build_ns + evaluations * Costs::evaluation_ns
@@ -68,15 +71,16 @@ public:
 
     /// Returns a table of the plans for a person, a line each. Allocates.
     std::string text() const {
-        std::string lines =
-            "   cost  tile  footprint   depth test     entries   build us  M evaluations   total us\n";
+        std::string lines = "   cost  tile  footprint   depth test  slicing      entries   build us  "
+                            "M evaluations   total us\n";
         for (const Plan& plan : plans()) {
             char tile[16] = "-", line[160];
             if (plan.tiled) std::snprintf(tile, sizeof tile, "%d", plan.tile_size);
-            std::snprintf(line, sizeof line, "%7.2f  %4s  %-10s  %-10s  %10llu  %9.1f  %13.3f  %9.1f\n",
+            std::snprintf(line, sizeof line, "%7.2f  %4s  %-10s  %-10s  %-8s  %10llu  %9.1f  %13.3f  %9.1f\n",
                           plan.total_ns / (std::max)(best().total_ns, 1.0), tile,
                           plan.tiled ? to_string(plan.footprint) : "no tiling",
                           plan.tiled ? to_string(plan.depth_test) : "-",
+                          plan.tiled ? to_string(plan.slicing) : "-",
                           static_cast<unsigned long long>(plan.entries), plan.build_ns * 1e-3,
                           plan.evaluations * 1e-6, plan.total_ns * 1e-3);
             lines += line;
@@ -98,29 +102,39 @@ inline constexpr Options weighed[] = {{.footprint = Footprint::rectangle, .depth
                                       {.footprint = Footprint::rectangle, .depth_test = DepthTest::split_box},
                                       {.footprint = Footprint::silhouette, .depth_test = DepthTest::none}};
 
+/// What is weighed where depth is known no sooner than it is shaded.
+inline constexpr Options weighed_sliced[] = {
+    {.footprint = Footprint::rectangle},
+    {.footprint = Footprint::silhouette},
+    {.footprint = Footprint::rectangle, .slicing = Slicing::z_bins},
+    {.footprint = Footprint::rectangle, .slicing = Slicing::clusters},
+    {.footprint = Footprint::rectangle, .depth_test = DepthTest::box, .slicing = Slicing::clusters}};
+
 /// A Binner's options for what is weighed, with the rest from `base`.
-template <Options base, std::size_t i>
+template <const auto& table, Options base, std::size_t i>
 inline constexpr Options weighed_options = [] {
     Options options = base;
-    options.footprint = weighed[i].footprint;
-    options.depth_test = weighed[i].depth_test;
+    options.footprint = table[i].footprint;
+    options.depth_test = table[i].depth_test;
+    options.slicing = table[i].slicing;
     return options;
 }();
 
-template <Options base, std::size_t i, class Visit>
+template <const auto& table, Options base, std::size_t i, class Visit>
 decltype(auto) with_options_from(const Plan& plan, Visit& visit) {
-    constexpr Options options = weighed_options<base, i>;
-    const bool found = plan.footprint == options.footprint && plan.depth_test == options.depth_test;
-    if constexpr (i + 1 < std::size(weighed)) {
-        if (!found) return with_options_from<base, i + 1>(plan, visit);
+    constexpr Options options = weighed_options<table, base, i>;
+    const bool found = plan.footprint == options.footprint && plan.depth_test == options.depth_test &&
+                       plan.slicing == options.slicing;
+    if constexpr (i + 1 < std::size(table)) {
+        if (!found) return with_options_from<table, base, i + 1>(plan, visit);
     } else {
         LIGHTBIN_ASSERT(found);
     }
     return visit.template operator()<options>();
 }
 
-template <Options base, std::size_t... i>
-auto weighed_binners(std::index_sequence<i...>) -> std::tuple<Binner<weighed_options<base, i>>...>;
+template <const auto& table, Options base, std::size_t... i>
+auto weighed_binners(std::index_sequence<i...>) -> std::tuple<Binner<weighed_options<table, base, i>>...>;
 
 /// A grid that is weighed: the view's own, or one whose tiles are made of whole ones of the view's.
 struct WeighedGrid {
@@ -187,10 +201,96 @@ struct WeighedGrid {
     WeighedGrid(WeighedGrid&&) = default;  // a copy's bounds would be this one's
 };
 
-/// Whether Z bounds allow a depth test.
-inline bool allowed(DepthTest test, const ZBounds& bounds) {
-    if (test == DepthTest::split_box) return !bounds.gap_min.empty() && !bounds.gap_max.empty();
-    return test == DepthTest::none || !bounds.min.empty() || !bounds.max.empty();
+/// Whether Z bounds allow a depth test. That of clusters needs none.
+inline bool allowed(const Options& options, const ZBounds& bounds) {
+    if (options.depth_test == DepthTest::none || options.slicing == Slicing::clusters) return true;
+    if (options.depth_test == DepthTest::split_box)
+        return !bounds.gap_min.empty() && !bounds.gap_max.empty();
+    return !bounds.min.empty() || !bounds.max.empty();
+}
+
+/// The grids of the view's tiles, and of 2, 4 and 8 times as large ones as far as they are smaller than the screen, and
+/// of one as large.
+inline std::vector<WeighedGrid> weighed_grids(const View& view, const ZBounds& bounds) {
+    std::vector<WeighedGrid> grids;
+    const int whole = (std::max)({view.viewport().width, view.viewport().height, view.tile_size()});
+    for (int size = view.tile_size(); size < whole && grids.size() < 4;
+         size = size > whole / 2 ? whole : 2 * size)
+        grids.emplace_back(view, bounds, size);
+    grids.emplace_back(view, bounds, whole);
+    return grids;
+}
+
+/// Weighs each of a table's options on each of the grids, by advise()'s turns.
+///
+/// pixels       with something to light
+/// inputs       inputs.operator()<options>(grid) returns what a Binner needs beside the lights
+/// evaluations  evaluations.operator()<options>(grid, built) returns what the pixels evaluate of a light grid
+template <const auto& table, Options base, class Clock, class LightRange, class Inputs, class Evaluations>
+Result<Advice> weigh(const std::vector<WeighedGrid>& grids, const LightRange& lights, const Costs& costs,
+                     double pixels, Inputs inputs, Evaluations evaluations) {
+    using Id = typename Binner<base>::Id;
+    decltype(weighed_binners<table, base>(std::make_index_sequence<std::size(table)>())) binners;
+    const auto build = [&](Plan& plan, const auto& seen, bool first) -> std::optional<Error> {
+        const WeighedGrid* grid = grids.data();
+        while (grid->view.tile_size() != plan.tile_size)
+            ++grid;
+        const auto with = [&]<Options options>() -> std::optional<Error> {
+            Binner<options>& binner = std::get<Binner<options>>(binners);
+            constexpr bool with_bounds =
+                options.depth_test != DepthTest::none && options.slicing == Slicing::none;
+            const auto start = Clock::now();
+            const Result<LightGrid<Id>> built =
+                binner.bin(grid->view, seen, inputs.template operator()<options>(*grid));
+            const std::chrono::duration<double, std::nano> time = Clock::now() - start;
+            if (!built) return built.error();
+            plan.build_ns = (std::min)(plan.build_ns, time.count() + (with_bounds ? costs.z_bounds_ns : 0));
+            if (!first) return std::nullopt;
+            plan.entries = built->ids().size();
+            plan.evaluations = evaluations.template operator()<options>(*grid, *built);
+            return std::nullopt;
+        };
+        return with_options_from<table, base, 0>(plan, with);
+    };
+
+    const View& view = grids[0].view;
+    const auto& source = as_lights(lights);
+    std::vector<Plan> plans = {
+        {.tiled = false, .evaluations = pixels * static_cast<double>(source.array.size())}};
+    for (const WeighedGrid& grid : grids)
+        for (const Options& options : table) {
+            if (!allowed(options, grid.bounds)) continue;
+            Plan plan = {.footprint = options.footprint,
+                         .depth_test = options.depth_test,
+                         .slicing = options.slicing,
+                         .tile_size = grid.view.tile_size(),
+                         .build_ns = HUGE_VAL};
+            if (const auto error = build(plan, lights, true)) return *error;
+            plans.push_back(plan);
+        }
+
+    // By turns: a slow moment of the machine meets all alike. Branch predictors learn a scene that is built again and
+    // again, some plans by half, so each turn has the lights elsewhere: up to a 32nd of the picture to the side. The
+    // first build found no memory. After two more, a time is taken for at most twice the true one.
+    constexpr int turns = 8;
+    for (int turn = 0;; ++turn) {
+        double least = HUGE_VAL;
+        for (Plan& plan : plans) {
+            plan.total_ns = plan.build_ns + plan.evaluations * costs.evaluation_ns;
+            least = (std::min)(least, plan.total_ns);
+        }
+        if (turn == turns) return Advice(std::move(plans));
+        const float aside = static_cast<float>((2.0 * turn / (turns - 1) - 1) / 32 * view.tiles_x() /
+                                               camera_of(view).x.scale);
+        const auto moved = view_space(source.array, [&](const auto& light) {
+            Sphere sphere = source.view_sphere(light);
+            sphere.x += aside * (view.orthographic() ? 1 : sphere.z);
+            return sphere;
+        });
+        for (Plan& plan : plans)
+            if (plan.tiled && (turn < 2 || plan.total_ns - 0.5 * plan.build_ns < least))
+                static_cast<void>(build(plan, moved, false));
+    }
 }
 
 }  // namespace detail
@@ -207,7 +307,14 @@ inline bool allowed(DepthTest test, const ZBounds& bounds) {
 /// base  the options that a plan leaves to you: ids, isa
 template <Options base = Options{}, class Visit>
 decltype(auto) with_options(const Plan& plan, Visit&& visit) {
-    return detail::with_options_from<base, 0>(plan, visit);
+    return detail::with_options_from<detail::weighed, base, 0>(plan, visit);
+}
+
+/// The same for a plan of advise_slices(), some of whose options need slices: inputs_for<options>({}, slices) are the
+/// inputs of each.
+template <Options base = Options{}, class Visit>
+decltype(auto) with_sliced_options(const Plan& plan, Visit&& visit) {
+    return detail::with_options_from<detail::weighed_sliced, base, 0>(plan, visit);
 }
 
 /// Measures what the ways to light a view cost, on the scene itself: no tiling; tiles of the view's size, of 2, 4 and 8
@@ -232,72 +339,105 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
         if (!side.empty() && side.size() < view.tile_count())
             return Error{ErrorCode::z_bounds_too_small, view.tile_count(), side.size()};
 
-    using Id = typename Binner<base>::Id;
-    std::vector<detail::WeighedGrid> grids;
-    const int whole = (std::max)({view.viewport().width, view.viewport().height, view.tile_size()});
-    for (int size = view.tile_size(); size < whole && grids.size() < 4;
-         size = size > whole / 2 ? whole : 2 * size)
-        grids.emplace_back(view, bounds, size);
-    grids.emplace_back(view, bounds, whole);
-    decltype(detail::weighed_binners<base>(std::make_index_sequence<std::size(detail::weighed)>())) binners;
-    const auto build = [&](Plan& plan, const auto& seen) {
-        const detail::WeighedGrid* grid = grids.data();
-        while (grid->view.tile_size() != plan.tile_size)
-            ++grid;
-        return with_options<base>(plan, [&]<Options options>() -> Result<LightGrid<Id>> {
-            Binner<options>& binner = std::get<Binner<options>>(binners);
-            constexpr bool with_depth = options.depth_test != DepthTest::none;
-            const auto start = Clock::now();
-            const Result<LightGrid<Id>> built =
-                binner.bin(grid->view, seen, inputs_for<options>(grid->bounds));
-            const std::chrono::duration<double, std::nano> time = Clock::now() - start;
-            if (!built) return built;
-            plan.build_ns = (std::min)(plan.build_ns, time.count() + (with_depth ? costs.z_bounds_ns : 0));
-            return built;
-        });
-    };
-
-    const auto& source = detail::as_lights(lights);
-    std::vector<Plan> plans = {{.tiled = false}};
-    for (const double pixels : grids[0].pixels)
-        plans[0].evaluations += pixels * static_cast<double>(source.array.size());
-    for (const detail::WeighedGrid& grid : grids)
-        for (const Options& options : detail::weighed) {
-            if (!detail::allowed(options.depth_test, bounds)) continue;
-            Plan plan = {.footprint = options.footprint,
-                         .depth_test = options.depth_test,
-                         .tile_size = grid.view.tile_size(),
-                         .build_ns = HUGE_VAL};
-            const Result<LightGrid<Id>> built = build(plan, lights);
-            if (!built) return built.error();
-            plan.entries = built->ids().size();
+    const std::vector<detail::WeighedGrid> grids = detail::weighed_grids(view, bounds);
+    double pixels = 0;
+    for (const double of_tile : grids[0].pixels)
+        pixels += of_tile;
+    return detail::weigh<detail::weighed, base, Clock>(
+        grids, lights, costs, pixels,
+        []<Options options>(const detail::WeighedGrid& grid) { return inputs_for<options>(grid.bounds); },
+        []<Options options>(const detail::WeighedGrid& grid, const auto& built) {
+            double sum = 0;
             for (std::size_t tile = 0; tile < grid.pixels.size(); ++tile)
-                plan.evaluations += grid.pixels[tile] * built->ranges()[tile].count;
-            plans.push_back(plan);
-        }
-
-    // By turns: a slow moment of the machine meets all alike. Branch predictors learn a scene that is built again and
-    // again, some plans by half, so each turn has the lights elsewhere: up to a 32nd of the picture to the side. The
-    // first build found no memory. After two more, a time is taken for at most twice the true one.
-    constexpr int turns = 8;
-    for (int turn = 0;; ++turn) {
-        double least = HUGE_VAL;
-        for (Plan& plan : plans) {
-            plan.total_ns = plan.build_ns + plan.evaluations * costs.evaluation_ns;
-            least = (std::min)(least, plan.total_ns);
-        }
-        if (turn == turns) return Advice(std::move(plans));
-        const float aside = static_cast<float>((2.0 * turn / (turns - 1) - 1) / 32 * view.tiles_x() /
-                                               detail::camera_of(view).x.scale);
-        const auto moved = view_space(source.array, [&](const auto& light) {
-            Sphere sphere = source.view_sphere(light);
-            sphere.x += aside * (view.orthographic() ? 1 : sphere.z);
-            return sphere;
+                sum += grid.pixels[tile] * built.ranges()[tile].count;
+            return sum;
         });
-        for (Plan& plan : plans)
-            if (plan.tiled && (turn < 2 || plan.total_ns - 0.5 * plan.build_ns < least))
-                static_cast<void>(build(plan, moved));
+}
+
+/// The view depths of what is lit, at points evenly spread over the viewport: of the frame before, or of a few that tell
+/// what the scene is like.
+struct DepthSamples {
+    /// Row by row from the view's window origin. Where one is NaN or infinite there is nothing to light.
+    std::span<const float> depths;
+    Extent size;  ///< columns and rows, such as those of the depth buffer of an eighth of the size
+};
+
+/// The slices that are weighed.
+struct WeighedSlices {
+    const Slices& clusters;  ///< some dozens
+    const Slices& z_bins;    ///< some hundreds
+};
+
+namespace detail {
+
+/// How many lights what lies at a depth evaluates of a tile.
+template <Slicing slicing, class Id>
+std::size_t evaluated(const LightGrid<Id>& grid, int x, int y, const WeighedSlices& slices, float depth) {
+    if constexpr (slicing == Slicing::none) {
+        return grid.lights_in(x, y).size();
+    } else if constexpr (slicing == Slicing::clusters) {
+        return grid.lights_in(x, y, slices.clusters.slice_at(depth)).size();
+    } else {
+        const BinRange bin = grid.ranks().bins[static_cast<std::size_t>(slices.z_bins.slice_at(depth))];
+        const std::span<const Id> ids = grid.lights_in(x, y);
+        if (bin.least > bin.greatest) return 0;
+        return static_cast<std::size_t>(std::ranges::upper_bound(ids, bin.greatest) -
+                                        std::ranges::lower_bound(ids, bin.least));
     }
+}
+
+/// Calls visit(x, y, depth) for the samples with something to light, by the pixel in which they are.
+template <class Visit> void for_each_sample(const View& view, const DepthSamples& samples, Visit visit) {
+    const auto pixel = [](int i, int count, int pixels) {
+        return static_cast<int>((2 * std::int64_t{i} + 1) * pixels / (2 * std::int64_t{count}));
+    };
+    const auto [width, height] = view.viewport();
+    const auto [columns, rows] = samples.size;
+    if (view.tile_count() == 0) return;
+    const float* depth = samples.depths.data();
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x, ++depth)
+            if (std::isfinite(*depth)) visit(pixel(x, columns, width), pixel(y, rows, height), *depth);
+}
+
+}  // namespace detail
+
+/// The same where there is no depth pre-pass: no tiling; tiles with rectangles or silhouettes; with rectangles and z-bins;
+/// and with clusters, `none` and `box`, each on the same tile sizes. Each sample stands for as many pixels as all others
+/// do, which evaluate the lights of its tile, of its tile from its bin's least to its greatest rank, or of its cell.
+/// with_sliced_options() applies a plan. Errors: as bin(), if it refuses any of them; fewer depths than samples.size has.
+///
+/// Beside what advise() says of Z bounds for the same view, this tells what a pre-pass is worth.
+template <Options base = Options{}, class Clock = std::chrono::steady_clock, class LightRange>
+Result<Advice> advise_slices(const View& view, const LightRange& lights, const WeighedSlices& slices,
+                             const DepthSamples& samples, const Costs& costs = {}) {
+    const auto [columns, rows] = samples.size;
+    const std::uint64_t count = columns > 0 && rows > 0 ? std::uint64_t{1} * static_cast<unsigned>(columns) *
+                                                              static_cast<unsigned>(rows)
+                                                        : 0;
+    if (samples.depths.size() < count)
+        return Error{ErrorCode::depth_buffer_too_small, count, samples.depths.size()};
+    const auto [width, height] = view.viewport();
+    const double area = 1.0 * width * height / (std::max)(static_cast<double>(count), 1.0);
+    double lit = 0;
+    detail::for_each_sample(view, samples, [&](int, int, float) { ++lit; });
+    return detail::weigh<detail::weighed_sliced, base, Clock>(
+        detail::weighed_grids(view, {}), lights, costs, lit * area,
+        [&]<Options options>(const detail::WeighedGrid&) {
+            if constexpr (options.slicing == Slicing::z_bins)
+                return inputs_for<options>({}, slices.z_bins);
+            else
+                return inputs_for<options>({}, slices.clusters);
+        },
+        [&]<Options options>(const detail::WeighedGrid& grid, const auto& built) {
+            const int size = grid.view.tile_size();
+            double sum = 0;
+            detail::for_each_sample(view, samples, [&](int x, int y, float depth) {
+                sum += static_cast<double>(
+                    detail::evaluated<options.slicing>(built, x / size, y / size, slices, depth));
+            });
+            return sum * area;
+        });
 }
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR

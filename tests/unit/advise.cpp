@@ -115,7 +115,141 @@ double evaluations_of(const Plan& plan, const test::Lists& lists, const View& fi
     return static_cast<double>(sum);
 }
 
+/// The view depths of ground_depth(), infinity where nothing is.
+std::vector<float> view_depths(const View& view, Extent size) {
+    std::vector<float> depths;
+    for (const float depth : ground_depth(size))
+        depths.push_back(depth < 1 ? view.view_depths(double{depth}, double{depth}).min : unbounded);
+    return depths;
+}
+
+const Slices a_dozen = *Slices::exponential(12, 2, 60), hundred = *Slices::linear(100, 0, 60);
+
+Advice advised_in_slices(const View& view, const auto& lights, const DepthSamples& samples,
+                         const Costs& costs = {}) {
+    return checked(advise_slices(view, lights, {.clusters = a_dozen, .z_bins = hundred}, samples, costs),
+                   costs);
+}
+
+/// A pixel's depth, and what it evaluates of a plan's grid: by asking each light.
+template <Options options>
+std::size_t lights_at(const LightGrid<std::uint32_t>& grid, const Slices& slices, int tile_x, int tile_y,
+                      float depth) {
+    int slice = 0;
+    while (slice + 1 < slices.count() && depth >= slices.boundaries()[static_cast<std::size_t>(slice)])
+        ++slice;
+    std::size_t count = 0;
+    for (const std::uint32_t id :
+         grid.lights_in(tile_x, tile_y, options.slicing == Slicing::clusters ? slice : 0)) {
+        if constexpr (options.slicing == Slicing::z_bins) {
+            const BinRange bin = grid.ranks().bins[static_cast<std::size_t>(slice)];
+            if (id < bin.least || id > bin.greatest) continue;
+        }
+        ++count;
+    }
+    return count;
+}
+
 }  // namespace
+
+TEST_CASE("in slices, entries and evaluations are those of the plans' grids at the samples' depths") {
+    const View view = test::view({311, 197}, 16);
+    const auto lights = test::random_lights(150, 7);
+    const std::vector<float> depths = view_depths(view, {311, 197});
+    // All pixels, and every third row and column of them: those in whose middle the samples are.
+    for (const int step : {1, 3}) {
+        const Extent size = {311 / step, 197 / step};
+        const View of_samples = test::view({size.width * step, size.height * step}, 16);
+        std::vector<float> samples;
+        for (int y = 0; y < size.height; ++y)
+            for (int x = 0; x < size.width; ++x)
+                samples.push_back(
+                    depths[static_cast<std::size_t>((y * step + step / 2) * 311 + x * step + step / 2)]);
+        const Advice advice =
+            advised_in_slices(of_samples, lights, {.depths = samples, .size = size}, {.z_bounds_ns = 0});
+        CHECK(advice.plans().size() == 5 * 5 + 1);
+        for (const Plan& plan : advice.plans()) {
+            CAPTURE(plan.tile_size);
+            CAPTURE(static_cast<int>(plan.slicing));
+            const auto evaluations = [&](auto lights_of) {
+                std::size_t sum = 0;
+                for (int y = 0; y < size.height; ++y)
+                    for (int x = 0; x < size.width; ++x) {
+                        const float depth = samples[static_cast<std::size_t>(y * size.width + x)];
+                        if (depth < unbounded)
+                            sum += lights_of((x * step + step / 2) / plan.tile_size,
+                                             (y * step + step / 2) / plan.tile_size, depth);
+                    }
+                return static_cast<double>(sum) * step * step;
+            };
+            if (!plan.tiled) {
+                CHECK(plan.evaluations == evaluations([](int, int, float) { return std::size_t{150}; }));
+                continue;
+            }
+            with_sliced_options(plan, [&]<Options options> {
+                const Slices& slices = options.slicing == Slicing::clusters ? a_dozen : hundred;
+                Binner<options> binner;
+                const auto grid = binner.bin(*of_samples.with_tile_size(plan.tile_size), lights,
+                                             inputs_for<options>({}, slices));
+                REQUIRE(grid);
+                CHECK(plan.entries == grid->ids().size());
+                CHECK(plan.evaluations == evaluations([&](int x, int y, float depth) {
+                          return lights_at<options>(*grid, slices, x, y, depth);
+                      }));
+            });
+        }
+    }
+}
+
+TEST_CASE("in slices, the cheapest is chosen, and costs of Z bounds are none of theirs") {
+    const Extent size = {640, 360};
+    const View view = test::view(size, 8);
+    const std::vector<float> depths = view_depths(view, size);
+    const auto lights = test::random_lights(200, 5);
+    const auto best = [&](double evaluation_ns) {
+        WoundClock::build_ns = [](std::size_t) { return std::int64_t{100}; };
+        WoundClock::calls = 0;
+        const auto advice = advise_slices<narrow, WoundClock>(
+            view, lights, {.clusters = a_dozen, .z_bins = hundred}, {.depths = depths, .size = size},
+            {.evaluation_ns = evaluation_ns, .z_bounds_ns = 1e9});
+        REQUIRE(advice);
+        for (const Plan& plan : advice->plans()) {
+            CHECK(plan.build_ns == (plan.tiled ? 100 : 0));
+            CHECK(plan.evaluations * evaluation_ns + plan.build_ns >= advice->best().total_ns);
+        }
+        return advice->best();
+    };
+    CHECK(!best(0).tiled);
+    const Plan plan = best(1);
+    CHECK(plan.tile_size == 8);
+    CHECK(plan.slicing == Slicing::clusters);
+    CHECK(plan.depth_test == DepthTest::box);
+    const Options told = with_sliced_options<narrow>(plan, []<Options options> { return options; });
+    CHECK(told.slicing == Slicing::clusters);
+    CHECK(told.depth_test == DepthTest::box);
+    CHECK(told.footprint == Footprint::rectangle);
+    CHECK(told.ids == IdWidth::u16);
+    CHECK(told.isa == Isa::scalar);
+}
+
+TEST_CASE("in slices, any input") {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<Sphere> bad = {{nan, 0, 0, 1}, {0, 0, -9, unbounded}, {0, 0, 0, 1e30f}};
+    const std::vector<float> depths = {nan, unbounded, -unbounded, -5, 0, 3e38f};
+    for (const Extent size : {Extent{0, 0}, {1, 1}, {640, 1}, {300, 200}})
+        for (const Extent samples : {Extent{0, 0}, {-1, -1}, {3, 2}, {1, 1}}) {
+            const View view = test::view(size, 16);
+            advised_in_slices(view, bad, {.depths = depths, .size = samples});
+            const Advice empty = advised_in_slices(view, std::vector<Sphere>{}, {});
+            for (const Plan& plan : empty.plans())
+                CHECK(plan.evaluations == 0);
+        }
+    const Slices slices = *Slices::linear(3, 0, 9);
+    const auto advice = advise_slices(test::view({64, 64}, 16), bad, {.clusters = slices, .z_bins = slices},
+                                      {.depths = depths, .size = {3, 3}});
+    REQUIRE(!advice);
+    CHECK(advice.error().code == ErrorCode::depth_buffer_too_small);
+}
 
 TEST_CASE("entries and evaluations are those of the plans' grids") {
     const View view = test::view({611, 397}, 8);
