@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Is advise() right? For each scene every plan is measured (build time on rotating light sets, evaluations of
 // the first one counted over the drawn pixels), and what the chosen one costs is held against the cheapest: with
-// Z bounds, and without any against those that need none. advise() sees the first light set alone.
+// Z bounds; without any against those that need none; and of advise_slices() against those with slices, too. They see
+// the first light set alone, advise_slices() the depth of one pixel in 64.
 //
 //   advise_plans.csv   a row a plan that was weighed: build time and evaluations by advise(), and by the sweep
 //   advise.csv         a row for each scene and cost of an evaluation: the choice, the best plan, and the regret, their
 //                      ratio: as swept, and, where that is over the limit, of the two timed again by themselves
 #include "arguments.hpp"
+#include "built.hpp"
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
 
@@ -17,6 +19,7 @@
 #include <ctime>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
@@ -26,39 +29,55 @@ namespace {
 using lightbin::IdWidth;
 using lightbin::Isa;
 using lightbin::Plan;
+using lightbin::Slicing;
 
 constexpr int tile_sizes[] = {8, 16, 32, 64, screen.width};
 constexpr double evaluation_costs[] = {0.005, 0.02, 0.05, 0.2, 1};  ///< ns
 constexpr double limit = 1.05;
 std::size_t turns = 15;
 
-/// A plan and how to build it: returns the grid's tiles.
+/// A plan and how to build it.
 struct Candidate {
     Plan plan;
     IdWidth ids;
-    std::function<std::span<const lightbin::ListRange>(const TiledView&, const Lights&)> build;
+    std::function<Built(const TiledView&, const Lights&)> build;
     double build_us = 0, evaluations = 0;
 
     double total_us(double evaluation_ns) const { return build_us + evaluations * evaluation_ns * 1e-3; }
 };
 
-/// Every method, id width and tile size.
+/// Every method, id width and tile size; those with slices have wide ids.
 template <Isa isa> std::vector<Candidate> candidates() {
     std::vector<Candidate> all;
-    const auto add = [&]<std::size_t method, IdWidth ids> {
-        const auto bin = std::make_shared<Bin<ladder[method], ids, isa>>();
+    const auto add = [&]<lightbin::Options options> {
+        const auto binner = std::make_shared<lightbin::Binner<options>>();
         for (const int tile_size : tile_sizes)
-            all.push_back({.plan = {.footprint = ladder[method].footprint,
-                                    .depth_test = ladder[method].depth_test,
+            all.push_back({.plan = {.footprint = options.footprint,
+                                    .depth_test = options.depth_test,
+                                    .slicing = options.slicing,
                                     .tile_size = tile_size},
-                           .ids = ids,
-                           .build = [bin](const TiledView& view, const Lights& lights) {
-                               return (*bin)(view, lights).ranges();
+                           .ids = options.ids,
+                           .build = [binner](const TiledView& view, const Lights& lights) {
+                               return build<options>(*binner, view, lights, view.bounds());
                            }});
     };
+    const auto add_method = [&]<Method method> {
+        constexpr auto with = [](IdWidth ids, Slicing slicing) {
+            return lightbin::Options{.ids = ids,
+                                     .footprint = method.footprint,
+                                     .depth_test = method.depth_test,
+                                     .slicing = slicing,
+                                     .isa = isa};
+        };
+        add.template operator()<with(IdWidth::u16, Slicing::none)>();
+        add.template operator()<with(IdWidth::u32, Slicing::none)>();
+        if constexpr (method.depth_test == DepthTest::none || method.depth_test == DepthTest::box)
+            add.template operator()<with(IdWidth::u32, Slicing::clusters)>();
+        if constexpr (method.depth_test == DepthTest::none)
+            add.template operator()<with(IdWidth::u32, Slicing::z_bins)>();
+    };
     [&]<std::size_t... method>(std::index_sequence<method...>) {
-        (add.template operator()<method, IdWidth::u16>(), ...);
-        (add.template operator()<method, IdWidth::u32>(), ...);
+        (add_method.template operator()<ladder[method]>(), ...);
     }
     (std::make_index_sequence<std::size(ladder)>{});
     return all;
@@ -109,8 +128,40 @@ void time(std::vector<Candidate>& candidates, const Views& views, std::span<cons
 
 std::string words(const Plan& plan, IdWidth ids) {
     if (!plan.tiled) return "no tiling";
+    const std::string slicing =
+        plan.slicing == Slicing::none ? "" : std::string(" ") + to_string(plan.slicing);
     return std::to_string(plan.tile_size) + " px " + to_string(plan.footprint) + " " +
-           to_string(plan.depth_test) + " " + to_string(ids);
+           to_string(plan.depth_test) + slicing + " " + to_string(ids);
+}
+
+/// What is known of depth.
+enum class Known { bounds, nothing, samples };
+constexpr const char* known_names[] = {"both", "none", "samples"};
+
+/// The ids of the plans that are asked for.
+IdWidth ids_of(Known known) {
+    return known == Known::samples ? IdWidth::u32 : IdWidth::u16;
+}
+
+/// Whether a plan is within what is known.
+bool allowed(Known known, const Candidate& candidate) {
+    if (known == Known::bounds) return candidate.plan.slicing == Slicing::none;
+    const bool needs_bounds =
+        candidate.plan.depth_test != DepthTest::none && candidate.plan.slicing != Slicing::clusters;
+    if (known == Known::samples) return !needs_bounds && candidate.ids == IdWidth::u32;
+    return !needs_bounds && candidate.plan.slicing == Slicing::none;
+}
+
+/// The depth of the middle pixel of each 8 x 8.
+std::vector<float> sampled(const Picture& picture) {
+    std::vector<float> samples;
+    const std::size_t width = static_cast<std::size_t>(picture.size.width);
+    for (std::size_t y = 4; y < static_cast<std::size_t>(picture.size.height); y += 8)
+        for (std::size_t x = 4; x < width; x += 8)
+            samples.push_back(picture.triangle[y * width + x] == Picture::nothing
+                                  ? std::numeric_limits<float>::infinity()
+                                  : picture.view_depth[y * width + x]);
+    return samples;
 }
 
 struct Report {
@@ -119,15 +170,23 @@ struct Report {
 };
 
 template <Isa isa>
-lightbin::Advice ask(const TiledView& view, const Lights& lights, double cost, bool with_depth) {
+lightbin::Advice ask(const TiledView& view, const Picture& picture, const Lights& lights, double cost,
+                     Known known) {
     const lightbin::Costs costs = {.evaluation_ns = cost};
-    const lightbin::ZBounds bounds = with_depth ? view.bounds() : lightbin::ZBounds{};
+    if (known == Known::samples) {
+        const std::vector<float> samples = sampled(picture);
+        return *lightbin::advise_slices<lightbin::Options{.isa = isa}, ThreadClock>(
+            view.view, lights, {.clusters = view.clusters, .z_bins = view.z_bins},
+            {.depths = samples, .size = {picture.size.width / 8, picture.size.height / 8}}, costs);
+    }
+    const lightbin::ZBounds bounds = known == Known::bounds ? view.bounds() : lightbin::ZBounds{};
     return *lightbin::advise<lightbin::Options{.ids = IdWidth::u16, .isa = isa}, ThreadClock>(
         view.view, lights, costs, bounds);
 }
 
 template <Isa isa> void judge(const BenchScene& scene, Report& report) {
-    const Views views(scene, rasterise(scene, screen));
+    const Picture picture = rasterise(scene, screen);
+    const Views views(scene, picture);
     std::vector<Lights> sets;
     for (std::uint32_t seed = 0; seed < turns; ++seed)
         sets.push_back(scene.lights(seed));
@@ -136,32 +195,33 @@ template <Isa isa> void judge(const BenchScene& scene, Report& report) {
     time(sweep, views, sets, turns);
     for (Candidate& candidate : sweep) {
         const TiledView& view = views.of(candidate.plan.tile_size);
-        candidate.evaluations = view.all_evaluations(candidate.build(view, sets[0]));
+        candidate.evaluations = all_evaluations(view, picture, candidate.build(view, sets[0]));
     }
     const std::vector<lightbin::ListRange> one(1, {0, static_cast<std::uint32_t>(sets[0].size())});
-    sweep.push_back({{.tiled = false}, IdWidth::u16, {}, 0, views.of(screen.width).all_evaluations(one)});
-    const auto measured = [&](const Plan& plan) -> const Candidate& {
-        const auto found = std::ranges::find_if(
-            sweep, [&](const Candidate& c) { return words(c.plan, c.ids) == words(plan, IdWidth::u16); });
+    for (const IdWidth ids : {IdWidth::u16, IdWidth::u32})
+        sweep.push_back({{.tiled = false}, ids, {}, 0, views.of(screen.width).all_evaluations(one)});
+    const auto measured = [&](const Plan& plan, IdWidth ids) -> const Candidate& {
+        const auto found = std::ranges::find_if(sweep, [&](const Candidate& c) {
+            return c.ids == ids && words(c.plan, c.ids) == words(plan, ids);
+        });
         if (found == sweep.end())
-            std::fprintf(stderr, "advise: no such plan: %s\n", words(plan, IdWidth::u16).c_str()),
-                std::abort();
+            std::fprintf(stderr, "advise: no such plan: %s\n", words(plan, ids).c_str()), std::abort();
         return *found;
     };
 
     const TiledView& finest = views.of(tile_sizes[0]);
-    const double plain_us = measured({.tile_size = tile_sizes[0]}).build_us;  // a rectangle, no depth test
+    const Plan plain = {.tile_size = tile_sizes[0]};
+    const double plain_us = measured(plain, IdWidth::u16).build_us;
     std::printf("\n%s: %zu lights, plain build %.1f us\n", scene.name.c_str(), sets[0].size(), plain_us);
-    for (const bool with_depth : {true, false})
+    for (const Known known : {Known::bounds, Known::nothing, Known::samples})
         for (const double cost : evaluation_costs) {
             const double start = time_now();
-            const lightbin::Advice advice = ask<isa>(finest, sets[0], cost, with_depth);
+            const lightbin::Advice advice = ask<isa>(finest, picture, sets[0], cost, known);
             const double asking = 1e6 * (time_now() - start) / plain_us;
             report.asking.push_back(asking);
-            const Candidate& choice = measured(advice.best());
+            const Candidate& choice = measured(advice.best(), ids_of(known));
             const Candidate& best = *std::ranges::min_element(sweep, {}, [&](const Candidate& candidate) {
-                const bool allowed = with_depth || candidate.plan.depth_test == DepthTest::none;
-                return allowed ? candidate.total_us(cost) : HUGE_VAL;
+                return allowed(known, candidate) ? candidate.total_us(cost) : HUGE_VAL;
             });
             const double swept = choice.total_us(cost) / best.total_us(cost);
             double regret = swept;
@@ -173,16 +233,16 @@ template <Isa isa> void judge(const BenchScene& scene, Report& report) {
             report.regrets.push_back(regret);
             const std::string chosen = words(choice.plan, choice.ids), cheapest = words(best.plan, best.ids);
             std::fprintf(report.csv, "%s,%s,%g,%s,%.2f,%s,%.2f,%.4f,%.4f,%.1f\n", scene.name.c_str(),
-                         with_depth ? "both" : "none", cost, chosen.c_str(), choice.total_us(cost),
+                         known_names[static_cast<int>(known)], cost, chosen.c_str(), choice.total_us(cost),
                          cheapest.c_str(), best.total_us(cost), swept, regret, asking);
-            std::printf("  %5g ns%s: %-28s %9.1f us  best %-28s %9.1f us  %.3f %.3f%s  asked %.0f\n", cost,
-                        with_depth ? "      " : ", no Z", chosen.c_str(), choice.total_us(cost),
+            std::printf("  %5g ns, %-7s: %-36s %9.1f us  best %-36s %9.1f us  %.3f %.3f%s  asked %.0f\n",
+                        cost, known_names[static_cast<int>(known)], chosen.c_str(), choice.total_us(cost),
                         cheapest.c_str(), best.total_us(cost), swept, regret, regret > limit ? "  OVER" : "",
                         asking);
             for (const Plan& plan : advice.plans()) {
-                const Candidate& c = measured(plan);
+                const Candidate& c = measured(plan, ids_of(known));
                 std::fprintf(report.plans_csv, "%s,%s,%g,%s,%.2f,%.2f,%.0f,%.0f\n", scene.name.c_str(),
-                             with_depth ? "both" : "none", cost, words(plan, IdWidth::u16).c_str(),
+                             known_names[static_cast<int>(known)], cost, words(plan, ids_of(known)).c_str(),
                              plan.build_ns * 1e-3, c.build_us, plan.evaluations, c.evaluations);
             }
         }

@@ -27,17 +27,15 @@ inline constexpr Method ladder[] = {
 };
 
 /// Bins by one rung; the grid is valid until the next call.
-template <Method method, lightbin::IdWidth ids = lightbin::IdWidth::u32,
-          lightbin::Isa isa = lightbin::compiled_isa>
-class Bin {
+template <Method method> class Bin {
 public:
     auto operator()(const TiledView& view, const Lights& lights) {
         return *binner_.bin(view.view, lights, lightbin::inputs_for<options>(view.bounds()));
     }
 
 private:
-    static constexpr lightbin::Options options = {
-        .ids = ids, .footprint = method.footprint, .depth_test = method.depth_test, .isa = isa};
+    static constexpr lightbin::Options options = {.footprint = method.footprint,
+                                                  .depth_test = method.depth_test};
 
     lightbin::Binner<options> binner_;
 };

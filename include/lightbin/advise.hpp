@@ -102,13 +102,15 @@ inline constexpr Options weighed[] = {{.footprint = Footprint::rectangle, .depth
                                       {.footprint = Footprint::rectangle, .depth_test = DepthTest::split_box},
                                       {.footprint = Footprint::silhouette, .depth_test = DepthTest::none}};
 
-/// What is weighed where depth is known no sooner than it is shaded.
+/// What is weighed where depth is known no sooner than it is shaded. Here silhouettes beside boxes are: without them,
+/// plans cost up to 13 % more where an evaluation costs 0.2 ns or more.
 inline constexpr Options weighed_sliced[] = {
     {.footprint = Footprint::rectangle},
     {.footprint = Footprint::silhouette},
     {.footprint = Footprint::rectangle, .slicing = Slicing::z_bins},
     {.footprint = Footprint::rectangle, .slicing = Slicing::clusters},
-    {.footprint = Footprint::rectangle, .depth_test = DepthTest::box, .slicing = Slicing::clusters}};
+    {.footprint = Footprint::rectangle, .depth_test = DepthTest::box, .slicing = Slicing::clusters},
+    {.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::clusters}};
 
 /// A Binner's options for what is weighed, with the rest from `base`.
 template <const auto& table, Options base, std::size_t i>
@@ -403,7 +405,7 @@ template <class Visit> void for_each_sample(const View& view, const DepthSamples
 }  // namespace detail
 
 /// The same where there is no depth pre-pass: no tiling; tiles with rectangles or silhouettes; with rectangles and z-bins;
-/// and with clusters, `none` and `box`, each on the same tile sizes. Each sample stands for as many pixels as all others
+/// and clusters with rectangles, `none` and `box`, and with silhouettes and `box`; all on the same tile sizes. Each sample stands for as many pixels as all others
 /// do, which evaluate the lights of its tile, of its tile from its bin's least to its greatest rank, or of its cell.
 /// with_sliced_options() applies a plan. Errors: as bin(), if it refuses any of them; fewer depths than samples.size has.
 ///

@@ -167,7 +167,7 @@ TEST_CASE("in slices, entries and evaluations are those of the plans' grids at t
                     depths[static_cast<std::size_t>((y * step + step / 2) * 311 + x * step + step / 2)]);
         const Advice advice =
             advised_in_slices(of_samples, lights, {.depths = samples, .size = size}, {.z_bounds_ns = 0});
-        CHECK(advice.plans().size() == 5 * 5 + 1);
+        CHECK(advice.plans().size() == 5 * 6 + 1);
         for (const Plan& plan : advice.plans()) {
             CAPTURE(plan.tile_size);
             CAPTURE(static_cast<int>(plan.slicing));
@@ -227,7 +227,7 @@ TEST_CASE("in slices, the cheapest is chosen, and costs of Z bounds are none of 
     const Options told = with_sliced_options<narrow>(plan, []<Options options> { return options; });
     CHECK(told.slicing == Slicing::clusters);
     CHECK(told.depth_test == DepthTest::box);
-    CHECK(told.footprint == Footprint::rectangle);
+    CHECK(told.footprint == Footprint::silhouette);
     CHECK(told.ids == IdWidth::u16);
     CHECK(told.isa == Isa::scalar);
 }
