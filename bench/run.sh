@@ -22,9 +22,9 @@
 #   ablation [--quick] [SCENE.glb ...]
 #       What each part of the library costs and saves, by kind of scene; writes build/bench/ablation.csv.
 #   advise [--quick] [--avx2 | --sse2 | --scalar] [SCENE.glb ...]
-#       What the plan that advise() chooses costs beside the best of all, with Z bounds and without, and how long asking
-#       takes beside a plain build; on the machine's widest instruction set or the named one. Writes
-#       build/bench/advise.csv and advise_plans.csv.
+#       What the plan that advise() chooses costs beside the best of all, with Z bounds and without, the same of
+#       advise_slices(), and how long asking takes beside a plain build; on the machine's widest instruction set or the
+#       named one. Writes build/bench/advise.csv and advise_plans.csv.
 set -eu
 me=bench/run.sh
 here=$(pwd)
