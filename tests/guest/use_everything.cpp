@@ -112,17 +112,32 @@ void use_shader_data(Hash& hash, const View& view, const std::vector<Sphere>& li
     hash.add(shader_build(view, static_cast<std::uint32_t>(footprints.size()), 9).footprints);
 }
 
-void use_advice(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
-    const Advice advice = value_of(advise(view, lights, {}, bounds));
+/// of_plan(plan) returns a number that its options make.
+void add_plans(Hash& hash, const Advice& advice, const auto& of_plan) {
     double evaluations = 0;  // in any order: which plan is best depends on the machine
     for (const Plan& plan : advice.plans()) {
         evaluations += plan.evaluations;
         hash.value += plan.entries;
-        if (plan.tiled)
-            hash.value += with_options(plan, []<Options options> { return sizeof(Binner<options>); });
+        if (plan.tiled) hash.value += of_plan(plan);
     }
     hash.add(static_cast<std::uint64_t>(evaluations));
     hash.value += advice.text().empty();
+}
+
+void use_advice(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {
+    add_plans(hash, value_of(advise(view, lights, {}, bounds)), [](const Plan& plan) {
+        return with_options(plan, []<Options options> { return sizeof(Binner<options>); });
+    });
+    const Slices slices = value_of(Slices::exponential(6, 2, 50));
+    const std::array<float, 6> depths = {1, 3, 10, 20, 40, 80};
+    const auto advice = advise_slices(view, lights, {.clusters = slices, .z_bins = slices},
+                                      {.depths = depths, .size = {3, 2}});
+    add_plans(hash, value_of(advice), [&](const Plan& plan) {
+        return with_sliced_options(plan, [&]<Options options> {
+            Binner<options> binner;
+            return value_of(binner.bin(view, lights, inputs_for<options>({}, slices))).ids().size();
+        });
+    });
 }
 
 void use_view(Hash& hash, const View& view) {
