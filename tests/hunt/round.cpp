@@ -4,6 +4,7 @@
 #include "bounds.hpp"
 #include "engines.hpp"
 #include "guarded.hpp"
+#include "slices.hpp"
 
 #include <lightbin/advise.hpp>
 #include <lightbin/encode.hpp>
@@ -90,6 +91,9 @@ public:
             ++report_.tally["with_tile_size"];
         }
         hunt_grids();
+        for (int more = 0; more < 2; ++more)
+            if (const std::string found = hunt_slices(*view_, scene_, placed_, random_, report_); !found.empty())
+                fault(found);
         if (lights <= 5000 && tiles <= 20000 && random_.one_in(4)) ask_advice();
     }
 
@@ -543,6 +547,8 @@ void expect_all(Tally& tally) {
         for (const DepthTest depth_test : depth_tests)
             for (const char* tier : tier_names)
                 tally[std::string(to_string(footprint)) + ", " + to_string(depth_test) + ", " + tier];
+    for (const char* name : slicing_names)
+        tally[name];
     for (const DepthTest depth_test : depth_tests)
         tally[std::string("points, ") + to_string(depth_test)];
     for (const char* name : {"float projection",

@@ -384,10 +384,10 @@ struct ReaderRun {
 };
 
 /// What a language runs: every list, flipped and not, in fragment and compute shaders, at each small screen;
-/// the other options take turns. At the large screen: one width of ids. With slicing: at two small screens.
-/// each_flip  false: half of the small screens are flipped, the other half not; the next list has it the other way round;
-///            with slicing the one half in fragment shaders, the other in compute shaders
-/// waves      the device has what wave loops need: they are run, too, at two small screens
+/// the other options take turns. At the large screen: one width of ids. With slicing and wave loops: flipped in compute
+/// shaders, not flipped in fragment shaders, or where there are only those in both, at two small screens in turns.
+/// each_flip  false: half of the small screens are flipped, the other half not; the next list has it the other way round
+/// waves      the device has what wave loops need
 inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, bool each_flip = true,
                                           bool waves = false) {
     using lightbin::Slicing;
@@ -404,8 +404,9 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
             runs.push_back({with_switches(list, 2 * turn + flip), stage, screen});
         };
         const bool few = list.slicing != Slicing::none || list.wave_loop;
+        if (few && computes && (stage == Stage::compute) != (flip == 1)) return;
         for (unsigned i = 0; i < (few ? 2 : std::size(small)); ++i)
-            if (each_flip || (i + flip + place) % 2 == 0) add(small[i]);
+            if ((each_flip && !few) || (i + flip + place) % 2 == 0) add(small[i]);
         if (!few && (list.format.ids == lightbin::IdWidth::u16 ||
                         list.format.encoding == lightbin::ListEncoding::bitmask))
             add(large);
@@ -418,12 +419,8 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
                 lists.push_back(list);
         for (const lightbin::ShaderOptions& list : lists) {
             for (unsigned flip = 0; flip < 2; ++flip)
-                for (const Stage stage : {Stage::fragment, Stage::compute}) {
-                    const bool turn_of_other = !each_flip && computes && slicing != Slicing::none &&
-                                               (stage == Stage::compute) != (flip == 1);
-                    if ((stage == Stage::fragment || computes) && !turn_of_other)
-                        add_list(list, place, flip, stage);
-                }
+                for (const Stage stage : {Stage::fragment, Stage::compute})
+                    if (stage == Stage::fragment || computes) add_list(list, place, flip, stage);
             ++place;
         }
     }
