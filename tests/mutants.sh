@@ -15,7 +15,7 @@ cd "$(dirname "$0")/.."
 work=build/mutants
 
 # mutant PROOF FILE EXPRESSION: sed's EXPRESSION breaks include/lightbin/FILE, and the PROOF must see it: families (every
-# rung, tier and number of workers against the exact judge and each other), cells or world.
+# rung, tier and number of workers against the exact judge and each other), cells, world or clusters.
 list() {
     # Rounding outward.
     mutant cells view.hpp 's/detail::float_above(0x1p-20 \* (std::fabs(axis.offset) + axis.tiles) + 0x1p-80 \* axis.scale)/0.0f/'
@@ -40,7 +40,7 @@ list() {
     mutant families detail/silhouette.inl 's/right_v = select(negative, inner_v, outer_v);/right_v = select(negative, outer_v, inner_v);/'
     # Depth.
     mutant families detail/depth_columns.inl 's/store_floats(upper + column, select(numbers, most, infinite));/store_floats(upper + column, most);/'
-    mutant families detail/cells.inl 's/mul(x0, select(less(x0, zero), back, front))/mul(x0, select(less(zero, x0), back, front))/'
+    mutant families detail/cells.inl 's/select(less(edges, all(0.0f)), back, front)/select(less(all(0.0f), edges), back, front)/'
     mutant families detail/cells.inl 's/select(both(gap, less(z0, gap_max)), gap_max, z0)/select(both(gap, less(z0, gap_max)), gap_max, z1)/'
     mutant families detail/words.inl 's/either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest))/either(less(nearest, load_floats(cell)), less(load_floats(cell + 64), nearest))/'
     # Lists.
@@ -57,7 +57,13 @@ list() {
     # Scattering, and the caller's threads.
     mutant families detail/scatter.inl 's/lights.x1\[i\] - lights.x0\[i\] + 1u;/lights.x1[i] - lights.x0[i];/'
     mutant families detail/scatter.inl 's/(std::min)(lights.y1\[i\] + 1u, end)/(std::min)(lights.y1[i] + 0u, end)/'
-    mutant families detail/parts.hpp 's/        ++row;$/        row += done < goal ? 1 : 2;/'
+    mutant families detail/parts.hpp 's/            ++step;$/            step += done < goal ? 1 : 2;/'
+    # Clusters.
+    mutant clusters detail/slices_met.inl 's/less_equal(all(boundary), to)/less(all(boundary), to)/'
+    mutant clusters detail/slices_met.inl 's/less(all(boundary), from)/less_equal(all(boundary), from)/'
+    mutant clusters detail/slab.inl 's/all(1 + 0x1p-20f)) + all(0x1p-125f)/all(1 - 0x1p-20f))/'
+    mutant clusters detail/slab.inl 's/z - all(slab.z1)), all(0.0f))/all(slab.z1) - z), all(0.0f))/'
+    mutant clusters sliced_footprints.hpp 's/slice = met->first + 2; slice <= met->last/slice = met->first + 2; slice < met->last/'
 }
 
 # The proof of mutant $number, which is expected to fail. Says what came of it; a line that does not start with "caught" is
@@ -83,7 +89,7 @@ try() {
         ;;
     *)
         g++ $flags tests/oracle/$proof.cpp $work/doctest_main.o -lgmp -o "$place/proof" 2>"$place/log"
-        arguments='--test-case=cells: symmetric,world space*'
+        arguments='--test-case=cells: symmetric,world space*,clusters: symmetric'
         ;;
     esac || {
         echo "DOES NOT COMPILE: $number $file $expression"
