@@ -66,38 +66,14 @@ public:
     /// footprints  Footprints or RankedFootprints, with spheres for a depth test
     /// parallel    Serial or Parallel
     template <class Lit, class Threads>
-    std::optional<Error> build(Isa isa, const View& view, const Lit& footprints, const ZBounds& bounds, std::vector<detail::Scratch>& scratch,
-                               [[maybe_unused]] const Threads& parallel) {
+    std::optional<Error> build(Isa isa, const View& view, const Lit& footprints, const ZBounds& bounds,
+                               std::vector<detail::Scratch>& scratch, [[maybe_unused]] const Threads& parallel) {
         tile_count_ = entries_ = 0;  // until there is a grid
         const std::size_t tiles = view.tile_count();
-        Job job = {.camera = &detail::camera_of(view),
-                   .lights = footprints.arrays(),
-                   .runs = footprints.runs(),
-                   .visible = footprints.visible(),
-                   .bounds = {},
-                   .slab = {-detail::infinity, detail::infinity},
-                   .edges = {},
-                   .tiles = nullptr,
-                   .spare_tiles = Job::slack(static_cast<std::size_t>(view.tiles_x()))};
-        const std::span<const float> sides[] = {bounds.min, bounds.max, bounds.gap_min, bounds.gap_max};
-        for (std::size_t side = 0; side < 4; ++side) {
-            if (sides[side].empty()) continue;
-            if (sides[side].size() < tiles)
-                return Error{ErrorCode::z_bounds_too_small, tiles, sides[side].size()};
-            job.bounds[side] = sides[side].data();
-        }
-        if constexpr (with_boxes) {
-            edges_.find(*job.camera);
-            edges_.give(job.edges);
-        }
-
+        Job job = {};
+        if (const auto error = prepare(view, footprints, bounds, job)) return error;
         const unsigned rows = static_cast<unsigned>(view.tiles_y());
-        constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
         std::uint64_t capacity = footprints.area();
-        if (capacity > detail::surely_listed_area) {
-            const std::uint64_t places = detail::list_places(job);
-            if (places > most) return Error{ErrorCode::too_many_list_places, places, most};
-        }
         // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.
         if constexpr (worded)
             if (capacity > most)
@@ -126,6 +102,30 @@ public:
         return std::nullopt;
     }
 
+    /// Writes bitmasks of the footprints, `each` words a tile, see bits.inl. Errors as build() but for offsets. There is no
+    /// grid then.
+    template <class Lit>
+    std::optional<Error> write_bits(Isa isa, const View& view, const Lit& footprints, const ZBounds& bounds,
+                                    std::vector<detail::Scratch>& scratch, const Parallel& parallel,
+                                    std::uint32_t* bits, std::size_t each) {
+        tile_count_ = entries_ = 0;
+        Job job = {};
+        if (const auto error = prepare(view, footprints, bounds, job)) return error;
+        const auto kernel = detail::bits_kernel<footprint, depth_test, Id>(isa);
+        const std::size_t rows = static_cast<std::size_t>(view.tiles_y()), bands = (rows + 7) / 8;
+        const bool share = parallel.pays_off(detail::supertile_ns(isa, true, footprints.visible(),
+                                                                  static_cast<double>(footprints.area())));
+        const std::size_t parts = share ? (std::max<std::size_t>)((std::min)(parallel.workers(), bands), 1) : 1;
+        if (scratch.size() < parts) scratch.resize(parts);
+        parallel.run(parts, [&](std::size_t i) {
+            const auto row = [&](std::size_t part) {
+                return static_cast<unsigned>((std::min)(rows, part * bands / parts * 8));
+            };
+            kernel(job, scratch[i], row(i), row(i + 1), bits, each);
+        });
+        return std::nullopt;
+    }
+
     std::span<const ListRange> tiles() const { return {tiles_.data(), tile_count_}; }
     std::span<const Id> indices() const { return {indices_.data(), entries_}; }
 
@@ -135,6 +135,37 @@ public:
 private:
     using Job = detail::BinJob<Id>;
     static constexpr std::size_t slack = detail::BandJob<Id>::slack;
+    static constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
+
+    /// Makes a job that has no table yet.
+    template <class Lit>
+    std::optional<Error> prepare(const View& view, const Lit& footprints, const ZBounds& bounds, Job& job) {
+        const std::size_t tiles = view.tile_count();
+        job = {.camera = &detail::camera_of(view),
+               .lights = footprints.arrays(),
+               .runs = footprints.runs(),
+               .visible = footprints.visible(),
+               .bounds = {},
+               .slab = {-detail::infinity, detail::infinity},
+               .edges = {},
+               .tiles = nullptr,
+               .spare_tiles = Job::slack(static_cast<std::size_t>(view.tiles_x()))};
+        const std::span<const float> sides[] = {bounds.min, bounds.max, bounds.gap_min, bounds.gap_max};
+        for (std::size_t side = 0; side < 4; ++side) {
+            if (sides[side].empty()) continue;
+            if (sides[side].size() < tiles)
+                return Error{ErrorCode::z_bounds_too_small, tiles, sides[side].size()};
+            job.bounds[side] = sides[side].data();
+        }
+        if constexpr (with_boxes) {
+            edges_.find(*job.camera);
+            edges_.give(job.edges);
+        }
+        if (footprints.area() > detail::surely_listed_area)
+            if (const std::uint64_t places = detail::list_places(job); places > most)
+                return Error{ErrorCode::too_many_list_places, places, most};
+        return std::nullopt;
+    }
 
     /// Builds `count` parts on the caller's threads, see make_parts(). Returns the number of entries.
     std::size_t build_parts(Isa isa, const Job& job, detail::BinKernel<Id> kernel, Id* list,

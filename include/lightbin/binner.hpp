@@ -6,6 +6,7 @@
 #include <lightbin/clusters.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/scratch.hpp>
+#include <lightbin/detail/sizes.hpp>
 #include <lightbin/isa.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/lights.hpp>
@@ -22,6 +23,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -153,6 +155,29 @@ public:
         return TransparencyGrids<Id>{*opaque, *transparent};
     }
 
+    /// Writes to `bits` what encode() makes of bin()'s grid with {.encoding = ListEncoding::bitmask, .max_lights =
+    /// max_lights}: of each tile (max_lights + 31) / 32 words, bit b of word w being light 32 w + b. Up to about a
+    /// thousand lights that is faster without the lists. Returns what became of the lights, and with z_bins the ranks, valid until the
+    /// next call. Errors as bin(), but for entries, which nothing counts; and, then without a bit written, fewer words than
+    /// that, or more lights than max_lights, with z_bins more lights in view.
+    template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
+    requires(!clusters) Result<LightBits> bin_bits(const View& view, const LightRange& lights,
+                                                   std::uint32_t max_lights, std::span<std::uint32_t> bits,
+                                                   const Inputs& inputs = {}, const Threads& threads = {}) {
+        const std::uint64_t each = (max_lights + std::uint64_t{31}) / 32,
+                            words = detail::product_of_sizes(view.tile_count(), each);
+        if (bits.size() < words) return Error{ErrorCode::list_buffer_too_small, words, bits.size()};
+        if (const auto error = project(view, lights, inputs, threads)) return *error;
+        const std::uint64_t numbered = z_bins ? footprints_.visible() : footprints_.lights();
+        if (numbered > max_lights) return Error{ErrorCode::ids_too_narrow, numbered, max_lights};
+        ZBounds bounds;
+        if constexpr (with_depth) bounds = inputs.bounds;
+        if (const auto error = lists_.write_bits(isa_, view, lit(), bounds, scratch_, threads, bits.data(),
+                                                 static_cast<std::size_t>(each)))
+            return *error;
+        return LightBits{counts(), ranks()};
+    }
+
 private:
     using Lists = std::conditional_t<clusters, ClusterLists<Id, options.footprint, options.depth_test>,
                                      GridLists<Id, options.footprint, options.depth_test>>;
@@ -182,13 +207,20 @@ private:
     Result<LightGrid<Id>> build(Lists& lists, const View& view, const Depths& depths, const Threads& threads,
                                 int slices = 1) {
         if (const auto error = lists.build(isa_, view, lit(), depths, scratch_, threads)) return *error;
+        return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), counts(), slices,
+                             ranks());
+    }
+
+    LightCounts counts() const {
         const auto all = static_cast<std::uint32_t>(footprints_.lights());
-        const LightCounts counts = {all, footprints_.rejected(),
-                                    all - footprints_.rejected() - footprints_.visible()};
-        LightRanks ranks;
-        if constexpr (z_bins) ranks = ranked_.ranks();
-        return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), counts, slices,
-                             ranks);
+        return {all, footprints_.rejected(), all - footprints_.rejected() - footprints_.visible()};
+    }
+
+    LightRanks ranks() const {
+        if constexpr (z_bins)
+            return ranked_.ranks();
+        else
+            return {};
     }
 
     void swap(Binner& other) noexcept {

@@ -51,6 +51,12 @@ struct LightRanks {
     std::span<const BinRange> bins;        ///< one a slice
 };
 
+/// What Binner::bin_bits() returns beside the bitmasks.
+struct LightBits {
+    LightCounts counts;
+    LightRanks ranks;  ///< with Slicing::z_bins
+};
+
 /// A finished light grid. It does not own its memory: see the call that returned it for how long that lives.
 template <class Id> class LightGrid {
 public:

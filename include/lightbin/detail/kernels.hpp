@@ -59,6 +59,10 @@ template <class Id> BinKernel<Id> scatter_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.template scatter_kernel<Id>(); });
 }
 
+template <Footprint footprint, DepthTest depth_test, class Id> BitsKernel<Id> bits_kernel(Isa isa) {
+    return with_tier(isa, [](auto tier) { return tier.template bits_kernel<footprint, depth_test, Id>(); });
+}
+
 /// The fastest kernel for `lights` lights in view whose rectangles have `area` tiles in all.
 ///
 /// by_slab  there are no Z bounds, and boxes are those of job.slab: see slab.inl

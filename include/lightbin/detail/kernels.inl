@@ -23,8 +23,8 @@
 //   Packed, packs_ids, append      ids in the form that append() takes, see portable.hpp and sse2.hpp
 //   append_lights                  with vectors of bytes: the same of ids and columns, for pick_rows.inl
 // or
-//   LIGHTBIN_TIER_COMPRESSES       defined: emits by emit_compress.inl; scatters, and arranges cells, as AVX2 does;
-//                                  load_listed_spheres as in cells.inl
+//   LIGHTBIN_TIER_COMPRESSES       defined: emits by emit_compress.inl; scatters, arranges cells and
+//                                  writes bits as AVX2 does; load_listed_spheres as in cells.inl
 // for step 1, lists_scan.inl, where it has fast vectors of bytes,
 //   LIGHTBIN_TIER_HAS_BYTES        defined: and so are these
 //   Bytes, ByteMask, byte_lanes    a vector of bytes without sign, a bit a byte, how many
@@ -79,6 +79,10 @@
 
 #include <lightbin/detail/words.inl>
 
+#if !defined(LIGHTBIN_TIER_COMPRESSES)
+#include <lightbin/detail/bits.inl>
+#endif
+
 #include <lightbin/detail/bin.inl>
 
 /// What the tier hands out, see kernels.hpp.
@@ -94,6 +98,14 @@ struct Tier {
     template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab>
     static BinKernel<Id> bin_kernel() {
         return bin_supertiles<footprint, depth_test, Id, by_slab>;
+    }
+
+    template <Footprint footprint, DepthTest depth_test, class Id> static BitsKernel<Id> bits_kernel() {
+#if defined(LIGHTBIN_TIER_COMPRESSES)
+        return avx2::Tier::bits_kernel<footprint, depth_test, Id>();
+#else
+        return write_bits<footprint, depth_test, Id>;
+#endif
     }
 
     template <class Id> static BinKernel<Id> scatter_kernel() {

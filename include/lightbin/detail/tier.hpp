@@ -27,7 +27,7 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
-// See project.inl, silhouette.inl, depth_columns.inl; bin.inl and scatter.hpp.
+// See project.inl, silhouette.inl, depth_columns.inl; bin.inl, bits.inl and scatter.hpp.
 using ProjectKernel = void (*)(const Camera& camera, const LightSource& source, std::uint32_t first,
                                std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts);
 using RowSpanKernel = void (*)(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
@@ -42,5 +42,8 @@ struct DepthKernels {
 };
 template <class Id>
 using BinKernel = std::uint64_t (*)(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands);
+template <class Id>
+using BitsKernel = void (*)(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end,
+                            std::uint32_t* bits, std::size_t each);
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
