@@ -48,7 +48,8 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
         ->capture_default_str();
     std::string depth = "pre-pass";
     app.add_option("--depth", depth,
-                   "What keeps a light from what is at other depths: none; a depth pre-pass; or without one z-bins or "
+                   "What keeps a light from what is at other depths: none; a depth pre-pass; or without one "
+                   "z-bins or "
                    "clusters")
         ->check(CLI::IsMember({"none", "pre-pass", "z-bins", "clusters"}))
         ->capture_default_str();
@@ -79,15 +80,16 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
     exit_code = 0;
     try {
         app.parse(argc, argv);
-        options.frame.depth = depth == "none"     ? DepthUse::none
-                              : depth == "z-bins" ? DepthUse::z_bins
+        options.frame.depth = depth == "none"       ? DepthUse::none
+                              : depth == "z-bins"   ? DepthUse::z_bins
                               : depth == "clusters" ? DepthUse::clusters
-                                                  : DepthUse::pre_pass;
+                                                    : DepthUse::pre_pass;
         options.frame.z_bounds = z_bounds == "none"  ? ZBoundsUse::none
                                  : z_bounds == "max" ? ZBoundsUse::max
                                                      : ZBoundsUse::both;
         if (bounds_option->count() > 0 && options.frame.depth != DepthUse::pre_pass)
-            throw CLI::ValidationError("--z-bounds", "they come from the pre-pass, so not with --depth " + depth);
+            throw CLI::ValidationError("--z-bounds",
+                                       "they come from the pre-pass, so not with --depth " + depth);
         int end = -1;
         if (!size.empty() &&
             (std::sscanf(size.c_str(), "%5dx%5d%n", &options.frame.width, &options.frame.height, &end) != 2 ||

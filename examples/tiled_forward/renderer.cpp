@@ -218,20 +218,20 @@ Renderer::Grids Renderer::bin_lights(const lightbin::View& view, const lightbin:
 // Counted for each pixel, from its depth, by the lists themselves.
 double Renderer::count_evaluations(const FrameSettings& settings,
                                    const lightbin::LightGrid<std::uint32_t>& grid) {
-    const lightbin::View pixels = value_of(lightbin::View::from_projection(
-        projection_, {settings.width, settings.height}, {.tile_size = 1}));
+    const lightbin::View pixels = value_of(
+        lightbin::View::from_projection(projection_, {settings.width, settings.height}, {.tile_size = 1}));
     pixel_depth_.resize(pixels.tile_count());
     reduce_on_gpu(pixels, true, {}, pixel_depth_);
     std::uint64_t evaluations = 0;
     for (int y = 0; y < settings.height; ++y)
         for (int x = 0; x < settings.width; ++x) {
-            const float depth = pixel_depth_[static_cast<std::size_t>(y) *
-                                                 static_cast<std::size_t>(settings.width) +
-                                             static_cast<std::size_t>(x)];
+            const float depth =
+                pixel_depth_[static_cast<std::size_t>(y) * static_cast<std::size_t>(settings.width) +
+                             static_cast<std::size_t>(x)];
             if (depth < 0 && std::isinf(depth)) continue;  // nothing is seen there
             const int slice = slices_ ? slices_->slice_at(depth) : 0;
-            const auto list = grid.lights_in(x / settings.tile_size, y / settings.tile_size,
-                                             grid.slices() > 1 ? slice : 0);
+            const auto list =
+                grid.lights_in(x / settings.tile_size, y / settings.tile_size, grid.slices() > 1 ? slice : 0);
             if (settings.depth != DepthUse::z_bins) {
                 evaluations += list.size();
                 continue;
@@ -239,8 +239,8 @@ double Renderer::count_evaluations(const FrameSettings& settings,
             const lightbin::BinRange bin = grid.ranks().bins[static_cast<std::size_t>(slice)];
             const auto begin = std::lower_bound(list.begin(), list.end(), bin.least);
             if (bin.least <= bin.greatest)
-                evaluations += static_cast<std::uint64_t>(
-                    std::upper_bound(begin, list.end(), bin.greatest) - begin);
+                evaluations +=
+                    static_cast<std::uint64_t>(std::upper_bound(begin, list.end(), bin.greatest) - begin);
         }
     return static_cast<double>(evaluations) / settings.width / settings.height;
 }

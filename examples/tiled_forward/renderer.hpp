@@ -29,7 +29,7 @@ struct FrameSettings {
     int width = 1280;
     int height = 720;
     int tile_size = 16;
-    bool gpu_reduction = false;              // Z bounds on the GPU; OpenGL ES has it so in any case
+    bool gpu_reduction = false;  // Z bounds on the GPU; OpenGL ES has it so in any case
     DepthUse depth = DepthUse::pre_pass;
     ZBoundsUse z_bounds = ZBoundsUse::both;  // of the pre-pass
     bool count_evaluations = false;          // takes longer than the picture
@@ -139,7 +139,8 @@ private:
     glm::mat4 projection_{1}, view_{1};
     lightbin::ShaderGrid grid_{};
     std::vector<GpuLight> gpu_lights_, ordered_lights_;
-    std::vector<std::uint32_t> light_order_;  // z-bins: in which the lights are uploaded, those out of view last
+    std::vector<std::uint32_t>
+        light_order_;  // z-bins: in which the lights are uploaded, those out of view last
     std::vector<float> depth_buffer_, min_depth_, max_depth_, transparent_max_, pixel_depth_;
     std::optional<lightbin::Slices> slices_;
     lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner_;

@@ -180,7 +180,8 @@ out vec4 pixel;
 
 void main() {
     uvec2 here = uvec2(gl_FragCoord.xy);
-    float depth = )" + (sliced ? "-view_position().z" : "0.0") +
+    float depth = )" +
+           (sliced ? "-view_position().z" : "0.0") +
            R"(;
     pixel = vec4(lightbin_heat(here, depth, longest_list), lightbin_count(here, depth) > 0u ? 0.6 : 0.0);
 }

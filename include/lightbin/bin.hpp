@@ -67,7 +67,8 @@ public:
     /// parallel    Serial or Parallel
     template <class Lit, class Threads>
     std::optional<Error> build(Isa isa, const View& view, const Lit& footprints, const ZBounds& bounds,
-                               std::vector<detail::Scratch>& scratch, [[maybe_unused]] const Threads& parallel) {
+                               std::vector<detail::Scratch>& scratch,
+                               [[maybe_unused]] const Threads& parallel) {
         tile_count_ = entries_ = 0;  // until there is a grid
         const std::size_t tiles = view.tile_count();
         Job job = {};
@@ -113,9 +114,10 @@ public:
         if (const auto error = prepare(view, footprints, bounds, job)) return error;
         const auto kernel = detail::bits_kernel<footprint, depth_test, Id>(isa);
         const std::size_t rows = static_cast<std::size_t>(view.tiles_y()), bands = (rows + 7) / 8;
-        const bool share = parallel.pays_off(detail::supertile_ns(isa, true, footprints.visible(),
-                                                                  static_cast<double>(footprints.area())));
-        const std::size_t parts = share ? (std::max<std::size_t>)((std::min)(parallel.workers(), bands), 1) : 1;
+        const bool share = parallel.pays_off(
+            detail::supertile_ns(isa, true, footprints.visible(), static_cast<double>(footprints.area())));
+        const std::size_t parts =
+            share ? (std::max<std::size_t>)((std::min)(parallel.workers(), bands), 1) : 1;
         if (scratch.size() < parts) scratch.resize(parts);
         parallel.run(parts, [&](std::size_t i) {
             const auto row = [&](std::size_t part) {

@@ -157,9 +157,9 @@ public:
 
     /// Writes to `bits` what encode() makes of bin()'s grid with {.encoding = ListEncoding::bitmask, .max_lights =
     /// max_lights}: of each tile (max_lights + 31) / 32 words, bit b of word w being light 32 w + b. Up to about a
-    /// thousand lights that is faster without the lists. Returns what became of the lights, and with z_bins the ranks, valid until the
-    /// next call. Errors as bin(), but for entries, which nothing counts; and, then without a bit written, fewer words than
-    /// that, or more lights than max_lights, with z_bins more lights in view.
+    /// thousand lights that is faster without the lists. Returns what became of the lights, and with z_bins the
+    /// ranks, valid until the next call. Errors as bin(), but for entries, which nothing counts; and, then without
+    /// a bit written, fewer words than that, or more lights than max_lights, with z_bins more lights in view.
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     requires(!clusters) Result<LightBits> bin_bits(const View& view, const LightRange& lights,
                                                    std::uint32_t max_lights, std::span<std::uint32_t> bits,

@@ -62,12 +62,7 @@ template <class Id> class LightGrid {
 public:
     LightGrid(int tiles_x, int tiles_y, std::span<const ListRange> ranges, std::span<const Id> ids,
               const LightCounts& counts = {}, int slices = 1, const LightRanks& ranks = {})
-        : ranges_(ranges),
-          ids_(ids),
-          tiles_x_(tiles_x),
-          tiles_y_(tiles_y),
-          slices_(slices),
-          counts_(counts),
+        : ranges_(ranges), ids_(ids), tiles_x_(tiles_x), tiles_y_(tiles_y), slices_(slices), counts_(counts),
           ranks_(ranks) {}
 
     int tiles_x() const { return tiles_x_; }
@@ -135,4 +130,4 @@ template <class Id> ListLengths list_lengths(const LightGrid<Id>& grid) {
     return lengths;
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}  // namespace lightbin

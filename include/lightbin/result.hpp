@@ -129,8 +129,8 @@ constexpr const char* to_string(ErrorCode code) {
     case ErrorCode::slices_do_not_ascend:
         return "the boundaries of slices must be finite and ascend, and boundary {needed} does not";
     case ErrorCode::too_many_cells:
-        return "tiles times slices are {needed} cells, and 32-bit numbers reach {available}: use larger tiles or fewer "
-               "slices";
+        return "tiles times slices are {needed} cells, and 32-bit numbers reach {available}: use larger "
+               "tiles or fewer slices";
     case ErrorCode::ids_too_narrow:
         return "the lists' format numbers {available} lights and {needed} are needed: use wider ids, or a "
                "larger ListFormat::max_lights";

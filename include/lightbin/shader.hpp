@@ -45,8 +45,8 @@ struct SliceGuess {
     float by_log2, by_depth, offset;
 };
 
-/// Returns what is exact for Slices::exponential or linear but for rounding, and for other boundaries goes through the first and
-/// the last.
+/// Returns what is exact for Slices::exponential or linear but for rounding, and for other boundaries goes through
+/// the first and the last.
 inline SliceGuess best_guess(std::span<const float> boundaries) {
     SliceGuess best = {0, 0, 0};
     if (boundaries.empty()) return best;
@@ -127,10 +127,9 @@ inline ShaderGrid shader_grid(const View& view, int corner_x = 0, int corner_y =
 inline std::vector<std::uint32_t> shader_slices(const Slices& slices) {
     const std::span<const float> boundaries = slices.boundaries();
     const detail::SliceGuess guess = detail::best_guess(boundaries);
-    std::vector<std::uint32_t> words = {std::bit_cast<std::uint32_t>(guess.by_log2),
-                                        std::bit_cast<std::uint32_t>(guess.by_depth),
-                                        std::bit_cast<std::uint32_t>(guess.offset),
-                                        static_cast<std::uint32_t>(boundaries.size())};
+    std::vector<std::uint32_t> words = {
+        std::bit_cast<std::uint32_t>(guess.by_log2), std::bit_cast<std::uint32_t>(guess.by_depth),
+        std::bit_cast<std::uint32_t>(guess.offset), static_cast<std::uint32_t>(boundaries.size())};
     for (const float boundary : boundaries) {
         const std::uint32_t bits = std::bit_cast<std::uint32_t>(boundary), sign = 0x80000000;
         words.push_back(bits & sign ? ~bits : bits | sign);
@@ -169,17 +168,16 @@ inline std::optional<Error> refuse_names(const Dialect& dialect, std::string_vie
 
 inline std::optional<Error> refuse(const ShaderOptions& options) {
     const Dialect dialect = detail::dialect(options.language);
-    if (auto error = refuse_names(
-            dialect, options.prefix,
-            {options.tiles, options.lists, options.grid, options.slices, options.bins}, options.push_constants))
+    if (auto error = refuse_names(dialect, options.prefix,
+                                  {options.tiles, options.lists, options.grid, options.slices, options.bins},
+                                  options.push_constants))
         return error;
     if (options.storage == ListStorage::storage_buffer && !dialect.storage_buffers)
         return Error{ErrorCode::no_storage_buffers};
     if (options.storage == ListStorage::texel_buffer && dialect.es) return Error{ErrorCode::no_texel_buffers};
     if (options.storage == ListStorage::byte_address && !dialect.hlsl)
         return Error{ErrorCode::no_byte_address_buffers};
-    if (options.wave_loop &&
-        (!dialect.storage_buffers || options.language == ShaderLanguage::hlsl_5_0))
+    if (options.wave_loop && (!dialect.storage_buffers || options.language == ShaderLanguage::hlsl_5_0))
         return Error{ErrorCode::no_wave_operations};
     if (options.tile_size < 0)
         return Error{ErrorCode::tile_size_out_of_range, static_cast<std::uint64_t>(options.tile_size)};
@@ -207,8 +205,9 @@ inline std::optional<Error> refuse(const ShaderOptions& options) {
                                          ? encoded_bytes(format, options.max_tiles, options.max_entries)
                                          : 0,
                         slice_bytes = slices_in_block ? slice_words(options.max_slices) * 4 : 0,
-                        bin_bytes =
-                            slices_in_block && options.slicing == Slicing::z_bins ? 8ull * options.max_slices : 0;
+                        bin_bytes = slices_in_block && options.slicing == Slicing::z_bins
+                                        ? 8ull * options.max_slices
+                                        : 0;
     for (const std::uint64_t bytes : {tile_bytes, list_bytes, slice_bytes, bin_bytes})
         if (bytes > most) return Error{ErrorCode::uniform_block_too_small, bytes, most};
     return std::nullopt;
@@ -235,17 +234,18 @@ inline void add_tile(ShaderWriter& writer, const ShaderOptions& options) {
 inline void add_slice(ShaderWriter& writer, const ShaderBuffer& slices) {
     const auto word = [&](const std::string& index) { return writer.read(slices, index); };
     const auto number = [&](const std::string& index) { return "uintBitsToFloat(" + word(index) + ")"; };
-    writer.add("\n// The slice that a view depth lies in.\nuint $slice(float view_depth) {\n    float guess = " +
-               number("0u") + " * log2(max(view_depth, 1e-37)) + " + number("1u") + " * view_depth + " +
-               number("2u") + ";\n    uint last = " + word("3u") +
-               R"(;
+    writer.add(
+        "\n// The slice that a view depth lies in.\nuint $slice(float view_depth) {\n    float guess = " +
+        number("0u") + " * log2(max(view_depth, 1e-37)) + " + number("1u") + " * view_depth + " +
+        number("2u") + ";\n    uint last = " + word("3u") +
+        R"(;
     uint slice = min(uint(clamp(guess, 0.0, 1e9)), last);
     uint bits = floatBitsToUint(view_depth);
     uint key = (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
     while (slice > 0u && key < )" +
-               word("slice + 3u") + R"() slice -= 1u;
+        word("slice + 3u") + R"() slice -= 1u;
     while (slice < last && key >= )" +
-               word("slice + 4u") + R"() slice += 1u;
+        word("slice + 4u") + R"() slice += 1u;
     return slice;
 }
 )");
@@ -255,9 +255,10 @@ inline void add_slice(ShaderWriter& writer, const ShaderBuffer& slices) {
 inline void add_id_at(ShaderWriter& writer, const ShaderBuffer& lists, IdWidth ids) {
     const bool whole = ids == IdWidth::u32 || lists.format != TexelFormat::r32ui;
     writer.add("\nuint $id_at(uint at) {\n    return " +
-               (whole                 ? writer.read(lists, "at")
-                : ids == IdWidth::u16 ? "(" + writer.read(lists, "at >> 1u") + " >> ((at & 1u) * 16u)) & 0xffffu"
-                                      : "(" + writer.read(lists, "at >> 2u") + " >> ((at & 3u) * 8u)) & 0xffu") +
+               (whole ? writer.read(lists, "at")
+                : ids == IdWidth::u16
+                    ? "(" + writer.read(lists, "at >> 1u") + " >> ((at & 1u) * 16u)) & 0xffffu"
+                    : "(" + writer.read(lists, "at >> 2u") + " >> ((at & 3u) * 8u)) & 0xffu") +
                ";\n}\n");
 }
 
@@ -275,8 +276,7 @@ inline ListBuffers list_buffers(const ShaderOptions& options) {
                                                                              : TexelFormat::r32ui;
     const auto vectors = [](std::uint64_t bytes) { return static_cast<std::uint32_t>((bytes + 15) / 16); };
     const ShaderResource there = resource(options.storage);
-    return {.tiles = {"tiles",
-                      options.tiles_in_uniform_block ? ShaderResource::uniform_block : there,
+    return {.tiles = {"tiles", options.tiles_in_uniform_block ? ShaderResource::uniform_block : there,
                       options.tiles, TexelFormat::rg32ui, vectors(8ull * options.max_tiles), 0},
             .lists = {"lists", there, options.lists, texels,
                       vectors(encoded_bytes(options.format, options.max_tiles, options.max_entries)),
@@ -305,7 +305,8 @@ inline void add_begin(ShaderWriter& writer, const ShaderOptions& options, const 
     if (options.slicing != Slicing::none) writer.add("    uint slice = $slice(view_depth);\n");
     if (options.slicing == Slicing::clusters)
         writer.add("    tile.y += slice * (($grid.w - 1u) / " +
-                   (options.tile_size == 0 ? "$grid.x" : number_text(static_cast<std::uint64_t>(options.tile_size))) +
+                   (options.tile_size == 0 ? "$grid.x"
+                                           : number_text(static_cast<std::uint64_t>(options.tile_size))) +
                    " + 1u);\n");
     if (binned) writer.add("    uvec2 bin = " + writer.read(buffers.bins, "slice") + ";\n");
     writer.add("    uint place = tile.y * $grid.y + tile.x;\n    $" + own + "cursor c;\n");
@@ -426,8 +427,9 @@ vec3 $heat(uvec2 pixel, float view_depth, float most) {
 ///
 ///     lightbin_for_each_light(light, uvec2(gl_FragCoord.xy), depth) { colour += shade(light.id, position); }
 ///
-/// view_depth is the depth of what is lit, as in Slices; it is read with slicing only. With clusters the list is that of the
-/// tile in the depth's slice; with z_bins that of the tile from the least to the greatest rank of the depth's bin.
+/// view_depth is the depth of what is lit, as in Slices; it is read with slicing only. With clusters the list is
+/// that of the tile in the depth's slice; with z_bins that of the tile from the least to the greatest rank of the
+/// depth's bin.
 ///
 /// `break`, `continue` and `return` work in the loop's body, and loops nest. A pixel must lie in the
 /// viewport. Ids come in ascending order, each once. With wave_loop no `else` can follow the body, and what depends on the

@@ -72,7 +72,7 @@ inline ShaderReduce shader_reduce(const View& view, int corner_x = 0, int corner
 
 /// One of the three shaders that build a light grid, in the order of their dispatches.
 enum class BuildPass : std::uint8_t {
-    count,    ///< tiles_x * tiles_y groups, with clusters tiles_x * (slices * tiles_y): the lights of each tile
+    count,  ///< tiles_x * tiles_y groups, with clusters tiles_x * (slices * tiles_y): the lights of each tile
     offsets,  ///< one group: where each list begins, and the length of the light index list
     fill,     ///< as many groups as count: the lists
 };
@@ -99,7 +99,8 @@ struct BuildShaderOptions {
 /// The constants of build_shader(): `grid` and, for box or clusters, `planes`. In a uniform block: this struct, 16 bytes
 /// of it with neither.
 struct ShaderBuild {
-    std::uint32_t tiles_x, rows, footprints, room;  ///< grid; rows: of all slices; room: ids that the buffer for lists holds
+    /// grid; rows: of all slices; room: ids that the buffer for lists holds
+    std::uint32_t tiles_x, rows, footprints, room;
     float near_depth, far_depth, tiles_y, unused = {};  ///< planes
 };
 static_assert(sizeof(ShaderBuild) == 32);
@@ -107,8 +108,13 @@ static_assert(sizeof(ShaderBuild) == 32);
 /// slices  as Slices::count(), with clusters
 inline ShaderBuild shader_build(const View& view, std::uint32_t footprints, std::uint32_t room,
                                 int slices = 1) {
-    return {static_cast<std::uint32_t>(view.tiles_x()), static_cast<std::uint32_t>(view.tiles_y() * slices),
-            footprints, room, view.near_depth(), view.far_depth(), static_cast<float>(view.tiles_y())};
+    return {static_cast<std::uint32_t>(view.tiles_x()),
+            static_cast<std::uint32_t>(view.tiles_y() * slices),
+            footprints,
+            room,
+            view.near_depth(),
+            view.far_depth(),
+            static_cast<float>(view.tiles_y())};
 }
 
 /// A light in view, as build_shader() reads it: tiles x0..x1, y0..y1, both ends included, and the sphere with
@@ -430,9 +436,9 @@ void $run(uvec2 group, uint thread) {
         // NaN tests nothing. It is told by its bits, as compilers may take it that no float is one.
         const std::string endless = shader_infinity, if_nan = "if ((floatBitsToUint(z.",
                           above = ") & 0x7fffffffu) > 0x7f800000u) ";
-        writer.add(std::string("    vec2 z = $z_bounds[") + (clusters ? "slice" : "place") + "];\n    " + (max_only ? "" : if_nan + "x" + above) +
-                   "z.x = -" + endless + ";\n    " + if_nan + "y" + above + "z.y = " + endless +
-                   ";\n    bool lit = z.x <= z.y;\n");
+        writer.add(std::string("    vec2 z = $z_bounds[") + (clusters ? "slice" : "place") + "];\n    " +
+                   (max_only ? "" : if_nan + "x" + above) + "z.x = -" + endless + ";\n    " + if_nan + "y" +
+                   above + "z.y = " + endless + ";\n    bool lit = z.x <= z.y;\n");
         arguments += ", z";
     }
     if (box) {  // see detail/cell_boxes.hpp

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // pictures GLSL DROPPED_LIGHT [SCENE.glb]: one renderer draws the scene with tiles of many sizes and all uses of Z
-// bounds, and by clusters, and each picture is that of every light in every fragment, which is drawn once, or once without a pre-pass. Without the dropped light it
-// is not, so that the comparison is known to see a light that is missing from the lists.
+// bounds, and by clusters, and each picture is that of every light in every fragment, which is drawn once, or once
+// without a pre-pass. Without the dropped light it is not, so that the comparison is known to see a light that is
+// missing from the lists.
 #include "gl_context.hpp"
 #include "renderer.hpp"
 

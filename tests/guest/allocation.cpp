@@ -77,8 +77,8 @@ std::size_t frame(Binner<options>& binner, Scene& scene, std::vector<ListRange>&
     use(scene.lights);
     use(world_space(scene.lights, glm::mat4(1.0f)));
     if constexpr (options.depth_test != DepthTest::none && options.slicing != Slicing::clusters)
-        if (const auto grids = binner.bin_transparency(scene.view, scene.lights,
-                                                       inputs_for<options>(bounds, scene.slices)))
+        if (const auto grids =
+                binner.bin_transparency(scene.view, scene.lights, inputs_for<options>(bounds, scene.slices)))
             entries += grids->opaque.ids().size() + grids->transparent.ids().size();
     return entries;
 }

@@ -25,7 +25,8 @@ std::uint64_t bin(const lightbin::View& view, std::span<const lightbin::Sphere> 
     const auto clusters = cluster_binner.bin(view, lights, {.slices = *lightbin::Slices::linear(8, 0, 100)});
     lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::z_bins}> ranking_binner;
     const auto ranked = ranking_binner.bin(view, lights, {.slices = *lightbin::Slices::linear(8, 0, 100)});
-    const auto bits = ranking_binner.bin_bits(view, lights, 0, {}, {.slices = *lightbin::Slices::linear(8, 0, 100)});
+    const auto bits =
+        ranking_binner.bin_bits(view, lights, 0, {}, {.slices = *lightbin::Slices::linear(8, 0, 100)});
     return grid && clusters && ranked && bits
                ? grid->ids().size() + clusters->ids().size() + ranked->ids().size()
                : 0;

@@ -92,7 +92,8 @@ public:
         }
         hunt_grids();
         for (int more = 0; more < 2; ++more)
-            if (const std::string found = hunt_slices(*view_, scene_, placed_, random_, report_); !found.empty())
+            if (const std::string found = hunt_slices(*view_, scene_, placed_, random_, report_);
+                !found.empty())
                 fault(found);
         if (lights <= 5000 && tiles <= 20000 && random_.one_in(4)) ask_advice();
     }
@@ -109,10 +110,10 @@ private:
     /// round would take minutes and gigabytes.
     void keep_small(std::uint32_t large) {
         for (int tries = 0; large < scene_.lights.size(); ++tries) {
-            const auto rectangles =
-                scene_.in_world
-                    ? lightbin::shader_footprints(*view_, lightbin::world_space(scene_.lights, scene_.to_view))
-                    : lightbin::shader_footprints(*view_, scene_.lights);
+            const auto rectangles = scene_.in_world
+                                        ? lightbin::shader_footprints(
+                                              *view_, lightbin::world_space(scene_.lights, scene_.to_view))
+                                        : lightbin::shader_footprints(*view_, scene_.lights);
             double entries = 0;
             for (const lightbin::ShaderFootprint& f : *rectangles)
                 entries += (f.x1 - f.x0 + 1.0) * (f.y1 - f.y0 + 1.0);

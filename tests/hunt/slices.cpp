@@ -58,7 +58,8 @@ std::string look(const lightbin::LightGrid<std::uint32_t>& grid, const Slices& s
             return "the order has a light twice, or none";
         rank_of[order[rank]] = rank;
     }
-    if (bins.size() != static_cast<std::size_t>(ranked ? slices.count() : 0)) return "bins are not as many as slices";
+    if (bins.size() != static_cast<std::size_t>(ranked ? slices.count() : 0))
+        return "bins are not as many as slices";
     for (const Placed& point : points) {
         const auto slice_of = [&](long double depth) {
             return std::ranges::upper_bound(slices.boundaries(), depth) - slices.boundaries().begin();
@@ -111,7 +112,8 @@ std::string hunt_slices(const lightbin::View& view, const Scene& scene, const st
     using enum lightbin::Footprint;
     const int kind = random.below(static_cast<int>(std::size(slicing_names)));
     const bool few = kind < 3 && view.tile_count() * scene.lights.size() > 20'000;
-    const Slices slices = make_slices(points, few ? random.from_to(1, 5) : random.pick({1, 2, 7, 24, 65, 1024}), random);
+    const Slices slices =
+        make_slices(points, few ? random.from_to(1, 5) : random.pick({1, 2, 7, 24, 65, 1024}), random);
     if (view.tile_count() * static_cast<std::size_t>(slices.count()) > 1'000'000) return "";
     ++report.tally[slicing_names[kind]];
     const auto hunted = [&]<lightbin::Options options>() {
@@ -119,7 +121,8 @@ std::string hunt_slices(const lightbin::View& view, const Scene& scene, const st
     };
     std::string wrong;
     if (kind == 0) wrong = hunted.operator()<lightbin::Options{.slicing = Slicing::clusters}>();
-    if (kind == 1) wrong = hunted.operator()<lightbin::Options{.depth_test = box, .slicing = Slicing::clusters}>();
+    if (kind == 1)
+        wrong = hunted.operator()<lightbin::Options{.depth_test = box, .slicing = Slicing::clusters}>();
     if (kind == 2)
         wrong = hunted.operator()<lightbin::Options{
             .footprint = silhouette, .depth_test = box, .slicing = Slicing::clusters}>();

@@ -10,8 +10,8 @@
 
 namespace hunt {
 
-inline constexpr const char* slicing_names[] = {"clusters", "clusters, box", "clusters, box, silhouette", "z_bins",
-                                                "z_bins, silhouette"};
+inline constexpr const char* slicing_names[] = {"clusters", "clusters, box", "clusters, box, silhouette",
+                                                "z_bins", "z_bins, silhouette"};
 
 /// Looks for each point's light in the list of its tile, and of its depth. Returns what is wrong; empty: nothing.
 std::string hunt_slices(const lightbin::View& view, const Scene& scene, const std::vector<Placed>& points,

@@ -177,13 +177,12 @@ inline std::vector<Job> build_jobs(lightbin::BuildShaderOptions options, int cam
     Binner<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}> box_clusters;
     const Slices slices = *Slices::from_boundaries(std::vector<float>{0, 3.5f, 9, 20, 50});
     const bool sliced = options.slicing == Slicing::clusters;
-    const auto grid = sliced && options.depth_test == DepthTest::none
-                          ? clusters.bin(view, lights, {.slices = slices})
-                      : sliced                                ? box_clusters.bin(view, lights, {.slices = slices})
-                      : options.depth_test == DepthTest::none ? none.bin(view, lights)
-                      : options.depth_test == DepthTest::interval
-                          ? interval.bin(view, lights, {.bounds = bounds})
-                          : box.bin(view, lights, {.bounds = bounds});
+    const auto grid =
+        sliced && options.depth_test == DepthTest::none ? clusters.bin(view, lights, {.slices = slices})
+        : sliced                                        ? box_clusters.bin(view, lights, {.slices = slices})
+        : options.depth_test == DepthTest::none         ? none.bin(view, lights)
+        : options.depth_test == DepthTest::interval     ? interval.bin(view, lights, {.bounds = bounds})
+                                                        : box.bin(view, lights, {.bounds = bounds});
     const std::vector<ListRange> tiles(grid->ranges().begin(), grid->ranges().end());
     const auto entries = static_cast<std::uint32_t>(grid->ids().size());
 
@@ -200,16 +199,19 @@ inline std::vector<Job> build_jobs(lightbin::BuildShaderOptions options, int cam
     const auto add = [&](BuildPass pass, std::string_view result, std::uint32_t room,
                          std::span<const std::byte> expected) {
         options.pass = pass;
-        const ShaderBuild constants = shader_build(view, static_cast<std::uint32_t>(footprints.size()), room,
-                                                    grid->slices());
+        const ShaderBuild constants =
+            shader_build(view, static_cast<std::uint32_t>(footprints.size()), room, grid->slices());
         constexpr const char* names[] = {"grid", "planes"};
         data.put_constants(std::as_bytes(std::span(&constants, 1)), names);
         Job job = builder_job(*build_shader(options), options.language, options.prefix, data, result);
         job.name = "build, pass " + std::to_string(static_cast<int>(pass)) + ", test " +
                    std::to_string(static_cast<int>(options.depth_test)) + ", camera " +
-                   std::to_string(camera) + (sliced ? ", clusters" : options.max_only ? ", max only" : "") + ", " + std::string(result) +
-                   " " + std::to_string(width) + "x" + std::to_string(height) + ", tile " +
-                   std::to_string(tile_size);
+                   std::to_string(camera) +
+                   (sliced             ? ", clusters"
+                    : options.max_only ? ", max only"
+                                       : "") +
+                   ", " + std::string(result) + " " + std::to_string(width) + "x" + std::to_string(height) +
+                   ", tile " + std::to_string(tile_size);
         if (pass != BuildPass::offsets)
             job.groups = {static_cast<std::uint32_t>(view.tiles_x()),
                           static_cast<std::uint32_t>(view.tiles_y() * grid->slices())};

@@ -197,13 +197,16 @@ inline std::string reader_text(const lightbin::ShaderOptions& options, const lig
         const std::string count = std::to_string(depths.size());
         const std::string of_pixel =
             options.viewport_corner ? "(pixel - " + pair(corner_x, corner_y) + ")" : "pixel";
-        text += dialect.hlsl ? "static const uint depths[" + count + "] = {" + words + "};\n"
-                             : "const highp uint depths[" + count + "] = uint[" + count + "](" + words + ");\n";
-        depth = "uintBitsToFloat(depths[(5u * " + of_pixel + ".x + 3u * " + of_pixel + ".y) % " + count + "u])";
+        text += dialect.hlsl
+                    ? "static const uint depths[" + count + "] = {" + words + "};\n"
+                    : "const highp uint depths[" + count + "] = uint[" + count + "](" + words + ");\n";
+        depth =
+            "uintBitsToFloat(depths[(5u * " + of_pixel + ".x + 3u * " + of_pixel + ".y) % " + count + "u])";
     }
     text += R"(
 uvec4 read_list(highp uvec2 pixel) {
-    highp float depth = )" + depth + R"(;
+    highp float depth = )" +
+            depth + R"(;
     highp uint hash = 2166136261u;
     highp uint sum = 0u;
     highp uint count = 0u;
@@ -343,8 +346,7 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
             const BinRange all = {0, 0xffffffff};
             const BinRange bin =
                 slicing == Slicing::z_bins ? grid->ranks().bins[static_cast<std::size_t>(slice)] : all;
-            for (const std::uint32_t id :
-                 grid->lights_in(tx, ty, slicing == Slicing::clusters ? slice : 0)) {
+            for (const std::uint32_t id : grid->lights_in(tx, ty, slicing == Slicing::clusters ? slice : 0)) {
                 if (options.format.encoding == ListEncoding::sentinel && listed++ == options.format.capacity)
                     break;
                 if (id < bin.least || id > bin.greatest) continue;
@@ -408,7 +410,7 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
         for (unsigned i = 0; i < (few ? 2 : std::size(small)); ++i)
             if ((each_flip && !few) || (i + flip + place) % 2 == 0) add(small[i]);
         if (!few && (list.format.ids == lightbin::IdWidth::u16 ||
-                        list.format.encoding == lightbin::ListEncoding::bitmask))
+                     list.format.encoding == lightbin::ListEncoding::bitmask))
             add(large);
     };
     for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {

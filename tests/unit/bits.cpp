@@ -15,8 +15,7 @@ const auto threads = [](std::size_t n, auto body) {
         thread.join();
 };
 
-template <class Id>
-std::vector<std::uint32_t> bits_of(const LightGrid<Id>& grid, std::uint32_t max_lights) {
+template <class Id> std::vector<std::uint32_t> bits_of(const LightGrid<Id>& grid, std::uint32_t max_lights) {
     const std::size_t each = (max_lights + 31) / 32;
     std::vector<std::uint32_t> bits(grid.ranges().size() * each);
     for (std::size_t tile = 0; tile < grid.ranges().size(); ++tile)
@@ -43,7 +42,8 @@ template <Options options> void compare() {
             for (const std::size_t workers : {1u, 2u, 7u}) {
                 // What is there before is no part of it, nor is what lies behind written.
                 std::vector<std::uint32_t> bits(expected.size() + 9, 0xabababab);
-                const auto made = other.bin_bits(view, lights, max_lights, bits, inputs, Parallel(workers, threads, 0));
+                const auto made =
+                    other.bin_bits(view, lights, max_lights, bits, inputs, Parallel(workers, threads, 0));
                 REQUIRE(made);
                 CHECK((std::equal(expected.begin(), expected.end(), bits.begin())));
                 CHECK((std::count(bits.begin() + static_cast<std::ptrdiff_t>(expected.size()), bits.end(),
@@ -60,7 +60,10 @@ template <Isa isa> void compare_tier() {
     if (machine_isa(isa) != isa) return;
     compare<Options{.isa = isa}>();
     compare<Options{.ids = IdWidth::u16, .slicing = Slicing::z_bins, .isa = isa}>();
-    compare<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::z_bins, .isa = isa}>();
+    compare<Options{.footprint = Footprint::silhouette,
+                    .depth_test = DepthTest::box,
+                    .slicing = Slicing::z_bins,
+                    .isa = isa}>();
 }
 
 }  // namespace

@@ -221,7 +221,9 @@ constexpr Options plain = {}, interval = {.depth_test = DepthTest::interval},
                   box = {.depth_test = DepthTest::box}, split_box = {.depth_test = DepthTest::split_box},
                   clusters = {.slicing = Slicing::clusters},
                   box_clusters = {.depth_test = DepthTest::box, .slicing = Slicing::clusters},
-                  z_bins = {.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::z_bins};
+                  z_bins = {.footprint = Footprint::silhouette,
+                            .depth_test = DepthTest::box,
+                            .slicing = Slicing::z_bins};
 
 }  // namespace
 
@@ -242,7 +244,8 @@ TEST_CASE("all tiers give the same bytes, on any number of workers") {
     compare<Options{.ids = IdWidth::u16, .depth_test = DepthTest::split_box}>(100, 5000);
     compare<clusters>(50, 8000);
     compare<box_clusters>(50, 9000);
-    compare<Options{.ids = IdWidth::u16, .footprint = Footprint::silhouette, .slicing = Slicing::clusters}>(30, 10000);
+    compare<Options{.ids = IdWidth::u16, .footprint = Footprint::silhouette, .slicing = Slicing::clusters}>(
+        30, 10000);
     compare<Options{.slicing = Slicing::z_bins}>(50, 11000);
     compare<z_bins>(30, 12000);
 }

@@ -71,8 +71,8 @@ public:
         return slice;
     }
 
-    /// For slice_places.inl: then before_place() is how many boundaries are surely less than a depth, before_place() of the next
-    /// place how many are greater neither surely nor perhaps.
+    /// For slice_places.inl: before_place() of a depth's place are the boundaries that are surely less than it;
+    /// those of the next place are all that may not be greater.
     const SlicePlaces& places() const { return places_; }
     std::uint32_t before_place(std::size_t place) const { return before_[place]; }
 
