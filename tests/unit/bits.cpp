@@ -7,7 +7,7 @@ using namespace lightbin;
 
 namespace {
 
-const auto threads = [](std::size_t n, auto body) {
+const auto on_threads = [](std::size_t n, auto body) {
     std::vector<std::thread> running;
     for (std::size_t i = 0; i < n; ++i)
         running.emplace_back(body, i);
@@ -43,7 +43,7 @@ template <Options options> void compare() {
                 // What is there before is no part of it, nor is what lies behind written.
                 std::vector<std::uint32_t> bits(expected.size() + 9, 0xabababab);
                 const auto made =
-                    other.bin_bits(view, lights, max_lights, bits, inputs, Parallel(workers, threads, 0));
+                    other.bin_bits(view, lights, max_lights, bits, inputs, Parallel(workers, on_threads, 0));
                 REQUIRE(made);
                 CHECK((std::equal(expected.begin(), expected.end(), bits.begin())));
                 CHECK((std::count(bits.begin() + static_cast<std::ptrdiff_t>(expected.size()), bits.end(),
