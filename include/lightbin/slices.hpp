@@ -58,7 +58,8 @@ public:
     int count() const { return static_cast<int>(boundaries_.size()) + 1; }
 
     /// count() - 1 of them, ascending: slice i is from boundary i - 1 to boundary i.
-    std::span<const float> boundaries() const { return boundaries_; }
+    std::span<const float> boundaries() const& { return boundaries_; }
+    std::span<const float> boundaries() && = delete;  // would dangle
 
     /// Returns the slice of a depth that is not NaN; of a boundary the one behind it.
     int slice_at(float depth) const {

@@ -155,7 +155,8 @@ inline lightbin::Slices reader_slices() {
 inline std::vector<float> reader_depths() {
     constexpr float endless = std::numeric_limits<float>::infinity();
     std::vector<float> depths = {1e-41f, -1e-41f, 3.3f, 7, 10, 1e30f, endless, -endless};
-    for (const float boundary : reader_slices().boundaries()) {
+    const lightbin::Slices slices = reader_slices();
+    for (const float boundary : slices.boundaries()) {
         depths.push_back(boundary);
         depths.push_back(std::nextafter(boundary, -endless));
         depths.push_back(std::nextafter(boundary, endless));
