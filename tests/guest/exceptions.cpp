@@ -66,11 +66,13 @@ struct Input {
     View view;
     std::vector<glm::vec4> lights;
     std::vector<float> min, max, gap_min, gap_max;
+    Slices slices;
 
     Input(Extent viewport, int tile_size, std::size_t count, float largest)
         : view(*View::from_projection(glm::perspective(1.0f, 1.5f, 0.1f, 100.0f), viewport,
                                       {.tile_size = tile_size})),
-          lights(count), min(view.tile_count(), 5), max(min), gap_min(min), gap_max(min) {
+          lights(count), min(view.tile_count(), 5), max(min), gap_min(min), gap_max(min),
+          slices(*Slices::linear(static_cast<int>(count), 0, 40)) {
         std::mt19937 random(7);
         const auto from_to = [&](float low, float high) {
             return low + (high - low) * static_cast<float>(random() % 1000) / 1000;
@@ -96,6 +98,9 @@ struct Bytes {
         for (const ListRange range : grid.ranges())
             words.insert(words.end(), {range.offset, range.count});
         words.insert(words.end(), grid.ids().begin(), grid.ids().end());
+        words.insert(words.end(), grid.ranks().order.begin(), grid.ranks().order.end());
+        for (const BinRange bin : grid.ranks().bins)
+            words.insert(words.end(), {bin.least, bin.greatest});
     }
 };
 
@@ -104,11 +109,11 @@ enum class Call { bin, bin_transparency };
 template <Options options>
 void use(Binner<options>& binner, Call call, const Input& scene, const Parallel& parallel, Bytes* bytes) {
     const auto lights = view_space(scene.lights, as_sphere);
-    const auto inputs = inputs_for<options>(scene.bounds());
+    const auto inputs = inputs_for<options>(scene.bounds(), scene.slices);
     if (call == Call::bin) {
         const auto grid = binner.bin(scene.view, lights, inputs, parallel);
         if (bytes != nullptr) bytes->add(*grid);
-    } else if constexpr (options.depth_test != DepthTest::none) {
+    } else if constexpr (options.depth_test != DepthTest::none && options.slicing != Slicing::clusters) {
         const auto grids = binner.bin_transparency(scene.view, lights, inputs, parallel);
         if (bytes != nullptr) bytes->add(grids->opaque);
         if (bytes != nullptr) bytes->add(grids->transparent);
@@ -151,7 +156,9 @@ template <Options options> struct Survival {
 template <Options options> void check_options(const Input& scene, const Input& less, bool all = true) {
     CAPTURE(static_cast<int>(options.isa));
     for (const Call call : {Call::bin, Call::bin_transparency}) {
-        if (call == Call::bin_transparency && options.depth_test == DepthTest::none) continue;
+        if (call == Call::bin_transparency &&
+            (options.depth_test == DepthTest::none || options.slicing == Slicing::clusters))
+            continue;
         for (const std::size_t workers : {1u, 3u}) {
             const Survival<options> survival{scene, less, call, Parallel(workers, run, 0)};
             CHECK(survival.template everywhere<std::bad_alloc>(allocations_left) > 10);
@@ -175,6 +182,10 @@ template <Isa isa> void check_tier() {
                           .footprint = Footprint::silhouette,
                           .depth_test = DepthTest::split_box,
                           .isa = isa}>(scene, less);
+    check_options<Options{.slicing = Slicing::z_bins, .isa = isa}>(scene, less, false);
+    check_options<Options{.depth_test = DepthTest::box, .slicing = Slicing::z_bins, .isa = isa}>(scene, less, false);
+    check_options<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters, .isa = isa}>(scattered, less,
+                                                                                                   false);
 }
 
 /// Every allocation of a function that keeps nothing.

@@ -42,13 +42,15 @@ public:
         if (!boundaries_.empty() &&
             std::equal(boundaries.begin(), boundaries.end(), boundaries_.begin(), boundaries_.end() - 1))
             return;
-        boundaries_.assign(boundaries.begin(), boundaries.end());
-        boundaries_.push_back(std::numeric_limits<float>::quiet_NaN());  // neither before nor behind anything
+        boundaries_.clear();  // until there is a table, should there be no memory
+        boundaries_.reserve(boundaries.size() + 1);
         // Linear slices are alike in depth, exponential ones in their bits.
         fill_places(boundaries, false);
         const std::size_t shared_by_depth = shared_;
         fill_places(boundaries, true);
         if (shared_ > shared_by_depth) fill_places(boundaries, false);
+        boundaries_.assign(boundaries.begin(), boundaries.end());
+        boundaries_.push_back(std::numeric_limits<float>::quiet_NaN());  // neither before nor behind anything
     }
 
     /// Whether no two boundaries are in one place, and 15 bits number those.
