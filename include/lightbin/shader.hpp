@@ -241,7 +241,7 @@ inline void add_slice(ShaderWriter& writer, const ShaderBuffer& slices) {
         R"(;
     uint slice = min(uint(clamp(guess, 0.0, 1e9)), last);
     uint bits = floatBitsToUint(view_depth);
-    uint key = (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
+    uint key = bits > 0x80000000u ? ~bits : bits | 0x80000000u;
     while (slice > 0u && key < )" +
         word("slice + 3u") + R"() slice -= 1u;
     while (slice < last && key >= )" +

@@ -154,7 +154,7 @@ inline lightbin::Slices reader_slices() {
 /// The depths that pixels have in turns: the boundaries, the floats beside them, and others.
 inline std::vector<float> reader_depths() {
     constexpr float endless = std::numeric_limits<float>::infinity();
-    std::vector<float> depths = {1e-41f, -1e-41f, 3.3f, 7, 10, 1e30f, endless, -endless};
+    std::vector<float> depths = {-0.0f, 1e-41f, -1e-41f, 3.3f, 7, 10, 1e30f, endless, -endless};
     const lightbin::Slices slices = reader_slices();
     for (const float boundary : slices.boundaries()) {
         depths.push_back(boundary);
