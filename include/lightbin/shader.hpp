@@ -318,10 +318,11 @@ inline void add_begin(ShaderWriter& writer, const ShaderOptions& options, const 
                         : writer.read(buffers.tiles, "place")) +
                    ";\n    c.at = list.x;\n    c.end = list.x + list.y;\n");
     else
-        writer.add("    c.at = place * " + each + ";\n    c.end = c.at + " + each + ";\n");
+        writer.add("    c.at = place * " + each + ";\n    c.end = c.at + " +
+                   (bits && binned ? "(bin.y >> 5u) + 1u" : each) + ";\n");
     writer.add(bits && !binned ? "    c.id = 0u - 32u;\n    c.bits = 0u;\n" : "    c.id = 0u;\n");
     if (binned) writer.add("    c.last = bin.y;\n");
-    // The list is entered at the bin's first light.
+    // The list is entered at the bin's first light. Words end with that of the bin's last one.
     if (binned && bits)
         writer.add("    c.at += bin.x >> 5u;\n    c.id = bin.x & ~31u;\n    c.bits = " +
                    writer.read(buffers.lists, "c.at") +

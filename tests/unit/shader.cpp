@@ -58,6 +58,8 @@ TEST_CASE("each option brings its own lines and no others") {
     CHECK(has(text_of({.slicing = Slicing::clusters}), "lightbin_slice(view_depth)"));
     CHECK(!has(text_of({.slicing = Slicing::clusters}), "bins"));
     CHECK(has(text_of({.slicing = Slicing::z_bins}), "lightbin_bins["));
+    CHECK(has(text_of({.format = {.encoding = ListEncoding::bitmask, .max_lights = 100}, .slicing = Slicing::z_bins}),
+              "c.end = c.at + (bin.y >> 5u) + 1u;"));
     CHECK(has(text_of({.wave_loop = true}), "subgroupMin"));
     CHECK(has(text_of({.language = ShaderLanguage::hlsl_5_1, .wave_loop = true}), "WaveActiveMin"));
     CHECK(has(refusal({.language = ShaderLanguage::hlsl_5_0, .wave_loop = true}), "HLSL 6"));
