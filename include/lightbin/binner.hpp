@@ -117,8 +117,8 @@ public:
     /// threads  a Parallel: threads to share the work among. The grid is the same with any number of them.
     ///
     /// After it, every tile lists every light whose sphere meets the tile's cell (no miss), in ascending
-    /// order. Errors: more lights than Id can number; more than 2^32 - 1 entries, or pairs of a light
-    /// and a block of 8x8 tiles; a world_space() matrix that is not affine; a side of the Z bounds that is
+    /// order. Errors: more lights than Id can number; more than 2^32 - 1 entries, cells, or pairs of a light
+    /// and a slice or block of 8x8 tiles; a world_space() matrix that is not affine; a side of the Z bounds that is
     /// shorter than view.tile_count().
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     Result<LightGrid<Id>> bin(const View& view, const LightRange& lights, const Inputs& inputs = {},

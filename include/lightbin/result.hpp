@@ -105,10 +105,10 @@ constexpr const char* to_string(ErrorCode code) {
                "Options::ids or fewer lights";
     case ErrorCode::too_many_entries:
         return "the light index list would need {needed} entries, and 32-bit offsets reach {available}: use "
-               "larger tiles, or Z bounds";
+               "larger tiles, fewer slices, or Z bounds";
     case ErrorCode::too_many_list_places:
-        return "the lights' rectangles may meet blocks of 8x8 tiles {needed} times, and binning counts to "
-               "{available}: use larger tiles or fewer lights";
+        return "the lights may meet slices, or blocks of 8x8 tiles, {needed} times, and binning counts to "
+               "{available}: use fewer slices, larger tiles or fewer lights";
     case ErrorCode::range_buffer_too_small:
         return "the buffer for list ranges holds {available} and {needed} are needed";
     case ErrorCode::id_buffer_too_small:

@@ -127,6 +127,16 @@ TEST_CASE("more cells than 32 bits number are refused") {
 }
 
 // Filament's own test: 1280 x 640, 90 degrees across, near 0.1, far 100.
+TEST_CASE("more pairs of a light and a slice than 32 bits number are refused") {
+    constexpr float endless = std::numeric_limits<float>::infinity();
+    const std::vector<Sphere> lights(50000, Sphere{0, 0, -5, endless});
+    Binner<Options{.slicing = Slicing::clusters}> binner;
+    const auto grid = binner.bin(test::view({64, 64}, 64), lights, {.slices = *Slices::linear(100000, 0, 200)});
+    REQUIRE_FALSE(grid);
+    CHECK(grid.error().code == ErrorCode::too_many_list_places);
+    CHECK(grid.error().message().find("fewer slices") != std::string::npos);
+}
+
 TEST_CASE("two lights before one another are each in some clusters, once") {
     const View view = test::view({1280, 640}, 64);
     const std::vector<Sphere> lights = {{0, 0, -5, 1}, {0, 0, -3, 1}};
