@@ -96,24 +96,32 @@ private:
             }
     }
 
-    /// Writes the lights in their order, the last one first, and of those that end in a bin the least rank.
+    /// Writes the lights in their order, an array at a time: what is read here and there is then one that is small.
     void put_lights(const detail::FootprintArrays& lights) {
-        std::fill_n(bins_.data(), bin_count_, BinRange{0xffffffff, 0});
-        for (std::uint32_t rank = run_.end; rank-- > 0;) {
-            const std::uint32_t i = places_.data()[rank], id = lights.ids[i];
-            order_.data()[rank] = id;
-            arrays_.x0[rank] = lights.x0[i];
-            arrays_.y0[rank] = lights.y0[i];
-            arrays_.x1[rank] = lights.x1[i];
-            arrays_.y1[rank] = lights.y1[i];
-            if constexpr (with_spans) arrays_.span_begin[rank] = lights.span_begin[i];
-            if constexpr (with_spheres) spheres_.data()[rank] = detail::load_sphere(lights.spheres + id);
-            bins_.data()[last_bins_.data()[i]].least = rank;
-        }
+        put(lights.ids, order_.data());
+        put(lights.x0, arrays_.x0);
+        put(lights.y0, arrays_.y0);
+        put(lights.x1, arrays_.x1);
+        put(lights.y1, arrays_.y1);
+        if constexpr (with_spans) put(lights.span_begin, arrays_.span_begin);
+        if constexpr (with_spheres)
+            for (std::uint32_t rank = 0; rank < run_.end; ++rank)
+                spheres_.data()[rank] = detail::load_sphere(lights.spheres + order_.data()[rank]);
+    }
+
+    template <class T> void put(const T* from, T* to) const {
+        const std::uint32_t* const places = places_.data();
+        for (std::uint32_t rank = 0; rank < run_.end; ++rank)
+            to[rank] = from[places[rank]];
     }
 
     /// Finds the least and the greatest rank in each bin.
     void find_ranges() {
+        const std::uint32_t *const places = places_.data(), *const last_bins = last_bins_.data();
+        BinRange* const bins = bins_.data();
+        std::fill_n(bins, bin_count_, BinRange{0xffffffff, 0});
+        for (std::uint32_t rank = run_.end; rank-- > 0;)
+            bins[last_bins[places[rank]]].least = rank;  // of the lights that end there
         // Of the lights that end in a bin or behind it, the one of least rank begins first: in the bin, before it, or none
         // of them does.
         for (std::size_t bin = bin_count_ - 1; bin-- > 0;)
