@@ -71,27 +71,30 @@ private:
                    std::span<const detail::FootprintRun> runs) {
         const detail::SlicePlacesKernel kernel = detail::slice_places_kernel(isa);
         const bool by_places = table_.places_tell();
-        std::fill_n(ends_.data(), bin_count_, 0u);
+        std::uint32_t* const begins = ends_.data();
+        std::fill_n(begins, bin_count_, 0u);
         for (const detail::FootprintRun& run : runs)
             for (std::uint32_t i = run.begin; i < run.end; i += chunk) {
                 const std::uint32_t count = (std::min)(run.end - i, chunk);
-                float depths[2][chunk];
-                std::uint16_t places[2][chunk];
-                for (std::uint32_t j = 0; j < count; ++j) {
-                    const Sphere sphere = detail::load_sphere(lights.spheres + lights.ids[i + j]);
-                    const float z = sphere.z * z_sign;
-                    depths[0][j] = z - sphere.radius;
-                    depths[1][j] = z + sphere.radius;
-                }
-                if (by_places)
-                    for (std::size_t end = 0; end < 2; ++end)
-                        kernel(table_.places(), depths[end], count, places[end]);
+                Sphere spheres[chunk];
+                for (std::uint32_t j = 0; j < count; ++j)
+                    spheres[j] = detail::load_sphere(lights.spheres + lights.ids[i + j]);
                 std::uint32_t *const first = first_bins_.data() + i, *const last = last_bins_.data() + i;
+                if (by_places) {
+                    std::uint16_t nearest[chunk], farthest[chunk];
+                    kernel(table_.places(), z_sign, spheres, count, nearest, farthest);
+                    for (std::uint32_t j = 0; j < count; ++j) {
+                        first[j] = table_.before_place(nearest[j]);
+                        last[j] = table_.before_place(farthest[j] + 1u);
+                        ++begins[first[j]];
+                    }
+                    continue;
+                }
                 for (std::uint32_t j = 0; j < count; ++j) {
-                    first[j] = by_places ? table_.before_place(places[0][j]) : table_.before(depths[0][j]);
-                    last[j] =
-                        by_places ? table_.before_place(places[1][j] + 1u) : table_.up_to(depths[1][j]);
-                    ++ends_.data()[first[j]];
+                    const float z = spheres[j].z * z_sign;
+                    first[j] = table_.before(z - spheres[j].radius);
+                    last[j] = table_.up_to(z + spheres[j].radius);
+                    ++begins[first[j]];
                 }
             }
     }
@@ -118,14 +121,13 @@ private:
     /// Finds the least and the greatest rank in each bin.
     void find_ranges() {
         const std::uint32_t *const places = places_.data(), *const last_bins = last_bins_.data();
-        BinRange* const bins = bins_.data();
-        std::fill_n(bins, bin_count_, BinRange{0xffffffff, 0});
-        for (std::uint32_t rank = run_.end; rank-- > 0;)
-            bins[last_bins[places[rank]]].least = rank;  // of the lights that end there
-        // Of the lights that end in a bin or behind it, the one of least rank begins first: in the bin, before it, or none
-        // of them does.
-        for (std::size_t bin = bin_count_ - 1; bin-- > 0;)
-            bins_.data()[bin].least = (std::min)(bins_.data()[bin].least, bins_.data()[bin + 1].least);
+        // The least is of the first one that ends in the bin or behind it: it begins in the bin, before it, or none of them
+        // does.
+        BinRange *to = bins_.data(), *const end = to + bin_count_;
+        for (std::uint32_t rank = 0; rank < run_.end && to < end; ++rank)
+            for (const BinRange* last = bins_.data() + last_bins[places[rank]]; to <= last; ++to)
+                to->least = rank;
+        std::fill(to, end, BinRange{0xffffffff, 0});
         // The last one that begins in a bin or before it, or the one before that where it has ended, and so on; what has
         // ended is passed by once.
         std::uint32_t* const passed = first_bins_.data();
