@@ -76,13 +76,10 @@ private:
         for (const detail::FootprintRun& run : runs)
             for (std::uint32_t i = run.begin; i < run.end; i += chunk) {
                 const std::uint32_t count = (std::min)(run.end - i, chunk);
-                Sphere spheres[chunk];
-                for (std::uint32_t j = 0; j < count; ++j)
-                    spheres[j] = detail::load_sphere(lights.spheres + lights.ids[i + j]);
                 std::uint32_t *const first = first_bins_.data() + i, *const last = last_bins_.data() + i;
                 if (by_places) {
                     std::uint16_t nearest[chunk], farthest[chunk];
-                    kernel(table_.places(), z_sign, spheres, count, nearest, farthest);
+                    kernel(table_.places(), z_sign, lights.spheres, lights.ids + i, count, nearest, farthest);
                     for (std::uint32_t j = 0; j < count; ++j) {
                         first[j] = table_.before_place(nearest[j]);
                         last[j] = table_.before_place(farthest[j] + 1u);
@@ -91,9 +88,10 @@ private:
                     continue;
                 }
                 for (std::uint32_t j = 0; j < count; ++j) {
-                    const float z = spheres[j].z * z_sign;
-                    first[j] = table_.before(z - spheres[j].radius);
-                    last[j] = table_.up_to(z + spheres[j].radius);
+                    const Sphere sphere = detail::load_sphere(lights.spheres + lights.ids[i + j]);
+                    const float z = sphere.z * z_sign;
+                    first[j] = table_.before(z - sphere.radius);
+                    last[j] = table_.up_to(z + sphere.radius);
                     ++begins[first[j]];
                 }
             }

@@ -288,11 +288,23 @@ LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, const ByteIds& from, 
 }
 
 /// Of the spheres at 4 places, four floats each.
-LIGHTBIN_TARGET inline Floats load_4_spheres(const Sphere* spheres, const ListId* places) {
+template <class Place>
+LIGHTBIN_TARGET inline Floats load_4_spheres(const Sphere* spheres, const Place* places) {
     __m512 four = _mm512_castps128_ps512(_mm_loadu_ps(&spheres[places[0]].x));
     four = _mm512_insertf32x4(four, _mm_loadu_ps(&spheres[places[1]].x), 1);
     four = _mm512_insertf32x4(four, _mm_loadu_ps(&spheres[places[2]].x), 2);
     return _mm512_insertf32x4(four, _mm_loadu_ps(&spheres[places[3]].x), 3);
+}
+
+/// As in slice_places.inl.
+template <class Place>
+LIGHTBIN_TARGET inline void load_spheres_at(const Sphere* spheres, const Place* places, Floats& x, Floats& y, Floats& z,
+                                            Floats& radius) {
+    x = load_4_spheres(spheres, places);
+    y = load_4_spheres(spheres, places + 4);
+    z = load_4_spheres(spheres, places + 8);
+    radius = load_4_spheres(spheres, places + 12);
+    separate(x, y, z, radius);
 }
 
 /// As load_spheres(), of the spheres at `count` places, or as many as a vector has; if those are fewer, others are
@@ -303,11 +315,7 @@ LIGHTBIN_TARGET inline void load_listed_spheres(const Sphere* spheres, const Lis
     ListId listed[lanes];
     const __mmask16 first = static_cast<__mmask16>(0xffff >> (lanes - (std::min)(count, lanes)));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(listed), _mm256_maskz_loadu_epi16(first, places));
-    x = load_4_spheres(spheres, listed);
-    y = load_4_spheres(spheres, listed + 4);
-    z = load_4_spheres(spheres, listed + 8);
-    radius = load_4_spheres(spheres, listed + 12);
-    separate(x, y, z, radius);
+    load_spheres_at(spheres, listed, x, y, z, radius);
 }
 
 using avx2::arrange_cells;

@@ -24,7 +24,8 @@
 //   append_lights                  with vectors of bytes: the same of ids and columns, for pick_rows.inl
 // or
 //   LIGHTBIN_TIER_COMPRESSES       defined: emits by emit_compress.inl; scatters, arranges cells and
-//                                  writes bits as AVX2 does; load_listed_spheres as in cells.inl
+//                                  writes bits as AVX2 does; load_listed_spheres as in cells.inl, load_spheres_at as in
+//                                  slice_places.inl
 // for step 1, lists_scan.inl, where it has fast vectors of bytes,
 //   LIGHTBIN_TIER_HAS_BYTES        defined: and so are these
 //   Bytes, ByteMask, byte_lanes    a vector of bytes without sign, a bit a byte, how many
