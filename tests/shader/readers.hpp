@@ -164,11 +164,6 @@ inline std::vector<float> reader_depths() {
     return depths;
 }
 
-/// The depth of a pixel, as its place in reader_depths().
-inline std::size_t depth_of_pixel(std::size_t x, std::size_t y) {
-    return (5 * x + 3 * y) % reader_depths().size();
-}
-
 /// Where in the window the viewport begins.
 constexpr int corner_x = 3, corner_y = 5;
 
@@ -336,13 +331,13 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
     for (const ShaderBinding& binding : snippet->bindings)
         job.inputs.push_back(reader_input(binding, options, constants, *grid, lists));
 
+    const std::vector<float> depths = reader_depths();
     for (int y = 0; y < screen.height; ++y)
         for (int x = 0; x < screen.width; ++x) {
             const int tx = x / screen.tile_size,
                       ty = (options.flip_y ? screen.height - 1 - y : y) / screen.tile_size;
             std::uint32_t hash = 2166136261u, sum = 0, count = 0, listed = 0;
-            const float depth =
-                reader_depths()[depth_of_pixel(static_cast<std::size_t>(x), static_cast<std::size_t>(y))];
+            const float depth = depths[static_cast<std::size_t>(5 * x + 3 * y) % depths.size()];
             const int slice = slices.slice_at(depth);
             const BinRange all = {0, 0xffffffff};
             const BinRange bin =

@@ -1,19 +1,9 @@
 // Bitmasks without lists, against the lists.
 #include "scene.hpp"
 
-#include <thread>
-
 using namespace lightbin;
 
 namespace {
-
-const auto on_threads = [](std::size_t n, auto body) {
-    std::vector<std::thread> running;
-    for (std::size_t i = 0; i < n; ++i)
-        running.emplace_back(body, i);
-    for (std::thread& thread : running)
-        thread.join();
-};
 
 template <class Id> std::vector<std::uint32_t> bits_of(const LightGrid<Id>& grid, std::uint32_t max_lights) {
     const std::size_t each = (max_lights + 31) / 32;
@@ -43,7 +33,7 @@ template <Options options> void compare() {
                 // What is there before is no part of it, nor is what lies behind written.
                 std::vector<std::uint32_t> bits(expected.size() + 9, 0xabababab);
                 const auto made =
-                    other.bin_bits(view, lights, max_lights, bits, inputs, Parallel(workers, on_threads, 0));
+                    other.bin_bits(view, lights, max_lights, bits, inputs, Parallel(workers, test::on_threads, 0));
                 REQUIRE(made);
                 CHECK((std::equal(expected.begin(), expected.end(), bits.begin())));
                 CHECK((std::count(bits.begin() + static_cast<std::ptrdiff_t>(expected.size()), bits.end(),

@@ -16,6 +16,7 @@
 #include <cstdlib>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace test {
@@ -42,6 +43,15 @@ inline std::string tier_names() {
         all += (all.empty() ? "" : " ") + std::string(lightbin::to_string(isa));
     return all;
 }
+
+/// A thread a body: what a Parallel may be given.
+inline const auto on_threads = [](std::size_t n, auto body) {
+    std::vector<std::thread> running;
+    for (std::size_t i = 0; i < n; ++i)
+        running.emplace_back(body, i);
+    for (std::thread& thread : running)
+        thread.join();
+};
 
 /// 60 degrees high, near 0.1, far 1000, as OpenGL has it.
 inline lightbin::View view(lightbin::Extent viewport, int tile_size) {

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <optional>
 #include <string>
-#include <thread>
 #include <tuple>
 
 using namespace lightbin;
@@ -114,14 +113,6 @@ const auto shuffled = [](std::size_t n, auto body) {
         body(i);
 };
 
-const auto threads = [](std::size_t n, auto body) {
-    std::vector<std::thread> running;
-    for (std::size_t i = 0; i < n; ++i)
-        running.emplace_back(body, i);
-    for (std::thread& thread : running)
-        thread.join();
-};
-
 template <Options options> class Tier {
 public:
     std::vector<std::uint32_t> bytes(const Input& input, const Parallel& parallel = {}) {
@@ -176,7 +167,7 @@ public:
         const auto expected = std::get<0>(tiers_).bytes(input);
         on_each([&](auto& tier) {
             for (const std::size_t workers : {1u, 2u, 3u, 7u})
-                CHECK((tier.bytes(input, {workers, threads, 0}) == expected));
+                CHECK((tier.bytes(input, {workers, test::on_threads, 0}) == expected));
         });
     }
 
