@@ -55,10 +55,7 @@ inline double all_evaluations(const TiledView& view, const Picture& picture, con
             continue;
         }
         const auto list = built.ids.subspan(built.ranges[tile].offset, built.ranges[tile].count);
-        const auto [least, greatest] = built.bins[slice];
-        if (least <= greatest)
-            sum += static_cast<std::uint64_t>(std::ranges::upper_bound(list, greatest) -
-                                              std::ranges::lower_bound(list, least));
+        sum += lightbin::lights_of_bin(list, built.bins[slice]).size();
     }
     return static_cast<double>(sum);
 }

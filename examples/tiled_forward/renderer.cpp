@@ -237,10 +237,7 @@ double Renderer::count_evaluations(const FrameSettings& settings,
                 continue;
             }
             const lightbin::BinRange bin = grid.ranks().bins[static_cast<std::size_t>(slice)];
-            const auto begin = std::lower_bound(list.begin(), list.end(), bin.least);
-            if (bin.least <= bin.greatest)
-                evaluations +=
-                    static_cast<std::uint64_t>(std::upper_bound(begin, list.end(), bin.greatest) - begin);
+            evaluations += lightbin::lights_of_bin(list, bin).size();
         }
     return static_cast<double>(evaluations) / settings.width / settings.height;
 }

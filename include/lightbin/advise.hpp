@@ -381,10 +381,7 @@ std::size_t evaluated(const LightGrid<Id>& grid, int x, int y, const WeighedSlic
         return grid.lights_in(x, y, slices.clusters.slice_at(depth)).size();
     } else {
         const BinRange bin = grid.ranks().bins[static_cast<std::size_t>(slices.z_bins.slice_at(depth))];
-        const std::span<const Id> ids = grid.lights_in(x, y);
-        if (bin.least > bin.greatest) return 0;
-        return static_cast<std::size_t>(std::ranges::upper_bound(ids, bin.greatest) -
-                                        std::ranges::lower_bound(ids, bin.least));
+        return lights_of_bin(grid.lights_in(x, y), bin).size();
     }
 }
 

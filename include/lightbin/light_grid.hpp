@@ -113,6 +113,12 @@ private:
     LightRanks ranks_;
 };
 
+/// Returns the part of a tile's list that lies in a bin, which is what a shader goes through at the bin's depths.
+template <class Id> std::span<const Id> lights_of_bin(std::span<const Id> list, const BinRange& bin) {
+    const auto begin = std::ranges::lower_bound(list, bin.least);
+    return {begin, std::ranges::upper_bound(begin, list.end(), bin.greatest)};
+}
+
 /// How long a grid's lists are.
 struct ListLengths {
     std::uint32_t longest = 0;

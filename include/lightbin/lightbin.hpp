@@ -24,7 +24,7 @@
 //   4. Upload grid->ranges() and grid->ids(), or have grid->copy_to(ranges, ids)               light_grid.hpp
 //      write them to buffers of yours.
 //   For all depths without a depth buffer (no pre-pass, fog, glass): Slices::exponential(24, 5, 200)  slices.hpp
-//      once, a Binner<Options{.slicing = Slicing::clusters}> or z_bins, and binner.bin(view, lights, {.slices = slices}).
+//      once, a Binner<Options{.slicing = Slicing::clusters}> or z_bins, and binner.bin(view, lights, {.slices = *slices}).
 //   5. #include <lightbin/shader.hpp>. Put shader_snippet({...})->text in your shader, and bind what its
 //      bindings list. shader.md has it step by step.
 //

@@ -118,6 +118,20 @@ TEST_CASE("z-bins have the least and greatest rank of the lights in them, and th
     compare_laws<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::z_bins}>();
 }
 
+TEST_CASE("the part of a list that lies in a bin") {
+    const std::vector<std::uint16_t> list = {0, 3, 4, 9};
+    const auto part = [&](std::uint32_t least, std::uint32_t greatest) {
+        const auto ids = lights_of_bin(std::span<const std::uint16_t>(list), {least, greatest});
+        return std::vector<std::uint16_t>(ids.begin(), ids.end());
+    };
+    CHECK(part(0, 9) == list);
+    CHECK(part(1, 4) == std::vector<std::uint16_t>{3, 4});
+    CHECK(part(4, 70000) == std::vector<std::uint16_t>{4, 9});
+    CHECK(part(5, 8).empty());
+    CHECK(part(1, 0).empty());
+    CHECK(lights_of_bin(std::span<const std::uint16_t>(), {0, 9}).empty());
+}
+
 TEST_CASE("z-bins of no light are empty, and so they are after a scene of many") {
     const View view = test::view({64, 64}, 16);
     const Slices slices = *Slices::linear(16, 0, 100);

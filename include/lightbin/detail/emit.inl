@@ -86,9 +86,8 @@ LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scr
                                                       const SupertileList& list) {
     const std::uint32_t end = list.words + (list.count + 7) / 8 * 8;
     std::uint64_t* words = scratch.words.reserve(end, list.words) + list.words;
-    std::uint8_t *const columns = scratch.list_columns.data() + list.begin, *const rows =
-                                                                                scratch.list_rows.data() +
-                                                                                list.begin;
+    std::uint8_t* const columns = scratch.list_columns.data() + list.begin;
+    const std::uint8_t* const rows = scratch.list_rows.data() + list.begin;
     std::memset(columns + list.count, 0, end - list.words - list.count);
     const ListId* const ids = band.ids + list.begin;
     const unsigned height = (std::min)(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
