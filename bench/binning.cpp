@@ -4,7 +4,7 @@
 // it ends, then what falls short of the project's goals, and writes binning.csv, binning_slices.csv and
 // binning_sources.csv.
 #include "flat.hpp"
-#include "frames.hpp"
+#include "lens.hpp"
 #include "gains.hpp"
 #include "glb_scenes.hpp"
 #include "goals.hpp"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "exact_pairs.hpp"
-#include "frames.hpp"
+#include "lens.hpp"
 #include "measure.hpp"
 
 #include <lightbin/binner.hpp>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "exact/filter.hpp"
-#include "frames.hpp"
+#include "lens.hpp"
 
 #include <lightbin/binner.hpp>
 

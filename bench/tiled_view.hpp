@@ -2,7 +2,7 @@
 // A scene's view, ready to be binned.
 #pragma once
 
-#include "frames.hpp"
+#include "lens.hpp"
 #include "measure.hpp"
 #include "raster.hpp"
 

@@ -2,7 +2,7 @@
 // Light sets as programs have them: in world space, as vec4s or in structs of the program's own.
 #pragma once
 
-#include "frames.hpp"
+#include "lens.hpp"
 #include "scenes.hpp"
 #include "sets.hpp"
 

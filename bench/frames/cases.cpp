@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "cases.hpp"
+
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+
+namespace {
+
+struct Box {
+    glm::vec3 low{std::numeric_limits<float>::max()}, high{-low};
+};
+
+Box box_of(const Scene& scene) {
+    Box box;
+    for (const Vertex& vertex : scene.triangles) {
+        box.low = glm::min(box.low, vertex.position);
+        box.high = glm::max(box.high, vertex.position);
+    }
+    return box;
+}
+
+Camera look(const std::string& name, glm::dvec3 from, glm::dvec3 to, glm::dvec3 up, double reach) {
+    Camera camera;
+    camera.name = name;
+    camera.to_world = glm::inverse(glm::lookAt(from, to, up));
+    camera.height = glm::radians(55.0);
+    camera.near = reach / 1000;
+    camera.far = 2 * reach;
+    return camera;
+}
+
+// The same numbers everywhere, which the standard distributions do not promise.
+class Dice {
+public:
+    float between(float low, float high) {
+        return low + (high - low) * static_cast<float>(engine_() >> 8) / 16777216.0f;
+    }
+    glm::vec3 in(const Box& box) {
+        const float x = between(box.low.x, box.high.x), y = between(box.low.y, box.high.y);
+        return {x, y, between(box.low.z, box.high.z)};
+    }
+    glm::vec3 corner_of(const Scene& scene) {
+        const auto count = static_cast<float>(scene.triangles.size());
+        return scene.triangles[static_cast<std::size_t>(between(0, count - 1))].position;
+    }
+
+private:
+    std::mt19937 engine_{2013};
+};
+
+}  // namespace
+
+Camera camera_from_above(const Scene& scene) {
+    const Box box = box_of(scene);
+    const glm::dvec3 middle = glm::dvec3(box.low + box.high) / 2.0, half = glm::dvec3(box.high - box.low) / 2.0;
+    const double height = std::max(half.z, half.x * 9 / 16) / std::tan(glm::radians(27.5));
+    const glm::dvec3 eye = middle + glm::dvec3(0, half.y + height, 0);
+    return look("from above", eye, middle, {0, 0, -1}, height + 2 * half.y);
+}
+
+std::vector<Camera> made_flight(std::size_t views) {
+    std::vector<Camera> flight;
+    for (std::size_t i = 0; i < views; ++i) {
+        const double t = static_cast<double>(i) / static_cast<double>(views), turn = glm::two_pi<double>() * t;
+        const double height = 20 + 18 * std::cos(turn), radius = 45 + 20 * std::cos(turn);
+        const glm::dvec3 eye(radius * std::sin(turn), height, radius * std::cos(turn));
+        flight.push_back(look("flight " + std::to_string(i), eye, {10 * std::sin(3 * turn), 3, 0}, {0, 1, 0}, 250));
+    }
+    return flight;
+}
+
+Scene with_random_lights(Scene scene, std::size_t count) {
+    const Box box = box_of(scene);
+    const glm::vec3 size = box.high - box.low;
+    Dice dice;
+    scene.lights.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+        Light light;
+        light.position = dice.in(box);
+        light.range = 0.06f * std::max(size.x, size.z);
+        const glm::vec3 colour(dice.between(0.1f, 1), dice.between(0.1f, 1), dice.between(0.1f, 1));
+        light.intensity = colour * light.range * light.range;
+        scene.lights.push_back(light);
+    }
+    return scene;
+}
+
+Scene with_few_lights(Scene scene) {
+    const std::vector<Light> all = std::exchange(scene.lights, {});
+    for (std::size_t i = 0; i < 11; ++i) {
+        Light light = all[i * all.size() / 11];
+        light.range *= 3.2f;
+        light.intensity *= 3.2f * 3.2f;
+        scene.lights.push_back(light);
+    }
+    return scene;
+}
+
+Scene with_panes(Scene scene, std::size_t count) {
+    if (!scene.transparent.empty()) return scene;
+    const Box box = box_of(scene);
+    const float side = 0.05f * std::max(box.high.x - box.low.x, box.high.z - box.low.z);
+    Dice dice;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float turn = dice.between(0, glm::two_pi<float>());
+        const glm::vec3 along = 0.5f * side * glm::vec3(std::cos(turn), 0, std::sin(turn)), up(0, side, 0),
+                        normal = glm::normalize(glm::cross(along, up)), middle = dice.corner_of(scene);
+        const glm::vec3 a = middle - along, b = middle + along;
+        for (const glm::vec3& corner : {a, b, b + up, a, b + up, a + up})
+            scene.transparent.push_back({corner, normal, {0.6f, 0.8f, 1}});
+    }
+    return scene;
+}

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// Scenes and the places they are seen from.
+#pragma once
+
+#include <scene.hpp>
+
+#include <cstddef>
+#include <vector>
+
+/// Returns a camera that looks straight down on the whole scene.
+Camera camera_from_above(const Scene& scene);
+
+/// Returns a flight over the made scene's roofs and down into its streets.
+std::vector<Camera> made_flight(std::size_t views);
+
+/// Returns the scene with other lights: so many of one range anywhere in its space, where triangles are; the same every
+/// time, and of fewer the first ones.
+Scene with_random_lights(Scene scene, std::size_t count);
+
+/// Returns the scene with eleven of its lights, 3.2 times as far-reaching: in Tiled Shading, the many lights have a range
+/// of 12.5, and the few, one a robot, of 40.
+Scene with_few_lights(Scene scene);
+
+/// Returns the scene with upright panes at random places among its triangles, if it has no panes.
+Scene with_panes(Scene scene, std::size_t count);

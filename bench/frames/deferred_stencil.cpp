@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// DeferredStencil (Tiled Shading, section 5; Arvo, Aila 2003): as Deferred, but a light's ball first marks the pixels
+// whose surface is in it, and only those are lit.
+#include "deferred.hpp"
+#include "technique.hpp"
+
+#include <lightbin/shader_build.hpp>
+
+#include <gl_program.hpp>
+
+namespace {
+
+// A copy, as what is tested against can't be read.
+GLuint copy_depth(Stage& stage, GLuint from) {
+    const GLuint to = stage.target("depth and stencil", GL_DEPTH32F_STENCIL8);
+    const GLuint source = stage.memory.framebuffer({}, from), target = stage.memory.framebuffer({}, to);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, source);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
+    const auto [width, height] = stage.view().viewport();
+    glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT,
+                      GL_NEAREST);
+    stage.lap("copy depth");
+    return to;
+}
+
+// A surface is in the ball if it is before the ball's back and not before its front: the back's count is then not
+// taken away by the front's.
+void mark(const Stage& stage) {
+    glEnable(GL_DEPTH_TEST);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glDisable(GL_CULL_FACE);
+    glStencilFunc(GL_ALWAYS, 0, 0xff);
+    glStencilOpSeparate(GL_BACK, GL_KEEP, GL_INCR_WRAP, GL_KEEP);
+    glStencilOpSeparate(GL_FRONT, GL_KEEP, GL_DECR_WRAP, GL_KEEP);
+    stage.geometry.draw_ball();
+}
+
+// Lights what is marked, and takes the marks away.
+void light_marked(const Stage& stage) {
+    glDisable(GL_DEPTH_TEST);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_FRONT);
+    glStencilFunc(GL_NOTEQUAL, 0, 0xff);
+    glStencilOp(GL_KEEP, GL_ZERO, GL_ZERO);
+    stage.geometry.draw_ball();
+}
+
+}  // namespace
+
+Technique deferred_stencil(int g_buffer_bits) {
+    return {.name = "DeferredStencil",
+            .draw =
+                [](Stage& stage) {
+                    const GLuint depth = stage.target("surface depth", GL_DEPTH32F_STENCIL8);
+                    fill_g_buffer(stage, depth);
+                    const GLuint tested = copy_depth(stage, depth);
+                    const auto footprints = value_of(lightbin::shader_footprints(stage.view(), stage.lights()));
+                    stage.lap("project");
+                    begin_radiance(stage, depth, tested);
+                    glEnable(GL_STENCIL_TEST);
+                    glEnable(GL_DEPTH_CLAMP);  // or the near plane would cut balls open
+                    const std::string vertex = stage.shaders().ball_vertex(),
+                                      light = stage.shaders().one_light_fragment(),
+                                      nothing = stage.shaders().depth_fragment();
+                    for (const lightbin::ShaderFootprint& f : footprints)
+                        for (const bool marking : {true, false}) {
+                            const GLuint program = stage.use(vertex, marking ? nothing : light);
+                            glUniform1i(uniform(program, "number"), static_cast<GLint>(f.id));
+                            marking ? mark(stage) : light_marked(stage);
+                        }
+                    for (const GLenum off : {GL_STENCIL_TEST, GL_DEPTH_CLAMP, GL_CULL_FACE})
+                        glDisable(off);
+                    stage.lap("shade");
+                    show_radiance(stage);
+                },
+            .tolerance = g_buffer_bits == 32 ? 1 : 6,
+            .g_buffer_bits = g_buffer_bits,
+            .multisampled = false};
+}

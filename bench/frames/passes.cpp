@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "passes.hpp"
+
+#include <gl_program.hpp>
+
+#include <lightbin/shader.hpp>
+#include <lightbin/shader_build.hpp>
+
+#include <algorithm>
+#include <cstddef>
+
+void begin_picture(Stage& stage) {
+    stage.memory.draw_to({stage.drawn()}, stage.depth());
+    glClearColor(0.02f, 0.025f, 0.04f, 1);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+void depth_pre_pass(Stage& stage) {
+    stage.use(stage.shaders().surface_vertex(), stage.shaders().depth_fragment());
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    stage.geometry.draw_opaque();
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    stage.lap("pre-Z");
+}
+
+void shade_forward(Stage& stage, const LightLoop& lights) {
+    stage.memory.draw_to({stage.drawn()}, stage.depth());
+    if (stage.settings().three_shaders) {
+        for (const int material : {0, 1, 2}) {
+            stage.use(stage.shaders().surface_vertex(), stage.shaders().forward_fragment(lights, material));
+            stage.geometry.draw_opaque(material);
+        }
+    } else {
+        stage.use(stage.shaders().surface_vertex(), stage.shaders().forward_fragment(lights));
+        stage.geometry.draw_opaque();
+    }
+    stage.lap("shade");
+}
+
+void shade_panes(Stage& stage, const LightLoop& lights) {
+    stage.memory.draw_to({stage.drawn()}, stage.depth());
+    stage.use(stage.shaders().surface_vertex(), stage.shaders().forward_fragment(lights, 0, 0.4f));
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    glDepthMask(GL_FALSE);
+    stage.geometry.draw_panes();
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
+    stage.lap("panes");
+}
+
+void fill_g_buffer(Stage& stage, GLuint depth) {
+    const GLenum format = stage.settings().wide ? GL_RGBA32F : GL_RGBA16F;
+    stage.memory.draw_to({stage.target("diffuse", format), stage.target("specular", format),
+                          stage.target("ambient", format), stage.target("normal", format)},
+                         depth);
+    glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+    stage.use(stage.shaders().surface_vertex(), stage.shaders().g_buffer_fragment());
+    stage.geometry.draw_opaque();
+    stage.lap("G-buffer");
+}
+
+void read_g_buffer(Stage& stage, GLuint depth) {
+    stage.memory.read_from(unit_depth, depth);
+    stage.memory.read_from(unit_diffuse, stage.target("diffuse", 0));
+    stage.memory.read_from(unit_specular, stage.target("specular", 0));
+    stage.memory.read_from(unit_ambient, stage.target("ambient", 0));
+    stage.memory.read_from(unit_normal, stage.target("normal", 0));
+}
+
+void shade_deferred(Stage& stage, const LightLoop& lights) {
+    read_g_buffer(stage, stage.depth());
+    stage.memory.draw_to({stage.shown()}, 0);
+    stage.use(stage.shaders().everywhere_vertex(), stage.shaders().deferred_fragment(lights));
+    stage.geometry.draw_everywhere();
+    stage.lap("shade");
+}
+
+lightbin::ZBounds DepthBounds::reduce_on_cpu(Stage& stage) {
+    const lightbin::View view = stage.view();
+    const auto [width, height] = view.viewport();
+    depth_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    for (auto* side : {&min_, &max_, &transparent_max_})
+        side->resize(view.tile_count());
+    stage.memory.draw_to({}, stage.depth());
+    glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, depth_.data());
+    stage.lap("read back");
+    const auto bounds = value_of(
+        lightbin::reduce_depth(view, {.depth = depth_, .skip_background = true},
+                               {.min = min_, .max = max_, .transparent_max = transparent_max_}));
+    stage.lap("reduce");
+    return bounds;
+}
+
+lightbin::ZBounds DepthBounds::reduce_on_gpu(Stage& stage, GLuint depth, bool background) {
+    const lightbin::View view = stage.view();
+    lightbin::ReduceShaderOptions options;
+    options.language = lightbin::ShaderLanguage::glsl_330;
+    options.stage = lightbin::ShaderStage::fragment;
+    options.samples = stage.settings().samples;
+    options.skip_background = !background;
+    const GLuint program = stage.use(stage.shaders().everywhere_vertex(),
+                                     "#version 330 core\n" + value_of(lightbin::reduce_shader(options)).text);
+    const lightbin::ShaderReduce constants = lightbin::shader_reduce(view);
+    glUniform4uiv(uniform(program, "lightbin_grid"), 1, &constants.tile_size);
+    glUniform4fv(uniform(program, "lightbin_planes"), 1, &constants.far_end);
+    stage.memory.read_from(unit_depth, depth);
+    const GLuint reduced =
+        stage.memory.target("Z bounds", GL_RG32F, view.tiles_x(), view.tiles_y(), 1);
+    stage.memory.draw_to({reduced}, 0);
+    glViewport(0, 0, view.tiles_x(), view.tiles_y());
+    stage.geometry.draw_everywhere();
+    glViewport(0, 0, stage.settings().width, stage.settings().height);
+    stage.lap("reduce");
+
+    depth_.resize(2 * view.tile_count());
+    glReadPixels(0, 0, view.tiles_x(), view.tiles_y(), GL_RG, GL_FLOAT, depth_.data());
+    std::vector<float>& max = background ? transparent_max_ : max_;
+    min_.resize(view.tile_count());
+    max.resize(view.tile_count());
+    for (std::size_t tile = 0; tile < view.tile_count(); ++tile) {
+        if (!background) min_[tile] = depth_[2 * tile];
+        max[tile] = depth_[2 * tile + 1];
+    }
+    stage.lap("read back");
+    return {.min = min_, .max = max_, .transparent_max = transparent_max_, .background_skipped = true};
+}
+
+void upload_slices(Stage& stage, const lightbin::Slices& slices, const lightbin::LightRanks& ranks) {
+    const std::vector<std::uint32_t> words = lightbin::shader_slices(slices);
+    stage.memory.read_texels(unit_slices, GL_R32UI,
+                             stage.memory.buffer("slices", std::span<const std::uint32_t>(words)));
+    stage.memory.read_texels(unit_bins, GL_RG32UI, stage.memory.buffer("bins", ranks.bins));
+}
+
+float depth_of_lights(const Stage& stage) {
+    float last = 1;
+    for (const lightbin::Sphere& light : stage.lights())
+        last = std::max(last, light.radius - light.z);
+    return std::min(last, 1e30f);
+}

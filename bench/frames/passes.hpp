@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// Passes that techniques share.
+#pragma once
+
+#include "shading.hpp"
+#include "stage.hpp"
+
+#include <lightbin/lightbin.hpp>
+
+#include <stdexcept>
+#include <vector>
+
+template <class T> T value_of(lightbin::Result<T> result) {
+    if (!result) throw std::runtime_error(result.error().message());
+    return *result;
+}
+
+/// The picture and its depth, cleared and bound.
+void begin_picture(Stage& stage);
+/// Depth alone, of the opaque surfaces.
+void depth_pre_pass(Stage& stage);
+/// Lights opaque surfaces as they are drawn; with three shaders, a program each.
+void shade_forward(Stage& stage, const LightLoop& lights);
+/// Panes before them, from the farthest to the nearest.
+void shade_panes(Stage& stage, const LightLoop& lights);
+
+/// Surfaces to four targets; `depth`: a target.
+void fill_g_buffer(Stage& stage, GLuint depth);
+void read_g_buffer(Stage& stage, GLuint depth);
+/// Lights the G-buffer's pixels, each once.
+void shade_deferred(Stage& stage, const LightLoop& lights);
+
+/// Z bounds from a depth target, in memory of their own.
+class DepthBounds {
+public:
+    /// By reading the depths back and lightbin::reduce_depth().
+    lightbin::ZBounds reduce_on_cpu(Stage& stage);
+    /// By lightbin::reduce_shader(), of all samples, reading back two depths a tile. `background`: count it in.
+    lightbin::ZBounds reduce_on_gpu(Stage& stage, GLuint depth, bool background = false);
+
+private:
+    std::vector<float> depth_, min_, max_, transparent_max_;
+};
+
+/// The lists, for the shaders of listed_lights().
+template <class Id> void upload_lists(Stage& stage, const lightbin::LightGrid<Id>& grid) {
+    const GLenum ids = sizeof(Id) == 2 ? GL_R16UI : GL_R32UI;
+    stage.memory.read_texels(unit_tiles, GL_RG32UI, stage.memory.buffer("tiles", grid.ranges()));
+    stage.memory.read_texels(unit_lists, ids, stage.memory.buffer("lists", grid.ids()));
+    stage.lap("upload");
+}
+/// The slices, and the bins of lists of ranks.
+void upload_slices(Stage& stage, const lightbin::Slices& slices, const lightbin::LightRanks& ranks);
+/// As deep as any light reaches.
+float depth_of_lights(const Stage& stage);

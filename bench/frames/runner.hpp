@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// Draws techniques' frames of a scene, and measures them.
+#pragma once
+
+#include "stage.hpp"
+#include "technique.hpp"
+
+#include <renderer.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+/// What was measured of one technique in one view.
+struct Row {
+    std::string table, scene, view, technique;
+    int g_buffer_bits = 0, samples = 1;
+    std::size_t lights = 0;
+    std::uint64_t evaluations = 0;  ///< 0: this OpenGL can't count
+    double milliseconds = 0, least = 0, most = 0;  ///< median and spread of the timed frames
+    std::size_t bytes = 0;
+    std::size_t pixels = 0;
+    std::size_t different = 0;  ///< pixels that are not the reference's
+    int difference = 0;         ///< the largest of a colour, of 255
+    std::vector<Pass> passes;   ///< their medians
+};
+
+/// What the run asks of all frames.
+struct RunSettings {
+    int width = 0, height = 0, tile_size = 0;
+    int timed_frames = 3;
+};
+
+/// Takes a technique out of the run, and says why, once.
+class LeftOut {
+public:
+    void say(const Technique& technique, int samples, const std::string& why);
+    bool has(const Technique& technique, int samples) const { return names_.contains(key(technique, samples)); }
+    const std::vector<std::string>& lines() const { return lines_; }
+
+private:
+    static std::string key(const Technique& technique, int samples);
+
+    std::set<std::string> names_;
+    std::vector<std::string> lines_;
+};
+
+/// One scene.
+class Runner {
+public:
+    Runner(const Scene& scene, const RunSettings& settings, int glsl, LeftOut& left_out);
+
+    /// Draws a view by every technique, after the reference. Settings that the techniques don't set are as given.
+    std::vector<Row> run(const std::string& table, const Camera& camera, std::vector<Technique> techniques,
+                         Settings wanted);
+    /// As in `directory`, for looking at: the reference of the last run.
+    const std::vector<std::uint8_t>& reference() const { return reference_; }
+
+private:
+    Row draw(const Technique& technique, const Camera& camera, Settings wanted, int timed_frames);
+    void compare(Row& row) const;
+
+    const Scene& scene_;
+    RunSettings run_;
+    Stage stage_;
+    Renderer meter_;
+    LeftOut& left_out_;
+    Technique every_light_;
+    std::vector<std::uint8_t> reference_, picture_;
+};

@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: MIT
+#include "shading.hpp"
+
+#include <lightbin/shader.hpp>
+
+namespace {
+
+// Of every shader. MATERIAL(s) is the material of a surface: a constant where a shader has but one.
+const char* const common = R"(
+layout(std140) uniform Frame {
+    mat4 to_view;
+    mat4 projection;
+    vec2 picture_size;
+    int light_count;
+};
+
+const vec3 sky = vec3(0.02, 0.025, 0.04);
+
+struct Surface {
+    vec3 position, normal;  // in view space
+    vec3 diffuse, specular, ambient;
+    float shininess;
+    int material;
+};
+
+// From a pixel's centre and its depth, the very numbers that tiles and Z bounds are made of.
+vec3 view_position(vec2 pixel, float depth) {
+    vec3 ndc = 2.0 * vec3(pixel / picture_size, depth) - 1.0;
+    float z = (projection[3][2] - ndc.z * projection[3][3]) / (ndc.z * projection[2][3] - projection[2][2]);
+    float w = projection[2][3] * z;
+    vec2 offset = vec2(projection[2][0], projection[2][1]) * z;
+    return vec3((ndc.xy * w - offset) / vec2(projection[0][0], projection[1][1]), z);
+}
+
+// What is shown of a radiance: white is never reached.
+vec3 shown(vec3 radiance) {
+    return pow(1.0 - exp(-radiance), vec3(1.0 / 2.2));
+}
+)";
+
+// What lights surfaces.
+const char* const lighting = R"(
+uniform samplerBuffer lights;  // two texels each: centre and range, intensity
+
+uint evaluations = 0u;
+
+// Diffuse and specular; paint of two colours; a rim of light.
+vec3 reflected(Surface s, vec3 to_light, vec3 to_eye) {
+    float facing = max(dot(s.normal, to_light), 0.0);
+    vec3 between = to_light + to_eye;
+    float highlight = max(dot(s.normal, between * inversesqrt(max(dot(between, between), 1e-12))), 0.0);
+    vec3 diffuse = s.diffuse;
+    float seen = clamp(dot(s.normal, to_eye), 0.0, 1.0);
+    if (MATERIAL(s) == 1) diffuse = mix(s.diffuse.brg, s.diffuse, seen * seen);
+    vec3 sent = (diffuse / 3.14159265 + s.specular * pow(highlight, s.shininess)) * facing;
+    if (MATERIAL(s) == 2) sent += s.diffuse * (0.3 * pow(1.0 - seen, 4.0));
+    return sent;
+}
+
+// What a light makes a surface send to the eye: inverse-square falloff, windowed to zero at the range.
+vec3 from_light(Surface s, int id) {
+    evaluations += 1u;
+    vec4 sphere = texelFetch(lights, 2 * id);
+    vec3 to_light = sphere.xyz - s.position;
+    float square_distance = dot(to_light, to_light);
+    float x = square_distance / (sphere.w * sphere.w);
+    float falloff = clamp(1.0 - x * x, 0.0, 1.0) / max(square_distance, 1e-4);
+    vec3 to_eye = -s.position * inversesqrt(max(dot(s.position, s.position), 1e-20));
+    return texelFetch(lights, 2 * id + 1).rgb * falloff *
+           reflected(s, to_light * inversesqrt(max(square_distance, 1e-20)), to_eye);
+}
+)";
+
+const char* const lit_by_list = R"(
+vec3 lit(Surface s, uvec2 pixel) {
+    vec3 radiance = s.ambient;
+    each_light(light, pixel, -s.position.z) radiance += from_light(s, LIGHT_ID);
+    return radiance;
+}
+)";
+
+// Where early tests are not asked for, a shader that writes runs on what is hidden as well.
+const char* const counter = R"(
+#ifdef COUNT
+layout(std430, binding = 7) buffer Counter { uint low, high; } counter;
+void count() {
+    uint before = atomicAdd(counter.low, evaluations);
+    if (before + evaluations < before) atomicAdd(counter.high, 1u);
+}
+#else
+void count() {}
+#endif
+)";
+
+const char* const made_surface = R"(
+in vec3 surface_normal;
+in vec3 base_colour;
+flat in float surface_material;
+#if SAMPLES > 1
+// At the pixel's centre, which gl_FragCoord is of, the triangle may be deeper or nearer than any sample of it.
+centroid in vec3 surface_position;
+#endif
+
+Surface made_surface() {
+    Surface s;
+#if SAMPLES > 1
+    s.position = surface_position;
+#else
+    s.position = view_position(gl_FragCoord.xy, gl_FragCoord.z);
+#endif
+    s.normal = normalize(gl_FrontFacing ? surface_normal : -surface_normal);
+    s.diffuse = base_colour;
+    s.specular = vec3(0.15);
+    s.ambient = 0.02 * base_colour;
+    s.shininess = 24.0;
+    s.material = int(surface_material);
+    return s;
+}
+)";
+
+const char* const stored_surface = R"(
+#if SAMPLES > 1
+#define TEXTURE sampler2DMS
+#else
+#define TEXTURE sampler2D
+#endif
+uniform TEXTURE depth_texture, diffuse_texture, specular_texture, ambient_texture, normal_texture;
+
+// `i`: the sample. Where nothing is drawn, the depth is 1.
+float stored_depth(ivec2 pixel, int i) {
+    return texelFetch(depth_texture, pixel, i).x;
+}
+
+// `place`: in the pixel
+Surface stored_surface(ivec2 pixel, int i, vec2 place, float depth) {
+    vec4 diffuse = texelFetch(diffuse_texture, pixel, i), specular = texelFetch(specular_texture, pixel, i);
+    Surface s;
+    s.position = view_position(vec2(pixel) + place, depth);
+    s.normal = normalize(texelFetch(normal_texture, pixel, i).xyz);
+    s.diffuse = diffuse.rgb;
+    s.specular = specular.rgb;
+    s.ambient = texelFetch(ambient_texture, pixel, i).rgb;
+    s.shininess = specular.a;
+    s.material = int(diffuse.a);
+    return s;
+}
+)";
+
+const char* const lit_pixel = R"(
+vec3 lit_sample(ivec2 pixel, int i, vec2 place, float depth) {
+    if (depth == 1.0) return sky;
+    return shown(lit(stored_surface(pixel, i, place, depth), uvec2(pixel)));
+}
+
+#if SAMPLES > 1
+// The middle is lit for all samples that are of one surface, as forward does. Where normals or depths tell that they are
+// not, each is lit by itself.
+vec3 lit_pixel(ivec2 pixel) {
+    float first = stored_depth(pixel, 0), z = view_position(vec2(pixel), first).z, sum = first;
+    vec3 normal = texelFetch(normal_texture, pixel, 0).xyz;
+    bool same = true;
+    for (int i = 1; i < SAMPLES; ++i) {
+        float depth = stored_depth(pixel, i);
+        sum += depth;
+        same = same && (depth == 1.0) == (first == 1.0) &&
+               abs(view_position(vec2(pixel), depth).z - z) <= 0.01 * abs(z) &&
+               dot(texelFetch(normal_texture, pixel, i).xyz, normal) > 0.99;
+    }
+    if (same) return lit_sample(pixel, 0, vec2(0.5), sum / float(SAMPLES));
+    vec3 light = vec3(0.0);
+    for (int i = 0; i < SAMPLES; ++i)
+        light += lit_sample(pixel, i, sample_places[i], stored_depth(pixel, i));
+    return light / float(SAMPLES);
+}
+#else
+vec3 lit_pixel(ivec2 pixel) {
+    return lit_sample(pixel, 0, vec2(0.5), stored_depth(pixel, 0));
+}
+#endif
+)";
+
+}  // namespace
+
+LightLoop every_light() {
+    return {R"(
+struct EveryLight { uint id; };
+#define each_light(light, pixel, view_depth) \
+    for (EveryLight light = EveryLight(0u); light.id < uint(light_count); light.id += 1u)
+)"};
+}
+
+// Texel buffers, which OpenGL 3.3 has, are read the same way by all.
+LightLoop listed_lights(const lightbin::ShaderOptions& options) {
+    lightbin::ShaderOptions read = options;
+    read.language = lightbin::ShaderLanguage::glsl_330;
+    read.storage = lightbin::ListStorage::texel_buffer;
+    return {lightbin::shader_snippet(read)->text + "\n#define each_light lightbin_for_each_light\n"};
+}
+
+std::string Shaders::head() const {
+    return "#version " + std::to_string(glsl_) + " core\n" + "#define SAMPLES " +
+           std::to_string(settings_.samples) + "\n" + (settings_.count ? "#define COUNT\n" : "");
+}
+
+namespace {
+
+// A fragment shader that lights must run on what is seen only, or it counts what is hidden.
+const char* const seen_only = R"(
+#ifdef COUNT
+layout(early_fragment_tests) in;
+#endif
+)";
+
+std::string lit_text(const LightLoop& lights, const std::string& material) {
+    return "#define MATERIAL(s) " + material + "\n#define LIGHT_ID " + lights.id + "\n" + common + lights.text +
+           lighting + counter;
+}
+
+}  // namespace
+
+std::string Shaders::surface_vertex() const {
+    return head() + common + R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec3 colour;
+layout(location = 3) in float material;
+out vec3 surface_normal;
+out vec3 base_colour;
+flat out float surface_material;
+#if SAMPLES > 1
+centroid out vec3 surface_position;
+#endif
+invariant gl_Position;  // the same bits in every pass
+
+void main() {
+    vec4 place = to_view * vec4(position, 1.0);
+    surface_normal = mat3(to_view) * normal;
+    base_colour = colour;
+    surface_material = material;
+#if SAMPLES > 1
+    surface_position = place.xyz;
+#endif
+    gl_Position = projection * place;
+}
+)";
+}
+
+std::string Shaders::everywhere_vertex() const {
+    return head() + R"(
+void main() {
+    gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 2.0 * float(gl_VertexID & 2) - 1.0, 0.0, 1.0);
+}
+)";
+}
+
+std::string Shaders::depth_fragment() const {
+    return head() + "void main() {}\n";
+}
+
+std::string Shaders::forward_fragment(const LightLoop& lights, int material, float alpha) const {
+    return head() + seen_only + lit_text(lights, std::to_string(material)) + lit_by_list + made_surface +
+           "out vec4 pixel;\n\nvoid main() {\n"
+           "    pixel = vec4(shown(lit(made_surface(), uvec2(gl_FragCoord.xy))), " +
+           std::to_string(alpha) + ");\n    count();\n}\n";
+}
+
+std::string Shaders::g_buffer_fragment() const {
+    return head() + common + made_surface + R"(
+layout(location = 0) out vec4 diffuse;
+layout(location = 1) out vec4 specular;
+layout(location = 2) out vec4 ambient;
+layout(location = 3) out vec4 normal;
+
+void main() {
+    Surface s = made_surface();
+    diffuse = vec4(s.diffuse, float(s.material));
+    specular = vec4(s.specular, s.shininess);
+    ambient = vec4(s.ambient, 0.0);
+    normal = vec4(s.normal, 0.0);
+}
+)";
+}
+
+std::string Shaders::deferred_functions(const LightLoop& lights) const {
+    const std::string count = std::to_string(sample_places_.size());
+    std::string places;
+    for (const glm::vec2& place : sample_places_)
+        places += (places.empty() ? "vec2(" : ", vec2(") + std::to_string(place.x) + ", " +
+                  std::to_string(place.y) + ")";
+    return "const vec2 sample_places[" + count + "] = vec2[" + count + "](" + places + ");\n" + lit_text(lights, settings_.three_shaders ? "(s).material" : "0") + lit_by_list + stored_surface +
+           lit_pixel;
+}
+
+std::string Shaders::deferred_fragment(const LightLoop& lights) const {
+    return head() + deferred_functions(lights) + R"(
+out vec4 pixel;
+
+void main() {
+    pixel = vec4(lit_pixel(ivec2(gl_FragCoord.xy)), 1.0);
+    count();
+}
+)";
+}
+
+std::string Shaders::ambient_fragment() const {
+    return head() + common + stored_surface + R"(
+out vec4 radiance;
+
+void main() {
+    radiance = vec4(texelFetch(ambient_texture, ivec2(gl_FragCoord.xy), 0).rgb, 1.0);
+}
+)";
+}
+
+std::string Shaders::one_light_fragment() const {
+    return head() + seen_only + lit_text({}, "0") + stored_surface + R"(
+flat in int light;
+out vec4 radiance;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float depth = stored_depth(pixel, 0);
+    radiance = vec4(0.0);
+    if (depth != 1.0) radiance = vec4(from_light(stored_surface(pixel, 0, vec2(0.5), depth), light), 0.0);
+    count();
+}
+)";
+}
+
+std::string Shaders::show_fragment() const {
+    return head() + common + R"(
+uniform sampler2D radiance_texture, depth_texture;
+out vec4 pixel;
+
+void main() {
+    ivec2 place = ivec2(gl_FragCoord.xy);
+    bool nothing = texelFetch(depth_texture, place, 0).x == 1.0;
+    pixel = vec4(nothing ? sky : shown(texelFetch(radiance_texture, place, 0).rgb), 1.0);
+}
+)";
+}
+
+std::string Shaders::rectangle_vertex() const {
+    return head() + common + R"(
+uniform usamplerBuffer footprints;  // in pixels, both ends included
+flat out int light;
+
+void main() {
+    uvec4 footprint = texelFetch(footprints, 2 * gl_InstanceID);
+    light = int(footprint.x);
+    uvec2 low = uvec2(footprint.y & 0xffffu, footprint.y >> 16u);
+    uvec2 high = uvec2(footprint.z & 0xffffu, footprint.z >> 16u) + 1u;
+    vec2 corner = vec2((gl_VertexID & 1) != 0 ? high.x : low.x, (gl_VertexID & 2) != 0 ? high.y : low.y);
+    gl_Position = vec4(2.0 * corner / picture_size - 1.0, 0.0, 1.0);
+}
+)";
+}
+
+std::string Shaders::ball_vertex() const {
+    return head() + common + R"(
+uniform samplerBuffer lights;
+uniform int number;
+layout(location = 0) in vec3 position;
+flat out int light;
+
+void main() {
+    light = number;
+    vec4 sphere = texelFetch(lights, 2 * number);
+    gl_Position = projection * vec4(sphere.xyz + sphere.w * position, 1.0);
+}
+)";
+}

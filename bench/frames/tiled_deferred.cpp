@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// TiledDeferred (Tiled Shading, section 2): surfaces to a G-buffer, then each pixel once, with the list of its tile. The
+// grid is made on the CPU, from Z bounds that the GPU made.
+#include "passes.hpp"
+#include "technique.hpp"
+
+#include <memory>
+
+Technique tiled_deferred(int g_buffer_bits) {
+    struct Memory {
+        DepthBounds bounds;
+        lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner;
+    };
+    const auto memory = std::make_shared<Memory>();
+    return {.name = "TiledDeferred",
+            .draw =
+                [memory](Stage& stage) {
+                    fill_g_buffer(stage, stage.depth());
+                    const auto bounds = memory->bounds.reduce_on_gpu(stage, stage.depth());
+                    const auto grid =
+                        value_of(memory->binner.bin(stage.view(), stage.lights(), {.bounds = bounds}));
+                    stage.lap("bin");
+                    upload_lists(stage, grid);
+                    shade_deferred(stage, listed_lights());
+                },
+            .tolerance = g_buffer_bits == 32 ? 1 : 3,
+            .g_buffer_bits = g_buffer_bits};
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// TiledFwd-PreZ (Tiled Shading, section 3; Tiled Forward Shading, section 4.3): depth first, so that each pixel is shaded
+// once, and lights out of what a tile has in depth are not in its list.
+#include "passes.hpp"
+#include "technique.hpp"
+
+#include <memory>
+
+namespace {
+
+template <lightbin::DepthTest depth_test>
+Technique pre_z(const std::string& name, ZEnds ends, Reduction reduction) {
+    struct Memory {
+        DepthBounds bounds;
+        lightbin::Binner<lightbin::Options{.depth_test = depth_test}> binner;
+    };
+    const auto memory = std::make_shared<Memory>();
+    return {name, [=](Stage& stage) {
+                begin_picture(stage);
+                depth_pre_pass(stage);
+                lightbin::ZBounds bounds;
+                if (ends != ZEnds::none)
+                    bounds = reduction == Reduction::gpu ? memory->bounds.reduce_on_gpu(stage, stage.depth())
+                                                         : memory->bounds.reduce_on_cpu(stage);
+                if (ends == ZEnds::min) bounds.max = {};
+                if (ends == ZEnds::max) bounds.min = {};
+                const auto grid =
+                    value_of(memory->binner.bin(stage.view(), stage.lights(), {.bounds = bounds}));
+                stage.lap("bin");
+                upload_lists(stage, grid);
+                shade_forward(stage, listed_lights());
+                stage.resolve();
+            }};
+}
+
+}  // namespace
+
+Technique tiled_forward_pre_z(ZEnds ends, Reduction reduction) {
+    static constexpr const char* names[] = {"", " min", " max", " both"};
+    Technique made = pre_z<lightbin::DepthTest::interval>(
+        std::string("TiledForward-PreZ") + names[static_cast<int>(ends)] +
+            (reduction == Reduction::gpu ? " (GPU)" : ""),
+        ends, reduction);
+    made.multisampled = ends == ZEnds::none || reduction == Reduction::gpu;
+    return made;
+}
+
+Technique tiled_forward_box() {
+    return pre_z<lightbin::DepthTest::box>("TiledForward-PreZ box (GPU)", ZEnds::both, Reduction::gpu);
+}
