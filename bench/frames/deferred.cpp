@@ -9,8 +9,7 @@
 
 void begin_radiance(Stage& stage, GLuint surface_depth, GLuint test_depth) {
     read_g_buffer(stage, surface_depth);
-    const GLuint radiance = stage.target("radiance", stage.settings().wide ? GL_RGBA32F : GL_RGBA16F);
-    stage.memory.draw_to({radiance}, test_depth);
+    stage.memory.draw_to({surface_target(stage, "radiance")}, test_depth);
     glDisable(GL_DEPTH_TEST);
     glDepthMask(GL_FALSE);
     stage.use(stage.shaders().everywhere_vertex(), stage.shaders().ambient_fragment());
@@ -21,7 +20,7 @@ void begin_radiance(Stage& stage, GLuint surface_depth, GLuint test_depth) {
 
 void show_radiance(Stage& stage) {
     glDisable(GL_BLEND);
-    stage.memory.read_from(unit_radiance, stage.target("radiance", 0));
+    stage.memory.read_from(unit_radiance, surface_target(stage, "radiance"));
     stage.memory.draw_to({stage.shown()}, 0);
     stage.use(stage.shaders().everywhere_vertex(), stage.shaders().show_fragment());
     stage.geometry.draw_everywhere();

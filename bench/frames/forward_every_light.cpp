@@ -4,7 +4,7 @@
 #include "technique.hpp"
 
 Technique forward_every_light() {
-    return {"Forward, every light", [](Stage& stage) {
+    return {"Forward with every light", [](Stage& stage) {
                 begin_picture(stage);
                 depth_pre_pass(stage);
                 shade_forward(stage, every_light());

@@ -49,10 +49,13 @@ void shade_panes(Stage& stage, const LightLoop& lights) {
     stage.lap("panes");
 }
 
+GLuint surface_target(Stage& stage, const char* name) {
+    return stage.target(name, stage.settings().wide ? GL_RGBA32F : GL_RGBA16F);
+}
+
 void fill_g_buffer(Stage& stage, GLuint depth) {
-    const GLenum format = stage.settings().wide ? GL_RGBA32F : GL_RGBA16F;
-    stage.memory.draw_to({stage.target("diffuse", format), stage.target("specular", format),
-                          stage.target("ambient", format), stage.target("normal", format)},
+    stage.memory.draw_to({surface_target(stage, "diffuse"), surface_target(stage, "specular"),
+                          surface_target(stage, "ambient"), surface_target(stage, "normal")},
                          depth);
     glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
     stage.use(stage.shaders().surface_vertex(), stage.shaders().g_buffer_fragment());
@@ -62,10 +65,10 @@ void fill_g_buffer(Stage& stage, GLuint depth) {
 
 void read_g_buffer(Stage& stage, GLuint depth) {
     stage.memory.read_from(unit_depth, depth);
-    stage.memory.read_from(unit_diffuse, stage.target("diffuse", 0));
-    stage.memory.read_from(unit_specular, stage.target("specular", 0));
-    stage.memory.read_from(unit_ambient, stage.target("ambient", 0));
-    stage.memory.read_from(unit_normal, stage.target("normal", 0));
+    stage.memory.read_from(unit_diffuse, surface_target(stage, "diffuse"));
+    stage.memory.read_from(unit_specular, surface_target(stage, "specular"));
+    stage.memory.read_from(unit_ambient, surface_target(stage, "ambient"));
+    stage.memory.read_from(unit_normal, surface_target(stage, "normal"));
 }
 
 void shade_deferred(Stage& stage, const LightLoop& lights) {

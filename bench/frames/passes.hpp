@@ -24,7 +24,9 @@ void shade_forward(Stage& stage, const LightLoop& lights);
 /// Panes before them, from the farthest to the nearest.
 void shade_panes(Stage& stage, const LightLoop& lights);
 
-/// Surfaces to four targets; `depth`: a target.
+/// A target of the G-buffer's width.
+GLuint surface_target(Stage& stage, const char* name);
+/// Surfaces to four of them; `depth`: a target.
 void fill_g_buffer(Stage& stage, GLuint depth);
 void read_g_buffer(Stage& stage, GLuint depth);
 /// Lights the G-buffer's pixels, each once.

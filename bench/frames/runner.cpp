@@ -15,17 +15,18 @@ double median(std::vector<double> numbers) {
     return *middle;
 }
 
-}  // namespace
-
-std::string LeftOut::key(const Technique& technique, int samples) {
-    return technique.name + (technique.g_buffer_bits ? ", " + std::to_string(technique.g_buffer_bits) + " bit" : "") +
-           (samples > 1 ? ", MSAA " + std::to_string(samples) : "");
+std::string full_name(const Technique& technique) {
+    if (technique.g_buffer_bits == 0) return technique.name;
+    return technique.name + " " + std::to_string(technique.g_buffer_bits) + " bit";
 }
 
-void LeftOut::say(const Technique& technique, int samples, const std::string& why) {
-    if (!names_.insert(key(technique, samples)).second) return;
-    lines_.push_back(key(technique, samples) + " is left out: " + why);
-    std::fprintf(stderr, "\r%s\n", lines_.back().c_str());
+}  // namespace
+
+void LeftOut::say(const std::string& who, const std::string& why) {
+    const std::string line = who + " is left out: " + why;
+    if (std::ranges::find(lines_, line) != lines_.end()) return;
+    lines_.push_back(line);
+    std::fprintf(stderr, "\r%s\n", line.c_str());
 }
 
 Runner::Runner(const Scene& scene, const RunSettings& settings, int glsl, LeftOut& left_out)
@@ -43,7 +44,7 @@ std::vector<Row> Runner::run(const std::string& table, const Camera& camera, std
     techniques.insert(techniques.begin(), every_light_);
     for (const Technique& technique : techniques) {
         const bool is_reference = reference_.empty();
-        if (left_out_.has(technique, wanted.samples)) continue;
+        const std::string who = full_name(technique) + (wanted.samples > 1 ? " at MSAA " + std::to_string(wanted.samples) : "");
         try {
             if (technique.glsl > stage_.glsl()) throw std::runtime_error("it needs OpenGL 4.3");
             // The reference takes long. One frame will do.
@@ -53,7 +54,7 @@ std::vector<Row> Runner::run(const std::string& table, const Camera& camera, std
             row.table = table;
             rows.push_back(row);
         } catch (const std::exception& problem) {
-            left_out_.say(technique, wanted.samples, problem.what());
+            left_out_.say(who, problem.what());
             if (is_reference) return {};
         }
     }
@@ -63,27 +64,29 @@ std::vector<Row> Runner::run(const std::string& table, const Camera& camera, std
 Row Runner::draw(const Technique& technique, const Camera& camera, Settings wanted, int timed_frames) {
     stage_.memory.clear();
     wanted.wide = technique.g_buffer_bits == 32;
-    Row row{.scene = scene_.name,
-            .view = camera.name,
-            .technique = technique.name,
-            .g_buffer_bits = technique.g_buffer_bits,
-            .samples = wanted.samples,
-            .lights = scene_.lights.size()};
+    Row row;
+    row.scene = scene_.name;
+    row.view = camera.name;
+    row.technique = full_name(technique);
+    row.samples = wanted.samples;
+    row.lights = scene_.lights.size();
     const auto draw_once = [&](bool count) {
         wanted.count = count;
         stage_.begin(camera, wanted);
         technique.draw(stage_);
         return stage_.end();
     };
-    const bool counts = stage_.glsl() >= 430;
+    const bool can_count = stage_.glsl() >= 430;
     std::vector<std::vector<Pass>> frames;
-    if (counts) {  // and what is made once is made
-        frames.push_back(draw_once(true));
-        row.evaluations = stage_.evaluations();
+    if (timed_frames == 0) {
+        frames.push_back(draw_once(can_count));
+    } else {
+        draw_once(false);  // makes what is made once
+        for (int i = 0; i < timed_frames; ++i)
+            frames.push_back(draw_once(false));
+        if (can_count) draw_once(true);
     }
-    if (!counts || timed_frames > 0) frames.clear();
-    for (int i = 0; i < std::max(timed_frames, counts ? 0 : 1); ++i)
-        frames.push_back(draw_once(false));
+    if (can_count) row.evaluations = stage_.evaluations();
     picture_ = stage_.read_picture();
     row.pixels = picture_.size() / 4;
     row.bytes = stage_.memory.bytes();

@@ -10,14 +10,13 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
 /// What was measured of one technique in one view.
 struct Row {
-    std::string table, scene, view, technique;
-    int g_buffer_bits = 0, samples = 1;
+    std::string table, scene, view, technique;  ///< a technique's name has the bits of its G-buffer
+    int samples = 1;
     std::size_t lights = 0;
     std::uint64_t evaluations = 0;  ///< 0: this OpenGL can't count
     double milliseconds = 0, least = 0, most = 0;  ///< median and spread of the timed frames
@@ -34,17 +33,13 @@ struct RunSettings {
     int timed_frames = 3;
 };
 
-/// Takes a technique out of the run, and says why, once.
+/// What is left out, and why: a line each, said once.
 class LeftOut {
 public:
-    void say(const Technique& technique, int samples, const std::string& why);
-    bool has(const Technique& technique, int samples) const { return names_.contains(key(technique, samples)); }
+    void say(const std::string& who, const std::string& why);
     const std::vector<std::string>& lines() const { return lines_; }
 
 private:
-    static std::string key(const Technique& technique, int samples);
-
-    std::set<std::string> names_;
     std::vector<std::string> lines_;
 };
 
@@ -56,7 +51,7 @@ public:
     /// Draws a view by every technique, after the reference. Settings that the techniques don't set are as given.
     std::vector<Row> run(const std::string& table, const Camera& camera, std::vector<Technique> techniques,
                          Settings wanted);
-    /// As in `directory`, for looking at: the reference of the last run.
+    /// The picture of the last run, RGBA.
     const std::vector<std::uint8_t>& reference() const { return reference_; }
 
 private:

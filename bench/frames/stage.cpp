@@ -192,6 +192,7 @@ void Stage::resolve() {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to);
     glBlitFramebuffer(0, 0, settings_.width, settings_.height, 0, 0, settings_.width, settings_.height,
                       GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    lap("resolve");
 }
 
 std::vector<std::uint8_t> Stage::read_picture() {

@@ -80,7 +80,7 @@ void main() {
 }  // namespace
 
 Technique tiled_deferred_kernel(int g_buffer_bits) {
-    return {.name = "TiledDeferred, one kernel",
+    return {.name = "TiledDeferred in one kernel",
             .draw =
                 [](Stage& stage) {
                     const int tile = stage.settings().tile_size;

@@ -47,7 +47,7 @@ void build(Stage& stage, const lightbin::View& view, const lightbin::ShaderBuild
 }  // namespace
 
 Technique tiled_deferred_passes(int g_buffer_bits) {
-    return {.name = "TiledDeferred, grid by passes",
+    return {.name = "TiledDeferred by passes",
             .draw =
                 [](Stage& stage) {
                     const lightbin::View view = stage.view();

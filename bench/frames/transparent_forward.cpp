@@ -28,9 +28,9 @@ Technique transparent_forward(TransparentLists lists) {
         lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner, pane_binner;
     };
     const auto memory = std::make_shared<Memory>();
-    static constexpr const char* names[] = {"TiledForward-PreZ, lists for panes",
-                                            "TiledForward-PreZ, shared lists",
-                                            "TiledForward-PreZ, lists from the nearest pane on"};
+    static constexpr const char* names[] = {"PreZ with lists for panes",
+                                            "PreZ with shared lists",
+                                            "PreZ with lists from the nearest pane on"};
     return {names[static_cast<int>(lists)], [=](Stage& stage) {
                 begin_picture(stage);
                 depth_pre_pass(stage);

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+// frames [--quick] [--pictures] [SCENE.glb ...]: whole frames by every technique of the papers, on the made scene and on the
+// named ones, or those of the tests.
+#include "cases.hpp"
+#include "report.hpp"
+#include "runner.hpp"
+
+#include "../arguments.hpp"
+
+#include <gl_context.hpp>
+#include <picture.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace {
+
+std::vector<Technique> all_techniques() {
+    std::vector<Technique> all = {tiled_forward()};
+    for (const ZEnds ends : {ZEnds::none, ZEnds::min, ZEnds::max, ZEnds::both})
+        all.push_back(tiled_forward_pre_z(ends, Reduction::cpu));
+    all.push_back(tiled_forward_pre_z(ZEnds::both, Reduction::gpu));
+    all.push_back(tiled_forward_box());
+    for (const int bits : {8, 16})
+        all.push_back(light_indexed(bits));
+    all.push_back(clustered_forward());
+    all.push_back(z_binned_forward());
+    for (const auto technique :
+         {tiled_deferred, tiled_deferred_passes, tiled_deferred_kernel, deferred, deferred_stencil})
+        for (const int bits : {16, 32})
+            all.push_back(technique(bits));
+    return all;
+}
+
+std::vector<Technique> transparent_techniques() {
+    using enum TransparentLists;
+    return {transparent_forward(max_only), transparent_forward(shared), transparent_forward(own_min)};
+}
+
+std::vector<Technique> pre_z_and_deferred() {
+    return {tiled_forward_pre_z(ZEnds::both, Reduction::gpu), tiled_deferred(16), tiled_deferred(32)};
+}
+
+std::vector<Technique> multisampled_techniques() {
+    return {light_indexed(8), light_indexed(16), tiled_forward_box(), tiled_deferred_kernel(16),
+            tiled_deferred_kernel(32)};
+}
+
+struct Job {
+    std::string table;
+    Camera camera;
+    std::vector<Technique> techniques;
+    Settings settings;
+};
+
+/// The views of one scene.
+struct SceneJobs {
+    Scene scene;
+    std::vector<Job> jobs;
+
+    void add(const std::string& table, const std::vector<Camera>& cameras,
+             const std::vector<Technique>& techniques, const Settings& settings = {}) {
+        for (const Camera& camera : cameras)
+            jobs.push_back({table, camera, techniques, settings});
+    }
+};
+
+template <class T> std::vector<T> every(std::size_t step, const std::vector<T>& all) {
+    std::vector<T> some;
+    for (std::size_t i = 0; i < all.size(); i += step)
+        some.push_back(all[i]);
+    return some;
+}
+
+constexpr std::size_t views_of_a_path = 10;  // a file of so many views or more is a camera's path
+
+void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Camera> views, bool quick) {
+    const bool is_path = views.size() >= views_of_a_path;
+    const std::vector<Camera> some = every(is_path ? (quick ? 5 : 1) : 2, views);
+    const std::vector<Technique> all = all_techniques();
+    SceneJobs own{scene, {}}, few{with_few_lights(scene), {}}, panes{with_panes(scene, 200), {}};
+    own.scene.transparent.clear();
+    if (is_path) {
+        own.add("path", some, all);
+        few.add("path with few lights", some, all);
+    } else {
+        own.add("from within", some, all);
+    }
+    own.add("from above", {camera_from_above(scene)}, all);
+    const std::vector<Camera> first = {views.front()};
+    own.add("one shader", first, pre_z_and_deferred());
+    own.add("three shaders", first, pre_z_and_deferred(), {.three_shaders = true});
+    panes.add("panes", first, transparent_techniques(), {.transparent = true});
+    for (SceneJobs& jobs : {std::ref(own), std::ref(few), std::ref(panes)})
+        if (!jobs.jobs.empty()) plan.push_back(std::move(jobs));
+}
+
+std::vector<SceneJobs> make_plan(const std::vector<std::string>& files, bool quick) {
+    std::vector<SceneJobs> plan;
+    Scene made = make_scene(1024);
+    const std::vector<Camera> flight = made_flight(15), still = {made.cameras[0], made.cameras[1]};
+    add_scene(plan, made, flight, quick);
+    made.transparent.clear();
+    for (const std::size_t lights : {128u, 256u, 512u, 1024u}) {
+        SceneJobs random{with_random_lights(made, lights), {}};
+        if (lights == 1024) random.add("random lights", still, all_techniques());
+        if (!quick || lights == 128 || lights == 1024)
+            for (const int samples : {1, 2, 4, 8})
+                random.add("MSAA", {still[0]}, multisampled_techniques(), {.samples = samples});
+        plan.push_back(std::move(random));
+    }
+    for (const std::string& file : files) {
+        const Scene scene = load_glb(file, 0.05f);
+        add_scene(plan, scene, scene.cameras, quick);
+    }
+    return plan;
+}
+
+void write_picture(const Job& job, const Scene& scene, const RunSettings& run, const Runner& runner) {
+    Picture picture{run.width, run.height, {}};
+    for (std::size_t i = 0; i < runner.reference().size(); ++i)
+        if (i % 4 != 3) picture.rgb.push_back(runner.reference()[i]);
+    write_png(picture, "frames " + scene.name + ", " + job.table + ", " + job.camera.name + ".png");
+}
+
+class Progress {
+public:
+    explicit Progress(std::size_t views) : views_(views) {}
+    void say(const std::string& what) {
+        const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start_;
+        std::fprintf(stderr, "\rframes: view %zu of %zu, %.0f s: %-70.70s", ++done_, views_, passed.count(),
+                     what.c_str());
+    }
+    ~Progress() { std::fprintf(stderr, "\r%110s\r", ""); }
+
+private:
+    std::size_t views_, done_ = 0;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::vector<Row> draw_all(const std::vector<SceneJobs>& plan, RunSettings run, bool pictures, LeftOut& left_out) {
+    std::size_t views = 0;
+    for (const SceneJobs& scene : plan)
+        views += scene.jobs.size();
+    Progress progress(views);
+    std::vector<Row> rows;
+    for (const SceneJobs& jobs : plan) {
+        const OffscreenContext context(0);  // each scene's goes with all that is in it
+        Runner runner(jobs.scene, run, context.glsl(), left_out);
+        for (const Job& job : jobs.jobs) {
+            progress.say(jobs.scene.name + ", " + job.table + ", " + job.camera.name);
+            const std::vector<Row> made = runner.run(job.table, job.camera, job.techniques, job.settings);
+            rows.insert(rows.end(), made.begin(), made.end());
+            if (pictures && !made.empty()) write_picture(job, jobs.scene, run, runner);
+        }
+    }
+    return rows;
+}
+
+void print(const std::vector<Row>& rows) {
+    std::vector<std::pair<std::string, std::string>> tables;
+    for (const Row& row : rows)
+        if (std::ranges::find(tables, std::pair(row.scene, row.table)) == tables.end())
+            tables.emplace_back(row.scene, row.table);
+    for (const auto& [scene, table] : tables) {
+        std::vector<Row> its;
+        for (const Row& row : rows)
+            if (row.scene == scene && row.table == table) its.push_back(row);
+        const std::string title = scene + ": " + table;
+        table == "MSAA" ? print_samples(title, its) : print_techniques(title, its);
+    }
+}
+
+int run(Arguments arguments) {
+    const bool quick = arguments.take("--quick"), pictures = arguments.take("--pictures");
+    RunSettings run;
+    {
+        const OffscreenContext context(0);
+        const bool software = is_software_renderer();
+        run.width = !software ? 1920 : quick ? 320 : 480;
+        run.height = run.width * 9 / 16;
+        run.tile_size = software ? 16 : 32;
+        run.timed_frames = !software ? 25 : quick ? 1 : 3;
+        std::printf("OpenGL: %s, GLSL %d; %d x %d pixels, tiles of %d\n",
+                    reinterpret_cast<const char*>(glGetString(GL_RENDERER)), context.glsl(), run.width, run.height,
+                    run.tile_size);
+        if (software)
+            std::printf("This OpenGL draws on the CPU: its times say little about a GPU's. Compare evaluations and "
+                        "bytes.\n");
+        if (context.glsl() < 430) std::printf("Evaluations are not counted: that needs OpenGL 4.3.\n");
+        std::fflush(stdout);
+    }
+    LeftOut left_out;
+    const std::vector<Row> rows = draw_all(make_plan(arguments.scenes_or_fixtures(), quick), run, pictures, left_out);
+    print(rows);
+    if (!left_out.lines().empty()) std::printf("\n");
+    for (const std::string& line : left_out.lines())
+        std::printf("%s\n", line.c_str());
+    write_csv("frames", rows);
+    write_paths("frames_paths", rows);
+    return EXIT_SUCCESS;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+    try {
+        return run(Arguments(count, words));
+    } catch (const std::exception& problem) {
+        std::fprintf(stderr, "frames: %s\n", problem.what());
+        return EXIT_FAILURE;
+    }
+}

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "report.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+namespace {
+
+template <class Key> auto grouped(const std::vector<Row>& rows, Key key_of) {
+    std::vector<std::pair<decltype(key_of(rows.front())), std::vector<Row>>> groups;
+    for (const Row& row : rows) {
+        const auto key = key_of(row);
+        auto group = std::ranges::find(groups, key, [](const auto& g) { return g.first; });
+        if (group == groups.end()) group = groups.insert(groups.end(), {key, {}});
+        group->second.push_back(row);
+    }
+    return groups;
+}
+
+struct Spread {
+    double mean = 0, least = 0, most = 0;
+};
+template <class Value> Spread spread_of(const std::vector<Row>& rows, Value value) {
+    Spread spread{0, value(rows.front()), value(rows.front())};
+    for (const Row& row : rows) {
+        spread.mean += value(row) / static_cast<double>(rows.size());
+        spread.least = std::min(spread.least, value(row));
+        spread.most = std::max(spread.most, value(row));
+    }
+    return spread;
+}
+
+class File {
+public:
+    explicit File(const std::string& path) : file_(std::fopen(path.c_str(), "w")) {
+        if (!file_) throw std::runtime_error("cannot write '" + path + "'");
+    }
+    ~File() { std::fclose(file_); }
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+    operator std::FILE*() const { return file_; }
+
+private:
+    std::FILE* file_;
+};
+
+// As RFC 4180 has it.
+std::string quoted(const std::string& text) {
+    std::string made = "\"";
+    for (const char c : text)
+        made += c == '"' ? "\"\"" : std::string(1, c);
+    return made + '"';
+}
+
+double millions(const Row& row) {
+    return static_cast<double>(row.evaluations) * 1e-6;
+}
+
+}  // namespace
+
+void print_techniques(const std::string& title, const std::vector<Row>& rows) {
+    if (rows.empty()) return;
+    std::printf("\n%s\n%-52s %26s %30s %8s %16s\n", title.c_str(), "", "ms", "million evaluations", "MB",
+                "differs");
+    for (const auto& [name, views] : grouped(rows, [](const Row& row) { return row.technique; })) {
+        Spread ms = spread_of(views, [](const Row& row) { return row.milliseconds; });
+        if (views.size() == 1) ms = {ms.mean, views[0].least, views[0].most};
+        const Spread evaluations = spread_of(views, millions);
+        const Spread different = spread_of(views, [](const Row& row) {
+            return 100.0 * static_cast<double>(row.different) / static_cast<double>(row.pixels);
+        });
+        const Spread difference = spread_of(views, [](const Row& row) { return static_cast<double>(row.difference); });
+        const Spread bytes = spread_of(views, [](const Row& row) { return static_cast<double>(row.bytes); });
+        std::printf("%-52s %8.1f (%7.1f /%7.1f)", name.c_str(), ms.mean, ms.least, ms.most);
+        if (evaluations.most > 0)
+            std::printf(" %9.3f (%8.3f /%8.3f)", evaluations.mean, evaluations.least, evaluations.most);
+        else
+            std::printf(" %30s", "not counted");
+        std::printf(" %8.1f", bytes.most * 1e-6);
+        if (different.most == 0)
+            std::printf(" %16s\n", "nowhere");
+        else
+            std::printf(" %6.2f %% by %3.0f\n", different.most, difference.most);
+    }
+}
+
+void print_samples(const std::string& title, const std::vector<Row>& rows) {
+    if (rows.empty()) return;
+    std::printf("\n%s\n%-14s", title.c_str(), "lights, MSAA");
+    const auto columns = grouped(rows, [](const Row& row) { return row.technique; });
+    for (const auto& [name, column] : columns)
+        std::printf(" | %-34s", name.c_str());
+    std::printf("\n%-14s", "");
+    for (std::size_t i = 0; i < columns.size(); ++i)
+        std::printf(" | %8s %8s %6s %9s", "ms", "million", "MB", "differs");
+    std::printf("\n");
+    for (const auto& [key, line] : grouped(rows, [](const Row& r) { return std::pair(r.lights, r.samples); })) {
+        std::printf("%8zu, %4d", key.first, key.second);
+        for (const auto& [name, column] : columns) {
+            const auto row = std::ranges::find(line, name, &Row::technique);
+            if (row == line.end())
+                std::printf(" | %34s", "left out");
+            else
+                std::printf(" | %8.1f %8.3f %6.1f %7.2f %%", row->milliseconds, millions(*row),
+                            static_cast<double>(row->bytes) * 1e-6,
+                            100.0 * static_cast<double>(row->different) / static_cast<double>(row->pixels));
+        }
+        std::printf("\n");
+    }
+}
+
+void write_csv(const std::string& name, const std::vector<Row>& rows) {
+    const File file(name + ".csv");
+    std::fprintf(file, "table,scene,view,lights,technique,samples,evaluations,milliseconds,least_ms,most_ms,bytes,"
+                       "pixels,different_pixels,largest_difference,passes_ms\n");
+    for (const Row& row : rows) {
+        std::string passes;
+        for (const Pass& pass : row.passes) {
+            char text[64];
+            std::snprintf(text, sizeof text, "%s%s %.3f", passes.empty() ? "" : "; ", pass.name.c_str(),
+                          pass.milliseconds);
+            passes += text;
+        }
+        std::fprintf(file, "%s,%s,%s,%zu,%s,%d,%llu,%.3f,%.3f,%.3f,%zu,%zu,%zu,%d,%s\n", row.table.c_str(),
+                     quoted(row.scene).c_str(), quoted(row.view).c_str(), row.lights, row.technique.c_str(),
+                     row.samples, static_cast<unsigned long long>(row.evaluations), row.milliseconds, row.least,
+                     row.most, row.bytes, row.pixels, row.different, row.difference, passes.c_str());
+    }
+}
+
+void write_paths(const std::string& name, const std::vector<Row>& rows) {
+    const File file(name + ".csv");
+    std::fprintf(file, "panel,view,technique,million_evaluations\n");
+    std::string panel, first_view, view;
+    int number = 0;
+    for (const Row& row : rows) {
+        if (!row.table.starts_with("path")) continue;
+        const std::string its = row.scene + ": " + std::to_string(row.lights) + " lights";
+        if (its != std::exchange(panel, its)) number = -1;
+        if (row.view != std::exchange(view, row.view) || number < 0) ++number;
+        std::fprintf(file, "%s,%d,%s,%.6f\n", quoted(its).c_str(), number, row.technique.c_str(), millions(row));
+    }
+}

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+// Every technique of bench/frames against the picture of every light in every fragment, and its count of light evaluations
+// against lists and depths that are gone through here.
+#include "cases.hpp"
+#include "passes.hpp"
+#include "technique.hpp"
+
+#include <gl_context.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+std::vector<Technique> all_techniques() {
+    return {tiled_forward(),
+            tiled_forward_pre_z(ZEnds::none, Reduction::cpu),
+            tiled_forward_pre_z(ZEnds::min, Reduction::cpu),
+            tiled_forward_pre_z(ZEnds::max, Reduction::cpu),
+            tiled_forward_pre_z(ZEnds::both, Reduction::cpu),
+            tiled_forward_pre_z(ZEnds::both, Reduction::gpu),
+            tiled_forward_box(),
+            light_indexed(8),
+            light_indexed(16),
+            clustered_forward(),
+            z_binned_forward(),
+            tiled_deferred(16),
+            tiled_deferred(32),
+            tiled_deferred_passes(16),
+            tiled_deferred_passes(32),
+            tiled_deferred_kernel(16),
+            tiled_deferred_kernel(32),
+            deferred(16),
+            deferred(32),
+            deferred_stencil(16),
+            deferred_stencil(32)};
+}
+
+Settings small_frame(float exposure) {
+    Settings settings;
+    settings.width = 131;
+    settings.height = 77;
+    settings.tile_size = 13;
+    settings.exposure = exposure;
+    return settings;
+}
+
+Bytes draw(Stage& stage, const Technique& technique, const Camera& camera, Settings settings) {
+    stage.memory.clear();
+    settings.wide = technique.g_buffer_bits == 32;
+    stage.begin(camera, settings);
+    technique.draw(stage);
+    stage.end();
+    return stage.read_picture();
+}
+
+struct Difference {
+    int largest = 0;
+    double share = 0;       // of the pixels that differ at all
+    double much_share = 0;  // and by more than 8 of 255
+};
+Difference compare(const Bytes& a, const Bytes& b) {
+    Difference difference;
+    const double pixel = 4.0 / static_cast<double>(a.size());
+    for (std::size_t i = 0; i < a.size(); i += 4) {
+        int largest = 0;
+        for (std::size_t k = i; k < i + 3; ++k)
+            largest = std::max(largest, std::abs(a[k] - b[k]));
+        difference.largest = std::max(difference.largest, largest);
+        if (largest > 0) difference.share += pixel;
+        if (largest > 8) difference.much_share += pixel;
+    }
+    return difference;
+}
+
+// What of a scene the lights are on: neither black nor white.
+double lit_share(const Bytes& picture) {
+    double lit = 0;
+    for (std::size_t i = 0; i < picture.size(); i += 4)
+        if (picture[i] + picture[i + 1] + picture[i + 2] > 60 && picture[i] + picture[i + 1] + picture[i + 2] < 740)
+            lit += 4.0 / static_cast<double>(picture.size());
+    return lit;
+}
+
+struct Seen {
+    std::string name;
+    Scene scene;
+    Camera camera;
+    float exposure;
+};
+std::vector<Seen> seen_scenes() {
+    const Scene made = make_scene(250), nova = load_glb(LIGHTBIN_FIXTURES "/nova.glb", 0.05f);
+    const Scene few = with_few_lights(made), random = with_random_lights(made, 200);
+    return {{"made scene, a street", made, made.cameras[1], 1},
+            {"made scene, from above", made, camera_from_above(made), 1},
+            {"few lights", few, made_flight(15)[3], 1},
+            {"random lights", random, made.cameras[0], 1},
+            {"nova", nova, nova.cameras[0], 1}};
+}
+
+}  // namespace
+
+TEST_CASE("every technique draws the picture of every light") {
+    const OffscreenContext context(0);
+    REQUIRE(context.glsl() == 430);
+    for (const Seen& seen : seen_scenes()) {
+        CAPTURE(seen.name);
+        Stage stage(seen.scene, context.glsl());
+        const Settings settings = small_frame(seen.exposure);
+        const Bytes expected = draw(stage, forward_every_light(), seen.camera, settings);
+        CHECK(lit_share(expected) > 0.1);
+        for (const Technique& technique : all_techniques()) {
+            CAPTURE(technique.name);
+            CAPTURE(technique.g_buffer_bits);
+            CHECK(technique.tolerance == (technique.g_buffer_bits == 0 ? 0 : technique.tolerance));
+            const Difference difference =
+                compare(expected, draw(stage, technique, seen.camera, settings));
+            CHECK(difference.largest <= technique.tolerance);
+        }
+    }
+}
+
+TEST_CASE("a light that is missing is seen") {
+    const Scene scene = with_random_lights(make_scene(1), 60);
+    Scene without = scene;
+    without.lights.erase(without.lights.begin() + 7);
+    const OffscreenContext context(0);
+    Stage stage(scene, context.glsl()), stage_without(without, context.glsl());
+    const Settings settings = small_frame(1);
+    const Bytes expected = draw(stage, forward_every_light(), scene.cameras[0], settings);
+    for (const Technique& technique : all_techniques()) {
+        CAPTURE(technique.name);
+        CHECK(compare(expected, draw(stage_without, technique, scene.cameras[0], settings)).largest > 8);
+    }
+}
+
+TEST_CASE("three shaders, and panes") {
+    Scene scene = make_scene(250);
+    scene = with_panes(scene, 40);
+    const OffscreenContext context(0);
+    Stage stage(scene, context.glsl());
+    Settings settings = small_frame(1);
+    const Camera& camera = scene.cameras[0];
+    const Bytes plain = draw(stage, forward_every_light(), camera, settings);
+
+    settings.three_shaders = true;
+    const Bytes three = draw(stage, forward_every_light(), camera, settings);
+    CHECK(compare(plain, three).share > 0.05);
+    for (const Technique& technique : all_techniques()) {
+        if (technique.name.starts_with("Deferred")) continue;  // a light at a time has one shader
+        CAPTURE(technique.name);
+        CHECK(compare(three, draw(stage, technique, camera, settings)).largest <= technique.tolerance);
+    }
+
+    settings.three_shaders = false;
+    settings.transparent = true;
+    const Bytes panes = draw(stage, forward_every_light(), camera, settings);
+    CHECK(compare(plain, panes).share > 0.005);
+    using enum TransparentLists;
+    for (const TransparentLists lists : {max_only, shared, own_min}) {
+        const Technique technique = transparent_forward(lists);
+        CAPTURE(technique.name);
+        CHECK(compare(panes, draw(stage, technique, camera, settings)).largest == 0);
+    }
+}
+
+// Where samples of a pixel differ, forward lights a fragment's middle, deferred each sample; and forward without a
+// pre-pass may light another point of a triangle, as the centroid is of the samples that are drawn.
+TEST_CASE("several samples a pixel") {
+    const Scene scene = make_scene(250);
+    const OffscreenContext context(0);
+    Stage stage(scene, context.glsl());
+    Settings settings = small_frame(1);
+    const Camera& camera = scene.cameras[1];
+    const Bytes one = draw(stage, forward_every_light(), camera, settings);
+    settings.samples = 4;
+    const Bytes four = draw(stage, forward_every_light(), camera, settings);
+    CHECK(compare(one, four).share > 0.02);
+    CHECK(compare(one, four).share < 0.5);
+    for (const Technique& technique : all_techniques()) {
+        if (!technique.multisampled) continue;
+        CAPTURE(technique.name);
+        const Difference difference = compare(four, draw(stage, technique, camera, settings));
+        CHECK(difference.much_share < (technique.g_buffer_bits == 0 ? 0.01 : 0.03));
+    }
+    settings.samples = 3;
+    CHECK_THROWS_WITH(draw(stage, tiled_forward(), camera, settings),
+                      "this OpenGL has no targets of 3 samples");
+}
+
+TEST_CASE("evaluations are those of the lists") {
+    const Scene scene = load_glb(LIGHTBIN_FIXTURES "/nova.glb", 0.05f);
+    const OffscreenContext context(0);
+    Stage stage(scene, context.glsl());
+    Settings settings = small_frame(1);
+    settings.count = true;
+    settings.wide = true;
+    const auto counted = [&](const Technique& technique) {
+        draw(stage, technique, scene.cameras[0], settings);
+        return stage.evaluations();
+    };
+
+    // The depths of the pixels, and lists of their tiles.
+    DepthBounds bounds;
+    stage.begin(scene.cameras[0], settings);
+    begin_picture(stage);
+    depth_pre_pass(stage);
+    const lightbin::View view = stage.view();
+    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner;
+    const auto grid =
+        value_of(binner.bin(view, stage.lights(), {.bounds = bounds.reduce_on_cpu(stage)}));
+    std::vector<float> depth(static_cast<std::size_t>(settings.width * settings.height));
+    glReadPixels(0, 0, settings.width, settings.height, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
+    std::uint64_t listed = 0, pixels = 0, reached = 0, nearly_reached = 0;
+    for (int y = 0; y < settings.height; ++y)
+        for (int x = 0; x < settings.width; ++x) {
+            const float d = depth[static_cast<std::size_t>(y * settings.width + x)];
+            if (d == 1) continue;
+            ++pixels;
+            listed += grid.lights_in(x / settings.tile_size, y / settings.tile_size).size();
+            const auto p = view.view_point(
+                {x + 0.5, y + 0.5, static_cast<double>(view.view_depths(static_cast<double>(d), static_cast<double>(d)).min)});
+            for (const lightbin::Sphere& light : stage.lights()) {
+                const double dx = p.x - static_cast<double>(light.x), dy = p.y - static_cast<double>(light.y),
+                             dz = p.z - static_cast<double>(light.z);
+                const double distance = std::sqrt(dx * dx + dy * dy + dz * dz) / static_cast<double>(light.radius);
+                reached += distance < 0.999;
+                nearly_reached += distance < 1.07;
+            }
+        }
+    REQUIRE(pixels > 1000);
+    CHECK(listed > pixels);
+    for (const auto& technique : {tiled_deferred, tiled_deferred_passes})
+        CHECK(counted(technique(32)) == listed);
+    // Its bounds are not rounded outward.
+    CHECK(counted(tiled_deferred_kernel(32)) <= listed);
+    CHECK(counted(tiled_deferred_kernel(32)) > listed * 99 / 100);
+    // Of surfaces in one place both are lit.
+    CHECK(counted(tiled_forward_pre_z(ZEnds::both, Reduction::cpu)) >= listed);
+    CHECK(counted(tiled_forward_pre_z(ZEnds::both, Reduction::cpu)) < listed * 11 / 10);
+    CHECK(counted(forward_every_light()) >= pixels * scene.lights.size());
+    CHECK(counted(tiled_forward()) > listed);
+    // A ball of triangles that holds the light's.
+    const std::uint64_t marked = counted(deferred_stencil(32));
+    CHECK(marked >= reached);
+    CHECK(marked <= nearly_reached);
+    CHECK(reached > pixels);
+}
+
+TEST_CASE("what this OpenGL lacks is named") {
+    const Scene scene = make_scene(300);
+    const OffscreenContext context(0);
+    Stage stage(scene, context.glsl());
+    Settings settings = small_frame(1);
+    CHECK_THROWS_WITH_AS(draw(stage, light_indexed(8), scene.cameras[0], settings),
+                         doctest::Contains("255 lights"), std::runtime_error);
+    settings.tile_size = 64;
+    CHECK_THROWS_WITH_AS(draw(stage, tiled_deferred_kernel(32), scene.cameras[0], settings),
+                         doctest::Contains("a thread a pixel"), std::runtime_error);
+    settings.width = 40000;
+    CHECK_THROWS_WITH_AS(draw(stage, tiled_forward(), scene.cameras[0], settings),
+                         doctest::Contains("no target of 40000 x 77 pixels"), std::runtime_error);
+}
+
+TEST_CASE("with OpenGL 3.3, what needs no more is drawn") {
+    const Scene scene = make_scene(250);
+    const OffscreenContext context(330);
+    Stage stage(scene, 330);
+    const Settings settings = small_frame(1);
+    const Bytes expected = draw(stage, forward_every_light(), scene.cameras[1], settings);
+    int drawn = 0;
+    for (const Technique& technique : all_techniques()) {
+        if (technique.glsl > 330) continue;
+        CAPTURE(technique.name);
+        CHECK(compare(expected, draw(stage, technique, scene.cameras[1], settings)).largest <=
+              technique.tolerance);
+        ++drawn;
+    }
+    CHECK(drawn == 17);
+}
