@@ -25,6 +25,11 @@
 #       What the plan that advise() chooses costs beside the best of all, with Z bounds and without, the same of
 #       advise_slices(), and how long asking takes beside a plain build; on the machine's widest instruction set or the
 #       named one. Writes build/bench/advise.csv and advise_plans.csv.
+#   frames [--quick] [--pictures] [SCENE.glb ...]
+#       Whole frames in OpenGL by every technique of the papers, on the made scene and the named ones (or those of the
+#       tests): light evaluations, times of passes, memory, and the difference to every light in every fragment. Ten minutes
+#       with a software renderer, --quick one. A scene of ten views or more is taken for a camera's path. Writes
+#       build/bench/frames.csv, and of the paths frames_paths.csv, .svg and .png; --pictures: a PNG a view, too.
 set -eu
 me=bench/run.sh
 here=$(pwd)
@@ -33,7 +38,7 @@ cd "$(dirname "$0")/.."
 
 program=binning
 case ${1-} in
-binning | error | cutoff | ablation | advise)
+binning | error | cutoff | ablation | advise | frames)
     program=$1
     shift
     ;;
@@ -43,8 +48,10 @@ binning | error | cutoff | ablation | advise)
     ;;
 esac
 
-install_packages g++ cmake ninja-build gnuplot-nox libglm-dev libbenchmark-dev libboost-dev libgmp-dev libtbb-dev \
-    libtinygltf-dev
+packages="g++ cmake ninja-build gnuplot-nox libglm-dev libbenchmark-dev libboost-dev libgmp-dev libtbb-dev libtinygltf-dev"
+[ $program != frames ] || packages="$packages libstb-dev libepoxy-dev libegl-dev libgl-dev libgl1-mesa-dri"
+# shellcheck disable=SC2086  # one word a package
+install_packages $packages
 
 make_build_folder
 echo "$me: building in build/bench"
@@ -61,11 +68,13 @@ for word; do
     esac
 done
 cd build/bench
-./bench/$program "$@"
 case $program in
-error) report=error_vs_time ;;
-cutoff) report=cutoff ;;
-*) exit ;;
+error) report=error_vs_time plot=plot.gp ;;
+cutoff) report=cutoff plot=plot.gp ;;
+frames) report=frames_paths plot=plot_frames.gp folder=frames/ ;;
+*) report= ;;
 esac
-gnuplot -e "report=\"$report\"" ../../bench/plot.gp
+"./bench/${folder-}$program" "$@"
+[ -n "$report" ] || exit 0
+gnuplot -e "report=\"$report\"" ../../bench/$plot
 echo "$me: wrote build/bench/$report.csv, .svg and .png"

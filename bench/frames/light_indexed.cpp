@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 Technique light_indexed(int id_bits) {
@@ -18,7 +19,11 @@ Technique light_indexed(int id_bits) {
     };
     const auto memory = std::make_shared<Memory>();
     return {"LightIndexed " + std::to_string(id_bits) + " bit", [=](Stage& stage) {
-                lightbin::ListFormat format = {
+                const std::size_t countable = (std::size_t{1} << id_bits) - 1;  // the last id is the sentinel
+                if (stage.lights().size() > countable)
+                    throw std::runtime_error("its ids number " + std::to_string(countable) + " lights, and " +
+                                             std::to_string(stage.lights().size()) + " are in the scene");
+                const lightbin::ListFormat format = {
                     .encoding = lightbin::ListEncoding::sentinel,
                     .ids = id_bits == 8 ? lightbin::IdWidth::u8 : lightbin::IdWidth::u16,
                     .capacity = static_cast<std::uint32_t>(stage.lights().size())};

@@ -184,7 +184,7 @@ int run(Arguments arguments) {
     {
         const OffscreenContext context(0);
         const bool software = is_software_renderer();
-        run.width = !software ? 1920 : quick ? 320 : 480;
+        run.width = !software ? 1920 : quick ? 320 : 384;
         run.height = run.width * 9 / 16;
         run.tile_size = software ? 16 : 32;
         run.timed_frames = !software ? 25 : quick ? 1 : 3;

@@ -65,8 +65,8 @@ void print_techniques(const std::string& title, const std::vector<Row>& rows) {
     std::printf("\n%s\n%-52s %26s %30s %8s %16s\n", title.c_str(), "", "ms", "million evaluations", "MB",
                 "differs");
     for (const auto& [name, views] : grouped(rows, [](const Row& row) { return row.technique; })) {
-        Spread ms = spread_of(views, [](const Row& row) { return row.milliseconds; });
-        if (views.size() == 1) ms = {ms.mean, views[0].least, views[0].most};
+        Spread ms = spread_of(views, [](const Row& row) { return row.frame.median; });
+        if (views.size() == 1) ms = {ms.mean, views[0].frame.least, views[0].frame.most};
         const Spread evaluations = spread_of(views, millions);
         const Spread different = spread_of(views, [](const Row& row) {
             return 100.0 * static_cast<double>(row.different) / static_cast<double>(row.pixels);
@@ -103,7 +103,7 @@ void print_samples(const std::string& title, const std::vector<Row>& rows) {
             if (row == line.end())
                 std::printf(" | %34s", "left out");
             else
-                std::printf(" | %8.1f %8.3f %6.1f %7.2f %%", row->milliseconds, millions(*row),
+                std::printf(" | %8.1f %8.3f %6.1f %7.2f %%", row->frame.median, millions(*row),
                             static_cast<double>(row->bytes) * 1e-6,
                             100.0 * static_cast<double>(row->different) / static_cast<double>(row->pixels));
         }
@@ -113,20 +113,17 @@ void print_samples(const std::string& title, const std::vector<Row>& rows) {
 
 void write_csv(const std::string& name, const std::vector<Row>& rows) {
     const File file(name + ".csv");
-    std::fprintf(file, "table,scene,view,lights,technique,samples,evaluations,milliseconds,least_ms,most_ms,bytes,"
-                       "pixels,different_pixels,largest_difference,passes_ms\n");
+    std::fprintf(file, "table,scene,view,lights,technique,samples,evaluations,ms,least_ms,most_ms,bytes,pixels,"
+                       "different_pixels,largest_difference,passes\n");
     for (const Row& row : rows) {
-        std::string passes;
-        for (const Pass& pass : row.passes) {
-            char text[64];
-            std::snprintf(text, sizeof text, "%s%s %.3f", passes.empty() ? "" : "; ", pass.name.c_str(),
-                          pass.milliseconds);
-            passes += text;
-        }
-        std::fprintf(file, "%s,%s,%s,%zu,%s,%d,%llu,%.3f,%.3f,%.3f,%zu,%zu,%zu,%d,%s\n", row.table.c_str(),
+        std::fprintf(file, "%s,%s,%s,%zu,%s,%d,%llu,%.3f,%.3f,%.3f,%zu,%zu,%zu,%d,", row.table.c_str(),
                      quoted(row.scene).c_str(), quoted(row.view).c_str(), row.lights, row.technique.c_str(),
-                     row.samples, static_cast<unsigned long long>(row.evaluations), row.milliseconds, row.least,
-                     row.most, row.bytes, row.pixels, row.different, row.difference, passes.c_str());
+                     row.samples, static_cast<unsigned long long>(row.evaluations), row.frame.median,
+                     row.frame.least, row.frame.most, row.bytes, row.pixels, row.different, row.difference);
+        for (const auto& [pass, times] : row.passes)
+            std::fprintf(file, "%s%s %.3f (%.3f to %.3f)", &pass == &row.passes.front().first ? "" : "; ",
+                         pass.c_str(), times.median, times.least, times.most);
+        std::fprintf(file, "\n");
     }
 }
 

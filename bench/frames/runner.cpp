@@ -9,10 +9,9 @@
 
 namespace {
 
-double median(std::vector<double> numbers) {
-    const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-    std::ranges::nth_element(numbers, middle);
-    return *middle;
+Times times_of(std::vector<double> milliseconds) {
+    std::ranges::sort(milliseconds);
+    return {milliseconds[milliseconds.size() / 2], milliseconds.front(), milliseconds.back()};
 }
 
 std::string full_name(const Technique& technique) {
@@ -91,22 +90,16 @@ Row Runner::draw(const Technique& technique, const Camera& camera, Settings want
     row.pixels = picture_.size() / 4;
     row.bytes = stage_.memory.bytes();
 
-    std::vector<double> sums;
-    for (const std::vector<Pass>& passes : frames) {
-        double sum = 0;
-        for (const Pass& pass : passes)
-            sum += pass.milliseconds;
-        sums.push_back(sum);
-    }
-    row.milliseconds = median(sums);
-    row.least = std::ranges::min(sums);
-    row.most = std::ranges::max(sums);
+    std::vector<double> sums(frames.size());
     for (std::size_t i = 0; i < frames.front().size(); ++i) {
-        std::vector<double> times;
-        for (const std::vector<Pass>& passes : frames)
-            times.push_back(passes[i].milliseconds);
-        row.passes.push_back({frames.front()[i].name, median(times)});
+        std::vector<double> pass;
+        for (std::size_t k = 0; k < frames.size(); ++k) {
+            pass.push_back(frames[k][i].milliseconds);
+            sums[k] += pass.back();
+        }
+        row.passes.emplace_back(frames.front()[i].name, times_of(pass));
     }
+    row.frame = times_of(sums);
     return row;
 }
 

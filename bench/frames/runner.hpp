@@ -11,7 +11,13 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
+
+/// Milliseconds of some frames.
+struct Times {
+    double median = 0, least = 0, most = 0;
+};
 
 /// What was measured of one technique in one view.
 struct Row {
@@ -19,12 +25,12 @@ struct Row {
     int samples = 1;
     std::size_t lights = 0;
     std::uint64_t evaluations = 0;  ///< 0: this OpenGL can't count
-    double milliseconds = 0, least = 0, most = 0;  ///< median and spread of the timed frames
+    Times frame;
+    std::vector<std::pair<std::string, Times>> passes;
     std::size_t bytes = 0;
     std::size_t pixels = 0;
     std::size_t different = 0;  ///< pixels that are not the reference's
     int difference = 0;         ///< the largest of a colour, of 255
-    std::vector<Pass> passes;   ///< their medians
 };
 
 /// What the run asks of all frames.

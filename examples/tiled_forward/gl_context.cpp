@@ -2,19 +2,49 @@
 #include "gl_context.hpp"
 
 #include <cstdlib>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 
+namespace {
+
+// epoxy would abort on a function that is not there, so ask first.
+bool has(std::initializer_list<const char*> extensions) {
+    for (const char* const name : extensions)
+        if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, name)) return false;
+    return true;
+}
+
+bool starts(EGLDisplay display) {
+    return display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr);
+}
+
+// Without a window system: Mesa's way, or a device, as drivers have it that are not Mesa's.
+EGLDisplay open_display() {
+    const bool surfaceless = has({"EGL_EXT_platform_base", "EGL_MESA_platform_surfaceless"}),
+               devices = has({"EGL_EXT_platform_base", "EGL_EXT_platform_device", "EGL_EXT_device_enumeration"});
+    if (!surfaceless && !devices)
+        throw std::runtime_error("no usable OpenGL: this EGL cannot draw without a window system");
+    if (surfaceless) {
+        const EGLDisplay display =
+            eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+        if (starts(display)) return display;
+    }
+    EGLDeviceEXT found[16];
+    EGLint count = 0;
+    if (devices && eglQueryDevicesEXT(16, found, &count))
+        for (const EGLDeviceEXT* device = found; device != found + count; ++device) {
+            const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, *device, nullptr);
+            if (starts(display)) return display;
+        }
+    throw std::runtime_error("no usable OpenGL: EGL does not start");
+}
+
+}  // namespace
+
 OffscreenContext::OffscreenContext(int wanted_glsl) {
     setenv("EGL_LOG_LEVEL", "fatal", 0);  // what goes wrong is said below, in one line
-    // epoxy would abort on a function that is not there, so ask first.
-    if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base") ||
-        !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
-        throw std::runtime_error("no usable OpenGL: this EGL cannot draw without a window system");
-    display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-    if (display_ == EGL_NO_DISPLAY || !eglInitialize(display_, nullptr, nullptr))
-        throw std::runtime_error("no usable OpenGL: EGL does not start");
-
+    display_ = open_display();
     for (const int glsl : {430, 330, 310, 300}) {
         const bool es = glsl < 330;
         if (wanted_glsl != glsl && (wanted_glsl != 0 || es)) continue;
