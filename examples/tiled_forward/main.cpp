@@ -12,6 +12,7 @@
 #include <exception>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace {
 
@@ -68,6 +69,9 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
         ->check(CLI::Range(-20.0, 20.0));
     std::string size;
     app.add_option("--size", size, "Width and height in pixels")->type_name("WxH")->default_str("1280x720");
+    app.add_option("--msaa", options.frame.samples, "Samples a pixel, each of them shaded")
+        ->check(CLI::IsMember({1, 2, 4, 8}))
+        ->capture_default_str();
     app.add_flag("--heat-map", options.heat_map, "Lay the length of each tile's list over the picture");
     app.add_option("-o,--output", options.output, "The PNG file to write")->capture_default_str();
     app.add_flag("--headless", options.headless, "No window, although there is a display");
@@ -119,8 +123,12 @@ Scene open_scene(const Options& options) {
 void print(const Scene& scene, const FrameSettings& frame, const Camera& camera, const FrameReport& report) {
     const auto unsigned_long = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
     const double every = static_cast<double>(scene.lights.size());
-    std::printf("view         \"%s\", %d x %d pixels in %d x %d tiles of %d\n", camera.name.c_str(),
-                frame.width, frame.height, report.tiles_x, report.tiles_y, frame.tile_size);
+    const bool many = frame.samples > 1;
+    const char* const shaded = many ? "sample" : "pixel";
+    std::printf("view         \"%s\", %d x %d pixels%s in %d x %d tiles of %d\n", camera.name.c_str(),
+                frame.width, frame.height,
+                many ? (" of " + std::to_string(frame.samples) + " samples").c_str() : "", report.tiles_x,
+                report.tiles_y, frame.tile_size);
     std::printf("lights       %llu in view of %zu", unsigned_long(report.lights_in_view),
                 scene.lights.size());
     if (report.rejected > 0) std::printf(", %llu rejected as bad input", unsigned_long(report.rejected));
@@ -128,9 +136,9 @@ void print(const Scene& scene, const FrameSettings& frame, const Camera& camera,
                 report.longest_list);
     if (report.transparent_entries > 0)
         std::printf("; %llu entries for glass", unsigned_long(report.transparent_entries));
-    std::printf("\nevaluations  %.2f lights a pixel", report.evaluations_per_pixel);
+    std::printf("\nevaluations  %.2f lights a %s", report.evaluations_per_pixel, shaded);
     if (report.evaluations_per_pixel > 0)
-        std::printf("; every light for every pixel would be %.1f times as many",
+        std::printf("; every light for every %s would be %.1f times as many", shaded,
                     every / report.evaluations_per_pixel);
     const auto& ms = report.milliseconds;
     std::printf("\ntime         %8.2f ms  depth pre-pass and read-back\n", ms.pre_pass);
@@ -182,7 +190,7 @@ int draw_picture(const Options& options, const Scene& scene) {
 }
 
 int run(const Options& options) {
-    const Scene scene = open_scene(options);
+    Scene scene = open_scene(options);
     if (static_cast<std::size_t>(options.view) >= scene.cameras.size())
         throw std::runtime_error("there is no view " + std::to_string(options.view) + ": the scene has " +
                                  counted(scene.cameras.size(), "view") + ", numbered from 0");
@@ -197,7 +205,8 @@ int run(const Options& options) {
 
     const int exit_code = draw_picture(options, scene);
     if (!options.headless && !options.check)
-        show_in_window(scene, options.glsl, options.view, options.frame, options.stops, options.heat_map);
+        show_in_window(std::move(scene), options.glsl, options.view, options.frame, options.stops,
+                       options.heat_map);
     return exit_code;
 }
 

@@ -49,19 +49,6 @@ GLenum target_of(lightbin::ShaderResource resource) {
     return resource == lightbin::ShaderResource::texture_2d ? GL_TEXTURE_2D : GL_TEXTURE_BUFFER;
 }
 
-// A texture that is drawn to and fetched from, in place of an older one.
-GLuint new_texture(GLuint old, GLenum format, int width, int height) {
-    glDeleteTextures(1, &old);
-    GLuint made = 0;
-    glGenTextures(1, &made);
-    glBindTexture(GL_TEXTURE_2D, made);
-    glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), width, height, 0,
-                 format == GL_RG32F ? GL_RG : GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    return made;
-}
-
 lightbin::Slicing slicing_of(const FrameSettings& settings) {
     return settings.depth == DepthUse::z_bins     ? lightbin::Slicing::z_bins
            : settings.depth == DepthUse::clusters ? lightbin::Slicing::clusters
@@ -82,9 +69,7 @@ void check_loop(std::size_t lights) {
 FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) {
     FrameReport report;
     Stopwatch watch;
-    set_size(settings.width, settings.height, settings.exposure == 0 ? GL_RGBA32F : GL_RGBA8);
-    set_camera(camera);
-    clear();
+    start(camera, settings);
     watch.lap();
 
     // 1. The view: the projection matrix, the viewport and the tile size fix the grid of tiles.
@@ -95,7 +80,8 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     const bool pre_pass = settings.depth == DepthUse::pre_pass;
     if (pre_pass) draw_depth();
     const bool bounded = pre_pass && settings.z_bounds != ZBoundsUse::none;
-    const bool on_gpu = settings.gpu_reduction || glsl_ < 330;
+    // OpenGL ES reads no depths back, and no OpenGL those of several samples.
+    const bool on_gpu = settings.gpu_reduction || glsl_ < 330 || settings.samples > 1;
     if (bounded && !on_gpu) {
         depth_buffer_.resize(static_cast<std::size_t>(settings.width) *
                              static_cast<std::size_t>(settings.height));
@@ -166,9 +152,7 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
 
 void Renderer::draw_every_light(const Camera& camera, const FrameSettings& settings) {
     check_loop(scene_.lights.size());
-    set_size(settings.width, settings.height, GL_RGBA8);
-    set_camera(camera);
-    clear();
+    start(camera, settings);
     if (settings.depth == DepthUse::pre_pass) draw_depth();
     upload_lights();
     draw_triangles(brute_force_program_, false, settings);
@@ -266,6 +250,7 @@ float Renderer::meter(const Camera& camera, const FrameSettings& settings) {
     FrameSettings small = settings;
     small.width = 128;
     small.height = 72;
+    small.samples = 1;
     small.tile_size = 8;
     small.exposure = 0;
     draw(camera, small);
@@ -283,25 +268,11 @@ float Renderer::meter(const Camera& camera, const FrameSettings& settings) {
     return 0.5f / *quartile;
 }
 
-Picture Renderer::read_picture() const {
-    Picture picture{width_, height_, {}};
-    const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-    std::vector<std::uint8_t> rgba(4 * pixels);  // OpenGL ES gives no RGB
-    glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
-    for (std::size_t i = 0; i < rgba.size(); ++i)
-        if (i % 4 != 3) picture.rgb.push_back(rgba[i]);
-    return picture;
-}
-
-void Renderer::show() const {
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-}
-
 Renderer::Renderer(const Scene& scene, int glsl)
     : scene_(scene), glsl_(glsl), list_binding_(list_binding(glsl)),
       has_spots_(
-          std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return l.spot; })) {
+          std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return l.spot; })),
+      frame_buffer_(glsl) {
     const std::string geometry = geometry_vertex_shader(glsl);
     depth_program_ = link_program(geometry, depth_fragment_shader(glsl));
     brute_force_program_ =
@@ -334,31 +305,18 @@ Renderer::Renderer(const Scene& scene, int glsl)
         glGenTextures(1, &made->texture);
     }
 
-    glGenFramebuffers(1, &framebuffer_);
     glGenFramebuffers(1, &reduce_framebuffer_);
-    glGenRenderbuffers(1, &colour_);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
 }
 
-void Renderer::set_size(int width, int height, GLenum colour_format) {
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-    glViewport(0, 0, width, height);
-    if (width == width_ && height == height_ && colour_format == colour_format_) return;
-    GLint largest = 0;
-    glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest);
-    if (std::max(width, height) > largest)
-        throw std::runtime_error("this OpenGL draws at most " + std::to_string(largest) + " pixels a side");
-    glBindRenderbuffer(GL_RENDERBUFFER, colour_);
-    glRenderbufferStorage(GL_RENDERBUFFER, colour_format, width, height);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
-    depth_ = new_texture(depth_, GL_DEPTH_COMPONENT32F, width, height);  // for reduce_on_gpu()
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_, 0);
-    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        throw std::runtime_error("this OpenGL cannot draw a picture of " + std::to_string(width) + " x " +
-                                 std::to_string(height) + " pixels");
-    width_ = width;
-    height_ = height;
-    colour_format_ = colour_format;
+void Renderer::start(const Camera& camera, const FrameSettings& settings) {
+    frame_buffer_.resize(settings.width, settings.height, settings.samples,
+                         settings.exposure == 0 ? GL_RGBA32F : GL_RGBA8);
+    set_camera(camera);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glClearColor(0.02f, 0.025f, 0.04f, 0);  // alpha tells the light meter where nothing is drawn
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
 // The matrices, and the lights in view space. In double, as a scene can be far from the origin.
@@ -366,7 +324,7 @@ void Renderer::set_camera(const Camera& camera) {
     const glm::dmat4 view = glm::inverse(camera.to_world);
     const glm::dmat3 turn(view);
     view_ = glm::mat4(view);
-    projection_ = projection_of(camera, static_cast<double>(width_) / height_);
+    projection_ = projection_of(camera, static_cast<double>(frame_buffer_.width()) / frame_buffer_.height());
 
     gpu_lights_.clear();
     for (const Light& light : scene_.lights) {
@@ -382,13 +340,6 @@ void Renderer::set_camera(const Camera& camera) {
     for (const Sun& sun : scene_.suns)
         gpu_lights_.push_back({glm::vec4(-glm::vec3(turn * glm::dvec3(sun.direction)), 0),
                                glm::vec4(sun.illuminance, 0), glm::vec4(0)});
-}
-
-void Renderer::clear() const {
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LESS);
-    glClearColor(0.02f, 0.025f, 0.04f, 0);  // alpha tells the light meter where nothing is drawn
-    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
 void Renderer::draw_depth() const {
@@ -427,7 +378,8 @@ void Renderer::set_matrices(GLuint program) const {
 void Renderer::draw_triangles(GLuint program, bool with_lists, const FrameSettings& settings) const {
     glUseProgram(program);
     set_matrices(program);
-    glUniform2f(uniform(program, "picture_size"), static_cast<float>(width_), static_cast<float>(height_));
+    glUniform2f(uniform(program, "picture_size"), static_cast<float>(frame_buffer_.width()),
+                static_cast<float>(frame_buffer_.height()));
     glUniform3fv(uniform(program, "moon"), 1,
                  glm::value_ptr(glm::mat3(view_) * glm::normalize(glm::vec3(0.3f, 0.8f, 0.5f))));
     glUniform1f(uniform(program, "exposure"), settings.exposure);
@@ -536,16 +488,17 @@ void Renderer::upload(const GpuBuffer& target, const void* data, std::size_t byt
 // Z bounds without reading the depth buffer back: only a tile's two depths are. No `min`: it is not wanted.
 void Renderer::reduce_on_gpu(const lightbin::View& view, bool skip_background, std::span<float> min,
                              std::span<float> max) {
-    GLuint& program = reduce_programs_[view.orthographic() ? 1 : 0][skip_background ? 1 : 0];
+    const int samples = frame_buffer_.samples();
+    GLuint& program = reduce_programs_[{samples, view.orthographic(), skip_background}];
     if (program == 0)
         program = link_program(overlay_vertex_shader(glsl_),
-                               reduce_fragment_shader(glsl_, view.orthographic(), skip_background));
+                               reduce_fragment_shader(glsl_, samples, view.orthographic(), skip_background));
     glUseProgram(program);
     const lightbin::ShaderReduce constants = lightbin::shader_reduce(view);
     glUniform4uiv(uniform(program, "lightbin_grid"), 1, &constants.tile_size);
     glUniform4fv(uniform(program, "lightbin_planes"), 1, &constants.far_end);
     glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, depth_);
+    frame_buffer_.bind_depth();
     glUniform1i(uniform(program, "lightbin_depth"), 0);
 
     glBindFramebuffer(GL_FRAMEBUFFER, reduce_framebuffer_);
@@ -564,6 +517,5 @@ void Renderer::reduce_on_gpu(const lightbin::View& view, bool skip_background, s
         if (!min.empty()) min[tile] = depth_buffer_[2 * tile];
         max[tile] = depth_buffer_[2 * tile + 1];
     }
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-    glViewport(0, 0, width_, height_);
+    frame_buffer_.bind();
 }

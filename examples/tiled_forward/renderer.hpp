@@ -2,6 +2,7 @@
 // Tiled forward shading of a scene: renderer.cpp has the frame from top to bottom.
 #pragma once
 
+#include "frame_buffer.hpp"
 #include "picture.hpp"
 #include "scene.hpp"
 
@@ -12,8 +13,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 // What is known of depth before the lights are drawn.
@@ -28,6 +31,7 @@ enum class ZBoundsUse { none, max, both };
 struct FrameSettings {
     int width = 1280;
     int height = 720;
+    int samples = 1;  // a pixel, up to 8
     int tile_size = 16;
     bool gpu_reduction = false;  // Z bounds on the GPU; OpenGL ES has it so in any case
     DepthUse depth = DepthUse::pre_pass;
@@ -45,7 +49,9 @@ struct FrameReport {
     std::uint64_t entries = 0;
     std::uint32_t longest_list = 0;
     std::uint64_t transparent_entries = 0;  // 0: no lists are needed
-    double evaluations_per_pixel = 0;       // of the opaque surfaces that are seen, if they were counted
+    // Of the opaque surfaces that are seen, if they were counted. With several samples: a sample's, by the
+    // deepest one of each pixel.
+    double evaluations_per_pixel = 0;
     struct {
         double pre_pass, reduce, bin, upload, draw;
     } milliseconds{};
@@ -53,7 +59,8 @@ struct FrameReport {
 
 class Renderer {
 public:
-    // Needs a current OpenGL context, and leaves its objects to it: they live as long as the program.
+    // Needs a current OpenGL context, and leaves its objects to it: they live as long as the program. Keeps
+    // the scene, whose lights may move from one draw to the next.
     Renderer(const Scene& scene, int glsl);
 
     // Draws the scene, each fragment lit by the list of its tile.
@@ -68,10 +75,10 @@ public:
     // Returns the exposure that shows this view well, from a small picture of it.
     float meter(const Camera& camera, const FrameSettings& settings);
 
-    Picture read_picture() const;
+    Picture read_picture() const { return frame_buffer_.read(); }
 
     // Copies the picture to the window.
-    void show() const;
+    void show() const { frame_buffer_.show(); }
 
 private:
     // A light as the shaders read it, in view space: three texels.
@@ -97,10 +104,9 @@ private:
     };
     using Grids = lightbin::TransparencyGrids<std::uint32_t>;
 
-    void set_size(int width, int height, GLenum colour_format);
+    void start(const Camera& camera, const FrameSettings& settings);
     void set_camera(const Camera& camera);
     bool shows_glass(const FrameSettings& settings) const;
-    void clear() const;
     void draw_depth() const;
     Grids bin_lights(const lightbin::View& view, const lightbin::ZBounds& z_bounds, bool glass,
                      const FrameSettings& settings);
@@ -126,16 +132,14 @@ private:
     GLuint depth_program_, brute_force_program_;
     GLuint tiled_programs_[3] = {}, heat_map_programs_[3] = {};  // [slicing]
     GLuint vertex_array_ = 0;
-    GLuint reduce_programs_[2][2] = {};  // [orthographic][skip_background]
-    GLuint framebuffer_ = 0, colour_ = 0, depth_ = 0;
+    std::map<std::tuple<int, bool, bool>, GLuint> reduce_programs_;  // [samples, orthographic, skip]
+    FrameBuffer frame_buffer_;
     GLuint reduce_framebuffer_ = 0, reduced_ = 0;
     GpuBuffer lights_;
     Lists opaque_lists_, transparent_lists_;
     GpuBuffer slices_buffer_, bins_buffer_;
 
     // Of the frame
-    int width_ = 0, height_ = 0;
-    GLenum colour_format_ = 0;
     glm::mat4 projection_{1}, view_{1};
     lightbin::ShaderGrid grid_{};
     std::vector<GpuLight> gpu_lights_, ordered_lights_;

@@ -122,10 +122,11 @@ lightbin::ShaderBinding list_binding(int glsl) {
     return lightbin::shader_snippet(list_options(glsl))->bindings.back();
 }
 
-std::string reduce_fragment_shader(int glsl, bool orthographic, bool skip_background) {
+std::string reduce_fragment_shader(int glsl, int samples, bool orthographic, bool skip_background) {
     lightbin::ReduceShaderOptions options;
     options.language = list_options(glsl).language;
     options.stage = lightbin::ShaderStage::fragment;
+    options.samples = samples;
     options.orthographic = orthographic;
     options.skip_background = skip_background;
     return version_line(glsl) + lightbin::reduce_shader(options)->text;

@@ -16,7 +16,7 @@ constexpr int lights_width = 1536;
 lightbin::ShaderBinding list_binding(int glsl);
 
 // Z bounds of the tiles from a depth texture: a fragment a tile.
-std::string reduce_fragment_shader(int glsl, bool orthographic, bool skip_background);
+std::string reduce_fragment_shader(int glsl, int samples, bool orthographic, bool skip_background);
 
 // How the lights of a fragment are found. Both call the same function for each of them, in ascending order of
 // their ids.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "window.hpp"
 
+#include "moving_lights.hpp"
+
 #include <epoxy/gl.h>
 
 #define GLFW_INCLUDE_NONE
@@ -12,6 +14,7 @@
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -84,6 +87,17 @@ private:
     double mouse_x_ = 0, mouse_y_ = 0;
 };
 
+// Sees a key go down: once, however long it stays there.
+struct Tap {
+    int key;
+    bool is_down = false;
+
+    bool happened(GLFWwindow* window) {
+        const bool was_down = std::exchange(is_down, glfwGetKey(window, key) == GLFW_PRESS);
+        return is_down && !was_down;
+    }
+};
+
 // A light's range a second: a step that fits the scene, whatever its size.
 double walking_speed(const Scene& scene) {
     std::vector<float> ranges;
@@ -96,8 +110,8 @@ double walking_speed(const Scene& scene) {
 
 }  // namespace
 
-void show_in_window(const Scene& scene, int wanted_glsl, int view, FrameSettings settings,
-                    float exposure_stops, bool heat_map) {
+void show_in_window(Scene scene, int wanted_glsl, int view, FrameSettings settings, float exposure_stops,
+                    bool heat_map) {
     const Glfw glfw;
     if (!glfw.running) return;
     int glsl = 0;
@@ -108,7 +122,8 @@ void show_in_window(const Scene& scene, int wanted_glsl, int view, FrameSettings
     Renderer renderer(scene, glsl);
 
     std::printf(
-        "W A S D Q E: move (shift: faster), mouse button held: turn, 1-9: views, H: heat map, Escape: end\n");
+        "W A S D Q E: move (shift: faster), mouse button held: turn, 1-9: views, H: heat map, space: stop or "
+        "start the lights, Escape: end\n");
     const double speed = walking_speed(scene);
     FreeCamera walker(scene.cameras[0], speed);
     const auto go_to = [&](std::size_t index) {
@@ -117,20 +132,23 @@ void show_in_window(const Scene& scene, int wanted_glsl, int view, FrameSettings
     };
     go_to(static_cast<std::size_t>(view));
 
-    double last = glfwGetTime(), last_title = 0;
-    bool h_was_down = false;
+    const std::vector<Light> places = scene.lights;
+    bool lights_move = true;
+    double last = glfwGetTime(), last_title = 0, light_seconds = 0;
+    Tap h{GLFW_KEY_H}, space{GLFW_KEY_SPACE};
     while (!glfwWindowShouldClose(window)) {
         glfwPollEvents();
         if (glfwGetKey(window, GLFW_KEY_ESCAPE) == GLFW_PRESS) break;
-        const bool h_is_down = glfwGetKey(window, GLFW_KEY_H) == GLFW_PRESS;
-        if (h_is_down && !h_was_down) heat_map = !heat_map;
-        h_was_down = h_is_down;
+        if (h.happened(window)) heat_map = !heat_map;
+        if (space.happened(window)) lights_move = !lights_move;
         for (int i = 0; i < 9; ++i)
             if (static_cast<std::size_t>(i) < scene.cameras.size() &&
                 glfwGetKey(window, GLFW_KEY_1 + i) == GLFW_PRESS)
                 go_to(static_cast<std::size_t>(i));
         const double now = glfwGetTime();
         walker.move(window, now - last);
+        if (lights_move) light_seconds += now - last;
+        move_lights(places, light_seconds, scene.lights);
         last = now;
 
         glfwGetFramebufferSize(window, &settings.width, &settings.height);

@@ -4,7 +4,7 @@
 
 #include "renderer.hpp"
 
-// Opens a window and draws the scene in it until it is closed. Does nothing where there is no display. Throws
-// std::runtime_error if there is a display without a usable OpenGL.
-void show_in_window(const Scene& scene, int wanted_glsl, int view, FrameSettings settings,
-                    float exposure_stops, bool heat_map);
+// Opens a window and draws the scene in it, its lights moving, until it is closed. Does nothing where there
+// is no display. Throws std::runtime_error if there is a display without a usable OpenGL.
+void show_in_window(Scene scene, int wanted_glsl, int view, FrameSettings settings, float exposure_stops,
+                    bool heat_map);
