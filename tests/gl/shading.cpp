@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The pictures of tiled_forward against the formulas of KHR_lights_punctual, worked out here pixel by pixel.
 #include "gl_context.hpp"
+#include "moving_lights.hpp"
 #include "renderer.hpp"
 
 #include <doctest/doctest.h>
@@ -10,17 +11,19 @@
 #include <cstdlib>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <utility>
+#include <vector>
 
 namespace {
 
 constexpr int width = 61, height = 47;
-constexpr double wall = 4;  // distance of the wall that fills the picture
+constexpr double wall = 4;  // distance of the wall that fills the picture, to its right end
 
-Scene wall_scene() {
+Scene wall_scene(float end = 9) {
     Scene scene;
     const glm::vec3 normal(0, 0, 1), colour(0.8f, 0.6f, 0.4f);
-    const glm::vec3 a(-9, -9, -wall), b(9, -9, -wall), c(9, 9, -wall), d(-9, 9, -wall);
+    const glm::vec3 a(-9, -9, -wall), b(end, -9, -wall), c(end, 9, -wall), d(-9, 9, -wall);
     for (const glm::vec3& corner : {a, b, c, a, c, d})
         scene.triangles.push_back({corner, normal, colour});
     Camera camera;
@@ -53,27 +56,77 @@ glm::dvec3 illuminance(const Scene& scene, const glm::dvec3& point) {
     return sum;
 }
 
-double largest_difference(const Scene& scene, const Picture& picture, double exposure) {
-    double largest = 0;
+// What is seen at a place of the picture, 0 to 255.
+glm::dvec3 shown(const Scene& scene, glm::dvec2 place, double exposure, double end) {
     const double slope = std::tan(scene.cameras[0].height / 2);
+    const glm::dvec3 point(wall * slope * (place.x * 2 - width) / height,
+                           wall * slope * (place.y * 2 - height) / height, -wall);
+    const glm::dvec3 sky(0.02, 0.025, 0.04);
+    if (point.x > end) return 255.0 * sky;
+    const glm::dvec3 colour(0.8, 0.6, 0.4);
+    const glm::dvec3 radiance = colour * illuminance(scene, point) / std::numbers::pi;
+    const glm::dvec3 moon = glm::normalize(glm::dvec3(0.3, 0.8, 0.5));
+    const glm::dvec3 night = colour * glm::dvec3(0.012, 0.015, 0.024) * (1 + moon.z);
+    const glm::dvec3 display = 1.0 - glm::exp(-exposure * radiance - night);
+    const glm::dvec3 surface = 255.0 * glm::pow(display, glm::dvec3(1 / 2.2));
+    return scene.transparent.empty() ? surface : surface + sky * (255.0 - surface);
+}
+
+// `samples`: their places in a pixel
+double largest_difference(const Scene& scene, const Picture& picture, double exposure,
+                          const std::vector<glm::dvec2>& samples = {{0.5, 0.5}}, double end = 9) {
+    double largest = 0;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            const glm::dvec3 point(wall * slope * ((x + 0.5) * 2 - width) / height,
-                                   wall * slope * ((y + 0.5) * 2 - height) / height, -wall);
-            const glm::dvec3 colour(0.8, 0.6, 0.4);
-            const glm::dvec3 radiance = colour * illuminance(scene, point) / std::numbers::pi;
-            const glm::dvec3 moon = glm::normalize(glm::dvec3(0.3, 0.8, 0.5));
-            const glm::dvec3 night = colour * glm::dvec3(0.012, 0.015, 0.024) * (1 + moon.z);
-            const glm::dvec3 display = 1.0 - glm::exp(-exposure * radiance - night);
-            const glm::dvec3 sky(0.02, 0.025, 0.04);
+            glm::dvec3 sum(0);
+            for (const glm::dvec2& sample : samples)
+                sum += shown(scene, glm::dvec2(x, y) + sample, exposure, end);
             for (int channel = 0; channel < 3; ++channel) {
-                double expected = 255 * std::pow(display[channel], 1 / 2.2);
-                if (!scene.transparent.empty()) expected += sky[channel] * (255 - expected);
                 const auto place = static_cast<std::size_t>(3 * (y * width + x) + channel);
-                largest = std::max(largest, std::abs(expected - picture.rgb[place]));
+                largest = std::max(largest, std::abs(sum[channel] / static_cast<double>(samples.size()) -
+                                                     picture.rgb[place]));
             }
         }
     return largest;
+}
+
+// Of the frame buffer that is bound.
+std::vector<glm::dvec2> sample_places(int samples) {
+    std::vector<glm::dvec2> places;
+    for (GLuint i = 0; i < static_cast<GLuint>(samples); ++i) {
+        GLfloat place[2] = {};
+        glGetMultisamplefv(GL_SAMPLE_POSITION, i, place);
+        places.emplace_back(place[0], place[1]);
+    }
+    return places;
+}
+
+// Steep splinters that hide each other within pixels, and lights that reach little.
+Scene splinters() {
+    std::mt19937 engine(4);
+    const auto between = [&](double low, double high) {
+        return static_cast<float>(low + (high - low) * static_cast<double>(engine()) / 4294967296.0);
+    };
+    const auto point = [&](double reach, double deep) {
+        return glm::vec3(between(-reach, reach), between(-reach, reach), between(-deep, deep));
+    };
+    Scene scene;
+    for (int i = 0; i < 4000; ++i) {
+        const glm::vec3 centre = glm::vec3(0, 0, -6) + point(3, 3), normal = glm::normalize(point(1, 1));
+        for (int corner = 0; corner < 3; ++corner)
+            scene.triangles.push_back({centre + point(0.15, 0.8), normal, glm::vec3(0.8f)});
+    }
+    for (int i = 0; i < 300; ++i) {
+        Light light;
+        light.position = glm::vec3(0, 0, -6) + point(3, 3);
+        light.range = between(0.1, 0.5);
+        light.intensity = glm::vec3(1);
+        scene.lights.push_back(light);
+    }
+    Camera camera;
+    camera.height = 1;
+    scene.cameras = {camera};
+    return scene;
 }
 
 }  // namespace
@@ -128,6 +181,102 @@ TEST_CASE("a pixel has the light that the specification gives it") {
         renderer.draw_every_light(scene.cameras[0], settings);
         CHECK(largest_difference(scene, renderer.read_picture(), 1.5) < most);
     }
+}
+
+TEST_CASE("with MSAA a pixel is the mean of its samples, each lit where it lies") {
+    const float end = 0.3137f;
+    Scene scene = wall_scene(end);
+    Light light;
+    light.position = {0.5f, 0.25f, -3};
+    light.intensity = {3, 2, 1};
+    light.range = 1.7f;
+    scene.lights = {light};
+    for (const int glsl : {330, 430, 310}) {
+        CAPTURE(glsl);
+        const OffscreenContext context(glsl);
+        Renderer renderer(scene, glsl);
+        FrameSettings settings;
+        settings.width = width;
+        settings.height = height;
+        settings.samples = 4;
+        settings.exposure = 1.5f;
+        renderer.draw(scene.cameras[0], settings);
+        const std::vector<glm::dvec2> places = sample_places(4);
+        CHECK(largest_difference(scene, renderer.read_picture(), 1.5, places, end) < 1.5);
+        CHECK(largest_difference(scene, renderer.read_picture(), 1.5, {{0.5, 0.5}}, end) > 9);
+    }
+}
+
+TEST_CASE("with MSAA no light is missing where surfaces hide each other within pixels") {
+    const Scene scene = splinters();
+    const OffscreenContext context(0);
+    Renderer renderer(scene, context.glsl());
+    FrameSettings settings;
+    settings.width = width;
+    settings.height = height;
+    settings.samples = 4;
+    for (const DepthUse depth : {DepthUse::none, DepthUse::clusters, DepthUse::pre_pass}) {
+        CAPTURE(static_cast<int>(depth));
+        settings.depth = depth;
+        renderer.draw_every_light(scene.cameras[0], settings);
+        const Picture expected = renderer.read_picture();
+        for (const int tile : {1, 2, 5, 16}) {
+            CAPTURE(tile);
+            settings.tile_size = tile;
+            renderer.draw(scene.cameras[0], settings);
+            CHECK(compare(expected, renderer.read_picture()).pixels == 0);
+        }
+    }
+}
+
+TEST_CASE("lights move, and stay near their places") {
+    const Scene scene = make_scene(300);
+    std::vector<Light> places = scene.lights, lights = places;
+    places[7].range = std::numeric_limits<float>::infinity();
+    for (const double seconds : {0.0, 0.3, 2.0, 70.0, 86400.0}) {
+        CAPTURE(seconds);
+        move_lights(places, seconds, lights);
+        std::size_t moved = 0;
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const double distance =
+                glm::length(glm::dvec3(lights[i].position) - glm::dvec3(places[i].position));
+            CHECK(distance <= light_leeway * static_cast<double>(places[i].range) + 1e-5);
+            moved += distance > 0;
+        }
+        CHECK(moved == (seconds > 0 ? 299 : 0));
+        CHECK(lights[7].position == places[7].position);
+    }
+    // Each at a speed of its own.
+    std::vector<Light> later = places;
+    move_lights(places, 1, later);
+    CHECK(glm::length(later[0].position - places[0].position) / places[0].range !=
+          doctest::Approx(glm::length(later[1].position - places[1].position) / places[1].range));
+}
+
+TEST_CASE("a picture has the lights where they are by now") {
+    Scene scene = make_scene(300);
+    const std::vector<Light> places = scene.lights;
+    const OffscreenContext context(0);
+    Renderer renderer(scene, context.glsl());
+    FrameSettings settings;
+    settings.width = 160;
+    settings.height = 90;
+    settings.exposure = renderer.meter(scene.cameras[0], settings);
+    renderer.draw(scene.cameras[0], settings);
+    const Picture before = renderer.read_picture();
+    for (const DepthUse depth : {DepthUse::pre_pass, DepthUse::clusters}) {
+        settings.depth = depth;
+        move_lights(places, 3, scene.lights);
+        renderer.draw(scene.cameras[0], settings);
+        const Picture moved = renderer.read_picture();
+        CHECK(compare(before, moved).pixels > 1000);
+        renderer.draw_every_light(scene.cameras[0], settings);
+        CHECK(compare(moved, renderer.read_picture()).pixels == 0);
+    }
+    settings.depth = DepthUse::pre_pass;
+    move_lights(places, 0, scene.lights);
+    renderer.draw(scene.cameras[0], settings);
+    CHECK(compare(before, renderer.read_picture()).pixels == 0);
 }
 
 TEST_CASE("the light meter makes up for the unit of the lights") {
