@@ -22,33 +22,15 @@
 
 namespace {
 
-std::vector<Technique> all_techniques() {
-    std::vector<Technique> all = {tiled_forward()};
-    for (const ZEnds ends : {ZEnds::none, ZEnds::min, ZEnds::max, ZEnds::both})
-        all.push_back(tiled_forward_pre_z(ends, Reduction::cpu));
-    all.push_back(tiled_forward_pre_z(ZEnds::both, Reduction::gpu));
-    all.push_back(tiled_forward_box());
-    for (const int bits : {8, 16})
-        all.push_back(light_indexed(bits));
-    all.push_back(clustered_forward());
-    all.push_back(z_binned_forward());
-    for (const auto technique :
-         {tiled_deferred, tiled_deferred_passes, tiled_deferred_kernel, deferred, deferred_stencil})
-        for (const int bits : {16, 32})
-            all.push_back(technique(bits));
-    return all;
-}
-
-std::vector<Technique> transparent_techniques() {
+// For transparency; for shaders of objects; for several samples a pixel, as Pettineo has them.
+std::vector<Technique> pane_techniques() {
     using enum TransparentLists;
     return {transparent_forward(max_only), transparent_forward(shared), transparent_forward(own_min)};
 }
-
-std::vector<Technique> pre_z_and_deferred() {
+std::vector<Technique> material_techniques() {
     return {tiled_forward_pre_z(ZEnds::both, Reduction::gpu), tiled_deferred(16), tiled_deferred(32)};
 }
-
-std::vector<Technique> multisampled_techniques() {
+std::vector<Technique> sample_techniques() {
     return {light_indexed(8), light_indexed(16), tiled_forward_box(), tiled_deferred_kernel(16),
             tiled_deferred_kernel(32)};
 }
@@ -84,7 +66,7 @@ constexpr std::size_t views_of_a_path = 10;  // a file of so many views or more 
 void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Camera> views, bool quick) {
     const bool is_path = views.size() >= views_of_a_path;
     const std::vector<Camera> some = every(is_path ? (quick ? 5 : 1) : 2, views);
-    const std::vector<Technique> all = all_techniques();
+    const std::vector<Technique> all = every_technique();
     SceneJobs own{scene, {}}, few{with_few_lights(scene), {}}, panes{with_panes(scene, 200), {}};
     own.scene.transparent.clear();
     if (is_path) {
@@ -95,9 +77,9 @@ void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Cam
     }
     own.add("from above", {camera_from_above(scene)}, all);
     const std::vector<Camera> first = {views.front()};
-    own.add("one shader", first, pre_z_and_deferred());
-    own.add("three shaders", first, pre_z_and_deferred(), {.three_shaders = true});
-    panes.add("panes", first, transparent_techniques(), {.transparent = true});
+    own.add("one shader", first, material_techniques());
+    own.add("three shaders", first, material_techniques(), {.three_shaders = true});
+    panes.add("panes", first, pane_techniques(), {.transparent = true});
     for (SceneJobs& jobs : {std::ref(own), std::ref(few), std::ref(panes)})
         if (!jobs.jobs.empty()) plan.push_back(std::move(jobs));
 }
@@ -110,10 +92,10 @@ std::vector<SceneJobs> make_plan(const std::vector<std::string>& files, bool qui
     made.transparent.clear();
     for (const std::size_t lights : {128u, 256u, 512u, 1024u}) {
         SceneJobs random{with_random_lights(made, lights), {}};
-        if (lights == 1024) random.add("random lights", still, all_techniques());
+        if (lights == 1024) random.add("random lights", still, every_technique());
         if (!quick || lights == 128 || lights == 1024)
             for (const int samples : {1, 2, 4, 8})
-                random.add("MSAA", {still[0]}, multisampled_techniques(), {.samples = samples});
+                random.add("MSAA", {still[0]}, sample_techniques(), {.samples = samples});
         plan.push_back(std::move(random));
     }
     for (const std::string& file : files) {

@@ -50,6 +50,8 @@ Stage::Stage(const Scene& scene, int glsl) : geometry(scene), scene_(scene), gls
 }
 
 void Stage::begin(const Camera& camera, const Settings& settings) {
+    while (glGetError() != GL_NO_ERROR) {  // of a frame that was given up
+    }
     settings_ = settings;
     const glm::dmat4 to_view = glm::inverse(camera.to_world);
     projection_ = projection_of(camera, static_cast<double>(settings.width) / settings.height);

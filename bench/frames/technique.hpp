@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 /// Draws one frame on a stage, pass by pass, so that its picture is in Stage::shown().
 struct Technique {
@@ -42,3 +43,6 @@ enum class TransparentLists {
     own_min    ///< also by the transparent geometry's own minimum
 };
 Technique transparent_forward(TransparentLists lists);
+
+/// All that draw opaque surfaces, but the reference.
+std::vector<Technique> every_technique();

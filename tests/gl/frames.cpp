@@ -20,30 +20,6 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-std::vector<Technique> all_techniques() {
-    return {tiled_forward(),
-            tiled_forward_pre_z(ZEnds::none, Reduction::cpu),
-            tiled_forward_pre_z(ZEnds::min, Reduction::cpu),
-            tiled_forward_pre_z(ZEnds::max, Reduction::cpu),
-            tiled_forward_pre_z(ZEnds::both, Reduction::cpu),
-            tiled_forward_pre_z(ZEnds::both, Reduction::gpu),
-            tiled_forward_box(),
-            light_indexed(8),
-            light_indexed(16),
-            clustered_forward(),
-            z_binned_forward(),
-            tiled_deferred(16),
-            tiled_deferred(32),
-            tiled_deferred_passes(16),
-            tiled_deferred_passes(32),
-            tiled_deferred_kernel(16),
-            tiled_deferred_kernel(32),
-            deferred(16),
-            deferred(32),
-            deferred_stencil(16),
-            deferred_stencil(32)};
-}
-
 Settings small_frame(float exposure) {
     Settings settings;
     settings.width = 131;
@@ -117,7 +93,7 @@ TEST_CASE("every technique draws the picture of every light") {
         const Settings settings = small_frame(seen.exposure);
         const Bytes expected = draw(stage, forward_every_light(), seen.camera, settings);
         CHECK(lit_share(expected) > 0.1);
-        for (const Technique& technique : all_techniques()) {
+        for (const Technique& technique : every_technique()) {
             CAPTURE(technique.name);
             CAPTURE(technique.g_buffer_bits);
             CHECK(technique.tolerance == (technique.g_buffer_bits == 0 ? 0 : technique.tolerance));
@@ -136,7 +112,7 @@ TEST_CASE("a light that is missing is seen") {
     Stage stage(scene, context.glsl()), stage_without(without, context.glsl());
     const Settings settings = small_frame(1);
     const Bytes expected = draw(stage, forward_every_light(), scene.cameras[0], settings);
-    for (const Technique& technique : all_techniques()) {
+    for (const Technique& technique : every_technique()) {
         CAPTURE(technique.name);
         CHECK(compare(expected, draw(stage_without, technique, scene.cameras[0], settings)).largest > 8);
     }
@@ -154,7 +130,7 @@ TEST_CASE("three shaders, and panes") {
     settings.three_shaders = true;
     const Bytes three = draw(stage, forward_every_light(), camera, settings);
     CHECK(compare(plain, three).share > 0.05);
-    for (const Technique& technique : all_techniques()) {
+    for (const Technique& technique : every_technique()) {
         if (technique.name.starts_with("Deferred")) continue;  // a light at a time has one shader
         CAPTURE(technique.name);
         CHECK(compare(three, draw(stage, technique, camera, settings)).largest <= technique.tolerance);
@@ -185,7 +161,7 @@ TEST_CASE("several samples a pixel") {
     const Bytes four = draw(stage, forward_every_light(), camera, settings);
     CHECK(compare(one, four).share > 0.02);
     CHECK(compare(one, four).share < 0.5);
-    for (const Technique& technique : all_techniques()) {
+    for (const Technique& technique : every_technique()) {
         if (!technique.multisampled) continue;
         CAPTURE(technique.name);
         const Difference difference = compare(four, draw(stage, technique, camera, settings));
@@ -277,7 +253,7 @@ TEST_CASE("with OpenGL 3.3, what needs no more is drawn") {
     const Settings settings = small_frame(1);
     const Bytes expected = draw(stage, forward_every_light(), scene.cameras[1], settings);
     int drawn = 0;
-    for (const Technique& technique : all_techniques()) {
+    for (const Technique& technique : every_technique()) {
         if (technique.glsl > 330) continue;
         CAPTURE(technique.name);
         CHECK(compare(expected, draw(stage, technique, scene.cameras[1], settings)).largest <=
