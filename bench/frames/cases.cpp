@@ -17,11 +17,11 @@ struct Box {
     glm::vec3 low{std::numeric_limits<float>::max()}, high{-low};
 };
 
-Box box_of(const Scene& scene) {
+template <class Thing> Box box_of(const std::vector<Thing>& things) {
     Box box;
-    for (const Vertex& vertex : scene.triangles) {
-        box.low = glm::min(box.low, vertex.position);
-        box.high = glm::max(box.high, vertex.position);
+    for (const Thing& thing : things) {
+        box.low = glm::min(box.low, thing.position);
+        box.high = glm::max(box.high, thing.position);
     }
     return box;
 }
@@ -58,11 +58,16 @@ private:
 }  // namespace
 
 Camera camera_from_above(const Scene& scene) {
-    const Box box = box_of(scene);
-    const glm::dvec3 middle = glm::dvec3(box.low + box.high) / 2.0, half = glm::dvec3(box.high - box.low) / 2.0;
-    const double height = std::max(half.z, half.x * 9 / 16) / std::tan(glm::radians(27.5));
+    const Box lights = box_of(scene.lights);
+    const glm::dvec3 middle = glm::dvec3(lights.low + lights.high) / 2.0,
+                     half = glm::dvec3(lights.high - lights.low) / 2.0;
+    const double height = std::max({half.z, half.x * 9 / 16, 0.1 * half.y}) / std::tan(glm::radians(27.5));
+    const double bottom = static_cast<double>(box_of(scene.triangles).low.y);
     const glm::dvec3 eye = middle + glm::dvec3(0, half.y + height, 0);
-    return look("from above", eye, middle, {0, 0, -1}, height + 2 * half.y);
+    Camera camera = look("from above", eye, middle, {0, 0, -1}, 1);
+    camera.near = 0.99 * height;  // lights included
+    camera.far = 1.01 * (eye.y - bottom);
+    return camera;
 }
 
 std::vector<Camera> made_flight(std::size_t views) {
@@ -77,7 +82,7 @@ std::vector<Camera> made_flight(std::size_t views) {
 }
 
 Scene with_random_lights(Scene scene, std::size_t count) {
-    const Box box = box_of(scene);
+    const Box box = box_of(scene.triangles);
     const glm::vec3 size = box.high - box.low;
     Dice dice;
     scene.lights.clear();
@@ -105,7 +110,7 @@ Scene with_few_lights(Scene scene) {
 
 Scene with_panes(Scene scene, std::size_t count) {
     if (!scene.transparent.empty()) return scene;
-    const Box box = box_of(scene);
+    const Box box = box_of(scene.triangles);
     const float side = 0.05f * std::max(box.high.x - box.low.x, box.high.z - box.low.z);
     Dice dice;
     for (std::size_t i = 0; i < count; ++i) {

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-/// Returns a camera that looks straight down on the whole scene.
+/// Returns a camera that looks straight down on all lights. Roofs above them are before its near plane, and not seen.
 Camera camera_from_above(const Scene& scene);
 
 /// Returns a flight over the made scene's roofs and down into its streets.

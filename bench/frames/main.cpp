@@ -76,10 +76,10 @@ void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Cam
         own.add("from within", some, all);
     }
     own.add("from above", {camera_from_above(scene)}, all);
-    const std::vector<Camera> first = {views.front()};
-    own.add("one shader", first, material_techniques());
-    own.add("three shaders", first, material_techniques(), {.three_shaders = true});
-    panes.add("panes", first, pane_techniques(), {.transparent = true});
+    const std::vector<Camera> one = {views[std::min<std::size_t>(1, views.size() - 1)]};
+    own.add("one shader", one, material_techniques());
+    own.add("three shaders", one, material_techniques(), {.three_shaders = true});
+    panes.add("panes", one, pane_techniques(), {.transparent = true});
     for (SceneJobs& jobs : {std::ref(own), std::ref(few), std::ref(panes)})
         if (!jobs.jobs.empty()) plan.push_back(std::move(jobs));
 }
