@@ -73,10 +73,12 @@ Camera camera_from_above(const Scene& scene) {
 std::vector<Camera> made_flight(std::size_t views) {
     std::vector<Camera> flight;
     for (std::size_t i = 0; i < views; ++i) {
-        const double t = static_cast<double>(i) / static_cast<double>(views), turn = glm::two_pi<double>() * t;
+        const double t = static_cast<double>(i) / static_cast<double>(views),
+                     turn = glm::two_pi<double>() * t;
         const double height = 22 + 16 * std::cos(turn), radius = 50 + 20 * std::cos(turn);
         const glm::dvec3 eye(radius * std::sin(turn), height, radius * std::cos(turn));
-        flight.push_back(look("flight " + std::to_string(i), eye, {10 * std::sin(3 * turn), 3, 0}, {0, 1, 0}, 250));
+        flight.push_back(
+            look("flight " + std::to_string(i), eye, {10 * std::sin(3 * turn), 3, 0}, {0, 1, 0}, 250));
     }
     return flight;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // frames [--quick] [--pictures] [SCENE.glb ...]: whole frames by every technique of the papers, on the made scene and on the
 // named ones, or those of the tests.
-#include "cases.hpp"
+#include "plan.hpp"
 #include "report.hpp"
 #include "runner.hpp"
 
@@ -15,95 +15,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace {
-
-// For transparency; for shaders of objects; for several samples a pixel, as Pettineo has them.
-std::vector<Technique> pane_techniques() {
-    using enum TransparentLists;
-    return {transparent_forward(max_only), transparent_forward(shared), transparent_forward(own_min)};
-}
-std::vector<Technique> material_techniques() {
-    return {tiled_forward_pre_z(ZEnds::both, Reduction::gpu), tiled_deferred(16), tiled_deferred(32)};
-}
-std::vector<Technique> sample_techniques() {
-    return {light_indexed(8), light_indexed(16), tiled_forward_box(), tiled_deferred_kernel(16),
-            tiled_deferred_kernel(32)};
-}
-
-struct Job {
-    std::string table;
-    Camera camera;
-    std::vector<Technique> techniques;
-    Settings settings;
-};
-
-/// The views of one scene.
-struct SceneJobs {
-    Scene scene;
-    std::vector<Job> jobs;
-
-    void add(const std::string& table, const std::vector<Camera>& cameras,
-             const std::vector<Technique>& techniques, const Settings& settings = {}) {
-        for (const Camera& camera : cameras)
-            jobs.push_back({table, camera, techniques, settings});
-    }
-};
-
-template <class T> std::vector<T> every(std::size_t step, const std::vector<T>& all) {
-    std::vector<T> some;
-    for (std::size_t i = 0; i < all.size(); i += step)
-        some.push_back(all[i]);
-    return some;
-}
-
-constexpr std::size_t views_of_a_path = 10;  // a file of so many views or more is a camera's path
-
-void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Camera> views, bool quick) {
-    const bool is_path = views.size() >= views_of_a_path;
-    const std::vector<Camera> some = every(is_path ? (quick ? 5 : 1) : 2, views);
-    const std::vector<Technique> all = every_technique();
-    SceneJobs own{scene, {}}, few{with_few_lights(scene), {}}, panes{with_panes(scene, 200), {}};
-    own.scene.transparent.clear();
-    if (is_path) {
-        own.add("path", some, all);
-        few.add("path with few lights", some, all);
-    } else {
-        own.add("from within", some, all);
-    }
-    own.add("from above", {camera_from_above(scene)}, all);
-    const std::vector<Camera> one = {views[std::min<std::size_t>(1, views.size() - 1)]};
-    own.add("one shader", one, material_techniques());
-    own.add("three shaders", one, material_techniques(), {.three_shaders = true});
-    panes.add("panes", one, pane_techniques(), {.transparent = true});
-    for (SceneJobs& jobs : {std::ref(own), std::ref(few), std::ref(panes)})
-        if (!jobs.jobs.empty()) plan.push_back(std::move(jobs));
-}
-
-std::vector<SceneJobs> make_plan(const std::vector<std::string>& files, bool quick) {
-    std::vector<SceneJobs> plan;
-    Scene made = make_scene(1024);
-    const std::vector<Camera> flight = made_flight(15), still = {made.cameras[0], made.cameras[1]};
-    add_scene(plan, made, flight, quick);
-    made.transparent.clear();
-    for (const std::size_t lights : {128u, 256u, 512u, 1024u}) {
-        SceneJobs random{with_random_lights(made, lights), {}};
-        if (lights == 1024) random.add("random lights", still, every_technique());
-        if (!quick || lights == 128 || lights == 1024)
-            for (const int samples : {1, 2, 4, 8})
-                random.add("MSAA", {still[0]}, sample_techniques(), {.samples = samples});
-        plan.push_back(std::move(random));
-    }
-    for (const std::string& file : files) {
-        const Scene scene = load_glb(file, 0.05f);
-        add_scene(plan, scene, scene.cameras, quick);
-    }
-    return plan;
-}
 
 void write_picture(const Job& job, const Scene& scene, const RunSettings& run, const Runner& runner) {
     Picture picture{run.width, run.height, {}};
@@ -127,7 +43,8 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-std::vector<Row> draw_all(const std::vector<SceneJobs>& plan, RunSettings run, bool pictures, LeftOut& left_out) {
+std::vector<Row> draw_all(const std::vector<SceneJobs>& plan, RunSettings run, bool pictures,
+                          LeftOut& left_out) {
     std::size_t views = 0;
     for (const SceneJobs& scene : plan)
         views += scene.jobs.size();
@@ -171,16 +88,18 @@ int run(Arguments arguments) {
         run.tile_size = software ? 16 : 32;
         run.timed_frames = !software ? 25 : quick ? 1 : 3;
         std::printf("OpenGL: %s, GLSL %d; %d x %d pixels, tiles of %d\n",
-                    reinterpret_cast<const char*>(glGetString(GL_RENDERER)), context.glsl(), run.width, run.height,
-                    run.tile_size);
+                    reinterpret_cast<const char*>(glGetString(GL_RENDERER)), context.glsl(), run.width,
+                    run.height, run.tile_size);
         if (software)
-            std::printf("This OpenGL draws on the CPU: its times say little about a GPU's. Compare evaluations and "
-                        "bytes.\n");
+            std::printf(
+                "This OpenGL draws on the CPU: its times say little about a GPU's. Compare evaluations and "
+                "bytes.\n");
         if (context.glsl() < 430) std::printf("Evaluations are not counted: that needs OpenGL 4.3.\n");
         std::fflush(stdout);
     }
     LeftOut left_out;
-    const std::vector<Row> rows = draw_all(make_plan(arguments.scenes_or_fixtures(), quick), run, pictures, left_out);
+    const std::vector<Row> rows =
+        draw_all(make_plan(arguments.scenes_or_fixtures(), quick), run, pictures, left_out);
     print(rows);
     if (!left_out.lines().empty()) std::printf("\n");
     for (const std::string& line : left_out.lines())

@@ -71,7 +71,8 @@ void print_techniques(const std::string& title, const std::vector<Row>& rows) {
         const Spread different = spread_of(views, [](const Row& row) {
             return 100.0 * static_cast<double>(row.different) / static_cast<double>(row.pixels);
         });
-        const Spread difference = spread_of(views, [](const Row& row) { return static_cast<double>(row.difference); });
+        const Spread difference =
+            spread_of(views, [](const Row& row) { return static_cast<double>(row.difference); });
         const Spread bytes = spread_of(views, [](const Row& row) { return static_cast<double>(row.bytes); });
         std::printf("%-52s %8.1f (%7.1f /%7.1f)", name.c_str(), ms.mean, ms.least, ms.most);
         if (evaluations.most > 0)
@@ -96,7 +97,8 @@ void print_samples(const std::string& title, const std::vector<Row>& rows) {
     for (std::size_t i = 0; i < columns.size(); ++i)
         std::printf(" | %8s %8s %6s %9s", "ms", "million", "MB", "differs");
     std::printf("\n");
-    for (const auto& [key, line] : grouped(rows, [](const Row& r) { return std::pair(r.lights, r.samples); })) {
+    for (const auto& [key, line] :
+         grouped(rows, [](const Row& r) { return std::pair(r.lights, r.samples); })) {
         std::printf("%8zu, %4d", key.first, key.second);
         for (const auto& [name, column] : columns) {
             const auto row = std::ranges::find(line, name, &Row::technique);
@@ -113,8 +115,9 @@ void print_samples(const std::string& title, const std::vector<Row>& rows) {
 
 void write_csv(const std::string& name, const std::vector<Row>& rows) {
     const File file(name + ".csv");
-    std::fprintf(file, "table,scene,view,lights,technique,samples,evaluations,ms,least_ms,most_ms,bytes,pixels,"
-                       "different_pixels,largest_difference,passes\n");
+    std::fprintf(file,
+                 "table,scene,view,lights,technique,samples,evaluations,ms,least_ms,most_ms,bytes,pixels,"
+                 "different_pixels,largest_difference,passes\n");
     for (const Row& row : rows) {
         std::fprintf(file, "%s,%s,%s,%zu,%s,%d,%llu,%.3f,%.3f,%.3f,%zu,%zu,%zu,%d,", row.table.c_str(),
                      quoted(row.scene).c_str(), quoted(row.view).c_str(), row.lights, row.technique.c_str(),
@@ -137,6 +140,7 @@ void write_paths(const std::string& name, const std::vector<Row>& rows) {
         const std::string its = row.scene + ": " + std::to_string(row.lights) + " lights";
         if (its != std::exchange(panel, its)) number = -1;
         if (row.view != std::exchange(view, row.view) || number < 0) ++number;
-        std::fprintf(file, "%s,%d,%s,%.6f\n", quoted(its).c_str(), number, row.technique.c_str(), millions(row));
+        std::fprintf(file, "%s,%d,%s,%.6f\n", quoted(its).c_str(), number, row.technique.c_str(),
+                     millions(row));
     }
 }

@@ -32,8 +32,8 @@ Runner::Runner(const Scene& scene, const RunSettings& settings, int glsl, LeftOu
     : scene_(scene), run_(settings), stage_(scene, glsl), meter_(scene, glsl), left_out_(left_out),
       every_light_(forward_every_light()) {}
 
-std::vector<Row> Runner::run(const std::string& table, const Camera& camera, std::vector<Technique> techniques,
-                             Settings wanted) {
+std::vector<Row> Runner::run(const std::string& table, const Camera& camera,
+                             std::vector<Technique> techniques, Settings wanted) {
     wanted.width = run_.width;
     wanted.height = run_.height;
     wanted.tile_size = run_.tile_size;
@@ -43,7 +43,8 @@ std::vector<Row> Runner::run(const std::string& table, const Camera& camera, std
     techniques.insert(techniques.begin(), every_light_);
     for (const Technique& technique : techniques) {
         const bool is_reference = reference_.empty();
-        const std::string who = full_name(technique) + (wanted.samples > 1 ? " at MSAA " + std::to_string(wanted.samples) : "");
+        const std::string who =
+            full_name(technique) + (wanted.samples > 1 ? " at MSAA " + std::to_string(wanted.samples) : "");
         try {
             if (technique.glsl > stage_.glsl()) throw std::runtime_error("it needs OpenGL 4.3");
             // The reference takes long. One frame will do.

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "plan.hpp"
+
+#include "cases.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <utility>
+
+namespace {
+
+// For transparency; for shaders of objects; for several samples a pixel, as Pettineo has them.
+std::vector<Technique> pane_techniques() {
+    using enum TransparentLists;
+    return {transparent_forward(max_only), transparent_forward(shared), transparent_forward(own_min)};
+}
+std::vector<Technique> material_techniques() {
+    return {tiled_forward_pre_z(ZEnds::both, Reduction::gpu), tiled_deferred(16), tiled_deferred(32)};
+}
+std::vector<Technique> sample_techniques() {
+    return {light_indexed(8), light_indexed(16), tiled_forward_box(), tiled_deferred_kernel(16),
+            tiled_deferred_kernel(32)};
+}
+
+void add(SceneJobs& scene, const std::string& table, const std::vector<Camera>& cameras,
+         const std::vector<Technique>& techniques, const Settings& settings = {}) {
+    for (const Camera& camera : cameras)
+        scene.jobs.push_back({table, camera, techniques, settings});
+}
+
+template <class T> std::vector<T> every(std::size_t step, const std::vector<T>& all) {
+    std::vector<T> some;
+    for (std::size_t i = 0; i < all.size(); i += step)
+        some.push_back(all[i]);
+    return some;
+}
+
+constexpr std::size_t views_of_a_path = 10;  // a file of so many views or more is a camera's path
+
+void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Camera> views, bool quick) {
+    const bool is_path = views.size() >= views_of_a_path;
+    const std::vector<Camera> some = every(is_path ? (quick ? 5 : 1) : 2, views);
+    const std::vector<Technique> all = every_technique();
+    SceneJobs own{scene, {}}, few{with_few_lights(scene), {}}, panes{with_panes(scene, 200), {}};
+    own.scene.transparent.clear();
+    if (is_path) {
+        add(own, "path", some, all);
+        add(few, "path with few lights", some, all);
+    } else {
+        add(own, "from within", some, all);
+    }
+    add(own, "from above", {camera_from_above(scene)}, all);
+    const std::vector<Camera> one = {views[std::min<std::size_t>(1, views.size() - 1)]};
+    add(own, "one shader", one, material_techniques());
+    add(own, "three shaders", one, material_techniques(), {.three_shaders = true});
+    add(panes, "panes", one, pane_techniques(), {.transparent = true});
+    for (SceneJobs& jobs : {std::ref(own), std::ref(few), std::ref(panes)})
+        if (!jobs.jobs.empty()) plan.push_back(std::move(jobs));
+}
+
+}  // namespace
+
+std::vector<SceneJobs> make_plan(const std::vector<std::string>& files, bool quick) {
+    std::vector<SceneJobs> plan;
+    Scene made = make_scene(1024);
+    const std::vector<Camera> flight = made_flight(15), still = {made.cameras[0], made.cameras[1]};
+    add_scene(plan, made, flight, quick);
+    made.transparent.clear();
+    for (const std::size_t lights : {128u, 256u, 512u, 1024u}) {
+        SceneJobs random{with_random_lights(made, lights), {}};
+        if (lights == 1024) add(random, "random lights", still, every_technique());
+        if (!quick || lights == 128 || lights == 1024)
+            for (const int samples : {1, 2, 4, 8})
+                add(random, "MSAA", {still[0]}, sample_techniques(), {.samples = samples});
+        plan.push_back(std::move(random));
+    }
+    for (const std::string& file : files) {
+        const Scene scene = load_glb(file, 0.05f);
+        add_scene(plan, scene, scene.cameras, quick);
+    }
+    return plan;
+}

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// What is drawn: scenes, the views of each, and the techniques for each view.
+#pragma once
+
+#include "settings.hpp"
+#include "technique.hpp"
+
+#include <scene.hpp>
+
+#include <string>
+#include <vector>
+
+/// A view of a scene.
+struct Job {
+    std::string table;
+    Camera camera;
+    std::vector<Technique> techniques;
+    Settings settings;
+};
+
+struct SceneJobs {
+    Scene scene;
+    std::vector<Job> jobs;
+};
+
+/// Returns the made scene's views and those of the files', of some of them only if it is to be quick. Throws
+/// std::runtime_error with one line if a file can't be read.
+std::vector<SceneJobs> make_plan(const std::vector<std::string>& files, bool quick);
