@@ -77,6 +77,15 @@ void print(const std::vector<Row>& rows) {
     }
 }
 
+bool pictures_are_as_stated(const std::vector<Row>& rows) {
+    for (const Row& row : rows)
+        if (!row.as_stated)
+            std::printf("%s, %s, %s: %s DIFFERS from every light, by up to %d of 255, more than it may\n",
+                        row.scene.c_str(), row.table.c_str(), row.view.c_str(), row.technique.c_str(),
+                        row.difference);
+    return std::ranges::all_of(rows, &Row::as_stated);
+}
+
 int run(Arguments arguments) {
     const bool quick = arguments.take("--quick"), pictures = arguments.take("--pictures");
     RunSettings run;
@@ -106,7 +115,7 @@ int run(Arguments arguments) {
         std::printf("%s\n", line.c_str());
     write_csv("frames", rows);
     write_paths("frames_paths", rows);
-    return EXIT_SUCCESS;
+    return pictures_are_as_stated(rows) ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ struct Row {
     std::size_t pixels = 0;
     std::size_t different = 0;  ///< pixels that are not the reference's
     int difference = 0;         ///< the largest of a colour, of 255
+    bool as_stated = true;      ///< it is no larger than the technique's tolerance
 };
 
 /// What the run asks of all frames.
