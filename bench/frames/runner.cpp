@@ -37,6 +37,7 @@ std::vector<Row> Runner::run(const std::string& table, const Camera& camera,
     wanted.width = run_.width;
     wanted.height = run_.height;
     wanted.tile_size = run_.tile_size;
+    Stage::reset_state();
     wanted.exposure = meter_.meter(camera, {});
     std::vector<Row> rows;
     reference_.clear();

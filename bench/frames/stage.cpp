@@ -49,6 +49,13 @@ Stage::Stage(const Scene& scene, int glsl) : geometry(scene), scene_(scene), gls
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
 }
 
+void Stage::reset_state() {
+    for (const GLenum off : {GL_BLEND, GL_CULL_FACE, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_DEPTH_CLAMP})
+        glDisable(off);
+    glDepthMask(GL_TRUE);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
 void Stage::begin(const Camera& camera, const Settings& settings) {
     while (glGetError() != GL_NO_ERROR) {  // of a frame that was given up
     }
@@ -92,12 +99,9 @@ void Stage::begin(const Camera& camera, const Settings& settings) {
     memory.draw_to({drawn()}, 0);
     sample_places_ = find_sample_places(settings.samples);
     glViewport(0, 0, settings.width, settings.height);
-    for (const GLenum off : {GL_BLEND, GL_CULL_FACE, GL_STENCIL_TEST, GL_DEPTH_CLAMP})
-        glDisable(off);
+    reset_state();
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);  // of surfaces in one place the last is seen, with a pre-pass and without
-    glDepthMask(GL_TRUE);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glFinish();
     laps_.clear();
     lap("");

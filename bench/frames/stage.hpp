@@ -39,6 +39,8 @@ public:
     Geometry geometry;
     GpuMemory memory;
 
+    /// Sets what others drew with back to how a context begins.
+    static void reset_state();
     /// Sets the camera, the lights and the settings of a frame.
     void begin(const Camera& camera, const Settings& settings);
     /// Ends a pass: all that was done since the last one, by the CPU and the GPU.

@@ -313,6 +313,7 @@ void Renderer::start(const Camera& camera, const FrameSettings& settings) {
     frame_buffer_.resize(settings.width, settings.height, settings.samples,
                          settings.exposure == 0 ? GL_RGBA32F : GL_RGBA8);
     set_camera(camera);
+    glBindVertexArray(vertex_array_);  // another's may be bound
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     glClearColor(0.02f, 0.025f, 0.04f, 0);  // alpha tells the light meter where nothing is drawn

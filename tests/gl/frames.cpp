@@ -3,6 +3,7 @@
 // against lists and depths that are gone through here.
 #include "cases.hpp"
 #include "passes.hpp"
+#include "runner.hpp"
 #include "technique.hpp"
 
 #include <gl_context.hpp>
@@ -38,13 +39,13 @@ Bytes draw(Stage& stage, const Technique& technique, const Camera& camera, Setti
     return stage.read_picture();
 }
 
-struct Difference {
+struct Unlikeness {
     int largest = 0;
     double share = 0;       // of the pixels that differ at all
     double much_share = 0;  // and by more than 8 of 255
 };
-Difference compare(const Bytes& a, const Bytes& b) {
-    Difference difference;
+Unlikeness compare(const Bytes& a, const Bytes& b) {
+    Unlikeness difference;
     const double pixel = 4.0 / static_cast<double>(a.size());
     for (std::size_t i = 0; i < a.size(); i += 4) {
         int largest = 0;
@@ -97,7 +98,7 @@ TEST_CASE("every technique draws the picture of every light") {
             CAPTURE(technique.name);
             CAPTURE(technique.g_buffer_bits);
             CHECK(technique.tolerance == (technique.g_buffer_bits == 0 ? 0 : technique.tolerance));
-            const Difference difference =
+            const Unlikeness difference =
                 compare(expected, draw(stage, technique, seen.camera, settings));
             CHECK(difference.largest <= technique.tolerance);
         }
@@ -164,7 +165,7 @@ TEST_CASE("several samples a pixel") {
     for (const Technique& technique : every_technique()) {
         if (!technique.multisampled) continue;
         CAPTURE(technique.name);
-        const Difference difference = compare(four, draw(stage, technique, camera, settings));
+        const Unlikeness difference = compare(four, draw(stage, technique, camera, settings));
         CHECK(difference.much_share < (technique.g_buffer_bits == 0 ? 0.01 : 0.03));
     }
     settings.samples = 3;
@@ -229,6 +230,19 @@ TEST_CASE("evaluations are those of the lists") {
     CHECK(marked >= reached);
     CHECK(marked <= nearly_reached);
     CHECK(reached > pixels);
+}
+
+TEST_CASE("each view is as bright as if it were the first") {
+    const Scene scene = make_scene(100);
+    const RunSettings run{.width = 131, .height = 77, .tile_size = 13, .timed_frames = 1};
+    const OffscreenContext context(0);
+    LeftOut left_out;
+    Runner first(scene, run, context.glsl(), left_out), second(scene, run, context.glsl(), left_out);
+    REQUIRE(first.run("", scene.cameras[0], {}, {}).size() == 1);
+    REQUIRE(second.run("", scene.cameras[1], {deferred_stencil(32)}, {}).size() == 2);
+    REQUIRE(second.run("", scene.cameras[0], {}, {}).size() == 1);
+    CHECK(compare(first.reference(), second.reference()).largest == 0);
+    CHECK(lit_share(first.reference()) > 0.1);
 }
 
 TEST_CASE("what this OpenGL lacks is named") {
