@@ -182,11 +182,9 @@ vec3 lit_pixel(ivec2 pixel) {
 }  // namespace
 
 LightLoop every_light() {
-    return {R"(
-struct EveryLight { uint id; };
-#define each_light(light, pixel, view_depth) \
-    for (EveryLight light = EveryLight(0u); light.id < uint(light_count); light.id += 1u)
-)"};
+    return {"\nstruct EveryLight { uint id; };\n"
+            "#define each_light(light, pixel, view_depth) "  // on one line: GLSL 3.30 continues none
+            "for (EveryLight light = EveryLight(0u); light.id < uint(light_count); light.id += 1u)\n"};
 }
 
 // Texel buffers, which OpenGL 3.3 has, are read the same way by all.
