@@ -47,7 +47,7 @@ void main() {
         nearest = 0xffffffffu;
         farthest = 0u;
     }
-    for (uint word = thread; word < WORDS; word += TILE * TILE) passed[word] = 0u;
+    for (uint word = thread; word < WORDS; word += THREADS) passed[word] = 0u;
     barrier();
 
     for (int i = 0; inside && i < SAMPLES; ++i) {
@@ -61,7 +61,7 @@ void main() {
 
     float z_min = uintBitsToFloat(nearest), z_max = uintBitsToFloat(farthest);
     uvec2 tile = gl_WorkGroupID.xy;
-    for (uint i = thread; nearest <= farthest && i < footprint_count; i += TILE * TILE) {
+    for (uint i = thread; nearest <= farthest && i < footprint_count; i += THREADS) {
         Footprint f = footprints[i];
         uvec2 low = uvec2(f.low & 0xffffu, f.low >> 16u), high = uvec2(f.high & 0xffffu, f.high >> 16u);
         if (all(greaterThanEqual(tile, low)) && all(lessThanEqual(tile, high)) &&
@@ -102,7 +102,8 @@ Technique tiled_deferred_kernel(int g_buffer_bits) {
                     read_g_buffer(stage, stage.depth());
                     const Shaders shaders = stage.shaders();
                     const std::string constants =
-                        "#define TILE " + std::to_string(tile) + "u\n#define WORDS " +
+                        "#define TILE " + std::to_string(tile) + "\n#define THREADS " +
+                        std::to_string(tile * tile) + "u\n#define WORDS " +
                         std::to_string(stage.lights().size() / 32 + 1) + "u\n";
                     const LightLoop lights = {tile_lights, "int(footprints[light.id].id)"};
                     const GLuint program = stage.use_compute(shaders.head() + constants +
