@@ -27,10 +27,10 @@ glm::mat4 projection_of(const Camera& camera, double aspect) {
                          : glm::perspective(camera.height, aspect, camera.near, camera.far));
 }
 
-// Where in a pixel its samples lie.
+// Where in a pixel of the bound targets its samples lie.
 std::vector<glm::vec2> find_sample_places(int samples) {
-    std::vector<glm::vec2> places(static_cast<std::size_t>(samples), glm::vec2(0.5f));
-    for (int i = 0; samples > 1 && i < samples; ++i)
+    std::vector<glm::vec2> places(static_cast<std::size_t>(samples));
+    for (int i = 0; i < samples; ++i)
         glGetMultisamplefv(GL_SAMPLE_POSITION, static_cast<GLuint>(i), &places[static_cast<std::size_t>(i)].x);
     return places;
 }
@@ -96,8 +96,11 @@ void Stage::begin(const Camera& camera, const Settings& settings) {
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 7, counter_);
         glBufferData(GL_SHADER_STORAGE_BUFFER, sizeof zero, zero, GL_DYNAMIC_READ);
     }
-    memory.draw_to({drawn()}, 0);
-    sample_places_ = find_sample_places(settings.samples);
+    sample_places_ = {glm::vec2(0.5f)};
+    if (settings.samples > 1) {
+        memory.draw_to({}, depth());  // which all need
+        sample_places_ = find_sample_places(settings.samples);
+    }
     glViewport(0, 0, settings.width, settings.height);
     reset_state();
     glEnable(GL_DEPTH_TEST);

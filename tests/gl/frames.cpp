@@ -171,6 +171,10 @@ TEST_CASE("several samples a pixel") {
         const Unlikeness difference = compare(four, draw(stage, technique, camera, settings));
         CHECK(difference.much_share < (technique.g_buffer_bits == 0 ? 0.01 : 0.03));
     }
+    draw(stage, tiled_deferred_kernel(32), camera, settings);
+    const auto least = static_cast<std::size_t>(settings.width * settings.height) * (4 * (4 * 16 + 4) + 4);
+    CHECK(stage.memory.bytes() > least);  // four surfaces and a depth, of each sample, and what is shown
+    CHECK(stage.memory.bytes() <= least + scene.lights.size() * 64);
     for (const int none : {3, 1000}) {
         settings.samples = none;
         CHECK_THROWS_WITH(draw(stage, tiled_forward(), camera, settings),
