@@ -143,6 +143,7 @@ std::vector<Pass> Stage::end() {
 
 std::uint64_t Stage::evaluations() const {
     std::uint32_t words[2] = {};
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, counter_);
     glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof words, words);
     return (std::uint64_t{words[1]} << 32) + words[0];
