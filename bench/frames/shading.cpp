@@ -360,11 +360,13 @@ uniform samplerBuffer lights;
 uniform int number;
 layout(location = 0) in vec3 position;
 flat out int light;
+invariant gl_Position;  // what is marked and what takes the marks away are the same pixels
 
 void main() {
     light = number;
     vec4 sphere = texelFetch(lights, 2 * number);
-    gl_Position = projection * vec4(sphere.xyz + sphere.w * position, 1.0);
+    float radius = min(sphere.w, 1e18);  // a light without an end has a ball that has all in it
+    gl_Position = projection * vec4(sphere.xyz + radius * position, 1.0);
 }
 )";
 }

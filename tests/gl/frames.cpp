@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -79,10 +80,14 @@ struct Seen {
 std::vector<Seen> seen_scenes() {
     const Scene made = make_scene(250), nova = load_glb(LIGHTBIN_FIXTURES "/nova.glb", 0.05f);
     const Scene few = with_few_lights(made), random = with_random_lights(made, 200);
+    Scene endless = made;
+    for (Light& light : endless.lights)
+        light.range = std::numeric_limits<float>::infinity();
     return {{"made scene, a street", made, made.cameras[1], 1},
             {"made scene, from above", made, camera_from_above(made), 1},
             {"few lights", few, made_flight(15)[3], 1},
             {"random lights", random, made.cameras[0], 1},
+            {"lights without an end", endless, made.cameras[1], 0.02f},
             {"nova", nova, nova.cameras[0], 1}};
 }
 
