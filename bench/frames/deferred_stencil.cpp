@@ -60,15 +60,19 @@ Technique deferred_stencil(int g_buffer_bits) {
                     begin_radiance(stage, depth, tested);
                     glEnable(GL_STENCIL_TEST);
                     glEnable(GL_DEPTH_CLAMP);  // or the near plane would cut balls open
-                    const std::string vertex = stage.shaders().ball_vertex(),
-                                      light = stage.shaders().one_light_fragment(),
-                                      nothing = stage.shaders().depth_fragment();
-                    for (const lightbin::ShaderFootprint& f : footprints)
-                        for (const bool marking : {true, false}) {
-                            const GLuint program = stage.use(vertex, marking ? nothing : light);
-                            glUniform1i(uniform(program, "number"), static_cast<GLint>(f.id));
-                            marking ? mark(stage) : light_marked(stage);
-                        }
+                    const std::string vertex = stage.shaders().ball_vertex();
+                    const GLuint marking = stage.use(vertex, stage.shaders().depth_fragment()),
+                                 lighting = stage.use(vertex, stage.shaders().one_light_fragment());
+                    const GLint marking_number = uniform(marking, "number"),
+                                lighting_number = uniform(lighting, "number");
+                    for (const lightbin::ShaderFootprint& f : footprints) {
+                        glUseProgram(marking);
+                        glUniform1i(marking_number, static_cast<GLint>(f.id));
+                        mark(stage);
+                        glUseProgram(lighting);
+                        glUniform1i(lighting_number, static_cast<GLint>(f.id));
+                        light_marked(stage);
+                    }
                     for (const GLenum off : {GL_STENCIL_TEST, GL_DEPTH_CLAMP, GL_CULL_FACE})
                         glDisable(off);
                     stage.lap("shade");
