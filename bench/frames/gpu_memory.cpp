@@ -29,6 +29,16 @@ GLenum kind_of(bool multisampled) {
     return multisampled ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
 }
 
+std::size_t texel_bytes(GLenum format) {
+    switch (format) {
+    case GL_R8UI: return 1;
+    case GL_R16UI: return 2;
+    case GL_R32UI: return 4;
+    case GL_RG32UI: return 8;
+    default: return 16;
+    }
+}
+
 }  // namespace
 
 void set_samplers(GLuint program) {
@@ -153,5 +163,11 @@ void GpuMemory::read_texels(Unit unit, GLenum format, GLuint buffer) {
     if (texels_[unit] == 0) glGenTextures(1, &texels_[unit]);
     glActiveTexture(GL_TEXTURE0 + unit);
     glBindTexture(GL_TEXTURE_BUFFER, texels_[unit]);
+    const auto found = std::ranges::find(buffers_, buffer, [](const auto& b) { return b.second.name; });
+    GLint most = 0;  // what lies beyond is read as if it were nothing
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+    if (found->second.bytes / texel_bytes(format) > static_cast<std::size_t>(most))
+        throw std::runtime_error(found->first + " take " + std::to_string(found->second.bytes >> 20) +
+                                 " MiB, and this OpenGL reads at most " + std::to_string(most) + " texels");
     glTexBuffer(GL_TEXTURE_BUFFER, format, buffer);
 }

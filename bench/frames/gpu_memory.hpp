@@ -49,7 +49,7 @@ public:
     template <class T> GLuint buffer(const std::string& name, std::span<const T> data) {
         return buffer(name, data.size_bytes(), data.data());
     }
-    /// Shaders read the buffer's bytes at the unit, as texels of that format.
+    /// Shaders read the bytes of a buffer() at the unit, as texels of that format.
     void read_texels(Unit unit, GLenum format, GLuint buffer);
 
 private:

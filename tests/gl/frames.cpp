@@ -325,9 +325,17 @@ TEST_CASE("what this OpenGL lacks is named") {
     settings.tile_size = 64;
     CHECK_THROWS_WITH_AS(draw(stage, tiled_deferred_kernel(32), scene.cameras[0], settings),
                          doctest::Contains("a thread a pixel"), std::runtime_error);
-    settings.width = 40000;
+    settings.width = 30000;
     CHECK_THROWS_WITH_AS(draw(stage, tiled_forward(), scene.cameras[0], settings),
-                         doctest::Contains("no target of 40000 x 77 pixels"), std::runtime_error);
+                         doctest::Contains("no target of 30000 x 77 pixels"), std::runtime_error);
+
+    GLint most = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+    const std::size_t bytes = 2 * static_cast<std::size_t>(most);
+    stage.memory.read_texels(unit_lists, GL_R16UI, stage.memory.buffer("lists", bytes, nullptr));
+    const GLuint larger = stage.memory.buffer("lists", bytes + 2, nullptr);
+    CHECK_THROWS_WITH_AS(stage.memory.read_texels(unit_lists, GL_R16UI, larger),
+                         doctest::Contains("this OpenGL reads at most"), std::runtime_error);
 }
 
 TEST_CASE("with OpenGL 3.3, what needs no more is drawn") {
