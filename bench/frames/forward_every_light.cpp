@@ -3,8 +3,14 @@
 #include "passes.hpp"
 #include "technique.hpp"
 
+#include <stdexcept>
+#include <string>
+
 Technique forward_every_light() {
     return {"Forward with every light", [](Stage& stage) {
+                if (stage.lights().size() > 65000)  // Mesa's software renderer ends longer loops, and says nothing
+                    throw std::runtime_error("a fragment would loop over " + std::to_string(stage.lights().size()) +
+                                             " lights, and some drivers end a loop after 65,535");
                 begin_picture(stage);
                 depth_pre_pass(stage);
                 shade_forward(stage, every_light());

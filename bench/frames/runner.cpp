@@ -37,8 +37,6 @@ std::vector<Row> Runner::run(const std::string& table, const Camera& camera,
     wanted.width = run_.width;
     wanted.height = run_.height;
     wanted.tile_size = run_.tile_size;
-    Stage::reset_state();
-    wanted.exposure = meter_.meter(camera, {});
     std::vector<Row> rows;
     reference_.clear();
     techniques.insert(techniques.begin(), every_light_);
@@ -47,6 +45,10 @@ std::vector<Row> Runner::run(const std::string& table, const Camera& camera,
         const std::string who =
             full_name(technique) + (wanted.samples > 1 ? " at MSAA " + std::to_string(wanted.samples) : "");
         try {
+            if (is_reference) {
+                Stage::reset_state();
+                wanted.exposure = meter_.meter(camera, {});
+            }
             if (technique.glsl > stage_.glsl()) throw std::runtime_error("it needs OpenGL 4.3");
             // The reference takes long. One frame will do.
             Row row = draw(technique, camera, wanted, is_reference ? 0 : run_.timed_frames);

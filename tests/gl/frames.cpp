@@ -338,6 +338,30 @@ TEST_CASE("what this OpenGL lacks is named") {
                          doctest::Contains("this OpenGL reads at most"), std::runtime_error);
 }
 
+TEST_CASE("a view that cannot be drawn is left out, and no more") {
+    Scene many = make_scene(65001), endless = many;
+    for (Light& light : endless.lights)
+        light.range = std::numeric_limits<float>::infinity();
+    const OffscreenContext context(0);
+    const RunSettings run{.width = 16, .height = 9, .tile_size = 8, .timed_frames = 1};
+    for (const Scene& scene : {many, endless}) {
+        LeftOut left_out;
+        Runner runner(scene, run, context.glsl(), left_out);
+        CHECK(runner.run("", scene.cameras[0], {tiled_forward()}, {}).empty());
+        REQUIRE(left_out.lines().size() == 1);
+        CHECK(left_out.lines()[0].starts_with(
+            "Forward with every light is left out: a fragment would loop over 65001 lights"));
+    }
+    many.lights.resize(10);
+    many.cameras[0].orthographic = true;
+    LeftOut left_out;
+    Runner runner(many, run, context.glsl(), left_out);
+    CHECK(runner.run("", many.cameras[0], {tiled_forward()}, {}).empty());
+    CHECK(left_out.lines() == std::vector<std::string>{"Forward with every light is left out: frames of orthographic "
+                                                       "cameras are not drawn here"});
+    CHECK(runner.run("", many.cameras[1], {tiled_forward()}, {}).size() == 2);
+}
+
 TEST_CASE("with OpenGL 3.3, what needs no more is drawn") {
     const Scene scene = make_scene(250);
     const OffscreenContext context(330);
