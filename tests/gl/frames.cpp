@@ -91,7 +91,79 @@ std::vector<Seen> seen_scenes() {
             {"nova", nova, nova.cameras[0], 1}};
 }
 
+// What the eye sees along a ray, in doubles.
+struct Hit {
+    double distance = std::numeric_limits<double>::infinity();
+    std::size_t triangle = ~std::size_t{0};
+    glm::dvec3 place{0}, normal{0}, colour{0};
+};
+Hit trace(const Scene& scene, glm::dvec3 eye, glm::dvec3 ray) {
+    Hit hit;
+    for (std::size_t i = 0; i < scene.triangles.size(); i += 3) {
+        const Vertex* const t = &scene.triangles[i];
+        const glm::dvec3 a(t[0].position), ab = glm::dvec3(t[1].position) - a, ac = glm::dvec3(t[2].position) - a;
+        const glm::dvec3 face = glm::cross(ab, ac);
+        const double slope = -glm::dot(ray, face), distance = glm::dot(eye - a, face) / slope;
+        const glm::dvec3 place = eye + distance * ray;
+        const double square = glm::dot(face, face), v = glm::dot(glm::cross(place - a, ac), face) / square,
+                     w = glm::dot(glm::cross(ab, place - a), face) / square;
+        if (!(distance > 0 && distance < hit.distance && v >= 0 && w >= 0 && v + w <= 1)) continue;
+        const auto blend = [&](glm::vec3 Vertex::*part) {
+            return (1 - v - w) * glm::dvec3(t[0].*part) + v * glm::dvec3(t[1].*part) + w * glm::dvec3(t[2].*part);
+        };
+        hit = {distance, i, place, (slope > 0 ? 1.0 : -1.0) * glm::normalize(blend(&Vertex::normal)),
+               blend(&Vertex::colour)};
+    }
+    return hit;
+}
+
+glm::dvec3 sent_to_eye(const Scene& scene, const Hit& hit, glm::dvec3 eye, double exposure) {
+    if (std::isinf(hit.distance)) return glm::dvec3(0.02, 0.025, 0.04);
+    glm::dvec3 radiance = 0.02 * hit.colour;
+    const glm::dvec3 to_eye = glm::normalize(eye - hit.place);
+    for (const Light& light : scene.lights) {
+        const glm::dvec3 way = glm::dvec3(light.position) - hit.place;
+        const double distance = glm::length(way), share = distance / static_cast<double>(light.range);
+        const double window = std::max(1 - share * share * share * share, 0.0) / (distance * distance);
+        const double highlight = std::max(glm::dot(hit.normal, glm::normalize(way / distance + to_eye)), 0.0);
+        radiance += exposure * glm::dvec3(light.intensity) * window * std::max(glm::dot(hit.normal, way / distance), 0.0) *
+                    (hit.colour / 3.14159265358979 + 0.15 * std::pow(highlight, 24.0));
+    }
+    return glm::pow(1.0 - glm::exp(-radiance), glm::dvec3(1 / 2.2));
+}
+
 }  // namespace
+
+TEST_CASE("the reference is what the lights send") {
+    const OffscreenContext context(0);
+    for (const Seen& seen : seen_scenes()) {
+        CAPTURE(seen.name);
+        Stage stage(seen.scene, context.glsl());
+        const Settings settings = small_frame(seen.exposure);
+        const Bytes picture = draw(stage, forward_every_light(), seen.camera, settings);
+        const glm::dvec3 eye(seen.camera.to_world[3]);
+        int compared = 0;
+        for (int y = 3; y < settings.height; y += 9)
+            for (int x = 4; x < settings.width; x += 9) {
+                CAPTURE(x);
+                CAPTURE(y);
+                const auto through = [&](double across, double up) {
+                    const double scale = 2 * std::tan(seen.camera.height / 2) / settings.height;
+                    const glm::dvec3 ray((x + across - settings.width / 2.0) * scale, (y + up - settings.height / 2.0) * scale, -1);
+                    return trace(seen.scene, eye, glm::dmat3(seen.camera.to_world) * ray);
+                };
+                const Hit hit = through(0.5, 0.5);
+                if (through(0.45, 0.45).triangle != hit.triangle || through(0.55, 0.55).triangle != hit.triangle) continue;
+                const glm::dvec3 expected = sent_to_eye(seen.scene, hit, eye, static_cast<double>(seen.exposure));
+                for (int k = 0; k < 3; ++k) {
+                    const int shown = picture[static_cast<std::size_t>(4 * (y * settings.width + x) + k)];
+                    CHECK(std::abs(shown - 255 * expected[k]) <= 1);
+                }
+                ++compared;
+            }
+        CHECK(compared > 90);
+    }
+}
 
 TEST_CASE("every technique draws the picture of every light") {
     const OffscreenContext context(0);
