@@ -19,24 +19,33 @@ bool starts(EGLDisplay display) {
     return display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr);
 }
 
-// Without a window system: Mesa's way, or a device, as drivers have it that are not Mesa's.
+// Mesa lists the CPU as a device, too.
+bool is_cpu(EGLDeviceEXT device) {
+    const char* const extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
+    return extensions && std::string(extensions).find("EGL_MESA_device_software") != std::string::npos;
+}
+
+// Without a window system: a GPU, or Mesa's way, which takes the CPU where Mesa itself drives no GPU. So GPUs are asked for
+// first: their drivers need not be Mesa's.
 EGLDisplay open_display() {
     const bool surfaceless = has({"EGL_EXT_platform_base", "EGL_MESA_platform_surfaceless"}),
-               devices = has({"EGL_EXT_platform_base", "EGL_EXT_platform_device", "EGL_EXT_device_enumeration"});
+               devices = has({"EGL_EXT_platform_base", "EGL_EXT_platform_device", "EGL_EXT_device_enumeration",
+                              "EGL_EXT_device_query"});
     if (!surfaceless && !devices)
         throw std::runtime_error("no usable OpenGL: this EGL cannot draw without a window system");
+    EGLDeviceEXT found[16];
+    EGLint count = 0;
+    if (devices && eglQueryDevicesEXT(16, found, &count))
+        for (const EGLDeviceEXT* device = found; device != found + count; ++device) {
+            if (is_cpu(*device)) continue;
+            const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, *device, nullptr);
+            if (starts(display)) return display;
+        }
     if (surfaceless) {
         const EGLDisplay display =
             eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
         if (starts(display)) return display;
     }
-    EGLDeviceEXT found[16];
-    EGLint count = 0;
-    if (devices && eglQueryDevicesEXT(16, found, &count))
-        for (const EGLDeviceEXT* device = found; device != found + count; ++device) {
-            const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, *device, nullptr);
-            if (starts(display)) return display;
-        }
     throw std::runtime_error("no usable OpenGL: EGL does not start");
 }
 
