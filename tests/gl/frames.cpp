@@ -8,6 +8,8 @@
 
 #include <gl_context.hpp>
 
+#include <lightbin/shader_build.hpp>
+
 #include <doctest/doctest.h>
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
@@ -318,6 +320,24 @@ TEST_CASE("evaluations are those of the lists") {
     CHECK(marked >= reached);
     CHECK(marked <= nearly_reached);
     CHECK(reached > pixels);
+}
+
+TEST_CASE("all lights are seen from above") {
+    Scene below = make_scene(20);
+    for (Light& light : below.lights)
+        light.position.y -= 100;
+    for (const Scene& scene : {make_scene(1), make_scene(20), below}) {
+        const OffscreenContext context(0);
+        Stage stage(scene, context.glsl());
+        const Camera camera = camera_from_above(scene);
+        stage.begin(camera, small_frame(1));
+        const auto footprints = value_of(lightbin::shader_footprints(stage.view(), stage.lights()));
+        CHECK(footprints.size() == scene.lights.size());
+        CHECK(std::ranges::all_of(stage.lights(), [&](const lightbin::Sphere& light) {
+            const double depth = -static_cast<double>(light.z);
+            return depth > camera.near && depth < camera.far;
+        }));
+    }
 }
 
 TEST_CASE("each view is as bright as if it were the first") {
