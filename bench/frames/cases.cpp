@@ -61,8 +61,8 @@ Camera camera_from_above(const Scene& scene) {
     const Box lights = box_of(scene.lights), surfaces = box_of(scene.triangles);
     const glm::dvec3 middle = glm::dvec3(lights.low + lights.high) / 2.0,
                      half = glm::dvec3(lights.high - lights.low) / 2.0;
-    const double size = static_cast<double>(glm::distance(surfaces.low, surfaces.high));  // lights may be in one place
-    const double height =
+    const auto size = static_cast<double>(glm::distance(surfaces.low, surfaces.high));
+    const double height =  // lights may be in one place
         std::max({half.z, half.x * 9 / 16, 0.1 * half.y, 0.01 * size}) / std::tan(glm::radians(27.5));
     const double bottom = static_cast<double>(std::min(surfaces.low.y, lights.low.y));
     const glm::dvec3 eye = middle + glm::dvec3(0, half.y + height, 0);

@@ -3,13 +3,15 @@
 #include "passes.hpp"
 #include "technique.hpp"
 
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
 Technique forward_every_light() {
     return {"Forward with every light", [](Stage& stage) {
-                if (stage.lights().size() > 65000)  // Mesa's software renderer ends longer loops, and says nothing
-                    throw std::runtime_error("a fragment would loop over " + std::to_string(stage.lights().size()) +
+                // Mesa's software renderer ends longer loops, and says nothing.
+                if (const std::size_t lights = stage.lights().size(); lights > 65000)
+                    throw std::runtime_error("a fragment would loop over " + std::to_string(lights) +
                                              " lights, and some drivers end a loop after 65,535");
                 begin_picture(stage);
                 depth_pre_pass(stage);

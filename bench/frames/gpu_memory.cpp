@@ -31,11 +31,16 @@ GLenum kind_of(bool multisampled) {
 
 std::size_t texel_bytes(GLenum format) {
     switch (format) {
-    case GL_R8UI: return 1;
-    case GL_R16UI: return 2;
-    case GL_R32UI: return 4;
-    case GL_RG32UI: return 8;
-    default: return 16;
+    case GL_R8UI:
+        return 1;
+    case GL_R16UI:
+        return 2;
+    case GL_R32UI:
+        return 4;
+    case GL_RG32UI:
+        return 8;
+    default:
+        return 16;
     }
 }
 

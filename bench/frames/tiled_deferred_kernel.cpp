@@ -101,10 +101,10 @@ Technique tiled_deferred_kernel(int g_buffer_bits) {
                     fill_g_buffer(stage, stage.depth());
                     read_g_buffer(stage, stage.depth());
                     const Shaders shaders = stage.shaders();
-                    const std::string constants =
-                        "#define TILE " + std::to_string(tile) + "\n#define THREADS " +
-                        std::to_string(tile * tile) + "u\n#define WORDS " +
-                        std::to_string(stage.lights().size() / 32 + 1) + "u\n";
+                    const std::string constants = "#define TILE " + std::to_string(tile) +
+                                                  "\n#define THREADS " + std::to_string(tile * tile) +
+                                                  "u\n#define WORDS " +
+                                                  std::to_string(stage.lights().size() / 32 + 1) + "u\n";
                     const LightLoop lights = {tile_lights, "int(footprints[light.id].id)"};
                     const GLuint program = stage.use_compute(shaders.head() + constants +
                                                              shaders.deferred_functions(lights) + kernel);

@@ -29,8 +29,8 @@ bool is_cpu(EGLDeviceEXT device) {
 // first: their drivers need not be Mesa's.
 EGLDisplay open_display() {
     const bool surfaceless = has({"EGL_EXT_platform_base", "EGL_MESA_platform_surfaceless"}),
-               devices = has({"EGL_EXT_platform_base", "EGL_EXT_platform_device", "EGL_EXT_device_enumeration",
-                              "EGL_EXT_device_query"});
+               devices = has({"EGL_EXT_platform_base", "EGL_EXT_platform_device",
+                              "EGL_EXT_device_enumeration", "EGL_EXT_device_query"});
     if (!surfaceless && !devices)
         throw std::runtime_error("no usable OpenGL: this EGL cannot draw without a window system");
     EGLDeviceEXT found[16];

@@ -103,7 +103,8 @@ Hit trace(const Scene& scene, glm::dvec3 eye, glm::dvec3 ray) {
     Hit hit;
     for (std::size_t i = 0; i < scene.triangles.size(); i += 3) {
         const Vertex* const t = &scene.triangles[i];
-        const glm::dvec3 a(t[0].position), ab = glm::dvec3(t[1].position) - a, ac = glm::dvec3(t[2].position) - a;
+        const glm::dvec3 a(t[0].position), ab = glm::dvec3(t[1].position) - a,
+                                           ac = glm::dvec3(t[2].position) - a;
         const glm::dvec3 face = glm::cross(ab, ac);
         const double slope = -glm::dot(ray, face), distance = glm::dot(eye - a, face) / slope;
         const glm::dvec3 place = eye + distance * ray;
@@ -111,7 +112,8 @@ Hit trace(const Scene& scene, glm::dvec3 eye, glm::dvec3 ray) {
                      w = glm::dot(glm::cross(ab, place - a), face) / square;
         if (!(distance > 0 && distance < hit.distance && v >= 0 && w >= 0 && v + w <= 1)) continue;
         const auto blend = [&](glm::vec3 Vertex::*part) {
-            return (1 - v - w) * glm::dvec3(t[0].*part) + v * glm::dvec3(t[1].*part) + w * glm::dvec3(t[2].*part);
+            return (1 - v - w) * glm::dvec3(t[0].*part) + v * glm::dvec3(t[1].*part) +
+                   w * glm::dvec3(t[2].*part);
         };
         hit = {distance, i, place, (slope > 0 ? 1.0 : -1.0) * glm::normalize(blend(&Vertex::normal)),
                blend(&Vertex::colour)};
@@ -128,7 +130,8 @@ glm::dvec3 sent_to_eye(const Scene& scene, const Hit& hit, glm::dvec3 eye, doubl
         const double distance = glm::length(way), share = distance / static_cast<double>(light.range);
         const double window = std::max(1 - share * share * share * share, 0.0) / (distance * distance);
         const double highlight = std::max(glm::dot(hit.normal, glm::normalize(way / distance + to_eye)), 0.0);
-        radiance += exposure * glm::dvec3(light.intensity) * window * std::max(glm::dot(hit.normal, way / distance), 0.0) *
+        radiance += exposure * glm::dvec3(light.intensity) * window *
+                    std::max(glm::dot(hit.normal, way / distance), 0.0) *
                     (hit.colour / 3.14159265358979 + 0.15 * std::pow(highlight, 24.0));
     }
     return glm::pow(1.0 - glm::exp(-radiance), glm::dvec3(1 / 2.2));
@@ -151,12 +154,16 @@ TEST_CASE("the reference is what the lights send") {
                 CAPTURE(y);
                 const auto through = [&](double across, double up) {
                     const double scale = 2 * std::tan(seen.camera.height / 2) / settings.height;
-                    const glm::dvec3 ray((x + across - settings.width / 2.0) * scale, (y + up - settings.height / 2.0) * scale, -1);
+                    const glm::dvec3 ray((x + across - settings.width / 2.0) * scale,
+                                         (y + up - settings.height / 2.0) * scale, -1);
                     return trace(seen.scene, eye, glm::dmat3(seen.camera.to_world) * ray);
                 };
                 const Hit hit = through(0.5, 0.5);
-                if (through(0.45, 0.45).triangle != hit.triangle || through(0.55, 0.55).triangle != hit.triangle) continue;
-                const glm::dvec3 expected = sent_to_eye(seen.scene, hit, eye, static_cast<double>(seen.exposure));
+                if (through(0.45, 0.45).triangle != hit.triangle ||
+                    through(0.55, 0.55).triangle != hit.triangle)
+                    continue;
+                const glm::dvec3 expected =
+                    sent_to_eye(seen.scene, hit, eye, static_cast<double>(seen.exposure));
                 for (int k = 0; k < 3; ++k) {
                     const int shown = picture[static_cast<std::size_t>(4 * (y * settings.width + x) + k)];
                     CHECK(std::abs(shown - 255 * expected[k]) <= 1);
@@ -180,8 +187,7 @@ TEST_CASE("every technique draws the picture of every light") {
             CAPTURE(technique.name);
             CAPTURE(technique.g_buffer_bits);
             CHECK(technique.tolerance == (technique.g_buffer_bits == 0 ? 0 : technique.tolerance));
-            const Unlikeness difference =
-                compare(expected, draw(stage, technique, seen.camera, settings));
+            const Unlikeness difference = compare(expected, draw(stage, technique, seen.camera, settings));
             CHECK(difference.largest <= technique.tolerance);
         }
     }
@@ -260,7 +266,8 @@ TEST_CASE("several samples a pixel") {
                           ("this OpenGL has no targets of " + std::to_string(none) + " samples").c_str());
     }
     settings.samples = 1;
-    CHECK(draw(stage, forward_every_light(), camera, settings) == one);  // what is refused leaves no error behind
+    // What is refused leaves no error behind.
+    CHECK(draw(stage, forward_every_light(), camera, settings) == one);
 }
 
 TEST_CASE("evaluations are those of the lists") {
@@ -389,10 +396,10 @@ TEST_CASE("another compiler takes the shaders, too") {
                 std::string text(static_cast<std::size_t>(length), '\0');
                 glGetShaderSource(attached[i], length, nullptr, text.data());
                 const char* const begin = text.c_str();
-                glslang::TShader& shader = *shaders.emplace_back(std::make_unique<glslang::TShader>(
-                    kind == GL_VERTEX_SHADER     ? EShLangVertex
-                    : kind == GL_FRAGMENT_SHADER ? EShLangFragment
-                                                 : EShLangCompute));
+                glslang::TShader& shader = *shaders.emplace_back(
+                    std::make_unique<glslang::TShader>(kind == GL_VERTEX_SHADER     ? EShLangVertex
+                                                       : kind == GL_FRAGMENT_SHADER ? EShLangFragment
+                                                                                    : EShLangCompute));
                 shader.setStrings(&begin, 1);
                 const bool taken = shader.parse(GetDefaultResources(), 100, false, EShMsgDefault);
                 CHECK_MESSAGE(taken, std::string(shader.getInfoLog()), text);
@@ -449,8 +456,9 @@ TEST_CASE("a view that cannot be drawn is left out, and no more") {
     LeftOut left_out;
     Runner runner(many, run, context.glsl(), left_out);
     CHECK(runner.run("", many.cameras[0], {tiled_forward()}, {}).empty());
-    CHECK(left_out.lines() == std::vector<std::string>{"Forward with every light is left out: frames of orthographic "
-                                                       "cameras are not drawn here"});
+    CHECK(left_out.lines() ==
+          std::vector<std::string>{"Forward with every light is left out: frames of orthographic "
+                                   "cameras are not drawn here"});
     CHECK(runner.run("", many.cameras[1], {tiled_forward()}, {}).size() == 2);
 }
 
