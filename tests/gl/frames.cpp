@@ -329,6 +329,68 @@ TEST_CASE("evaluations are those of the lists") {
     CHECK(reached > pixels);
 }
 
+// One surface, so that nothing is lit and then hidden.
+TEST_CASE("evaluations without a pre-pass, and a light at a time") {
+    Scene scene = make_scene(250);
+    scene.triangles.resize(6);
+    const OffscreenContext context(0);
+    Stage stage(scene, context.glsl());
+    Settings settings = small_frame(1);
+    settings.count = true;
+    settings.wide = true;
+    const Camera& camera = scene.cameras[1];
+    stage.begin(camera, settings);
+    begin_picture(stage);
+    depth_pre_pass(stage);
+    std::vector<float> depths(static_cast<std::size_t>(settings.width * settings.height));
+    glReadPixels(0, 0, settings.width, settings.height, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
+
+    using lightbin::Slicing;
+    const lightbin::View view = stage.view();
+    const float reach = depth_of_lights(stage);
+    const auto slices = value_of(lightbin::Slices::exponential(24, reach / 40, reach));
+    const auto fine_slices = value_of(lightbin::Slices::linear(1024, 0, reach));
+    lightbin::Binner binner;
+    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::box, .slicing = Slicing::clusters}>
+        cluster_binner;
+    lightbin::Binner<lightbin::Options{.slicing = Slicing::z_bins}> bin_binner;
+    const auto tiles = value_of(binner.bin(view, stage.lights()));
+    const auto clusters = value_of(cluster_binner.bin(view, stage.lights(), {.slices = slices}));
+    const auto bins = value_of(bin_binner.bin(view, stage.lights(), {.slices = fine_slices}));
+    const auto rectangles = value_of(lightbin::shader_footprints(stage.view(1), stage.lights()));
+    std::uint64_t of_tiles = 0, of_clusters = 0, of_bins = 0, of_rectangles = 0;
+    for (int y = 0; y < settings.height; ++y)
+        for (int x = 0; x < settings.width; ++x) {
+            const auto window = static_cast<double>(depths[static_cast<std::size_t>(y * settings.width + x)]);
+            if (window == 1) continue;
+            const float depth = view.view_depths(window, window).min;
+            const int column = x / settings.tile_size, row = y / settings.tile_size;
+            of_tiles += tiles.lights_in(column, row).size();
+            of_clusters += clusters.lights_in(column, row, slices.slice_at(depth)).size();
+            const auto bin = bins.ranks().bins[static_cast<std::size_t>(fine_slices.slice_at(depth))];
+            of_bins += lightbin::lights_of_bin(bins.lights_in(column, row), bin).size();
+            of_rectangles += static_cast<std::uint64_t>(
+                std::ranges::count_if(rectangles, [&](const lightbin::ShaderFootprint& f) {
+                    return x >= f.x0 && x <= f.x1 && y >= f.y0 && y <= f.y1;
+                }));
+        }
+    const auto counted = [&](const Technique& technique) {
+        draw(stage, technique, camera, settings);
+        return stage.evaluations();
+    };
+    const auto is_close = [](std::uint64_t a, std::uint64_t b) {
+        return a <= b + b / 500 && b <= a + b / 500;
+    };
+    CHECK(counted(tiled_forward()) == of_tiles);
+    CHECK(counted(deferred(32)) == of_rectangles);
+    CHECK(is_close(counted(clustered_forward()), of_clusters));  // but for roundings at slices' ends
+    CHECK(is_close(counted(z_binned_forward()), of_bins));
+    CHECK(of_clusters > 1000);
+    CHECK(of_clusters < of_bins);
+    CHECK(of_bins < of_tiles);
+    CHECK(counted(light_indexed(8)) == counted(tiled_forward_pre_z(ZEnds::both, Reduction::gpu)));
+}
+
 TEST_CASE("all lights are seen from above") {
     Scene below = make_scene(20);
     for (Light& light : below.lights)
