@@ -8,6 +8,8 @@
 
 #include <gl_program.hpp>
 
+#include <string>
+
 namespace {
 
 void dispatch(const lightbin::View& view) {
@@ -27,12 +29,18 @@ void reduce(Stage& stage, const lightbin::View& view) {
     stage.lap("reduce");
 }
 
+std::string text_of(lightbin::BuildPass pass) {
+    const auto text =
+        value_of(lightbin::build_shader({.pass = pass, .depth_test = lightbin::DepthTest::interval}));
+    return "#version 430 core\n" + text.text;
+}
+
 void build(Stage& stage, const lightbin::View& view, const lightbin::ShaderBuild& constants) {
     using enum lightbin::BuildPass;
+    // Making the texts takes as long as a GPU has to run them.
+    static const std::string texts[] = {text_of(count), text_of(offsets), text_of(fill)};
     for (const auto pass : {count, offsets, fill}) {
-        const auto text = value_of(
-            lightbin::build_shader({.pass = pass, .depth_test = lightbin::DepthTest::interval}));
-        const GLuint program = stage.use_compute("#version 430 core\n" + text.text);
+        const GLuint program = stage.use_compute(texts[static_cast<int>(pass)]);
         glUniform4uiv(uniform(program, "lightbin_grid"), 1, &constants.tiles_x);
         if (pass == offsets) {
             glDispatchCompute(1, 1, 1);
