@@ -73,8 +73,8 @@ Technique deferred_stencil(int g_buffer_bits) {
                         glUniform1i(lighting_number, static_cast<GLint>(f.id));
                         light_marked(stage);
                     }
-                    for (const GLenum off : {GL_STENCIL_TEST, GL_DEPTH_CLAMP, GL_CULL_FACE})
-                        glDisable(off);
+                    for (const int off : {GL_STENCIL_TEST, GL_DEPTH_CLAMP, GL_CULL_FACE})
+                        glDisable(static_cast<GLenum>(off));
                     stage.lap("shade");
                     show_radiance(stage);
                 },

@@ -50,8 +50,8 @@ Stage::Stage(const Scene& scene, int glsl) : geometry(scene), scene_(scene), gls
 }
 
 void Stage::reset_state() {
-    for (const GLenum off : {GL_BLEND, GL_CULL_FACE, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_DEPTH_CLAMP})
-        glDisable(off);
+    for (const int off : {GL_BLEND, GL_CULL_FACE, GL_DEPTH_TEST, GL_STENCIL_TEST, GL_DEPTH_CLAMP})
+        glDisable(static_cast<GLenum>(off));
     glDepthMask(GL_TRUE);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
