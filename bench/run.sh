@@ -75,6 +75,6 @@ frames) report=frames_paths plot=plot_frames.gp folder=frames/ ;;
 *) report= ;;
 esac
 "./bench/${folder-}$program" "$@"
-[ -n "$report" ] || exit 0
+[ -n "$report" ] && [ "$(wc -l <$report.csv)" -gt 1 ] || exit 0
 gnuplot -e "report=\"$report\"" ../../bench/$plot
 echo "$me: wrote build/bench/$report.csv, .svg and .png"

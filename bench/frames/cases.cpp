@@ -46,10 +46,6 @@ public:
         const float x = between(box.low.x, box.high.x), y = between(box.low.y, box.high.y);
         return {x, y, between(box.low.z, box.high.z)};
     }
-    glm::vec3 corner_of(const Scene& scene) {
-        const auto count = static_cast<float>(scene.triangles.size());
-        return scene.triangles[static_cast<std::size_t>(between(0, count - 1))].position;
-    }
 
 private:
     std::mt19937 engine_{2013};
@@ -114,14 +110,13 @@ Scene with_few_lights(Scene scene) {
 
 Scene with_panes(Scene scene, std::size_t count) {
     if (!scene.transparent.empty()) return scene;
-    const Box box = box_of(scene.triangles);
-    const float side = 0.05f * std::max(box.high.x - box.low.x, box.high.z - box.low.z);
     Dice dice;
     for (std::size_t i = 0; i < count; ++i) {
-        const float turn = dice.between(0, glm::two_pi<float>());
+        const Light& light = scene.lights[i * scene.lights.size() / count];
+        const float side = 0.5f * light.range, turn = dice.between(0, glm::two_pi<float>());
         const glm::vec3 along = 0.5f * side * glm::vec3(std::cos(turn), 0, std::sin(turn)), up(0, side, 0),
-                        normal = glm::normalize(glm::cross(along, up)), middle = dice.corner_of(scene);
-        const glm::vec3 a = middle - along, b = middle + along;
+                        normal = glm::normalize(glm::cross(along, up));
+        const glm::vec3 a = light.position - along - 0.5f * up, b = a + 2.0f * along;
         for (const glm::vec3& corner : {a, b, b + up, a, b + up, a + up})
             scene.transparent.push_back({corner, normal, {0.6f, 0.8f, 1}});
     }

@@ -21,5 +21,5 @@ Scene with_random_lights(Scene scene, std::size_t count);
 /// of 12.5, and the few, one a robot, of 40.
 Scene with_few_lights(Scene scene);
 
-/// Returns the scene with upright panes at random places among its triangles, if it has no panes.
+/// Returns the scene with upright panes through so many of its lights, half a range wide, if it has no panes.
 Scene with_panes(Scene scene, std::size_t count);

@@ -21,11 +21,16 @@
 
 namespace {
 
+// A PNG named after the view, where a file's name can be so.
 void write_picture(const Job& job, const Scene& scene, const RunSettings& run, const Runner& runner) {
     Picture picture{run.width, run.height, {}};
     for (std::size_t i = 0; i < runner.reference().size(); ++i)
         if (i % 4 != 3) picture.rgb.push_back(runner.reference()[i]);
-    write_png(picture, "frames " + scene.name + ", " + job.table + ", " + job.camera.name + ".png");
+    std::string name = "frames " + scene.name + ", " + job.table + ", " + job.camera.name + ", " +
+                       counted(scene.lights.size(), "light") + ", MSAA " +
+                       std::to_string(job.settings.samples) + ".png";
+    std::ranges::replace(name, '/', '_');
+    write_png(picture, name);
 }
 
 class Progress {
@@ -106,9 +111,10 @@ int run(Arguments arguments) {
         if (context.glsl() < 430) std::printf("Evaluations are not counted: that needs OpenGL 4.3.\n");
         std::fflush(stdout);
     }
+    const std::vector<SceneJobs> plan = make_plan(arguments.scenes_or_fixtures(), quick);
+    write_csv("frames", {});  // or a folder that can't be written to is noticed in the end
     LeftOut left_out;
-    const std::vector<Row> rows =
-        draw_all(make_plan(arguments.scenes_or_fixtures(), quick), run, pictures, left_out);
+    const std::vector<Row> rows = draw_all(plan, run, pictures, left_out);
     print(rows);
     if (!left_out.lines().empty()) std::printf("\n");
     for (const std::string& line : left_out.lines())

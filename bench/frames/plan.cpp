@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdio>
 #include <functional>
 #include <utility>
 
@@ -42,7 +43,7 @@ void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Cam
     const bool is_path = views.size() >= views_of_a_path;
     const std::vector<Camera> some = every(is_path ? (quick ? 5 : 1) : 2, views);
     const std::vector<Technique> all = every_technique();
-    SceneJobs own{scene, {}}, few{with_few_lights(scene), {}}, panes{with_panes(scene, 200), {}};
+    SceneJobs own{scene, {}}, few{with_few_lights(scene), {}}, panes{with_panes(scene, 60), {}};
     own.scene.transparent.clear();
     if (is_path) {
         add(own, "path", some, all);
@@ -57,6 +58,20 @@ void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Cam
     add(panes, "panes", one, pane_techniques(), {.transparent = true});
     for (SceneJobs& jobs : {std::ref(own), std::ref(few), std::ref(panes)})
         if (!jobs.jobs.empty()) plan.push_back(std::move(jobs));
+}
+
+// Techniques are compared by what they do with points; what a file has of other lights is no matter.
+void add_file(std::vector<SceneJobs>& plan, const std::string& file, bool quick) {
+    Scene scene = load_glb(file, 0.05f);
+    scene.suns.clear();
+    for (Light& light : scene.lights)
+        light.spot = false;
+    const auto orthographic = std::erase_if(scene.cameras, [](const Camera& c) { return c.orthographic; });
+    if (orthographic > 0)
+        std::printf("%s: %s left out\n", scene.name.c_str(),
+                    counted(orthographic, "orthographic view").c_str());
+    if (scene.cameras.empty()) scene.cameras = {framing_camera(scene.triangles)};
+    add_scene(plan, scene, scene.cameras, quick);
 }
 
 }  // namespace
@@ -75,9 +90,7 @@ std::vector<SceneJobs> make_plan(const std::vector<std::string>& files, bool qui
                 add(random, "MSAA", {still[0]}, sample_techniques(), {.samples = samples});
         plan.push_back(std::move(random));
     }
-    for (const std::string& file : files) {
-        const Scene scene = load_glb(file, 0.05f);
-        add_scene(plan, scene, scene.cameras, quick);
-    }
+    for (const std::string& file : files)
+        add_file(plan, file, quick);
     return plan;
 }

@@ -23,6 +23,7 @@ struct SceneJobs {
     std::vector<Job> jobs;
 };
 
-/// Returns the made scene's views and those of the files', of some of them only if it is to be quick. Throws
+/// Returns the made scene's views and those of the files', of some of them only if it is to be quick. Spot lights become
+/// points, directional lights and orthographic views are left out. Throws
 /// std::runtime_error with one line if a file can't be read.
 std::vector<SceneJobs> make_plan(const std::vector<std::string>& files, bool quick);

@@ -74,7 +74,11 @@ void print_techniques(const std::string& title, const std::vector<Row>& rows) {
         const Spread difference =
             spread_of(views, [](const Row& row) { return static_cast<double>(row.difference); });
         const Spread bytes = spread_of(views, [](const Row& row) { return static_cast<double>(row.bytes); });
-        std::printf("%-52s %8.1f (%7.1f /%7.1f)", name.c_str(), ms.mean, ms.least, ms.most);
+        std::printf("%-52s", name.c_str());
+        if (ms.most > 0)
+            std::printf(" %8.1f (%7.1f /%7.1f)", ms.mean, ms.least, ms.most);
+        else
+            std::printf(" %27s", "not timed");
         if (evaluations.most > 0)
             std::printf(" %9.3f (%8.3f /%8.3f)", evaluations.mean, evaluations.least, evaluations.most);
         else
@@ -133,14 +137,17 @@ void write_csv(const std::string& name, const std::vector<Row>& rows) {
 void write_paths(const std::string& name, const std::vector<Row>& rows) {
     const File file(name + ".csv");
     std::fprintf(file, "panel,view,technique,million_evaluations\n");
-    std::string panel, first_view, view;
-    int number = 0;
+    std::string panel, first;
+    int view = 0;
     for (const Row& row : rows) {
-        if (!row.table.starts_with("path")) continue;
-        const std::string its = row.scene + ": " + std::to_string(row.lights) + " lights";
-        if (its != std::exchange(panel, its)) number = -1;
-        if (row.view != std::exchange(view, row.view) || number < 0) ++number;
-        std::fprintf(file, "%s,%d,%s,%.6f\n", quoted(its).c_str(), number, row.technique.c_str(),
-                     millions(row));
+        if (!row.table.starts_with("path") || row.evaluations == 0) continue;
+        std::string its = row.scene + ": " + std::to_string(row.lights) + " lights";
+        std::erase_if(its, [](char c) { return c == '"' || c == '\''; });  // which the plot cannot take
+        if (its != std::exchange(panel, its)) {
+            view = -1;
+            first = row.technique;
+        }
+        if (row.technique == first) ++view;
+        std::fprintf(file, "\"%s\",%d,%s,%.6f\n", its.c_str(), view, row.technique.c_str(), millions(row));
     }
 }

@@ -50,7 +50,7 @@ std::vector<Row> Runner::run(const std::string& table, const Camera& camera,
                 wanted.exposure = meter_.meter(camera, {});
             }
             if (technique.glsl > stage_.glsl()) throw std::runtime_error("it needs OpenGL 4.3");
-            // The reference takes long. One frame will do, and on a CPU the one that counts.
+            // The reference takes long. One frame will do, and a CPU's time for it is of no interest.
             const int timed_frames = !is_reference ? run_.timed_frames : is_software_renderer() ? 0 : 1;
             Row row = draw(technique, camera, wanted, timed_frames);
             if (is_reference) reference_ = picture_;
@@ -83,18 +83,16 @@ Row Runner::draw(const Technique& technique, const Camera& camera, Settings want
     };
     const bool can_count = stage_.glsl() >= 430;
     std::vector<std::vector<Pass>> frames;
-    if (timed_frames == 0) {
-        frames.push_back(draw_once(can_count));
-    } else {
-        draw_once(false);  // makes what is made once
-        for (int i = 0; i < timed_frames; ++i)
-            frames.push_back(draw_once(false));
-        if (can_count) draw_once(true);
-    }
+    if (timed_frames > 0) draw_once(false);  // makes what is made once
+    for (int i = 0; i < timed_frames; ++i)
+        frames.push_back(draw_once(false));
+    if (can_count || timed_frames == 0) draw_once(can_count);
     if (can_count) row.evaluations = stage_.evaluations();
     picture_ = stage_.read_picture();
     row.pixels = picture_.size() / 4;
     row.bytes = stage_.memory.bytes();
+
+    if (frames.empty()) return row;
 
     std::vector<double> sums(frames.size());
     for (std::size_t i = 0; i < frames.front().size(); ++i) {

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-/// Milliseconds of some frames.
+/// Milliseconds of some frames. 0: they were not timed.
 struct Times {
     double median = 0, least = 0, most = 0;
 };
