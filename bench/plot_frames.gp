@@ -37,7 +37,7 @@ do for [kind in "png svg"] {
     set bmargin at screen 0; set tmargin at screen 100 / height
     unset border; unset tics; unset xlabel; unset ylabel; unset title; unset grid; unset logscale
     set xrange [0 : 1]; set yrange [0 : 1]
-    set key center center horizontal maxrows 3 samplen 2 width -8 noenhanced
+    set key center center horizontal maxrows 3 samplen 2 width -2 noenhanced
     plot for [k = 1 : 9] NaN with linespoints linetype k title title_of(word(curves, k))
     unset multiplot
     set border; set tics; set autoscale

@@ -55,7 +55,8 @@ Technique deferred_stencil(int g_buffer_bits) {
                     const GLuint depth = stage.target("surface depth", GL_DEPTH32F_STENCIL8);
                     fill_g_buffer(stage, depth);
                     const GLuint tested = copy_depth(stage, depth);
-                    const auto footprints = value_of(lightbin::shader_footprints(stage.view(), stage.lights()));
+                    const auto footprints =
+                        value_of(lightbin::shader_footprints(stage.view(), stage.lights()));
                     stage.lap("project");
                     begin_radiance(stage, depth, tested);
                     glEnable(GL_STENCIL_TEST);

@@ -21,9 +21,9 @@ public:
     /// Panes are drawn from the farthest to the nearest.
     void sort_panes(const glm::mat4& to_view);
     void draw_panes() const;
-    void draw_everywhere() const;  ///< a triangle over the picture, made of vertex numbers
+    void draw_everywhere() const;              ///< a triangle over the picture, made of vertex numbers
     void draw_quads(std::size_t count) const;  ///< so many instances of four vertices, made of their numbers
-    void draw_ball() const;        ///< holds the unit ball, which fills most of it; attribute 0
+    void draw_ball() const;                    ///< holds the unit ball, which fills most of it; attribute 0
 
 private:
     struct Corner {

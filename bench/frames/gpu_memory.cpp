@@ -14,14 +14,20 @@ struct Format {
 
 Format format_of(GLenum format) {
     switch (format) {
-    case GL_DEPTH_COMPONENT32F: return {4, GL_DEPTH_COMPONENT, GL_FLOAT, GL_DEPTH_ATTACHMENT};
+    case GL_DEPTH_COMPONENT32F:
+        return {4, GL_DEPTH_COMPONENT, GL_FLOAT, GL_DEPTH_ATTACHMENT};
     case GL_DEPTH32F_STENCIL8:
         return {8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, GL_DEPTH_STENCIL_ATTACHMENT};
-    case GL_RGBA32F: return {16, GL_RGBA, GL_FLOAT, 0};
-    case GL_RGBA16F: return {8, GL_RGBA, GL_FLOAT, 0};
-    case GL_RG32F: return {8, GL_RG, GL_FLOAT, 0};
-    case GL_RGBA8: return {4, GL_RGBA, GL_UNSIGNED_BYTE, 0};
-    default: throw std::runtime_error("a target of an unknown format");
+    case GL_RGBA32F:
+        return {16, GL_RGBA, GL_FLOAT, 0};
+    case GL_RGBA16F:
+        return {8, GL_RGBA, GL_FLOAT, 0};
+    case GL_RG32F:
+        return {8, GL_RG, GL_FLOAT, 0};
+    case GL_RGBA8:
+        return {4, GL_RGBA, GL_UNSIGNED_BYTE, 0};
+    default:
+        throw std::runtime_error("a target of an unknown format");
     }
 }
 
@@ -48,12 +54,18 @@ std::size_t texel_bytes(GLenum format) {
 
 void set_samplers(GLuint program) {
     static constexpr std::pair<const char*, Unit> samplers[] = {
-        {"lightbin_tiles", unit_tiles},      {"lightbin_lists", unit_lists},
-        {"lightbin_slices", unit_slices},    {"lightbin_bins", unit_bins},
-        {"lights", unit_lights},             {"footprints", unit_footprints},
-        {"depth_texture", unit_depth},       {"lightbin_depth", unit_depth},
-        {"diffuse_texture", unit_diffuse},   {"specular_texture", unit_specular},
-        {"ambient_texture", unit_ambient},   {"normal_texture", unit_normal},
+        {"lightbin_tiles", unit_tiles},
+        {"lightbin_lists", unit_lists},
+        {"lightbin_slices", unit_slices},
+        {"lightbin_bins", unit_bins},
+        {"lights", unit_lights},
+        {"footprints", unit_footprints},
+        {"depth_texture", unit_depth},
+        {"lightbin_depth", unit_depth},
+        {"diffuse_texture", unit_diffuse},
+        {"specular_texture", unit_specular},
+        {"ambient_texture", unit_ambient},
+        {"normal_texture", unit_normal},
         {"radiance_texture", unit_radiance},
     };
     glUseProgram(program);

@@ -88,9 +88,9 @@ lightbin::ZBounds DepthBounds::reduce_on_cpu(Stage& stage) {
     stage.memory.draw_to({}, stage.depth());
     glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, depth_.data());
     stage.lap("read back");
-    const auto bounds = value_of(
-        lightbin::reduce_depth(view, {.depth = depth_, .skip_background = true},
-                               {.min = min_, .max = max_, .transparent_max = transparent_max_}));
+    const auto bounds =
+        value_of(lightbin::reduce_depth(view, {.depth = depth_, .skip_background = true},
+                                        {.min = min_, .max = max_, .transparent_max = transparent_max_}));
     stage.lap("reduce");
     return bounds;
 }
@@ -108,8 +108,7 @@ lightbin::ZBounds DepthBounds::reduce_on_gpu(Stage& stage, GLuint depth, bool ba
     glUniform4uiv(uniform(program, "lightbin_grid"), 1, &constants.tile_size);
     glUniform4fv(uniform(program, "lightbin_planes"), 1, &constants.far_end);
     stage.memory.read_from(unit_depth, depth);
-    const GLuint reduced =
-        stage.memory.target("Z bounds", GL_RG32F, view.tiles_x(), view.tiles_y(), 1);
+    const GLuint reduced = stage.memory.target("Z bounds", GL_RG32F, view.tiles_x(), view.tiles_y(), 1);
     stage.memory.draw_to({reduced}, 0);
     glViewport(0, 0, view.tiles_x(), view.tiles_y());
     stage.geometry.draw_everywhere();

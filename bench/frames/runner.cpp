@@ -33,36 +33,39 @@ Runner::Runner(const Scene& scene, const RunSettings& settings, int glsl, LeftOu
       every_light_(forward_every_light()) {}
 
 std::vector<Row> Runner::run(const std::string& table, const Camera& camera,
-                             std::vector<Technique> techniques, Settings wanted) {
+                             const std::vector<Technique>& techniques, Settings wanted) {
     wanted.width = run_.width;
     wanted.height = run_.height;
     wanted.tile_size = run_.tile_size;
     std::vector<Row> rows;
-    reference_.clear();
-    techniques.insert(techniques.begin(), every_light_);
-    for (const Technique& technique : techniques) {
-        const bool is_reference = reference_.empty();
-        const std::string who =
-            full_name(technique) + (wanted.samples > 1 ? " at MSAA " + std::to_string(wanted.samples) : "");
+    const auto add_row = [&](const Technique& technique, int timed_frames) {
         try {
-            if (is_reference) {
-                Stage::reset_state();
-                wanted.exposure = meter_.meter(camera, {});
-            }
             if (technique.glsl > stage_.glsl()) throw std::runtime_error("it needs OpenGL 4.3");
-            // The reference takes long. One frame will do, and a CPU's time for it is of no interest.
-            const int timed_frames = !is_reference ? run_.timed_frames : is_software_renderer() ? 0 : 1;
             Row row = draw(technique, camera, wanted, timed_frames);
-            if (is_reference) reference_ = picture_;
+            if (rows.empty()) reference_ = picture_;
             compare(row);
             row.as_stated = wanted.samples > 1 || row.difference <= technique.tolerance;
             row.table = table;
             rows.push_back(row);
         } catch (const std::exception& problem) {
-            left_out_.say(who, problem.what());
-            if (is_reference) return {};
+            const std::string samples =
+                wanted.samples > 1 ? " at MSAA " + std::to_string(wanted.samples) : "";
+            left_out_.say((rows.empty() ? "every technique" : full_name(technique)) + samples,
+                          problem.what());
         }
+    };
+    try {
+        Stage::reset_state();
+        wanted.exposure = meter_.meter(camera, {});
+    } catch (const std::exception& problem) {
+        left_out_.say(scene_.name + ", " + camera.name, problem.what());
+        return {};
     }
+    // The reference takes long. One frame will do, and a CPU's time for it is of no interest.
+    add_row(every_light_, is_software_renderer() ? 0 : 1);
+    if (rows.empty()) return {};
+    for (const Technique& technique : techniques)
+        add_row(technique, run_.timed_frames);
     return rows;
 }
 

@@ -56,8 +56,8 @@ public:
     Runner(const Scene& scene, const RunSettings& settings, int glsl, LeftOut& left_out);
 
     /// Draws a view by every technique, after the reference. Settings that the techniques don't set are as given.
-    std::vector<Row> run(const std::string& table, const Camera& camera, std::vector<Technique> techniques,
-                         Settings wanted);
+    std::vector<Row> run(const std::string& table, const Camera& camera,
+                         const std::vector<Technique>& techniques, Settings wanted);
     /// The picture of the last run, RGBA.
     const std::vector<std::uint8_t>& reference() const { return reference_; }
 

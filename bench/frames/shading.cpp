@@ -210,8 +210,8 @@ layout(early_fragment_tests) in;
 )";
 
 std::string lit_text(const LightLoop& lights, const std::string& material) {
-    return "#define MATERIAL(s) " + material + "\n#define LIGHT_ID " + lights.id + "\n" + common + lights.text +
-           lighting + counter;
+    return "#define MATERIAL(s) " + material + "\n#define LIGHT_ID " + lights.id + "\n" + common +
+           lights.text + lighting + counter;
 }
 
 }  // namespace
@@ -285,7 +285,8 @@ std::string Shaders::deferred_functions(const LightLoop& lights) const {
     for (const glm::vec2& place : sample_places_)
         places += (places.empty() ? "vec2(" : ", vec2(") + std::to_string(place.x) + ", " +
                   std::to_string(place.y) + ")";
-    return "const vec2 sample_places[" + count + "] = vec2[" + count + "](" + places + ");\n" + lit_text(lights, settings_.three_shaders ? "(s).material" : "0") + lit_by_list + stored_surface +
+    return "const vec2 sample_places[" + count + "] = vec2[" + count + "](" + places + ");\n" +
+           lit_text(lights, settings_.three_shaders ? "(s).material" : "0") + lit_by_list + stored_surface +
            lit_pixel;
 }
 

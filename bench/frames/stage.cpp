@@ -31,7 +31,8 @@ glm::mat4 projection_of(const Camera& camera, double aspect) {
 std::vector<glm::vec2> find_sample_places(int samples) {
     std::vector<glm::vec2> places(static_cast<std::size_t>(samples));
     for (int i = 0; i < samples; ++i)
-        glGetMultisamplefv(GL_SAMPLE_POSITION, static_cast<GLuint>(i), &places[static_cast<std::size_t>(i)].x);
+        glGetMultisamplefv(GL_SAMPLE_POSITION, static_cast<GLuint>(i),
+                           &places[static_cast<std::size_t>(i)].x);
     return places;
 }
 
@@ -43,7 +44,8 @@ bool is_software_renderer() {
            renderer.find("SWR") != std::string::npos;
 }
 
-Stage::Stage(const Scene& scene, int glsl) : geometry(scene), scene_(scene), glsl_(glsl), software_(is_software_renderer()) {
+Stage::Stage(const Scene& scene, int glsl)
+    : geometry(scene), scene_(scene), glsl_(glsl), software_(is_software_renderer()) {
     glGenBuffers(1, &constants_);
     glGenBuffers(1, &counter_);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -150,9 +152,9 @@ std::uint64_t Stage::evaluations() const {
 }
 
 lightbin::View Stage::view(int tile_size) const {
-    const auto view = lightbin::View::from_projection(
-        projection_, {settings_.width, settings_.height},
-        {.tile_size = tile_size == 0 ? settings_.tile_size : tile_size});
+    const auto view =
+        lightbin::View::from_projection(projection_, {settings_.width, settings_.height},
+                                        {.tile_size = tile_size == 0 ? settings_.tile_size : tile_size});
     if (!view) throw std::runtime_error(view.error().message());
     return *view;
 }

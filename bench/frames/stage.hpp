@@ -2,9 +2,9 @@
 // What all techniques draw with: the scene, the frame's view and lights, programs, targets and a clock.
 #pragma once
 
-#include "settings.hpp"
 #include "geometry.hpp"
 #include "gpu_memory.hpp"
+#include "settings.hpp"
 #include "shading.hpp"
 
 #include <scene.hpp>

@@ -80,43 +80,42 @@ void main() {
 }  // namespace
 
 Technique tiled_deferred_kernel(int g_buffer_bits) {
-    return {.name = "TiledDeferred in one kernel",
-            .draw =
-                [](Stage& stage) {
-                    const int tile = stage.settings().tile_size;
-                    GLint threads = 0;
-                    glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &threads);
-                    if (tile * tile > threads)
-                        throw std::runtime_error("a thread a pixel of a tile: this OpenGL has at most " +
-                                                 std::to_string(threads));
-                    const lightbin::View view = stage.view();
-                    const auto footprints = value_of(lightbin::shader_footprints(view, stage.lights()));
-                    stage.lap("project");
-                    glBindBufferBase(
-                        GL_SHADER_STORAGE_BUFFER, 0,
-                        stage.memory.buffer("footprints",
-                                            std::span<const lightbin::ShaderFootprint>(footprints)));
-                    stage.lap("upload");
+    return {
+        .name = "TiledDeferred in one kernel",
+        .draw =
+            [](Stage& stage) {
+                const int tile = stage.settings().tile_size;
+                GLint threads = 0;
+                glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &threads);
+                if (tile * tile > threads)
+                    throw std::runtime_error("a thread a pixel of a tile: this OpenGL has at most " +
+                                             std::to_string(threads));
+                const lightbin::View view = stage.view();
+                const auto footprints = value_of(lightbin::shader_footprints(view, stage.lights()));
+                stage.lap("project");
+                glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0,
+                                 stage.memory.buffer("footprints",
+                                                     std::span<const lightbin::ShaderFootprint>(footprints)));
+                stage.lap("upload");
 
-                    fill_g_buffer(stage, stage.depth());
-                    read_g_buffer(stage, stage.depth());
-                    const Shaders shaders = stage.shaders();
-                    const std::string constants = "#define TILE " + std::to_string(tile) +
-                                                  "\n#define THREADS " + std::to_string(tile * tile) +
-                                                  "u\n#define WORDS " +
-                                                  std::to_string(stage.lights().size() / 32 + 1) + "u\n";
-                    const LightLoop lights = {tile_lights, "int(footprints[light.id].id)"};
-                    const GLuint program = stage.use_compute(shaders.head() + constants +
-                                                             shaders.deferred_functions(lights) + kernel);
-                    glUniform1ui(glGetUniformLocation(program, "footprint_count"),
-                                 static_cast<GLuint>(footprints.size()));
-                    glBindImageTexture(0, stage.shown(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
-                    glDispatchCompute(static_cast<GLuint>(view.tiles_x()), static_cast<GLuint>(view.tiles_y()),
-                                      1);
-                    glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT);
-                    stage.lap("build and shade");
-                },
-            .tolerance = g_buffer_bits == 32 ? 1 : 3,
-            .g_buffer_bits = g_buffer_bits,
-            .glsl = 430};
+                fill_g_buffer(stage, stage.depth());
+                read_g_buffer(stage, stage.depth());
+                const Shaders shaders = stage.shaders();
+                const std::string constants = "#define TILE " + std::to_string(tile) + "\n#define THREADS " +
+                                              std::to_string(tile * tile) + "u\n#define WORDS " +
+                                              std::to_string(stage.lights().size() / 32 + 1) + "u\n";
+                const LightLoop lights = {tile_lights, "int(footprints[light.id].id)"};
+                const GLuint program = stage.use_compute(shaders.head() + constants +
+                                                         shaders.deferred_functions(lights) + kernel);
+                glUniform1ui(glGetUniformLocation(program, "footprint_count"),
+                             static_cast<GLuint>(footprints.size()));
+                glBindImageTexture(0, stage.shown(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
+                glDispatchCompute(static_cast<GLuint>(view.tiles_x()), static_cast<GLuint>(view.tiles_y()),
+                                  1);
+                glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT);
+                stage.lap("build and shade");
+            },
+        .tolerance = g_buffer_bits == 32 ? 1 : 3,
+        .g_buffer_bits = g_buffer_bits,
+        .glsl = 430};
 }

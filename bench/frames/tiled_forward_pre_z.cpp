@@ -37,10 +37,10 @@ Technique pre_z(const std::string& name, ZEnds ends, Reduction reduction) {
 
 Technique tiled_forward_pre_z(ZEnds ends, Reduction reduction) {
     static constexpr const char* names[] = {"", " min", " max", " both"};
-    Technique made = pre_z<lightbin::DepthTest::interval>(
-        std::string("TiledForward-PreZ") + names[static_cast<int>(ends)] +
-            (reduction == Reduction::gpu ? " (GPU)" : ""),
-        ends, reduction);
+    Technique made = pre_z<lightbin::DepthTest::interval>(std::string("TiledForward-PreZ") +
+                                                              names[static_cast<int>(ends)] +
+                                                              (reduction == Reduction::gpu ? " (GPU)" : ""),
+                                                          ends, reduction);
     made.multisampled = ends == ZEnds::none || reduction == Reduction::gpu;
     return made;
 }

@@ -28,8 +28,7 @@ Technique transparent_forward(TransparentLists lists) {
         lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner, pane_binner;
     };
     const auto memory = std::make_shared<Memory>();
-    static constexpr const char* names[] = {"PreZ with lists for panes",
-                                            "PreZ with shared lists",
+    static constexpr const char* names[] = {"PreZ with lists for panes", "PreZ with shared lists",
                                             "PreZ with lists from the nearest pane on"};
     return {names[static_cast<int>(lists)], [=](Stage& stage) {
                 begin_picture(stage);
@@ -37,15 +36,14 @@ Technique transparent_forward(TransparentLists lists) {
                 memory->opaque.reduce_on_gpu(stage, stage.depth(), true);
                 const auto bounds = memory->opaque.reduce_on_gpu(stage, stage.depth());
                 if (lists == TransparentLists::shared) {
-                    const auto grid =
-                        value_of(memory->binner.bin(stage.view(), stage.lights(),
-                                                    {.bounds = {.max = bounds.transparent_max}}));
+                    const auto grid = value_of(memory->binner.bin(
+                        stage.view(), stage.lights(), {.bounds = {.max = bounds.transparent_max}}));
                     stage.lap("bin");
                     upload_lists(stage, grid);
                     shade_forward(stage, listed_lights());
                 } else if (lists == TransparentLists::max_only) {
-                    const auto [opaque, transparent] = value_of(memory->binner.bin_transparency(
-                        stage.view(), stage.lights(), {.bounds = bounds}));
+                    const auto [opaque, transparent] = value_of(
+                        memory->binner.bin_transparency(stage.view(), stage.lights(), {.bounds = bounds}));
                     stage.lap("bin");
                     upload_lists(stage, opaque);
                     shade_forward(stage, listed_lights());
@@ -54,9 +52,9 @@ Technique transparent_forward(TransparentLists lists) {
                     const std::vector<float> nearest = nearest_panes(stage, memory->panes);
                     const auto opaque =
                         value_of(memory->binner.bin(stage.view(), stage.lights(), {.bounds = bounds}));
-                    const auto transparent = value_of(memory->pane_binner.bin(
-                        stage.view(), stage.lights(),
-                        {.bounds = {.min = nearest, .max = bounds.transparent_max}}));
+                    const auto transparent = value_of(
+                        memory->pane_binner.bin(stage.view(), stage.lights(),
+                                                {.bounds = {.min = nearest, .max = bounds.transparent_max}}));
                     stage.lap("bin");
                     upload_lists(stage, opaque);
                     shade_forward(stage, listed_lights());

@@ -8,8 +8,7 @@
 
 Technique z_binned_forward() {
     using lightbin::Slicing;
-    const auto binner =
-        std::make_shared<lightbin::Binner<lightbin::Options{.slicing = Slicing::z_bins}>>();
+    const auto binner = std::make_shared<lightbin::Binner<lightbin::Options{.slicing = Slicing::z_bins}>>();
     return {"ZBinnedForward", [binner](Stage& stage) {
                 const auto slices = value_of(lightbin::Slices::linear(1024, 0, depth_of_lights(stage)));
                 const auto grid = value_of(binner->bin(stage.view(), stage.lights(), {.slices = slices}));

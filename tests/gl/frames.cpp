@@ -68,7 +68,8 @@ Unlikeness compare(const Bytes& a, const Bytes& b) {
 double lit_share(const Bytes& picture) {
     double lit = 0;
     for (std::size_t i = 0; i < picture.size(); i += 4)
-        if (picture[i] + picture[i + 1] + picture[i + 2] > 60 && picture[i] + picture[i + 1] + picture[i + 2] < 740)
+        if (picture[i] + picture[i + 1] + picture[i + 2] > 60 &&
+            picture[i] + picture[i + 1] + picture[i + 2] < 740)
             lit += 4.0 / static_cast<double>(picture.size());
     return lit;
 }
@@ -289,8 +290,7 @@ TEST_CASE("evaluations are those of the lists") {
     depth_pre_pass(stage);
     const lightbin::View view = stage.view();
     lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner;
-    const auto grid =
-        value_of(binner.bin(view, stage.lights(), {.bounds = bounds.reduce_on_cpu(stage)}));
+    const auto grid = value_of(binner.bin(view, stage.lights(), {.bounds = bounds.reduce_on_cpu(stage)}));
     std::vector<float> depth(static_cast<std::size_t>(settings.width * settings.height));
     glReadPixels(0, 0, settings.width, settings.height, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
     std::uint64_t listed = 0, pixels = 0, reached = 0, nearly_reached = 0;
@@ -301,11 +301,13 @@ TEST_CASE("evaluations are those of the lists") {
             ++pixels;
             listed += grid.lights_in(x / settings.tile_size, y / settings.tile_size).size();
             const auto p = view.view_point(
-                {x + 0.5, y + 0.5, static_cast<double>(view.view_depths(static_cast<double>(d), static_cast<double>(d)).min)});
+                {x + 0.5, y + 0.5,
+                 static_cast<double>(view.view_depths(static_cast<double>(d), static_cast<double>(d)).min)});
             for (const lightbin::Sphere& light : stage.lights()) {
                 const double dx = p.x - static_cast<double>(light.x), dy = p.y - static_cast<double>(light.y),
                              dz = p.z - static_cast<double>(light.z);
-                const double distance = std::sqrt(dx * dx + dy * dy + dz * dz) / static_cast<double>(light.radius);
+                const double distance =
+                    std::sqrt(dx * dx + dy * dy + dz * dz) / static_cast<double>(light.radius);
                 reached += distance < 0.999;
                 nearly_reached += distance < 1.07;
             }
@@ -510,8 +512,8 @@ TEST_CASE("a view that cannot be drawn is left out, and no more") {
         Runner runner(scene, run, context.glsl(), left_out);
         CHECK(runner.run("", scene.cameras[0], {tiled_forward()}, {}).empty());
         REQUIRE(left_out.lines().size() == 1);
-        CHECK(left_out.lines()[0].starts_with(
-            "Forward with every light is left out: a fragment would loop over 65001 lights"));
+        CHECK(left_out.lines()[0].find(" is left out: a fragment would loop over 65001 lights") !=
+              std::string::npos);
     }
     many.lights.resize(10);
     many.cameras[0].orthographic = true;
@@ -519,8 +521,8 @@ TEST_CASE("a view that cannot be drawn is left out, and no more") {
     Runner runner(many, run, context.glsl(), left_out);
     CHECK(runner.run("", many.cameras[0], {tiled_forward()}, {}).empty());
     CHECK(left_out.lines() ==
-          std::vector<std::string>{"Forward with every light is left out: frames of orthographic "
-                                   "cameras are not drawn here"});
+          std::vector<std::string>{"every technique is left out: frames of orthographic cameras are not drawn "
+                                   "here"});
     CHECK(runner.run("", many.cameras[1], {tiled_forward()}, {}).size() == 2);
 }
 
