@@ -21,6 +21,7 @@
 //        threads, if you lend some, last.
 //        lights: vec4 array or Sphere array in view space, or view_space(yours, to_sphere),
 //        or world_space(yours, view_matrix[, to_sphere])                                       lights.hpp
+//        A spot light may be a Spot instead of a Sphere, anywhere                              spot.hpp
 //   4. Upload grid->ranges() and grid->ids(), or have grid->copy_to(ranges, ids)               light_grid.hpp
 //      write them to buffers of yours.
 //   For all depths without a depth buffer (no pre-pass, fog, glass): Slices::exponential(24, 5, 200)  slices.hpp
@@ -56,6 +57,7 @@
 #include <lightbin/parallel.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/slices.hpp>
+#include <lightbin/spot.hpp>
 #include <lightbin/version.hpp>
 #include <lightbin/view.hpp>
 #include <lightbin/z_bounds.hpp>

@@ -176,6 +176,12 @@ void use_view(Hash& hash, const View& view) {
         return Sphere{static_cast<float>(lamp.position[0]), static_cast<float>(lamp.position[1]),
                       static_cast<float>(lamp.position[2]), static_cast<float>(lamp.reach)};
     };
+    const auto to_spot = [](const glm::vec4& v) {
+        return Spot{v.x, v.y, v.z, v.w, v.y, v.z, 1, static_cast<float>(static_cast<int>(v.w) % 5) / 5.0f};
+    };
+    const glm::vec3 corner(1, 2, -3), side(0, 4, 1.5f);
+    spheres[0] = tube_sphere(corner, side, 2);
+    spheres[1] = rectangle_sphere(corner, side, corner, 2);
     const glm::mat4 camera(0.8f, 0, 0.6f, 0, 0, 1, 0, 0, -0.6f, 0, 0.8f, 0, 1, 2, -3, 1);
     const double identity[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
 
@@ -193,6 +199,7 @@ void use_view(Hash& hash, const View& view) {
     use_lights(hash, view, std::span<const glm::vec4>(vectors), bounds);
     use_lights(hash, view, view_space(lamps, to_sphere), bounds);
     use_lights(hash, view, world_space(vectors, camera), bounds);
+    use_lights(hash, view, world_space(vectors, camera, to_spot), bounds);
     use_lights(hash, view, world_space(lamps, identity, to_sphere), bounds);
 }
 

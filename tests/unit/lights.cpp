@@ -160,6 +160,89 @@ TEST_CASE("world-space lights cover the view-space ones, and by little more") {
     CHECK(test::entries(same) <= expected + expected / 1000);
 }
 
+TEST_CASE("spots are lights wherever spheres are, and bad ones are skipped and counted") {
+    struct Lamp {
+        glm::vec3 position, direction;
+        float range, outer_cone_angle;
+    };
+    std::mt19937 random(8);
+    std::uniform_real_distribution<float> unit(-1, 1), angle(0, 2);
+    std::vector<Lamp> lamps;
+    std::vector<Spot> spots;
+    std::vector<Sphere> spheres;
+    const auto to_spot = [](const Lamp& lamp) {
+        const glm::vec3 &p = lamp.position, &d = lamp.direction;
+        return Spot{p.x, p.y, p.z, lamp.range, d.x, d.y, d.z, std::cos(lamp.outer_cone_angle)};
+    };
+    for (const glm::vec4& s : test::random_lights(500, 9)) {
+        lamps.push_back({glm::vec3(s), {unit(random), unit(random), unit(random)}, s.w, angle(random)});
+        spots.push_back(to_spot(lamps.back()));
+        spheres.push_back(least_sphere(spots.back()));
+    }
+    const float nan = std::nanf("");
+    for (const glm::vec4& bad :
+         {glm::vec4(0, 0, 0, 0.5f), glm::vec4(nan, 0, 1, 0.5f), glm::vec4(HUGE_VALF, 0, 1, 0.5f),
+          glm::vec4(0, 0, 1, nan), glm::vec4(0, 0, 1, 1.0001f), glm::vec4(0, 0, 1, -1.0001f)}) {
+        spots.push_back({0, 0, -5, 1, bad.x, bad.y, bad.z, bad.w});
+        spots.push_back({0, 0, -5, HUGE_VALF, bad.x, bad.y, bad.z, bad.w});
+    }
+    for (const float cosine : {-1.0f, 0.0f, 0.5f, 0.9f, 1.0f})
+        for (const float bad : {nan, -HUGE_VALF}) {
+            spots.push_back({0, 0, -5, bad, 0, 0, 1, cosine});
+            spots.push_back({bad, 0, -5, 1, 0, 0, 1, cosine});
+            spots.push_back({0, bad, -5, 1, 0, 0, 1, cosine});
+            spots.push_back({0, 0, bad, HUGE_VALF, 0, 0, 1, cosine});
+            spots.push_back({0, 0, -5, -0.5f, 0, 0, 1, cosine});
+        }
+    const std::size_t bad = spots.size() - lamps.size();
+
+    const View view = test::view({641, 361}, 16);
+    const glm::mat4 to_view = glm::rotate(glm::mat4(1.0f), 0.3f, glm::normalize(glm::vec3(1, 2, 3)));
+    const auto expected = test::lists(view, spheres),
+               expected_in_world = test::lists(view, world_space(spheres, to_view));
+    CHECK(test::lists(view, view_space(lamps, to_spot)) == expected);
+    CHECK(test::lists(view, world_space(lamps, to_view, to_spot)) == expected_in_world);
+    CHECK(test::lists(view, spots) == expected);
+    CHECK(test::lists(view, world_space(spots, to_view)) == expected_in_world);
+    Binner<> binner;
+    CHECK(binner.bin(view, spots)->light_counts().rejected == bad);
+    CHECK(binner.bin(view, world_space(spots, to_view))->light_counts().rejected == bad);
+    CHECK(test::entries(expected) < test::entries(test::lists(view, test::random_lights(500, 9))));
+}
+
+TEST_CASE("spheres around lights of other shapes") {
+    const auto same = [](const Sphere& a, const Sphere& b) {
+        return a.x == b.x && a.y == b.y && a.z == b.z && a.radius == doctest::Approx(b.radius);
+    };
+    // Half angles of 0, 60, 90 and 180 degrees; an axis of no unit length.
+    CHECK(same(least_sphere({1, 2, 3, 8, 0, 0, -7, 1}), {1, 2, -1, 4}));
+    CHECK(same(least_sphere({1, 2, 3, 8, 0.1f, 0, 0, 0.5f}), {5, 2, 3, std::sqrt(48.0f)}));
+    for (const float cosine : {0.0f, -0.0f, -0.3f, -1.0f})
+        CHECK(least_sphere({1, 2, 3, 8, 0, 1e-45f, 0, cosine}).radius == 8);
+    CHECK(least_sphere({1, 2, 3, HUGE_VALF, 0, 1, 0, 0.9f}).radius == HUGE_VALF);
+    CHECK(least_sphere({1, 2, 3, 0, 0, 1, 0, 0.9f}).radius == 0);
+
+    const glm::vec3 a(1, 2, 3), b(7, 2, 11);
+    CHECK(same(tube_sphere(a, b, 2), {4, 2, 7, 7}));
+    CHECK(same(tube_sphere(ViewPoint{1, 2, 3}, ViewPoint{7, 2, 11}, 2), {4, 2, 7, 7}));
+    CHECK(tube_sphere(a, b, HUGE_VALF).radius == HUGE_VALF);
+    CHECK(same(rectangle_sphere(a, {3, 0, 0}, {0, 0, 4}, 2), {1, 2, 3, 7}));
+    CHECK(same(rectangle_sphere(a, {3, 0, 0}, {3, 0, 0}, 2), {1, 2, 3, 8}));
+    CHECK(rectangle_sphere(a, b, b, HUGE_VALF).radius == HUGE_VALF);
+    const glm::vec3 bad(0, std::nanf(""), 0), endless(0, 0, HUGE_VALF);
+    for (const glm::vec3& p : {bad, endless}) {
+        CHECK(tube_sphere(p, b, 2).radius < 0);
+        CHECK(tube_sphere(a, p, 2).radius < 0);
+        CHECK(rectangle_sphere(p, a, b, 2).radius < 0);
+        CHECK(rectangle_sphere(a, p, b, 2).radius < 0);
+        CHECK(rectangle_sphere(a, b, p, HUGE_VALF).radius < 0);
+    }
+    for (const float radius : {std::nanf(""), -1e-45f, -HUGE_VALF}) {
+        CHECK(tube_sphere(a, b, radius).radius < 0);
+        CHECK(rectangle_sphere(a, b, b, radius).radius < 0);
+    }
+}
+
 TEST_CASE("a scaled world scales its lights") {
     const glm::mat4 doubled = glm::scale(glm::mat4(1.0f), glm::vec3(2.0f));
     const auto small = test::random_lights(1000, 3);
