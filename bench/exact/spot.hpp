@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: MIT
+// Whether a spot meets a cell: a verdict by certificate. Floating point finds one, rational arithmetic checks it, and what
+// has none is left open.
+//
+// A spot is a ball and a cone from its centre, the apex. Cell, ball and cone are convex for half angles to 90 degrees:
+// - They meet: a rational point lies in all three.
+// - They don't: weights w >= 0 of the cell's half-spaces  a.p + b >= 0  and a vector u. With n the weighted sum of the
+//   a, every point p = apex + v of the cell has  n.v >= g,  g the negative of the weighted sum of  a.apex + b.  Where
+//   n - u makes an angle of at least 90 degrees with every direction of the cone, every v of the cone and the ball has
+//   n.v <= u.v <= r |u|,  and they are apart if that is below g. All of it is decided without roots:  t = (n - u).axis
+//   must be at most 0, and  t^2 >= sine^2 |n - u|^2 |axis|^2.
+// A certificate needs no trust in how it was found, and a bad one proves nothing.
+//
+// From 90 degrees on, and of infinite range, a spot counts as its whole ball: then "they meet" is that of the ball, which
+// the spot need not.
+#pragma once
+
+#include "oracle.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cfloat>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace oracle {
+
+struct ExactSpot {
+    Ball ball;
+    Vector axis;      ///< of any length but 0
+    Rational cosine;  ///< of the half angle
+    bool whole() const { return ball.all || cosine <= 0; }
+};
+
+inline ExactSpot exact_spot(float x, float y, float z, float radius, float axis_x, float axis_y, float axis_z,
+                            float cosine) {
+    return {exact_ball(x, y, z, radius), {exact(axis_x), exact(axis_y), exact(axis_z)}, exact(cosine)};
+}
+
+/// That a spot and a cell are apart, see above.
+struct Separation {
+    std::vector<Rational> weights;  ///< of the cell's half-spaces
+    Vector ball_part;               ///< u
+};
+
+/// The point is in the cell, the ball and the cone.
+inline bool proves_meeting(const std::vector<HalfSpace>& cell, const ExactSpot& spot, const Vector& point) {
+    for (const HalfSpace& h : cell)
+        if (h.at(point) < 0) return false;
+    const Vector v = point - spot.ball.centre;
+    const Rational along = dot(v, spot.axis), length2 = dot(v, v);
+    return length2 <= square(spot.ball.radius) && along >= 0 &&
+           square(along) >= square(spot.cosine) * length2 * dot(spot.axis, spot.axis);
+}
+
+inline bool proves_apart(const std::vector<HalfSpace>& cell, const ExactSpot& spot, const Separation& by) {
+    if (by.weights.size() != cell.size()) return false;
+    Vector n{};
+    Rational g = 0;
+    for (std::size_t i = 0; i < cell.size(); ++i) {
+        if (by.weights[i] < 0) return false;
+        if (by.weights[i].is_zero()) continue;
+        n = n + by.weights[i] * cell[i].a;
+        g -= by.weights[i] * cell[i].at(spot.ball.centre);
+    }
+    const Vector rest = n - by.ball_part;
+    const Rational along = dot(rest, spot.axis), sine2 = 1 - square(spot.cosine);
+    if (along > 0 || square(along) < sine2 * dot(rest, rest) * dot(spot.axis, spot.axis)) return false;
+    return g > 0 && square(spot.ball.radius) * dot(by.ball_part, by.ball_part) < square(g);
+}
+
+//------------------------------------------------------------------------------------------------------------
+// The search, in double precision but for rays. Vectors start at the apex.
+
+/// Looks for a certificate that a spot and a cell meet or are apart. The spot must not be whole().
+class SpotSearch {
+public:
+    SpotSearch(const std::vector<HalfSpace>& cell, const ExactSpot& spot) : cell_(cell), spot_(spot) {
+        const Flat axis = flat(spot.axis);
+        axis_length_ = length(axis);
+        axis_ = scaled(axis, 1 / axis_length_);
+        cosine_ = nearly(spot.cosine);
+        sine_ = std::sqrt((1 - cosine_) * (1 + cosine_));
+        radius_ = nearly(spot.ball.radius);
+        for (std::size_t i = 0; i < cell.size(); ++i) {
+            const Rational at_apex = cell[i].at(spot.ball.centre);
+            holds_apex_ = holds_apex_ && at_apex >= 0;
+            const Flat normal = flat(cell[i].a);
+            const double size = length(normal);
+            // A half-space that is all or nothing has no direction; where it is nothing, its weight alone is the proof.
+            if (size == 0)
+                faces_.push_back({{}, at_apex < 0 ? -HUGE_VAL : HUGE_VAL, 1});
+            else
+                faces_.push_back({scaled(normal, 1 / size), nearly(at_apex) / size, size});
+        }
+    }
+
+    std::optional<bool> verdict() {
+        if (holds_apex_ && proves_meeting(cell_, spot_, spot_.ball.centre)) return true;
+        for (std::size_t i = 0; i < faces_.size(); ++i)
+            if (faces_[i].offset < 0 &&
+                (radius_ == 0 || std::isinf(faces_[i].offset) || gap({{i, 1.0}}) > 0) && apart_by({{i, 1.0}}))
+                return false;
+        if (const auto verdict = by_axis()) return verdict;
+        // A range out of proportion to the cell blurs it: then the part of the spot that reaches as far as its planes do.
+        double away = 0;
+        for (const Face& face : faces_)
+            if (std::isfinite(face.offset)) away = std::max(away, std::abs(face.offset));
+        for (const double scale : {radius_, 16 * away, away})
+            if (scale == radius_ || (scale < radius_ / 4 && scale > 0))
+                if (const auto verdict = by_barrier(scale)) return verdict;
+        return std::nullopt;
+    }
+
+private:
+    struct Flat {
+        double x = 0, y = 0, z = 0;
+    };
+    struct Face {
+        Flat normal;    ///< into the cell, of length 1
+        double offset;  ///< how far inside of it the apex is
+        double size;    ///< of the normal as it is given
+    };
+    struct Weight {
+        std::size_t face;
+        double weight;
+    };
+    using Weights = std::vector<Weight>;
+    /// How far the spot reaches in a direction n, and the part of n along which the cone does not reach at all, as
+    /// -back axis + lateral  with the lateral part at right angles to the axis.
+    struct Support {
+        double value, back;
+        Flat lateral;
+    };
+
+    static Flat flat(const Vector& v) { return {nearly(v.x), nearly(v.y), nearly(v.z)}; }
+    static Vector exactly(const Flat& v) { return {exact(v.x), exact(v.y), exact(v.z)}; }
+    static double product(const Flat& a, const Flat& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+    static double length(const Flat& v) { return std::sqrt(product(v, v)); }
+    static Flat scaled(const Flat& v, double k) { return {v.x * k, v.y * k, v.z * k}; }
+    static Flat sum(const Flat& a, const Flat& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+    static Flat cross(const Flat& a, const Flat& b) {
+        return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    }
+
+    Support support(const Flat& n) const {
+        const double along = product(n, axis_);
+        const Flat aside = sum(n, scaled(axis_, -along));
+        const double across = length(aside), side = cosine_ * along + sine_ * across,
+                     off = cosine_ * across - sine_ * along;
+        if (off <= 0) return {length(n), 0, {}};  // the cap
+        if (side <= 0) {                          // the apex
+            const double most = sine_ > 0 ? std::min(across, -along * cosine_ / sine_) : across;
+            return {0, -along, scaled(aside, most / std::max(across, DBL_MIN))};
+        }
+        return {side, off * sine_, scaled(aside, off * cosine_ / across)};  // the rim
+    }
+
+    Flat direction(const Weights& weights) const {
+        Flat n;
+        for (const Weight& w : weights)
+            n = sum(n, scaled(faces_[w.face].normal, w.weight));
+        return n;
+    }
+    /// By how much a weighted sum of faces separates.
+    double gap(const Weights& weights) const {
+        double reach = 0;
+        for (const Weight& w : weights)
+            reach -= w.weight * faces_[w.face].offset;
+        return reach - support(direction(weights)).value * radius_;
+    }
+
+    bool meets_at(const Flat& v) const {
+        return proves_meeting(cell_, spot_, spot_.ball.centre + exactly(v));
+    }
+
+    bool apart_by(const Weights& weights) const {
+        Separation by;
+        by.weights.resize(cell_.size());
+        Vector n{};
+        for (const Weight& w : weights) {
+            if (!(w.weight >= 0) || !std::isfinite(w.weight / faces_[w.face].size)) return false;
+            by.weights[w.face] = exact(w.weight / faces_[w.face].size);
+            n = n + by.weights[w.face] * cell_[w.face].a;
+        }
+        const Support reach = support(flat(n));
+        // No rounding at all where all of n is of one part. Else what is taken from it must be within the cone's bounds,
+        // so its part along the axis, of which multiples are exact, is made a little larger.
+        if (radius_ == 0 || (reach.back == 0 && length(reach.lateral) == 0)) {
+            by.ball_part = n;
+        } else if (reach.value > 0 || !proves_apart(cell_, spot_, by)) {
+            const double back = (reach.back + length(reach.lateral) * 0x1p-50) * (1 + 0x1p-50) / axis_length_;
+            by.ball_part = n + exact(back) * spot_.axis - exactly(reach.lateral);
+        }
+        return proves_apart(cell_, spot_, by);
+    }
+
+    /// By the part of the axis that is in the cell, all of which is in the cone: without rounding, as a half angle of 0
+    /// leaves nothing but the axis, and the two share a point or have none. That is then decided, too.
+    std::optional<bool> by_axis() const {
+        constexpr std::size_t none = static_cast<std::size_t>(-1);
+        std::size_t first = none, last = none;
+        Rational from = 0, to = 0;  // in lengths of the axis
+        std::vector<Rational> climb(cell_.size());
+        for (std::size_t i = 0; i < cell_.size(); ++i) {
+            climb[i] = dot(cell_[i].a, spot_.axis);
+            if (climb[i].is_zero()) continue;
+            const Rational at = -cell_[i].at(spot_.ball.centre) / climb[i];
+            if (climb[i] > 0 && at > from) from = at, first = i;
+            if (climb[i] < 0 && (last == none || at < to)) to = at, last = i;
+        }
+        const Rational axis2 = dot(spot_.axis, spot_.axis);
+        if (last == none || from <= to) {
+            // In the middle of what is in the ball, for a cell that is not reached by rounding alone; else at its end.
+            const double end = std::min(last == none ? HUGE_VAL : nearly(to), radius_ / axis_length_);
+            for (const Rational& at : {exact((nearly(from) + end) / 2), from})
+                if (proves_meeting(cell_, spot_, spot_.ball.centre + at * spot_.axis)) return true;
+        }
+        if (spot_.cosine != 1) return std::nullopt;
+        Separation by;
+        by.weights.resize(cell_.size());
+        if (last != none && from > to) {
+            by.weights[last] = first == none ? Rational(1) : climb[first];
+            if (first != none) by.weights[first] = -climb[last];
+        } else if (first != none) {
+            by.weights[first] = 1;
+            by.ball_part = climb[first] / axis2 * spot_.axis;
+        }
+        return proves_apart(cell_, spot_, by) ? std::optional(false) : std::nullopt;
+    }
+
+    //--------------------------------------------------------------------------------------------------------
+    // The point that is deepest in all three, or least far out of them, by an interior-point method: a greatest t such that
+    // v is t inside of each face, of a ball and of the cone's side, with the ball's radius as unit. The barrier is the sum
+    // of -log of
+    //     n.v + offset - t,   (1 - t)^2 - |v|^2   and   (sine v.axis - t)^2 - cosine^2 |v - (v.axis) axis|^2,
+    // which is self-concordant; the weights of the faces in its derivative go to those of the best separation.
+
+    using Four = std::array<double, 4>;  // x, y, z, t
+    struct Slope {
+        Four gradient{};
+        std::array<Four, 4> hessian{};
+        /// Adds -log(value), which has these derivatives; the second one is constant.
+        void add(double value, const Four& first, const std::array<Four, 4>& second) {
+            for (std::size_t i = 0; i < 4; ++i) {
+                gradient[i] -= first[i] / value;
+                for (std::size_t j = 0; j < 4; ++j)
+                    hessian[i][j] += first[i] / value * (first[j] / value) - second[i][j] / value;
+            }
+        }
+    };
+    /// (rise - t)^2 - |rest|^2 as a product, or 0 where t is not below rise.
+    static double cone_value(double rise, double rest) {
+        return rise <= rest ? 0 : (rise - rest) * (rise + rest);
+    }
+
+    double slack(const Face& face, const Four& at) const {
+        return product(face.normal, {at[0], at[1], at[2]}) + face.offset / scale_ - at[3];
+    }
+    double ball_value(const Four& at) const { return cone_value(1 - at[3], length({at[0], at[1], at[2]})); }
+    Flat aside(const Four& at) const {
+        const Flat v = {at[0], at[1], at[2]};
+        return sum(v, scaled(axis_, -product(v, axis_)));
+    }
+    double side_value(const Four& at) const {
+        return cone_value(sine_ * product({at[0], at[1], at[2]}, axis_) - at[3], cosine_ * length(aside(at)));
+    }
+    bool inside(const Four& at) const {
+        if (!(ball_value(at) > 0) || !(side_value(at) > 0)) return false;
+        return std::all_of(faces_.begin(), faces_.end(), [&](const Face& f) { return slack(f, at) > 0; });
+    }
+
+    Slope slope(const Four& at, double push) const {
+        Slope s;
+        s.gradient[3] = -push;
+        const auto axis = std::array<double, 3>{axis_.x, axis_.y, axis_.z};
+        for (const Face& f : faces_)
+            if (std::isfinite(f.offset)) s.add(slack(f, at), {f.normal.x, f.normal.y, f.normal.z, -1}, {});
+        std::array<Four, 4> second{};
+        for (std::size_t i = 0; i < 3; ++i)
+            second[i][i] = -2;
+        second[3][3] = 2;
+        s.add(ball_value(at), {-2 * at[0], -2 * at[1], -2 * at[2], -2 * (1 - at[3])}, second);
+
+        const Flat a = aside(at);
+        const double rise = sine_ * product({at[0], at[1], at[2]}, axis_) - at[3], c2 = cosine_ * cosine_;
+        const std::array<double, 3> off = {a.x, a.y, a.z};
+        Four first{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            first[i] = 2 * rise * sine_ * axis[i] - 2 * c2 * off[i];
+            for (std::size_t j = 0; j < 3; ++j)
+                second[i][j] = 2 * axis[i] * axis[j] * (sine_ * sine_ + c2) - (i == j ? 2 * c2 : 0);
+            second[i][3] = second[3][i] = -2 * sine_ * axis[i];
+        }
+        first[3] = -2 * rise;
+        s.add(side_value(at), first, second);
+        return s;
+    }
+
+    /// hessian step = -gradient, by Cholesky's method; false: not positive definite.
+    static bool solve(const Slope& s, Four& step) {
+        std::array<Four, 4> l{};
+        for (std::size_t i = 0; i < 4; ++i)
+            for (std::size_t j = 0; j <= i; ++j) {
+                double sum = s.hessian[i][j];
+                for (std::size_t k = 0; k < j; ++k)
+                    sum -= l[i][k] * l[j][k];
+                if (i == j && !(sum > 0)) return false;
+                l[i][j] = i == j ? std::sqrt(sum) : sum / l[j][j];
+            }
+        for (std::size_t i = 0; i < 4; ++i) {
+            double sum = -s.gradient[i];
+            for (std::size_t k = 0; k < i; ++k)
+                sum -= l[i][k] * step[k];
+            step[i] = sum / l[i][i];
+        }
+        for (std::size_t i = 4; i-- > 0;) {
+            for (std::size_t k = i + 1; k < 4; ++k)
+                step[i] -= l[k][i] * step[k];
+            step[i] /= l[i][i];
+        }
+        return true;
+    }
+
+    std::optional<bool> by_barrier(double scale) {
+        scale_ = scale;
+        Four at = {axis_.x / 2, axis_.y / 2, axis_.z / 2, 0};
+        double least = std::min(0.0, sine_ / 2);
+        for (const Face& f : faces_)
+            least = std::min(least, slack(f, at));
+        at[3] = least - 1;
+        int tries = 0;
+        for (double push = 1; push < 0x1p54; push *= 8) {
+            for (int steps = 0; steps < 60; ++steps) {
+                const Slope s = slope(at, push);
+                Four step{};
+                if (!solve(s, step)) break;
+                double decrement2 = 0;
+                for (std::size_t i = 0; i < 4; ++i)
+                    decrement2 -= s.gradient[i] * step[i];
+                const double decrement = std::sqrt(std::max(decrement2, 0.0));
+                double stride = decrement < 0.25 ? 1 : 1 / (1 + decrement);
+                Four next{};
+                for (int halvings = 0; halvings < 30; ++halvings, stride /= 2) {
+                    for (std::size_t i = 0; i < 4; ++i)
+                        next[i] = at[i] + stride * step[i];
+                    if (inside(next)) break;
+                }
+                if (!inside(next)) break;
+                at = next;
+                if (decrement < 0.5) break;
+            }
+            if (at[3] > 0 && tries++ < 6 && meets_at(scaled({at[0], at[1], at[2]}, scale_))) return true;
+            Weights weights;
+            for (std::size_t i = 0; i < faces_.size(); ++i)
+                if (std::isfinite(faces_[i].offset))
+                    weights.push_back({i, 1 / (push * slack(faces_[i], at))});
+            if (gap(weights) > 0 && tries++ < 6 && apart_by(weights)) return false;
+        }
+        return std::nullopt;
+    }
+
+    const std::vector<HalfSpace>& cell_;
+    const ExactSpot& spot_;
+    std::vector<Face> faces_;
+    Flat axis_;
+    double axis_length_, cosine_, sine_, radius_, scale_ = 1;
+    bool holds_apex_ = true;
+};
+
+/// Whether a spot meets a cell; nothing: no certificate was found.
+inline std::optional<bool> meets(const std::vector<HalfSpace>& cell, const ExactSpot& spot) {
+    if (spot.whole()) return meets(cell, spot.ball);
+    return SpotSearch(cell, spot).verdict();
+}
+
+}  // namespace oracle

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+// Sets of spots, as spheres.hpp has sets of spheres: aimed in double precision in the camera's own axes; the spot that is
+// asked about is the float one that comes out.
+#pragma once
+
+#include "spheres.hpp"
+
+#include "../../bench/exact/spot.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace oracle {
+
+struct SpotLight {
+    Light ball;  ///< the whole of its sphere
+    float axis_x, axis_y, axis_z, cosine;
+};
+
+inline ExactSpot exact_spot(const SpotLight& s) {
+    return exact_spot(s.ball.x, s.ball.y, s.ball.z, s.ball.w, s.axis_x, s.axis_y, s.axis_z, s.cosine);
+}
+
+inline bool is_bad(const SpotLight& s) {
+    return is_bad(s.ball) || !std::isfinite(s.axis_x) || !std::isfinite(s.axis_y) ||
+           !std::isfinite(s.axis_z) || (s.axis_x == 0 && s.axis_y == 0 && s.axis_z == 0) ||
+           !(std::abs(s.cosine) <= 1);
+}
+
+inline std::string text(const SpotLight& s) {
+    char buffer[240];
+    std::snprintf(buffer, sizeof buffer, "{%a, %a, %a, %a; %a, %a, %a; %a}", static_cast<double>(s.ball.x),
+                  static_cast<double>(s.ball.y), static_cast<double>(s.ball.z), static_cast<double>(s.ball.w),
+                  static_cast<double>(s.axis_x), static_cast<double>(s.axis_y), static_cast<double>(s.axis_z),
+                  static_cast<double>(s.cosine));
+    return buffer;
+}
+
+namespace spots {
+
+/// A point or direction in the camera's axes.
+using Triple = std::array<double, 3>;
+
+inline double length(const Triple& v) {
+    return std::hypot(v[0], v[1], v[2]);
+}
+inline Triple plus(const Triple& a, const Triple& b, double k) {
+    return {a[0] + k * b[0], a[1] + k * b[1], a[2] + k * b[2]};
+}
+inline Triple unit(const Triple& v) {
+    return plus({}, v, 1 / length(v));
+}
+inline double along(const Triple& a, const Triple& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Triple any_direction(Random& random) {
+    return unit({random.normal(), random.normal(), random.normal()});
+}
+/// Of length 1 and at right angles to a direction.
+inline Triple across(const Triple& direction, Random& random) {
+    const Triple any = any_direction(random);
+    return unit(plus(any, direction, -along(any, direction)));
+}
+
+/// In radians: 0 to 180 degrees, often where formulas change or rounding hurts.
+inline double half_angle(Random& random) {
+    const double degree = std::acos(-1.0) / 180;
+    switch (random.integer(0, 11)) {
+    case 0:
+        return 0;
+    case 1:
+        return random.power_of_two(-16, 0);
+    case 2:
+        return 45 * degree + random.sign() * random.power_of_two(-30, -3);
+    case 3:
+        return 90 * degree - random.power_of_two(-30, -3);
+    case 4:
+        return random.chance(0.5) ? 90 * degree : random.uniform(90, 180) * degree;
+    default:
+        return random.uniform(0, 90) * degree;
+    }
+}
+
+/// An axis as often along or across the view, or from or to the eye, as any.
+inline Triple axis(const Triple& apex, Random& random) {
+    switch (random.integer(0, 7)) {
+    case 0:
+        return {0, 0, random.sign()};
+    case 1:
+        return {random.sign(), 0, 0};
+    case 2:
+        return {0, random.sign(), 0};
+    case 3:
+        return length(apex) > 0 ? plus({}, unit(apex), random.sign()) : any_direction(random);
+    default:
+        return any_direction(random);
+    }
+}
+
+/// Given to the library as floats, the axis often of another length than 1.
+inline SpotLight spot(const Aim& aim, Random& random, const Triple& apex, double radius, const Triple& axis,
+                      double angle) {
+    const double size = random.chance(0.7) ? 1 : random.power_of_two(-20, 20);
+    const Light direction = aim.light(size * axis[0], size * axis[1], size * axis[2], 0);
+    return {aim.light(apex[0], apex[1], apex[2], radius), direction.x, direction.y, direction.z,
+            static_cast<float>(std::cos(angle))};
+}
+
+/// In the camera's axes, but for the sign of image axes that are flipped.
+inline Triple centre(const Aim& aim, const Light& light) {
+    return {aim.coordinate(0, light), aim.coordinate(1, light), static_cast<double>(aim.depth_of(light))};
+}
+
+inline Light any_sphere(const Aim& aim, Random& random) {
+    const std::vector<SphereSet>& sets = sphere_sets();  // the last is special
+    return sets[static_cast<std::size_t>(random.integer(0, static_cast<int>(sets.size()) - 2))].one(aim,
+                                                                                                    random);
+}
+
+/// The spot's own ball is one of the field's, or of any set of spheres.
+inline SpotLight field(const Aim& aim, Random& random) {
+    const Light ball = spheres::field(aim, random);
+    const Triple apex = centre(aim, ball);
+    return spot(aim, random, apex, static_cast<double>(ball.w), axis(apex, random), half_angle(random));
+}
+inline SpotLight in_any_ball(const Aim& aim, Random& random) {
+    const Light ball = any_sphere(aim, random);
+    const Triple apex = centre(aim, ball);
+    return spot(aim, random, apex, static_cast<double>(ball.w), axis(apex, random), half_angle(random));
+}
+
+/// The least sphere around it is one of the field's, or of any set of spheres.
+inline SpotLight in_sphere(const Aim& aim, Random& random, const Light& sphere) {
+    const Triple c = centre(aim, sphere), a = axis(c, random);
+    const double angle = half_angle(random), cosine = std::cos(angle), r = static_cast<double>(sphere.w);
+    if (cosine <= 0) return spot(aim, random, c, r, a, angle);
+    const bool narrow = 2 * cosine * cosine >= 1;
+    const double range = narrow ? 2 * r * cosine : r / std::sin(angle);
+    return spot(aim, random, plus(c, a, narrow ? -r : -range * cosine), range, a, angle);
+}
+inline SpotLight least_field(const Aim& aim, Random& random) {
+    return in_sphere(aim, random, spheres::field(aim, random));
+}
+inline SpotLight least_any(const Aim& aim, Random& random) {
+    return in_sphere(aim, random, any_sphere(aim, random));
+}
+
+/// The apex at the eye, on the near plane, or a hair from them.
+inline SpotLight at_eye(const Aim& aim, Random& random) {
+    const double off = random.chance(0.3) ? 0 : aim.unit * random.power_of_two(-40, 0);
+    const bool eye = random.chance(0.5);
+    Triple apex = plus({}, any_direction(random), off);
+    if (!eye) {
+        const double n = aim.near_plane;
+        apex = {aim.at(0, aim.pixel(0, random), n), aim.at(1, aim.pixel(1, random), n),
+                n + random.sign() * off};
+    }
+    return spot(aim, random, apex, aim.unit * random.power_of_two(-4, 14), axis(apex, random),
+                half_angle(random));
+}
+
+/// Just touches a tile's cell at a point of its side, edge or corner, or misses that by 2^-k of its size: by the apex, the
+/// rim or the cap, as the direction has it.
+inline SpotLight touching(const Aim& aim, Random& random) {
+    const double d = random.chance(0.2) ? aim.near_plane : aim.depth(random);
+    const double h = aim.half_height(std::max(d, aim.unit)), r = h * random.power_of_two(-10, 2);
+    Triple n{};
+    double pixel[2];
+    const int sides = random.integer(1, 7);
+    for (const int i : {0, 1}) {
+        const bool edge = (sides >> i & 1) != 0;
+        pixel[i] = edge ? aim.tile_edge(i, random) : aim.pixel(i, random, 0);
+        if (!edge) continue;
+        const double weight = random.sign() * random.power_of_two(-6, 0);
+        n[static_cast<std::size_t>(i)] += weight;
+        n[2] -= weight * aim.slope(i, pixel[i]);
+    }
+    if (sides >> 2 != 0) n[2] += random.sign() * random.power_of_two(-6, 0);
+    n = unit(n);
+    const Triple at = {aim.at(0, pixel[0], d), aim.at(1, pixel[1], d), d};
+
+    const double angle = std::min(half_angle(random), std::acos(0.0)), cosine = std::cos(angle),
+                 sine = std::sin(angle);
+    const double turn = random.chance(0.2) ? angle : std::acos(random.uniform(-1, 1));
+    const Triple m = across(n, random);
+    const Triple a = plus(plus({}, n, std::cos(turn)), m, std::sin(turn));
+    Triple reach{};
+    if (turn <= angle) {
+        reach = plus({}, n, r);
+    } else if (cosine * std::cos(turn) + sine * std::sin(turn) > 0) {
+        const Triple aside = unit(plus(n, a, -along(n, a)));
+        reach = plus(plus({}, a, r * cosine), aside, r * sine);
+    }
+    const double off = r * random.sign() * std::exp2(-random.integer(4, 40));
+    SpotLight light = spot(aim, random, plus(plus(at, reach, -1), n, off), r, a, angle);
+    if (random.chance(0.5)) light.ball = nudged(light.ball, random);
+    return light;
+}
+
+/// Ranges out of all proportion to what is seen.
+inline SpotLight huge(const Aim& aim, Random& random) {
+    const Triple apex = plus({}, any_direction(random), aim.unit * random.power_of_two(-4, 12));
+    return spot(aim, random, apex, aim.unit * random.power_of_two(12, 30), axis(apex, random),
+                half_angle(random));
+}
+
+/// Any bits, and bad input.
+inline SpotLight special(const Aim& aim, Random& random) {
+    SpotLight light = random.chance(0.5) ? field(aim, random) : least_field(aim, random);
+    if (random.chance(0.5)) light.ball = spheres::special(aim, random);
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    const float odd[] = {0,   -0.0f, FLT_TRUE_MIN,  FLT_MIN, FLT_MAX, -FLT_MAX,
+                         inf, -inf,  std::nanf(""), 1,       -1,      1.0000001f};
+    for (float* v : {&light.axis_x, &light.axis_y, &light.axis_z, &light.cosine})
+        if (random.chance(0.3)) *v = odd[random.integer(0, 11)];
+    return light;
+}
+
+}  // namespace spots
+
+struct SpotSet {
+    std::string name;
+    SpotLight (*one)(const Aim&, Random&);
+};
+
+inline const std::vector<SpotSet>& spot_sets() {
+    using namespace spots;
+    static const std::vector<SpotSet> sets = {
+        {"field", field},
+        {"in any ball", in_any_ball},
+        {"least sphere in the field", least_field},
+        {"least sphere", least_any},
+        {"at the eye", at_eye},
+        {"touching", touching},
+        {"huge", huge},
+        {"special", special},
+    };
+    return sets;
+}
+
+inline std::vector<SpotLight> make(const SpotSet& set, const Camera& camera, std::size_t count,
+                                   std::uint64_t seed) {
+    const Aim aim(camera);
+    Random random(seed);
+    std::vector<SpotLight> lights;
+    for (std::size_t i = 0; i < count; ++i)
+        lights.push_back(set.one(aim, random));
+    return lights;
+}
+
+}  // namespace oracle
