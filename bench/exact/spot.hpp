@@ -103,6 +103,14 @@ public:
             if (faces_[i].offset < 0 &&
                 (radius_ == 0 || std::isinf(faces_[i].offset) || gap({{i, 1.0}}) > 0) && apart_by({{i, 1.0}}))
                 return false;
+        // Two planes that face away from each other leave nothing, however large the spot.
+        for (std::size_t i = 0; i < faces_.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j) {
+                const double a = faces_[i].offset, b = faces_[j].offset;
+                if (product(faces_[i].normal, faces_[j].normal) < -0.999 && a + b <= 0x1p-40 * std::abs(a) &&
+                    apart_by({{i, 1.0}, {j, 1.0}}))
+                    return false;
+            }
         if (const auto verdict = by_axis()) return verdict;
         // A range out of proportion to the cell blurs it: then the part of the spot that reaches as far as its planes do.
         double away = 0;
