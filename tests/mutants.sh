@@ -15,7 +15,8 @@ cd "$(dirname "$0")/.."
 work=build/mutants
 
 # mutant PROOF FILE EXPRESSION: sed's EXPRESSION breaks include/lightbin/FILE, and the PROOF must see it: families (every
-# rung, tier and number of workers against the exact judge and each other), cells, world or clusters.
+# rung, tier and number of workers against the exact judge and each other), cells, world, clusters, spots
+# or least_spheres.
 list() {
     # Rounding outward.
     mutant cells view.hpp 's/detail::float_above(0x1p-20 \* (std::fabs(axis.offset) + axis.tiles) + 0x1p-80 \* axis.scale)/0.0f/'
@@ -27,6 +28,10 @@ list() {
     mutant world detail/move.inl 's/(mul(away, move.error) + move.least_error)/move.least_error/'
     mutant world detail/move.inl 's/less_equal(away, move.most)/less_equal(away, all(0x1p40f))/'
     mutant world detail/project.inl 's/source.kept != nullptr || rest != 0/source.kept != nullptr/'
+    # Spots.
+    mutant spots spot.hpp 's/rounded(radius \* (1 + 0x1p-48))/rounded(radius * (1 - 0x1p-20))/'
+    mutant spots spot.hpp 's/2 \* cosine2 >= 1;/2 * cosine2 >= 1.1;/'
+    mutant least_spheres spot.hpp 's/axis_length;/(axis_length * (1 + 0x1p-18));/'
     # Projection.
     mutant families detail/project.inl 's/either(either(less(farthest, front)/either(either(less(nearest, front)/'
     mutant families detail/project.inl 's/less(size \* 0x1p-21f, aside - r)/less(size * -0x1p-19f, aside - r)/'
@@ -89,7 +94,7 @@ try() {
         ;;
     *)
         g++ $flags tests/oracle/$proof.cpp $work/doctest_main.o -lgmp -o "$place/proof" 2>"$place/log"
-        arguments='--test-case=cells: symmetric,world space*,clusters: symmetric'
+        arguments='--test-case=cells: symmetric,world space*,clusters: symmetric,spots: symmetric,the least*'
         ;;
     esac || {
         echo "DOES NOT COMPILE: $number $file $expression"

@@ -163,7 +163,7 @@ inline SpotLight at_eye(const Aim& aim, Random& random) {
 }
 
 /// Just touches a tile's cell at a point of its side, edge or corner, or misses that by 2^-k of its size: by the apex, the
-/// rim or the cap, as the direction has it.
+/// rim or the cap, as the direction has it. The direction is the side's, at an angle of `turn` to the axis.
 inline SpotLight touching(const Aim& aim, Random& random) {
     const double d = random.chance(0.2) ? aim.near_plane : aim.depth(random);
     const double h = aim.half_height(std::max(d, aim.unit)), r = h * random.power_of_two(-10, 2);
@@ -184,7 +184,9 @@ inline SpotLight touching(const Aim& aim, Random& random) {
 
     const double angle = std::min(half_angle(random), std::acos(0.0)), cosine = std::cos(angle),
                  sine = std::sin(angle);
-    const double turn = random.chance(0.2) ? angle : std::acos(random.uniform(-1, 1));
+    // Any, or that of the tangent plane of the least sphere, too, at the rim or at the apex.
+    double turn = std::acos(random.uniform(-1, 1));
+    if (random.chance(0.6)) turn = random.chance(0.7) ? std::min(2 * angle, std::acos(0.0)) : std::acos(-1.0);
     const Triple m = across(n, random);
     const Triple a = plus(plus({}, n, std::cos(turn)), m, std::sin(turn));
     Triple reach{};
