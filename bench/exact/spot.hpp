@@ -198,15 +198,16 @@ private:
         // so its part along the axis, of which multiples are exact, is made a little larger.
         if (radius_ == 0 || (reach.back == 0 && length(reach.lateral) == 0)) {
             by.ball_part = n;
-        } else if (reach.value > 0 || !proves_apart(cell_, spot_, by)) {
+        } else {
+            if (reach.value <= 0 && proves_apart(cell_, spot_, by)) return true;
             const double back = (reach.back + length(reach.lateral) * 0x1p-50) * (1 + 0x1p-50) / axis_length_;
             by.ball_part = n + exact(back) * spot_.axis - exactly(reach.lateral);
         }
         return proves_apart(cell_, spot_, by);
     }
 
-    /// By the part of the axis that is in the cell, all of which is in the cone: without rounding, as a half angle of 0
-    /// leaves nothing but the axis, and the two share a point or have none. That is then decided, too.
+    /// By the part of the axis that is in the cell, as all of the axis is in the cone. Without rounding: of a half angle of 0
+    /// nothing but the axis is left, which often lies in a cell's side. Of that no question stays open.
     std::optional<bool> by_axis() const {
         constexpr std::size_t none = static_cast<std::size_t>(-1);
         std::size_t first = none, last = none;
@@ -221,7 +222,7 @@ private:
         }
         const Rational axis2 = dot(spot_.axis, spot_.axis);
         if (last == none || from <= to) {
-            // In the middle of what is in the ball, for a cell that is not reached by rounding alone; else at its end.
+            // In the middle of what is in the ball, which rounding may move, or where it begins, without rounding.
             const double end = std::min(last == none ? HUGE_VAL : nearly(to), radius_ / axis_length_);
             for (const Rational& at : {exact((nearly(from) + end) / 2), from})
                 if (proves_meeting(cell_, spot_, spot_.ball.centre + at * spot_.axis)) return true;
