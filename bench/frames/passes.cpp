@@ -23,7 +23,7 @@ void depth_pre_pass(Stage& stage) {
     stage.lap("pre-Z");
 }
 
-void shade_forward(Stage& stage, const LightLoop& lights) {
+void shade_forward(Stage& stage, const LightLookup& lights) {
     stage.memory.draw_to({stage.drawn()}, stage.depth());
     if (stage.settings().three_shaders) {
         for (const int material : {0, 1, 2}) {
@@ -37,7 +37,7 @@ void shade_forward(Stage& stage, const LightLoop& lights) {
     stage.lap("shade");
 }
 
-void shade_panes(Stage& stage, const LightLoop& lights) {
+void shade_panes(Stage& stage, const LightLookup& lights) {
     stage.memory.draw_to({stage.drawn()}, stage.depth());
     stage.use(stage.shaders().surface_vertex(), stage.shaders().forward_fragment(lights, 0, 0.4f));
     glEnable(GL_BLEND);
@@ -71,7 +71,7 @@ void read_g_buffer(Stage& stage, GLuint depth) {
     stage.memory.read_from(unit_normal, surface_target(stage, "normal"));
 }
 
-void shade_deferred(Stage& stage, const LightLoop& lights) {
+void shade_deferred(Stage& stage, const LightLookup& lights) {
     read_g_buffer(stage, stage.depth());
     stage.memory.draw_to({stage.shown()}, 0);
     stage.use(stage.shaders().everywhere_vertex(), stage.shaders().deferred_fragment(lights));

@@ -20,9 +20,9 @@ void begin_picture(Stage& stage);
 /// Depth alone, of the opaque surfaces.
 void depth_pre_pass(Stage& stage);
 /// Lights opaque surfaces as they are drawn; with three shaders, a program each.
-void shade_forward(Stage& stage, const LightLoop& lights);
+void shade_forward(Stage& stage, const LightLookup& lights);
 /// Panes before them, from the farthest to the nearest.
-void shade_panes(Stage& stage, const LightLoop& lights);
+void shade_panes(Stage& stage, const LightLookup& lights);
 
 /// A target of the G-buffer's width.
 GLuint surface_target(Stage& stage, const char* name);
@@ -30,7 +30,7 @@ GLuint surface_target(Stage& stage, const char* name);
 void fill_g_buffer(Stage& stage, GLuint depth);
 void read_g_buffer(Stage& stage, GLuint depth);
 /// Lights the G-buffer's pixels, each once.
-void shade_deferred(Stage& stage, const LightLoop& lights);
+void shade_deferred(Stage& stage, const LightLookup& lights);
 
 /// Z bounds from a depth target, in memory of their own.
 class DepthBounds {

@@ -181,14 +181,14 @@ vec3 lit_pixel(ivec2 pixel) {
 
 }  // namespace
 
-LightLoop every_light() {
+LightLookup every_light() {
     return {"\nstruct EveryLight { uint id; };\n"
             "#define each_light(light, pixel, view_depth) "  // on one line: GLSL 3.30 continues none
             "for (EveryLight light = EveryLight(0u); light.id < uint(light_count); light.id += 1u)\n"};
 }
 
 // Texel buffers, which OpenGL 3.3 has, are read the same way by all.
-LightLoop listed_lights(const lightbin::ShaderOptions& options) {
+LightLookup listed_lights(const lightbin::ShaderOptions& options) {
     lightbin::ShaderOptions read = options;
     read.language = lightbin::ShaderLanguage::glsl_330;
     read.storage = lightbin::ListStorage::texel_buffer;
@@ -209,7 +209,7 @@ layout(early_fragment_tests) in;
 #endif
 )";
 
-std::string lit_text(const LightLoop& lights, const std::string& material) {
+std::string lit_text(const LightLookup& lights, const std::string& material) {
     return "#define MATERIAL(s) " + material + "\n#define LIGHT_ID " + lights.id + "\n" + common +
            lights.text + lighting + counter;
 }
@@ -255,7 +255,7 @@ std::string Shaders::depth_fragment() const {
     return head() + "void main() {}\n";
 }
 
-std::string Shaders::forward_fragment(const LightLoop& lights, int material, float alpha) const {
+std::string Shaders::forward_fragment(const LightLookup& lights, int material, float alpha) const {
     return head() + seen_only + lit_text(lights, std::to_string(material)) + lit_by_list + made_surface +
            "out vec4 pixel;\n\nvoid main() {\n"
            "    pixel = vec4(shown(lit(made_surface(), uvec2(gl_FragCoord.xy))), " +
@@ -279,7 +279,7 @@ void main() {
 )";
 }
 
-std::string Shaders::deferred_functions(const LightLoop& lights) const {
+std::string Shaders::deferred_functions(const LightLookup& lights) const {
     const std::string count = std::to_string(sample_places_.size());
     std::string places;
     for (const glm::vec2& place : sample_places_)
@@ -290,7 +290,7 @@ std::string Shaders::deferred_functions(const LightLoop& lights) const {
            lit_pixel;
 }
 
-std::string Shaders::deferred_fragment(const LightLoop& lights) const {
+std::string Shaders::deferred_fragment(const LightLookup& lights) const {
     return head() + deferred_functions(lights) + R"(
 out vec4 pixel;
 

@@ -12,13 +12,13 @@
 #include <vector>
 
 /// How a technique's shaders find the lights of a surface.
-struct LightLoop {
+struct LightLookup {
     /// Defines the macro each_light(light, pixel, view_depth), before a statement that reads light.id.
     std::string text;
     std::string id = "int(light.id)";  ///< of the light in the frame's array
 };
-LightLoop every_light();
-LightLoop listed_lights(const lightbin::ShaderOptions& options = {});
+LightLookup every_light();
+LightLookup listed_lights(const lightbin::ShaderOptions& options = {});
 
 /// Writes the texts for one version of GLSL and one kind of frame.
 class Shaders {
@@ -32,14 +32,14 @@ public:
     std::string depth_fragment() const;
 
     /// Lights what it draws. `material`: one of three, or 0 where all are the same; `alpha` below 1: of glass.
-    std::string forward_fragment(const LightLoop& lights, int material = 0, float alpha = 1) const;
+    std::string forward_fragment(const LightLookup& lights, int material = 0, float alpha = 1) const;
 
     /// Writes surfaces to the G-buffer.
     std::string g_buffer_fragment() const;
     /// Lights a pixel of the G-buffer, whatever the number of samples.
-    std::string deferred_fragment(const LightLoop& lights) const;
+    std::string deferred_fragment(const LightLookup& lights) const;
     /// The same of a compute shader: declares vec3 lit_pixel(ivec2 pixel).
-    std::string deferred_functions(const LightLoop& lights) const;
+    std::string deferred_functions(const LightLookup& lights) const;
 
     /// One light after another, added up in radiance_texture: the ambient light, one light, and what is shown.
     std::string ambient_fragment() const;

@@ -104,7 +104,7 @@ Technique tiled_deferred_kernel(int g_buffer_bits) {
                 const std::string constants = "#define TILE " + std::to_string(tile) + "\n#define THREADS " +
                                               std::to_string(tile * tile) + "u\n#define WORDS " +
                                               std::to_string(stage.lights().size() / 32 + 1) + "u\n";
-                const LightLoop lights = {tile_lights, "int(footprints[light.id].id)"};
+                const LightLookup lights = {tile_lights, "int(footprints[light.id].id)"};
                 const GLuint program = stage.use_compute(shaders.head() + constants +
                                                          shaders.deferred_functions(lights) + kernel);
                 glUniform1ui(glGetUniformLocation(program, "footprint_count"),

@@ -104,7 +104,11 @@ void compile_example(Compiler& compiler, int glsl) {
     };
     for (const bool orthographic : {false, true})
         for (const bool skip_background : {false, true})
-            compile(EShLangFragment, reduce_fragment_shader(glsl, orthographic, skip_background));
+            for (const int samples : {1, 4}) {
+                if (samples > 1 && glsl == 300) continue;  // it has no multisampled textures
+                compile(EShLangFragment,
+                        reduce_fragment_shader(glsl, samples, orthographic, skip_background));
+            }
     compile(EShLangVertex, geometry_vertex_shader(glsl));
     compile(EShLangFragment, depth_fragment_shader(glsl));
     compile(EShLangVertex, overlay_vertex_shader(glsl));
