@@ -28,7 +28,7 @@
 #   frames [--quick] [--pictures] [SCENE.glb ...]
 #       Whole frames in OpenGL by every technique of the papers, on the made scene and the named ones (or those of the
 #       tests): light evaluations, times of passes, memory, and the difference to every light in every fragment. Ten minutes
-#       with a software renderer, --quick one. A scene of ten views or more is taken for a camera's path. Writes
+#       at most with a software renderer, --quick two. A scene of ten views or more is taken for a camera's path. Writes
 #       build/bench/frames.csv, and of the paths frames_paths.csv, .svg and .png; --pictures: a PNG a view, too.
 set -eu
 me=bench/run.sh
