@@ -39,7 +39,7 @@ void examine_clusters(const Camera& camera, Tally& tally, std::uint64_t& seed) {
     const std::size_t tiles = view.tile_count();
     for (const SphereSet& set : sphere_sets()) {
         const std::vector<Light> lights =
-            make(set, camera, std::clamp<std::size_t>(1500 / tiles, 3, 15), ++seed);
+            make(set, camera, std::clamp<std::size_t>(800 / tiles, 2, 8), ++seed);
         Random random(++seed);
         const std::vector<float> boundaries = make_boundaries(view, lights, random);
         const auto rectangle_grid = rectangles.bin(view, lights);
