@@ -128,6 +128,12 @@ lightbin::ZBounds DepthBounds::reduce_on_gpu(Stage& stage, GLuint depth, bool ba
     return {.min = min_, .max = max_, .transparent_max = transparent_max_, .background_skipped = true};
 }
 
+void upload_lists(Stage& stage, const lightbin::LightGrid<std::uint32_t>& grid) {
+    stage.memory.read_texels(unit_tiles, GL_RG32UI, stage.memory.buffer("tiles", grid.ranges()));
+    stage.memory.read_texels(unit_lists, GL_R32UI, stage.memory.buffer("lists", grid.ids()));
+    stage.lap("upload");
+}
+
 void upload_slices(Stage& stage, const lightbin::Slices& slices, const lightbin::LightRanks& ranks) {
     const std::vector<std::uint32_t> words = lightbin::shader_slices(slices);
     stage.memory.read_texels(unit_slices, GL_R32UI,

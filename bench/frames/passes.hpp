@@ -7,6 +7,7 @@
 
 #include <lightbin/lightbin.hpp>
 
+#include <cstdint>
 #include <stdexcept>
 #include <vector>
 
@@ -45,12 +46,7 @@ private:
 };
 
 /// The lists, for the shaders of listed_lights().
-template <class Id> void upload_lists(Stage& stage, const lightbin::LightGrid<Id>& grid) {
-    const GLenum ids = sizeof(Id) == 2 ? GL_R16UI : GL_R32UI;
-    stage.memory.read_texels(unit_tiles, GL_RG32UI, stage.memory.buffer("tiles", grid.ranges()));
-    stage.memory.read_texels(unit_lists, ids, stage.memory.buffer("lists", grid.ids()));
-    stage.lap("upload");
-}
+void upload_lists(Stage& stage, const lightbin::LightGrid<std::uint32_t>& grid);
 /// The slices, and the bins of lists of ranks.
 void upload_slices(Stage& stage, const lightbin::Slices& slices, const lightbin::LightRanks& ranks);
 /// As deep as any light reaches.
