@@ -3,6 +3,7 @@
 // over. Each is a camera, triangles that make its depth buffer, and as many light sets as are asked for.
 #pragma once
 
+#include "dice.hpp"
 #include "sets.hpp"
 
 #include <glm/ext/matrix_clip_space.hpp>
@@ -20,26 +21,6 @@ struct BenchScene {
     glm::mat4 projection;              ///< OpenGL's: looks down -z, clip depth -1..1, near and far finite
     std::vector<glm::vec3> triangles;  ///< in view space, three corners each
     std::function<Lights(std::uint32_t seed)> lights;  ///< in view space; same seed, same lights
-};
-
-/// The same numbers everywhere, which the standard distributions do not promise.
-class Dice {
-public:
-    explicit Dice(std::uint32_t seed) : engine_(seed) {}
-    float between(float low, float high) {
-        return low + (high - low) * static_cast<float>(engine_() >> 8) / 16777216.0f;
-    }
-    glm::vec3 between(glm::vec3 low, glm::vec3 high) {
-        const float x = between(low.x, high.x), y = between(low.y, high.y);
-        return {x, y, between(low.z, high.z)};
-    }
-    /// Spread by a factor either way, small ones more often: the shape of a lognormal, with bounds.
-    float about(float middle, float factor) {
-        return middle * std::pow(factor, between(-1, 1) + between(-1, 1) / 2);
-    }
-
-private:
-    std::mt19937 engine_;
 };
 
 /// Builds a scene in a world with y up, on a ground at y = 0.

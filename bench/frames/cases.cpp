@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "cases.hpp"
 
+#include "../dice.hpp"
+
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 #include <string>
 #include <utility>
 
@@ -35,21 +36,6 @@ Camera look(const std::string& name, glm::dvec3 from, glm::dvec3 to, glm::dvec3 
     camera.far = 2 * reach;
     return camera;
 }
-
-// The same numbers everywhere, which the standard distributions do not promise.
-class Dice {
-public:
-    float between(float low, float high) {
-        return low + (high - low) * static_cast<float>(engine_() >> 8) / 16777216.0f;
-    }
-    glm::vec3 in(const Box& box) {
-        const float x = between(box.low.x, box.high.x), y = between(box.low.y, box.high.y);
-        return {x, y, between(box.low.z, box.high.z)};
-    }
-
-private:
-    std::mt19937 engine_{2013};
-};
 
 }  // namespace
 
@@ -84,11 +70,11 @@ std::vector<Camera> made_flight(std::size_t views) {
 Scene with_random_lights(Scene scene, std::size_t count) {
     const Box box = box_of(scene.triangles);
     const glm::vec3 size = box.high - box.low;
-    Dice dice;
+    Dice dice(2013);
     scene.lights.clear();
     for (std::size_t i = 0; i < count; ++i) {
         Light light;
-        light.position = dice.in(box);
+        light.position = dice.between(box.low, box.high);
         light.range = 0.06f * std::max(size.x, size.z);
         const glm::vec3 colour(dice.between(0.1f, 1), dice.between(0.1f, 1), dice.between(0.1f, 1));
         light.intensity = colour * light.range * light.range;
@@ -110,7 +96,7 @@ Scene with_few_lights(Scene scene) {
 
 Scene with_panes(Scene scene, std::size_t count) {
     if (!scene.transparent.empty()) return scene;
-    Dice dice;
+    Dice dice(2013);
     for (std::size_t i = 0; i < count; ++i) {
         const Light& light = scene.lights[i * scene.lights.size() / count];
         const float side = 0.5f * light.range, turn = dice.between(0, glm::two_pi<float>());

@@ -35,10 +35,8 @@ Technique deferred(int g_buffer_bits) {
                     const auto footprints =  // of tiles that are pixels
                         value_of(lightbin::shader_footprints(stage.view(1), stage.lights()));
                     stage.lap("project");
-                    stage.memory.read_texels(
-                        unit_footprints, GL_RGBA32UI,
-                        stage.memory.buffer("footprints",
-                                            std::span<const lightbin::ShaderFootprint>(footprints)));
+                    stage.memory.read_texels(unit_footprints, GL_RGBA32UI,
+                                             stage.memory.buffer("footprints", footprints));
                     stage.lap("upload");
                     begin_radiance(stage, stage.depth(), 0);
                     stage.use(stage.shaders().rectangle_vertex(), stage.shaders().one_light_fragment());

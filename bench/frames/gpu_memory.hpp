@@ -46,7 +46,8 @@ public:
 
     /// A buffer of these bytes; in place of what it held, if there is one of that name.
     GLuint buffer(const std::string& name, std::size_t bytes, const void* data);
-    template <class T> GLuint buffer(const std::string& name, std::span<const T> data) {
+    template <class Range> GLuint buffer(const std::string& name, const Range& range) {
+        const std::span data(range);
         return buffer(name, data.size_bytes(), data.data());
     }
     /// Shaders read the bytes of a buffer() at the unit, as texels of that format.

@@ -35,8 +35,7 @@ Technique light_indexed(int id_bits) {
                 memory->encoded.resize(lightbin::encoded_bytes(format, grid.ranges().size(), 0));
                 value_of(lightbin::encode(grid, format, memory->encoded));
                 stage.lap("bin");
-                const GLuint lists =
-                    stage.memory.buffer("lists", std::span<const std::byte>(memory->encoded));
+                const GLuint lists = stage.memory.buffer("lists", memory->encoded);
                 stage.memory.read_texels(unit_lists, id_bits == 8 ? GL_R8UI : GL_R16UI, lists);
                 stage.lap("upload");
                 shade_forward(stage, listed_lights({.format = format}));

@@ -11,7 +11,7 @@
 
 void begin_picture(Stage& stage) {
     stage.memory.draw_to({stage.drawn()}, stage.depth());
-    glClearColor(0.02f, 0.025f, 0.04f, 1);
+    glClearColor(0.02f, 0.025f, 0.04f, 1);  // as `sky` of the shaders
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
@@ -79,6 +79,13 @@ void shade_deferred(Stage& stage, const LightLookup& lights) {
     stage.lap("shade");
 }
 
+void set_reduction(Stage& stage, GLuint program, GLuint depth) {
+    const lightbin::ShaderReduce constants = lightbin::shader_reduce(stage.view());
+    glUniform4uiv(uniform(program, "lightbin_grid"), 1, &constants.tile_size);
+    glUniform4fv(uniform(program, "lightbin_planes"), 1, &constants.far_end);
+    stage.memory.read_from(unit_depth, depth);
+}
+
 lightbin::ZBounds DepthBounds::reduce_on_cpu(Stage& stage) {
     const lightbin::View view = stage.view();
     const auto [width, height] = view.viewport();
@@ -104,10 +111,7 @@ lightbin::ZBounds DepthBounds::reduce_on_gpu(Stage& stage, GLuint depth, bool ba
     options.skip_background = !background;
     const GLuint program = stage.use(stage.shaders().everywhere_vertex(),
                                      "#version 330 core\n" + value_of(lightbin::reduce_shader(options)).text);
-    const lightbin::ShaderReduce constants = lightbin::shader_reduce(view);
-    glUniform4uiv(uniform(program, "lightbin_grid"), 1, &constants.tile_size);
-    glUniform4fv(uniform(program, "lightbin_planes"), 1, &constants.far_end);
-    stage.memory.read_from(unit_depth, depth);
+    set_reduction(stage, program, depth);
     const GLuint reduced = stage.memory.target("Z bounds", GL_RG32F, view.tiles_x(), view.tiles_y(), 1);
     stage.memory.draw_to({reduced}, 0);
     glViewport(0, 0, view.tiles_x(), view.tiles_y());
@@ -136,8 +140,7 @@ void upload_lists(Stage& stage, const lightbin::LightGrid<std::uint32_t>& grid) 
 
 void upload_slices(Stage& stage, const lightbin::Slices& slices, const lightbin::LightRanks& ranks) {
     const std::vector<std::uint32_t> words = lightbin::shader_slices(slices);
-    stage.memory.read_texels(unit_slices, GL_R32UI,
-                             stage.memory.buffer("slices", std::span<const std::uint32_t>(words)));
+    stage.memory.read_texels(unit_slices, GL_R32UI, stage.memory.buffer("slices", words));
     stage.memory.read_texels(unit_bins, GL_RG32UI, stage.memory.buffer("bins", ranks.bins));
 }
 

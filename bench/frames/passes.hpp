@@ -8,13 +8,7 @@
 #include <lightbin/lightbin.hpp>
 
 #include <cstdint>
-#include <stdexcept>
 #include <vector>
-
-template <class T> T value_of(lightbin::Result<T> result) {
-    if (!result) throw std::runtime_error(result.error().message());
-    return *result;
-}
 
 /// The picture and its depth, cleared and bound.
 void begin_picture(Stage& stage);
@@ -32,6 +26,9 @@ void fill_g_buffer(Stage& stage, GLuint depth);
 void read_g_buffer(Stage& stage, GLuint depth);
 /// Lights the G-buffer's pixels, each once.
 void shade_deferred(Stage& stage, const LightLookup& lights);
+
+/// Hands a program of lightbin::reduce_shader() its constants and the depth target that it reads.
+void set_reduction(Stage& stage, GLuint program, GLuint depth);
 
 /// Z bounds from a depth target, in memory of their own.
 class DepthBounds {

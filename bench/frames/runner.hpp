@@ -8,8 +8,6 @@
 #include <renderer.hpp>
 
 #include <cstdint>
-#include <functional>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>

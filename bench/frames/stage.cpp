@@ -2,13 +2,11 @@
 #include "stage.hpp"
 
 #include <gl_program.hpp>
+#include <renderer.hpp>
 
 #include <lightbin/shader.hpp>
 
-#include <glm/gtc/matrix_transform.hpp>
-
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 namespace {
@@ -19,13 +17,6 @@ struct FrameConstants {
     glm::vec2 picture_size;
     std::int32_t light_count, unused = 0;
 };
-
-glm::mat4 projection_of(const Camera& camera, double aspect) {
-    if (camera.orthographic) throw std::runtime_error("frames of orthographic cameras are not drawn here");
-    return glm::mat4(std::isinf(camera.far)
-                         ? glm::infinitePerspective(camera.height, aspect, camera.near)
-                         : glm::perspective(camera.height, aspect, camera.near, camera.far));
-}
 
 // Where in a pixel of the bound targets its samples lie.
 std::vector<glm::vec2> find_sample_places(int samples) {
@@ -61,6 +52,7 @@ void Stage::reset_state() {
 void Stage::begin(const Camera& camera, const Settings& settings) {
     while (glGetError() != GL_NO_ERROR) {  // of a frame that was given up
     }
+    if (camera.orthographic) throw std::runtime_error("frames of orthographic cameras are not drawn here");
     settings_ = settings;
     const glm::dmat4 to_view = glm::inverse(camera.to_world);
     projection_ = projection_of(camera, static_cast<double>(settings.width) / settings.height);
@@ -83,8 +75,7 @@ void Stage::begin(const Camera& camera, const Settings& settings) {
         gpu_lights_.emplace_back(sphere.x, sphere.y, sphere.z, sphere.radius);
         gpu_lights_.emplace_back(intensity, 0);
     }
-    memory.read_texels(unit_lights, GL_RGBA32F,
-                       memory.buffer("lights", std::span<const glm::vec4>(gpu_lights_)));
+    memory.read_texels(unit_lights, GL_RGBA32F, memory.buffer("lights", gpu_lights_));
 
     const FrameConstants constants{glm::mat4(to_view),
                                    projection_,
@@ -152,21 +143,16 @@ std::uint64_t Stage::evaluations() const {
 }
 
 lightbin::View Stage::view(int tile_size) const {
-    const auto view =
+    return value_of(
         lightbin::View::from_projection(projection_, {settings_.width, settings_.height},
-                                        {.tile_size = tile_size == 0 ? settings_.tile_size : tile_size});
-    if (!view) throw std::runtime_error(view.error().message());
-    return *view;
+                                        {.tile_size = tile_size == 0 ? settings_.tile_size : tile_size}));
 }
 
 void Stage::order_lights(std::span<const std::uint32_t> order) {
     std::vector<glm::vec4> ordered;
-    const auto put = [&](std::uint32_t light) {
-        ordered.insert(ordered.end(), {gpu_lights_[2 * light], gpu_lights_[2 * light + 1]});
-    };
     for (const std::uint32_t light : order)
-        put(light);
-    memory.read_texels(unit_lights, GL_RGBA32F, memory.buffer("lights", std::span<const glm::vec4>(ordered)));
+        ordered.insert(ordered.end(), {gpu_lights_[2 * light], gpu_lights_[2 * light + 1]});
+    memory.read_texels(unit_lights, GL_RGBA32F, memory.buffer("lights", ordered));
 }
 
 GLuint Stage::set(GLuint program) const {

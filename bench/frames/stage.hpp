@@ -16,11 +16,15 @@
 
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
+
+template <class T> T value_of(lightbin::Result<T> result) {
+    if (!result) throw std::runtime_error(result.error().message());
+    return *result;
+}
 
 struct Pass {
     std::string name;
@@ -52,7 +56,6 @@ public:
     int glsl() const { return glsl_; }
     const Settings& settings() const { return settings_; }
     Shaders shaders() const { return {glsl_, settings_, sample_places_}; }
-    const glm::mat4& projection() const { return projection_; }
     lightbin::View view(int tile_size = 0) const;  ///< 0: that of the settings
     /// In view space, in the order in which they begin in depth: so ids and ranks in depth ascend together.
     const std::vector<lightbin::Sphere>& lights() const { return spheres_; }

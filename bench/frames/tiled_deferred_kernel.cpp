@@ -93,9 +93,7 @@ Technique tiled_deferred_kernel(int g_buffer_bits) {
                 const lightbin::View view = stage.view();
                 const auto footprints = value_of(lightbin::shader_footprints(view, stage.lights()));
                 stage.lap("project");
-                glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0,
-                                 stage.memory.buffer("footprints",
-                                                     std::span<const lightbin::ShaderFootprint>(footprints)));
+                glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, stage.memory.buffer("footprints", footprints));
                 stage.lap("upload");
 
                 fill_g_buffer(stage, stage.depth());

@@ -21,10 +21,7 @@ void reduce(Stage& stage, const lightbin::View& view) {
     const auto text =
         value_of(lightbin::reduce_shader({.samples = stage.settings().samples, .skip_background = true}));
     const GLuint program = stage.use_compute("#version 430 core\n" + text.text);
-    const lightbin::ShaderReduce constants = lightbin::shader_reduce(view);
-    glUniform4uiv(uniform(program, "lightbin_grid"), 1, &constants.tile_size);
-    glUniform4fv(uniform(program, "lightbin_planes"), 1, &constants.far_end);
-    stage.memory.read_from(unit_depth, stage.depth());
+    set_reduction(stage, program, stage.depth());
     dispatch(view);
     stage.lap("reduce");
 }
@@ -55,37 +52,35 @@ void build(Stage& stage, const lightbin::View& view, const lightbin::ShaderBuild
 }  // namespace
 
 Technique tiled_deferred_passes(int g_buffer_bits) {
-    return {
-        .name = "TiledDeferred by passes",
-        .draw =
-            [](Stage& stage) {
-                const lightbin::View view = stage.view();
-                const auto footprints = value_of(lightbin::shader_footprints(view, stage.lights()));
-                std::uint32_t room = 0;  // as many as without depths
-                for (const lightbin::ShaderFootprint& f : footprints)
-                    room += static_cast<std::uint32_t>((f.x1 - f.x0 + 1) * (f.y1 - f.y0 + 1));
-                stage.lap("project");
-                const std::size_t tiles = view.tile_count();
-                const GLuint buffers[] = {
-                    stage.memory.buffer("footprints", std::span<const lightbin::ShaderFootprint>(footprints)),
-                    stage.memory.buffer("Z bounds", 8 * tiles, nullptr),
-                    0,
-                    stage.memory.buffer("tiles", 8 * tiles, nullptr),
-                    stage.memory.buffer("lists", 4 * std::size_t{room}, nullptr),
-                    stage.memory.buffer("total", 4, nullptr)};
-                for (GLuint i = 0; i < std::size(buffers); ++i)
-                    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffers[i]);
-                stage.lap("upload");
+    return {.name = "TiledDeferred by passes",
+            .draw =
+                [](Stage& stage) {
+                    const lightbin::View view = stage.view();
+                    const auto footprints = value_of(lightbin::shader_footprints(view, stage.lights()));
+                    std::uint32_t room = 0;  // as many as without depths
+                    for (const lightbin::ShaderFootprint& f : footprints)
+                        room += static_cast<std::uint32_t>((f.x1 - f.x0 + 1) * (f.y1 - f.y0 + 1));
+                    stage.lap("project");
+                    const std::size_t tiles = view.tile_count();
+                    const GLuint buffers[] = {stage.memory.buffer("footprints", footprints),
+                                              stage.memory.buffer("Z bounds", 8 * tiles, nullptr),
+                                              0,
+                                              stage.memory.buffer("tiles", 8 * tiles, nullptr),
+                                              stage.memory.buffer("lists", 4 * std::size_t{room}, nullptr),
+                                              stage.memory.buffer("total", 4, nullptr)};
+                    for (GLuint i = 0; i < std::size(buffers); ++i)
+                        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffers[i]);
+                    stage.lap("upload");
 
-                fill_g_buffer(stage, stage.depth());
-                reduce(stage, view);
-                build(stage, view,
-                      lightbin::shader_build(view, static_cast<std::uint32_t>(footprints.size()), room));
-                stage.memory.read_texels(unit_tiles, GL_RG32UI, buffers[3]);
-                stage.memory.read_texels(unit_lists, GL_R32UI, buffers[4]);
-                shade_deferred(stage, listed_lights());
-            },
-        .tolerance = g_buffer_bits == 32 ? 1 : 3,
-        .g_buffer_bits = g_buffer_bits,
-        .glsl = 430};
+                    fill_g_buffer(stage, stage.depth());
+                    reduce(stage, view);
+                    build(stage, view,
+                          lightbin::shader_build(view, static_cast<std::uint32_t>(footprints.size()), room));
+                    stage.memory.read_texels(unit_tiles, GL_RG32UI, buffers[3]);
+                    stage.memory.read_texels(unit_lists, GL_R32UI, buffers[4]);
+                    shade_deferred(stage, listed_lights());
+                },
+            .tolerance = g_buffer_bits == 32 ? 1 : 3,
+            .g_buffer_bits = g_buffer_bits,
+            .glsl = 430};
 }

@@ -5,61 +5,58 @@
 #include "technique.hpp"
 
 #include <memory>
+#include <span>
 
 namespace {
 
 // Of the panes alone: nearer lights than the nearest pane of a tile are not needed there, and no light where none is.
-std::vector<float> nearest_panes(Stage& stage, DepthBounds& bounds) {
+std::span<const float> nearest_panes(Stage& stage, DepthBounds& bounds) {
     const GLuint depth = stage.target("depth of panes", GL_DEPTH_COMPONENT32F);
     stage.memory.draw_to({}, depth);
     glClear(GL_DEPTH_BUFFER_BIT);
     stage.use(stage.shaders().surface_vertex(), stage.shaders().depth_fragment());
     stage.geometry.draw_panes();
     stage.lap("pre-Z");
-    const auto min = bounds.reduce_on_gpu(stage, depth).min;
-    return {min.begin(), min.end()};
+    return bounds.reduce_on_gpu(stage, depth).min;
+}
+
+struct Memory {
+    DepthBounds opaque, panes;
+    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner, pane_binner;
+};
+
+lightbin::TransparencyGrids<std::uint32_t> bin(Stage& stage, Memory& memory, TransparentLists lists) {
+    const lightbin::View view = stage.view();
+    const auto& lights = stage.lights();
+    memory.opaque.reduce_on_gpu(stage, stage.depth(), true);
+    const auto bounds = memory.opaque.reduce_on_gpu(stage, stage.depth());
+    if (lists == TransparentLists::max_only)
+        return value_of(memory.binner.bin_transparency(view, lights, {.bounds = bounds}));
+    if (lists == TransparentLists::shared) {
+        const auto grid =
+            value_of(memory.binner.bin(view, lights, {.bounds = {.max = bounds.transparent_max}}));
+        return {grid, grid};
+    }
+    const std::span<const float> nearest = nearest_panes(stage, memory.panes);
+    return {value_of(memory.binner.bin(view, lights, {.bounds = bounds})),
+            value_of(memory.pane_binner.bin(view, lights,
+                                            {.bounds = {.min = nearest, .max = bounds.transparent_max}}))};
 }
 
 }  // namespace
 
 Technique transparent_forward(TransparentLists lists) {
-    struct Memory {
-        DepthBounds opaque, panes;
-        lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner, pane_binner;
-    };
     const auto memory = std::make_shared<Memory>();
     static constexpr const char* names[] = {"PreZ with lists for panes", "PreZ with shared lists",
                                             "PreZ with lists from the nearest pane on"};
     return {names[static_cast<int>(lists)], [=](Stage& stage) {
                 begin_picture(stage);
                 depth_pre_pass(stage);
-                memory->opaque.reduce_on_gpu(stage, stage.depth(), true);
-                const auto bounds = memory->opaque.reduce_on_gpu(stage, stage.depth());
-                if (lists == TransparentLists::shared) {
-                    const auto grid = value_of(memory->binner.bin(
-                        stage.view(), stage.lights(), {.bounds = {.max = bounds.transparent_max}}));
-                    stage.lap("bin");
-                    upload_lists(stage, grid);
-                    shade_forward(stage, listed_lights());
-                } else if (lists == TransparentLists::max_only) {
-                    const auto [opaque, transparent] = value_of(
-                        memory->binner.bin_transparency(stage.view(), stage.lights(), {.bounds = bounds}));
-                    stage.lap("bin");
-                    upload_lists(stage, opaque);
-                    shade_forward(stage, listed_lights());
-                    upload_lists(stage, transparent);
-                } else {
-                    const std::vector<float> nearest = nearest_panes(stage, memory->panes);
-                    const auto opaque =
-                        value_of(memory->binner.bin(stage.view(), stage.lights(), {.bounds = bounds}));
-                    const auto transparent = value_of(
-                        memory->pane_binner.bin(stage.view(), stage.lights(),
-                                                {.bounds = {.min = nearest, .max = bounds.transparent_max}}));
-                    stage.lap("bin");
-                    upload_lists(stage, opaque);
-                    shade_forward(stage, listed_lights());
-                    upload_lists(stage, transparent);
-                }
+                const auto [opaque, transparent] = bin(stage, *memory, lists);
+                stage.lap("bin");
+                upload_lists(stage, opaque);
+                shade_forward(stage, listed_lights());
+                if (lists != TransparentLists::shared) upload_lists(stage, transparent);
                 shade_panes(stage, listed_lights());
                 stage.resolve();
             }};

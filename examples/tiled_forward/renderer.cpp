@@ -30,16 +30,6 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-glm::mat4 projection_of(const Camera& camera, double aspect) {
-    if (camera.orthographic) {
-        const double y = camera.height / 2, x = y * aspect;
-        return glm::mat4(glm::ortho(-x, x, -y, y, camera.near, camera.far));
-    }
-    if (std::isinf(camera.far))
-        return glm::mat4(glm::infinitePerspective(camera.height, aspect, camera.near));
-    return glm::mat4(glm::perspective(camera.height, aspect, camera.near, camera.far));
-}
-
 template <class T> T value_of(lightbin::Result<T> result) {
     if (!result) throw std::runtime_error(result.error().message());
     return *result;
@@ -64,6 +54,16 @@ void check_loop(std::size_t lights) {
 }
 
 }  // namespace
+
+glm::mat4 projection_of(const Camera& camera, double aspect) {
+    if (camera.orthographic) {
+        const double y = camera.height / 2, x = y * aspect;
+        return glm::mat4(glm::ortho(-x, x, -y, y, camera.near, camera.far));
+    }
+    if (std::isinf(camera.far))
+        return glm::mat4(glm::infinitePerspective(camera.height, aspect, camera.near));
+    return glm::mat4(glm::perspective(camera.height, aspect, camera.near, camera.far));
+}
 
 // The frame, from top to bottom.
 FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) {

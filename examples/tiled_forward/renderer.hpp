@@ -57,6 +57,9 @@ struct FrameReport {
     } milliseconds{};
 };
 
+// What a camera makes of view space, for OpenGL. `aspect`: width / height of the picture.
+glm::mat4 projection_of(const Camera& camera, double aspect);
+
 class Renderer {
 public:
     // Needs a current OpenGL context, and leaves its objects to it: they live as long as the program. Keeps
