@@ -404,11 +404,12 @@ inline const std::vector<SphereSet>& sphere_sets() {
     return sets;
 }
 
-inline std::vector<Light> make(const SphereSet& set, const Camera& camera, std::size_t count,
-                               std::uint64_t seed) {
+/// Lights of a SphereSet, or of another set of theirs.
+template <class Set>
+auto make(const Set& set, const Camera& camera, std::size_t count, std::uint64_t seed) {
     const Aim aim(camera);
     Random random(seed);
-    std::vector<Light> lights;
+    std::vector<decltype(set.one(aim, random))> lights;
     for (std::size_t i = 0; i < count; ++i)
         lights.push_back(set.one(aim, random));
     return lights;

@@ -243,14 +243,4 @@ inline const std::vector<SpotSet>& spot_sets() {
     return sets;
 }
 
-inline std::vector<SpotLight> make(const SpotSet& set, const Camera& camera, std::size_t count,
-                                   std::uint64_t seed) {
-    const Aim aim(camera);
-    Random random(seed);
-    std::vector<SpotLight> lights;
-    for (std::size_t i = 0; i < count; ++i)
-        lights.push_back(set.one(aim, random));
-    return lights;
-}
-
 }  // namespace oracle
