@@ -31,6 +31,11 @@ struct Spot {
     float x, y, z, radius;
     float axis_x, axis_y, axis_z, cos_half_angle;
 
+    /// A whole sphere as a spot: for a callable that makes Spots of lights of which some are none.
+    static constexpr Spot whole(const Sphere& sphere) {
+        return {sphere.x, sphere.y, sphere.z, sphere.radius, 0, 0, 1, -1};
+    }
+
     /// least_sphere(). By this a spot is a light wherever a Sphere is one: in an array, or made by a callable.
     operator Sphere() const;
 };
