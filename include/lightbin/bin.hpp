@@ -65,7 +65,8 @@ public:
     ///
     /// footprints  Footprints or RankedFootprints, with spheres for a depth test
     /// parallel    Serial or Parallel
-    template <class Lit, class Threads>
+    /// spots       the lights are spots
+    template <bool spots, class Lit, class Threads>
     std::optional<Error> build(Isa isa, const View& view, const Lit& footprints, const ZBounds& bounds,
                                std::vector<detail::Scratch>& scratch,
                                [[maybe_unused]] const Threads& parallel) {
@@ -78,13 +79,13 @@ public:
         // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.
         if constexpr (worded)
             if (capacity > most)
-                capacity = detail::scalar::count_entries<footprint, depth_test>(job, scratch[0]);
+                capacity = detail::scalar::count_entries<footprint, depth_test, false, spots>(job, scratch[0]);
         if (capacity > most) return Error{ErrorCode::too_many_entries, capacity, most};
 
         job.tiles = tiles_.reserve(tiles + job.spare_tiles);
         tile_count_ = tiles;
         const auto kernel =
-            detail::bin_kernel<footprint, depth_test, Id>(isa, view, footprints.visible(), footprints.area());
+            detail::bin_kernel<footprint, depth_test, Id, false, spots>(isa, view, footprints.visible(), footprints.area());
         Id* list = indices_.reserve(capacity + slack);
         shared_ = false;
         if constexpr (!std::is_same_v<Threads, Serial>) {
@@ -105,14 +106,14 @@ public:
 
     /// Writes bitmasks of the footprints, `each` words a tile, see bits.inl. Errors as build() but for offsets. There is no
     /// grid then.
-    template <class Lit>
+    template <bool spots, class Lit>
     std::optional<Error> write_bits(Isa isa, const View& view, const Lit& footprints, const ZBounds& bounds,
                                     std::vector<detail::Scratch>& scratch, const Parallel& parallel,
                                     std::uint32_t* bits, std::size_t each) {
         tile_count_ = entries_ = 0;
         Job job = {};
         if (const auto error = prepare(view, footprints, bounds, job)) return error;
-        const auto kernel = detail::bits_kernel<footprint, depth_test, Id>(isa);
+        const auto kernel = detail::bits_kernel<footprint, depth_test, Id, spots>(isa);
         const std::size_t rows = static_cast<std::size_t>(view.tiles_y()), bands = (rows + 7) / 8;
         const bool share = parallel.pays_off(
             detail::supertile_ns(isa, true, footprints.visible(), static_cast<double>(footprints.area())));

@@ -110,13 +110,13 @@ public:
 
     /// Returns the light grid of `lights` in `view`, in the Binner's memory: valid until its next call.
     ///
-    /// lights   a contiguous range of vec4 (x, y, z, radius) or Sphere in view space, view_space(...) or
+    /// lights   a contiguous range of vec4 (x, y, z, radius), Sphere or Spot in view space, view_space(...) or
     ///          world_space(...)
     /// inputs   {.slices = ...} with clusters; else {.slices = ...} with z_bins, {.bounds = ...} with a depth test, both in
     ///          this order with both, else {} or nothing
     /// threads  a Parallel: threads to share the work among. The grid is the same with any number of them.
     ///
-    /// After it, every tile lists every light whose sphere meets the tile's cell (no miss), in ascending
+    /// After it, every tile lists every light whose sphere, or spot, meets the tile's cell (no miss), in ascending
     /// order. Errors: more lights than Id can number; more than 2^32 - 1 entries, cells, or pairs of a light
     /// and a slice or block of 8x8 tiles; a world_space() matrix that is not affine; a side of the Z bounds that is
     /// shorter than view.tile_count().
@@ -125,11 +125,11 @@ public:
                               const Threads& threads = {}) {
         if (const auto error = project(view, lights, inputs, threads)) return *error;
         if constexpr (clusters)
-            return build(lists_, view, inputs.slices, threads, inputs.slices.count());
+            return build<spots<LightRange>>(lists_, view, inputs.slices, threads, inputs.slices.count());
         else if constexpr (with_depth)
-            return build(lists_, view, inputs.bounds, threads);
+            return build<spots<LightRange>>(lists_, view, inputs.bounds, threads);
         else
-            return build(lists_, view, ZBounds(), threads);
+            return build<spots<LightRange>>(lists_, view, ZBounds(), threads);
     }
 
     /// Returns both grids of a scene with transparent geometry from one projection, valid until the Binner's
@@ -148,9 +148,9 @@ public:
             return Error{ErrorCode::no_transparent_max};
         if (const auto error = project(view, lights, inputs, threads)) return *error;
         const ZBounds in_front = {.max = own_max ? bounds.transparent_max : bounds.max};
-        const auto transparent = build(transparent_, view, in_front, threads);
+        const auto transparent = build<spots<LightRange>>(transparent_, view, in_front, threads);
         if (!transparent) return transparent.error();
-        const auto opaque = build(lists_, view, bounds, threads);
+        const auto opaque = build<spots<LightRange>>(lists_, view, bounds, threads);
         if (!opaque) return opaque.error();
         return TransparencyGrids<Id>{*opaque, *transparent};
     }
@@ -172,8 +172,8 @@ public:
         if (numbered > max_lights) return Error{ErrorCode::ids_too_narrow, numbered, max_lights};
         ZBounds bounds;
         if constexpr (with_depth) bounds = inputs.bounds;
-        if (const auto error = lists_.write_bits(isa_, view, lit(), bounds, scratch_, threads, bits.data(),
-                                                 static_cast<std::size_t>(each)))
+        if (const auto error = lists_.template write_bits<spots<LightRange>>(
+                isa_, view, lit(), bounds, scratch_, threads, bits.data(), static_cast<std::size_t>(each)))
             return *error;
         return LightBits{counts(), ranks()};
     }
@@ -184,6 +184,9 @@ private:
     struct Nothing {};
 
     template <class LightRange>
+    static constexpr bool spots = std::remove_cvref_t<decltype(detail::as_lights(std::declval<const LightRange&>()))>::spots;
+
+    template <class LightRange>
     std::optional<Error> project(const View& view, const LightRange& lights,
                                  [[maybe_unused]] const Inputs& inputs, const Parallel& threads) {
         const auto& source = detail::as_lights(lights);
@@ -192,7 +195,7 @@ private:
         if (scratch_.empty()) scratch_.resize(1);
         isa_ = machine_isa(options.isa);
         footprints_.project(isa_, view, source, threads, lists_.shared());
-        if constexpr (z_bins) ranked_.rank(isa_, view, footprints_, inputs.slices);
+        if constexpr (z_bins) ranked_.template rank<spots<LightRange>>(isa_, view, footprints_, inputs.slices);
         return std::nullopt;
     }
 
@@ -203,10 +206,10 @@ private:
             return footprints_;
     }
 
-    template <class Depths, class Threads>
+    template <bool of_spots, class Depths, class Threads>
     Result<LightGrid<Id>> build(Lists& lists, const View& view, const Depths& depths, const Threads& threads,
                                 int slices = 1) {
-        if (const auto error = lists.build(isa_, view, lit(), depths, scratch_, threads)) return *error;
+        if (const auto error = lists.template build<of_spots>(isa_, view, lit(), depths, scratch_, threads)) return *error;
         return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), counts(), slices,
                              ranks());
     }

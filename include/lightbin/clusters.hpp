@@ -43,7 +43,9 @@ template <class Id, Footprint footprint, DepthTest depth_test> class ClusterList
 public:
     /// Builds the grid: the tiles of the first slice row by row, then those of the next one. Errors: more than 2^32 - 1
     /// cells, pairs of a light and a slice, or entries; then there is no grid.
-    template <class Threads>
+    ///
+    /// spots  the lights are spots
+    template <bool spots, class Threads>
     std::optional<Error> build(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
                                const Slices& slices, std::vector<detail::Scratch>& scratch,
                                [[maybe_unused]] const Threads& parallel) {
@@ -52,7 +54,7 @@ public:
         const std::size_t tiles = view.tile_count(), count = static_cast<std::size_t>(slices.count());
         const std::uint64_t cells = std::uint64_t{tiles} * count;
         if (cells > most) return Error{ErrorCode::too_many_cells, cells, most};
-        const std::uint64_t places = footprints_.cut(isa, view, footprints, slices);
+        const std::uint64_t places = footprints_.template cut<spots>(isa, view, footprints, slices);
         if (places > most) return Error{ErrorCode::too_many_list_places, places, most};
         if constexpr (with_boxes) edges_.find(detail::camera_of(view));
         const std::size_t slack = Job::slack(static_cast<std::size_t>(view.tiles_x()));
@@ -71,7 +73,7 @@ public:
             if (capacity > most) {
                 capacity = 0;
                 for (std::size_t slice = 0; slice < count; ++slice)
-                    capacity += detail::scalar::count_entries<footprint, depth_test, by_slab>(
+                    capacity += detail::scalar::count_entries<footprint, depth_test, by_slab && !spots, spots>(
                         job_of(view, slices, slice), scratch[0]);
             }
         if (capacity > most) return Error{ErrorCode::too_many_entries, capacity, most};
@@ -83,7 +85,7 @@ public:
                 Job job = job_of(view, slices, slice);
                 // What is behind the last of these slices may be another thread's.
                 job.spare_tiles = end == count ? slack : (std::min)(slack, (end - slice - 1) * tiles);
-                const auto kernel = detail::bin_kernel<footprint, depth_test, Id, by_slab>(
+                const auto kernel = detail::bin_kernel<footprint, depth_test, Id, by_slab && !spots, spots>(
                     isa, view, job.visible, footprints_.runs()[slice].area);
                 const unsigned rows = static_cast<unsigned>(view.tiles_y());
                 at += static_cast<std::uint32_t>(kernel(job, memory, {0, rows, out + at, at}));

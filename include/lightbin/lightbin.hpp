@@ -19,8 +19,8 @@
 //   3. Binner<Options{...}> binner; once. Then each frame                                      binner.hpp
 //        binner.bin(view, lights), with a depth test binner.bin(view, lights, {.bounds = *bounds}); and your
 //        threads, if you lend some, last.
-//        lights: vec4 array or Sphere array in view space, or view_space(yours, to_sphere),
-//        or world_space(yours, view_matrix[, to_sphere])                                       lights.hpp
+//        lights: vec4 array or Sphere array in view space, or view_space(yours, to_light),
+//        or world_space(yours, view_matrix[, to_light])                                       lights.hpp
 //        A spot light may be a Spot instead of a Sphere, anywhere                              spot.hpp
 //   4. Upload grid->ranges() and grid->ids(), or have grid->copy_to(ranges, ids)               light_grid.hpp
 //      write them to buffers of yours.

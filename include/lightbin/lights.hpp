@@ -5,7 +5,9 @@
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/world_to_view.hpp>
 #include <lightbin/sphere.hpp>
+#include <lightbin/spot.hpp>
 
+#include <concepts>
 #include <functional>
 #include <optional>
 #include <ranges>
@@ -16,16 +18,51 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
-/// Lights made by view_space() or world_space(): a view of the caller's array, how an element becomes a sphere, and how
-/// that is moved to view space.
-template <class Light, class ToSphere> struct Lights {
+namespace detail {
+
+template <class Light, class Number>
+concept Vec4Of = requires(const Light& light) {
+    requires std::same_as<std::remove_cvref_t<decltype(light.x)>, Number>;
+    requires std::same_as<std::remove_cvref_t<decltype(light.y)>, Number>;
+    requires std::same_as<std::remove_cvref_t<decltype(light.z)>, Number>;
+    requires std::same_as<std::remove_cvref_t<decltype(light.w)>, Number>;
+};
+
+}  // namespace detail
+
+/// How a light becomes a Sphere or a Spot by default: what is one, derives from one or converts to one, as it is; else a
+/// Sphere of the x, y, z and w of a vec4 of floats, or of doubles, which are rounded outward.
+struct AsLight {
+    template <class Light> constexpr auto operator()(const Light& light) const {
+        if constexpr (std::convertible_to<const Light&, Spot>) {
+            return static_cast<Spot>(light);
+        } else if constexpr (std::convertible_to<const Light&, Sphere>) {
+            return static_cast<Sphere>(light);
+        } else if constexpr (detail::Vec4Of<Light, float>) {
+            return Sphere{light.x, light.y, light.z, light.w};
+        } else {
+            static_assert(detail::Vec4Of<Light, double>,
+                          "lightbin: this light is no Sphere or Spot and has no float or double x, y, z and w (the "
+                          "radius): pass view_space(lights, to_light) or world_space(lights, view_matrix, to_light), "
+                          "where to_light makes a lightbin::Sphere or a lightbin::Spot of a light");
+            return detail::sphere_around(light.x, light.y, light.z, light.w);
+        }
+    }
+};
+
+/// Lights made by view_space() or world_space(): a view of the caller's array, how an element becomes a Sphere or a Spot,
+/// and how that is moved to view space.
+template <class Light, class ToLight> struct Lights {
     std::span<const Light> array;
-    ToSphere to_sphere;
+    ToLight to_light;
     std::optional<detail::WorldToView> to_view;
+
+    /// Whether the lights are Spots, of which some may be whole spheres.
+    static constexpr bool spots = std::convertible_to<std::invoke_result_t<const ToLight&, const Light&>, Spot>;
 
     /// Returns a light of the array as a sphere in view space.
     Sphere view_sphere(const Light& light) const {
-        const Sphere sphere = std::invoke(to_sphere, light);
+        const Sphere sphere = std::invoke(to_light, light);
         return to_view ? (*to_view)(sphere) : sphere;
     }
 };
@@ -33,39 +70,39 @@ template <class Light, class ToSphere> struct Lights {
 /// Returns lights in view space (the space that the projection matrix takes). The array is read in place: it
 /// must live until the Binner's call returns.
 ///
-/// to_sphere  a callable that makes a Sphere of an element; it is copied, and called as const
-template <std::ranges::contiguous_range Range, class ToSphere = AsSphere>
-auto view_space(const Range& lights, ToSphere to_sphere = {}) {
+/// to_light  a callable that makes a Sphere, or a Spot, of an element; it is copied, and called as const
+template <std::ranges::contiguous_range Range, class ToLight = AsLight>
+auto view_space(const Range& lights, ToLight to_light = {}) {
     using Light = std::ranges::range_value_t<const Range>;
-    return Lights<Light, ToSphere>{
-        std::span<const Light>(std::ranges::data(lights), std::ranges::size(lights)), to_sphere, {}};
+    return Lights<Light, ToLight>{
+        std::span<const Light>(std::ranges::data(lights), std::ranges::size(lights)), to_light, {}};
 }
 
 /// Returns lights in world space, moved by `view_matrix` (view_matrix[column][row], affine: rotation,
-/// translation, scale) as they are read. The rounding of the move is in the spheres: no light is missed by
-/// it.
-template <std::ranges::contiguous_range Range, class Matrix, class ToSphere = AsSphere>
-auto world_space(const Range& lights, const Matrix& view_matrix, ToSphere to_sphere = {}) {
-    auto result = view_space(lights, to_sphere);
+/// translation, scale) as they are read. The rounding of the move is in the spheres and cones: no light is missed by
+/// it. A matrix that is far from a rotation and a scale bends cones out of shape: spots are moved as least spheres then.
+template <std::ranges::contiguous_range Range, class Matrix, class ToLight = AsLight>
+auto world_space(const Range& lights, const Matrix& view_matrix, ToLight to_light = {}) {
+    auto result = view_space(lights, to_light);
     result.to_view.emplace(view_matrix);
     return result;
 }
 
 namespace detail {
 
-/// Lights passed as a plain range are view-space vec4s or Spheres.
+/// Lights passed as a plain range are view-space vec4s, Spheres or Spots.
 template <class Range> auto as_lights(const Range& lights) {
     return view_space(lights);
 }
-template <class Light, class ToSphere>
-const Lights<Light, ToSphere>& as_lights(const Lights<Light, ToSphere>& lights) {
+template <class Light, class ToLight>
+const Lights<Light, ToLight>& as_lights(const Lights<Light, ToLight>& lights) {
     return lights;
 }
 
 /// The caller's array as spheres, if its elements are Spheres, or vec4s laid out like them; else null. Read it with
 /// load_sphere.
-template <class Light, class ToSphere> const Sphere* as_they_are(const Lights<Light, ToSphere>& lights) {
-    if constexpr (std::is_same_v<ToSphere, AsSphere> && sizeof(Light) == sizeof(Sphere) &&
+template <class Light, class ToLight> const Sphere* as_they_are(const Lights<Light, ToLight>& lights) {
+    if constexpr (std::is_same_v<ToLight, AsLight> && sizeof(Light) == sizeof(Sphere) &&
                   std::is_trivially_copyable_v<Light>) {
         if (lights.array.empty()) return nullptr;
         if constexpr (std::is_base_of_v<Sphere, Light>) {

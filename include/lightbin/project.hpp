@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage 2: spheres -> footprints, the tile rectangle and depth interval of each light in view, all rounded
-// outward.
+// Stage 2: spheres or spots -> footprints, the tile rectangle of each light in view, rounded outward.
 #pragma once
 
 #include <lightbin/detail/buffer.hpp>
@@ -28,19 +27,30 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR {
 namespace detail {
 
 /// The lights that no stage takes, ids being 32 bits at most.
-template <class Light, class ToSphere>
-std::optional<Error> refuse(const Lights<Light, ToSphere>& lights, std::uint64_t most = 0xffffffff) {
+template <class Light, class ToLight>
+std::optional<Error> refuse(const Lights<Light, ToLight>& lights, std::uint64_t most = 0xffffffff) {
     if (lights.to_view && !lights.to_view->affine()) return Error{ErrorCode::view_matrix_not_affine};
     if (lights.array.size() > most) return Error{ErrorCode::too_many_lights, lights.array.size(), most};
     return std::nullopt;
 }
 
 /// See LightSource.
-template <class Light, class ToSphere>
+template <class Light, class ToLight>
 void copy_spheres(const void* lights, std::size_t first, std::size_t count, Sphere* to) {
-    const auto& from = *static_cast<const Lights<Light, ToSphere>*>(lights);
+    const auto& from = *static_cast<const Lights<Light, ToLight>*>(lights);
     for (std::size_t i = 0; i < count; ++i)
-        to[i] = std::invoke(from.to_sphere, from.array[first + i]);
+        to[i] = std::invoke(from.to_light, from.array[first + i]);
+}
+
+/// See SpotSource.
+template <class Light, class ToLight>
+void copy_spots(const void* lights, std::size_t first, std::size_t count, Sphere* balls, Sphere* cones) {
+    const auto& from = *static_cast<const Lights<Light, ToLight>*>(lights);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Spot spot = std::invoke(from.to_light, from.array[first + i]);
+        balls[i] = {spot.x, spot.y, spot.z, spot.radius};
+        cones[i] = {spot.axis_x, spot.axis_y, spot.axis_z, spot.cos_half_angle};
+    }
 }
 
 }  // namespace detail
@@ -48,44 +58,72 @@ void copy_spheres(const void* lights, std::size_t first, std::size_t count, Sphe
 /// The footprints of the lights in view, in ascending order of id. Keeps its memory from call to call.
 ///
 /// footprint     silhouette: with row spans
-/// with_spheres  have the view-space spheres at hand, for a depth test; row spans need them anyway
+/// with_spheres  have the view-space spheres or spots at hand, for a depth test; row spans need them anyway
 template <Footprint footprint, bool with_spheres> class Footprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette, keep = with_spheres || with_spans;
 
 public:
     /// Projects every light with the kernel of an instruction set. After it, a light's rectangle holds each
     /// tile that the part of its sphere beyond the near plane projects to; it is the smallest such rectangle
-    /// but for the rounding margin of the view.
+    /// but for the rounding margin of the view. So it is of a spot whose ball lies beyond the near plane; another one's is
+    /// where the rectangles of its ball and of its least sphere meet.
     ///
     /// force_parallel  share even what is soon done: there will be more to share, and by then the threads are awake
-    template <class Light, class ToSphere>
-    void project(Isa isa, const View& view, const Lights<Light, ToSphere>& lights, const Parallel& parallel,
+    template <class Light, class ToLight>
+    void project(Isa isa, const View& view, const Lights<Light, ToLight>& lights, const Parallel& parallel,
                  bool force_parallel = false) {
         lights_ = lights.array.size();
         const bool share =
             force_parallel || parallel.pays_off(detail::project_ns(isa, static_cast<double>(lights_)));
         const Parallel threads = share ? parallel : Parallel();
-        // One part where 32 bits might not number the places of more.
-        constexpr std::size_t chunk = detail::ChunkRects::size;
-        const std::size_t chunks = lights_ / chunk + 1;
-        const std::size_t parts = lights_ >> 31 == 0 ? detail::project_parts(chunks, parallel.workers()) : 1;
+        constexpr bool spots = Lights<Light, ToLight>::spots;
+        const detail::WorldToView* const to_view = lights.to_view ? &*lights.to_view : nullptr;
+        // One light is done sooner than a vector is filled up with copies of it.
+        const Isa taken = lights_ > 1 ? isa : Isa::scalar;
+        reserve(parts_for(threads));
+        if constexpr (spots) {
+            detail::SpotSource source = {&lights, detail::copy_spots<Light, ToLight>, to_view, nullptr};
+            if constexpr (keep) arrays_.spots = source.kept = spots_.reserve(std::uint64_t{lights_} + chunk);
+            run_parts(view, source, detail::project_spots_kernel(taken), threads);
+        } else {
+            detail::LightSource source = {.spheres = detail::as_they_are(lights),
+                                          .lights = &lights,
+                                          .copy = nullptr,
+                                          .to_view = to_view,
+                                          .kept = nullptr};
+            if (source.spheres == nullptr) source.copy = detail::copy_spheres<Light, ToLight>;
+            arrays_.spheres = source.spheres;
+            if constexpr (keep)
+                if (source.copy != nullptr || source.to_view != nullptr)
+                    arrays_.spheres = source.kept = spheres_.reserve(std::uint64_t{lights_} + chunk);
+            run_parts(view, source, detail::project_kernel(taken), threads);
+        }
+        if constexpr (with_spans) add_spans(detail::row_span_kernel<spots>(isa), view, threads);
+    }
+
+    std::size_t lights() const { return lights_; }
+    std::uint32_t visible() const { return counts_.visible; }
+    std::uint32_t rejected() const { return counts_.rejected; }  ///< bad input, see Sphere
+    std::uint64_t area() const { return counts_.area; }          ///< sum of the rectangles' tiles
+    const detail::FootprintArrays& arrays() const { return arrays_; }
+    std::span<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
+
+private:
+    static constexpr std::size_t chunk = detail::ChunkRects::size;
+
+    /// One part where 32 bits might not number the places of more.
+    std::size_t parts_for(const Parallel& threads) const {
+        return lights_ >> 31 == 0 ? detail::project_parts(lights_ / chunk + 1, threads.workers()) : 1;
+    }
+
+    /// Has a kernel project the lights, whole chunks a part.
+    template <class Source, class Kernel>
+    void run_parts(const View& view, const Source& source, Kernel kernel, const Parallel& threads) {
+        const std::size_t chunks = lights_ / chunk + 1, parts = run_count_;
         const auto first_of = [&](std::size_t part) {
             return static_cast<std::size_t>(
                 (std::min<std::uint64_t>)(std::uint64_t{chunks} * part / parts * chunk, lights_));
         };
-        reserve(parts);
-        detail::LightSource source = {.spheres = detail::as_they_are(lights),
-                                      .lights = &lights,
-                                      .copy = nullptr,
-                                      .to_view = lights.to_view ? &*lights.to_view : nullptr,
-                                      .kept = nullptr};
-        if (source.spheres == nullptr) source.copy = detail::copy_spheres<Light, ToSphere>;
-        arrays_.spheres = source.spheres;
-        if constexpr (keep)
-            if (source.copy != nullptr || source.to_view != nullptr)
-                arrays_.spheres = source.kept = spheres_.reserve(std::uint64_t{lights_} + chunk);
-        // One light is done sooner than a vector is filled up with copies of it.
-        const detail::ProjectKernel kernel = detail::project_kernel(lights_ > 1 ? isa : Isa::scalar);
         threads.run(parts, [&](std::size_t part) {
             const std::size_t first = first_of(part), end = first_of(part + 1);
             const std::size_t place = first + part * detail::FootprintArrays::padding;
@@ -102,17 +140,8 @@ public:
             counts_.area += counts.area;
             counts_.rows += counts.rows;
         }
-        if constexpr (with_spans) add_spans(detail::row_span_kernel(isa), view, threads);
     }
 
-    std::size_t lights() const { return lights_; }
-    std::uint32_t visible() const { return counts_.visible; }
-    std::uint32_t rejected() const { return counts_.rejected; }  ///< bad input, see Sphere
-    std::uint64_t area() const { return counts_.area; }          ///< sum of the rectangles' tiles
-    const detail::FootprintArrays& arrays() const { return arrays_; }
-    std::span<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
-
-private:
     void reserve(std::size_t parts) {
         const std::uint64_t capacity = std::uint64_t{lights_} + parts * detail::FootprintArrays::padding;
         arrays_ = {.ids = ids_.reserve(capacity),
@@ -122,7 +151,8 @@ private:
                    .y1 = y1_.reserve(capacity),
                    .span_begin = with_spans ? span_begin_.reserve(capacity) : nullptr,
                    .spans = nullptr,
-                   .spheres = nullptr};
+                   .spheres = nullptr,
+                   .spots = nullptr};
         runs_.reserve(parts);
         part_counts_.reserve(parts);
         run_count_ = parts;
@@ -162,6 +192,7 @@ private:
     detail::Buffer<std::uint32_t> span_begin_;
     detail::Buffer<detail::RowSpan> spans_;
     detail::Buffer<Sphere> spheres_;
+    detail::Buffer<detail::ViewSpot> spots_;
     detail::Buffer<detail::FootprintRun> runs_;
     detail::Buffer<detail::ProjectCounts> part_counts_;
     std::size_t lights_ = 0, run_count_ = 0;

@@ -27,20 +27,23 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR {
 /// Footprints in the order of the bins in which their lights begin, in a bin in the caller's order; their ids are the ranks
 /// in it. Keeps its memory from call to call.
 ///
-/// with_spheres  have the spheres at hand, for a depth test
+/// with_spheres  have the spheres or spots at hand, for a depth test
 template <Footprint footprint, bool with_spheres> class RankedFootprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette;
 
 public:
     /// Takes each light to the bins that its depths, z - r to z + r, meet, their ends included; also to the one before or
     /// behind them where they end close to the boundary.
+    ///
+    /// spots  the lights are spots
+    template <bool spots>
     void rank(Isa isa, const View& view, const Footprints<footprint, true>& footprints, const Slices& slices) {
         run_ = {0, footprints.visible()};
         area_ = footprints.area();
         bin_count_ = static_cast<std::size_t>(slices.count());
         table_.set(slices.boundaries());
-        reserve(footprints.arrays(), footprints.runs().back().end);
-        find_bins(isa, detail::camera_of(view).z_sign, footprints.arrays(), footprints.runs());
+        reserve<spots>(footprints.arrays(), footprints.runs().back().end);
+        find_bins<spots>(isa, detail::camera_of(view).z_sign, footprints.arrays(), footprints.runs());
 
         // Sorted by counting: how many lights begin in a bin, where those begin, and then where they end.
         std::uint32_t before = 0;
@@ -53,7 +56,7 @@ public:
         for (const detail::FootprintRun& run : footprints.runs())
             for (std::uint32_t i = run.begin; i < run.end; ++i)
                 places_.data()[ends_.data()[first_bins_.data()[i]]++] = i;
-        put_lights(footprints.arrays());
+        put_lights<spots>(footprints.arrays());
         find_ranges();
     }
 
@@ -67,10 +70,11 @@ private:
     static constexpr std::uint32_t chunk = 64;  ///< lights, whole vectors
 
     /// Finds the bins that each light meets, and counts in `ends_` those that begin in each.
+    template <bool spots>
     void find_bins(Isa isa, float z_sign, const detail::FootprintArrays& lights,
                    std::span<const detail::FootprintRun> runs) {
         const detail::SlicePlacesKernel kernel = detail::slice_places_kernel(isa);
-        const bool by_places = table_.places_tell();
+        const bool by_places = !spots && table_.places_tell();
         std::uint32_t* const begins = ends_.data();
         std::fill_n(begins, bin_count_, 0u);
         for (const detail::FootprintRun& run : runs)
@@ -88,24 +92,26 @@ private:
                     continue;
                 }
                 for (std::uint32_t j = 0; j < count; ++j) {
-                    const Sphere sphere = detail::load_sphere(lights.spheres + lights.ids[i + j]);
-                    const float z = sphere.z * z_sign;
-                    first[j] = table_.before(z - sphere.radius);
-                    last[j] = table_.up_to(z + sphere.radius);
+                    const detail::LightDepths depths = lights.depths<spots>(lights.ids[i + j], z_sign);
+                    first[j] = table_.before(depths.nearest);
+                    last[j] = table_.up_to(depths.farthest);
                     ++begins[first[j]];
                 }
             }
     }
 
     /// Writes the lights in their order, an array at a time: what is read here and there is then one that is small.
-    void put_lights(const detail::FootprintArrays& lights) {
+    template <bool spots> void put_lights(const detail::FootprintArrays& lights) {
         put(lights.ids, order_.data());
         put(lights.x0, arrays_.x0);
         put(lights.y0, arrays_.y0);
         put(lights.x1, arrays_.x1);
         put(lights.y1, arrays_.y1);
         if constexpr (with_spans) put(lights.span_begin, arrays_.span_begin);
-        if constexpr (with_spheres)
+        if constexpr (with_spheres && spots)
+            for (std::uint32_t rank = 0; rank < run_.end; ++rank)
+                spots_.data()[rank] = lights.spots[order_.data()[rank]];
+        else if constexpr (with_spheres)
             for (std::uint32_t rank = 0; rank < run_.end; ++rank)
                 spheres_.data()[rank] = detail::load_sphere(lights.spheres + order_.data()[rank]);
     }
@@ -146,7 +152,7 @@ private:
     }
 
     /// places  of the lights in their arrays
-    void reserve(const detail::FootprintArrays& lights, std::uint32_t places) {
+    template <bool spots> void reserve(const detail::FootprintArrays& lights, std::uint32_t places) {
         const std::uint64_t capacity = std::uint64_t{run_.end} + detail::FootprintArrays::padding;
         if (capacity > numbered_) {
             numbered_ = 0;  // should there be no memory
@@ -162,7 +168,8 @@ private:
                    .y1 = y1_.reserve(capacity),
                    .span_begin = with_spans ? span_begin_.reserve(capacity) : nullptr,
                    .spans = lights.spans,
-                   .spheres = with_spheres ? spheres_.reserve(capacity) : nullptr};
+                   .spheres = with_spheres && !spots ? spheres_.reserve(capacity) : nullptr,
+                   .spots = with_spheres && spots ? spots_.reserve(capacity) : nullptr};
         first_bins_.reserve(places);
         last_bins_.reserve(places);
         places_.reserve(run_.end);
@@ -179,6 +186,7 @@ private:
     detail::Buffer<std::uint32_t> ids_, span_begin_;
     detail::Buffer<std::uint16_t> x0_, y0_, x1_, y1_;
     detail::Buffer<Sphere> spheres_;
+    detail::Buffer<detail::ViewSpot> spots_;
     detail::FootprintArrays arrays_ = {};
     detail::FootprintRun run_ = {};
     std::uint64_t area_ = 0, numbered_ = 0;

@@ -303,13 +303,14 @@ template <class LightRange>
 Result<std::vector<ShaderFootprint>> shader_footprints(const View& view, const LightRange& lights) {
     const auto& source = detail::as_lights(lights);
     if (const auto error = detail::refuse(source)) return *error;
+    constexpr bool spots = std::remove_cvref_t<decltype(source)>::spots;
     Footprints<Footprint::rectangle, true> footprints;
     footprints.project(machine_isa(), view, source, Parallel{});
     const detail::FootprintArrays& in = footprints.arrays();
     const detail::Camera& camera = detail::camera_of(view);
     std::vector<ShaderFootprint> out;
     for (std::uint32_t i = 0; i < footprints.visible(); ++i) {
-        const Sphere& sphere = in.spheres[in.ids[i]];
+        const Sphere sphere = spots ? in.spots[in.ids[i]].least : in.spheres[in.ids[i]];
         const detail::TestedLight light(camera, sphere);
         out.push_back({in.ids[i], in.x0[i], in.y0[i], in.x1[i], in.y1[i], light.reach2, light.x, light.y,
                        light.z, sphere.radius});

@@ -41,12 +41,15 @@ public:
     /// Takes each light to the slices that its depths, z - r to z + r, meet, their ends included. Returns the number of
     /// places that they take: for pairs of a light and a slice, and one more a slice; if 32 bits don't count them,
     /// there are no runs.
+    ///
+    /// spots  the lights are spots
+    template <bool spots>
     std::uint64_t cut(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
                       const Slices& slices) {
         const detail::FootprintArrays& lights = footprints.arrays();
         run_count_ = static_cast<std::size_t>(slices.count());
         const std::uint64_t places =
-            find_slices(isa, detail::camera_of(view).z_sign, lights, footprints.runs(), footprints.visible(),
+            find_slices<spots>(isa, detail::camera_of(view).z_sign, lights, footprints.runs(), footprints.visible(),
                         slices.boundaries());
         if (places > 0xffffffff) {
             run_count_ = 0;
@@ -80,6 +83,7 @@ private:
     };
 
     /// Finds the slices of each light, and where their runs begin, with a place between two. Returns where they end.
+    template <bool spots>
     std::uint64_t find_slices(Isa isa, float z_sign, const detail::FootprintArrays& lights,
                               std::span<const detail::FootprintRun> all, std::uint32_t visible,
                               std::span<const float> boundaries) {
@@ -95,12 +99,9 @@ private:
                 float nearest[chunk], farthest[chunk];
                 std::uint16_t first[chunk], last[chunk];
                 for (std::uint32_t j = 0; j < count; ++j) {
-                    // Rounding is monotone and boundaries are floats, so rounded depths are on the same side of
-                    // them, or on one.
-                    const Sphere sphere = detail::load_sphere(lights.spheres + lights.ids[i + j]);
-                    const float z = sphere.z * z_sign;
-                    nearest[j] = z - sphere.radius;
-                    farthest[j] = z + sphere.radius;
+                    const detail::LightDepths depths = lights.depths<spots>(lights.ids[i + j], z_sign);
+                    nearest[j] = depths.nearest;
+                    farthest[j] = depths.farthest;
                 }
                 if (compare) kernel(nearest, farthest, count, boundaries, first, last);
                 for (std::uint32_t j = 0; j < count; ++j, ++met) {

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A light as the library takes it, and how one becomes that.
+// A light as the library takes it.
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/rounding.hpp>
 
 #include <cmath>
-#include <concepts>
 #include <cstring>
-#include <type_traits>
 
 #include <lightbin/detail/warnings_off.inl>
 
@@ -60,36 +58,7 @@ inline Sphere load_sphere(const Sphere* from) {
     return sphere;
 }
 
-template <class Light, class Number>
-concept Vec4Of = requires(const Light& light) {
-    requires std::same_as<std::remove_cvref_t<decltype(light.x)>, Number>;
-    requires std::same_as<std::remove_cvref_t<decltype(light.y)>, Number>;
-    requires std::same_as<std::remove_cvref_t<decltype(light.z)>, Number>;
-    requires std::same_as<std::remove_cvref_t<decltype(light.w)>, Number>;
-};
-
 }  // namespace detail
-
-/// How a light becomes a Sphere by default: what is one, derives from one or converts to one, as it is; else the x, y, z
-/// and w of a vec4 of floats, or of doubles, which are rounded outward.
-struct AsSphere {
-    template <class Light> constexpr Sphere operator()(const Light& light) const {
-        if constexpr (std::convertible_to<const Light&, Sphere>) {
-            return light;
-        } else if constexpr (detail::Vec4Of<Light, float>) {
-            return {light.x, light.y, light.z, light.w};
-        } else {
-            static_assert(detail::Vec4Of<Light, double>,
-                          "lightbin: this light is no Sphere and has no float or double x, y, z and w (the "
-                          "radius): pass "
-                          "view_space(lights, to_sphere) or world_space(lights, view_matrix, to_sphere), "
-                          "where to_sphere "
-                          "makes a lightbin::Sphere of a light");
-            return detail::sphere_around(light.x, light.y, light.z, light.w);
-        }
-    }
-};
-
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR
 
 #include <lightbin/detail/warnings_on.inl>

@@ -11,7 +11,7 @@ void mistake() {
         for (std::size_t i = 0; i < n; ++i)
             body(i);
     });
-#elif MISTAKE == 2  // this light is no Sphere and has no float or double x, y, z and w .*: pass view_space
+#elif MISTAKE == 2  // this light is no Sphere or Spot and has no float or double x, y, z and w .*: pass view_space
     struct Lamp {
         std::string name;
         float position[3], range;

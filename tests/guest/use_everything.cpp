@@ -172,7 +172,7 @@ void use_view(Hash& hash, const View& view) {
         vectors.emplace_back(x, y, z, radius);
         lamps.push_back({{1.0 * x, 1.0 * y, 1.0 * z}, static_cast<double>(radius)});
     }
-    const auto to_sphere = [](const Lamp& lamp) {
+    const auto to_light = [](const Lamp& lamp) {
         return Sphere{static_cast<float>(lamp.position[0]), static_cast<float>(lamp.position[1]),
                       static_cast<float>(lamp.position[2]), static_cast<float>(lamp.reach)};
     };
@@ -189,7 +189,7 @@ void use_view(Hash& hash, const View& view) {
     use_encodings(hash, value_of(binner.bin(view, spheres)));
     use_shader_data(hash, view, spheres);
     use_advice(hash, view, spheres, bounds);
-    use_advice(hash, view, world_space(lamps, identity, to_sphere), {});
+    use_advice(hash, view, world_space(lamps, identity, to_light), {});
     use_all_options<DepthTest::none>(hash, view, spheres, bounds);
     use_all_options<DepthTest::interval>(hash, view, spheres, bounds);
     use_binner<Options{.footprint = Footprint::silhouette}>(hash, view, spheres, bounds);
@@ -197,10 +197,10 @@ void use_view(Hash& hash, const View& view) {
     use_binner<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>(
         hash, view, spheres, {min, max, min, max});
     use_lights(hash, view, std::span<const glm::vec4>(vectors), bounds);
-    use_lights(hash, view, view_space(lamps, to_sphere), bounds);
+    use_lights(hash, view, view_space(lamps, to_light), bounds);
     use_lights(hash, view, world_space(vectors, camera), bounds);
     use_lights(hash, view, world_space(vectors, camera, to_spot), bounds);
-    use_lights(hash, view, world_space(lamps, identity, to_sphere), bounds);
+    use_lights(hash, view, world_space(lamps, identity, to_light), bounds);
 }
 
 }  // namespace

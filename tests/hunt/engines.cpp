@@ -143,14 +143,14 @@ template <lightbin::Options options> struct Kept {
             lamps.reserve(scene.lights.size());
             for (const Sphere& light : scene.lights)
                 lamps.push_back({0, light.radius, {light.x, light.y, light.z}, {}});
-            const auto to_sphere = [&scene](const Lamp& lamp) {
+            const auto to_light = [&scene](const Lamp& lamp) {
                 static_cast<void>(scene);
                 return Sphere{lamp.place[0], lamp.place[1], lamp.place[2], lamp.range};
             };
             if (!scene.in_world)
-                build_with_threads(input, lightbin::view_space(lamps, to_sphere), out);
+                build_with_threads(input, lightbin::view_space(lamps, to_light), out);
             else
-                build_with_threads(input, lightbin::world_space(lamps, scene.to_view, to_sphere), out);
+                build_with_threads(input, lightbin::world_space(lamps, scene.to_view, to_light), out);
         } else if (scene.in_world) {
             if (scene.in_float)
                 build_with_threads(input, lightbin::world_space(scene.lights, glm::mat4(scene.to_view)), out);

@@ -102,6 +102,8 @@ void examine(const Camera& camera, Examiner& examiner, const lightbin::View& vie
     constexpr bool sliced = options.slicing == lightbin::Slicing::clusters,
                    bounded = !sliced && options.depth_test != DepthTest::none,
                    split = options.depth_test == DepthTest::split_box;
+    const std::string rung = std::string(to_string(options.footprint)) + ", " + to_string(options.depth_test) + ", " +
+                             to_string(options.slicing);
     const Oracle& oracle = examiner.oracle;
     const Aim aim(camera);
     const std::size_t tiles = view.tile_count();
@@ -179,7 +181,7 @@ void examine(const Camera& camera, Examiner& examiner, const lightbin::View& vie
                 if (split && from < to && min <= max)
                     cells = {{examiner, min, std::min(from, max)}, {examiner, std::max(to, min), max}};
                 subjects.ask(pairs[p].light, static_cast<int>(tile) % nx, static_cast<int>(tile) / nx, cells,
-                             tally, set.name);
+                             tally, rung + ", " + set.name);
             }
         };
         judge(beside);

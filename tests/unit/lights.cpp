@@ -32,11 +32,11 @@ TEST_CASE("vec4 arrays, Spheres and the user's own structs give the same bytes")
     const View view = test::view({641, 361}, 16);
     const auto expected = test::lists(view, spheres);
     CHECK(test::lists(view, plain) == expected);
-    const auto to_sphere = [](const PointLight& light) {
+    const auto to_light = [](const PointLight& light) {
         const glm::vec3 p(light.position);
         return Sphere{p.x, p.y, p.z, light.range};
     };
-    CHECK(test::lists(view, view_space(own, to_sphere)) == expected);
+    CHECK(test::lists(view, view_space(own, to_light)) == expected);
     CHECK(test::lists(view, view_space(std::span<const glm::vec4>(spheres))) == expected);
 
     struct Reversed {  // as large as a Sphere, and not laid out like one
@@ -109,7 +109,7 @@ TEST_CASE("doubles become a sphere of floats that holds theirs, and is no larger
         };
         const glm::dvec4 light(number(-40, 40), number(-40, 40), number(-160, 127),
                                std::fabs(number(i % 3 == 0 ? -1000 : -30, i % 3 == 1 ? 126 : 30)));
-        const Sphere sphere = AsSphere()(light);
+        const Sphere sphere = AsLight()(light);
         // The farthest point of the one sphere from the other's centre; long double has 11 bits more.
         const long double dx = static_cast<long double>(light.x) - static_cast<long double>(sphere.x),
                           dy = static_cast<long double>(light.y) - static_cast<long double>(sphere.y),

@@ -118,17 +118,17 @@ public:
     std::vector<std::uint32_t> bytes(const Input& input, const Parallel& parallel = {}) {
         const ZBounds bounds = {input.min, input.max, input.gap_min, input.gap_max};
         const auto inputs = inputs_for<options>(bounds, slices_);
-        const auto bin = [&](const auto& lights, const auto& to_sphere) {
-            return input.to_view ? binner_.bin(input.view, world_space(lights, *input.to_view, to_sphere),
+        const auto bin = [&](const auto& lights, const auto& to_light) {
+            return input.to_view ? binner_.bin(input.view, world_space(lights, *input.to_view, to_light),
                                                inputs, parallel)
-                                 : binner_.bin(input.view, view_space(lights, to_sphere), inputs, parallel);
+                                 : binner_.bin(input.view, view_space(lights, to_light), inputs, parallel);
         };
         std::vector<Struct> structs;
         if (input.structs)
             for (const glm::vec4& light : input.lights)
                 structs.push_back({1, light});
-        const auto sphere_of = [](const Struct& light) { return AsSphere()(light.sphere); };
-        const auto grid = input.structs ? bin(structs, sphere_of) : bin(input.lights, AsSphere());
+        const auto sphere_of = [](const Struct& light) { return AsLight()(light.sphere); };
+        const auto grid = input.structs ? bin(structs, sphere_of) : bin(input.lights, AsLight());
         REQUIRE(grid);
         std::vector<std::uint32_t> all = {grid->light_counts().rejected};
         for (const ListRange range : grid->ranges())

@@ -10,7 +10,7 @@
 //      sort.
 
 /// The number of entries of the grid.
-template <Footprint footprint, DepthTest depth_test, bool by_slab = false, class Id>
+template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>
 LIGHTBIN_TARGET std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scratch) {
     const BandJob<Id> bands = {0, static_cast<unsigned>(job.camera->y.tiles), nullptr, 0};
     const unsigned width = (static_cast<unsigned>(job.camera->x.tiles) + 7) / 8;
@@ -29,7 +29,7 @@ LIGHTBIN_TARGET std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scra
                 count = store_slab_words(job, scratch, x, top, band, list);
                 words = scratch.words.data();
             } else {
-                count = mask_lights<footprint, depth_test>(job, scratch, x, top, list, band.ids);
+                count = mask_lights<footprint, depth_test, spots>(job, scratch, x, top, list, band.ids);
                 words = scratch.masks.data();
             }
             for (std::uint32_t i = 0; i < count; ++i)
@@ -40,7 +40,7 @@ LIGHTBIN_TARGET std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scra
 }
 
 /// Bins the tile rows of `bands`. Returns the number of entries. May write BandJob::slack elements past them.
-template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab>
+template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>
 LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scratch,
                                              const BandJob<Id>& bands) {
     constexpr bool worded = with_words<footprint, depth_test>;
@@ -61,7 +61,7 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
             make_lists < worded && !by_slab > (job, scratch, bands, top, width, listed);
         const unsigned end_row = (std::min)(top + 8, bands.end);
         if (band.lists == nullptr ||
-            !make_words<footprint, depth_test, by_slab>(job, scratch, top, band, width)) {
+            !make_words<footprint, depth_test, by_slab, spots>(job, scratch, top, band, width)) {
             fill_empty(job.tiles + top * std::size_t{tiles_x}, (end_row - top) * std::size_t{tiles_x}, at);
             if (bands.spare_row >= top && bands.spare_row < end_row) out = bands.spare;
             continue;

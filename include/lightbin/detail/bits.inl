@@ -2,7 +2,7 @@
 // Bitmasks of tiles from the words of step 2 of bin.inl, without lists. Included once a tier that does not compress.
 
 /// Writes bitmasks of the tiles in rows begin..end-1: `each` words a tile, of which bit b of word w is light 32 w + b.
-template <Footprint footprint, DepthTest depth_test, class Id>
+template <Footprint footprint, DepthTest depth_test, class Id, bool spots>
 LIGHTBIN_TARGET void write_bits(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end,
                                 std::uint32_t* bits, std::size_t each) {
     const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles), width = (tiles_x + 7) / 8;
@@ -19,7 +19,7 @@ LIGHTBIN_TARGET void write_bits(const BinJob<Id>& job, Scratch& scratch, unsigne
             const SupertileList& list = band.lists[x];
             if (list.count == 0) continue;
             const std::uint32_t left =
-                mask_lights<footprint, depth_test>(job, scratch, x, top, list, band.ids);
+                mask_lights<footprint, depth_test, spots>(job, scratch, x, top, list, band.ids);
             std::uint32_t* const first = bits + top * each_row + 8 * x * each;
             for (std::uint32_t i = 0; i < left; ++i) {
                 const std::uint32_t id = band.ids[list.begin + i];

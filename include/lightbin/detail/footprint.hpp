@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/view_spot.hpp>
 #include <lightbin/detail/world_to_view.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/sphere.hpp>
@@ -25,6 +26,15 @@ struct LightSource {
     Sphere* kept;
 };
 
+/// The same of spots, which stay in `kept`, if not null, which has some more places behind them. `copy` makes Spots of some lights: their balls,
+/// and as vec4s their axes and cosines.
+struct SpotSource {
+    const void* lights;
+    void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* balls, Sphere* cones);
+    const WorldToView* to_view;
+    ViewSpot* kept;
+};
+
 /// The tiles first..last of one tile row that a light's silhouette reaches; none if first > last.
 struct RowSpan {
     std::uint16_t first, last;
@@ -34,6 +44,9 @@ struct RowSpan {
 struct FootprintRun {
     std::uint32_t begin, end;
 };
+
+/// View depths, from the one to the other.
+struct LightDepths { float nearest, farthest; };
 
 /// The lights in view, as parallel arrays: tiles x0..x1, y0..y1, both ends included. They lie in one or more
 /// runs; ids ascend within a run and from run to run. Readable (not meaningful) up to `padding` elements past
@@ -53,10 +66,23 @@ struct FootprintArrays {
     /// With silhouettes or a depth test, by id, of all lights here: view space as the caller has it. To be read with
     /// load_sphere.
     const Sphere* spheres;
+    /// Or, of lights that are spots, these.
+    const ViewSpot* spots;
+
+    /// The depths of light `id`. Rounding is monotone: comparing them with floats loses no light.
+    template <bool of_spots> LightDepths depths(std::uint32_t id, float z_sign) const {
+        if constexpr (of_spots) {
+            return {spots[id].nearest, spots[id].farthest};
+        } else {
+            const Sphere sphere = load_sphere(spheres + id);
+            const float z = sphere.z * z_sign;
+            return {z - sphere.radius, z + sphere.radius};
+        }
+    }
 
     /// The same arrays with their first `begin` elements left out, for writing rectangles.
     FootprintArrays from(std::size_t begin) const {
-        return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin, nullptr, nullptr, spheres};
+        return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin, nullptr, nullptr, spheres, spots};
     }
 };
 

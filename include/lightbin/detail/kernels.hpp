@@ -35,8 +35,11 @@ template <class Pick> auto with_tier(Isa isa, Pick pick) {
 inline ProjectKernel project_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.project_kernel(); });
 }
-inline RowSpanKernel row_span_kernel(Isa isa) {
-    return with_tier(isa, [](auto tier) { return tier.row_span_kernel(); });
+inline ProjectSpotsKernel project_spots_kernel(Isa isa) {
+    return with_tier(isa, [](auto tier) { return tier.project_spots_kernel(); });
+}
+template <bool spots> RowSpanKernel row_span_kernel(Isa isa) {
+    return with_tier(isa, [](auto tier) { return tier.template row_span_kernel<spots>(); });
 }
 
 inline SlicesKernel slices_kernel(Isa isa) {
@@ -59,20 +62,25 @@ template <class Id> BinKernel<Id> scatter_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.template scatter_kernel<Id>(); });
 }
 
-template <Footprint footprint, DepthTest depth_test, class Id> BitsKernel<Id> bits_kernel(Isa isa) {
-    return with_tier(isa, [](auto tier) { return tier.template bits_kernel<footprint, depth_test, Id>(); });
+template <Footprint footprint, DepthTest depth_test, class Id, bool spots>
+BitsKernel<Id> bits_kernel(Isa isa) {
+    return with_tier(isa, [](auto tier) {
+        return tier.template bits_kernel<footprint, depth_test, Id, spots && reads_spots<depth_test>>();
+    });
 }
 
 /// The fastest kernel for `lights` lights in view whose rectangles have `area` tiles in all.
 ///
 /// by_slab  there are no Z bounds, and boxes are those of job.slab: see slab.inl
-template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab = false>
+/// spots    the lights are spots
+template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>
 BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint32_t lights, std::uint64_t area) {
     if constexpr (!with_words<footprint, depth_test>) {
         if (scatter_is_faster(isa, view.tile_count(), lights, area)) return scatter_kernel<Id>(isa);
     }
-    return with_tier(
-        isa, [](auto tier) { return tier.template bin_kernel<footprint, depth_test, Id, by_slab>(); });
+    return with_tier(isa, [](auto tier) {
+        return tier.template bin_kernel<footprint, depth_test, Id, by_slab, spots && reads_spots<depth_test>>();
+    });
 }
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

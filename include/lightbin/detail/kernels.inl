@@ -46,7 +46,13 @@
 
 #include <lightbin/detail/project.inl>
 
+#include <lightbin/detail/spots.inl>
+
 #include <lightbin/detail/silhouette.inl>
+
+#include <lightbin/detail/wedge.inl>
+
+#include <lightbin/detail/row_spans.inl>
 
 #include <lightbin/detail/slices_met.inl>
 
@@ -91,21 +97,23 @@ struct Tier {
     static constexpr std::size_t vector = lanes;
 
     static ProjectKernel project_kernel() { return project; }
-    static RowSpanKernel row_span_kernel() { return row_spans; }
+    static ProjectSpotsKernel project_spots_kernel() { return project_spots; }
+    template <bool spots> static RowSpanKernel row_span_kernel() { return row_spans<std::conditional_t<spots, SpotRows, SphereRows>>; }
     static SlicesKernel slices_kernel() { return slices_met; }
     static SlicePlacesKernel slice_places_kernel() { return slice_places; }
     static DepthKernels depth_kernels() { return {column_extremes, column_gaps}; }
 
-    template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab>
+    template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>
     static BinKernel<Id> bin_kernel() {
-        return bin_supertiles<footprint, depth_test, Id, by_slab>;
+        return bin_supertiles<footprint, depth_test, Id, by_slab, spots>;
     }
 
-    template <Footprint footprint, DepthTest depth_test, class Id> static BitsKernel<Id> bits_kernel() {
+    template <Footprint footprint, DepthTest depth_test, class Id, bool spots>
+    static BitsKernel<Id> bits_kernel() {
 #if defined(LIGHTBIN_TIER_COMPRESSES)
-        return avx2::Tier::bits_kernel<footprint, depth_test, Id>();
+        return avx2::Tier::bits_kernel<footprint, depth_test, Id, spots>();
 #else
-        return write_bits<footprint, depth_test, Id>;
+        return write_bits<footprint, depth_test, Id, spots>;
 #endif
     }
 

@@ -16,11 +16,12 @@ struct MoveLanes {
         stretch = all(move.stretch);
         error = all(move.error);
         least_error = all(move.least_error);
+        bend = all(move.bend);
         most = all(move.most);
     }
 
     const WorldToView* to_view;
-    Floats origin[3], columns[3][3], at_origin[3], stretch, error, least_error, most;
+    Floats origin[3], columns[3][3], at_origin[3], stretch, error, least_error, bend, most;
 };
 
 /// Moves those of a vector's spheres one by one that floats can't hold or would blur.

@@ -24,8 +24,7 @@ struct RowTerms {
     double middle[lanes], reach[lanes], low[lanes], high[lanes], left_v[lanes], right_v[lanes];
 };
 
-/// Writes the terms of the lights. Returns a bit for each whose silhouette is known: those wholly beyond the
-/// near plane.
+/// Writes the terms of spheres. Returns a bit for each whose silhouette is known: those wholly beyond the near plane.
 LIGHTBIN_TARGET inline unsigned row_terms(const Camera& camera, const Sphere (&spheres)[lanes],
                                           RowTerms& terms) {
     const double row_offset = camera.y.offset, scale = camera.x.scale, offset = camera.x.offset;
@@ -79,49 +78,50 @@ LIGHTBIN_TARGET inline unsigned row_terms(const Camera& camera, const Sphere (&s
     return known;
 }
 
-/// Writes the row spans of the lights in view in a run, from spans[place] on; whole vectors are stored. Each
-/// row has at least one tile. A light gets none where they could drop nothing or can't be numbered.
-LIGHTBIN_TARGET inline void row_spans(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
-                                      RowSpan* spans, std::uint64_t place) {
-    static constexpr double count_up[] = {0, 1, 2, 3, 4, 5, 6, 7};
-    const Doubles lane = load_doubles(count_up);
-    const double row_offset = camera.y.offset, per_scale = 1 / camera.y.scale;
-    RowTerms terms;
-    Sphere spheres[lanes];
-    for (std::uint32_t begin = run.begin; begin < run.end; begin += lanes) {
-        const std::uint32_t used = run.end - begin < lanes ? run.end - begin : lanes;
+/// A light's terms, in every lane a row.
+struct RowLanes {
+    LIGHTBIN_TARGET RowLanes(const RowTerms& terms, std::uint32_t i)
+        : y(all(terms.y[i])), y_v(all(terms.y_v[i])), z(all(terms.z[i])), r2(all(terms.r2[i])),
+          r2_v(all(terms.r2_v[i])), slack(all(terms.slack[i])), middle(all(terms.middle[i])),
+          reach(all(terms.reach[i])), low(all(terms.low[i])), high(all(terms.high[i])),
+          left_v(all(terms.left_v[i])), right_v(all(terms.right_v[i])) {}
+
+    /// Where the silhouette begins and ends in rows of the slopes v0 to v1, in tiles.
+    LIGHTBIN_TARGET LIGHTBIN_INLINE void ends(Doubles v0, Doubles v1, Doubles& begin, Doubles& end) const {
+        const Doubles left = lesser(greater(left_v, v0), v1), right = lesser(greater(right_v, v0), v1);
+        const Doubles left_e = y - mul(left, z), right_e = y - mul(right, z);
+        const Doubles left_s2 = r2 + mul(r2_v, mul(left, left)) - mul(left_e, left_e);
+        const Doubles right_s2 = r2 + mul(r2_v, mul(right, right)) - mul(right_e, right_e);
+        const Doubles left_s = sqrt(greater(left_s2, all(0.0)) + slack);
+        const Doubles right_s = sqrt(greater(right_s2, all(0.0)) + slack);
+        begin = mul(middle, mul(y_v, left) + z) - mul(reach, left_s) + low;
+        end = mul(middle, mul(y_v, right) + z) + mul(reach, right_s) + high;
+    }
+
+    /// Stores the spans of rows, of the tiles leftmost..rightmost.
+    LIGHTBIN_TARGET LIGHTBIN_INLINE void store(RowSpan* to, Doubles v0, Doubles v1, Doubles leftmost,
+                                               Doubles rightmost) const {
+        Doubles begin, end;
+        ends(v0, v1, begin, end);
+        store_spans(to, lesser(greater(begin, leftmost), rightmost), lesser(greater(end, leftmost), rightmost));
+    }
+
+    Doubles y, y_v, z, r2, r2_v, slack, middle, reach, low, high, left_v, right_v;
+};
+
+/// What becomes of `used` lights in view, from `begin` on.
+struct SphereRows {
+    using Lanes = RowLanes;
+
+    LIGHTBIN_TARGET unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin,
+                                  std::uint32_t used) {
+        Sphere spheres[lanes];
         for (std::uint32_t i = 0; i < lanes; ++i)
             spheres[i] = load_sphere(lights.spheres + lights.ids[begin + (i < used ? i : 0)]);
-        const unsigned known = row_terms(camera, spheres, terms);
-        for (std::uint32_t i = 0; i < used; ++i) {
-            const unsigned x0 = lights.x0[begin + i], x1 = lights.x1[begin + i], y0 = lights.y0[begin + i],
-                           y1 = lights.y1[begin + i];
-            std::uint32_t& first = lights.span_begin[begin + i];
-            first = FootprintArrays::whole_rectangle;
-            if ((known >> i & 1) == 0 || x0 == x1 || y0 == y1 || place + (y1 - y0) >= first) continue;
-            first = static_cast<std::uint32_t>(place);
-            const Doubles y = all(terms.y[i]), y_v = all(terms.y_v[i]), z = all(terms.z[i]),
-                          r2 = all(terms.r2[i]), r2_v = all(terms.r2_v[i]), slack = all(terms.slack[i]),
-                          middle = all(terms.middle[i]), reach = all(terms.reach[i]),
-                          leftmost = all(static_cast<double>(x0)), rightmost = all(static_cast<double>(x1));
-            for (unsigned row = y0; row <= y1; row += double_lanes) {
-                const Doubles edge = lane + (static_cast<double>(row) - row_offset);
-                const Doubles v0 = edge * per_scale, v1 = (edge + 1.0) * per_scale;
-                const Doubles left_v = lesser(greater(all(terms.left_v[i]), v0), v1);
-                const Doubles right_v = lesser(greater(all(terms.right_v[i]), v0), v1);
-                const Doubles left_e = y - mul(left_v, z), right_e = y - mul(right_v, z);
-                const Doubles left_s2 = r2 + mul(r2_v, mul(left_v, left_v)) - mul(left_e, left_e);
-                const Doubles right_s2 = r2 + mul(r2_v, mul(right_v, right_v)) - mul(right_e, right_e);
-                const Doubles left_s = sqrt(greater(left_s2, all(0.0)) + slack);
-                const Doubles right_s = sqrt(greater(right_s2, all(0.0)) + slack);
-                const Doubles low =
-                    mul(middle, mul(y_v, left_v) + z) - mul(reach, left_s) + all(terms.low[i]);
-                const Doubles high =
-                    mul(middle, mul(y_v, right_v) + z) + mul(reach, right_s) + all(terms.high[i]);
-                store_spans(spans + place + (row - y0), lesser(greater(low, leftmost), rightmost),
-                            lesser(greater(high, leftmost), rightmost));
-            }
-            place += y1 - y0 + 1;
-        }
+        return row_terms(camera, spheres, terms);
     }
-}
+    LIGHTBIN_TARGET RowLanes of(std::uint32_t i) const { return {terms, i}; }
+
+    RowTerms terms;
+};
+

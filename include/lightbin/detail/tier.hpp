@@ -13,6 +13,7 @@
 #include <lightbin/detail/slice_table.hpp>
 #include <lightbin/detail/supertile.hpp>
 #include <lightbin/sphere.hpp>
+#include <lightbin/spot.hpp>
 #include <lightbin/view.hpp>
 
 #include <algorithm>
@@ -27,9 +28,11 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
-// See project.inl, silhouette.inl, depth_columns.inl; bin.inl, bits.inl and scatter.hpp.
+// See project.inl, spots.inl, silhouette.inl, depth_columns.inl; bin.inl, bits.inl and scatter.hpp.
 using ProjectKernel = void (*)(const Camera& camera, const LightSource& source, std::uint32_t first,
                                std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts);
+using ProjectSpotsKernel = void (*)(const Camera& camera, const SpotSource& source, std::uint32_t first,
+                                    std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts);
 using RowSpanKernel = void (*)(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
                                RowSpan* spans, std::uint64_t place);
 using SlicesKernel = void (*)(const float* nearest, const float* farthest, std::uint32_t count,

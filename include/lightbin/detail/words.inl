@@ -15,6 +15,13 @@ LIGHTBIN_TARGET inline Floats distance(Floats c, const float* ends) {
     return greater(greater(load_floats(ends) - c, c - load_floats(ends + 64)), all(0.0f));
 }
 
+/// The squared distances of a light's centre from `lanes` boxes.
+LIGHTBIN_TARGET inline Floats box_distance2(const float* cell, const TestedLight& light) {
+    const Floats z = distance(all(light.z), cell), x = distance(all(light.x), cell + 128),
+                 y = distance(all(light.y), cell + 256);
+    return mul(x, x) + mul(y, y) + mul(z, z);
+}
+
 /// Of the first `lanes` tiles of `cells`, those whose Z bounds or boxes the light meets. NaN tests nothing.
 template <DepthTest depth_test>
 LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedLight& light) {
@@ -23,10 +30,62 @@ LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedL
     for (const float* cell = cells; cell < cells + 64 * cell_planes<depth_test>; cell += next_box) {
         auto missed = either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest));
         if constexpr (depth_test != DepthTest::interval) {
-            const Floats z = distance(all(light.z), cell), x = distance(all(light.x), cell + 128),
-                         y = distance(all(light.y), cell + 256);
-            const Floats distance2 = mul(x, x) + mul(y, y) + mul(z, z);
-            missed = either(missed, less(all(light.reach2), distance2));
+            missed = either(missed, less(all(light.reach2), box_distance2(cell, light)));
+        }
+        met |= ~bits(missed) & every_lane;
+    }
+    return met;
+}
+
+/// Which of `lanes` boxes are surely beside the cone: beyond a plane through the apex that touches it (as Unreal's test of
+/// a cone), or behind the apex.
+///
+/// With v from the apex to the box's centre, h its half sides and m the unit vector across the axis a towards v, the
+/// plane's normal is  n = m cos t - a sin t;  any other m across the axis, no longer than 1, gives a plane that has the
+/// cone on one side, too, so m's rounding costs no light. All is doubled here, v and h being the sum and the difference
+/// of the ends' distances from the apex, each within u = 2^-24 of itself. With `size` the sum of their sizes, v.n and h.|n|
+/// are within 32u size. For a point p of the spot n.p is at most `blur`, and what m.a, which is within 20u size / |m|,
+/// makes of its distance from the apex.
+LIGHTBIN_TARGET inline auto beside_cone(const float* cell, const TestedSpot& spot) {
+    const float* const planes[] = {cell + 128, cell + 256, cell};
+    const Floats apex[] = {all(spot.ball.x), all(spot.ball.y), all(spot.ball.z)};
+    const Floats axis[] = {all(spot.axis_x), all(spot.axis_y), all(spot.axis_z)};
+    Floats v[3], h[3], e = Floats{}, behind = Floats{}, size = Floats{};
+    for (unsigned i = 0; i < 3; ++i) {
+        const Floats low = load_floats(planes[i]) - apex[i], high = load_floats(planes[i] + 64) - apex[i];
+        v[i] = low + high;
+        h[i] = high - low;
+        e = e + mul(v[i], axis[i]);
+        behind = behind + mul(h[i], abs(axis[i]));
+        size = size + abs(low) + abs(high);
+    }
+    Floats m[3], length2 = Floats{};
+    for (unsigned i = 0; i < 3; ++i) {
+        m[i] = v[i] - mul(e, axis[i]);
+        length2 = length2 + mul(m[i], m[i]);
+    }
+    const Floats per_length = all(spot.cosine) / sqrt(length2);
+    Floats out = Floats{};
+    for (unsigned i = 0; i < 3; ++i) {
+        const Floats n = mul(m[i], per_length) - mul(all(spot.sine), axis[i]);
+        out = out + (mul(v[i], n) - mul(h[i], abs(n)));
+    }
+    const Floats error = mul(size, all(0x1p-19f)) + all(2 * spot.blur + flushed) +
+                         mul(mul(size, per_length), all(spot.radius * 0x1p-18f));
+    return either(less(error, out), less(error, -e - behind));
+}
+
+/// As for spheres, for spots.
+template <DepthTest depth_test>
+LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedSpot& spot) {
+    const Floats nearest = all(spot.nearest), farthest = all(spot.farthest);
+    std::uint64_t met = 0;
+    for (const float* cell = cells; cell < cells + 64 * cell_planes<depth_test>; cell += next_box) {
+        auto missed = either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest));
+        if constexpr (depth_test != DepthTest::interval) {
+            missed = either(missed, less(all(spot.ball.reach2), box_distance2(cell, spot.ball)));
+            missed = either(missed, less(all(spot.least.reach2), box_distance2(cell, spot.least)));
+            missed = either(missed, beside_cone(cell, spot));
         }
         met |= ~bits(missed) & every_lane;
     }
@@ -57,8 +116,8 @@ LIGHTBIN_TARGET inline DepthRange depth_range(const float* cells, std::uint64_t 
 /// Adds the tiles that they meet to the words of some of 64 lights with these bytes of columns and rows; the tiles of
 /// a vector count if any of them is in the rectangle. A vector of tiles stays in registers while its lights pass: loops
 /// over a light's few vectors would be mispredicted once a light.
-template <DepthTest depth_test>
-LIGHTBIN_TARGET inline void meet_tiles(const float* cells, std::uint64_t lit, const TestedLight* lights,
+template <DepthTest depth_test, class Light>
+LIGHTBIN_TARGET inline void meet_tiles(const float* cells, std::uint64_t lit, const Light* lights,
                                        const std::uint8_t* columns, const std::uint8_t* rows,
                                        std::uint64_t some, std::uint64_t* met) {
     std::uint64_t in_column[8], in_row[8];
@@ -93,21 +152,30 @@ LIGHTBIN_TARGET inline std::uint64_t silhouette_tiles(const FootprintArrays& lig
     return tiles & spanned;
 }
 
+/// The light `id` as a depth test sees it.
+template <bool spots>
+LIGHTBIN_TARGET inline typename Tested<spots>::Light tested_light(const Camera& camera, const FootprintArrays& lights,
+                                                                  std::uint32_t id) {
+    if constexpr (spots)
+        return {camera, lights.spots[id]};
+    else
+        return {camera, load_sphere(lights.spheres + id)};
+}
+
 /// Makes the words of up to 64 lights of a supertile, given by visible index, counted from `first`, with the columns
 /// and rows that they cover; and ids of their indices. Lights that are in none of the tiles are dropped. Returns how
 /// many are left. `ids` may be `lights`, or before it.
-template <Footprint footprint, DepthTest depth_test, class Id>
+template <Footprint footprint, DepthTest depth_test, bool spots, class Id>
 LIGHTBIN_TARGET inline std::uint32_t
 mask_64_lights(const BinJob<Id>& job, unsigned x, unsigned top, const float* cells, std::uint64_t lit,
                const DepthRange& range, const ListId* lights, std::uint32_t first, const std::uint8_t* columns,
                const std::uint8_t* rows, std::uint32_t count, ListId* ids, std::uint64_t* words) {
     std::uint64_t met[64];
     if constexpr (depth_test != DepthTest::none) {
-        TestedLight tested[64];
+        typename Tested<spots>::Light tested[64];
         std::uint64_t in_range = 0;
         for (std::uint32_t j = 0; j < count; ++j) {
-            tested[j] =
-                TestedLight(*job.camera, load_sphere(job.lights.spheres + job.lights.ids[first + lights[j]]));
+            tested[j] = tested_light<spots>(*job.camera, job.lights, job.lights.ids[first + lights[j]]);
             met[j] = 0;
             const bool missed = (tested[j].farthest < range.min) | (range.max < tested[j].nearest);
             in_range |= std::uint64_t{!missed} << j;
@@ -144,7 +212,7 @@ inline std::uint32_t begin_group(const Scratch& scratch, const SupertileList& li
 
 /// Makes the words of a supertile's lights in scratch.masks, and ids of their visible indices. Lights that are in
 /// none of the tiles are dropped. Returns how many are left.
-template <Footprint footprint, DepthTest depth_test, class Id>
+template <Footprint footprint, DepthTest depth_test, bool spots, class Id>
 LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratch, unsigned x, unsigned top,
                                           const SupertileList& list, ListId* all_lights) {
     [[maybe_unused]] float arranged[cell_planes<depth_test> * 64];
@@ -166,7 +234,7 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
         const std::uint32_t count = (std::min)(list.count - begin, 64u);
         std::uint32_t first = 0;
         if constexpr (sizeof(ListId) == 2) first = begin_group(scratch, list, begin, left, masks);
-        left += mask_64_lights<footprint, depth_test>(job, x, top, cells, lit, range, lights + begin, first,
+        left += mask_64_lights<footprint, depth_test, spots>(job, x, top, cells, lit, range, lights + begin, first,
                                                       columns + begin, rows + begin, count, lights + left,
                                                       masks + left);
     }
@@ -175,7 +243,7 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
 
 /// Makes the words of a band's supertiles, in the form that step 3 takes. Lights in no tile of a list are taken out of
 /// it, where that is known of each by itself: by mask_lights(). Returns whether any is left.
-template <Footprint footprint, DepthTest depth_test, bool by_slab, class Id>
+template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>
 LIGHTBIN_TARGET bool make_words(const BinJob<Id>& job, Scratch& scratch, unsigned top,
                                 const BandLists<ListId>& band, unsigned width) {
     constexpr bool worded = with_words<footprint, depth_test>;
@@ -185,7 +253,7 @@ LIGHTBIN_TARGET bool make_words(const BinJob<Id>& job, Scratch& scratch, unsigne
         SupertileList& list = band.lists[x];
         if constexpr (worded && !by_slab)
             if (list.count > 0)
-                list.count = mask_lights<footprint, depth_test>(job, scratch, x, top, list, band.ids);
+                list.count = mask_lights<footprint, depth_test, spots>(job, scratch, x, top, list, band.ids);
         if (list.count == 0) {
             list = {band.lists->begin, 0, 0};
             continue;

@@ -6,6 +6,11 @@
 // small far from the world's origin as near it:  A p + t = A (p - o) + (A o + t).  With u = 2^-24 the unit roundoff,
 // A's entries, p - o and the products are within u each and three sums follow, so a centre is within 6u of the sum of
 // |A_j| |p_j - o_j|, A_j being the columns of A. In doubles one by one where floats can't hold or would blur it.
+//
+// A cone becomes one only by a rotation Q and a scale. Let s be the largest stretch and A = Q P with P's stretches from
+// (1 - d) s to s: A p is no farther than d s |p| from s Q p, and so the images of a cone's axis under A and Q are at an
+// angle whose sine is d at most. A point of the image is no farther than 3 d s |p| from the cone around the image of the
+// axis, with the same angle (d up to 1/16).
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
@@ -29,6 +34,7 @@ struct FloatMove {
     float stretch;        ///< the most that it makes a length longer, rounded up
     float error;          ///< of the moved centre, by |x| + |y| + |z| from the origin
     float least_error;    ///< and of at_origin
+    float bend;           ///< how far a point of a cone may move beside its image, by its distance from the apex; inf: any
     /// As far from the origin it serves; less than 0 where doubles must.
     float most = -1;
     /// And so it does for radii from one to the other.
@@ -42,15 +48,21 @@ public:
         affine_ = finite(m_) && m_[0][3] == 0 && m_[1][3] == 0 && m_[2][3] == 0 && m_[3][3] == 1;
         // The largest singular value is at most the root of the largest row sum of M^T M. Where a product overflows, sums
         // are infinite or NaN, which no comparison takes for the largest: then there is no bound.
-        double square = 0, all = 0;
+        // In the same way the square of the smallest is at least the least diagonal element less what stands beside it.
+        double square = 0, all = 0, least = HUGE_VAL;
         for (int i = 0; i < 3; ++i) {
-            double row_sum = 0;
-            for (int j = 0; j < 3; ++j)
-                row_sum += std::fabs(m_[i][0] * m_[j][0] + m_[i][1] * m_[j][1] + m_[i][2] * m_[j][2]);
+            double row_sum = 0, diagonal = 0;
+            for (int j = 0; j < 3; ++j) {
+                const double product = m_[i][0] * m_[j][0] + m_[i][1] * m_[j][1] + m_[i][2] * m_[j][2];
+                row_sum += std::fabs(product);
+                if (j == i) diagonal = product;
+            }
             square = (std::max)(square, row_sum);
+            least = (std::min)(least, 2 * diagonal - row_sum);
             all += row_sum;
         }
         stretch_ = std::isfinite(all) ? std::sqrt(square) * (1 + 0x1p-48) : HUGE_VAL;
+        uneven_ = least > 0 && std::isfinite(all) ? 1 - std::sqrt(least / square) : 1;
         if (affine_) find_floats();
     }
 
@@ -127,11 +139,13 @@ private:
         floats_.stretch = float_above(stretch_ * (1 + 0x1p-22));
         floats_.error = float_above(std::sqrt(longest2) * (6 * 0x1p-24) * (1 + 0x1p-18));
         floats_.least_error = float_above((offset * 0x1p-23 + before * 0x1p-50) * (1 + 0x1p-18) + 0x1p-100);
+        floats_.bend = uneven_ < 0x1p-4 ? float_above(3 * uneven_ + 0x1p-40) : infinity;
         floats_.most = 0x1p40f;
     }
 
     double m_[4][4];
     double stretch_;  ///< the most that it makes a length longer
+    double uneven_;   ///< how much shorter, relative to that, it makes one at most
     bool affine_;
     FloatMove floats_ = {};
 };

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// The silhouettes of spots: where those of their balls and least spheres meet, within the wedge of their cones. Included
+// once a tier, after silhouette.inl.
+//
+// Two planes through the eye touch a cone, if the eye is not in it: in the image, two lines from the apex. With u the
+// unit vector from the eye to the apex, a the axis, b = a - (a.u) u and s = |b|, their normals are
+//     n = -(sin t / s) b / s +- sqrt(1 - (sin t / s)^2) u x b / s,    for which  n.u = 0  and  n.a = -sin t,
+// and every point p of the cone has  n.p <= 0. So in a row of tiles, slopes v0 to v1, of points at the depth z or more, for
+// a spot whose floats are off by `blur`:  n_x x <= blur / z - n_z - min(n_y v0, n_y v1). (Unity's URP bounds spots by
+// the same planes.) Orthographic: u is the direction of view, and n.(p - apex) <= blur.
+//
+// In double, with e = 2^-53 and s of 2^-20 at least, n is within 2^-30 of the truth: by how much more than `blur` n.p may
+// be less than (|p| + r) 2^-28 is allowed. What rounding does to the rest is less than 2^-48 of the rows' and columns'
+// slopes; 2^-40 is allowed.
+
+/// Of `lanes` spots, the two lines: in a row, tiles end or begin at (most - min(n_y v0, n_y v1)) per_x + offset.
+struct WedgeTerms { double per_x[2][lanes], n_y[2][lanes], most[2][lanes]; };
+
+/// The axis, apex and more of a vector of spots.
+struct WedgeLanes {
+    Doubles apex[3], axis[3], sine;
+    Doubles blur;  ///< of n.p, over its depth
+};
+
+LIGHTBIN_TARGET inline Doubles dot(const Doubles (&a)[3], const Doubles (&b)[3]) {
+    return mul(a[0], b[0]) + mul(a[1], b[1]) + mul(a[2], b[2]);
+}
+
+LIGHTBIN_TARGET inline void find_wedges(const Camera& camera, const WedgeLanes& spots, unsigned at,
+                                        WedgeTerms& terms) {
+    const Doubles zero = all(0.0), one = all(1.0), none = all(HUGE_VAL);
+    Doubles u[3] = {zero, zero, one};
+    if (!camera.orthographic) {
+        const Doubles per_length = 1.0 / sqrt(dot(spots.apex, spots.apex));
+        for (unsigned i = 0; i < 3; ++i)
+            u[i] = mul(spots.apex[i], per_length);
+    }
+    const Doubles along = dot(spots.axis, u);
+    Doubles b[3];
+    for (unsigned i = 0; i < 3; ++i)
+        b[i] = spots.axis[i] - mul(along, u[i]);
+    const Doubles s = sqrt(dot(b, b)), per_s = 1.0 / s;
+    const auto limited = less(mul(spots.sine, all(1 + 0x1p-20)) + 0x1p-20, s);
+    const Doubles cosine = mul(spots.sine, per_s),
+                  sine = mul(sqrt(greater(mul(s - spots.sine, s + spots.sine), zero)), per_s);
+    Doubles back[3], aside[3];
+    for (unsigned i = 0; i < 3; ++i) {
+        const unsigned j = (i + 1) % 3, k = (i + 2) % 3;
+        back[i] = mul(b[i], mul(per_s, cosine));
+        aside[i] = mul(mul(u[j], b[k]) - mul(u[k], b[j]), mul(per_s, sine));
+    }
+    const double rows = (std::fabs(camera.y.offset) + camera.y.tiles) / camera.y.scale;
+    const Doubles slack = spots.blur + 0x1p-40 * (1 + rows);
+    for (unsigned side = 0; side < 2; ++side) {
+        Doubles n[3];
+        for (unsigned i = 0; i < 3; ++i)
+            n[i] = (side == 0 ? aside[i] : -aside[i]) - back[i];
+        const Doubles most =
+            camera.orthographic ? slack + mul(n[0], spots.apex[0]) + mul(n[1], spots.apex[1]) : slack - n[2];
+        store_doubles(terms.per_x[side] + at, select(limited, camera.x.scale / n[0], one));
+        store_doubles(terms.n_y[side] + at, select(limited, n[1], zero));
+        store_doubles(terms.most[side] + at, select(limited, most, none));
+    }
+}
+
+/// A spot's terms, in every lane a row.
+struct SpotRowLanes {
+    LIGHTBIN_TARGET void store(RowSpan* to, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost) const {
+        Doubles begin = leftmost, end = rightmost + 1.0;
+        if (ball_known) meet(ball, v0, v1, begin, end);
+        if (least_known) meet(least, v0, v1, begin, end);
+        for (unsigned side = 0; side < 2; ++side) {
+            const Doubles here = mul(most[side] - lesser(mul(n_y[side], v0), mul(n_y[side], v1)), per_x[side]);
+            const auto to_right = less(all(0.0), per_x[side]);
+            end = lesser(select(to_right, here + high, end), end);
+            begin = greater(select(to_right, begin, here + low), begin);
+        }
+        const auto none = less(end, begin);
+        store_spans(to, select(none, all(1.0), lesser(greater(begin, leftmost), rightmost)),
+                    select(none, all(0.0), lesser(greater(end, leftmost), rightmost)));
+    }
+
+    static LIGHTBIN_TARGET LIGHTBIN_INLINE void meet(const RowLanes& sphere, Doubles v0, Doubles v1, Doubles& begin,
+                                                     Doubles& end) {
+        Doubles its_begin, its_end;
+        sphere.ends(v0, v1, its_begin, its_end);
+        begin = greater(its_begin, begin);
+        end = lesser(its_end, end);
+    }
+
+    RowLanes ball, least;
+    bool ball_known, least_known;
+    Doubles per_x[2], n_y[2], most[2], low, high;
+};
+
+/// As SphereRows.
+struct SpotRows {
+    LIGHTBIN_TARGET unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin,
+                                  std::uint32_t used) {
+        Sphere balls[lanes], least_spheres[lanes], axes[lanes], rest[lanes];
+        for (std::uint32_t i = 0; i < lanes; ++i) {
+            const ViewSpot& spot = lights.spots[lights.ids[begin + (i < used ? i : 0)]];
+            balls[i] = spot.ball;
+            least_spheres[i] = spot.least;
+            axes[i] = {spot.axis_x, spot.axis_y, spot.axis_z, spot.sine};
+            rest[i] = {spot.nearest, spot.blur, 0, 0};
+        }
+        balls_known = row_terms(camera, balls, ball);
+        least_known = row_terms(camera, least_spheres, least);
+        Floats x, y, z, r, axis[3], sine, nearest, blur, unused[2];
+        load_spheres(balls, x, y, z, r);
+        load_spheres(axes, axis[0], axis[1], axis[2], sine);
+        load_spheres(rest, nearest, blur, unused[0], unused[1]);
+        const double signs[] = {static_cast<double>(camera.x.sign), static_cast<double>(camera.y.sign),
+                                static_cast<double>(camera.z_sign)};
+        for (unsigned half = 0; half < lanes / double_lanes; ++half) {
+            WedgeLanes wedge = {{widened(x, half) * signs[0], widened(y, half) * signs[1], widened(z, half) * signs[2]},
+                                {widened(axis[0], half) * signs[0], widened(axis[1], half) * signs[1],
+                                 widened(axis[2], half) * signs[2]},
+                                widened(sine, half), widened(blur, half)};
+            const Doubles size = abs(wedge.apex[0]) + abs(wedge.apex[1]) + abs(wedge.apex[2]) + widened(r, half);
+            wedge.blur = wedge.blur + size * 0x1p-28;
+            if (!camera.orthographic)
+                wedge.blur = wedge.blur / greater(widened(nearest, half), all(static_cast<double>(camera.near_depth)));
+            find_wedges(camera, wedge, half * double_lanes, wedges);
+        }
+        const double margin = 0x1p-40 * (std::fabs(camera.x.offset) + camera.x.tiles);
+        low = camera.x.offset - margin;
+        high = camera.x.offset + margin;
+        return ~0u;
+    }
+
+    LIGHTBIN_TARGET SpotRowLanes of(std::uint32_t i) const {
+        return {RowLanes(ball, i),
+                RowLanes(least, i),
+                (balls_known >> i & 1) != 0,
+                (least_known >> i & 1) != 0,
+                {all(wedges.per_x[0][i]), all(wedges.per_x[1][i])},
+                {all(wedges.n_y[0][i]), all(wedges.n_y[1][i])},
+                {all(wedges.most[0][i]), all(wedges.most[1][i])},
+                all(low),
+                all(high)};
+    }
+
+    RowTerms ball, least;
+    unsigned balls_known, least_known;
+    WedgeTerms wedges;
+    double low, high;
+};
