@@ -94,7 +94,9 @@ template <Options options = Options{}> class Binner {
                   "encode() make 8 bits of them");
     static constexpr bool clusters = options.slicing == Slicing::clusters,
                           z_bins = options.slicing == Slicing::z_bins,
-                          with_depth = options.depth_test != DepthTest::none && !clusters;
+                          with_depth = options.depth_test != DepthTest::none && !clusters,
+                          with_boxes = options.depth_test == DepthTest::box ||
+                                       options.depth_test == DepthTest::split_box;
 
 public:
     using Id = std::conditional_t<options.ids == IdWidth::u16, std::uint16_t, std::uint32_t>;
@@ -237,7 +239,7 @@ private:
 
     Isa isa_ = Isa::scalar;
     std::vector<detail::Scratch> scratch_;  ///< one a worker
-    Footprints<options.footprint, with_depth || options.slicing != Slicing::none> footprints_;
+    Footprints<options.footprint, with_depth || options.slicing != Slicing::none, with_boxes> footprints_;
     std::conditional_t<z_bins, RankedFootprints<options.footprint, with_depth>, Nothing> ranked_;
     Lists lists_;
     std::conditional_t<with_depth, Lists, Nothing> transparent_;

@@ -46,7 +46,7 @@ public:
     ///
     /// spots  the lights are spots
     template <bool spots, class Threads>
-    std::optional<Error> build(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
+    std::optional<Error> build(Isa isa, const View& view, const Footprints<footprint, true, with_boxes>& footprints,
                                const Slices& slices, std::vector<detail::Scratch>& scratch,
                                [[maybe_unused]] const Threads& parallel) {
         cell_count_ = entries_ = 0;  // until there is a grid
@@ -73,7 +73,7 @@ public:
             if (capacity > most) {
                 capacity = 0;
                 for (std::size_t slice = 0; slice < count; ++slice)
-                    capacity += detail::scalar::count_entries<footprint, depth_test, by_slab && !spots, spots>(
+                    capacity += detail::scalar::count_entries<footprint, depth_test, by_slab, spots>(
                         job_of(view, slices, slice), scratch[0]);
             }
         if (capacity > most) return Error{ErrorCode::too_many_entries, capacity, most};
@@ -85,7 +85,7 @@ public:
                 Job job = job_of(view, slices, slice);
                 // What is behind the last of these slices may be another thread's.
                 job.spare_tiles = end == count ? slack : (std::min)(slack, (end - slice - 1) * tiles);
-                const auto kernel = detail::bin_kernel<footprint, depth_test, Id, by_slab && !spots, spots>(
+                const auto kernel = detail::bin_kernel<footprint, depth_test, Id, by_slab, spots>(
                     isa, view, job.visible, footprints_.runs()[slice].area);
                 const unsigned rows = static_cast<unsigned>(view.tiles_y());
                 at += static_cast<std::uint32_t>(kernel(job, memory, {0, rows, out + at, at}));

@@ -59,7 +59,8 @@ void copy_spots(const void* lights, std::size_t first, std::size_t count, Sphere
 ///
 /// footprint     silhouette: with row spans
 /// with_spheres  have the view-space spheres or spots at hand, for a depth test; row spans need them anyway
-template <Footprint footprint, bool with_spheres> class Footprints {
+/// with_boxes    for the depth tests of boxes
+template <Footprint footprint, bool with_spheres, bool with_boxes = with_spheres> class Footprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette, keep = with_spheres || with_spans;
 
 public:
@@ -82,8 +83,9 @@ public:
         const Isa taken = lights_ > 1 ? isa : Isa::scalar;
         reserve(parts_for(threads));
         if constexpr (spots) {
-            detail::SpotSource source = {&lights, detail::copy_spots<Light, ToLight>, to_view, nullptr};
+            detail::SpotSource source = {&lights, detail::copy_spots<Light, ToLight>, to_view, nullptr, false};
             if constexpr (keep) arrays_.spots = source.kept = spots_.reserve(std::uint64_t{lights_} + chunk);
+            source.with_planes = with_boxes;
             run_parts(view, source, detail::project_spots_kernel(taken), threads);
         } else {
             detail::LightSource source = {.spheres = detail::as_they_are(lights),

@@ -297,20 +297,32 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {})
     return writer.finish();
 }
 
+namespace detail {
+
+/// Light `id` in view space: of a spot the least sphere.
+template <class Light, class ToLight>
+Sphere footprints_sphere(const Lights<Light, ToLight>& lights, const FootprintArrays& footprints, std::uint32_t id) {
+    if constexpr (Lights<Light, ToLight>::spots)
+        return lights.view_sphere(lights.array[id]);
+    else
+        return load_sphere(footprints.spheres + id);
+}
+
+}  // namespace detail
+
 /// Returns the footprints of the lights in view, in ascending order of id: the input of build_shader().
 /// `lights` as for Binner::bin(). Errors as there.
 template <class LightRange>
 Result<std::vector<ShaderFootprint>> shader_footprints(const View& view, const LightRange& lights) {
     const auto& source = detail::as_lights(lights);
     if (const auto error = detail::refuse(source)) return *error;
-    constexpr bool spots = std::remove_cvref_t<decltype(source)>::spots;
     Footprints<Footprint::rectangle, true> footprints;
     footprints.project(machine_isa(), view, source, Parallel{});
     const detail::FootprintArrays& in = footprints.arrays();
     const detail::Camera& camera = detail::camera_of(view);
     std::vector<ShaderFootprint> out;
     for (std::uint32_t i = 0; i < footprints.visible(); ++i) {
-        const Sphere sphere = spots ? in.spots[in.ids[i]].least : in.spheres[in.ids[i]];
+        const Sphere sphere = detail::footprints_sphere(source, in, in.ids[i]);
         const detail::TestedLight light(camera, sphere);
         out.push_back({in.ids[i], in.x0[i], in.y0[i], in.x1[i], in.y1[i], light.reach2, light.x, light.y,
                        light.z, sphere.radius});

@@ -26,7 +26,7 @@ LIGHTBIN_TARGET std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scra
             const std::uint64_t* words;
             std::uint32_t count;
             if constexpr (by_slab) {
-                count = store_slab_words(job, scratch, x, top, band, list);
+                count = store_slab_words<spots>(job, scratch, x, top, band, list);
                 words = scratch.words.data();
             } else {
                 count = mask_lights<footprint, depth_test, spots>(job, scratch, x, top, list, band.ids);

@@ -62,25 +62,29 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
 
 /// Of 8 lights at most, those that miss the boxes of a supertile's first `rows` rows: a byte per tile, a bit a light.
 /// slab  its ends are those from the supertile on
-LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SlabBoxes& slab, const Sphere* spheres,
+template <class Light>
+LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SlabBoxes& slab, const Light* lights_by_id,
                                          const ListId* ids, std::uint32_t count, unsigned rows,
                                          std::uint64_t* words) {
     std::fill_n(words, 8, 0u);
     for (std::uint32_t first = 0; first < 8 && first < count; first += lanes) {
-        const SlabLights lights = load_slab_lights(camera, slab, spheres, ids + first, count - first);
-        float x2[8][lanes];
-        for (unsigned column = 0; column < 8; ++column)
-            store_floats(x2[column], distance2(lights.x, slab.ends[0][column], slab.ends[1][column]));
-        for (unsigned row = 0; row < rows; ++row) {
-            const Floats reach2 = lights.reach2 - distance2(lights.y, slab.ends[2][row], slab.ends[3][row]);
-            words[row] |= bits_of_8_less(reach2, x2[0]) << first;
+        const auto lights = load_slab_lights(camera, slab, lights_by_id, ids + first, count - first);
+        for (unsigned test = 0; test < lights.tests; ++test) {
+            float by_column[8][lanes];
+            for (unsigned column = 0; column < 8; ++column)
+                store_floats(by_column[column],
+                             lights.by_column(test, slab.ends[0][column], slab.ends[1][column]));
+            for (unsigned row = 0; row < rows; ++row)
+                words[row] |= bits_of_8_less(lights.left_by_row(test, slab.ends[2][row], slab.ends[3][row]),
+                                             by_column[0])
+                              << first;
         }
     }
 }
 
 /// Makes the words of a list, by the boxes of the supertile from column 8 x and row `top` on, and stores them as
 /// store_words() does.
-template <class Id>
+template <bool spots, class Id>
 LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scratch& scratch, unsigned x,
                                                       unsigned top, const BandLists<ListId>& band,
                                                       const SupertileList& list) {
@@ -95,7 +99,7 @@ LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scr
     for (unsigned side = 0; side < 4; ++side)
         slab.ends[side] += side < 2 ? 8 * x : top;
     for (std::uint32_t i = 0; i < list.count; i += 8, words += 8) {
-        store_missed(*job.camera, slab, job.lights.spheres, ids + i, list.count - i, height, words);
+        store_missed(*job.camera, slab, lights_of<spots>(job), ids + i, list.count - i, height, words);
         std::uint64_t in_columns, in_rows;
         std::memcpy(&in_columns, columns + i, 8);
         std::memcpy(&in_rows, rows + i, 8);

@@ -236,17 +236,25 @@ LIGHTBIN_TARGET inline void store_long_words(const std::uint64_t* masks, const s
 
 /// Of 16 lights at most, those that miss the boxes of a supertile's first `rows` rows: missed[4 * tile], a bit a light.
 /// slab  its ends are those from the supertile on
-LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SlabBoxes& slab, const Sphere* spheres,
+template <class Light>
+LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SlabBoxes& slab, const Light* lights_by_id,
                                          const ListId* places, std::uint32_t count, unsigned rows,
                                          std::uint16_t* missed) {
-    const SlabLights lights = load_slab_lights(camera, slab, spheres, places, count);
-    Floats x2[8];
-    for (unsigned column = 0; column < 8; ++column)
-        x2[column] = distance2(lights.x, slab.ends[0][column], slab.ends[1][column]);
+    const auto lights = load_slab_lights(camera, slab, lights_by_id, places, count);
+    constexpr unsigned tests = decltype(lights)::tests;
+    Floats by_column[tests][8];
+    for (unsigned test = 0; test < tests; ++test)
+        for (unsigned column = 0; column < 8; ++column)
+            by_column[test][column] = lights.by_column(test, slab.ends[0][column], slab.ends[1][column]);
     for (unsigned row = 0; row < rows; ++row) {
-        const Floats reach2 = lights.reach2 - distance2(lights.y, slab.ends[2][row], slab.ends[3][row]);
-        for (unsigned column = 0; column < 8; ++column, missed += 4)
-            *missed = less(reach2, x2[column]);
+        Floats left[tests];
+        for (unsigned test = 0; test < tests; ++test)
+            left[test] = lights.left_by_row(test, slab.ends[2][row], slab.ends[3][row]);
+        for (unsigned column = 0; column < 8; ++column, missed += 4) {
+            *missed = less(left[0], by_column[0][column]);
+            for (unsigned test = 1; test < tests; ++test)
+                *missed = either(*missed, less(left[test], by_column[test][column]));
+        }
     }
 }
 
@@ -301,7 +309,7 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
 
 /// Makes the words of a list, by the boxes of the supertile from column 8 x and row `top` on, and stores them as
 /// store_words() does.
-template <class Id>
+template <bool spots, class Id>
 LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scratch& scratch, unsigned x,
                                                       unsigned top, const BandLists<ListId>& band,
                                                       const SupertileList& list) {
@@ -315,10 +323,10 @@ LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scr
     for (std::uint32_t group = 0; group < groups; ++group) {
         const std::uint32_t begin = list.begin + 64 * group, left = count - 64 * group;
         const IdBlock& block = scratch.blocks.data()[scratch.group_blocks.data()[begin / 64]];
-        const Sphere* const spheres = job.lights.spheres + block.upper;
+        const auto* const lights = lights_of<spots>(job) + block.upper;
         std::uint16_t missed[4 * 64];
         for (std::uint32_t i = 0; i < 64 && i < left; i += 16)
-            store_missed(*job.camera, slab, spheres, band.ids + begin + i, left - i, height, missed + i / 16);
+            store_missed(*job.camera, slab, lights, band.ids + begin + i, left - i, height, missed + i / 16);
         std::uint64_t in_column[8], in_row[8];
         split_bits(load(scratch.list_columns.data() + begin), first_bytes(left), in_column, 1);
         split_bits(load(scratch.list_rows.data() + begin), first_bytes(left), in_row, 1);

@@ -33,6 +33,7 @@ struct SpotSource {
     void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* balls, Sphere* cones);
     const WorldToView* to_view;
     ViewSpot* kept;
+    bool with_planes;  ///< of those in `kept`
 };
 
 /// The tiles first..last of one tile row that a light's silhouette reaches; none if first > last.

@@ -6,16 +6,50 @@
 // A light is too far from a box if  less(reach2 - z2 - y2, x2),  see cell_boxes.hpp on rounding; NaN, where reach2 and
 // a distance are infinite, is not. There is no test of depths, which are those of the slice and in view.
 
-/// A vector of lights, see TestedLight.
-struct SlabLights {
+/// The squared distances of coordinates from an interval.
+LIGHTBIN_TARGET inline Floats distance2(Floats c, float low, float high) {
+    const Floats distance = greater(greater(all(low) - c, c - all(high)), all(0.0f));
+    return mul(distance, distance);
+}
+
+/// A vector of lights, see TestedLight. Each of their tests says that a light misses the tiles of a row and a column for
+/// which  left_by_row < by_column.
+struct SlabSpheres {
+    static constexpr unsigned tests = 1;
+
+    LIGHTBIN_TARGET Floats left_by_row(unsigned, float low, float high) const {
+        return reach2 - distance2(y, low, high);
+    }
+    LIGHTBIN_TARGET Floats by_column(unsigned, float low, float high) const { return distance2(x, low, high); }
+
     Floats x, y;
     Floats reach2;  ///< less the squared distance from the slice
 };
 
+/// The same of spots: their balls' test, and one for each of the half spaces around a cone, see tiles_met(), of which a
+/// box's deepest corner is a sum of a term by column, one by row and one of the slice.
+struct SlabSpots {
+    static constexpr unsigned tests = 5;
+
+    LIGHTBIN_TARGET Floats left_by_row(unsigned test, float low, float high) const {
+        return test == 4 ? ball.left_by_row(0, low, high) : left[test] - deepest(y[test], low, high);
+    }
+    LIGHTBIN_TARGET Floats by_column(unsigned test, float low, float high) const {
+        return test == 4 ? ball.by_column(0, low, high) : deepest(x[test], low, high);
+    }
+    static LIGHTBIN_TARGET Floats deepest(Floats normal, float low, float high) {
+        return mul(normal, select(less(normal, all(0.0f)), all(high), all(low)));
+    }
+
+    SlabSpheres ball;
+    Floats x[4], y[4];  ///< of the planes' normals
+    Floats left[4];     ///< `most` less what the slice takes
+};
+
 /// Those of a list, `count` or as many as a vector has, whose spheres are at these places.
-LIGHTBIN_TARGET inline SlabLights load_slab_lights(const Camera& camera, const SlabBoxes& slab,
-                                                   const Sphere* spheres, const ListId* places,
-                                                   std::uint32_t count) {
+LIGHTBIN_TARGET inline SlabSpheres load_slab_lights(const Camera& camera, const SlabBoxes& slab,
+                                                    const Sphere* spheres, const ListId* places,
+                                                    std::uint32_t count) {
     Floats x, y, z, radius;
     load_listed_spheres(spheres, places, count, x, y, z, radius);
     z = mul(z, all(camera.z_sign));
@@ -24,8 +58,34 @@ LIGHTBIN_TARGET inline SlabLights load_slab_lights(const Camera& camera, const S
     return {mul(x, all(camera.x.sign)), mul(y, all(camera.y.sign)), reach2 - mul(apart, apart)};
 }
 
-/// The squared distances of coordinates from an interval.
-LIGHTBIN_TARGET inline Floats distance2(Floats c, float low, float high) {
-    const Floats distance = greater(greater(all(low) - c, c - all(high)), all(0.0f));
-    return mul(distance, distance);
+/// The same of spots.
+LIGHTBIN_TARGET inline SlabSpots load_slab_lights(const Camera& camera, const SlabBoxes& slab, const ViewSpot* spots,
+                                                  const ListId* places, std::uint32_t count) {
+    static constexpr std::uint16_t in_order[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    Sphere balls[lanes], planes[4][lanes];
+    for (std::uint32_t i = 0; i < lanes; ++i) {
+        const ViewSpot& spot = spots[places[(std::min)(i, count - 1)]];
+        balls[i] = spot.ball;
+        for (unsigned plane = 0; plane < 4; ++plane)
+            planes[plane][i] = {spot.planes[plane].x, spot.planes[plane].y, spot.planes[plane].z,
+                                spot.planes[plane].most};
+    }
+    ListId all_places[lanes];
+    std::copy_n(in_order, lanes, all_places);
+    SlabSpots lights;
+    lights.ball = load_slab_lights(camera, slab, balls, all_places, lanes);
+    for (unsigned plane = 0; plane < 4; ++plane) {
+        Floats z, most;
+        load_spheres(planes[plane], lights.x[plane], lights.y[plane], z, most);
+        lights.left[plane] = most - SlabSpots::deepest(z, slab.z0, slab.z1);
+    }
+    return lights;
+}
+
+/// Where a job's lights are, by id.
+template <bool spots, class Id> auto lights_of(const BinJob<Id>& job) {
+    if constexpr (spots)
+        return job.lights.spots;
+    else
+        return job.lights.spheres;
 }

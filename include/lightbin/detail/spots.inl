@@ -6,7 +6,7 @@
 // bounds are those of its ball where that is touched within the cone, else of the apex and the rim, a circle.
 
 /// A vector of spots, see ViewSpot.
-struct SpotLanes { Floats x, y, z, radius, axis[3], cosine, sine, least[4], blur; };
+struct SpotLanes { Floats x, y, z, radius, axis[3], cosine, sine, blur; };
 
 /// Makes whole spheres of those of a vector's spots that floats can't hold: their least spheres.
 ///
@@ -14,29 +14,27 @@ struct SpotLanes { Floats x, y, z, radius, axis[3], cosine, sine, least[4], blur
 LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void take_least_spheres(const WorldToView* to_view, unsigned which,
                                                                  const Sphere* balls, const Sphere* cones,
                                                                  SpotLanes& spots) {
-    Sphere ball[lanes], cone[lanes], least[lanes], rest[lanes];
+    Sphere ball[lanes], cone[lanes], rest[lanes];
     store_spheres(ball, spots.x, spots.y, spots.z, spots.radius);
     store_spheres(cone, spots.axis[0], spots.axis[1], spots.axis[2], spots.cosine);
-    store_spheres(least, spots.least[0], spots.least[1], spots.least[2], spots.least[3]);
     store_spheres(rest, spots.sine, spots.blur, spots.blur, spots.blur);
     for (; which != 0; which &= which - 1) {
         const unsigned lane = static_cast<unsigned>(std::countr_zero(which));
         const Sphere given = load_sphere(balls + lane), axis = load_sphere(cones + lane);
         const Sphere sphere = least_sphere(
             Spot{given.x, given.y, given.z, given.radius, axis.x, axis.y, axis.z, axis.radius});
-        ball[lane] = least[lane] = to_view != nullptr ? (*to_view)(sphere) : sphere;
+        ball[lane] = to_view != nullptr ? (*to_view)(sphere) : sphere;
         cone[lane] = {0, 0, 0, 0};
         rest[lane] = {1, 0, 0, 0};
     }
     Floats unused[2];
     load_spheres(ball, spots.x, spots.y, spots.z, spots.radius);
     load_spheres(cone, spots.axis[0], spots.axis[1], spots.axis[2], spots.cosine);
-    load_spheres(least, spots.least[0], spots.least[1], spots.least[2], spots.least[3]);
     load_spheres(rest, spots.sine, spots.blur, unused[0], unused[1]);
 }
 
-/// Finds the least spheres, see least_sphere(). The centre is within 8u of the sizes that it is made of.
-LIGHTBIN_TARGET inline void find_least_spheres(SpotLanes& spots) {
+/// Stores the least spheres, see least_sphere(). Their centres are within 8u of the sizes that they are made of.
+LIGHTBIN_TARGET inline void store_least_spheres(const SpotLanes& spots, Sphere* to) {
     const auto narrow = less_equal(all(0.5f), mul(spots.cosine, spots.cosine));
     const Floats half = mul(spots.radius, all(0.5f)) / spots.cosine, along = mul(spots.radius, spots.cosine);
     const Floats step = select(narrow, half, along);
@@ -44,10 +42,10 @@ LIGHTBIN_TARGET inline void find_least_spheres(SpotLanes& spots) {
     const Floats radius = select(narrow, half, mul(spots.radius, spots.sine)) +
                           (mul(size, all(0x1p-20f)) + spots.blur);
     const auto smaller = less(radius, spots.radius);
-    spots.least[0] = select(smaller, spots.x + mul(step, spots.axis[0]), spots.x);
-    spots.least[1] = select(smaller, spots.y + mul(step, spots.axis[1]), spots.y);
-    spots.least[2] = select(smaller, spots.z + mul(step, spots.axis[2]), spots.z);
-    spots.least[3] = select(smaller, radius, spots.radius);
+    store_spheres(to, select(smaller, spots.x + mul(step, spots.axis[0]), spots.x),
+                  select(smaller, spots.y + mul(step, spots.axis[1]), spots.y),
+                  select(smaller, spots.z + mul(step, spots.axis[2]), spots.z),
+                  select(smaller, radius, spots.radius));
 }
 
 /// Moves spots to view space and finds what ViewSpot says of them, but for their depths.
@@ -86,7 +84,6 @@ LIGHTBIN_TARGET LIGHTBIN_INLINE void shape_spots(const MoveLanes& move, const Sp
     spots.cosine = select(whole, zero, cosine);
     spots.sine = select(whole, all(1.0f), sqrt(mul(1.0f - cosine, 1.0f + cosine)));
     spots.blur = select(whole, zero, blur);
-    find_least_spheres(spots);
     if (const unsigned odd = ~bits(plain) & static_cast<unsigned>(every_lane); odd != 0)
         take_least_spheres(move.to_view, odd, balls, cones, spots);
 }
@@ -117,7 +114,7 @@ struct RimLanes {
 /// D = (X^2 + Z^2 - R^2) other^2 + (X a + Z a_z)^2. With u = 2^-24 and S = |x| + |y| + |z| + r, of the ball, D is within
 /// 2^-20 of X^2 + Z^2 + R^2, which is added to it; all else, the apex and the rim being within 8u S, moves a slope by less
 /// than 32u S (1 + the larger slope) / z of the point.
-LIGHTBIN_TARGET inline void narrow_slopes(const RimLanes& rim, Floats c, Floats axis, Floats other, Floats& low,
+LIGHTBIN_TARGET LIGHTBIN_INLINE void narrow_slopes(const RimLanes& rim, Floats c, Floats axis, Floats other, Floats& low,
                                           Floats& high) {
     const Floats zero = Floats{}, one = all(1.0f);
     const Floats x = c + mul(rim.along, axis), b = mul(x, rim.rim_z) + mul(rim.rho2, mul(axis, rim.axis_z));
@@ -141,17 +138,55 @@ LIGHTBIN_TARGET inline void narrow_slopes(const RimLanes& rim, Floats c, Floats 
     high = select(high_on_cap, high, lesser(most + error, high));
 }
 
-/// Stores a vector of spots, view space as the caller has it.
-LIGHTBIN_TARGET inline void store_spots(ViewSpot* to, const SpotLanes& spots, Floats nearest, Floats farthest) {
-    Sphere parts[4][lanes];
-    store_spheres(parts[0], spots.x, spots.y, spots.z, spots.radius);
-    store_spheres(parts[1], spots.axis[0], spots.axis[1], spots.axis[2], spots.cosine);
-    store_spheres(parts[2], spots.least[0], spots.least[1], spots.least[2], spots.least[3]);
-    store_spheres(parts[3], nearest, farthest, spots.sine, spots.blur);
+/// Copies vec4s, one a spot, to a place in each.
+LIGHTBIN_TARGET inline void store_part(ViewSpot* to, std::size_t place, const Sphere (&vec4s)[lanes]) {
     for (std::uint32_t lane = 0; lane < lanes; ++lane)
-        for (std::size_t part = 0; part < 4; ++part)
-            std::memcpy(reinterpret_cast<char*>(to + lane) + part * sizeof(Sphere), &parts[part][lane],
-                        sizeof(Sphere));
+        std::memcpy(reinterpret_cast<char*>(to + lane) + place, vec4s + lane, sizeof(Sphere));
+}
+
+/// Finds and stores the half spaces around a vector of cones: with e and f two unit vectors across the axis a and each
+/// other (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017), the planes' normals are
+/// +-e cos t - a sin t  and  +-f cos t - a sin t,  of unit length.
+///
+/// apex, axis  in the coordinates of the planes
+///
+/// With u = 2^-24, S = |x| + |y| + |z| + r, of the ball, n a normal and P the apex, n.p - n.P is at most `blur` for a point
+/// p of the spot, n being within 16u of its like for the axis as it is. A box that meets the spot there has a corner with
+/// n_i c_i <= n_i p_i, whose sum rounding makes larger by 5u of the products' sizes: of the positive ones, which are
+/// not more than 2 S, and of the negative ones; should those be more than twice all others, the sum is negative.
+LIGHTBIN_TARGET inline void store_planes(ViewSpot* to, const SpotLanes& spots, const Floats (&apex)[3],
+                                         const Floats (&axis)[3]) {
+    const auto backward = less(axis[2], Floats{});
+    const Floats sign = select(backward, all(-1.0f), all(1.0f)), p = -1.0f / (sign + axis[2]);
+    const Floats xp = mul(axis[0], p), q = mul(axis[1], xp);
+    const Floats across[2][3] = {{1.0f + mul(mul(sign, axis[0]), xp), sign * q, -(sign * axis[0])},
+                                 {q, sign + mul(axis[1], mul(axis[1], p)), -axis[1]}};
+    const Floats slack = spots.blur + mul(abs(apex[0]) + abs(apex[1]) + abs(apex[2]) + spots.radius, all(0x1p-18f));
+    Floats back[3];
+    for (unsigned i = 0; i < 3; ++i)
+        back[i] = mul(axis[i], spots.sine);
+    for (unsigned plane = 0; plane < 4; ++plane) {
+        Floats n[3], at_apex = slack;
+        for (unsigned i = 0; i < 3; ++i) {
+            const Floats aside = mul(across[plane / 2][i], spots.cosine);
+            n[i] = (plane % 2 == 0 ? aside : -aside) - back[i];
+            at_apex = at_apex + mul(n[i], apex[i]);
+        }
+        Sphere vec4s[lanes];
+        store_spheres(vec4s, n[0], n[1], n[2], at_apex);
+        store_part(to, offsetof(ViewSpot, planes) + plane * sizeof(SpotPlane), vec4s);
+    }
+}
+
+/// Stores what else is known of a vector of spots.
+LIGHTBIN_TARGET inline void store_spots(ViewSpot* to, const SpotLanes& spots, Floats nearest, Floats farthest) {
+    Sphere vec4s[lanes];
+    store_spheres(vec4s, spots.x, spots.y, spots.z, spots.radius);
+    store_part(to, offsetof(ViewSpot, ball), vec4s);
+    store_spheres(vec4s, spots.axis[0], spots.axis[1], spots.axis[2], spots.cosine);
+    store_part(to, offsetof(ViewSpot, axis_x), vec4s);
+    store_spheres(vec4s, nearest, farthest, spots.sine, spots.blur);
+    store_part(to, offsetof(ViewSpot, nearest), vec4s);
 }
 
 /// Of some of a chunk's lights: the tiles of both the ball and the least sphere of each, by project_carefully().
@@ -201,6 +236,7 @@ LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const SpotSource
             const Floats nearest = z - spot_reach(spots, -axis_z, across_z),
                          farthest = z + spot_reach(spots, axis_z, across_z);
             if (source.kept != nullptr) store_spots(source.kept + first + i, spots, nearest, farthest);
+            if (source.with_planes) store_planes(source.kept + first + i, spots, {x, y, z}, {axis_x, axis_y, axis_z});
 
             // As project() does, which says why.
             const Floats a = abs(x), b = abs(y), size = a + b + abs(z) + r;
@@ -238,7 +274,7 @@ LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const SpotSource
             unsigned rest = ~bits(either(plain, culled)) & valid;
             if (rest != 0) {
                 store_spheres(balls + i, spots.x, spots.y, spots.z, r);
-                store_spheres(cones + i, spots.least[0], spots.least[1], spots.least[2], spots.least[3]);
+                store_least_spheres(spots, cones + i);
             }
             for (; rest != 0; rest &= rest - 1)
                 careful[careful_count++] =

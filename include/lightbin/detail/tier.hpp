@@ -24,6 +24,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
+#include <type_traits>
 #include <utility>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {

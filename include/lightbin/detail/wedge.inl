@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The silhouettes of spots: where those of their balls and least spheres meet, within the wedge of their cones. Included
-// once a tier, after silhouette.inl.
+// The silhouettes of spots: those of their balls, within the wedge of their cones. Included once a tier, after
+// silhouette.inl.
 //
 // Two planes through the eye touch a cone, if the eye is not in it: in the image, two lines from the apex. With u the
 // unit vector from the eye to the apex, a the axis, b = a - (a.u) u and s = |b|, their normals are
@@ -67,8 +67,12 @@ LIGHTBIN_TARGET inline void find_wedges(const Camera& camera, const WedgeLanes& 
 struct SpotRowLanes {
     LIGHTBIN_TARGET void store(RowSpan* to, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost) const {
         Doubles begin = leftmost, end = rightmost + 1.0;
-        if (ball_known) meet(ball, v0, v1, begin, end);
-        if (least_known) meet(least, v0, v1, begin, end);
+        if (ball_known) {
+            Doubles ball_begin, ball_end;
+            ball.ends(v0, v1, ball_begin, ball_end);
+            begin = greater(ball_begin, begin);
+            end = lesser(ball_end, end);
+        }
         for (unsigned side = 0; side < 2; ++side) {
             const Doubles here = mul(most[side] - lesser(mul(n_y[side], v0), mul(n_y[side], v1)), per_x[side]);
             const auto to_right = less(all(0.0), per_x[side]);
@@ -80,16 +84,8 @@ struct SpotRowLanes {
                     select(none, all(0.0), lesser(greater(end, leftmost), rightmost)));
     }
 
-    static LIGHTBIN_TARGET LIGHTBIN_INLINE void meet(const RowLanes& sphere, Doubles v0, Doubles v1, Doubles& begin,
-                                                     Doubles& end) {
-        Doubles its_begin, its_end;
-        sphere.ends(v0, v1, its_begin, its_end);
-        begin = greater(its_begin, begin);
-        end = lesser(its_end, end);
-    }
-
-    RowLanes ball, least;
-    bool ball_known, least_known;
+    RowLanes ball;
+    bool ball_known;
     Doubles per_x[2], n_y[2], most[2], low, high;
 };
 
@@ -97,16 +93,14 @@ struct SpotRowLanes {
 struct SpotRows {
     LIGHTBIN_TARGET unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin,
                                   std::uint32_t used) {
-        Sphere balls[lanes], least_spheres[lanes], axes[lanes], rest[lanes];
+        Sphere balls[lanes], axes[lanes], rest[lanes];
         for (std::uint32_t i = 0; i < lanes; ++i) {
             const ViewSpot& spot = lights.spots[lights.ids[begin + (i < used ? i : 0)]];
             balls[i] = spot.ball;
-            least_spheres[i] = spot.least;
             axes[i] = {spot.axis_x, spot.axis_y, spot.axis_z, spot.sine};
             rest[i] = {spot.nearest, spot.blur, 0, 0};
         }
         balls_known = row_terms(camera, balls, ball);
-        least_known = row_terms(camera, least_spheres, least);
         Floats x, y, z, r, axis[3], sine, nearest, blur, unused[2];
         load_spheres(balls, x, y, z, r);
         load_spheres(axes, axis[0], axis[1], axis[2], sine);
@@ -132,9 +126,7 @@ struct SpotRows {
 
     LIGHTBIN_TARGET SpotRowLanes of(std::uint32_t i) const {
         return {RowLanes(ball, i),
-                RowLanes(least, i),
                 (balls_known >> i & 1) != 0,
-                (least_known >> i & 1) != 0,
                 {all(wedges.per_x[0][i]), all(wedges.per_x[1][i])},
                 {all(wedges.n_y[0][i]), all(wedges.n_y[1][i])},
                 {all(wedges.most[0][i]), all(wedges.most[1][i])},
@@ -142,8 +134,8 @@ struct SpotRows {
                 all(high)};
     }
 
-    RowTerms ball, least;
-    unsigned balls_known, least_known;
+    RowTerms ball;
+    unsigned balls_known;
     WedgeTerms wedges;
     double low, high;
 };

@@ -37,55 +37,29 @@ LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedL
     return met;
 }
 
-/// Which of `lanes` boxes are surely beside the cone: beyond a plane through the apex that touches it (as Unreal's test of
-/// a cone), or behind the apex.
-///
-/// With v from the apex to the box's centre, h its half sides and m the unit vector across the axis a towards v, the
-/// plane's normal is  n = m cos t - a sin t;  any other m across the axis, no longer than 1, gives a plane that has the
-/// cone on one side, too, so m's rounding costs no light. All is doubled here, v and h being the sum and the difference
-/// of the ends' distances from the apex, each within u = 2^-24 of itself. With `size` the sum of their sizes, v.n and h.|n|
-/// are within 32u size. For a point p of the spot n.p is at most `blur`, and what m.a, which is within 20u size / |m|,
-/// makes of its distance from the apex.
-LIGHTBIN_TARGET inline auto beside_cone(const float* cell, const TestedSpot& spot) {
-    const float* const planes[] = {cell + 128, cell + 256, cell};
-    const Floats apex[] = {all(spot.ball.x), all(spot.ball.y), all(spot.ball.z)};
-    const Floats axis[] = {all(spot.axis_x), all(spot.axis_y), all(spot.axis_z)};
-    Floats v[3], h[3], e = Floats{}, behind = Floats{}, size = Floats{};
-    for (unsigned i = 0; i < 3; ++i) {
-        const Floats low = load_floats(planes[i]) - apex[i], high = load_floats(planes[i] + 64) - apex[i];
-        v[i] = low + high;
-        h[i] = high - low;
-        e = e + mul(v[i], axis[i]);
-        behind = behind + mul(h[i], abs(axis[i]));
-        size = size + abs(low) + abs(high);
-    }
-    Floats m[3], length2 = Floats{};
-    for (unsigned i = 0; i < 3; ++i) {
-        m[i] = v[i] - mul(e, axis[i]);
-        length2 = length2 + mul(m[i], m[i]);
-    }
-    const Floats per_length = all(spot.cosine) / sqrt(length2);
-    Floats out = Floats{};
-    for (unsigned i = 0; i < 3; ++i) {
-        const Floats n = mul(m[i], per_length) - mul(all(spot.sine), axis[i]);
-        out = out + (mul(v[i], n) - mul(h[i], abs(n)));
-    }
-    const Floats error = mul(size, all(0x1p-19f)) + all(2 * spot.blur + flushed) +
-                         mul(mul(size, per_length), all(spot.radius * 0x1p-18f));
-    return either(less(error, out), less(error, -e - behind));
+/// The same of a spot, of which an interval test needs no more than its depths.
+template <DepthTest depth_test>
+LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const SpotDepths& light) {
+    const auto missed = either(less(all(light.farthest), load_floats(cells)),
+                               less(load_floats(cells + 64), all(light.nearest)));
+    return ~bits(missed) & every_lane;
 }
 
-/// As for spheres, for spots.
+/// The same of a spot and boxes. A box is beside the cone if its corner that is deepest in one of the half spaces around
+/// the cone is not in it (Unreal tests one such plane, chosen for each box).
 template <DepthTest depth_test>
-LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedSpot& spot) {
-    const Floats nearest = all(spot.nearest), farthest = all(spot.farthest);
+LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedSpot& light) {
+    const Floats nearest = all(light.nearest), farthest = all(light.farthest);
     std::uint64_t met = 0;
     for (const float* cell = cells; cell < cells + 64 * cell_planes<depth_test>; cell += next_box) {
         auto missed = either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest));
-        if constexpr (depth_test != DepthTest::interval) {
-            missed = either(missed, less(all(spot.ball.reach2), box_distance2(cell, spot.ball)));
-            missed = either(missed, less(all(spot.least.reach2), box_distance2(cell, spot.least)));
-            missed = either(missed, beside_cone(cell, spot));
+        missed = either(missed, less(all(light.ball.reach2), box_distance2(cell, light.ball)));
+        for (unsigned i = 0; i < 4; ++i) {
+            const SpotPlane& plane = light.spot->planes[i];
+            const Floats least = mul(load_floats(cell + light.ends[i][0]), all(plane.x)) +
+                                 mul(load_floats(cell + light.ends[i][1]), all(plane.y)) +
+                                 mul(load_floats(cell + light.ends[i][2]), all(plane.z));
+            missed = either(missed, less(all(plane.most), least));
         }
         met |= ~bits(missed) & every_lane;
     }
@@ -152,14 +126,15 @@ LIGHTBIN_TARGET inline std::uint64_t silhouette_tiles(const FootprintArrays& lig
     return tiles & spanned;
 }
 
-/// The light `id` as a depth test sees it.
-template <bool spots>
-LIGHTBIN_TARGET inline typename Tested<spots>::Light tested_light(const Camera& camera, const FootprintArrays& lights,
-                                                                  std::uint32_t id) {
-    if constexpr (spots)
-        return {camera, lights.spots[id]};
+/// Makes at `to` the light `id` as a depth test sees it: in its place, as a copy of what was written in parts has to wait
+/// for them.
+template <class Light>
+LIGHTBIN_TARGET inline void make_tested(Light* to, const Camera& camera, const FootprintArrays& lights,
+                                        std::uint32_t id) {
+    if constexpr (std::is_same_v<Light, TestedLight>)
+        std::construct_at(to, camera, load_sphere(lights.spheres + id));
     else
-        return {camera, load_sphere(lights.spheres + id)};
+        std::construct_at(to, camera, lights.spots[id]);
 }
 
 /// Makes the words of up to 64 lights of a supertile, given by visible index, counted from `first`, with the columns
@@ -172,10 +147,10 @@ mask_64_lights(const BinJob<Id>& job, unsigned x, unsigned top, const float* cel
                const std::uint8_t* rows, std::uint32_t count, ListId* ids, std::uint64_t* words) {
     std::uint64_t met[64];
     if constexpr (depth_test != DepthTest::none) {
-        typename Tested<spots>::Light tested[64];
+        typename Tested<spots, depth_test>::Light tested[64];
         std::uint64_t in_range = 0;
         for (std::uint32_t j = 0; j < count; ++j) {
-            tested[j] = tested_light<spots>(*job.camera, job.lights, job.lights.ids[first + lights[j]]);
+            make_tested(tested + j, *job.camera, job.lights, job.lights.ids[first + lights[j]]);
             met[j] = 0;
             const bool missed = (tested[j].farthest < range.min) | (range.max < tested[j].nearest);
             in_range |= std::uint64_t{!missed} << j;
@@ -260,7 +235,7 @@ LIGHTBIN_TARGET bool make_words(const BinJob<Id>& job, Scratch& scratch, unsigne
         }
         list.words = used;
         if constexpr (by_slab)
-            used = store_slab_words(job, scratch, x, top, band, list);
+            used = store_slab_words<spots>(job, scratch, x, top, band, list);
         else
             used = store_words<worded, Id>(scratch, band, list);
     }
