@@ -73,8 +73,8 @@ private:
     template <bool spots>
     void find_bins(Isa isa, float z_sign, const detail::FootprintArrays& lights,
                    std::span<const detail::FootprintRun> runs) {
-        const detail::SlicePlacesKernel kernel = detail::slice_places_kernel(isa);
-        const bool by_places = !spots && table_.places_tell();
+        const detail::SlicePlacesKernel kernel = detail::slice_places_kernel<spots>(isa);
+        const bool by_places = table_.places_tell();
         std::uint32_t* const begins = ends_.data();
         std::fill_n(begins, bin_count_, 0u);
         for (const detail::FootprintRun& run : runs)
@@ -83,7 +83,7 @@ private:
                 std::uint32_t *const first = first_bins_.data() + i, *const last = last_bins_.data() + i;
                 if (by_places) {
                     std::uint16_t nearest[chunk], farthest[chunk];
-                    kernel(table_.places(), z_sign, lights.spheres, lights.ids + i, count, nearest, farthest);
+                    kernel(table_.places(), z_sign, lights, lights.ids + i, count, nearest, farthest);
                     for (std::uint32_t j = 0; j < count; ++j) {
                         first[j] = table_.before_place(nearest[j]);
                         last[j] = table_.before_place(farthest[j] + 1u);

@@ -46,8 +46,8 @@ inline SlicesKernel slices_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.slices_kernel(); });
 }
 
-inline SlicePlacesKernel slice_places_kernel(Isa isa) {
-    return with_tier(isa, [](auto tier) { return tier.slice_places_kernel(); });
+template <bool spots> SlicePlacesKernel slice_places_kernel(Isa isa) {
+    return with_tier(isa, [](auto tier) { return tier.template slice_places_kernel<spots>(); });
 }
 
 /// For rows of `columns` samples or more: of this tier or the widest below it whose vectors are no wider.

@@ -100,7 +100,7 @@ struct Tier {
     static ProjectSpotsKernel project_spots_kernel() { return project_spots; }
     template <bool spots> static RowSpanKernel row_span_kernel() { return row_spans<std::conditional_t<spots, SpotRows, SphereRows>>; }
     static SlicesKernel slices_kernel() { return slices_met; }
-    static SlicePlacesKernel slice_places_kernel() { return slice_places; }
+    template <bool spots> static SlicePlacesKernel slice_places_kernel() { return slice_places<spots>; }
     static DepthKernels depth_kernels() { return {column_extremes, column_gaps}; }
 
     template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>

@@ -46,38 +46,40 @@ struct SlabSpots {
     Floats left[4];     ///< `most` less what the slice takes
 };
 
+/// Spheres in the coordinates of the boxes.
+LIGHTBIN_TARGET inline SlabSpheres slab_sphere(const SlabBoxes& slab, Floats x, Floats y, Floats z, Floats radius) {
+    const Floats apart = greater(greater(all(slab.z0) - z, z - all(slab.z1)), all(0.0f));
+    const Floats reach2 = mul(mul(radius, radius), all(1 + 0x1p-20f)) + all(0x1p-125f);
+    return {x, y, reach2 - mul(apart, apart)};
+}
+
 /// Those of a list, `count` or as many as a vector has, whose spheres are at these places.
 LIGHTBIN_TARGET inline SlabSpheres load_slab_lights(const Camera& camera, const SlabBoxes& slab,
                                                     const Sphere* spheres, const ListId* places,
                                                     std::uint32_t count) {
     Floats x, y, z, radius;
     load_listed_spheres(spheres, places, count, x, y, z, radius);
-    z = mul(z, all(camera.z_sign));
-    const Floats apart = greater(greater(all(slab.z0) - z, z - all(slab.z1)), all(0.0f));
-    const Floats reach2 = mul(mul(radius, radius), all(1 + 0x1p-20f)) + all(0x1p-125f);
-    return {mul(x, all(camera.x.sign)), mul(y, all(camera.y.sign)), reach2 - mul(apart, apart)};
+    return slab_sphere(slab, mul(x, all(camera.x.sign)), mul(y, all(camera.y.sign)), mul(z, all(camera.z_sign)),
+                       radius);
 }
 
 /// The same of spots.
-LIGHTBIN_TARGET inline SlabSpots load_slab_lights(const Camera& camera, const SlabBoxes& slab, const ViewSpot* spots,
+LIGHTBIN_TARGET inline SlabSpots load_slab_lights(const Camera&, const SlabBoxes& slab, const ViewSpot* spots,
                                                   const ListId* places, std::uint32_t count) {
-    static constexpr std::uint16_t in_order[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     Sphere balls[lanes], planes[4][lanes];
     for (std::uint32_t i = 0; i < lanes; ++i) {
         const ViewSpot& spot = spots[places[(std::min)(i, count - 1)]];
         balls[i] = spot.ball;
         for (unsigned plane = 0; plane < 4; ++plane)
-            planes[plane][i] = {spot.planes[plane].x, spot.planes[plane].y, spot.planes[plane].z,
-                                spot.planes[plane].most};
+            std::memcpy(&planes[plane][i], &spot.planes[plane], sizeof(Sphere));
     }
-    ListId all_places[lanes];
-    std::copy_n(in_order, lanes, all_places);
+    Floats x, y, z, radius;
+    load_spheres(balls, x, y, z, radius);
     SlabSpots lights;
-    lights.ball = load_slab_lights(camera, slab, balls, all_places, lanes);
+    lights.ball = slab_sphere(slab, x, y, z, radius);
     for (unsigned plane = 0; plane < 4; ++plane) {
-        Floats z, most;
-        load_spheres(planes[plane], lights.x[plane], lights.y[plane], z, most);
-        lights.left[plane] = most - SlabSpots::deepest(z, slab.z0, slab.z1);
+        load_spheres(planes[plane], lights.x[plane], lights.y[plane], z, radius);
+        lights.left[plane] = radius - SlabSpots::deepest(z, slab.z0, slab.z1);
     }
     return lights;
 }

@@ -19,9 +19,31 @@ LIGHTBIN_TARGET inline void load_spheres_at(const Sphere* spheres, const std::ui
 }
 #endif
 
-/// Writes the places of the least and the greatest depth of the `count` spheres that `ids` number. Whole vectors are
+/// Finds the depths of the lights that `lanes` ids number.
+template <bool spots>
+LIGHTBIN_TARGET inline void load_depths(const FootprintArrays& lights, float z_sign, const std::uint32_t* ids,
+                                        Floats& nearest, Floats& farthest) {
+    if constexpr (spots) {
+        float ends[2][lanes];
+        for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+            ends[0][lane] = lights.spots[ids[lane]].nearest;
+            ends[1][lane] = lights.spots[ids[lane]].farthest;
+        }
+        nearest = load_floats(ends[0]);
+        farthest = load_floats(ends[1]);
+    } else {
+        Floats x, y, z, radius;
+        load_spheres_at(lights.spheres, ids, x, y, z, radius);
+        z = z * all(z_sign);
+        nearest = z - radius;
+        farthest = z + radius;
+    }
+}
+
+/// Writes the places of the least and the greatest depth of the `count` lights that `ids` number. Whole vectors are
 /// written. Places are less than 2^15.
-LIGHTBIN_TARGET inline void slice_places(const SlicePlaces& to, float z_sign, const Sphere* spheres,
+template <bool spots>
+LIGHTBIN_TARGET inline void slice_places(const SlicePlaces& to, float z_sign, const FootprintArrays& lights,
                                          const std::uint32_t* ids, std::uint32_t count, std::uint16_t* nearest,
                                          std::uint16_t* farthest) {
     for (std::uint32_t i = 0; i < count; i += lanes, ids += lanes) {
@@ -30,10 +52,9 @@ LIGHTBIN_TARGET inline void slice_places(const SlicePlaces& to, float z_sign, co
         if (!whole)
             for (std::uint32_t lane = 0; lane < lanes; ++lane)
                 filled_up[lane] = ids[(std::min)(lane, count - i - 1)];
-        Floats x, y, z, radius;
-        load_spheres_at(spheres, whole ? ids : filled_up, x, y, z, radius);
-        z = z * all(z_sign);
-        store_tiles(nearest + i, slice_place(to, z - radius));
-        store_tiles(farthest + i, slice_place(to, z + radius));
+        Floats least, most;
+        load_depths<spots>(lights, z_sign, whole ? ids : filled_up, least, most);
+        store_tiles(nearest + i, slice_place(to, least));
+        store_tiles(farthest + i, slice_place(to, most));
     }
 }

@@ -33,24 +33,26 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void take_least_spheres(const WorldToVi
     load_spheres(rest, spots.sine, spots.blur, unused[0], unused[1]);
 }
 
-/// Stores the least spheres, see least_sphere(). Their centres are within 8u of the sizes that they are made of.
-LIGHTBIN_TARGET inline void store_least_spheres(const SpotLanes& spots, Sphere* to) {
+/// Stores the balls and the least spheres, see least_sphere(), as the caller has view space. The least spheres' centres are
+/// within 8u of the sizes that they are made of.
+LIGHTBIN_TARGET inline void store_both_spheres(const Camera& camera, const SpotLanes& spots, Sphere* balls,
+                                               Sphere* least) {
     const auto narrow = less_equal(all(0.5f), mul(spots.cosine, spots.cosine));
     const Floats half = mul(spots.radius, all(0.5f)) / spots.cosine, along = mul(spots.radius, spots.cosine);
-    const Floats step = select(narrow, half, along);
     const Floats size = abs(spots.x) + abs(spots.y) + abs(spots.z) + spots.radius;
     const Floats radius = select(narrow, half, mul(spots.radius, spots.sine)) +
                           (mul(size, all(0x1p-20f)) + spots.blur);
     const auto smaller = less(radius, spots.radius);
-    store_spheres(to, select(smaller, spots.x + mul(step, spots.axis[0]), spots.x),
-                  select(smaller, spots.y + mul(step, spots.axis[1]), spots.y),
-                  select(smaller, spots.z + mul(step, spots.axis[2]), spots.z),
-                  select(smaller, radius, spots.radius));
+    const Floats step = select(smaller, select(narrow, half, along), Floats{});
+    const Floats x = all(camera.x.sign), y = all(camera.y.sign), z = all(camera.z_sign);
+    store_spheres(balls, spots.x * x, spots.y * y, spots.z * z, spots.radius);
+    store_spheres(least, (spots.x + mul(step, spots.axis[0])) * x, (spots.y + mul(step, spots.axis[1])) * y,
+                  (spots.z + mul(step, spots.axis[2])) * z, select(smaller, radius, spots.radius));
 }
 
 /// Moves spots to view space and finds what ViewSpot says of them, but for their depths.
-LIGHTBIN_TARGET LIGHTBIN_INLINE void shape_spots(const MoveLanes& move, const Sphere* balls, const Sphere* cones,
-                                                 SpotLanes& spots) {
+LIGHTBIN_TARGET LIGHTBIN_INLINE void shape_spots(const Camera& camera, const MoveLanes& move, const Sphere* balls,
+                                                 const Sphere* cones, SpotLanes& spots) {
     Floats axis[3], cosine;
     load_spheres(balls, spots.x, spots.y, spots.z, spots.radius);
     load_spheres(cones, axis[0], axis[1], axis[2], cosine);
@@ -86,6 +88,12 @@ LIGHTBIN_TARGET LIGHTBIN_INLINE void shape_spots(const MoveLanes& move, const Sp
     spots.blur = select(whole, zero, blur);
     if (const unsigned odd = ~bits(plain) & static_cast<unsigned>(every_lane); odd != 0)
         take_least_spheres(move.to_view, odd, balls, cones, spots);
+    const Floats signs[] = {all(camera.x.sign), all(camera.y.sign), all(camera.z_sign)};
+    spots.x = spots.x * signs[0];
+    spots.y = spots.y * signs[1];
+    spots.z = spots.z * signs[2];
+    for (unsigned i = 0; i < 3; ++i)
+        spots.axis[i] = spots.axis[i] * signs[i];
 }
 
 /// How far spots reach from their apex along an axis, on which the cone's axis has the coordinate `along`, beside it the
@@ -98,7 +106,7 @@ LIGHTBIN_TARGET inline Floats spot_reach(const SpotLanes& spots, Floats along, F
 
 /// What the slopes of both image axes need of spots.
 struct RimLanes {
-    Floats z, per_z;  ///< of the apex
+    Floats per_z;  ///< of the apex
     Floats axis_z, cosine2;
     Floats along, rho, rho2;  ///< from the apex to the rim's centre, the rim's radius and its square
     Floats rim_z, per_a;
@@ -148,14 +156,12 @@ LIGHTBIN_TARGET inline void store_part(ViewSpot* to, std::size_t place, const Sp
 /// other (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017), the planes' normals are
 /// +-e cos t - a sin t  and  +-f cos t - a sin t,  of unit length.
 ///
-/// apex, axis  in the coordinates of the planes
-///
 /// With u = 2^-24, S = |x| + |y| + |z| + r, of the ball, n a normal and P the apex, n.p - n.P is at most `blur` for a point
 /// p of the spot, n being within 16u of its like for the axis as it is. A box that meets the spot there has a corner with
 /// n_i c_i <= n_i p_i, whose sum rounding makes larger by 5u of the products' sizes: of the positive ones, which are
 /// not more than 2 S, and of the negative ones; should those be more than twice all others, the sum is negative.
-LIGHTBIN_TARGET inline void store_planes(ViewSpot* to, const SpotLanes& spots, const Floats (&apex)[3],
-                                         const Floats (&axis)[3]) {
+LIGHTBIN_TARGET inline void store_planes(ViewSpot* to, const SpotLanes& spots) {
+    const Floats apex[] = {spots.x, spots.y, spots.z}, (&axis)[3] = spots.axis;
     const auto backward = less(axis[2], Floats{});
     const Floats sign = select(backward, all(-1.0f), all(1.0f)), p = -1.0f / (sign + axis[2]);
     const Floats xp = mul(axis[0], p), q = mul(axis[1], xp);
@@ -175,6 +181,13 @@ LIGHTBIN_TARGET inline void store_planes(ViewSpot* to, const SpotLanes& spots, c
         Sphere vec4s[lanes];
         store_spheres(vec4s, n[0], n[1], n[2], at_apex);
         store_part(to, offsetof(ViewSpot, planes) + plane * sizeof(SpotPlane), vec4s);
+        for (unsigned i = 0; i < 3; ++i) {
+            const float low = static_cast<float>(i == 2 ? 0 : 128 + 128 * i);  // where its low ends are
+            std::uint16_t corners[lanes];
+            store_tiles(corners, select(less(n[i], Floats{}), all(low + 64), all(low)));
+            for (std::uint32_t lane = 0; lane < lanes; ++lane)
+                to[lane].corners[plane][i] = corners[lane];
+        }
     }
 }
 
@@ -210,15 +223,45 @@ LIGHTBIN_TARGET inline void project_both_carefully(const Camera& camera, const S
     }
 }
 
+/// What spots cover along the image axes: slopes or, orthographic, coordinates.
+struct ImageBounds { Floats left, right, bottom, top; };
+
+LIGHTBIN_TARGET LIGHTBIN_INLINE void find_coordinates(const SpotLanes& spots, ImageBounds& bounds) {
+    const Floats x2 = mul(spots.axis[0], spots.axis[0]), y2 = mul(spots.axis[1], spots.axis[1]),
+                 z2 = mul(spots.axis[2], spots.axis[2]), across_x = sqrt(y2 + z2), across_y = sqrt(x2 + z2);
+    bounds = {spots.x - spot_reach(spots, -spots.axis[0], across_x), spots.x + spot_reach(spots, spots.axis[0], across_x),
+              spots.y - spot_reach(spots, -spots.axis[1], across_y), spots.y + spot_reach(spots, spots.axis[1], across_y)};
+}
+
+/// Of spots whose balls lie beyond the near plane; `size` is |x| + |y| + |z| + r of the ball, `nearest` 2^-16 of it at least.
+LIGHTBIN_TARGET LIGHTBIN_INLINE void find_slopes(const SpotLanes& spots, Floats size, Floats nearest, Floats across_z,
+                                                 ImageBounds& bounds) {
+    const Floats e = mul(spots.z - spots.radius, spots.z + spots.radius), per_e = 1.0f / e;
+    tangent_slopes(spots.x, spots.z, spots.radius, e, per_e, bounds.left, bounds.right);
+    tangent_slopes(spots.y, spots.z, spots.radius, e, per_e, bounds.bottom, bounds.top);
+    const Floats along = mul(spots.radius, spots.cosine), rho = mul(spots.radius, spots.sine);
+    const Floats rim_z = spots.z + mul(along, spots.axis[2]), depth = mul(rho, across_z);
+    const RimLanes rim = {1.0f / spots.z,
+                          spots.axis[2],
+                          mul(spots.cosine, spots.cosine),
+                          along,
+                          rho,
+                          mul(rho, rho),
+                          rim_z,
+                          1.0f / mul(rim_z - depth, rim_z + depth),
+                          (mul(size, all(0x1p-18f)) + spots.blur) / nearest};
+    narrow_slopes(rim, spots.x, spots.axis[0], spots.axis[1], bounds.left, bounds.right);
+    narrow_slopes(rim, spots.y, spots.axis[1], spots.axis[0], bounds.bottom, bounds.top);
+}
+
 /// Appends the footprints of those of the spots first..first + count - 1 that are in view, as project() does.
 LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const SpotSource& source, std::uint32_t first,
                                           std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts) {
     ChunkRects rects;
     unsigned visible[ChunkRects::size / lanes];
     std::uint8_t careful[ChunkRects::size];
-    Sphere balls[ChunkRects::size], cones[ChunkRects::size];
+    Sphere balls[ChunkRects::size], cones[ChunkRects::size];  // as given, then of careful ones balls and least spheres
     const MoveLanes move(source.to_view);
-    const Floats sign_x = all(camera.x.sign), sign_y = all(camera.y.sign), sign_z = all(camera.z_sign);
     for (std::uint32_t here; count > 0; count -= here, first += here) {
         here = count < ChunkRects::size ? count : ChunkRects::size;
         source.copy(source.lights, first, here, balls, cones);
@@ -229,60 +272,41 @@ LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const SpotSource
         std::uint32_t careful_count = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
             SpotLanes spots;
-            shape_spots(move, balls + i, cones + i, spots);
-            const Floats x = spots.x * sign_x, y = spots.y * sign_y, z = spots.z * sign_z, r = spots.radius;
-            const Floats axis_x = spots.axis[0] * sign_x, axis_y = spots.axis[1] * sign_y, axis_z = spots.axis[2] * sign_z;
-            const Floats x2 = mul(axis_x, axis_x), y2 = mul(axis_y, axis_y), across_z = sqrt(x2 + y2);
-            const Floats nearest = z - spot_reach(spots, -axis_z, across_z),
-                         farthest = z + spot_reach(spots, axis_z, across_z);
-            if (source.kept != nullptr) store_spots(source.kept + first + i, spots, nearest, farthest);
-            if (source.with_planes) store_planes(source.kept + first + i, spots, {x, y, z}, {axis_x, axis_y, axis_z});
+            shape_spots(camera, move, balls + i, cones + i, spots);
+            const Floats r = spots.radius, across_z = sqrt(mul(spots.axis[0], spots.axis[0]) +
+                                                           mul(spots.axis[1], spots.axis[1]));
+            const Floats nearest = spots.z - spot_reach(spots, -spots.axis[2], across_z),
+                         farthest = spots.z + spot_reach(spots, spots.axis[2], across_z);
 
             // As project() does, which says why.
-            const Floats a = abs(x), b = abs(y), size = a + b + abs(z) + r;
-            const Floats aside = greater(mul(a, all(camera.x.side)) + mul(z, all(camera.x.side_z)),
-                                         mul(b, all(camera.y.side)) + mul(z, all(camera.y.side_z)));
+            const Floats a = abs(spots.x), b = abs(spots.y), size = a + b + abs(spots.z) + r;
+            const Floats aside = greater(mul(a, all(camera.x.side)) + mul(spots.z, all(camera.x.side_z)),
+                                         mul(b, all(camera.y.side)) + mul(spots.z, all(camera.y.side_z)));
             const auto usable = both(less_equal(size, all(0x1p40f)), less_equal(all(0x1p-40f), r));
-            const auto culled =
-                both(usable, either(either(less(farthest, all(camera.near_depth)), less(all(camera.far_depth), nearest)),
-                                    less(size * 0x1p-21f, aside - r)));
+            const auto beyond = either(less(farthest, all(camera.near_depth)), less(all(camera.far_depth), nearest));
+            const auto culled = both(usable, either(beyond, less(size * 0x1p-21f, aside - r)));
             const unsigned used = here - i < lanes ? here - i : lanes, valid = used < 32 ? (1u << used) - 1 : ~0u;
             unsigned& in_view = visible[i / lanes] = 0;
             if ((~bits(culled) & valid) == 0) continue;
+            if (source.kept != nullptr) store_spots(source.kept + first + i, spots, nearest, farthest);
+            if (source.with_planes) store_planes(source.kept + first + i, spots);
             auto plain = and_not(usable, culled);
-            Floats left, right, bottom, top;
+            ImageBounds bounds;
             if (camera.orthographic) {
-                const Floats z2 = mul(axis_z, axis_z), across_x = sqrt(y2 + z2), across_y = sqrt(x2 + z2);
-                left = x - spot_reach(spots, -axis_x, across_x);
-                right = x + spot_reach(spots, axis_x, across_x);
-                bottom = y - spot_reach(spots, -axis_y, across_y);
-                top = y + spot_reach(spots, axis_y, across_y);
+                find_coordinates(spots, bounds);
             } else {
-                const Floats ball_nearest = z - r, e = mul(ball_nearest, z + r), per_e = 1.0f / e;
-                plain = both(plain, both(less(all(camera.near_fast), ball_nearest),
-                                         less(size * 0x1p-16f, nearest)));
-                tangent_slopes(x, z, r, e, per_e, left, right);
-                tangent_slopes(y, z, r, e, per_e, bottom, top);
-                const Floats along = mul(r, spots.cosine), rho = mul(r, spots.sine);
-                const Floats rim_z = z + mul(along, axis_z), depth = mul(rho, across_z);
-                const RimLanes rim = {z, 1.0f / z, axis_z, mul(spots.cosine, spots.cosine), along, rho,
-                                      mul(rho, rho), rim_z, 1.0f / mul(rim_z - depth, rim_z + depth),
-                                      (mul(size, all(0x1p-18f)) + spots.blur) / nearest};
-                narrow_slopes(rim, x, axis_x, axis_y, left, right);
-                narrow_slopes(rim, y, axis_y, axis_x, bottom, top);
+                plain = both(plain, both(less(all(camera.near_fast), spots.z - r), less(size * 0x1p-16f, nearest)));
+                find_slopes(spots, size, nearest, across_z, bounds);
             }
             unsigned rest = ~bits(either(plain, culled)) & valid;
-            if (rest != 0) {
-                store_spheres(balls + i, spots.x, spots.y, spots.z, r);
-                store_least_spheres(spots, cones + i);
-            }
+            if (rest != 0) store_both_spheres(camera, spots, balls + i, cones + i);
             for (; rest != 0; rest &= rest - 1)
                 careful[careful_count++] =
                     static_cast<std::uint8_t>(i + static_cast<unsigned>(std::countr_zero(rest)));
-            plain = tile_span(camera.x, camera.x.scale_f, camera.x.offset_f, left, right, plain, rects.x0 + i,
-                              rects.x1 + i);
-            plain = tile_span(camera.y, camera.y.scale_f, camera.y.offset_f, bottom, top, plain, rects.y0 + i,
-                              rects.y1 + i);
+            plain = tile_span(camera.x, camera.x.scale_f, camera.x.offset_f, bounds.left, bounds.right, plain,
+                              rects.x0 + i, rects.x1 + i);
+            plain = tile_span(camera.y, camera.y.scale_f, camera.y.offset_f, bounds.bottom, bounds.top, plain,
+                              rects.y0 + i, rects.y1 + i);
             in_view = bits(plain) & valid;
         }
         for (std::uint32_t i = 0; i < careful_count; i += lanes)

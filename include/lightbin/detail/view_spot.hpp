@@ -25,15 +25,17 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 /// The half space of the points with  x p_x + y p_y + z p_z <= most.
 struct SpotPlane { float x, y, z, most; };
 
-/// Seven vec4s. Of a whole sphere the axis is 0 and the sine 1, and no plane leaves out anything.
+/// A spot: x and y are as in an ImageAxis, z is the view depth. Of a whole sphere the axis is 0 and the sine 1, and no
+/// plane leaves out anything.
 struct ViewSpot {
-    Sphere ball;                           ///< view space as the caller has it, as is the axis
+    Sphere ball;
     float axis_x, axis_y, axis_z, cosine;  ///< the axis of unit length; of the half angle, 0 to 1
-    float nearest, farthest;               ///< view depths
+    float nearest, farthest;               ///< view depths; rounding is monotone, so comparing them with floats is exact
     float sine, blur;
-    /// For boxes: half spaces around the cone, through the apex but for rounding. Here x and y are as in an ImageAxis, z
-    /// is the view depth.
+    /// For boxes: half spaces around the cone, through the apex but for rounding.
     SpotPlane planes[4];
+    /// And which corner of a box is deepest in each: where its coordinates begin among a supertile's, see arrange_cells().
+    std::uint16_t corners[4][3];
 };
 
 /// What floats can make a ViewSpot of; others are binned as their least spheres. Squares neither over- nor underflow.
@@ -42,41 +44,17 @@ struct PlainSpots {
     static constexpr float least_axis = 0x1p-20f, most_axis = 0x1p20f;  ///< |x| + |y| + |z|
 };
 
-/// A spot as the depth tests see it, see TestedLight. For each plane, which ends of a box are farthest from it, outward:
-/// where their coordinates begin in a cell's planes of 64 floats, see arrange_cells().
+/// A spot as the depth tests see it.
 struct TestedSpot {
     TestedSpot() = default;
-    TestedSpot(const Camera& camera, const ViewSpot& of)
-        : spot(&of), ball(camera, of.ball), nearest(of.nearest), farthest(of.farthest) {
-        for (unsigned i = 0; i < 4; ++i) {
-            const SpotPlane& plane = of.planes[i];
-            ends[i][0] = static_cast<std::uint16_t>(128 + 64 * (plane.x < 0));
-            ends[i][1] = static_cast<std::uint16_t>(256 + 64 * (plane.y < 0));
-            ends[i][2] = static_cast<std::uint16_t>(64 * (plane.z < 0));
-        }
-    }
+    TestedSpot(const Camera&, const ViewSpot& of) : spot(&of), nearest(of.nearest), farthest(of.farthest) {}
 
     const ViewSpot* spot;
-    TestedLight ball;
-    float nearest, farthest;
-    std::uint16_t ends[4][3];
-};
-
-/// The same for the interval test.
-struct SpotDepths {
-    SpotDepths() = default;
-    SpotDepths(const Camera&, const ViewSpot& of) : nearest(of.nearest), farthest(of.farthest) {}
-
     float nearest, farthest;
 };
 
 /// A light as a depth test sees it, by whether the lights are spots.
-template <bool spots, DepthTest depth_test> struct Tested {
-    using Light = TestedLight;
-};
-template <DepthTest depth_test> struct Tested<true, depth_test> {
-    using Light = std::conditional_t<depth_test == DepthTest::interval, SpotDepths, TestedSpot>;
-};
+template <bool spots> using Tested = std::conditional_t<spots, TestedSpot, TestedLight>;
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
 

@@ -94,26 +94,29 @@ struct SpotRows {
     LIGHTBIN_TARGET unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin,
                                   std::uint32_t used) {
         Sphere balls[lanes], axes[lanes], rest[lanes];
+        const float sign_x = camera.x.sign, sign_y = camera.y.sign, sign_z = camera.z_sign;
         for (std::uint32_t i = 0; i < lanes; ++i) {
             const ViewSpot& spot = lights.spots[lights.ids[begin + (i < used ? i : 0)]];
-            balls[i] = spot.ball;
+            balls[i] = {spot.ball.x * sign_x, spot.ball.y * sign_y, spot.ball.z * sign_z, spot.ball.radius};
             axes[i] = {spot.axis_x, spot.axis_y, spot.axis_z, spot.sine};
             rest[i] = {spot.nearest, spot.blur, 0, 0};
         }
         balls_known = row_terms(camera, balls, ball);
-        Floats x, y, z, r, axis[3], sine, nearest, blur, unused[2];
-        load_spheres(balls, x, y, z, r);
+        Floats apex[3], r, axis[3], sine, nearest, blur, unused[2];
+        load_spheres(balls, apex[0], apex[1], apex[2], r);
         load_spheres(axes, axis[0], axis[1], axis[2], sine);
         load_spheres(rest, nearest, blur, unused[0], unused[1]);
-        const double signs[] = {static_cast<double>(camera.x.sign), static_cast<double>(camera.y.sign),
-                                static_cast<double>(camera.z_sign)};
+        const double signs[] = {static_cast<double>(sign_x), static_cast<double>(sign_y), static_cast<double>(sign_z)};
         for (unsigned half = 0; half < lanes / double_lanes; ++half) {
-            WedgeLanes wedge = {{widened(x, half) * signs[0], widened(y, half) * signs[1], widened(z, half) * signs[2]},
-                                {widened(axis[0], half) * signs[0], widened(axis[1], half) * signs[1],
-                                 widened(axis[2], half) * signs[2]},
-                                widened(sine, half), widened(blur, half)};
-            const Doubles size = abs(wedge.apex[0]) + abs(wedge.apex[1]) + abs(wedge.apex[2]) + widened(r, half);
-            wedge.blur = wedge.blur + size * 0x1p-28;
+            WedgeLanes wedge;
+            Doubles size = widened(r, half);
+            for (unsigned i = 0; i < 3; ++i) {
+                wedge.apex[i] = widened(apex[i], half) * signs[i];
+                wedge.axis[i] = widened(axis[i], half);
+                size = size + abs(wedge.apex[i]);
+            }
+            wedge.sine = widened(sine, half);
+            wedge.blur = widened(blur, half) + size * 0x1p-28;
             if (!camera.orthographic)
                 wedge.blur = wedge.blur / greater(widened(nearest, half), all(static_cast<double>(camera.near_depth)));
             find_wedges(camera, wedge, half * double_lanes, wedges);

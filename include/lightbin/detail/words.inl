@@ -15,13 +15,6 @@ LIGHTBIN_TARGET inline Floats distance(Floats c, const float* ends) {
     return greater(greater(load_floats(ends) - c, c - load_floats(ends + 64)), all(0.0f));
 }
 
-/// The squared distances of a light's centre from `lanes` boxes.
-LIGHTBIN_TARGET inline Floats box_distance2(const float* cell, const TestedLight& light) {
-    const Floats z = distance(all(light.z), cell), x = distance(all(light.x), cell + 128),
-                 y = distance(all(light.y), cell + 256);
-    return mul(x, x) + mul(y, y) + mul(z, z);
-}
-
 /// Of the first `lanes` tiles of `cells`, those whose Z bounds or boxes the light meets. NaN tests nothing.
 template <DepthTest depth_test>
 LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedLight& light) {
@@ -30,38 +23,42 @@ LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedL
     for (const float* cell = cells; cell < cells + 64 * cell_planes<depth_test>; cell += next_box) {
         auto missed = either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest));
         if constexpr (depth_test != DepthTest::interval) {
-            missed = either(missed, less(all(light.reach2), box_distance2(cell, light)));
+            const Floats z = distance(all(light.z), cell), x = distance(all(light.x), cell + 128),
+                         y = distance(all(light.y), cell + 256);
+            const Floats distance2 = mul(x, x) + mul(y, y) + mul(z, z);
+            missed = either(missed, less(all(light.reach2), distance2));
         }
         met |= ~bits(missed) & every_lane;
     }
     return met;
 }
 
-/// The same of a spot, of which an interval test needs no more than its depths.
-template <DepthTest depth_test>
-LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const SpotDepths& light) {
-    const auto missed = either(less(all(light.farthest), load_floats(cells)),
-                               less(load_floats(cells + 64), all(light.nearest)));
-    return ~bits(missed) & every_lane;
+/// Of `lanes` boxes, those beyond the ball or beside the cone of a spot: a box is if its corner that is deepest in one of
+/// the half spaces around the cone is not in it. (Unreal tests one such plane, chosen for each box.)
+LIGHTBIN_TARGET inline unsigned boxes_missed(const float* cell, const ViewSpot& spot) {
+    const Floats z = distance(all(spot.ball.z), cell), x = distance(all(spot.ball.x), cell + 128),
+                 y = distance(all(spot.ball.y), cell + 256), radius = all(spot.ball.radius);
+    const Floats reach2 = mul(mul(radius, radius), all(1 + 0x1p-20f)) + all(0x1p-125f);
+    auto missed = less(reach2, mul(x, x) + mul(y, y) + mul(z, z));
+    for (unsigned i = 0; i < 4; ++i) {
+        const SpotPlane& plane = spot.planes[i];
+        const Floats deepest = mul(load_floats(cell + spot.corners[i][0]), all(plane.x)) +
+                               mul(load_floats(cell + spot.corners[i][1]), all(plane.y)) +
+                               mul(load_floats(cell + spot.corners[i][2]), all(plane.z));
+        missed = either(missed, less(all(plane.most), deepest));
+    }
+    return bits(missed);
 }
 
-/// The same of a spot and boxes. A box is beside the cone if its corner that is deepest in one of the half spaces around
-/// the cone is not in it (Unreal tests one such plane, chosen for each box).
+/// As for spheres, for spots.
 template <DepthTest depth_test>
 LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedSpot& light) {
     const Floats nearest = all(light.nearest), farthest = all(light.farthest);
     std::uint64_t met = 0;
     for (const float* cell = cells; cell < cells + 64 * cell_planes<depth_test>; cell += next_box) {
-        auto missed = either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest));
-        missed = either(missed, less(all(light.ball.reach2), box_distance2(cell, light.ball)));
-        for (unsigned i = 0; i < 4; ++i) {
-            const SpotPlane& plane = light.spot->planes[i];
-            const Floats least = mul(load_floats(cell + light.ends[i][0]), all(plane.x)) +
-                                 mul(load_floats(cell + light.ends[i][1]), all(plane.y)) +
-                                 mul(load_floats(cell + light.ends[i][2]), all(plane.z));
-            missed = either(missed, less(all(plane.most), least));
-        }
-        met |= ~bits(missed) & every_lane;
+        unsigned missed = bits(either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest)));
+        if constexpr (depth_test != DepthTest::interval) missed |= boxes_missed(cell, *light.spot);
+        met |= ~std::uint64_t{missed} & every_lane;
     }
     return met;
 }
@@ -147,7 +144,7 @@ mask_64_lights(const BinJob<Id>& job, unsigned x, unsigned top, const float* cel
                const std::uint8_t* rows, std::uint32_t count, ListId* ids, std::uint64_t* words) {
     std::uint64_t met[64];
     if constexpr (depth_test != DepthTest::none) {
-        typename Tested<spots, depth_test>::Light tested[64];
+        Tested<spots> tested[64];
         std::uint64_t in_range = 0;
         for (std::uint32_t j = 0; j < count; ++j) {
             make_tested(tested + j, *job.camera, job.lights, job.lights.ids[first + lights[j]]);
