@@ -18,11 +18,15 @@ struct Struct {
     glm::vec4 sphere;
 };
 
+/// What lights are binned as: structs go through a callable.
+enum class Form { vec4s, structs, spots };
+
 struct Input {
     View view;
     std::vector<glm::vec4> lights;
     std::vector<float> min, max, gap_min, gap_max;
-    bool structs = false;                ///< are binned as structs, through a callable
+    Form form = Form::vec4s;
+    std::vector<glm::vec4> cones{};      ///< of spots: axes, and cosines of half angles
     std::optional<glm::mat4> to_view{};  ///< of lights in world space
 };
 
@@ -91,7 +95,14 @@ Input random_input(std::uint32_t seed) {
     if (seed % 5 == 0)
         std::sort(lights.begin(), lights.end(), [](glm::vec4 a, glm::vec4 b) { return a.z < b.z; });
     Input input = {view, lights, min, max, gap_min, gap_max};
-    input.structs = seed % 3 == 0;
+    input.form = static_cast<Form>(seed % 3);
+    const float special[] = {0, 1, -1, 1e-30f, 1e20f, std::nanf(""), HUGE_VALF, 2};
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        glm::vec4 cone(between(-1, 1), between(-1, 1), between(-1, 1), std::cos(between(0, 2)));
+        if (between(0, 20) < 1)
+            cone[static_cast<int>(between(0, 4))] = special[static_cast<int>(between(0, 8))];
+        input.cones.push_back(cone);
+    }
     if (seed % 2 == 0) {
         // From rotations to what floats can't undo, near and far.
         glm::mat4 m = glm::rotate(glm::mat4(1), between(-3, 3),
@@ -123,12 +134,17 @@ public:
                                                inputs, parallel)
                                  : binner_.bin(input.view, view_space(lights, to_light), inputs, parallel);
         };
-        std::vector<Struct> structs;
-        if (input.structs)
-            for (const glm::vec4& light : input.lights)
-                structs.push_back({1, light});
-        const auto sphere_of = [](const Struct& light) { return AsLight()(light.sphere); };
-        const auto grid = input.structs ? bin(structs, sphere_of) : bin(input.lights, AsLight());
+        const auto bin_all = [&] {
+            if constexpr (takes_spots)
+                if (input.form == Form::spots) return bin(spots_of(input), AsLight());
+            std::vector<Struct> structs;
+            if (input.form == Form::structs)
+                for (const glm::vec4& light : input.lights)
+                    structs.push_back({1, light});
+            const auto sphere_of = [](const Struct& light) { return AsLight()(light.sphere); };
+            return input.form == Form::structs ? bin(structs, sphere_of) : bin(input.lights, AsLight());
+        };
+        const auto grid = bin_all();
         REQUIRE(grid);
         std::vector<std::uint32_t> all = {grid->light_counts().rejected};
         for (const ListRange range : grid->ranges())
@@ -141,6 +157,19 @@ public:
     }
 
 private:
+    /// Not with all options, for the time that it takes to compile.
+    static constexpr bool takes_spots = options.ids == IdWidth::u32;
+
+    static std::vector<Spot> spots_of(const Input& input) {
+        std::vector<Spot> spots;
+        for (std::size_t i = 0; i < input.lights.size(); ++i) {
+            const glm::vec4 light = input.lights[i],
+                            cone = i < input.cones.size() ? input.cones[i] : glm::vec4(1);
+            spots.push_back({light.x, light.y, light.z, light.w, cone.x, cone.y, cone.z, cone.w});
+        }
+        return spots;
+    }
+
     Binner<options> binner_;
     Slices slices_ = *Slices::exponential(11, 2, 80);
 };

@@ -1,0 +1,148 @@
+// Spots beside spheres: what the proofs in tests/oracle don't ask.
+#include "scene.hpp"
+
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/vec3.hpp>
+
+using namespace lightbin;
+
+namespace {
+
+/// In and around the view, with half angles of 0 to 80 degrees, every eighth a whole sphere.
+std::vector<Spot> random_spots(std::size_t count, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(-1, 1), angle(0, 1.4f);
+    std::vector<Spot> spots;
+    for (const glm::vec4& s : test::random_lights(count, seed)) {
+        const Spot spot = {s.x,          s.y,          s.z,          s.w,
+                           unit(random), unit(random), unit(random), std::cos(angle(random))};
+        spots.push_back(spots.size() % 8 == 0 ? Spot::whole({s.x, s.y, s.z, s.w}) : spot);
+    }
+    return spots;
+}
+
+const ZBounds some_bounds(const View& view, std::vector<float>& min, std::vector<float>& max) {
+    for (std::size_t tile = 0; tile < view.tile_count(); ++tile) {
+        min.push_back(static_cast<float>(tile % 97));
+        max.push_back(min.back() + static_cast<float>(tile % 5));
+    }
+    return {.min = min, .max = max};
+}
+
+template <Options options, class LightRange> test::Lists lists(const View& view, const LightRange& lights) {
+    std::vector<float> min, max;
+    const Slices slices = *Slices::exponential(7, 3, 90);
+    Binner<options> binner;
+    const auto grid = binner.bin(view, lights, inputs_for<options>(some_bounds(view, min, max), slices));
+    REQUIRE(grid);
+    auto lists = test::to_lists(*grid);
+    if (options.slicing == Slicing::z_bins)  // from ranks back to ids
+        for (auto& list : lists) {
+            for (auto& id : list)
+                id = grid->ranks().order[id];
+            std::sort(list.begin(), list.end());
+        }
+    return lists;
+}
+
+/// Calls visit with every rung that spots have kernels of their own for.
+template <class Visit> void on_rungs(Visit visit) {
+    visit.template operator()<Options{}>();
+    visit.template operator()<Options{.footprint = Footprint::silhouette}>();
+    visit.template operator()<Options{.depth_test = DepthTest::interval}>();
+    visit.template
+    operator()<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>();
+    visit.template operator()<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
+    visit.template operator()<Options{.depth_test = DepthTest::box, .slicing = Slicing::z_bins}>();
+}
+
+}  // namespace
+
+TEST_CASE("whole spheres as spots are binned as spheres are") {
+    const View view = test::view({1283, 721}, 16);
+    std::vector<Sphere> spheres;
+    std::vector<Spot> spots, beyond_90_degrees;
+    std::mt19937 random(4);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    for (const glm::vec4& s : test::random_lights(700, 3)) {
+        spheres.push_back({s.x, s.y, s.z, s.w});
+        spots.push_back(Spot::whole(spheres.back()));
+        beyond_90_degrees.push_back(
+            {s.x, s.y, s.z, s.w, unit(random), unit(random), unit(random), std::min(unit(random), 0.0f)});
+    }
+    const glm::mat4 to_view = glm::rotate(glm::mat4(1.0f), 0.3f, glm::normalize(glm::vec3(1, 2, 3)));
+    on_rungs([&]<Options options> {
+        // A row of a sphere's silhouette has a tile even where it only may touch one.
+        const auto same = [](const test::Lists& of_spots, const test::Lists& of_spheres) {
+            if (options.footprint == Footprint::rectangle) return of_spots == of_spheres;
+            return test::is_superset(of_spheres, of_spots) &&
+                   test::entries(of_spots) >= test::entries(of_spheres) * 999 / 1000;
+        };
+        const auto expected = lists<options>(view, spheres);
+        CHECK(same(lists<options>(view, spots), expected));
+        CHECK(same(lists<options>(view, beyond_90_degrees), expected));
+        CHECK(same(lists<options>(view, world_space(spots, to_view)),
+                   lists<options>(view, world_space(spheres, to_view))));
+    });
+}
+
+TEST_CASE("each rung lists fewer spots, and none that a lower one leaves out") {
+    const View view = test::view({1283, 721}, 16);
+    const std::vector<Spot> spots = random_spots(500, 5);
+    const auto in_rectangles = lists<Options{}>(view, spots);
+    on_rungs([&]<Options options> {
+        const auto here = lists<options>(view, spots);
+        if constexpr (options.slicing != Slicing::clusters) CHECK(test::is_superset(in_rectangles, here));
+        const std::vector<Spot> one = {spots[1]};
+        const auto alone = lists<options>(view, one);
+        for (std::size_t cell = 0; cell < here.size(); ++cell)
+            REQUIRE(alone[cell].size() ==
+                    static_cast<std::size_t>(std::count(here[cell].begin(), here[cell].end(), 1u)));
+    });
+    std::vector<Spot> balls = spots;
+    for (Spot& spot : balls)
+        spot.cos_half_angle = -1;
+    CHECK(3 * test::entries(in_rectangles) < 2 * test::entries(lists<Options{}>(view, balls)));
+}
+
+TEST_CASE("bitmasks of spots are those of their lists, and transparent ones are not cut in front") {
+    const View view = test::view({641, 361}, 16);
+    const std::vector<Spot> spots = random_spots(300, 6);
+    std::vector<float> min, max;
+    const ZBounds bounds = some_bounds(view, min, max);
+    Binner<Options{.depth_test = DepthTest::box}> binner;
+    const auto listed = test::to_lists(*binner.bin(view, spots, {bounds}));
+    std::vector<std::uint32_t> bits(view.tile_count() * 10);
+    REQUIRE(binner.bin_bits(view, spots, 300, bits, {bounds}));
+    for (std::size_t tile = 0; tile < listed.size(); ++tile)
+        for (std::uint32_t id = 0; id < 300; ++id)
+            REQUIRE((bits[10 * tile + id / 32] >> id % 32 & 1) ==
+                    std::count(listed[tile].begin(), listed[tile].end(), id));
+    const auto both = binner.bin_transparency(view, spots, {bounds});
+    REQUIRE(both);
+    CHECK((test::to_lists(both->opaque) == listed));
+    CHECK((test::to_lists(both->transparent) == test::to_lists(*binner.bin(view, spots, {{.max = max}}))));
+}
+
+TEST_CASE("a matrix that bends cones makes spheres of spots") {
+    const View view = test::view({641, 361}, 16);
+    const std::vector<Spot> spots = random_spots(300, 7);
+    std::vector<Sphere> least;
+    for (const Spot& spot : spots)
+        least.push_back(spot);
+    const glm::mat4 stretched = glm::scale(glm::mat4(1.0f), glm::vec3(1, 1, 2));
+    const auto as_spheres = lists<Options{}>(view, world_space(least, stretched)),
+               as_spots = lists<Options{}>(view, world_space(spots, stretched));
+    CHECK(test::is_superset(as_spheres, as_spots));
+    CHECK(test::entries(as_spots) >= test::entries(as_spheres) * 999 / 1000);
+    // A matrix of floats is never exactly a rotation: that takes next to nothing from cones.
+    const glm::mat4 turned = glm::rotate(glm::mat4(1.0f), 1.3f, glm::normalize(glm::vec3(1, 2, 3)));
+    std::vector<Spot> moved = spots;
+    for (Spot& spot : moved) {
+        const glm::vec4 centre = turned * glm::vec4(spot.x, spot.y, spot.z, 1),
+                        axis = turned * glm::vec4(spot.axis_x, spot.axis_y, spot.axis_z, 0);
+        spot = {centre.x, centre.y, centre.z, spot.radius, axis.x, axis.y, axis.z, spot.cos_half_angle};
+    }
+    CHECK(test::entries(lists<Options{}>(view, world_space(spots, turned))) <=
+          test::entries(lists<Options{}>(view, moved)) * 1001 / 1000);
+}
