@@ -152,11 +152,6 @@ public:
         else if (without_range_ > 0)
             note(counted(without_range_, "light") +
                  " without a range: infinite, so in every list (--cutoff 0)");
-        const auto spots =
-            std::count_if(scene_.lights.begin(), scene_.lights.end(), [](const Light& l) { return l.spot; });
-        if (spots > 0)
-            note(counted(static_cast<std::size_t>(spots), "spot light") +
-                 ": binned as whole spheres, the shader has the cones");
         if (!scene_.suns.empty())
             note(counted(scene_.suns.size(), "directional light") +
                  ": in no list, every fragment is shaded with them");

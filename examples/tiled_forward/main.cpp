@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -196,9 +197,13 @@ int run(const Options& options) {
                                  counted(scene.cameras.size(), "view") + ", numbered from 0");
     const std::string glass =
         scene.transparent.empty() ? "" : " and " + std::to_string(scene.transparent.size() / 3) + " of glass";
-    std::printf("scene        %s: %s%s, %s, %s\n", scene.name.c_str(),
+    const auto spots =
+        std::count_if(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return l.spot; });
+    const std::string of_spots = spots == 0 ? "" : ", " + std::to_string(spots) + " of them with a cone";
+    std::printf("scene        %s: %s%s, %s%s, %s\n", scene.name.c_str(),
                 counted(scene.triangles.size() / 3, "triangle").c_str(), glass.c_str(),
-                counted(scene.lights.size(), "light").c_str(), counted(scene.cameras.size(), "view").c_str());
+                counted(scene.lights.size(), "light").c_str(), of_spots.c_str(),
+                counted(scene.cameras.size(), "view").c_str());
     for (const std::string& note : scene.notes)
         std::printf("note         %s\n", note.c_str());
     std::fflush(stdout);

@@ -158,15 +158,30 @@ void Renderer::draw_every_light(const Camera& camera, const FrameSettings& setti
     draw_triangles(brute_force_program_, false, settings);
 }
 
-// Which lights can reach which tile, and at what depths. The lights are read as they go to the GPU.
+// Which lights can reach which tile, and at what depths. The lights are read as they go to the GPU: as spots where any is
+// one, and by their spheres alone where none is, which takes less time.
 Renderer::Grids Renderer::bin_lights(const lightbin::View& view, const lightbin::ZBounds& z_bounds,
                                      bool glass, const FrameSettings& settings) {
     const std::span local_lights(gpu_lights_.data(), scene_.lights.size());
-    const auto lights = lightbin::view_space(local_lights, [&](const GpuLight& light) {
+    const auto as_spot = [&](const GpuLight& light) {
         const bool dropped = &light - gpu_lights_.data() == settings.dropped_light;
-        const glm::vec4& s = light.sphere;
-        return lightbin::Sphere{s.x, s.y, s.z, dropped ? -1.0f : s.w};
-    });
+        lightbin::Spot spot = spot_of(light);
+        if (dropped) spot.radius = -1;
+        return spot;
+    };
+    const auto as_sphere = [&](const GpuLight& light) {
+        const lightbin::Spot spot = as_spot(light);
+        return lightbin::Sphere{spot.x, spot.y, spot.z, spot.radius};
+    };
+    return has_spots_
+               ? bin_lights(view, lightbin::view_space(local_lights, as_spot), z_bounds, glass, settings)
+               : bin_lights(view, lightbin::view_space(local_lights, as_sphere), z_bounds, glass, settings);
+}
+
+template <class Lights>
+Renderer::Grids Renderer::bin_lights(const lightbin::View& view, const Lights& lights,
+                                     const lightbin::ZBounds& z_bounds, bool glass,
+                                     const FrameSettings& settings) {
     light_order_.clear();
     slices_.reset();
     if (settings.depth == DepthUse::none || settings.depth == DepthUse::pre_pass) {
@@ -178,7 +193,7 @@ Renderer::Grids Renderer::bin_lights(const lightbin::View& view, const lightbin:
 
     // As deep as any light reaches. What is at any depth has its lights, glass too.
     float last = 0;
-    for (const GpuLight& light : local_lights)
+    for (const GpuLight& light : std::span(gpu_lights_.data(), scene_.lights.size()))
         last = std::max(last, light.sphere.w - light.sphere.z);
     if (!(last < 1e30f)) last = 1e30f;  // a light without an end
     if (last == 0) last = 1;            // all lights are behind the eye
@@ -323,21 +338,13 @@ void Renderer::start(const Camera& camera, const FrameSettings& settings) {
 // The matrices, and the lights in view space. In double, as a scene can be far from the origin.
 void Renderer::set_camera(const Camera& camera) {
     const glm::dmat4 view = glm::inverse(camera.to_world);
-    const glm::dmat3 turn(view);
     view_ = glm::mat4(view);
     projection_ = projection_of(camera, static_cast<double>(frame_buffer_.width()) / frame_buffer_.height());
 
     gpu_lights_.clear();
-    for (const Light& light : scene_.lights) {
-        GpuLight gpu{glm::vec4(glm::vec3(view * glm::dvec4(light.position, 1.0)), light.range),
-                     glm::vec4(light.intensity, 0), glm::vec4(0, 0, 0, 1)};
-        if (light.spot) {
-            const float scale = 1 / std::max(light.cos_inner - light.cos_outer, 0.001f);
-            gpu.cone =
-                glm::vec4(-scale * glm::vec3(turn * glm::dvec3(light.direction)), -scale * light.cos_outer);
-        }
-        gpu_lights_.push_back(gpu);
-    }
+    for (const Light& light : scene_.lights)
+        gpu_lights_.push_back(gpu_light(light, view));
+    const glm::dmat3 turn(view);
     for (const Sun& sun : scene_.suns)
         gpu_lights_.push_back({glm::vec4(-glm::vec3(turn * glm::dvec3(sun.direction)), 0),
                                glm::vec4(sun.illuminance, 0), glm::vec4(0)});

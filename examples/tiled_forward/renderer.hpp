@@ -3,6 +3,7 @@
 #pragma once
 
 #include "frame_buffer.hpp"
+#include "gpu_light.hpp"
 #include "picture.hpp"
 #include "scene.hpp"
 
@@ -84,14 +85,6 @@ public:
     void show() const { frame_buffer_.show(); }
 
 private:
-    // A light as the shaders read it, in view space: three texels.
-    struct GpuLight {
-        glm::vec4 sphere;  // centre, range; a sun: the way to it
-        glm::vec4 colour;  // candela; a sun: lux
-        glm::vec4
-            cone;  // angular falloff = (dot(cone.xyz, direction to the light) + cone.w) squared, in 0..1
-    };
-
     // What shaders read as a storage buffer, a buffer texture or a 2D texture.
     struct GpuBuffer {
         lightbin::ShaderResource resource = lightbin::ShaderResource::storage_buffer;
@@ -113,6 +106,9 @@ private:
     void draw_depth() const;
     Grids bin_lights(const lightbin::View& view, const lightbin::ZBounds& z_bounds, bool glass,
                      const FrameSettings& settings);
+    template <class Lights>
+    Grids bin_lights(const lightbin::View& view, const Lights& lights, const lightbin::ZBounds& z_bounds,
+                     bool glass, const FrameSettings& settings);
     GLuint tiled_program(lightbin::Slicing slicing);
     GLuint heat_map_program(lightbin::Slicing slicing);
     void set_matrices(GLuint program) const;
