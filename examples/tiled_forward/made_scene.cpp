@@ -1,83 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include "made_shapes.hpp"
 #include "scene.hpp"
 
-#include <glm/gtc/constants.hpp>
-#include <glm/gtc/matrix_transform.hpp>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <random>
 
-namespace {
-
-// The same numbers everywhere, which the standard distributions do not promise.
-class Dice {
-public:
-    float between(float low, float high) {
-        return low + (high - low) * static_cast<float>(engine_() >> 8) / 16777216.0f;
-    }
-
-private:
-    std::mt19937 engine_{2011};
-};
-
-void add_quad(std::vector<Vertex>& triangles, const std::array<glm::vec3, 4>& corners, glm::vec3 normal,
-              glm::vec3 colour) {
-    for (const std::size_t k : {0u, 1u, 2u, 0u, 2u, 3u})
-        triangles.push_back({corners[k], normal, colour});
-}
-
-// The five sides of a block that can be seen.
-void add_block(Scene& scene, glm::vec3 low, glm::vec3 high, glm::vec3 colour) {
-    const float x0 = low.x, y0 = low.y, z0 = low.z, x1 = high.x, y1 = high.y, z1 = high.z;
-    add_quad(scene.triangles, {{{x0, y1, z1}, {x1, y1, z1}, {x1, y1, z0}, {x0, y1, z0}}}, {0, 1, 0}, colour);
-    add_quad(scene.triangles, {{{x0, y0, z1}, {x1, y0, z1}, {x1, y1, z1}, {x0, y1, z1}}}, {0, 0, 1}, colour);
-    add_quad(scene.triangles, {{{x1, y0, z0}, {x0, y0, z0}, {x0, y1, z0}, {x1, y1, z0}}}, {0, 0, -1}, colour);
-    add_quad(scene.triangles, {{{x1, y0, z1}, {x1, y0, z0}, {x1, y1, z0}, {x1, y1, z1}}}, {1, 0, 0}, colour);
-    add_quad(scene.triangles, {{{x0, y0, z0}, {x0, y0, z1}, {x0, y1, z1}, {x0, y1, z0}}}, {-1, 0, 0}, colour);
-}
-
-// An upright pane of glass over the line from `a` to `b`.
-void add_pane(Scene& scene, glm::vec3 a, glm::vec3 b, float height, glm::vec3 colour) {
-    const glm::vec3 up(0, height, 0);
-    add_quad(scene.transparent, {{a, b, b + up, a + up}}, glm::normalize(glm::cross(b - a, up)), colour);
-}
-
-void add_dome(Scene& scene, glm::vec3 centre, float radius, glm::vec3 colour) {
-    constexpr int around = 32, up = 8;
-    const auto point = [&](int i, int j) {
-        const float a = glm::two_pi<float>() * static_cast<float>(i) / around;
-        const float b = glm::half_pi<float>() * static_cast<float>(j) / up;
-        return glm::vec3(std::cos(a) * std::cos(b), std::sin(b), -std::sin(a) * std::cos(b));
-    };
-    for (int j = 0; j < up; ++j)
-        for (int i = 0; i < around; ++i) {
-            const std::array<glm::vec3, 4> n{point(i, j), point(i + 1, j), point(i + 1, j + 1),
-                                             point(i, j + 1)};
-            for (const std::size_t k : {0u, 1u, 2u, 0u, 2u, 3u})
-                scene.triangles.push_back({centre + radius * n[k], n[k], colour});
-        }
-}
-
-glm::vec3 rainbow(float hue) {
-    const auto channel = [&](float shift) {
-        return 0.5f + 0.5f * std::cos(glm::two_pi<float>() * (hue + shift));
-    };
-    return {channel(0.0f), channel(0.667f), channel(0.333f)};
-}
-
-Camera look(const char* name, glm::dvec3 from, glm::dvec3 to, double fov_degrees) {
-    Camera camera;
-    camera.name = name;
-    camera.to_world = glm::inverse(glm::lookAt(from, to, glm::dvec3(0, 1, 0)));
-    camera.height = glm::radians(fov_degrees);
-    camera.near = 0.2;
-    camera.far = 500;
-    return camera;
-}
-
-}  // namespace
+using namespace made;
 
 Scene make_scene(int light_count) {
     constexpr int blocks = 20;               // a side

@@ -18,7 +18,8 @@
 namespace {
 
 struct Options {
-    std::string scene;
+    std::string file;  // empty: a made scene
+    std::string scene = "city";
     std::string output = "tiled_forward.png";
     bool headless = false;
     bool check = false;
@@ -34,10 +35,15 @@ struct Options {
 // Fills in the options. Returns false when the program has nothing more to do.
 bool parse(int argc, char** argv, Options& options, int& exit_code) {
     CLI::App app("Tiled forward shading with lightbin: a scene lit by hundreds of lights.");
-    app.add_option("scene", options.scene,
-                   "A .glb file with KHR_lights_punctual lights (default: a made scene)");
+    CLI::Option* const file = app.add_option(
+        "file", options.file, "A .glb file with KHR_lights_punctual lights (default: a made scene)");
+    app.add_option("--scene", options.scene,
+                   "Which made scene: a city with as many lights as you like, or a street with lamps")
+        ->check(CLI::IsMember({"city", "street"}))
+        ->capture_default_str()
+        ->excludes(file);
     app.add_option("--lights", options.lights,
-                   "Lights of the made scene (default: 1024), or the most to take from a file")
+                   "Lights of the city (default: 1024), or the most to take from another scene")
         ->check(CLI::Range(1, 1000000));
     app.add_option("--cutoff", options.cutoff, "Lux at which a light without a range ends; 0: never")
         ->check(CLI::Range(0.0, 1e6))
@@ -111,8 +117,9 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
 }
 
 Scene open_scene(const Options& options) {
-    if (options.scene.empty()) return make_scene(options.lights > 0 ? options.lights : 1024);
-    Scene scene = load_glb(options.scene, options.cutoff);
+    const bool made = options.file.empty();
+    if (made && options.scene == "city") return make_scene(options.lights > 0 ? options.lights : 1024);
+    Scene scene = made ? make_street() : load_glb(options.file, options.cutoff);
     if (const auto most = static_cast<std::size_t>(options.lights); most > 0 && scene.lights.size() > most) {
         scene.notes.push_back("only the first " + std::to_string(most) + " of " +
                               std::to_string(scene.lights.size()) + " lights are taken (--lights)");

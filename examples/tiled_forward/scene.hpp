@@ -59,6 +59,9 @@ Scene load_glb(const std::string& path, float cutoff);
 // A small city at night with this many coloured lights in its streets. The same every time.
 Scene make_scene(int light_count);
 
+// A street at night: lamps, cars, shops and beams, nearly all of them lights with a cone. The same every time.
+Scene make_street();
+
 // A camera that has all of the scene in sight, from the front and above.
 Camera framing_camera(const std::vector<Vertex>& triangles);
 
