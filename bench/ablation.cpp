@@ -22,12 +22,24 @@
 
 namespace {
 
+/// What spots are handed over as.
+enum class Form { spots, least_spheres, whole_spheres };
+
 /// One way to bin, and the row that it is compared with.
 struct Part {
     const char* name;
     int against;
     int tile_size;
-    std::function<Built(const TiledView&, const Lights&)> build;
+    std::function<Built(const TiledView&, const LightSet&)> build;
+    Form form = Form::spots;
+
+    /// Whether there is a difference to the row that it is compared with.
+    bool says_something_of(const BenchScene& scene) const { return form == Form::spots || scene.spots; }
+
+    LightSet lights(const BenchScene& scene, std::uint32_t seed) const {
+        if (form == Form::spots) return scene.light_set(seed);
+        return form == Form::whole_spheres ? scene.lights(seed) : least_spheres(scene.spots(seed));
+    }
 };
 
 enum class Bounds { none, max, both };
@@ -35,7 +47,7 @@ enum class Bounds { none, max, both };
 template <lightbin::Options options>
 auto build_with(Bounds sides, std::shared_ptr<tbb::task_arena> threads = nullptr) {
     auto binner = std::make_shared<lightbin::Binner<options>>();
-    return [=](const TiledView& view, const Lights& lights) {
+    return [=](const TiledView& view, const LightSet& lights) {
         const auto loop = [&](std::size_t n, const auto& body) {
             threads->execute([&] { tbb::parallel_for(std::size_t{0}, n, body); });
         };
@@ -60,7 +72,14 @@ std::vector<Part> parts() {
                              z_bins = {.slicing = Slicing::z_bins}, clusters = {.slicing = Slicing::clusters},
                              cluster_boxes = {.depth_test = DepthTest::box, .slicing = Slicing::clusters};
     const auto two = std::make_shared<tbb::task_arena>(2);
-    enum { everything, tiles, interval_both = 4, box_both = 5, clusters_none = 16 };  // places in the list
+    enum {
+        everything,
+        tiles,
+        interval_both = 4,
+        box_both = 5,
+        clusters_none = 16,
+        clusters_box
+    };  // places in the list
     return {
         {"no tiling", everything, 0, nullptr},
         {"16 px tiles, rectangles, no Z", everything, 16, build_with<plain>(Bounds::none)},
@@ -80,6 +99,16 @@ std::vector<Part> parts() {
         {"1,024 z-bins, no Z", tiles, 16, build_with<z_bins>(Bounds::none)},
         {"64 px tiles in 24 slices, no Z", tiles, 64, build_with<clusters>(Bounds::none)},
         {"the same with boxes", clusters_none, 64, build_with<cluster_boxes>(Bounds::none)},
+        {"no Z, spots as their least spheres", tiles, 16, build_with<plain>(Bounds::none),
+         Form::least_spheres},
+        {"no Z, spots as whole spheres", tiles, 16, build_with<plain>(Bounds::none), Form::whole_spheres},
+        {"box, spots as their least spheres", box_both, 16, build_with<box>(Bounds::both),
+         Form::least_spheres},
+        {"box, spots as whole spheres", box_both, 16, build_with<box>(Bounds::both), Form::whole_spheres},
+        {"slices with boxes, spots as their least spheres", clusters_box, 64,
+         build_with<cluster_boxes>(Bounds::none), Form::least_spheres},
+        {"slices with boxes, spots as whole spheres", clusters_box, 64,
+         build_with<cluster_boxes>(Bounds::none), Form::whole_spheres},
     };
 }
 
@@ -91,25 +120,28 @@ struct Measured {
 std::vector<Measured> measure(const std::vector<Part>& parts, const BenchScene& scene, const Picture& picture,
                               bool quick) {
     const Views views(scene, picture);
-    const Lights lights = scene.lights(0);
+    const std::size_t lights = scene.lights(0).size();
     std::vector<Measured> result(parts.size());
-    result[0].evaluations = static_cast<double>(lights.size());
+    result[0].evaluations = static_cast<double>(lights);
+    std::vector<std::size_t> measured;
     for (std::size_t i = 1; i < parts.size(); ++i) {
+        if (!parts[i].says_something_of(scene)) continue;
+        measured.push_back(i);
         const TiledView& view = views.of(parts[i].tile_size);
-        const Built built = parts[i].build(view, lights);
+        const Built built = parts[i].build(view, parts[i].lights(scene, 0));
         result[i].evaluations = all_evaluations(view, picture, built) / static_cast<double>(view.all_drawn);
         result[i].bytes = built.bytes;
         result[i].z_bounds_us = 1e6 * view.reduce_seconds;
     }
 
-    const std::size_t turns = quick ? 12 : std::min<std::size_t>(rotation(lights.size()), 200);
+    const std::size_t turns = quick ? 12 : std::min<std::size_t>(rotation(lights), 200);
     std::vector<std::vector<double>> times(parts.size());
-    for (std::size_t turn = 1; turn <= turns; ++turn) {
-        const Lights set = scene.lights(static_cast<std::uint32_t>(turn));
-        for (std::size_t i = 1; i < parts.size(); ++i)
+    for (std::size_t turn = 1; turn <= turns; ++turn)
+        for (const std::size_t i : measured) {
+            const LightSet set = parts[i].lights(scene, static_cast<std::uint32_t>(turn));
             times[i].push_back(seconds([&] { parts[i].build(views.of(parts[i].tile_size), set); }));
-    }
-    for (std::size_t i = 1; i < parts.size(); ++i)
+        }
+    for (const std::size_t i : measured)
         result[i].us = 1e6 * median(times[i]);
     return result;
 }
@@ -149,6 +181,10 @@ int main(int argc, char** argv) try {
         head += " " + scene.name + " |";
         line += " --- |";
         for (std::size_t i = 0; i < all.size(); ++i) {
+            if (!all[i].says_something_of(scene)) {
+                rows[i] += " |";
+                continue;
+            }
             const Measured &now = measured[i], &before = measured[static_cast<std::size_t>(all[i].against)];
             const double more = now.us - before.us, less = before.evaluations - now.evaluations,
                          change = less == 0 ? 0 : -less;

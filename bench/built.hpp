@@ -3,6 +3,7 @@
 #pragma once
 
 #include "raster.hpp"
+#include "scenes.hpp"
 #include "tiled_view.hpp"
 
 #include <lightbin/lightbin.hpp>
@@ -11,6 +12,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <variant>
+#include <vector>
 
 /// What a build gave, in its Binner's memory.
 struct Built {
@@ -22,8 +25,8 @@ struct Built {
 };
 
 /// Builds with the slices that the view has for them.
-template <lightbin::Options options>
-Built build(lightbin::Binner<options>& binner, const TiledView& view, const Lights& lights,
+template <lightbin::Options options, class Any>
+Built build(lightbin::Binner<options>& binner, const TiledView& view, const std::vector<Any>& lights,
             const lightbin::ZBounds& bounds, const lightbin::Parallel& threads = {}) {
     constexpr bool z_bins = options.slicing == lightbin::Slicing::z_bins;
     const lightbin::Slices& slices = z_bins ? view.z_bins : view.clusters;
@@ -36,6 +39,12 @@ Built build(lightbin::Binner<options>& binner, const TiledView& view, const Ligh
         built.bytes += built.bins.size_bytes();
     }
     return built;
+}
+
+template <lightbin::Options options>
+Built build(lightbin::Binner<options>& binner, const TiledView& view, const LightSet& lights,
+            const lightbin::ZBounds& bounds, const lightbin::Parallel& threads = {}) {
+    return std::visit([&](const auto& any) { return build(binner, view, any, bounds, threads); }, lights);
 }
 
 /// Light evaluations of all drawn pixels: with clusters those of the pixel's cell, with z-bins those of its tile whose

@@ -21,6 +21,17 @@ struct ClusterError {
     std::uint64_t unrounded = 0;  ///< entries in exact arithmetic
 };
 
+/// Every pair of a cell of this slice and a light, as of tiles with the slice's boundaries for Z bounds.
+template <class Any>
+ExactPairs pairs_in(ExactDecider& decider, const lightbin::View& view, const lightbin::Slices& slices, int slice,
+                    const std::vector<Any>& lights) {
+    constexpr float endless = std::numeric_limits<float>::infinity();
+    const auto boundary = [&](int i) { return slices.boundaries()[std::size_t(i)]; };
+    const std::vector<float> min(view.tile_count(), slice == 0 ? -endless : boundary(slice - 1)),
+        max(view.tile_count(), slice + 1 == slices.count() ? endless : boundary(slice));
+    return decider.pairs(lights, {.min = min, .max = max});
+}
+
 /// The slab of each slice, and beside it the box of each cell.
 class ClusterErrors {
 public:
@@ -35,7 +46,7 @@ public:
         const auto slabs = *slabs_.bin(view_, lights, {.slices = slices_}),
                    boxes = *boxes_.bin(view_, lights, {.slices = slices_});
         for (int slice = 0; slice < slices_.count(); ++slice) {
-            const ExactPairs truth = pairs_in(slice, lights);
+            const ExactPairs truth = pairs_in(decider_, view_, slices_, slice, lights);
             count(truth, slabs, slice, by_interval, errors[0]);
             count(truth, boxes, slice, by_box, errors[1]);
         }
@@ -47,14 +58,6 @@ private:
     template <lightbin::DepthTest depth_test>
     using Clusters =
         lightbin::Binner<lightbin::Options{.depth_test = depth_test, .slicing = lightbin::Slicing::clusters}>;
-
-    ExactPairs pairs_in(int slice, const Lights& lights) {
-        constexpr float endless = std::numeric_limits<float>::infinity();
-        const auto boundary = [&](int i) { return slices_.boundaries()[std::size_t(i)]; };
-        const std::vector<float> min(view_.tile_count(), slice == 0 ? -endless : boundary(slice - 1)),
-            max(view_.tile_count(), slice + 1 == slices_.count() ? endless : boundary(slice));
-        return decider_.pairs(lights, {.min = min, .max = max});
-    }
 
     static void count(const ExactPairs& truth, const lightbin::LightGrid<std::uint32_t>& grid, int slice,
                       Fact kept, ClusterError& error) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Error against run time: what each rung of the ladder lists that no pixel needs, and what it takes to build,
 // by tile size. Writes error_vs_time.csv, which plot.gp draws; no_pre_pass.csv: the same of grids that need no depth
-// buffer, z-bins and clusters among them; cluster_error.csv: what clusters list too much.
+// buffer, z-bins and clusters among them; cluster_error.csv: what clusters list too much; spot_error.csv: the same of
+// spots, and of the spheres around them.
 //
 // Columns of the first, a row for each scene (all views of it together), tile size and rung:
 //   misses          entries that the rung must have by exact arithmetic and lacks, in `verdicts` pairs of a
@@ -10,19 +11,22 @@
 //   excess          entries / exact - 1
 //   lit             pairs with a pixel whose point is in the sphere; excess_lit = entries / lit - 1
 //   margin          entries / entries of the same rung in exact arithmetic: what rounding outward adds; for
-//                   silhouettes, also what keeping some lights' rectangles adds
+//                   silhouettes, also what keeping some lights' rectangles adds. Not where there are spots
 //   evals           light evaluations a drawn pixel: the mean length of its list; evals_beyond: those of
 //                   lights that do not reach its point
 //   index_bytes     of the light index list, 32-bit ids
 //   us, ratio       median time of a build, and as a part of the flat baseline's (with Z interval tests for
 //                   every rung with a depth test), on rotating light sets; Z bounds not included
 //   reduce_us       what making the Z bounds of one view takes
+//   open            questions about spots that no certificate was found for
 #include "arguments.hpp"
 #include "cluster_error.hpp"
 #include "exact_pairs.hpp"
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
+#include "lit.hpp"
 #include "no_pre_pass.hpp"
+#include "spot_error.hpp"
 
 #include <exception>
 
@@ -44,7 +48,7 @@ struct Row {
 /// Sums over a case's views.
 struct Report {
     std::vector<Row> rows{std::size(ladder)};
-    std::uint64_t verdicts = 0, by_rationals = 0, exact = 0, lit = 0, needed = 0, drawn = 0;
+    std::uint64_t verdicts = 0, by_rationals = 0, exact = 0, lit = 0, needed = 0, drawn = 0, open = 0;
     double reduce_us = 0;
 };
 
@@ -55,47 +59,15 @@ bool keeps(const Method& method, std::uint32_t facts) {
     return (facts & depth) == depth &&
            (method.footprint == Footprint::rectangle || (facts & in_pyramid) != 0);
 }
-bool must_keep(const Method& method, std::uint32_t facts) {
-    constexpr std::uint32_t cell[] = {in_pyramid, in_cell, in_cell, in_split};
-    return (facts & cell[static_cast<int>(method.depth_test)]) != 0;
-}
-
-/// Points of a tile's drawn pixels, in view space.
-struct Points {
-    std::vector<float> x, y, z;
-
-    Points(const SeenScene& seen, const lightbin::View& view, int tile_x, int tile_y) {
-        const Frustum frustum(seen.scene.projection);
-        const lightbin::Extent size = seen.picture.size;
-        const int t = view.tile_size();
-        for (int py = tile_y * t; py < std::min((tile_y + 1) * t, size.height); ++py)
-            for (int px = tile_x * t; px < std::min((tile_x + 1) * t, size.width); ++px) {
-                const std::size_t pixel =
-                    static_cast<std::size_t>(py) * static_cast<std::size_t>(size.width) +
-                    static_cast<std::size_t>(px);
-                if (seen.picture.triangle[pixel] == Picture::nothing) continue;
-                const glm::vec3 point = point_at(frustum, size, px, py, seen.picture.view_depth[pixel]);
-                x.push_back(point.x), y.push_back(point.y), z.push_back(point.z);
-            }
-    }
-
-    std::uint32_t inside(const glm::vec4& light) const {
-        std::uint32_t count = 0;
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            const float dx = x[i] - light.x, dy = y[i] - light.y, dz = z[i] - light.z;
-            count += dx * dx + dy * dy + dz * dz <= light.w * light.w;
-        }
-        return count;
-    }
-};
 
 /// Counts what the rungs list for one view against what they ought to.
-void count(const SeenScene& seen, int tile_size, Report& report) {
+template <class Any>
+void count(const SeenScene& seen, const std::vector<Any>& lights, int tile_size, Report& report) {
     const TiledView view(seen.scene, seen.picture, tile_size);
-    const Lights lights = seen.scene.lights(0);
-    ExactPairs truth =
+    const ExactPairs truth =
         ExactDecider(seen.scene.projection, seen.picture.size, tile_size).pairs(lights, view.bounds());
     report.verdicts += truth.verdicts;
+    report.open += truth.open;
     report.by_rationals += truth.by_rationals;
     report.reduce_us += 1e6 * view.reduce_seconds;
 
@@ -123,7 +95,7 @@ void count(const SeenScene& seen, int tile_size, Report& report) {
             for_each_listed(truth.tiles[tile], grid.ids().subspan(list.offset, list.count),
                             [&](const Pair& pair, bool listed) {
                                 row.unrounded += keeps(method, pair.facts);
-                                row.misses += !listed && must_keep(method, pair.facts);
+                                row.misses += !listed && (pair.facts & must_be_met(method.depth_test));
                             });
         }
     });
@@ -143,13 +115,18 @@ void time(const Case& scene, int tile_size, Report& report) {
     for (std::size_t turn = 0; turn < turns; ++turn) {
         const std::size_t place = turn % views.size();
         const TiledView& view = views[place];
-        const Lights set = scene.views[place].scene.lights(static_cast<std::uint32_t>(turn));
+        const auto seed = static_cast<std::uint32_t>(turn);
+        const Lights set = scene.views[place].scene.lights(seed);
         flat_times[0].push_back(
             seconds([&] { flat.build<false>(view.flat, set, view.min.data(), view.max.data()); }));
         flat_times[1].push_back(
             seconds([&] { flat.build<true>(view.flat, set, view.min.data(), view.max.data()); }));
-        bins.for_each(
-            [&](std::size_t rung, auto& bin) { times[rung].push_back(seconds([&] { bin(view, set); })); });
+        const auto time_all = [&](const auto& lights) {
+            bins.for_each([&](std::size_t rung, auto& bin) {
+                times[rung].push_back(seconds([&] { bin(view, lights); }));
+            });
+        };
+        std::visit(time_all, scene.views[place].scene.light_set(seed));
     }
     for (std::size_t rung = 0; rung < std::size(ladder); ++rung) {
         Row& row = report.rows[rung];
@@ -170,17 +147,21 @@ void write(std::FILE* csv, const Case& scene, int tile_size, const Report& repor
                      number(row.misses), number(report.verdicts), number(report.by_rationals));
         std::fprintf(csv, "%llu,%llu,%.5f,%llu,%.5f,%.6f,", number(row.entries), number(report.exact),
                      part(row.entries, report.exact) - 1, number(report.lit),
-                     part(row.entries, report.lit) - 1, part(row.entries, row.unrounded));
-        std::fprintf(csv, "%.3f,%.3f,%.0f,%.1f,%.3f,%.0f\n", evaluations,
+                     part(row.entries, report.lit) - 1,
+                     scene.views[0].scene.spots ? std::nan("") : part(row.entries, row.unrounded));
+        std::fprintf(csv, "%.3f,%.3f,%.0f,%.1f,%.3f,%.0f,%llu\n", evaluations,
                      evaluations - part(report.needed, report.drawn),
                      4 * static_cast<double>(row.entries) / views, row.us, row.ratio,
-                     report.reduce_us / views);
+                     report.reduce_us / views, number(report.open));
         std::printf(
             "%-12s %2d px  %-10s %-9s  %llu misses  excess %7.1f %%  evals %6.2f  %8.1f us  %.2f of flat\n",
             scene.name.c_str(), tile_size, to_string(ladder[rung].footprint),
             to_string(ladder[rung].depth_test), number(row.misses),
             100 * (part(row.entries, report.exact) - 1), evaluations, row.us, row.ratio);
     }
+    if (report.open > 0)
+        std::printf("%-12s %2d px  %llu questions about spots left open\n", scene.name.c_str(), tile_size,
+                    static_cast<unsigned long long>(report.open));
     std::fflush(csv);
     std::fflush(stdout);
 }
@@ -210,17 +191,21 @@ int main(int argc, char** argv) try {
     std::FILE* const csv =
         open_report("error_vs_time.csv", "scene,views,tile_px,footprint,depth_test,misses,verdicts,by_"
                                          "rationals,entries,exact,excess,lit,excess_lit,"
-                                         "margin,evals,evals_beyond,index_bytes,us,ratio,reduce_us");
+                                         "margin,evals,evals_beyond,index_bytes,us,ratio,reduce_us,open");
     std::FILE* const ways_csv =
         open_report("no_pre_pass.csv", "scene,way,tile_px,evals,evals_beyond,bytes,us");
     std::uint64_t misses = 0;
+    std::vector<SeenScene> with_spots;
     for (const Case& scene : cases(arguments.scenes_or_fixtures())) {
+        for (const SeenScene& view : scene.views)
+            if (view.scene.spots) with_spots.push_back(view);
         Report report;
         for (const int tile_size : {8, 16, 32, 64}) {
             report = {};
             time(scene, tile_size, report);
             for (const SeenScene& seen : scene.views)
-                count(seen, tile_size, report);
+                std::visit([&](const auto& lights) { count(seen, lights, tile_size, report); },
+                           seen.scene.light_set(0));
             write(csv, scene, tile_size, report);
             for (const Row& row : report.rows)
                 misses += row.misses;
@@ -231,6 +216,9 @@ int main(int argc, char** argv) try {
     std::fclose(ways_csv);
     std::fclose(csv);
     misses += report_cluster_errors(quick);
+    for (BenchScene& scene : spot_scenes())
+        with_spots.push_back(see(std::move(scene)));
+    misses += report_spot_errors(with_spots, quick);
     return misses == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 } catch (const std::exception& problem) {
     std::fprintf(stderr, "error: %s\n", problem.what());

@@ -6,20 +6,27 @@
 
 #include <scene.hpp>
 
-#include <lightbin/lights.hpp>
+#include <lightbin/spot.hpp>
 
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+/// The points that a light of a file reaches; of 90 degrees and more, its whole sphere.
+inline lightbin::Spot spot_of(const Light& light) {
+    const glm::vec3 &at = light.position, &to = light.direction;
+    if (!light.spot) return lightbin::Spot::whole({at.x, at.y, at.z, light.range});
+    return {at.x, at.y, at.z, light.range, to.x, to.y, to.z, light.cos_outer};
+}
+
 /// One scene a camera of the file, named "file:camera number". Light set 0 is the file's own; the others are
 /// what a camera sees that is turned by up to two degrees and moved by a tenth of a light's range (their
-/// depth stays that of set 0), for timings that must not repeat themselves. Spot lights count as whole
-/// spheres. Throws std::runtime_error with one line of text.
+/// depth stays that of set 0), for timings that must not repeat themselves. Throws std::runtime_error with one line of text.
 inline std::vector<BenchScene> glb_scenes(const std::string& path) {
     const Scene file = load_glb(path, 0.01f);
     std::string name = file.name.substr(0, file.name.rfind('.'));
@@ -35,22 +42,24 @@ inline std::vector<BenchScene> glb_scenes(const std::string& path) {
                         {}};
         for (const Vertex& vertex : file.triangles)
             view.triangles.push_back(glm::vec3(to_view * glm::dvec4(glm::dvec3(vertex.position), 1)));
-        view.lights = [lights = file.lights, to_view](std::uint32_t seed) {
+        const auto spots = [lights = file.lights, to_view](std::uint32_t seed) {
             Dice dice(seed);
-            glm::dmat4 moved = to_view;
+            glm::dmat4 to_set = to_view;
             if (seed != 0) {
                 const double turn = static_cast<double>(dice.between(-0.035f, 0.035f));
                 const glm::vec3 axis = dice.between(glm::vec3(-1), glm::vec3(1));
                 const glm::vec3 step =
                     0.1f * lights.front().range * dice.between(glm::vec3(-1), glm::vec3(1));
-                moved = glm::translate(glm::dmat4(1), glm::dvec3(step)) *
-                        glm::rotate(glm::dmat4(1), turn, glm::dvec3(axis)) * to_view;
+                to_set = glm::translate(glm::dmat4(1), glm::dvec3(step)) *
+                         glm::rotate(glm::dmat4(1), turn, glm::dvec3(axis)) * to_view;
             }
-            Lights set;
+            Spots set;
             for (const Light& light : lights)
-                set.emplace_back(glm::vec3(moved * glm::dvec4(glm::dvec3(light.position), 1)), light.range);
+                set.push_back(moved(to_set, spot_of(light)));
             return set;
         };
+        view.lights = [spots](std::uint32_t seed) { return whole_spheres(spots(seed)); };
+        if (std::ranges::any_of(file.lights, &Light::spot)) view.spots = spots;
         views.push_back(std::move(view));
     }
     return views;

@@ -2,13 +2,13 @@
 // The rungs of the ladder.
 #pragma once
 
-#include "sets.hpp"
 #include "tiled_view.hpp"
 
 #include <lightbin/lightbin.hpp>
 
 #include <tuple>
 #include <utility>
+#include <vector>
 
 using lightbin::DepthTest;
 using lightbin::Footprint;
@@ -26,10 +26,10 @@ inline constexpr Method ladder[] = {
     {Footprint::silhouette, DepthTest::box},  {Footprint::silhouette, DepthTest::split_box},
 };
 
-/// Bins by one rung; the grid is valid until the next call.
+/// Bins spheres or spots by one rung; the grid is valid until the next call.
 template <Method method> class Bin {
 public:
-    auto operator()(const TiledView& view, const Lights& lights) {
+    template <class Any> auto operator()(const TiledView& view, const std::vector<Any>& lights) {
         return *binner_.bin(view.view, lights, lightbin::inputs_for<options>(view.bounds()));
     }
 

@@ -17,14 +17,14 @@
 struct Way {
     const char* name;
     int tile_size;
-    std::function<Built(const TiledView&, const Lights&)> build;
+    std::function<Built(const TiledView&, const LightSet&)> build;
     double evaluations = 0, bytes = 0;
     std::vector<double> times = {};
 };
 
 template <lightbin::Options options> Way way(const char* name, int tile_size) {
     const auto binner = std::make_shared<lightbin::Binner<options>>();
-    return {name, tile_size, [=](const TiledView& view, const Lights& lights) {
+    return {name, tile_size, [=](const TiledView& view, const LightSet& lights) {
                 return build<options>(*binner, view, lights, view.bounds());
             }};
 }
@@ -53,7 +53,7 @@ inline void report_ways(std::FILE* csv, const std::string& name, std::span<const
     double drawn = 0;
     for (const SeenScene& seen : scenes) {
         views.emplace_back(seen.scene, seen.picture);
-        const Lights lights = seen.scene.lights(0);
+        const LightSet lights = seen.scene.light_set(0);
         for (Way& way : all) {
             const TiledView& view = views.back().of(way.tile_size);
             const Built built = way.build(view, lights);
@@ -67,7 +67,7 @@ inline void report_ways(std::FILE* csv, const std::string& name, std::span<const
         quick ? 12 : std::min<std::size_t>(rotation(scenes[0].scene.lights(0).size()), 200);
     for (std::size_t turn = 0; turn < turns; ++turn) {
         const std::size_t place = turn % scenes.size();
-        const Lights set = scenes[place].scene.lights(static_cast<std::uint32_t>(turn));
+        const LightSet set = scenes[place].scene.light_set(static_cast<std::uint32_t>(turn));
         // The first finds no light in the cache: each one in turn.
         for (std::size_t i = 0; i < all.size(); ++i) {
             Way& way = all[(turn + i) % all.size()];

@@ -6,22 +6,62 @@
 #include "dice.hpp"
 #include "sets.hpp"
 
+#include <lightbin/spot.hpp>
+
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/trigonometric.hpp>
 #include <glm/vec3.hpp>
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <utility>
+#include <variant>
+#include <vector>
+
+using Spots = std::vector<lightbin::Spot>;
+using LightSet = std::variant<Lights, Spots>;  ///< spots where any is one
 
 struct BenchScene {
     std::string name;
     glm::mat4 projection;              ///< OpenGL's: looks down -z, clip depth -1..1, near and far finite
     std::vector<glm::vec3> triangles;  ///< in view space, three corners each
-    std::function<Lights(std::uint32_t seed)> lights;  ///< in view space; same seed, same lights
+    std::function<Lights(std::uint32_t seed)>
+        lights;  ///< in view space; same seed, same lights. Of a spot its whole sphere
+    std::function<Spots(std::uint32_t seed)> spots =
+        {};  ///< the same lights as spots; none where no light is one
+
+    LightSet light_set(std::uint32_t seed) const {
+        if (spots) return spots(seed);
+        return lights(seed);
+    }
 };
+
+inline Lights whole_spheres(const Spots& spots) {
+    Lights lights;
+    for (const lightbin::Spot& s : spots)
+        lights.emplace_back(s.x, s.y, s.z, s.radius);
+    return lights;
+}
+
+inline Lights least_spheres(const Spots& spots) {
+    Lights lights;
+    for (const lightbin::Spot& spot : spots) {
+        const lightbin::Sphere s = lightbin::least_sphere(spot);
+        lights.emplace_back(s.x, s.y, s.z, s.radius);
+    }
+    return lights;
+}
+
+/// A spot in the space that a rigid matrix leads to.
+inline lightbin::Spot moved(const glm::dmat4& matrix, const lightbin::Spot& s) {
+    const glm::vec3 centre(matrix * glm::dvec4(s.x, s.y, s.z, 1)),
+        axis(glm::dmat3(matrix) * glm::dvec3(s.axis_x, s.axis_y, s.axis_z));
+    return {centre.x, centre.y, centre.z, s.radius, axis.x, axis.y, axis.z, s.cos_half_angle};
+}
 
 /// Builds a scene in a world with y up, on a ground at y = 0.
 class SceneBuilder {
@@ -57,12 +97,27 @@ public:
             }
             return set;
         };
-        const glm::mat4 projection =
-            glm::perspectiveRH_NO(2 * std::atan(tan_half_fov), aspect, 0.1f, 1000.0f);
-        return {std::move(name), projection, std::move(triangles_), lights};
+        return {std::move(name), projection(), std::move(triangles_), lights};
+    }
+
+    /// place(dice, i) makes the world-space spot of light i.
+    template <class Place> BenchScene spot_scene(std::string name, std::size_t count, Place place) && {
+        const auto spots = [count, place, to_view = to_view_](std::uint32_t seed) {
+            Dice dice(seed);
+            Spots set;
+            for (std::size_t i = 0; i < count; ++i)
+                set.push_back(moved(to_view, place(dice, i)));
+            return set;
+        };
+        return {std::move(name), projection(), std::move(triangles_),
+                [spots](std::uint32_t seed) { return whole_spheres(spots(seed)); }, spots};
     }
 
 private:
+    static glm::mat4 projection() {
+        return glm::perspectiveRH_NO(2 * std::atan(tan_half_fov), aspect, 0.1f, 1000.0f);
+    }
+
     glm::dmat4 to_view_;
     std::vector<glm::vec3> triangles_;
 };
@@ -185,10 +240,99 @@ inline BenchScene off_screen() {
     });
 }
 
+inline lightbin::Spot spot(glm::vec3 at, float range, glm::vec3 to, float half_degrees) {
+    return {at.x, at.y, at.z, range, to.x, to.y, to.z, std::cos(glm::radians(half_degrees))};
+}
+
+/// The street at night: lamps above it, head lamps of cars, light up the walls, and lamps in the rooms behind them.
+inline BenchScene street_lamps() {
+    return street_canyon().spot_scene("lamps", 1000, [](Dice& dice, std::size_t i) {
+        const float side = dice.between(0, 1) < 0.5f ? -1.0f : 1.0f, z = dice.between(-300, 0);
+        const glm::vec3 tilt = dice.between({-0.15f, 0, -0.15f}, {0.15f, 0, 0.15f});
+        switch (i % 4) {
+        case 0:
+            return spot({side * dice.between(5, 7), dice.between(5, 7), z}, dice.about(11, 1.3f),
+                        tilt + glm::vec3(-0.2f * side, -1, 0), dice.between(50, 70));
+        case 1:
+            return spot({side * dice.between(1.5f, 4), 0.7f, z}, dice.about(25, 1.3f),
+                        {0.3f * tilt.x, dice.between(-0.15f, -0.05f), -side}, dice.between(15, 28));
+        case 2:
+            return spot({side * 7.9f, dice.between(0.2f, 4), z}, dice.about(12, 1.4f),
+                        tilt + glm::vec3(0.05f * side, 1, 0), dice.between(10, 25));
+        default:
+            return spot({side * dice.between(11, 22), dice.between(2.5f, 20), z}, dice.about(5, 1.5f),
+                        tilt + glm::vec3(0, -1, 0), dice.between(30, 60));
+        }
+    });
+}
+
+/// A stage from the hall: narrow beams from trusses above it, washes, and a few towards the hall.
+inline BenchScene stage() {
+    SceneBuilder world({0, 4, 32}, {0, 4, -5});
+    world.box({-16, 0, -14}, {16, 1.4f, 8});
+    world.quad({-22, 0, -14}, {44, 0, 0}, {0, 18, 0});
+    for (const float x : {-17.0f, 15.0f})
+        world.box({x, 0, -2}, {x + 2, 14, 0});
+    Dice dice(5);
+    for (int i = 0; i < 24; ++i) {  // the band, and what it stands on
+        const glm::vec3 at = dice.between({-13, 1.4f, -11}, {12, 1.4f, 5});
+        world.box(at, at + dice.between({0.4f, 0.5f, 0.4f}, {2.5f, 2.2f, 1.5f}));
+    }
+    for (int i = 0; i < 200; ++i) {  // the audience
+        const glm::vec3 at = dice.between({-20, 0, 11}, {20, 0, 27});
+        world.box(at, at + glm::vec3(0.5f, dice.between(1.5f, 1.9f), 0.35f));
+    }
+    return std::move(world).spot_scene("stage", 500, [](Dice& lights, std::size_t i) {
+        const glm::vec3 truss = lights.between({-15, 12, -12}, {15, 13, 8}),
+                        to = lights.between({-14, 1, -13}, {14, 3, 7});
+        if (i % 8 == 0)  // towards the hall
+            return spot(truss, 45, lights.between({-18, 0, 10}, {18, 4, 40}) - truss, lights.between(3, 7));
+        if (i % 8 < 6) return spot(truss, lights.about(22, 1.2f), to - truss, lights.between(3, 10));
+        return spot(truss, lights.about(17, 1.2f), to - truss, lights.between(20, 40));
+    });
+}
+
+/// A car park at night from a window: masts with four lamps each, head lamps of cars, and small lamps along the ways.
+inline BenchScene car_park() {
+    SceneBuilder world({0, 11, 45}, {0, 0, -30});
+    Dice dice(6);
+    for (float z = 20; z > -150; z -= 10)
+        for (float x = -76; x < 78; x += 3) {
+            if (dice.between(0, 1) > 0.55f) continue;
+            const glm::vec3 at(x, 0, z + dice.between(-0.4f, 0.4f));
+            world.box(at, at + glm::vec3(1.8f, dice.between(1.3f, 1.9f), 4.4f));
+        }
+    for (float z = 15; z > -150; z -= 20)
+        for (float x = -75; x < 76; x += 25)
+            world.box({x - 0.15f, 0, z - 0.15f}, {x + 0.15f, 9, z + 0.15f});
+    return std::move(world).spot_scene("car-park", 600, [](Dice& lights, std::size_t i) {
+        if (i % 2 == 0) {  // four to a mast, in turn
+            const std::size_t mast = i / 8 % 63, row = mast / 7;
+            const glm::vec3 at(25 * static_cast<float>(mast % 7) - 75, 9, 15 - 20 * static_cast<float>(row));
+            const float turn = 1.5708f * static_cast<float>(i / 2 % 4) + lights.between(-0.2f, 0.2f);
+            return spot(at, lights.about(17, 1.2f), {0.8f * std::cos(turn), -1, 0.8f * std::sin(turn)},
+                        lights.between(40, 60));
+        }
+        const glm::vec3 at = lights.between({-78, 0.7f, -150}, {78, 1, 22});
+        if (i % 4 == 1)
+            return spot(at, lights.about(22, 1.2f), {lights.between(-1, 1), -0.12f, lights.between(-1, 1)},
+                        lights.between(15, 28));
+        return spot(at, lights.about(4, 1.3f), {0, -1, 0}, lights.between(60, 85));
+    });
+}
+
 }  // namespace scenes
+
+inline std::vector<BenchScene> spot_scenes() {
+    return {scenes::street_lamps(), scenes::stage(), scenes::car_park()};
+}
 
 /// The kinds of the ablation.
 inline std::vector<BenchScene> scene_kinds() {
-    return {scenes::few_lights(), scenes::field_with_depth(), scenes::top_down(),    scenes::street(),
-            scenes::corridor(),   scenes::foliage(),          scenes::giant_light(), scenes::off_screen()};
+    std::vector<BenchScene> kinds = {scenes::few_lights(),  scenes::field_with_depth(), scenes::top_down(),
+                                     scenes::street(),      scenes::corridor(),         scenes::foliage(),
+                                     scenes::giant_light(), scenes::off_screen()};
+    for (BenchScene& scene : spot_scenes())
+        kinds.push_back(std::move(scene));
+    return kinds;
 }
