@@ -254,7 +254,13 @@ TEST_CASE("lights move, and stay near their places") {
 }
 
 TEST_CASE("a picture has the lights where they are by now") {
-    Scene scene = make_scene(300);
+    Scene scene;
+    SUBCASE("of a city") {
+        scene = make_scene(300);
+    }
+    SUBCASE("of spots") {
+        scene = make_street();
+    }
     const std::vector<Light> places = scene.lights;
     const OffscreenContext context(0);
     Renderer renderer(scene, context.glsl());
