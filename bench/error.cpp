@@ -16,7 +16,8 @@
 //                   lights that do not reach its point
 //   index_bytes     of the light index list, 32-bit ids
 //   us, ratio       median time of a build, and as a part of the flat baseline's (with Z interval tests for
-//                   every rung with a depth test), on rotating light sets; Z bounds not included
+//                   every rung with a depth test), on rotating light sets; Z bounds not included. The baseline bins
+//                   whole spheres
 //   reduce_us       what making the Z bounds of one view takes
 //   open            questions about spots that no certificate was found for
 #include "arguments.hpp"

@@ -24,14 +24,15 @@
 ///   exact     pairs whose spot meets the cell that the way knows of: the whole tile, the tile between its Z bounds, with
 ///             split_box without the gap, or a cluster
 ///   excess    entries / exact - 1
-///   evals     light evaluations a drawn pixel; `needed`: of spots that reach its point
+///   evals     light evaluations a drawn pixel; exact_evals: by lists of the exact set; `needed`: of spots that reach its
+///             point
 ///   open      questions that no certificate was found for
 class SpotErrors {
 public:
     explicit SpotErrors(bool quick)
         : quick_(quick),
           csv_(open_report("spot_error.csv", "scene,lights,tile_px,slicing,footprint,depth_test,as,misses,"
-                                             "open,entries,exact,excess,evals,needed,us")) {}
+                                             "open,entries,exact,excess,evals,exact_evals,needed,us")) {}
     ~SpotErrors() { std::fclose(csv_); }
     SpotErrors(const SpotErrors&) = delete;
     SpotErrors& operator=(const SpotErrors&) = delete;
@@ -65,9 +66,11 @@ private:
     /// One form of the lights, binned.
     struct Row {
         std::uint64_t entries = 0, exact = 0, misses = 0, open = 0;
-        double evaluations = 0;
+        std::vector<lightbin::ListRange> exact_lists = {};  ///< their lengths
+        double evaluations = 0, exact_evaluations = 0;
         std::vector<double> times = {};
     };
+    using Lists = std::span<const lightbin::ListRange>;
     static constexpr const char* form_names[] = {"spots", "least", "whole"};
 
     template <class Visit> static void with_form(const Forms& forms, std::size_t form, Visit visit) {
@@ -91,7 +94,7 @@ private:
         Ladder().for_each([&](std::size_t rung, auto& bin) {
             const Method& method = ladder[rung];
             const auto build = [&](const auto& lights) { return bin(view, lights); };
-            const auto evaluations = [&](const auto& grid) { return view.all_evaluations(grid.ranges()); };
+            const auto evaluations = [&](Lists lists) { return view.all_evaluations(lists); };
             const auto count = [&](const auto& grid, Row& row) {
                 count_slice(truth, grid, 0, must_be_met(method.depth_test), row);
             };
@@ -118,8 +121,8 @@ private:
             const auto build = [&](const auto& lights) {
                 return *binner.bin(view.view, lights, {.slices = view.clusters});
             };
-            const auto evaluations = [&](const auto& grid) {
-                return all_evaluations(view, scene_->picture, {grid.ranges(), 0, &view.clusters});
+            const auto evaluations = [&](Lists lists) {
+                return all_evaluations(view, scene_->picture, {lists, 0, &view.clusters});
             };
             report_way({tile_size, "clusters", "rectangle", to_string(test), needed_}, view, build, count,
                        evaluations);
@@ -135,11 +138,14 @@ private:
             const int x = int(tile) % grid.tiles_x(), y = int(tile) / grid.tiles_x();
             const auto list = grid.lights_in(x, y, slice);
             row.entries += list.size();
+            std::uint32_t exact = 0;
             for_each_listed(truth.tiles[tile], list, [&](const Pair& pair, bool listed) {
                 const bool met = (pair.facts & must) != 0;
-                row.exact += met;
+                exact += met;
                 row.misses += met && !listed;
             });
+            row.exact += exact;
+            row.exact_lists.push_back({0, exact});
         }
     }
 
@@ -150,8 +156,9 @@ private:
         for (std::size_t form = 0; form < std::size(rows); ++form)
             with_form(sets_[0], form, [&](const auto& lights) {
                 const auto grid = build(lights);
-                rows[form].evaluations = evaluations(grid);
+                rows[form].evaluations = evaluations(grid.ranges());
                 count(grid, rows[form]);
+                rows[form].exact_evaluations = evaluations(rows[form].exact_lists);
             });
         for (std::size_t turn = 0; turn < sets_.size(); ++turn)
             for (std::size_t i = 0; i < std::size(rows); ++i) {
@@ -166,17 +173,17 @@ private:
     void write(const Way& way, double drawn, std::span<const Row> rows) {
         const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
         const std::string& name = scene_->scene.name;
-        std::printf("%-10s %2d px %-8s %-10s %-9s needed %5.2f", name.c_str(), way.tile_size,
-                    way.slicing == std::string("none") ? "" : way.slicing, way.footprint, way.depth_test,
-                    way.needed / drawn);
+        std::printf("%-10s %2d px %-8s %-10s %-9s needed %5.2f, exact lists %5.2f", name.c_str(),
+                    way.tile_size, way.slicing == std::string("none") ? "" : way.slicing, way.footprint,
+                    way.depth_test, way.needed / drawn, rows[0].exact_evaluations / drawn);
         for (std::size_t form = 0; form < rows.size(); ++form) {
             const Row& row = rows[form];
             const double excess = double(row.entries) / double(row.exact) - 1, us = 1e6 * median(row.times);
-            std::fprintf(csv_, "%s,%zu,%d,%s,%s,%s,%s,%llu,%llu,%llu,%llu,%.5f,%.3f,%.3f,%.1f\n",
+            std::fprintf(csv_, "%s,%zu,%d,%s,%s,%s,%s,%llu,%llu,%llu,%llu,%.5f,%.3f,%.3f,%.3f,%.1f\n",
                          name.c_str(), sets_[0].spots.size(), way.tile_size, way.slicing, way.footprint,
                          way.depth_test, form_names[form], number(row.misses), number(row.open),
                          number(row.entries), number(row.exact), excess, row.evaluations / drawn,
-                         way.needed / drawn, us);
+                         row.exact_evaluations / drawn, way.needed / drawn, us);
             std::printf(" | %s: %.0f %%, %.2f, %.0f us", form_names[form], 100 * excess,
                         row.evaluations / drawn, us);
             misses_ += row.misses;
