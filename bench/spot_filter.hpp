@@ -7,7 +7,7 @@
 //   greatest has a formula.
 // - Or a point of the cell that is in the spot.
 // Corners, products and sums are within 2^-45 of the sizes of their terms: each goes through fewer than 100 roundings of
-// 2^-53, and the spot's formula is continuous where rounding may pick a case. 2^-40 is asked for, so that no answer rests on
+// 2^-53, and where rounding may pick a case, a corner or a formula, the others give the same but for rounding. 2^-40 is asked for, so that no answer rests on
 // rounding.
 #pragma once
 
@@ -64,6 +64,11 @@ struct FlatCell {
                      d = n.x * x + n.y * y + n.d < 0 ? depths.max : depths.min;
         return {d * x, d * y, d};
     }
+    /// What no corner's coordinates add up to more than.
+    double reach() const {
+        const auto steepest = [](double low, double high) { return std::max(std::abs(low), std::abs(high)); };
+        return depths.max * (1 + steepest(x_low, x_high) + steepest(y_low, y_high));
+    }
     Point middle() const {
         const double d = (depths.min + depths.max) / 2;
         return {d * (x_low + x_high) / 2, d * (y_low + y_high) / 2, d};
@@ -109,9 +114,8 @@ public:
 
     /// Beyond doubt all of the cell lies beyond the spot along n.
     bool surely_beyond(const Point& n, const FlatCell& cell) const {
-        const Point corner = cell.lowest(n);
-        const double blur = 0x1p-40 * size_of(n) * (size_of(corner) + size_of(apex) + radius_);
-        return dot(n, corner - apex) - dot(n, farthest(n)) > blur;
+        const double blur = 0x1p-40 * size_of(n) * (cell.reach() + size_of(apex) + radius_);
+        return dot(n, cell.lowest(n) - apex) - dot(n, farthest(n)) > blur;
     }
 
     Point apex;
