@@ -240,9 +240,17 @@ inline BenchScene off_screen() {
     });
 }
 
-inline lightbin::Spot spot(glm::vec3 at, float range, glm::vec3 to, float half_degrees) {
-    return {at.x, at.y, at.z, range, to.x, to.y, to.z, std::cos(glm::radians(half_degrees))};
-}
+/// A spot as one places it. Made with braces, as only they have dice thrown in the same order by every compiler.
+struct Beam {
+    glm::vec3 from;
+    float range;
+    glm::vec3 way;
+    float half_degrees;
+
+    operator lightbin::Spot() const {
+        return {from.x, from.y, from.z, range, way.x, way.y, way.z, std::cos(glm::radians(half_degrees))};
+    }
+};
 
 /// The street at night: lamps above it, head lamps of cars, light up the walls, and lamps in the rooms behind them.
 inline BenchScene street_lamps() {
@@ -251,17 +259,25 @@ inline BenchScene street_lamps() {
         const glm::vec3 tilt = dice.between({-0.15f, 0, -0.15f}, {0.15f, 0, 0.15f});
         switch (i % 4) {
         case 0:
-            return spot({side * dice.between(5, 7), dice.between(5, 7), z}, dice.about(11, 1.3f),
-                        tilt + glm::vec3(-0.2f * side, -1, 0), dice.between(50, 70));
+            return Beam{{side * dice.between(5, 7), dice.between(5, 7), z},
+                        dice.about(11, 1.3f),
+                        tilt + glm::vec3(-0.2f * side, -1, 0),
+                        dice.between(50, 70)};
         case 1:
-            return spot({side * dice.between(1.5f, 4), 0.7f, z}, dice.about(25, 1.3f),
-                        {0.3f * tilt.x, dice.between(-0.15f, -0.05f), -side}, dice.between(15, 28));
+            return Beam{{side * dice.between(1.5f, 4), 0.7f, z},
+                        dice.about(25, 1.3f),
+                        {0.3f * tilt.x, dice.between(-0.15f, -0.05f), -side},
+                        dice.between(15, 28)};
         case 2:
-            return spot({side * 7.9f, dice.between(0.2f, 4), z}, dice.about(12, 1.4f),
-                        tilt + glm::vec3(0.05f * side, 1, 0), dice.between(10, 25));
+            return Beam{{side * 7.9f, dice.between(0.2f, 4), z},
+                        dice.about(12, 1.4f),
+                        tilt + glm::vec3(0.05f * side, 1, 0),
+                        dice.between(10, 25)};
         default:
-            return spot({side * dice.between(11, 22), dice.between(2.5f, 20), z}, dice.about(5, 1.5f),
-                        tilt + glm::vec3(0, -1, 0), dice.between(30, 60));
+            return Beam{{side * dice.between(11, 22), dice.between(2.5f, 20), z},
+                        dice.about(5, 1.5f),
+                        tilt + glm::vec3(0, -1, 0),
+                        dice.between(30, 60)};
         }
     });
 }
@@ -286,9 +302,9 @@ inline BenchScene stage() {
         const glm::vec3 truss = lights.between({-15, 12, -12}, {15, 13, 8}),
                         to = lights.between({-14, 1, -13}, {14, 3, 7});
         if (i % 8 == 0)  // towards the hall
-            return spot(truss, 45, lights.between({-18, 0, 10}, {18, 4, 40}) - truss, lights.between(3, 7));
-        if (i % 8 < 6) return spot(truss, lights.about(22, 1.2f), to - truss, lights.between(3, 10));
-        return spot(truss, lights.about(17, 1.2f), to - truss, lights.between(20, 40));
+            return Beam{truss, 45, lights.between({-18, 0, 10}, {18, 4, 40}) - truss, lights.between(3, 7)};
+        if (i % 8 < 6) return Beam{truss, lights.about(22, 1.2f), to - truss, lights.between(3, 10)};
+        return Beam{truss, lights.about(17, 1.2f), to - truss, lights.between(20, 40)};
     });
 }
 
@@ -310,14 +326,18 @@ inline BenchScene car_park() {
             const std::size_t mast = i / 8 % 63, row = mast / 7;
             const glm::vec3 at(25 * static_cast<float>(mast % 7) - 75, 9, 15 - 20 * static_cast<float>(row));
             const float turn = 1.5708f * static_cast<float>(i / 2 % 4) + lights.between(-0.2f, 0.2f);
-            return spot(at, lights.about(17, 1.2f), {0.8f * std::cos(turn), -1, 0.8f * std::sin(turn)},
-                        lights.between(40, 60));
+            return Beam{at,
+                        lights.about(17, 1.2f),
+                        {0.8f * std::cos(turn), -1, 0.8f * std::sin(turn)},
+                        lights.between(40, 60)};
         }
         const glm::vec3 at = lights.between({-78, 0.7f, -150}, {78, 1, 22});
         if (i % 4 == 1)
-            return spot(at, lights.about(22, 1.2f), {lights.between(-1, 1), -0.12f, lights.between(-1, 1)},
-                        lights.between(15, 28));
-        return spot(at, lights.about(4, 1.3f), {0, -1, 0}, lights.between(60, 85));
+            return Beam{at,
+                        lights.about(22, 1.2f),
+                        {lights.between(-1, 1), -0.12f, lights.between(-1, 1)},
+                        lights.between(15, 28)};
+        return Beam{at, lights.about(4, 1.3f), {0, -1, 0}, lights.between(60, 85)};
     });
 }
 
