@@ -239,7 +239,8 @@ private:
         return truth_.meets(
             {x, x + 1, y, y + 1}, range, ball, [&] { return exact(range); }, Exactly{ball});
     }
-    /// Whether the spot does, by double precision, or where that has no answer, and now and then as a check, by a certificate.
+    /// Whether the spot does, by double precision, or where that has no answer, and now and then as a check, by a
+    /// certificate.
     bool meets(int x, int y, const Range& range, const SpotSubject& spot) {
         const Slopes &column = column_slopes_[static_cast<std::size_t>(x)],
                      &row = row_slopes_[static_cast<std::size_t>(y)];

@@ -26,7 +26,8 @@ inline lightbin::Spot spot_of(const Light& light) {
 
 /// One scene a camera of the file, named "file:camera number". Light set 0 is the file's own; the others are
 /// what a camera sees that is turned by up to two degrees and moved by a tenth of a light's range (their
-/// depth stays that of set 0), for timings that must not repeat themselves. Throws std::runtime_error with one line of text.
+/// depth stays that of set 0), for timings that must not repeat themselves. Throws std::runtime_error with one
+/// line of text.
 inline std::vector<BenchScene> glb_scenes(const std::string& path) {
     const Scene file = load_glb(path, 0.01f);
     std::string name = file.name.substr(0, file.name.rfind('.'));

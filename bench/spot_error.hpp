@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What each way to bin lists too much for spots, and what it would list of the spheres around them: each pair of a cell and a
-// spot, decided exactly.
+// What each way to bin lists too much for spots, and what it would list of the spheres around them: each pair of a cell
+// and a spot, decided exactly.
 #pragma once
 
 #include "built.hpp"

@@ -7,8 +7,8 @@
 //   greatest has a formula.
 // - Or a point of the cell that is in the spot.
 // Corners, products and sums are within 2^-45 of the sizes of their terms: each goes through fewer than 100 roundings of
-// 2^-53, and where rounding may pick a case, a corner or a formula, the others give the same but for rounding. 2^-40 is asked for, so that no answer rests on
-// rounding.
+// 2^-53, and where rounding may pick a case, a corner or a formula, the others give the same but for rounding. 2^-40 is
+// asked for, so that no answer rests on rounding.
 #pragma once
 
 #include "exact/filter.hpp"

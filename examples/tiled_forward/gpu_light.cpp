@@ -14,11 +14,12 @@ GpuLight gpu_light(const Light& light, const glm::dmat4& world_to_view) {
     return gpu;
 }
 
-// The shader gives light where  dot(cone.xyz, direction) + cone.w  comes out above 0. The cone is made of the very floats that
-// it reads, so that no rounding of angles counts: the axis is -cone.xyz, and the cosine -cone.w / |cone.xyz|. What remains is
-// how the shader rounds, in units of 2^-24 |cone.xyz|: 1 for the difference to the light, 3 for its squared length, of which
-// the root takes half, 4 for the root (GLSL grants two units of the last place), 1 for the unit vector, 3 for products and
-// sums; and 1 for the cosine as a float. 2^-20 is 16. The last sum, with cone.w, is not rounded to the other side of 0.
+// The shader gives light where  dot(cone.xyz, direction) + cone.w  comes out above 0. The cone is made of the very
+// floats that it reads, so that no rounding of angles counts: the axis is -cone.xyz, and the cosine -cone.w / |cone.xyz|.
+// What remains is how the shader rounds, in units of 2^-24 |cone.xyz|: 1 for the difference to the light, 3 for its
+// squared length, of which the root takes half, 4 for the root (GLSL grants two units of the last place), 1 for the unit
+// vector, 3 for products and sums; and 1 for the cosine as a float. 2^-20 is 16. The last sum, with cone.w, is not
+// rounded to the other side of 0.
 lightbin::Spot spot_of(const GpuLight& light) {
     const glm::vec4& s = light.sphere;
     const glm::vec3 axis(-light.cone);

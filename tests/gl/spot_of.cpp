@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the example bins a light as holds every point that its shader gives light to: the shader's falloff again, in floats
-// and with the worst roots that GLSL allows, at points all around the cone's edge.
+// What the example bins a light as holds every point that its shader gives light to: the shader's falloff again, in
+// floats and with the worst roots that GLSL allows, at points all around the cone's edge.
 #include "gpu_light.hpp"
 
 #include <doctest/doctest.h>
