@@ -9,9 +9,10 @@
 // a spot whose floats are off by `blur`:  n_x x <= blur / z - n_z - min(n_y v0, n_y v1). (Unity's URP bounds spots by
 // the same planes.) Orthographic: u is the direction of view, and n.(p - apex) <= blur.
 //
-// In double, with e = 2^-53 and s of 2^-20 at least, n is within 2^-30 of the truth: by how much more than `blur` n.p may
-// be less than (|p| + r) 2^-28 is allowed. What rounding does to the rest is less than 2^-48 of the rows' and columns'
-// slopes; 2^-40 is allowed.
+// Where t is near 90 degrees, sines hardly tell angles apart: sin t and the length of a are within 8u and 18u, u = 2^-24,
+// so the planes' angle to the axis is within 26u tan t, and n.p may be as much of r more. 32u r / cos t is allowed. In
+// double, with e = 2^-53 and s of 2^-20 at least, n is within 2^-30 of what the floats say; (|p| + r) 2^-28 is allowed.
+// What rounding does to the rest is less than 2^-48 of the rows' and columns' slopes; 2^-40 is allowed.
 
 /// Of `lanes` spots, the two lines: in a row, tiles end or begin at (most - min(n_y v0, n_y v1)) per_x + offset.
 struct WedgeTerms { double per_x[2][lanes], n_y[2][lanes], most[2][lanes]; };
@@ -19,7 +20,7 @@ struct WedgeTerms { double per_x[2][lanes], n_y[2][lanes], most[2][lanes]; };
 /// The axis, apex and more of a vector of spots.
 struct WedgeLanes {
     Doubles apex[3], axis[3], sine;
-    Doubles blur;  ///< of n.p, over its depth
+    Doubles blur;  ///< the most that n.p may be, over its depth
 };
 
 LIGHTBIN_TARGET inline Doubles dot(const Doubles (&a)[3], const Doubles (&b)[3]) {
@@ -99,13 +100,13 @@ struct SpotRows {
             const ViewSpot& spot = lights.spots[lights.ids[begin + (i < used ? i : 0)]];
             balls[i] = {spot.ball.x * sign_x, spot.ball.y * sign_y, spot.ball.z * sign_z, spot.ball.radius};
             axes[i] = {spot.axis_x, spot.axis_y, spot.axis_z, spot.sine};
-            rest[i] = {spot.nearest, spot.blur, 0, 0};
+            rest[i] = {spot.nearest, spot.blur, spot.cosine, 0};
         }
         balls_known = row_terms(camera, balls, ball);
-        Floats apex[3], r, axis[3], sine, nearest, blur, unused[2];
+        Floats apex[3], r, axis[3], sine, nearest, blur, cosine, unused;
         load_spheres(balls, apex[0], apex[1], apex[2], r);
         load_spheres(axes, axis[0], axis[1], axis[2], sine);
-        load_spheres(rest, nearest, blur, unused[0], unused[1]);
+        load_spheres(rest, nearest, blur, cosine, unused);
         const double signs[] = {static_cast<double>(sign_x), static_cast<double>(sign_y), static_cast<double>(sign_z)};
         for (unsigned half = 0; half < lanes / double_lanes; ++half) {
             WedgeLanes wedge;
@@ -116,7 +117,7 @@ struct SpotRows {
                 size = size + abs(wedge.apex[i]);
             }
             wedge.sine = widened(sine, half);
-            wedge.blur = widened(blur, half) + size * 0x1p-28;
+            wedge.blur = widened(blur, half) + size * 0x1p-28 + widened(r, half) * 0x1p-19 / widened(cosine, half);
             if (!camera.orthographic)
                 wedge.blur = wedge.blur / greater(widened(nearest, half), all(static_cast<double>(camera.near_depth)));
             find_wedges(camera, wedge, half * double_lanes, wedges);
