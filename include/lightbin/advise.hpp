@@ -285,9 +285,9 @@ Result<Advice> weigh(const std::vector<WeighedGrid>& grids, const LightRange& li
         const float aside = static_cast<float>((2.0 * turn / (turns - 1) - 1) / 32 * view.tiles_x() /
                                                camera_of(view).x.scale);
         const auto moved = view_space(source.array, [&](const auto& light) {
-            Sphere sphere = source.view_sphere(light);
-            sphere.x += aside * (view.orthographic() ? 1 : sphere.z);
-            return sphere;
+            auto in_view = source.view_light(light);
+            in_view.x += aside * (view.orthographic() ? 1 : in_view.z);
+            return in_view;
         });
         for (Plan& plan : plans)
             if (plan.tiled && (turn < 2 || plan.total_ns - 0.5 * plan.build_ns < least))

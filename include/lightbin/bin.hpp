@@ -79,13 +79,14 @@ public:
         // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.
         if constexpr (worded)
             if (capacity > most)
-                capacity = detail::scalar::count_entries<footprint, depth_test, false, spots>(job, scratch[0]);
+                capacity =
+                    detail::scalar::count_entries<footprint, depth_test, false, spots>(job, scratch[0]);
         if (capacity > most) return Error{ErrorCode::too_many_entries, capacity, most};
 
         job.tiles = tiles_.reserve(tiles + job.spare_tiles);
         tile_count_ = tiles;
-        const auto kernel =
-            detail::bin_kernel<footprint, depth_test, Id, false, spots>(isa, view, footprints.visible(), footprints.area());
+        const auto kernel = detail::bin_kernel<footprint, depth_test, Id, false, spots>(
+            isa, view, footprints.visible(), footprints.area());
         Id* list = indices_.reserve(capacity + slack);
         shared_ = false;
         if constexpr (!std::is_same_v<Threads, Serial>) {

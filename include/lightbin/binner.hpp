@@ -186,7 +186,8 @@ private:
     struct Nothing {};
 
     template <class LightRange>
-    static constexpr bool spots = std::remove_cvref_t<decltype(detail::as_lights(std::declval<const LightRange&>()))>::spots;
+    static constexpr bool spots =
+        std::remove_cvref_t<decltype(detail::as_lights(std::declval<const LightRange&>()))>::spots;
 
     template <class LightRange>
     std::optional<Error> project(const View& view, const LightRange& lights,
@@ -197,7 +198,8 @@ private:
         if (scratch_.empty()) scratch_.resize(1);
         isa_ = machine_isa(options.isa);
         footprints_.project(isa_, view, source, threads, lists_.shared());
-        if constexpr (z_bins) ranked_.template rank<spots<LightRange>>(isa_, view, footprints_, inputs.slices);
+        if constexpr (z_bins)
+            ranked_.template rank<spots<LightRange>>(isa_, view, footprints_, inputs.slices);
         return std::nullopt;
     }
 
@@ -211,7 +213,8 @@ private:
     template <bool of_spots, class Depths, class Threads>
     Result<LightGrid<Id>> build(Lists& lists, const View& view, const Depths& depths, const Threads& threads,
                                 int slices = 1) {
-        if (const auto error = lists.template build<of_spots>(isa_, view, lit(), depths, scratch_, threads)) return *error;
+        if (const auto error = lists.template build<of_spots>(isa_, view, lit(), depths, scratch_, threads))
+            return *error;
         return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), counts(), slices,
                              ranks());
     }

@@ -19,9 +19,9 @@
 //   3. Binner<Options{...}> binner; once. Then each frame                                      binner.hpp
 //        binner.bin(view, lights), with a depth test binner.bin(view, lights, {.bounds = *bounds}); and your
 //        threads, if you lend some, last.
-//        lights: vec4 array or Sphere array in view space, or view_space(yours, to_light),
+//        lights: vec4, Sphere or Spot array in view space, or view_space(yours, to_light),
 //        or world_space(yours, view_matrix[, to_light])                                       lights.hpp
-//        A spot light may be a Spot instead of a Sphere, anywhere                              spot.hpp
+//        to_light makes a Sphere of a light, or a Spot, which is listed where its cone reaches   spot.hpp
 //   4. Upload grid->ranges() and grid->ids(), or have grid->copy_to(ranges, ids)               light_grid.hpp
 //      write them to buffers of yours.
 //   For all depths without a depth buffer (no pre-pass, fog, glass): Slices::exponential(24, 5, 200)  slices.hpp

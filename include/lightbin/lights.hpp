@@ -41,10 +41,11 @@ struct AsLight {
         } else if constexpr (detail::Vec4Of<Light, float>) {
             return Sphere{light.x, light.y, light.z, light.w};
         } else {
-            static_assert(detail::Vec4Of<Light, double>,
-                          "lightbin: this light is no Sphere or Spot and has no float or double x, y, z and w (the "
-                          "radius): pass view_space(lights, to_light) or world_space(lights, view_matrix, to_light), "
-                          "where to_light makes a lightbin::Sphere or a lightbin::Spot of a light");
+            static_assert(
+                detail::Vec4Of<Light, double>,
+                "lightbin: this light is no Sphere or Spot and has no float or double x, y, z and w (the "
+                "radius): pass view_space(lights, to_light) or world_space(lights, view_matrix, to_light), "
+                "where to_light makes a lightbin::Sphere or a lightbin::Spot of a light");
             return detail::sphere_around(light.x, light.y, light.z, light.w);
         }
     }
@@ -58,12 +59,26 @@ template <class Light, class ToLight> struct Lights {
     std::optional<detail::WorldToView> to_view;
 
     /// Whether the lights are Spots, of which some may be whole spheres.
-    static constexpr bool spots = std::convertible_to<std::invoke_result_t<const ToLight&, const Light&>, Spot>;
+    static constexpr bool spots =
+        std::convertible_to<std::invoke_result_t<const ToLight&, const Light&>, Spot>;
 
     /// Returns a light of the array as a sphere in view space.
     Sphere view_sphere(const Light& light) const {
         const Sphere sphere = std::invoke(to_light, light);
         return to_view ? (*to_view)(sphere) : sphere;
+    }
+
+    /// Returns a light of the array in view space, a Spot with its axis rounded to nearest.
+    auto view_light(const Light& light) const {
+        if constexpr (spots) {
+            const Spot spot = std::invoke(to_light, light);
+            if (!to_view) return spot;
+            const Sphere ball = (*to_view)(Sphere{spot.x, spot.y, spot.z, spot.radius});
+            const Sphere axis = to_view->direction(spot.axis_x, spot.axis_y, spot.axis_z);
+            return Spot{ball.x, ball.y, ball.z, ball.radius, axis.x, axis.y, axis.z, spot.cos_half_angle};
+        } else {
+            return view_sphere(light);
+        }
     }
 };
 

@@ -83,7 +83,8 @@ public:
         const Isa taken = lights_ > 1 ? isa : Isa::scalar;
         reserve(parts_for(threads));
         if constexpr (spots) {
-            detail::SpotSource source = {&lights, detail::copy_spots<Light, ToLight>, to_view, nullptr, false};
+            detail::SpotSource source = {&lights, detail::copy_spots<Light, ToLight>, to_view, nullptr,
+                                         false};
             if constexpr (keep) arrays_.spots = source.kept = spots_.reserve(std::uint64_t{lights_} + chunk);
             source.with_planes = with_boxes;
             run_parts(view, source, detail::project_spots_kernel(taken), threads);

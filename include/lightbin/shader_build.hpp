@@ -301,7 +301,8 @@ namespace detail {
 
 /// Light `id` in view space: of a spot the least sphere.
 template <class Light, class ToLight>
-Sphere footprints_sphere(const Lights<Light, ToLight>& lights, const FootprintArrays& footprints, std::uint32_t id) {
+Sphere footprints_sphere(const Lights<Light, ToLight>& lights, const FootprintArrays& footprints,
+                         std::uint32_t id) {
     if constexpr (Lights<Light, ToLight>::spots)
         return lights.view_sphere(lights.array[id]);
     else

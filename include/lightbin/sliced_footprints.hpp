@@ -44,13 +44,12 @@ public:
     ///
     /// spots  the lights are spots
     template <bool spots, class Lit>
-    std::uint64_t cut(Isa isa, const View& view, const Lit& footprints,
-                      const Slices& slices) {
+    std::uint64_t cut(Isa isa, const View& view, const Lit& footprints, const Slices& slices) {
         const detail::FootprintArrays& lights = footprints.arrays();
         run_count_ = static_cast<std::size_t>(slices.count());
         const std::uint64_t places =
-            find_slices<spots>(isa, detail::camera_of(view).z_sign, lights, footprints.runs(), footprints.visible(),
-                        slices.boundaries());
+            find_slices<spots>(isa, detail::camera_of(view).z_sign, lights, footprints.runs(),
+                               footprints.visible(), slices.boundaries());
         if (places > 0xffffffff) {
             run_count_ = 0;
             return places;

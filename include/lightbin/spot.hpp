@@ -36,7 +36,8 @@ struct Spot {
         return {sphere.x, sphere.y, sphere.z, sphere.radius, 0, 0, 1, -1};
     }
 
-    /// least_sphere(). By this a spot is a light wherever a Sphere is one: in an array, or made by a callable.
+    /// least_sphere(), for what takes spheres only. A Binner takes spots as they are, wherever it takes spheres: in an
+    /// array, or made by a callable.
     operator Sphere() const;
 };
 

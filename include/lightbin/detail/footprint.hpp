@@ -47,7 +47,9 @@ struct FootprintRun {
 };
 
 /// View depths, from the one to the other.
-struct LightDepths { float nearest, farthest; };
+struct LightDepths {
+    float nearest, farthest;
+};
 
 /// The lights in view, as parallel arrays: tiles x0..x1, y0..y1, both ends included. They lie in one or more
 /// runs; ids ascend within a run and from run to run. Readable (not meaningful) up to `padding` elements past
@@ -83,7 +85,8 @@ struct FootprintArrays {
 
     /// The same arrays with their first `begin` elements left out, for writing rectangles.
     FootprintArrays from(std::size_t begin) const {
-        return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin, nullptr, nullptr, spheres, spots};
+        return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin,
+                nullptr,     nullptr,    spheres,    spots};
     }
 };
 

@@ -65,7 +65,7 @@ template <class Id> BinKernel<Id> scatter_kernel(Isa isa) {
 template <Footprint footprint, DepthTest depth_test, class Id, bool spots>
 BitsKernel<Id> bits_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) {
-        return tier.template bits_kernel<footprint, depth_test, Id, spots && reads_spots<depth_test>>();
+        return tier.template bits_kernel < footprint, depth_test, Id, spots && reads_spots < depth_test >> ();
     });
 }
 
@@ -79,7 +79,8 @@ BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint32_t lights, std::u
         if (scatter_is_faster(isa, view.tile_count(), lights, area)) return scatter_kernel<Id>(isa);
     }
     return with_tier(isa, [](auto tier) {
-        return tier.template bin_kernel<footprint, depth_test, Id, by_slab, spots && reads_spots<depth_test>>();
+        return tier.template bin_kernel < footprint, depth_test, Id, by_slab,
+               spots && reads_spots < depth_test >> ();
     });
 }
 

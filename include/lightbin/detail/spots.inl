@@ -6,7 +6,9 @@
 // bounds are those of its ball where that is touched within the cone, else of the apex and the rim, a circle.
 
 /// A vector of spots, see ViewSpot.
-struct SpotLanes { Floats x, y, z, radius, axis[3], cosine, sine, blur; };
+struct SpotLanes {
+    Floats x, y, z, radius, axis[3], cosine, sine, blur;
+};
 
 /// Makes whole spheres of those of a vector's spots that floats can't hold: their least spheres.
 ///
@@ -21,8 +23,8 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void take_least_spheres(const WorldToVi
     for (; which != 0; which &= which - 1) {
         const unsigned lane = static_cast<unsigned>(std::countr_zero(which));
         const Sphere given = load_sphere(balls + lane), axis = load_sphere(cones + lane);
-        const Sphere sphere = least_sphere(
-            Spot{given.x, given.y, given.z, given.radius, axis.x, axis.y, axis.z, axis.radius});
+        const Sphere sphere =
+            least_sphere(Spot{given.x, given.y, given.z, given.radius, axis.x, axis.y, axis.z, axis.radius});
         ball[lane] = to_view != nullptr ? (*to_view)(sphere) : sphere;
         cone[lane] = {0, 0, 0, 0};
         rest[lane] = {1, 0, 0, 0};
@@ -40,8 +42,8 @@ LIGHTBIN_TARGET inline void store_both_spheres(const Camera& camera, const SpotL
     const auto narrow = less_equal(all(0.5f), mul(spots.cosine, spots.cosine));
     const Floats half = mul(spots.radius, all(0.5f)) / spots.cosine, along = mul(spots.radius, spots.cosine);
     const Floats size = abs(spots.x) + abs(spots.y) + abs(spots.z) + spots.radius;
-    const Floats radius = select(narrow, half, mul(spots.radius, spots.sine)) +
-                          (mul(size, all(0x1p-20f)) + spots.blur);
+    const Floats radius =
+        select(narrow, half, mul(spots.radius, spots.sine)) + (mul(size, all(0x1p-20f)) + spots.blur);
     const auto smaller = less(radius, spots.radius);
     const Floats step = select(smaller, select(narrow, half, along), Floats{});
     const Floats x = all(camera.x.sign), y = all(camera.y.sign), z = all(camera.z_sign);
@@ -51,13 +53,14 @@ LIGHTBIN_TARGET inline void store_both_spheres(const Camera& camera, const SpotL
 }
 
 /// Moves spots to view space and finds what ViewSpot says of them, but for their depths.
-LIGHTBIN_TARGET LIGHTBIN_INLINE void shape_spots(const Camera& camera, const MoveLanes& move, const Sphere* balls,
-                                                 const Sphere* cones, SpotLanes& spots) {
+LIGHTBIN_TARGET LIGHTBIN_INLINE void shape_spots(const Camera& camera, const MoveLanes& move,
+                                                 const Sphere* balls, const Sphere* cones, SpotLanes& spots) {
     Floats axis[3], cosine;
     load_spheres(balls, spots.x, spots.y, spots.z, spots.radius);
     load_spheres(cones, axis[0], axis[1], axis[2], cosine);
     const Floats given_radius = spots.radius;
-    const Floats away = abs(spots.x) + abs(spots.y) + abs(spots.z), long_axis = abs(axis[0]) + abs(axis[1]) + abs(axis[2]);
+    const Floats away = abs(spots.x) + abs(spots.y) + abs(spots.z),
+                 long_axis = abs(axis[0]) + abs(axis[1]) + abs(axis[2]);
     auto plain = both(less_equal(away, all(PlainSpots::most_size)), less_equal(abs(cosine), all(1.0f)));
     plain = both(plain, both(less_equal(all(PlainSpots::least_size), given_radius),
                              less_equal(given_radius, all(PlainSpots::most_size))));
@@ -80,7 +83,8 @@ LIGHTBIN_TARGET LIGHTBIN_INLINE void shape_spots(const Camera& camera, const Mov
     }
     const auto whole = less_equal(cosine, all(0.0f));
     const Floats zero = Floats{};
-    const Floats per_length = 1.0f / sqrt(mul(axis[0], axis[0]) + mul(axis[1], axis[1]) + mul(axis[2], axis[2]));
+    const Floats per_length =
+        1.0f / sqrt(mul(axis[0], axis[0]) + mul(axis[1], axis[1]) + mul(axis[2], axis[2]));
     for (unsigned row = 0; row < 3; ++row)
         spots.axis[row] = select(whole, zero, mul(axis[row], per_length));
     spots.cosine = select(whole, zero, cosine);
@@ -99,7 +103,8 @@ LIGHTBIN_TARGET LIGHTBIN_INLINE void shape_spots(const Camera& camera, const Mov
 /// How far spots reach from their apex along an axis, on which the cone's axis has the coordinate `along`, beside it the
 /// length `across`.
 LIGHTBIN_TARGET inline Floats spot_reach(const SpotLanes& spots, Floats along, Floats across) {
-    const Floats rim = lesser(greater(mul(spots.cosine, along) + mul(spots.sine, across), Floats{}), all(1.0f));
+    const Floats rim =
+        lesser(greater(mul(spots.cosine, along) + mul(spots.sine, across), Floats{}), all(1.0f));
     const Floats part = select(less_equal(spots.cosine, along), all(1.0f), rim);
     return lesser(mul(spots.radius, part) + spots.blur, spots.radius);
 }
@@ -122,11 +127,12 @@ struct RimLanes {
 /// D = (X^2 + Z^2 - R^2) other^2 + (X a + Z a_z)^2. With u = 2^-24 and S = |x| + |y| + |z| + r, of the ball, D is within
 /// 2^-20 of X^2 + Z^2 + R^2, which is added to it; all else, the apex and the rim being within 8u S, moves a slope by less
 /// than 32u S (1 + the larger slope) / z of the point.
-LIGHTBIN_TARGET LIGHTBIN_INLINE void narrow_slopes(const RimLanes& rim, Floats c, Floats axis, Floats other, Floats& low,
-                                          Floats& high) {
+LIGHTBIN_TARGET LIGHTBIN_INLINE void narrow_slopes(const RimLanes& rim, Floats c, Floats axis, Floats other,
+                                                   Floats& low, Floats& high) {
     const Floats zero = Floats{}, one = all(1.0f);
     const Floats x = c + mul(rim.along, axis), b = mul(x, rim.rim_z) + mul(rim.rho2, mul(axis, rim.axis_z));
-    const Floats squares = mul(x, x) + mul(rim.rim_z, rim.rim_z), q = mul(x, axis) + mul(rim.rim_z, rim.axis_z);
+    const Floats squares = mul(x, x) + mul(rim.rim_z, rim.rim_z),
+                 q = mul(x, axis) + mul(rim.rim_z, rim.axis_z);
     const Floats d = mul(squares - rim.rho2, mul(other, other)) + mul(q, q);
     const Floats root = mul(rim.rho, sqrt(greater(d, zero) + mul(squares + rim.rho2, all(0x1p-20f))));
     const Floats tip = mul(c, rim.per_z);
@@ -136,9 +142,9 @@ LIGHTBIN_TARGET LIGHTBIN_INLINE void narrow_slopes(const RimLanes& rim, Floats c
     // Does the plane touch the ball within the cone? If in doubt, yes: the ball's slopes are right for all of it.
     const Floats low_across = mul(low, rim.axis_z) - axis + mul(one + abs(low), all(0x1p-18f)),
                  high_across = axis - mul(high, rim.axis_z) + mul(one + abs(high), all(0x1p-18f));
-    const auto low_on_cap = both(less_equal(zero, low_across),
-                                 less_equal(mul(rim.cosine2, one + mul(low, low)),
-                                            mul(mul(low_across, low_across), all(1 + 0x1p-18f))));
+    const auto low_on_cap =
+        both(less_equal(zero, low_across), less_equal(mul(rim.cosine2, one + mul(low, low)),
+                                                      mul(mul(low_across, low_across), all(1 + 0x1p-18f))));
     const auto high_on_cap = both(less_equal(zero, high_across),
                                   less_equal(mul(rim.cosine2, one + mul(high, high)),
                                              mul(mul(high_across, high_across), all(1 + 0x1p-18f))));
@@ -167,7 +173,8 @@ LIGHTBIN_TARGET inline void store_planes(ViewSpot* to, const SpotLanes& spots) {
     const Floats xp = mul(axis[0], p), q = mul(axis[1], xp);
     const Floats across[2][3] = {{1.0f + mul(mul(sign, axis[0]), xp), sign * q, -(sign * axis[0])},
                                  {q, sign + mul(axis[1], mul(axis[1], p)), -axis[1]}};
-    const Floats slack = spots.blur + mul(abs(apex[0]) + abs(apex[1]) + abs(apex[2]) + spots.radius, all(0x1p-18f));
+    const Floats slack =
+        spots.blur + mul(abs(apex[0]) + abs(apex[1]) + abs(apex[2]) + spots.radius, all(0x1p-18f));
     Floats back[3];
     for (unsigned i = 0; i < 3; ++i)
         back[i] = mul(axis[i], spots.sine);
@@ -192,7 +199,8 @@ LIGHTBIN_TARGET inline void store_planes(ViewSpot* to, const SpotLanes& spots) {
 }
 
 /// Stores what else is known of a vector of spots.
-LIGHTBIN_TARGET inline void store_spots(ViewSpot* to, const SpotLanes& spots, Floats nearest, Floats farthest) {
+LIGHTBIN_TARGET inline void store_spots(ViewSpot* to, const SpotLanes& spots, Floats nearest,
+                                        Floats farthest) {
     Sphere vec4s[lanes];
     store_spheres(vec4s, spots.x, spots.y, spots.z, spots.radius);
     store_part(to, offsetof(ViewSpot, ball), vec4s);
@@ -203,9 +211,10 @@ LIGHTBIN_TARGET inline void store_spots(ViewSpot* to, const SpotLanes& spots, Fl
 }
 
 /// Of some of a chunk's lights: the tiles of both the ball and the least sphere of each, by project_carefully().
-LIGHTBIN_TARGET inline void project_both_carefully(const Camera& camera, const Sphere* balls, const Sphere* least,
-                                                   const std::uint8_t* places, std::uint32_t count,
-                                                   ChunkRects& rects, unsigned* visible, ProjectCounts& counts) {
+LIGHTBIN_TARGET inline void project_both_carefully(const Camera& camera, const Sphere* balls,
+                                                   const Sphere* least, const std::uint8_t* places,
+                                                   std::uint32_t count, ChunkRects& rects, unsigned* visible,
+                                                   ProjectCounts& counts) {
     ChunkRects second;
     ProjectCounts counted_before;
     unsigned also[ChunkRects::size / lanes] = {};
@@ -217,25 +226,29 @@ LIGHTBIN_TARGET inline void project_both_carefully(const Camera& camera, const S
         rects.y0[place] = (std::max)(rects.y0[place], second.y0[place]);
         rects.x1[place] = (std::min)(rects.x1[place], second.x1[place]);
         rects.y1[place] = (std::min)(rects.y1[place], second.y1[place]);
-        const bool any = (also[place / lanes] >> place % lanes & 1) != 0 && rects.x0[place] <= rects.x1[place] &&
-                         rects.y0[place] <= rects.y1[place];
+        const bool any = (also[place / lanes] >> place % lanes & 1) != 0 &&
+                         rects.x0[place] <= rects.x1[place] && rects.y0[place] <= rects.y1[place];
         if (!any) visible[place / lanes] &= ~(1u << place % lanes);
     }
 }
 
 /// What spots cover along the image axes: slopes or, orthographic, coordinates.
-struct ImageBounds { Floats left, right, bottom, top; };
+struct ImageBounds {
+    Floats left, right, bottom, top;
+};
 
 LIGHTBIN_TARGET LIGHTBIN_INLINE void find_coordinates(const SpotLanes& spots, ImageBounds& bounds) {
     const Floats x2 = mul(spots.axis[0], spots.axis[0]), y2 = mul(spots.axis[1], spots.axis[1]),
                  z2 = mul(spots.axis[2], spots.axis[2]), across_x = sqrt(y2 + z2), across_y = sqrt(x2 + z2);
-    bounds = {spots.x - spot_reach(spots, -spots.axis[0], across_x), spots.x + spot_reach(spots, spots.axis[0], across_x),
-              spots.y - spot_reach(spots, -spots.axis[1], across_y), spots.y + spot_reach(spots, spots.axis[1], across_y)};
+    bounds = {spots.x - spot_reach(spots, -spots.axis[0], across_x),
+              spots.x + spot_reach(spots, spots.axis[0], across_x),
+              spots.y - spot_reach(spots, -spots.axis[1], across_y),
+              spots.y + spot_reach(spots, spots.axis[1], across_y)};
 }
 
 /// Of spots whose balls lie beyond the near plane; `size` is |x| + |y| + |z| + r of the ball, `nearest` 2^-16 of it at least.
-LIGHTBIN_TARGET LIGHTBIN_INLINE void find_slopes(const SpotLanes& spots, Floats size, Floats nearest, Floats across_z,
-                                                 ImageBounds& bounds) {
+LIGHTBIN_TARGET LIGHTBIN_INLINE void find_slopes(const SpotLanes& spots, Floats size, Floats nearest,
+                                                 Floats across_z, ImageBounds& bounds) {
     const Floats e = mul(spots.z - spots.radius, spots.z + spots.radius), per_e = 1.0f / e;
     tangent_slopes(spots.x, spots.z, spots.radius, e, per_e, bounds.left, bounds.right);
     tangent_slopes(spots.y, spots.z, spots.radius, e, per_e, bounds.bottom, bounds.top);
@@ -256,11 +269,13 @@ LIGHTBIN_TARGET LIGHTBIN_INLINE void find_slopes(const SpotLanes& spots, Floats 
 
 /// Appends the footprints of those of the spots first..first + count - 1 that are in view, as project() does.
 LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const SpotSource& source, std::uint32_t first,
-                                          std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts) {
+                                          std::uint32_t count, const FootprintArrays& out,
+                                          ProjectCounts& counts) {
     ChunkRects rects;
     unsigned visible[ChunkRects::size / lanes];
     std::uint8_t careful[ChunkRects::size];
-    Sphere balls[ChunkRects::size], cones[ChunkRects::size];  // as given, then of careful ones balls and least spheres
+    Sphere balls[ChunkRects::size],
+        cones[ChunkRects::size];  // as given, then of careful ones balls and least spheres
     const MoveLanes move(source.to_view);
     for (std::uint32_t here; count > 0; count -= here, first += here) {
         here = count < ChunkRects::size ? count : ChunkRects::size;
@@ -283,9 +298,11 @@ LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const SpotSource
             const Floats aside = greater(mul(a, all(camera.x.side)) + mul(spots.z, all(camera.x.side_z)),
                                          mul(b, all(camera.y.side)) + mul(spots.z, all(camera.y.side_z)));
             const auto usable = both(less_equal(size, all(0x1p40f)), less_equal(all(0x1p-40f), r));
-            const auto beyond = either(less(farthest, all(camera.near_depth)), less(all(camera.far_depth), nearest));
+            const auto beyond =
+                either(less(farthest, all(camera.near_depth)), less(all(camera.far_depth), nearest));
             const auto culled = both(usable, either(beyond, less(size * 0x1p-21f, aside - r)));
-            const unsigned used = here - i < lanes ? here - i : lanes, valid = used < 32 ? (1u << used) - 1 : ~0u;
+            const unsigned used = here - i < lanes ? here - i : lanes,
+                           valid = used < 32 ? (1u << used) - 1 : ~0u;
             unsigned& in_view = visible[i / lanes] = 0;
             if ((~bits(culled) & valid) == 0) continue;
             if (source.kept != nullptr) store_spots(source.kept + first + i, spots, nearest, farthest);
@@ -295,7 +312,8 @@ LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const SpotSource
             if (camera.orthographic) {
                 find_coordinates(spots, bounds);
             } else {
-                plain = both(plain, both(less(all(camera.near_fast), spots.z - r), less(size * 0x1p-16f, nearest)));
+                plain = both(plain,
+                             both(less(all(camera.near_fast), spots.z - r), less(size * 0x1p-16f, nearest)));
                 find_slopes(spots, size, nearest, across_z, bounds);
             }
             unsigned rest = ~bits(either(plain, culled)) & valid;
@@ -311,7 +329,8 @@ LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const SpotSource
         }
         for (std::uint32_t i = 0; i < careful_count; i += lanes)
             project_both_carefully(camera, balls, cones, careful + i,
-                                   careful_count - i < lanes ? careful_count - i : lanes, rects, visible, counts);
+                                   careful_count - i < lanes ? careful_count - i : lanes, rects, visible,
+                                   counts);
         for (std::uint32_t i = 0; i < here; i += lanes)
             if (visible[i / lanes] != 0) append_visible(out, counts, first, visible[i / lanes], rects, i);
     }

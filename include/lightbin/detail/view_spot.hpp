@@ -23,14 +23,16 @@
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 /// The half space of the points with  x p_x + y p_y + z p_z <= most.
-struct SpotPlane { float x, y, z, most; };
+struct SpotPlane {
+    float x, y, z, most;
+};
 
 /// A spot: x and y are as in an ImageAxis, z is the view depth. Of a whole sphere the axis is 0 and the sine 1, and no
 /// plane leaves out anything.
 struct ViewSpot {
     Sphere ball;
     float axis_x, axis_y, axis_z, cosine;  ///< the axis of unit length; of the half angle, 0 to 1
-    float nearest, farthest;               ///< view depths; rounding is monotone, so comparing them with floats is exact
+    float nearest, farthest;  ///< view depths; rounding is monotone, so comparing them with floats is exact
     float sine, blur;
     /// For boxes: half spaces around the cone, through the apex but for rounding.
     SpotPlane planes[4];
@@ -40,7 +42,8 @@ struct ViewSpot {
 
 /// What floats can make a ViewSpot of; others are binned as their least spheres. Squares neither over- nor underflow.
 struct PlainSpots {
-    static constexpr float least_size = 0x1p-40f, most_size = 0x1p40f;  ///< radius; and of the centre's |x| + |y| + |z|
+    static constexpr float least_size = 0x1p-40f,
+                           most_size = 0x1p40f;  ///< radius; and of the centre's |x| + |y| + |z|
     static constexpr float least_axis = 0x1p-20f, most_axis = 0x1p20f;  ///< |x| + |y| + |z|
 };
 

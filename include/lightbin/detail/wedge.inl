@@ -15,7 +15,9 @@
 // What rounding does to the rest is less than 2^-48 of the rows' and columns' slopes; 2^-40 is allowed.
 
 /// Of `lanes` spots, the two lines: in a row, tiles end or begin at (most - min(n_y v0, n_y v1)) per_x + offset.
-struct WedgeTerms { double per_x[2][lanes], n_y[2][lanes], most[2][lanes]; };
+struct WedgeTerms {
+    double per_x[2][lanes], n_y[2][lanes], most[2][lanes];
+};
 
 /// The axis, apex and more of a vector of spots.
 struct WedgeLanes {
@@ -66,7 +68,8 @@ LIGHTBIN_TARGET inline void find_wedges(const Camera& camera, const WedgeLanes& 
 
 /// A spot's terms, in every lane a row.
 struct SpotRowLanes {
-    LIGHTBIN_TARGET void store(RowSpan* to, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost) const {
+    LIGHTBIN_TARGET void store(RowSpan* to, Doubles v0, Doubles v1, Doubles leftmost,
+                               Doubles rightmost) const {
         Doubles begin = leftmost, end = rightmost + 1.0;
         if (ball_known) {
             Doubles ball_begin, ball_end;
@@ -75,7 +78,8 @@ struct SpotRowLanes {
             end = lesser(ball_end, end);
         }
         for (unsigned side = 0; side < 2; ++side) {
-            const Doubles here = mul(most[side] - lesser(mul(n_y[side], v0), mul(n_y[side], v1)), per_x[side]);
+            const Doubles here =
+                mul(most[side] - lesser(mul(n_y[side], v0), mul(n_y[side], v1)), per_x[side]);
             const auto to_right = less(all(0.0), per_x[side]);
             end = lesser(select(to_right, here + high, end), end);
             begin = greater(select(to_right, begin, here + low), begin);
@@ -107,7 +111,8 @@ struct SpotRows {
         load_spheres(balls, apex[0], apex[1], apex[2], r);
         load_spheres(axes, axis[0], axis[1], axis[2], sine);
         load_spheres(rest, nearest, blur, cosine, unused);
-        const double signs[] = {static_cast<double>(sign_x), static_cast<double>(sign_y), static_cast<double>(sign_z)};
+        const double signs[] = {static_cast<double>(sign_x), static_cast<double>(sign_y),
+                                static_cast<double>(sign_z)};
         for (unsigned half = 0; half < lanes / double_lanes; ++half) {
             WedgeLanes wedge;
             Doubles size = widened(r, half);
@@ -117,9 +122,11 @@ struct SpotRows {
                 size = size + abs(wedge.apex[i]);
             }
             wedge.sine = widened(sine, half);
-            wedge.blur = widened(blur, half) + size * 0x1p-28 + widened(r, half) * 0x1p-19 / widened(cosine, half);
+            wedge.blur =
+                widened(blur, half) + size * 0x1p-28 + widened(r, half) * 0x1p-19 / widened(cosine, half);
             if (!camera.orthographic)
-                wedge.blur = wedge.blur / greater(widened(nearest, half), all(static_cast<double>(camera.near_depth)));
+                wedge.blur =
+                    wedge.blur / greater(widened(nearest, half), all(static_cast<double>(camera.near_depth)));
             find_wedges(camera, wedge, half * double_lanes, wedges);
         }
         const double margin = 0x1p-40 * (std::fabs(camera.x.offset) + camera.x.tiles);

@@ -34,7 +34,8 @@ struct FloatMove {
     float stretch;        ///< the most that it makes a length longer, rounded up
     float error;          ///< of the moved centre, by |x| + |y| + |z| from the origin
     float least_error;    ///< and of at_origin
-    float bend;           ///< how far a point of a cone may move beside its image, by its distance from the apex; inf: any
+    float
+        bend;  ///< how far a point of a cone may move beside its image, by its distance from the apex; inf: any
     /// As far from the origin it serves; less than 0 where doubles must.
     float most = -1;
     /// And so it does for radii from one to the other.
@@ -90,6 +91,16 @@ public:
                               static_cast<double>(FLT_MIN);
         return {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2]),
                 radius <= static_cast<double>(FLT_MAX) ? static_cast<float>(radius) : infinity};
+    }
+
+    /// The image of a vector, rounded to nearest, with radius 0.
+    Sphere direction(float x, float y, float z) const {
+        float image[3];
+        for (int row = 0; row < 3; ++row)
+            image[row] =
+                static_cast<float>(m_[0][row] * static_cast<double>(x) + m_[1][row] * static_cast<double>(y) +
+                                   m_[2][row] * static_cast<double>(z));
+        return {image[0], image[1], image[2], 0};
     }
 
 private:
