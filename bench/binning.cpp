@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A whole build, spheres in to lists out, against the flat baseline measured in turns in the same run, on rotating light
-// sets; with clusters and z-bins; from world space and structs against view-space vec4s; of several views. Prints each as
-// it ends, then what falls short of the project's goals, and writes binning.csv, binning_slices.csv and
-// binning_sources.csv.
+// sets; with clusters and z-bins; from world space and structs against view-space vec4s; of several views; spots against
+// spheres. Prints each as it ends, then what falls short of the project's goals, and writes binning.csv,
+// binning_slices.csv, binning_sources.csv and binning_spots.csv.
 #include "flat.hpp"
 #include "lens.hpp"
 #include "gains.hpp"
@@ -14,6 +14,8 @@
 #include "several_views.hpp"
 #include "slicing.hpp"
 #include "sources.hpp"
+#include "spots_time.hpp"
+#include "tiers.hpp"
 #include "world.hpp"
 
 #include <lightbin/binner.hpp>
@@ -41,6 +43,7 @@ std::vector<Result> results;
 std::vector<SlicingResult> slicing_results;
 std::vector<SourceResult> source_results;
 std::vector<SeveralViewsResult> several_views_results;
+std::vector<SpotTime> spot_times;
 
 template <class Frame> using Make = std::function<std::vector<Frame>()>;
 
@@ -253,6 +256,15 @@ template <Options options> void build_views(benchmark::State& state, const Sourc
     }
 }
 
+void build_spots(benchmark::State& state, const SpotTimeCase& which) {
+    if (spot_times.empty()) print_spot_time_header();
+    for (auto _ : state) {
+        spot_times.push_back(which.time(seconds_a_case));
+        state.SetIterationTime(1e-9 * spot_times.back().ns_per_spot * double(spot_times.back().lights));
+    }
+    print_spot_time(spot_times.back());
+}
+
 /// Google Benchmark's lines, left to the cases: each prints its own as it ends.
 class Lines : public benchmark::BenchmarkReporter {
 public:
@@ -262,26 +274,6 @@ public:
     }
     void ReportRuns(const std::vector<Run>&) override {}
 };
-
-constexpr Options with(Options options, Isa isa) {
-    options.isa = isa;
-    return options;
-}
-
-/// Calls `visit` for the options' tier, if this machine has it.
-template <Options options, class Visit> void visit_tier(Visit visit) {
-    if (lightbin::machine_isa(options.isa) == options.isa) visit.template operator()<options>();
-}
-
-/// Calls `visit` for each tier up to the widest that was compiled in.
-template <Options options, class Visit> void each_tier(Visit visit) {
-    visit_tier<with(options, Isa::scalar)>(visit);
-#if defined(LIGHTBIN_X86)
-    visit_tier<with(options, Isa::sse2)>(visit);
-    visit_tier<with(options, Isa::avx2)>(visit);
-#endif
-    visit_tier<options>(visit);
-}
 
 /// `name` is what a filter finds it by.
 template <class Which>
@@ -459,11 +451,14 @@ int run(int argc, char** argv) {
     add_sources(many_lights);
     add_views(many_lights);
     add_views(field20);
+    for (const SpotTimeCase& which : spot_time_cases(quick))
+        add(which.name, build_spots, which);
     Lines lines;
     benchmark::RunSpecifiedBenchmarks(&lines);
     write_csv(results, "binning.csv");
     write_slicing_csv(slicing_results, "binning_slices.csv");
     write_sources_csv(source_results, "binning_sources.csv");
+    write_spot_times(spot_times, "binning_spots.csv");
     if (!results.empty()) {
         print_goals(results);
         print_scale_goals(results);
@@ -472,7 +467,8 @@ int run(int argc, char** argv) {
     }
     if (!slicing_results.empty()) print_slicing_goals(slicing_results);
     if (!source_results.empty()) print_source_goals(source_results);
-    std::puts("\nwrote binning.csv, binning_slices.csv and binning_sources.csv");
+    if (!spot_times.empty()) print_spot_time_goals(spot_times);
+    std::puts("\nwrote binning.csv, binning_slices.csv, binning_sources.csv and binning_spots.csv");
     return EXIT_SUCCESS;
 }
 

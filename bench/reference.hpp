@@ -12,11 +12,23 @@
 #include <cstdio>
 #include <cstdlib>
 
+/// A lens as the exact arithmetic takes it.
+inline oracle::Camera exact_camera(const Lens& lens, int tile_size) {
+    oracle::Camera camera;
+    const glm::dmat4 projection = lens.projection();
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row)
+            camera.m[column][row] = projection[column][row];
+    camera.doubles = true;
+    camera.width = lens.screen.width, camera.height = lens.screen.height, camera.tile = tile_size;
+    return camera;
+}
+
 /// One light and one tile, as the rungs of the ladder see them.
 class PairTest {
 public:
     PairTest(const Lens& lens, int tile_size, const lightbin::ZBounds& bounds)
-        : oracle_(camera(lens, tile_size)), filter_(oracle_), pyramid_(oracle_.range()), bounds_(bounds) {}
+        : oracle_(exact_camera(lens, tile_size)), filter_(oracle_), pyramid_(oracle_.range()), bounds_(bounds) {}
 
     /// Whether a light whose rectangle has the tile stays in its list.
     bool passes(lightbin::Footprint footprint, lightbin::DepthTest test, const glm::vec4& light, int x,
@@ -42,17 +54,6 @@ public:
     }
 
 private:
-    static oracle::Camera camera(const Lens& lens, int tile_size) {
-        oracle::Camera camera;
-        const glm::dmat4 projection = lens.projection();
-        for (int column = 0; column < 4; ++column)
-            for (int row = 0; row < 4; ++row)
-                camera.m[column][row] = projection[column][row];
-        camera.doubles = true;
-        camera.width = lens.screen.width, camera.height = lens.screen.height, camera.tile = tile_size;
-        return camera;
-    }
-
     oracle::Oracle oracle_;
     oracle::Filter filter_;
     oracle::FlatDepths pyramid_;

@@ -4,18 +4,24 @@
 #
 #   binning [--quick] [SCENE.glb ...] [--benchmark_filter=REGEX]
 #       (the default) Whole builds as a ratio to the flat baseline; from world space and from structs as a ratio to
-#       view-space vec4s (^sources), of several views as a ratio to one (^views), with clusters and z-bins (^slices);
-#       then what is short of the goals, and where a wider instruction set is slower than a narrower one. About 5
-#       minutes, --quick half a minute. Writes build/bench/binning.csv: the sets fieldN have a mean footprint of N tiles
+#       view-space vec4s (^sources), of several views as a ratio to one (^views), with clusters and z-bins (^slices), of
+#       spots as a ratio to spheres (^spots); then what is short of the goals, and where a wider instruction set is slower
+#       than a narrower one. About 6 minutes, --quick half a minute. Writes build/bench/binning.csv: the sets fieldN have a mean footprint of N tiles
 #       of 32 pixels; `footprint` and `depth_test` are the options; box and split_box are held against the baseline
 #       without Z; for n = 0 the times are of a whole build. And binning_slices.csv: ratios of clusters to the baseline,
 #       of z-bins to the build without, of `encode`, to bitmasks, to the build. And binning_sources.csv: `source` is what
-#       the lights were; loop_... was moved to view space by a loop of the bench's own before it was binned.
+#       the lights were; loop_... was moved to view space by a loop of the bench's own before it was binned. And
+#       binning_spots.csv, the times that `spots` takes.
 #   error [--quick] [SCENE.glb ...]
 #       What each rung of the ladder lists too much, against the exact set, and what it takes to build, on made scenes
 #       and real ones (those of the tests, or the named ones); writes build/bench/error_vs_time.csv, .svg and .png. Of
 #       grids that need no depth buffer, evaluations, bytes and times: no_pre_pass.csv. What clusters list too much, of
 #       made lights: cluster_error.csv.
+#   spots [--quick] [--tightness | --time] [WORD ...]
+#       What each rung lists of spots beside the exact pairs, as the sphere of their range, as their least sphere and as
+#       spots, by half angle; and what building them takes, as a ratio to as many spheres whose lists are as long: of the
+#       cases with all of the WORDs in their names, as in `spots --time spots20/10000 box avx2`. A minute and a half, --quick
+#       ten seconds. Writes build/bench/spots_tightness.csv and spots_time.csv.
 #   cutoff [--quick] [SCENE.glb ...]
 #       What ending lights at a finite range does to the picture, and what it saves; writes build/bench/cutoff.csv, .svg
 #       and .png.
@@ -38,7 +44,7 @@ cd "$(dirname "$0")/.."
 
 program=binning
 case ${1-} in
-binning | error | cutoff | ablation | advise | frames)
+binning | error | cutoff | ablation | advise | frames | spots)
     program=$1
     shift
     ;;
@@ -64,7 +70,8 @@ for word; do
     shift
     case $word in
     -* | /*) set -- "$@" "$word" ;;
-    *) set -- "$@" "$here/$word" ;;
+    *.glb) set -- "$@" "$here/$word" ;;
+    *) set -- "$@" "$word" ;;
     esac
 done
 cd build/bench

@@ -53,8 +53,8 @@ struct Turns {
 
 /// Times two ways to build in turns, each turn on other frames, some together where one is too short for the clock. Which
 /// comes first alternates, as the second finds the lights in the cache.
-template <class Ours, class Theirs>
-Turns take_turns(const std::vector<Frame>& frames, double seconds_a_case, Ours ours, Theirs theirs) {
+template <class AnyFrame, class Ours, class Theirs>
+Turns take_turns(const std::vector<AnyFrame>& frames, double seconds_a_case, Ours ours, Theirs theirs) {
     Turns turns = {{}, {}, std::max<std::size_t>(1, 256 / frames[0].lights.size())};
     double spent = 0;
     for (std::size_t turn = 0; spent < seconds_a_case || turn < 5; ++turn) {
