@@ -9,7 +9,8 @@
 //   n - u makes an angle of at least 90 degrees with every direction of the cone, every v of the cone and the ball has
 //   n.v <= u.v <= r |u|,  and they are apart if that is below g. All of it is decided without roots:  t = (n - u).axis
 //   must be at most 0, and  t^2 >= sine^2 |n - u|^2 |axis|^2.
-// A certificate needs no trust in how it was found, and a bad one proves nothing.
+// A certificate needs no trust in how it was found, and a bad one proves nothing. Where none is found, the point of the
+// cell that is nearest to the apex is asked for without rounding; if it is out of the ball, they are apart, too.
 //
 // From 90 degrees on, and of infinite range, a spot counts as its whole ball: then "they meet" is that of the ball, which
 // the spot need not.
@@ -112,14 +113,11 @@ public:
                     return false;
             }
         if (const auto verdict = by_axis()) return verdict;
-        // A range out of proportion to the cell blurs it: then the part of the spot that reaches as far as its planes do.
-        double away = 0;
-        for (const Face& face : faces_)
-            if (std::isfinite(face.offset)) away = std::max(away, std::abs(face.offset));
-        for (const double scale : {radius_, 16 * away, away})
-            if (scale == radius_ || (scale < radius_ / 4 && scale > 0))
-                if (const auto verdict = by_barrier(scale)) return verdict;
-        return std::nullopt;
+        find_opposites();
+        for (const double scale : scales())
+            if (const auto verdict = by_barrier(scale)) return verdict;
+        if (apart_from_half_space()) return false;
+        return by_nearest_points();
     }
 
 private:
@@ -130,6 +128,11 @@ private:
         Flat normal;    ///< into the cell, of length 1
         double offset;  ///< how far inside of it the apex is
         double size;    ///< of the normal as it is given
+    };
+    /// Two faces of a slab, without rounding opposite to each other.
+    struct Opposites {
+        std::size_t one, other;
+        bool flat;  ///< nothing but a plane is between them
     };
     struct Weight {
         std::size_t face;
@@ -151,6 +154,55 @@ private:
     static Flat sum(const Flat& a, const Flat& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
     static Flat cross(const Flat& a, const Flat& b) {
         return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    }
+
+    /// The range, and where that is out of proportion to the cell and blurs it, the part of the spot that reaches as far as
+    /// its planes do.
+    std::vector<double> scales() const {
+        std::vector<double> away;
+        for (const Face& face : faces_)
+            if (std::isfinite(face.offset))
+                away.push_back(std::abs(face.offset)), away.push_back(16 * away.back());
+        std::sort(away.rbegin(), away.rend());
+        std::vector<double> scales = {radius_};
+        for (const double scale : away)
+            if (scale > 0 && scale < scales.back() / 4) scales.push_back(scale);
+        return scales;
+    }
+
+    void find_opposites() {
+        for (std::size_t i = 0; i < cell_.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j) {
+                if (product(faces_[i].normal, faces_[j].normal) > -0.999) continue;
+                const HalfSpace &a = cell_[i], &b = cell_[j];
+                const Rational ab = dot(a.a, b.a), aa = dot(a.a, a.a);
+                if (square(ab) == aa * dot(b.a, b.a)) opposites_.push_back({i, j, b.b == ab / aa * a.b});
+            }
+    }
+    /// A cell between two equal depths is flat: no point of doubles lies in it but by chance.
+    Vector into_plane(Vector point) const {
+        for (const Opposites& pair : opposites_)
+            if (pair.flat) {
+                const HalfSpace& face = cell_[pair.one];
+                point = point - face.at(point) / dot(face.a, face.a) * face.a;
+            }
+        return point;
+    }
+    bool is_flat() const {
+        return std::any_of(opposites_.begin(), opposites_.end(),
+                           [](const Opposites& pair) { return pair.flat; });
+    }
+    /// What two opposite faces weigh alike only makes the gap narrower, and cancels badly.
+    void cancel_opposites(Weights& weights) const {
+        std::vector<double*> of(faces_.size());
+        for (Weight& w : weights)
+            of[w.face] = &w.weight;
+        for (const Opposites& pair : opposites_) {
+            double *const one = of[pair.one], *const other = of[pair.other];
+            if (one == nullptr || other == nullptr) continue;
+            const double common = std::min(*one, *other);
+            *one -= common, *other -= common;
+        }
     }
 
     Support support(const Flat& n) const {
@@ -181,7 +233,7 @@ private:
     }
 
     bool meets_at(const Flat& v) const {
-        return proves_meeting(cell_, spot_, spot_.ball.centre + exactly(v));
+        return proves_meeting(cell_, spot_, into_plane(spot_.ball.centre + exactly(v)));
     }
 
     bool apart_by(const Weights& weights) const {
@@ -240,6 +292,64 @@ private:
         return proves_apart(cell_, spot_, by) ? std::optional(false) : std::nullopt;
     }
 
+    /// Of half angles a hair below 90 degrees the cone is all but a half-space, and what keeps it apart from a cell all but
+    /// its plane: faces whose weighted sum is the axis turned round, which the search below never quite gets to. Where the
+    /// apex is on those faces, they are enough together with a little of one that it is beyond. Without rounding.
+    bool apart_from_half_space() const {
+        if (cosine_ > 0x1p-10) return false;
+        for (std::size_t i = 2; i < faces_.size(); ++i)
+            for (std::size_t j = 1; j < i; ++j)
+                for (std::size_t k = 0; k < j; ++k) {
+                    Separation by;
+                    if (!turned_axis(i, j, k, by.weights)) continue;
+                    if (proves_apart(cell_, spot_, by)) return true;
+                    for (std::size_t beyond = 0; beyond < faces_.size(); ++beyond) {
+                        if (!(faces_[beyond].offset < 0) || !by.weights[beyond].is_zero()) continue;
+                        Separation more = by;
+                        more.weights[beyond] = spot_.cosine * exact(axis_length_ / (2 * faces_[beyond].size));
+                        if (proves_apart(cell_, spot_, more)) return true;
+                    }
+                }
+        return false;
+    }
+    /// Weights of three faces that make minus the axis, by Cramer's rule.
+    bool turned_axis(std::size_t i, std::size_t j, std::size_t k, std::vector<Rational>& weights) const {
+        const auto off_axis = [&](std::size_t a, std::size_t b) {
+            return product(axis_, cross(faces_[a].normal, faces_[b].normal));
+        };
+        const double volume = -product(faces_[i].normal, cross(faces_[j].normal, faces_[k].normal));
+        if (volume == 0) return false;
+        for (const double side : {off_axis(j, k), off_axis(k, i), off_axis(i, j)})
+            if (side / volume < -0x1p-40) return false;
+        const auto exact_cross = [](const Vector& a, const Vector& b) -> Vector {
+            return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+        };
+        const Vector &a = cell_[i].a, &b = cell_[j].a, &c = cell_[k].a;
+        const Rational exact_volume = -dot(a, exact_cross(b, c));
+        if (exact_volume.is_zero()) return false;
+        weights.assign(cell_.size(), 0);
+        weights[i] = dot(spot_.axis, exact_cross(b, c)) / exact_volume;
+        weights[j] = dot(spot_.axis, exact_cross(c, a)) / exact_volume;
+        weights[k] = dot(spot_.axis, exact_cross(a, b)) / exact_volume;
+        return weights[i] >= 0 && weights[j] >= 0 && weights[k] >= 0;
+    }
+
+    /// By the point of the cell that is nearest to the apex, and those nearest to the middle and the end of the axis: without
+    /// rounding, for cells that are nothing beside their distance, and balls that touch.
+    std::optional<bool> by_nearest_points() const {
+        const auto nearest = nearest_point(cell_, spot_.ball.centre);
+        if (!nearest) return false;
+        const Vector away = *nearest - spot_.ball.centre;
+        if (dot(away, away) > square(spot_.ball.radius)) return false;
+        if (proves_meeting(cell_, spot_, *nearest)) return true;
+        for (const double part : {0.5, 1.0}) {
+            const Vector on_axis = spot_.ball.centre + exact(part * radius_ / axis_length_) * spot_.axis;
+            const auto point = nearest_point(cell_, on_axis);
+            if (point && proves_meeting(cell_, spot_, *point)) return true;
+        }
+        return std::nullopt;
+    }
+
     //--------------------------------------------------------------------------------------------------------
     // The point that is deepest in all three, or least far out of them, by an interior-point method: a greatest t such that
     // v is t inside of each face, of a ball and of the cone's side, with the ball's radius as unit. The barrier is the sum
@@ -279,6 +389,19 @@ private:
     bool inside(const Four& at) const {
         if (!(ball_value(at) > 0) || !(side_value(at) > 0)) return false;
         return std::all_of(faces_.begin(), faces_.end(), [&](const Face& f) { return slack(f, at) > 0; });
+    }
+
+    /// The same of the cell itself, but for a plane that it lies in.
+    bool inside_but_for_planes(Four at) const {
+        at[3] = 0;
+        if (!(ball_value(at) > 0) || !(side_value(at) > 0)) return false;
+        for (std::size_t i = 0; i < faces_.size(); ++i) {
+            const bool flat = std::any_of(opposites_.begin(), opposites_.end(), [&](const Opposites& pair) {
+                return pair.flat && (pair.one == i || pair.other == i);
+            });
+            if (!flat && !(slack(faces_[i], at) >= 0)) return false;
+        }
+        return true;
     }
 
     Slope slope(const Four& at, double push) const {
@@ -361,11 +484,14 @@ private:
                 at = next;
                 if (decrement < 0.5) break;
             }
-            if (at[3] > 0 && tries++ < 6 && meets_at(scaled({at[0], at[1], at[2]}, scale_))) return true;
+            if ((at[3] > 0 ? tries++ < 6 : is_flat() && inside_but_for_planes(at)) &&
+                meets_at(scaled({at[0], at[1], at[2]}, scale_)))
+                return true;
             Weights weights;
             for (std::size_t i = 0; i < faces_.size(); ++i)
                 if (std::isfinite(faces_[i].offset))
                     weights.push_back({i, 1 / (push * slack(faces_[i], at))});
+            cancel_opposites(weights);
             if (gap(weights) > 0 && tries++ < 6 && apart_by(weights)) return false;
         }
         return std::nullopt;
@@ -374,6 +500,7 @@ private:
     const std::vector<HalfSpace>& cell_;
     const ExactSpot& spot_;
     std::vector<Face> faces_;
+    std::vector<Opposites> opposites_;
     Flat axis_;
     double axis_length_, cosine_, sine_, radius_, scale_ = 1;
     bool holds_apex_ = true;
