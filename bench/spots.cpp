@@ -38,7 +38,7 @@ void report_times(bool quick, const std::vector<std::string>& words) {
             return which.name.find(word) != std::string::npos;
         };
         if (!std::ranges::all_of(words, is_in_name)) continue;
-        times.push_back(which.time(quick ? 0.1 : 0.3));
+        times.push_back(which.time(quick ? 0.05 : 0.15));
         print_spot_time(times.back());
     }
     write_spot_times(times, "spots_time.csv");

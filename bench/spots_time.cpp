@@ -102,14 +102,17 @@ template <Options options> SpotTime time_spots(const SpotSet& set, KeptFrames& k
     static const MadeBounds bounds(tile_size);
     const lightbin::View view = Lens().view(tile_size);
     const lightbin::Slices slices = clustered ? cluster_slices() : z_bin_slices();
-    lightbin::Binner<options> binner;
-    const auto entries = [&](const auto& lights) {
+    const auto entries_by = [&](auto& binner, const auto& lights) {
         if constexpr (sliced)
             return binner.bin(view, lights, {.slices = slices})->ids().size();
         else
             return binner.bin(view, lights, lightbin::inputs_for<options>(bounds.bounds))->ids().size();
     };
-    const std::vector<SpotFrame>& frames = kept.matched(set, rung_name<options>(), entries);
+    lightbin::Binner<with(options, lightbin::compiled_isa)> widest;  // the lists are the same
+    const std::vector<SpotFrame>& frames = kept.matched(
+        set, rung_name<options>(), [&](const auto& lights) { return entries_by(widest, lights); });
+    lightbin::Binner<options> binner;
+    const auto entries = [&](const auto& lights) { return entries_by(binner, lights); };
     std::size_t of_spots = 0, of_spheres = 0;
     const Turns turns = take_turns(
         frames, seconds_a_case, [&](const SpotFrame& frame) { of_spots += entries(frame.lights); },

@@ -1,20 +1,85 @@
 #!/bin/sh
 # sh tests/campaign.sh [LIGHTS] [LIGHTS_IN_OTHER_BUILDS]: the oracle's families at length, the library built in many
-# ways, one whole viewport of 16384 x 16384 one-pixel tiles (8 GB of memory), and the formulas compared. Writes
+# ways, one whole viewport of 16384 x 16384 one-pixel tiles (8 GB of memory), the formulas compared, and spots. Writes
 # tests/campaign.md. Defaults: 2,500,000 lights a family with g++ -O2 and 1,250,000 in each of the other builds, so ten
 # million cases a family or more in all; they take about an hour on one core.
+# sh tests/campaign.sh spots [ROUNDS]: spots alone, and that part of tests/campaign.md. 20 rounds, the default, are over ten
+# million verdicts by certificates with g++ -O2; a fifth of that in each of the other builds. Some 20 minutes on one core.
 set -eu
 me=tests/campaign.sh
 cd "$(dirname "$0")/.."
 . tests/packages.sh
 install_packages g++ clang-14 clang-19 libboost-dev libgmp-dev doctest-dev libglm-dev
 
-lights=${1:-2500000}
-others=${2:-1250000}
 work=build/campaign
 make_build_folder
 mkdir -p $work
 common="-std=c++20 -Iinclude"
+failed=
+
+# spots_with NAME COMPILER FLAGS ROUNDS: tests/oracle/spots.cpp at length; what it counted, a camera kind a line, in NAME.spots
+spots_with() {
+    echo "$me: spots, $2 $3: $4 rounds of each camera kind"
+    # shellcheck disable=SC2086  # several flags
+    "$2" $common $3 tests/oracle/spots.cpp $work/doctest_main.o -lgmp -o "$work/spots_$1" || fail "$1 does not compile"
+    LIGHTBIN_SPOT_ROUNDS=$4 nice -n 19 "$work/spots_$1" >"$work/spots_$1.log" || failed="$failed $work/spots_$1.log"
+    # kind verdicts certificates open missed
+    sed -n 's/.*MESSAGE: \([a-z_ ]*\): \([0-9]*\) verdicts, \([0-9]*\) by certificates, \([0-9]*\) left open, \([0-9]*\) missed/\1|\2|\3|\4|\5/p' \
+        "$work/spots_$1.log" | tr ' |' '_ ' >"$work/$1.spots"
+    [ "$(wc -l <"$work/$1.spots")" -ge 20 ] || fail "spots, $2 $3: camera kinds are missing, see $work/spots_$1.log"
+    echo "$2 $3" >"$work/$1.spots_name"
+}
+spot_table() {
+    awk -v name="$2" '{ verdicts += $2; certificates += $3; open += $4; missed += $5 }
+        END { printf "| %s | %.3g | %.3g | %d | %d |\n", name, verdicts, certificates, open, missed }' "$1"
+}
+# spots ROUNDS: all builds, and that part of the report in spots.md
+spots() {
+    few=$((($1 + 4) / 5))
+    rm -f $work/*.spots
+    g++ $common -O1 -c tests/doctest_main.cpp -o $work/doctest_main.o
+    spots_with 1_gcc_O2 g++ "-O2" "$1"
+    spots_with 2_gcc_scalar g++ "-O2 -DLIGHTBIN_NO_SIMD" $few
+    spots_with 3_gcc_native g++ "-O3 -march=native" $few
+    spots_with 4_clang14_O2 clang++-14 "-O2" $few
+    spots_with 5_clang19_native clang++-19 "-O3 -march=native" $few
+    {
+        echo "## Spots"
+        echo
+        echo "Made by \`sh tests/campaign.sh spots $1\` on $(date -u +%Y-%m-%d), at commit $(git rev-parse --short HEAD)," \
+            "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)."
+        echo
+        echo "Spots in view and world space, random, at the eye, huge, touching and of any bits, in rectangles and silhouettes,"
+        echo "\`interval\`, \`box\`, \`split_box\`, clusters and z-bins. A verdict says that a spot does not meet a cell whose list lacks it,"
+        echo "though the ball of its range may reach the tile. By certificates: where the ball alone does not tell."
+        echo
+        echo "| build | verdicts | by certificates | left open | misses |"
+        echo "| --- | --- | --- | --- | --- |"
+        for result in $work/*.spots; do
+            spot_table "$result" "$(cat "${result}_name")"
+        done
+        echo
+        echo "By camera kind, g++ -O2:"
+        echo
+        echo "| cameras | verdicts | by certificates | left open | misses |"
+        echo "| --- | --- | --- | --- | --- |"
+        while read -r line; do
+            echo "$line" >$work/line
+            spot_table $work/line "$(echo "${line%% *}" | tr _ ' ')"
+        done <$work/1_gcc_O2.spots
+    } >$work/spots.md
+}
+if [ "${1-}" = spots ]; then
+    spots "${2:-20}"
+    sed '/^## Spots$/,$d' tests/campaign.md >$work/campaign.md
+    cat $work/campaign.md $work/spots.md >tests/campaign.md
+    [ -z "$failed" ] || fail "something was found, see$failed"
+    echo "$me: nothing found; tests/campaign.md has the table"
+    exit
+fi
+
+lights=${1:-2500000}
+others=${2:-1250000}
 for part in judge campaign; do
     g++ $common -O2 -c tests/oracle/$part.cpp -o $work/$part.o || fail "$part.cpp does not compile"
 done
@@ -26,7 +91,6 @@ build() {
     g++ $work/judge.o $work/campaign.o "$work/engine_$1.o" -lgmp -o "$work/campaign_$1"
     echo "$2 $3" >"$work/$1.flags"
 }
-failed=
 # run NAME LIGHTS [flush|whole]: the families, or the whole viewport; a line each in NAME.txt
 run() {
     name=$1${3:+_$3}
@@ -73,6 +137,8 @@ done
 g++ $common -O2 -pthread tests/hunt/main.cpp tests/hunt/round.cpp tests/hunt/scene.cpp tests/hunt/camera.cpp tests/hunt/bounds.cpp \
     tests/hunt/limits.cpp $work/hunt_*.o -o $work/hunt
 nice -n 19 $work/hunt --seconds 300 --seed 1 >$work/hunt.log || failed="$failed $work/hunt.log"
+
+spots 20
 
 for compiler in g++ clang++-14 clang++-19; do
     if echo '#include <lightbin/lightbin.hpp>' | "$compiler" $common -ffast-math -x c++ -fsyntax-only - 2>$work/refusal; then
@@ -124,6 +190,8 @@ table() {
     echo "no visible part of a pixel is many ulps."
     echo
     tr _ ' ' <$work/formulas.md
+    echo
+    cat $work/spots.md
 } >tests/campaign.md
 [ -z "$failed" ] || fail "something was found, see$failed"
 echo "$me: nothing found; tests/campaign.md has the table"

@@ -243,8 +243,8 @@ void check(const std::string& name, const SpotTally& tally) {
     MESSAGE(name << ": " << tally.verdicts << " verdicts, " << tally.certificates << " by certificates, "
                  << tally.open << " left open, " << tally.misses << " missed");
     CHECK(tally.misses == 0);
-    for (const auto& [set, counted] : tally.sets)
-        CHECK_MESSAGE(counted.open * 1000 <= counted.certificates, set);
+    for (const auto& set : tally.sets)
+        CHECK_MESSAGE(set.second.open * 1000 <= set.second.certificates, set.first);
     CHECK(tally.verdicts >= 20000);
     CHECK(tally.certificates >= 10000);
 }
