@@ -304,9 +304,10 @@ private:
                     if (!turned_axis(i, j, k, by.weights)) continue;
                     if (proves_apart(cell_, spot_, by)) return true;
                     for (std::size_t beyond = 0; beyond < faces_.size(); ++beyond) {
-                        if (!(faces_[beyond].offset < 0) || !by.weights[beyond].is_zero()) continue;
+                        if (!(faces_[beyond].offset < 0)) continue;
                         Separation more = by;
-                        more.weights[beyond] = spot_.cosine * exact(axis_length_ / (2 * faces_[beyond].size));
+                        more.weights[beyond] +=
+                            spot_.cosine * exact(axis_length_ / (2 * faces_[beyond].size));
                         if (proves_apart(cell_, spot_, more)) return true;
                     }
                 }

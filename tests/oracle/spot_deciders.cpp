@@ -121,7 +121,7 @@ TEST_CASE("spots: certificates by chance") {
 TEST_CASE("spots: verdicts agree with distances") {
     Random random(4);
     int met = 0, apart = 0, open = 0;
-    for (int i = 0; i < 4000; ++i) {
+    for (int i = 0; i < 5000; ++i) {
         const spots::Triple axis = spots::axis({}, random);
         const auto number = [&](double low, double high) {
             return static_cast<float>(random.uniform(low, high));
@@ -131,8 +131,10 @@ TEST_CASE("spots: verdicts agree with distances") {
                                 static_cast<float>(3 * axis[1]),
                                 static_cast<float>(3 * axis[2]),
                                 static_cast<float>(std::cos(random.uniform(0, 1.5)))};
-        const spots::Triple low = {random.uniform(-1, 0), random.uniform(-1, 0), random.uniform(-1, 0)},
-                            high = {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
+        const spots::Triple low = {random.uniform(-1, 0), random.uniform(-1, 0), random.uniform(-1, 0)};
+        spots::Triple high = {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
+        const std::size_t flat = static_cast<std::size_t>(random.integer(0, 7));
+        if (flat < 3) high[flat] = low[flat];
         const auto verdict = meets(box(low, high), exact_spot(spot));
         if (!verdict) {
             ++open;
@@ -146,6 +148,42 @@ TEST_CASE("spots: verdicts agree with distances") {
     CHECK(met >= 500);
     CHECK(apart >= 1000);
     CHECK(open <= 4);
+}
+
+// The apex on a side of the cell, or a hair off it, and the cone all but the half-space in front of that side.
+TEST_CASE("spots: a hair below 90 degrees") {
+    const auto cell = box({1, 1, 1}, {2, 2, 2});
+    const float above = std::nextafter(1.0f, 2.0f);
+    for (const float cosine : {0x1p-149f, 0x1p-54f, 0x1p-20f})
+        for (const float range : {2.0f, 0x1p24f, FLT_MAX}) {
+            CHECK(meets(cell, exact_spot(1, 1, 0, range, -1, 0, 0, cosine)) == false);
+            CHECK(meets(cell, exact_spot(1, 0, 0, range, -3, 0, 0, cosine)) == false);
+            CHECK(meets(cell, exact_spot(above, 1, 0.5f, range, -1, 0, 0, cosine)) == (cosine < 0x1p-22f));
+            CHECK(meets(cell, exact_spot(1, 1, 1, range, -1, 0, 0, cosine)) == true);
+            CHECK(meets(cell, exact_spot(1.5f, 0, 0, range, -1, -1, -1, cosine)) == false);
+        }
+    // The plane of the cone goes through the corner (1, 1, 1), and the axis has no face of the cell for its own.
+    for (const float cosine : {0x1p-149f, 0x1p-54f}) {
+        CHECK(meets(cell, exact_spot(2, 0.5f, 0.5f, 9, -1, -1, -1, cosine)) == false);
+        CHECK(meets(cell, exact_spot(2, 0.75f, 0.5f, 9, -1, -1, -1, cosine)) == true);
+    }
+}
+
+// A ball that ends in a plane has a rational point there; a flat cell has no others.
+TEST_CASE("spots: balls that touch, flat cells") {
+    const auto cell = box({1, 1, 1}, {2, 2, 2}), flat = box({1, 1, 1}, {1, 2, 2});
+    for (const auto& to : {cell, flat}) {
+        CHECK(meets(to, exact_spot(-2, 1.5f, 1.5f, 3, 1, 0.5f, 0.25f, 0.5f)) == true);
+        CHECK(meets(to, exact_spot(-2, 1.5f, 1.5f, std::nextafter(3.0f, 0.0f), 1, 0.5f, 0.25f, 0.5f)) ==
+              false);
+        CHECK(meets(to, exact_spot(-2, 1.5f, 1.5f, 3, 1, 1.5f, 0.25f, 0.75f)) == false);
+    }
+    CHECK(meets(box({0, 1, 1}, {2, 2, 2}),
+                exact_spot(-0x1p100f, 1.5f, 1.5f, 0x1p100f, 1, 0.5f, 0.25f, 0.5f)) == true);
+    CHECK(meets(flat, exact_spot(0, 0, 1.25f, 9, 1, 1.5f, 0.1f, 0.99f)) == true);
+    CHECK(meets(flat, exact_spot(0, 0, 1.25f, 9, 1, 0.5f, 0.1f, 0.99f)) == false);
+    CHECK(meets(flat, exact_spot(1.5f, 1.5f, 1.5f, 0x1p20f, -1, 0.1f, 0.1f, 0.9f)) == true);
+    CHECK(meets(flat, exact_spot(1.5f, 1.5f, 1.5f, 0x1p20f, 1, 0.1f, 0.1f, 0.1f)) == false);
 }
 
 // An apex and a ray have rational points, so that even one in common is found.
@@ -201,6 +239,7 @@ std::vector<HalfSpace> cell_near(const SpotLight& light, const Oracle& oracle, c
     const float depth = static_cast<float>(p[2]);
     if (std::isfinite(depth) && random.chance(0.3)) min = depth * static_cast<float>(random.uniform(0.7, 1));
     if (std::isfinite(depth) && random.chance(0.3)) max = depth * static_cast<float>(random.uniform(1, 1.5));
+    if (std::isfinite(depth) && random.chance(0.1)) min = max = depth;
     return oracle.half_spaces(oracle.columns(tile[0], tile[0] + 1), oracle.rows(tile[1], tile[1] + 1),
                               oracle.depths(min, max));
 }
