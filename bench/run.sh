@@ -5,13 +5,13 @@
 #   binning [--quick] [SCENE.glb ...] [--benchmark_filter=REGEX]
 #       (the default) Whole builds as a ratio to the flat baseline; from world space and from structs as a ratio to
 #       view-space vec4s (^sources), of several views as a ratio to one (^views), with clusters and z-bins (^slices), of
-#       spots as a ratio to spheres (^spots); then what is short of the goals, and where a wider instruction set is slower
-#       than a narrower one. About 6 minutes, --quick half a minute. Writes build/bench/binning.csv: the sets fieldN have a mean footprint of N tiles
-#       of 32 pixels; `footprint` and `depth_test` are the options; box and split_box are held against the baseline
-#       without Z; for n = 0 the times are of a whole build. And binning_slices.csv: ratios of clusters to the baseline,
-#       of z-bins to the build without, of `encode`, to bitmasks, to the build. And binning_sources.csv: `source` is what
-#       the lights were; loop_... was moved to view space by a loop of the bench's own before it was binned. And
-#       binning_spots.csv, the times that `spots` takes.
+#       spots as a ratio to spheres (^spots); then what is short of the goals, and where a wider instruction set is
+#       slower than a narrower one. About 6 minutes, --quick half a minute. Writes build/bench/binning.csv: the sets
+#       fieldN have a mean footprint of N tiles of 32 pixels; `footprint` and `depth_test` are the options; box and
+#       split_box are held against the baseline without Z; for n = 0 the times are of a whole build. And
+#       binning_slices.csv: ratios of clusters to the baseline, of z-bins to the build without, of `encode`, to
+#       bitmasks, to the build. And binning_sources.csv: `source` is what the lights were; loop_... was moved to view
+#       space by a loop of the bench's own before it was binned. And binning_spots.csv, the times that `spots` takes.
 #   error [--quick] [SCENE.glb ...]
 #       What each rung of the ladder lists too much, against the exact set, and what it takes to build, on made scenes
 #       and real ones (those of the tests, or the named ones); writes build/bench/error_vs_time.csv, .svg and .png. Of
