@@ -3,8 +3,8 @@
 # ways, one whole viewport of 16384 x 16384 one-pixel tiles (8 GB of memory), the formulas compared, and spots. Writes
 # tests/campaign.md. Defaults: 2,500,000 lights a family with g++ -O2 and 1,250,000 in each of the other builds, so ten
 # million cases a family or more in all; they take about an hour on one core.
-# sh tests/campaign.sh spots [ROUNDS]: spots alone, and that part of tests/campaign.md. 20 rounds, the default, are over ten
-# million verdicts by certificates with g++ -O2; a fifth of that in each of the other builds. Some 20 minutes on one core.
+# sh tests/campaign.sh spots [ROUNDS]: spots alone, and that part of tests/campaign.md. 14 rounds, the default, are over ten
+# million verdicts by certificates with g++ -O2; a fifth of that in each of the other builds. Some 15 minutes on one core.
 set -eu
 me=tests/campaign.sh
 cd "$(dirname "$0")/.."
@@ -70,7 +70,7 @@ spots() {
     } >$work/spots.md
 }
 if [ "${1-}" = spots ]; then
-    spots "${2:-20}"
+    spots "${2:-14}"
     sed '/^## Spots$/,$d' tests/campaign.md >$work/campaign.md
     cat $work/campaign.md $work/spots.md >tests/campaign.md
     [ -z "$failed" ] || fail "something was found, see$failed"
@@ -138,7 +138,7 @@ g++ $common -O2 -pthread tests/hunt/main.cpp tests/hunt/round.cpp tests/hunt/sce
     tests/hunt/limits.cpp $work/hunt_*.o -o $work/hunt
 nice -n 19 $work/hunt --seconds 300 --seed 1 >$work/hunt.log || failed="$failed $work/hunt.log"
 
-spots 20
+spots 14
 
 for compiler in g++ clang++-14 clang++-19; do
     if echo '#include <lightbin/lightbin.hpp>' | "$compiler" $common -ffast-math -x c++ -fsyntax-only - 2>$work/refusal; then
