@@ -270,7 +270,7 @@ void prove(const std::string& kind, const std::vector<Camera>& cameras) {
     SpotTally tally;
     repeat(kind, tally, seed_of(kind), [&](std::uint64_t seed) {
         for (const Camera& camera : cameras)
-            examine_all(camera, nullptr, 108, tally, seed);
+            examine_all(camera, nullptr, 84, tally, seed);
     });
     check(kind, tally);
 }

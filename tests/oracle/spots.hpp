@@ -202,6 +202,38 @@ inline SpotLight touching(const Aim& aim, Random& random) {
     return light;
 }
 
+/// The eye on the side of the cone, or of the one that it has behind its apex, or a hair off it.
+inline SpotLight eye_on_cone(const Aim& aim, Random& random) {
+    const Light ball = random.chance(0.5) ? spheres::field(aim, random) : any_sphere(aim, random);
+    const Triple apex = centre(aim, ball);
+    const Triple from_eye = aim.orthographic || !(length(apex) > 0) ? Triple{0, 0, 1} : unit(apex);
+    const double angle = std::min(half_angle(random), std::acos(0.0)),
+                 turn = angle * (1 + random.sign() * random.power_of_two(-45, -3));
+    const Triple side = across(from_eye, random),
+                 axis = plus(plus({}, from_eye, random.sign() * std::cos(turn)), side, std::sin(turn));
+    return spot(aim, random, apex, static_cast<double>(ball.w) * random.power_of_two(0, 6), axis, angle);
+}
+
+/// The side of the cone, or now and then its axis, in the plane of a tile's edge, or a hair off it.
+inline SpotLight along_edge(const Aim& aim, Random& random) {
+    const double d = aim.depth(random), h = aim.half_height(std::max(d, aim.unit));
+    const int i = random.integer(0, 1);
+    const double edge = aim.tile_edge(i, random);
+    double at[2];
+    at[i] = aim.at(i, edge, d);
+    at[1 - i] = aim.at(1 - i, aim.pixel(1 - i, random), d);
+    Triple n{};
+    n[static_cast<std::size_t>(i)] = 1, n[2] = -aim.slope(i, edge);
+    n = unit(n);
+    const double right_angle = std::acos(0.0), angle = std::min(half_angle(random), right_angle),
+                 turn = right_angle - (random.chance(0.3) ? 0 : angle) +
+                        random.sign() * random.power_of_two(-45, -10);
+    const Triple axis = plus(plus({}, n, random.sign() * std::cos(turn)), across(n, random), std::sin(turn));
+    const double r = h * random.power_of_two(-8, 3),
+                 off = random.chance(0.3) ? 0 : r * random.sign() * random.power_of_two(-45, -8);
+    return spot(aim, random, plus({at[0], at[1], d}, n, off), r, axis, angle);
+}
+
 /// Ranges out of all proportion to what is seen.
 inline SpotLight huge(const Aim& aim, Random& random) {
     const Triple apex = plus({}, any_direction(random), aim.unit * random.power_of_two(-4, 12));
@@ -237,6 +269,8 @@ inline const std::vector<SpotSet>& spot_sets() {
         {"least sphere", least_any},
         {"at the eye", at_eye},
         {"touching", touching},
+        {"eye on the cone", eye_on_cone},
+        {"along an edge", along_edge},
         {"huge", huge},
         {"special", special},
     };
