@@ -24,6 +24,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace oracle {
@@ -117,7 +118,8 @@ public:
         for (const double scale : scales())
             if (const auto verdict = by_barrier(scale)) return verdict;
         if (apart_from_half_space()) return false;
-        return by_nearest_points();
+        if (const auto verdict = by_nearest_points()) return verdict;
+        return by_corners();
     }
 
 private:
@@ -237,14 +239,18 @@ private:
     }
 
     bool apart_by(const Weights& weights) const {
-        Separation by;
-        by.weights.resize(cell_.size());
-        Vector n{};
+        std::vector<Rational> exact_weights(cell_.size());
         for (const Weight& w : weights) {
             if (!(w.weight >= 0) || !std::isfinite(w.weight / faces_[w.face].size)) return false;
-            by.weights[w.face] = exact(w.weight / faces_[w.face].size);
-            n = n + by.weights[w.face] * cell_[w.face].a;
+            exact_weights[w.face] = exact(w.weight / faces_[w.face].size);
         }
+        return apart_with(std::move(exact_weights));
+    }
+    bool apart_with(std::vector<Rational> weights) const {
+        Separation by = {std::move(weights), {}};
+        Vector n{};
+        for (std::size_t i = 0; i < cell_.size(); ++i)
+            if (!by.weights[i].is_zero()) n = n + by.weights[i] * cell_[i].a;
         const Support reach = support(flat(n));
         // No rounding at all where all of n is of one part. Else what is taken from it must be within the cone's bounds,
         // so its part along the axis, of which multiples are exact, is made a little larger.
@@ -292,51 +298,70 @@ private:
         return proves_apart(cell_, spot_, by) ? std::optional(false) : std::nullopt;
     }
 
-    /// Of half angles a hair below 90 degrees the cone is all but a half-space, and what keeps it apart from a cell all but
-    /// its plane: faces whose weighted sum is the axis turned round, which the search below never quite gets to. Where the
-    /// apex is on those faces, they are enough together with a little of one that it is beyond. Without rounding.
-    bool apart_from_half_space() const {
-        if (cosine_ > 0x1p-10) return false;
+    //--------------------------------------------------------------------------------------------------------
+    // What the search below never quite gets to, without rounding: cells that are nothing beside their distance, for which
+    // the cone's side is a plane; half angles a hair below 90 degrees, of which the cone is all but a half-space; and balls
+    // that touch.
+
+    /// Calls visit(i, j, k) for three faces that meet in a point, until it returns true.
+    template <class Visit> bool any_corner(Visit visit) const {
         for (std::size_t i = 2; i < faces_.size(); ++i)
             for (std::size_t j = 1; j < i; ++j)
-                for (std::size_t k = 0; k < j; ++k) {
-                    Separation by;
-                    if (!turned_axis(i, j, k, by.weights)) continue;
-                    if (proves_apart(cell_, spot_, by)) return true;
-                    for (std::size_t beyond = 0; beyond < faces_.size(); ++beyond) {
-                        if (!(faces_[beyond].offset < 0)) continue;
-                        Separation more = by;
-                        more.weights[beyond] +=
-                            spot_.cosine * exact(axis_length_ / (2 * faces_[beyond].size));
-                        if (proves_apart(cell_, spot_, more)) return true;
-                    }
-                }
+                for (std::size_t k = 0; k < j; ++k)
+                    if (product(faces_[i].normal, cross(faces_[j].normal, faces_[k].normal)) != 0 &&
+                        visit(i, j, k))
+                        return true;
         return false;
     }
-    /// Weights of three faces that make minus the axis, by Cramer's rule.
-    bool turned_axis(std::size_t i, std::size_t j, std::size_t k, std::vector<Rational>& weights) const {
-        const auto off_axis = [&](std::size_t a, std::size_t b) {
-            return product(axis_, cross(faces_[a].normal, faces_[b].normal));
-        };
-        const double volume = -product(faces_[i].normal, cross(faces_[j].normal, faces_[k].normal));
-        if (volume == 0) return false;
-        for (const double side : {off_axis(j, k), off_axis(k, i), off_axis(i, j)})
-            if (side / volume < -0x1p-40) return false;
-        const auto exact_cross = [](const Vector& a, const Vector& b) -> Vector {
-            return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-        };
+    static Vector cross(const Vector& a, const Vector& b) {
+        return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    }
+    /// By Cramer's rule.
+    std::optional<Vector> corner(std::size_t i, std::size_t j, std::size_t k) const {
+        const HalfSpace &a = cell_[i], &b = cell_[j], &c = cell_[k];
+        const Rational volume = dot(a.a, cross(b.a, c.a));
+        if (volume.is_zero()) return std::nullopt;
+        return Rational(-1) / volume *
+               (a.b * cross(b.a, c.a) + b.b * cross(c.a, a.a) + c.b * cross(a.a, b.a));
+    }
+    /// Weights of three faces that make a vector, if none is negative.
+    std::optional<std::vector<Rational>> weights_of(const Vector& sum, std::size_t i, std::size_t j,
+                                                    std::size_t k) const {
+        const Flat n = flat(sum);
+        const double volume = product(faces_[i].normal, cross(faces_[j].normal, faces_[k].normal));
+        for (const auto& [a, b] : {std::pair(j, k), std::pair(k, i), std::pair(i, j)})
+            if (product(n, cross(faces_[a].normal, faces_[b].normal)) / volume < -0x1p-40 * length(n))
+                return std::nullopt;
         const Vector &a = cell_[i].a, &b = cell_[j].a, &c = cell_[k].a;
-        const Rational exact_volume = -dot(a, exact_cross(b, c));
-        if (exact_volume.is_zero()) return false;
-        weights.assign(cell_.size(), 0);
-        weights[i] = dot(spot_.axis, exact_cross(b, c)) / exact_volume;
-        weights[j] = dot(spot_.axis, exact_cross(c, a)) / exact_volume;
-        weights[k] = dot(spot_.axis, exact_cross(a, b)) / exact_volume;
-        return weights[i] >= 0 && weights[j] >= 0 && weights[k] >= 0;
+        const Rational exact_volume = dot(a, cross(b, c));
+        if (exact_volume.is_zero()) return std::nullopt;
+        std::vector<Rational> weights(cell_.size());
+        weights[i] = dot(sum, cross(b, c)) / exact_volume;
+        weights[j] = dot(sum, cross(c, a)) / exact_volume;
+        weights[k] = dot(sum, cross(a, b)) / exact_volume;
+        if (weights[i] < 0 || weights[j] < 0 || weights[k] < 0) return std::nullopt;
+        return weights;
     }
 
-    /// By the point of the cell that is nearest to the apex, and those nearest to the middle and the end of the axis: without
-    /// rounding, for cells that are nothing beside their distance, and balls that touch.
+    /// By faces whose weighted sum is the axis turned round. Where the apex is on those, they are enough together with a
+    /// little of one that it is beyond.
+    bool apart_from_half_space() const {
+        if (cosine_ > 0x1p-10) return false;
+        return any_corner([&](std::size_t i, std::size_t j, std::size_t k) {
+            const auto weights = weights_of(Rational(-1) * spot_.axis, i, j, k);
+            if (!weights) return false;
+            if (proves_apart(cell_, spot_, {*weights, {}})) return true;
+            for (std::size_t beyond = 0; beyond < faces_.size(); ++beyond) {
+                if (!(faces_[beyond].offset < 0)) continue;
+                Separation more = {*weights, {}};
+                more.weights[beyond] += spot_.cosine * exact(axis_length_ / (2 * faces_[beyond].size));
+                if (proves_apart(cell_, spot_, more)) return true;
+            }
+            return false;
+        });
+    }
+
+    /// By the point of the cell that is nearest to the apex, and those nearest to the middle and the end of the axis.
     std::optional<bool> by_nearest_points() const {
         const auto nearest = nearest_point(cell_, spot_.ball.centre);
         if (!nearest) return false;
@@ -349,6 +374,29 @@ private:
             if (point && proves_meeting(cell_, spot_, *point)) return true;
         }
         return std::nullopt;
+    }
+
+    /// By a corner of the cell, or the plane that touches the cone on the corners' side of it.
+    std::optional<bool> by_corners() const {
+        std::optional<Flat> some;
+        if (any_corner([&](std::size_t i, std::size_t j, std::size_t k) {
+                const auto point = corner(i, j, k);
+                if (!point || !std::all_of(cell_.begin(), cell_.end(),
+                                           [&](const HalfSpace& h) { return h.at(*point) >= 0; }))
+                    return false;
+                some = flat(*point - spot_.ball.centre);
+                return proves_meeting(cell_, spot_, *point);
+            }))
+            return true;
+        if (!some) return std::nullopt;
+        const Flat off = sum(*some, scaled(axis_, -product(*some, axis_)));
+        if (!(length(off) > 0)) return std::nullopt;
+        const Vector outward = exactly(sum(scaled(off, cosine_ / length(off)), scaled(axis_, -sine_)));
+        const bool apart = any_corner([&](std::size_t i, std::size_t j, std::size_t k) {
+            const auto weights = weights_of(outward, i, j, k);
+            return weights && apart_with(*weights);
+        });
+        return apart ? std::optional(false) : std::nullopt;
     }
 
     //--------------------------------------------------------------------------------------------------------

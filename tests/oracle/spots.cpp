@@ -290,7 +290,7 @@ TEST_CASE("spots: world space") {
         const std::vector<ViewMatrix> matrices = view_matrices(random);
         for (const auto& cameras : {kinds::symmetric(), kinds::orthographic_off_centre()})
             for (const ViewMatrix& matrix : matrices)
-                examine_all(cameras.front(), &matrix, 40, tally, seed);
+                examine_all(cameras.front(), &matrix, 24, tally, seed);
     });
     check("world space", tally);
 }
