@@ -241,22 +241,22 @@ template <lightbin::Options options> void count_sliced(const Part& p, Count& cou
 }  // namespace
 
 TEST_CASE("spot verdicts: no rung misses a pair that meets") {
-    using lightbin::DepthTest, lightbin::Footprint, lightbin::Slicing;
+    using lightbin::DepthTest, lightbin::Footprint, lightbin::Options, lightbin::Slicing;
     Count count;
     for (const Part& p : all_parts()) {
-        count_plain<{}>(p, count);
-        count_plain<{.footprint = Footprint::silhouette}>(p, count);
-        count_bounded<{.depth_test = DepthTest::interval}>(p, count);
-        count_bounded<{.depth_test = DepthTest::box}>(p, count);
-        count_bounded<{.depth_test = DepthTest::split_box}>(p, count);
-        count_bounded<{.footprint = Footprint::silhouette, .depth_test = DepthTest::box}>(p, count);
-        count_sliced<{.slicing = Slicing::clusters}>(p, count);
-        count_sliced<{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>(p, count);
-        count_sliced<{
+        count_plain<Options{}>(p, count);
+        count_plain<Options{.footprint = Footprint::silhouette}>(p, count);
+        count_bounded<Options{.depth_test = DepthTest::interval}>(p, count);
+        count_bounded<Options{.depth_test = DepthTest::box}>(p, count);
+        count_bounded<Options{.depth_test = DepthTest::split_box}>(p, count);
+        count_bounded<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box}>(p, count);
+        count_sliced<Options{.slicing = Slicing::clusters}>(p, count);
+        count_sliced<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>(p, count);
+        count_sliced<Options{
             .footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::clusters}>(
             p, count);
-        count_sliced<{.slicing = Slicing::z_bins}>(p, count);
-        count_sliced<{.footprint = Footprint::silhouette, .slicing = Slicing::z_bins}>(p, count);
+        count_sliced<Options{.slicing = Slicing::z_bins}>(p, count);
+        count_sliced<Options{.footprint = Footprint::silhouette, .slicing = Slicing::z_bins}>(p, count);
     }
     MESSAGE(count.met << " pairs that meet, in all rungs");
     CHECK(count.missed == 0);
