@@ -89,21 +89,24 @@ SpotLight touching_layer(const Subject& s, const Aim& aim, Random& random) {
 }
 
 SpotLight any_spot(const Subject& s, const Aim& aim, Random& random) {
-    switch (random.integer(0, 9)) {
+    switch (random.integer(0, 10)) {
     case 0:
     case 1:
         return spots::field(aim, random);
     case 2:
-    case 3:
         return spots::least_field(aim, random);
-    case 4:
+    case 3:
         return spots::in_any_ball(aim, random);
-    case 5:
+    case 4:
         return spots::at_eye(aim, random);
+    case 5:
     case 6:
-    case 7:
         return spots::touching(aim, random);
+    case 7:
+        return spots::along_edge(aim, random);
     case 8:
+        return spots::eye_on_cone(aim, random);
+    case 9:
         return touching_layer(s, aim, random);
     default:
         return random.chance(0.5) ? spots::huge(aim, random) : touching_layer(s, aim, random);
