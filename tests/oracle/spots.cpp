@@ -233,6 +233,7 @@ void examine_all(const Camera& camera, const ViewMatrix* matrix, std::size_t mos
     with.operator()<Options{.depth_test = DepthTest::box}>();
     with.operator()<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>();
     with.operator()<Options{.slicing = Slicing::clusters}>();
+    with.operator()<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
     with.operator()<Options{
         .footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
     with.operator()<Options{.slicing = Slicing::z_bins}>();

@@ -71,6 +71,7 @@ inline std::vector<ViewMatrix> view_matrices(Random& random) {
             random_view("centimetres", random, 100, {0.01, 0.01, 0.01}, 0),
             random_view("enlarged", random, 10, {3000, 3000, 3000}, 0),
             random_view("stretched", random, 10, {1, 0.3, 4}, 0),
+            random_view("a little uneven", random, 10, {1, 0.98, 1.02}, 0.01),
             random_view("mirrored, far away", random, 1e4, {-2, 2, 2}, 0),
             random_view("sheared", random, 10, {1, 1, 1}, 1.7),
             random_view("nearly flat", random, 10, {1, 1e-3, 1}, 0)};
