@@ -3,9 +3,9 @@
 //
 // Its floats are rounded, but every point of the true spot is within `blur` of the part of the ball that the cone of
 // these floats holds, the cone's sector. So a test against a plane is right that asks for `blur` more, and no angle has to
-// be made wider. With u = 2^-24, r the radius: the axis is within 5u of the true one, the sine within 3u of itself, and so
-// the sector's farthest point in any direction is within 10u r of the true one. 2^-18 = 64u is blur / r at least; in world
-// space what the move adds comes to it.
+// be made wider. With u = 2^-24, r the radius: the axis is within 5u of the true one, moved to view space within 18u, the
+// sine within 3u of itself, and so the sector's farthest point in any direction is within 25u r of the true one. 2^-18 = 64u
+// is blur / r at least; in world space what else the move takes comes to it, see world_to_view.hpp.
 #pragma once
 
 #include <lightbin/detail/camera.hpp>
