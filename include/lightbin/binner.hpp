@@ -197,7 +197,7 @@ private:
             return error;
         if (scratch_.empty()) scratch_.resize(1);
         isa_ = machine_isa(options.isa);
-        footprints_.project(isa_, view, source, threads, lists_.shared());
+        footprints_.project(isa_, view, source, threads, lists_.shared(), with_boxes);
         if constexpr (z_bins)
             ranked_.template rank<spots<LightRange>>(isa_, view, footprints_, inputs.slices);
         return std::nullopt;
@@ -242,7 +242,7 @@ private:
 
     Isa isa_ = Isa::scalar;
     std::vector<detail::Scratch> scratch_;  ///< one a worker
-    Footprints<options.footprint, with_depth || options.slicing != Slicing::none, with_boxes> footprints_;
+    Footprints<options.footprint, with_depth || options.slicing != Slicing::none> footprints_;
     std::conditional_t<z_bins, RankedFootprints<options.footprint, with_depth>, Nothing> ranked_;
     Lists lists_;
     std::conditional_t<with_depth, Lists, Nothing> transparent_;

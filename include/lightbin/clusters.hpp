@@ -46,8 +46,7 @@ public:
     ///
     /// spots  the lights are spots
     template <bool spots, class Threads>
-    std::optional<Error> build(Isa isa, const View& view,
-                               const Footprints<footprint, true, with_boxes>& footprints,
+    std::optional<Error> build(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
                                const Slices& slices, std::vector<detail::Scratch>& scratch,
                                [[maybe_unused]] const Threads& parallel) {
         cell_count_ = entries_ = 0;  // until there is a grid

@@ -59,8 +59,7 @@ void copy_spots(const void* lights, std::size_t first, std::size_t count, Sphere
 ///
 /// footprint     silhouette: with row spans
 /// with_spheres  have the view-space spheres or spots at hand, for a depth test; row spans need them anyway
-/// with_boxes    for the depth tests of boxes
-template <Footprint footprint, bool with_spheres, bool with_boxes = with_spheres> class Footprints {
+template <Footprint footprint, bool with_spheres> class Footprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette, keep = with_spheres || with_spans;
 
 public:
@@ -70,9 +69,10 @@ public:
     /// where the rectangles of its ball and of its least sphere meet.
     ///
     /// force_parallel  share even what is soon done: there will be more to share, and by then the threads are awake
+    /// for_boxes       have what boxes ask of spots at hand, too
     template <class Light, class ToLight>
     void project(Isa isa, const View& view, const Lights<Light, ToLight>& lights, const Parallel& parallel,
-                 bool force_parallel = false) {
+                 bool force_parallel = false, [[maybe_unused]] bool for_boxes = false) {
         lights_ = lights.array.size();
         const bool share =
             force_parallel || parallel.pays_off(detail::project_ns(isa, static_cast<double>(lights_)));
@@ -86,7 +86,7 @@ public:
             detail::SpotSource source = {&lights, detail::copy_spots<Light, ToLight>, to_view, nullptr,
                                          false};
             if constexpr (keep) arrays_.spots = source.kept = spots_.reserve(std::uint64_t{lights_} + chunk);
-            source.with_planes = with_boxes;
+            source.with_planes = with_spheres && for_boxes;
             run_parts(view, source, detail::project_spots_kernel(taken), threads);
         } else {
             detail::LightSource source = {.spheres = detail::as_they_are(lights),

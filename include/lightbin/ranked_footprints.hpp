@@ -36,8 +36,9 @@ public:
     /// behind them where they end close to the boundary.
     ///
     /// spots  the lights are spots
-    template <bool spots, class Lit>
-    void rank(Isa isa, const View& view, const Lit& footprints, const Slices& slices) {
+    template <bool spots>
+    void rank(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
+              const Slices& slices) {
         run_ = {0, footprints.visible()};
         area_ = footprints.area();
         bin_count_ = static_cast<std::size_t>(slices.count());

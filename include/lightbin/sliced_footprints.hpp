@@ -43,8 +43,9 @@ public:
     /// there are no runs.
     ///
     /// spots  the lights are spots
-    template <bool spots, class Lit>
-    std::uint64_t cut(Isa isa, const View& view, const Lit& footprints, const Slices& slices) {
+    template <bool spots>
+    std::uint64_t cut(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
+                      const Slices& slices) {
         const detail::FootprintArrays& lights = footprints.arrays();
         run_count_ = static_cast<std::size_t>(slices.count());
         const std::uint64_t places =
