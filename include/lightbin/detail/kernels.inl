@@ -46,7 +46,11 @@
 
 #include <lightbin/detail/project.inl>
 
-#include <lightbin/detail/spots.inl>
+#include <lightbin/detail/spot_lanes.inl>
+
+#include <lightbin/detail/view_spots.inl>
+
+#include <lightbin/detail/project_spots.inl>
 
 #include <lightbin/detail/silhouette.inl>
 
