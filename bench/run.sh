@@ -16,7 +16,7 @@
 #       What each rung of the ladder lists too much, against the exact set, and what it takes to build, on made scenes
 #       and real ones (those of the tests, or the named ones); writes build/bench/error_vs_time.csv, .svg and .png. Of
 #       grids that need no depth buffer, evaluations, bytes and times: no_pre_pass.csv. What clusters list too much, of
-#       made lights: cluster_error.csv.
+#       made lights: cluster_error.csv. Of scenes of spots, binned as spots, least and whole spheres: spot_error.csv.
 #   spots [--quick] [--tightness | --time] [WORD ...]
 #       What each rung lists of spots beside the exact pairs, as the sphere of their range, as their least sphere and as
 #       spots, by half angle; and what building them takes, as a ratio to as many spheres whose lists are as long: of the
