@@ -81,7 +81,7 @@ public:
         const detail::WorldToView* const to_view = lights.to_view ? &*lights.to_view : nullptr;
         // One light is done sooner than a vector is filled up with copies of it.
         const Isa taken = lights_ > 1 ? isa : Isa::scalar;
-        reserve(parts_for(threads));
+        reserve(parts_for(parallel));
         if constexpr (spots) {
             detail::SpotSource source = {&lights, detail::copy_spots<Light, ToLight>, to_view, nullptr,
                                          false};
@@ -114,9 +114,9 @@ public:
 private:
     static constexpr std::size_t chunk = detail::ChunkRects::size;
 
-    /// One part where 32 bits might not number the places of more.
-    std::size_t parts_for(const Parallel& threads) const {
-        return lights_ >> 31 == 0 ? detail::project_parts(lights_ / chunk + 1, threads.workers()) : 1;
+    /// As many where they are not shared; one part where 32 bits might not number the places of more.
+    std::size_t parts_for(const Parallel& parallel) const {
+        return lights_ >> 31 == 0 ? detail::project_parts(lights_ / chunk + 1, parallel.workers()) : 1;
     }
 
     /// Has a kernel project the lights, whole chunks a part.
