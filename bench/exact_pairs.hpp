@@ -61,11 +61,21 @@ void for_each_listed(std::span<const Pair> pairs, std::span<const std::uint32_t>
     }
 }
 
+/// A camera of the exact decider with a projection in floats.
+inline oracle::Camera camera_with(const glm::mat4& projection, lightbin::Extent screen, int tile_size) {
+    oracle::Camera camera;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row)
+            camera.m[column][row] = static_cast<double>(projection[column][row]);
+    camera.width = screen.width, camera.height = screen.height, camera.tile = tile_size;
+    return camera;
+}
+
 class ExactDecider {
 public:
     /// A symmetric perspective matrix; tiles from the lower left corner.
     ExactDecider(const glm::mat4& projection, lightbin::Extent screen, int tile_size)
-        : truth_(camera(projection, screen, tile_size)) {
+        : truth_(camera_with(projection, screen, tile_size)) {
         using oracle::nearly;
         for (int x = 0; x < truth_.oracle.tiles_x(); ++x)
             column_slopes_.push_back(
@@ -131,15 +141,6 @@ private:
         oracle::ExactSpot exact;
         oracle::FlatSpot flat;
     };
-
-    static oracle::Camera camera(const glm::mat4& projection, lightbin::Extent screen, int tile_size) {
-        oracle::Camera camera;
-        for (int column = 0; column < 4; ++column)
-            for (int row = 0; row < 4; ++row)
-                camera.m[column][row] = static_cast<double>(projection[column][row]);
-        camera.width = screen.width, camera.height = screen.height, camera.tile = tile_size;
-        return camera;
-    }
 
     Range within_view(float min, float max) const {
         return {std::max(static_cast<double>(min), truth_.range.min),

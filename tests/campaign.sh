@@ -33,6 +33,13 @@ spot_table() {
     awk -v name="$2" '{ verdicts += $2; certificates += $3; open += $4; missed += $5 }
         END { printf "| %s | %.3g | %.3g | %d | %d |\n", name, verdicts, certificates, open, missed }' "$1"
 }
+# by_line TABLE FILE: a row of the table for each line, named by its first word
+by_line() {
+    while read -r line; do
+        echo "$line" >$work/line
+        "$1" $work/line "$(echo "${line%% *}" | tr _ ' ')"
+    done <"$2"
+}
 # spots ROUNDS: all builds, and that part of the report in spots.md
 spots() {
     few=$((($1 + 4) / 5))
@@ -63,10 +70,7 @@ spots() {
         echo
         echo "| cameras | verdicts | by certificates | left open | misses |"
         echo "| --- | --- | --- | --- | --- |"
-        while read -r line; do
-            echo "$line" >$work/line
-            spot_table $work/line "$(echo "${line%% *}" | tr _ ' ')"
-        done <$work/1_gcc_O2.spots
+        by_line spot_table $work/1_gcc_O2.spots
     } >$work/spots.md
 }
 if [ "${1-}" = spots ]; then
@@ -176,10 +180,7 @@ table() {
     echo
     echo "| family | cases | proofs | in rationals | misses | other complaints |"
     echo "| --- | --- | --- | --- | --- | --- |"
-    while read -r line; do
-        echo "$line" >$work/line
-        table $work/line "$(echo "${line%% *}" | tr _ ' ')"
-    done <$work/1_gcc_O2.txt
+    by_line table $work/1_gcc_O2.txt
     echo
     echo "## Formulas"
     echo

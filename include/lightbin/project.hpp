@@ -69,7 +69,7 @@ public:
     /// where the rectangles of its ball and of its least sphere meet.
     ///
     /// force_parallel  share even what is soon done: there will be more to share, and by then the threads are awake
-    /// for_boxes       have what boxes ask of spots at hand, too
+    /// for_boxes       have what boxes ask of spots at hand, too; only with_spheres
     template <class Light, class ToLight>
     void project(Isa isa, const View& view, const Lights<Light, ToLight>& lights, const Parallel& parallel,
                  bool force_parallel = false, [[maybe_unused]] bool for_boxes = false) {
@@ -84,9 +84,8 @@ public:
         reserve(parts_for(parallel));
         if constexpr (spots) {
             detail::SpotSource source = {&lights, detail::copy_spots<Light, ToLight>, to_view, nullptr,
-                                         false};
+                                         for_boxes};
             if constexpr (keep) arrays_.spots = source.kept = spots_.reserve(std::uint64_t{lights_} + chunk);
-            source.with_planes = with_spheres && for_boxes;
             run_parts(view, source, detail::project_spots_kernel(taken), threads);
         } else {
             detail::LightSource source = {.spheres = detail::as_they_are(lights),

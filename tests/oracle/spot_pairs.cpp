@@ -35,7 +35,7 @@ struct Bounds {
 /// One tile and one spot, by nothing but certificates.
 class OneByOne {
 public:
-    explicit OneByOne(const glm::mat4& projection) : oracle(camera(projection)) {}
+    explicit OneByOne(const glm::mat4& projection) : oracle(camera_with(projection, small, tile_size)) {}
 
     std::uint32_t facts(const lightbin::Spot& spot, int x, int y, const Bounds& bounds) {
         const auto tile = static_cast<std::size_t>(y * oracle.tiles_x() + x);
@@ -52,15 +52,6 @@ public:
     int open = 0;
 
 private:
-    static oracle::Camera camera(const glm::mat4& projection) {
-        oracle::Camera camera;
-        for (int column = 0; column < 4; ++column)
-            for (int row = 0; row < 4; ++row)
-                camera.m[column][row] = static_cast<double>(projection[column][row]);
-        camera.width = small.width, camera.height = small.height, camera.tile = tile_size;
-        return camera;
-    }
-
     bool meets(const lightbin::Spot& s, int x, int y, std::optional<float> min, std::optional<float> max) {
         const auto spot =
             oracle::exact_spot(s.x, s.y, s.z, s.radius, s.axis_x, s.axis_y, s.axis_z, s.cos_half_angle);

@@ -21,7 +21,7 @@ std::vector<Spot> random_spots(std::size_t count, std::uint32_t seed) {
     return spots;
 }
 
-const ZBounds some_bounds(const View& view, std::vector<float>& min, std::vector<float>& max) {
+ZBounds some_bounds(const View& view, std::vector<float>& min, std::vector<float>& max) {
     for (std::size_t tile = 0; tile < view.tile_count(); ++tile) {
         min.push_back(static_cast<float>(tile % 97));
         max.push_back(min.back() + static_cast<float>(tile % 5));

@@ -26,8 +26,8 @@ struct LightSource {
     Sphere* kept;
 };
 
-/// The same of spots, which stay in `kept`, if not null, which has some more places behind them. `copy` makes Spots of some lights: their balls,
-/// and as vec4s their axes and cosines.
+/// The same of spots: `copy` makes Spots of some lights, their balls, and as vec4s their axes and cosines. They stay in
+/// `kept`, if not null, which has some more places behind them.
 struct SpotSource {
     const void* lights;
     void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* balls, Sphere* cones);

@@ -46,11 +46,15 @@ struct SlabSpots {
     Floats left[4];     ///< `most` less what the slice takes
 };
 
+/// As TestedLight::reach2.
+LIGHTBIN_TARGET inline Floats reach2_of(Floats radius) {
+    return mul(mul(radius, radius), all(1 + 0x1p-20f)) + all(0x1p-125f);
+}
+
 /// Spheres in the coordinates of the boxes.
 LIGHTBIN_TARGET inline SlabSpheres slab_sphere(const SlabBoxes& slab, Floats x, Floats y, Floats z, Floats radius) {
     const Floats apart = greater(greater(all(slab.z0) - z, z - all(slab.z1)), all(0.0f));
-    const Floats reach2 = mul(mul(radius, radius), all(1 + 0x1p-20f)) + all(0x1p-125f);
-    return {x, y, reach2 - mul(apart, apart)};
+    return {x, y, reach2_of(radius) - mul(apart, apart)};
 }
 
 /// Those of a list, `count` or as many as a vector has, whose spheres are at these places.

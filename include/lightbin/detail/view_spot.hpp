@@ -11,8 +11,6 @@
 #include <lightbin/detail/camera.hpp>
 #include <lightbin/detail/cell_boxes.hpp>
 #include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/platform.hpp>
-#include <lightbin/options.hpp>
 #include <lightbin/sphere.hpp>
 
 #include <cstdint>

@@ -37,9 +37,8 @@ LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedL
 /// the half spaces around the cone is not in it. (Unreal tests one such plane, chosen for each box.)
 LIGHTBIN_TARGET inline unsigned boxes_missed(const float* cell, const ViewSpot& spot) {
     const Floats z = distance(all(spot.ball.z), cell), x = distance(all(spot.ball.x), cell + 128),
-                 y = distance(all(spot.ball.y), cell + 256), radius = all(spot.ball.radius);
-    const Floats reach2 = mul(mul(radius, radius), all(1 + 0x1p-20f)) + all(0x1p-125f);
-    auto missed = less(reach2, mul(x, x) + mul(y, y) + mul(z, z));
+                 y = distance(all(spot.ball.y), cell + 256);
+    auto missed = less(reach2_of(all(spot.ball.radius)), mul(x, x) + mul(y, y) + mul(z, z));
     for (unsigned i = 0; i < 4; ++i) {
         const SpotPlane& plane = spot.planes[i];
         const Floats deepest = mul(load_floats(cell + spot.corners[i][0]), all(plane.x)) +
