@@ -10,6 +10,7 @@
 #include <lightbin/isa.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/lights.hpp>
+#include <lightbin/list_format.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/parallel.hpp>
 #include <lightbin/project.hpp>
@@ -43,6 +44,17 @@ template <DepthTest depth_test> ZBounds z_bounds_left_out() {
     return {};
 }
 
+/// The same for slices.
+struct NoSlices {
+    operator const Slices&() const;
+};
+template <DepthTest depth_test> NoSlices slices_left_out() {
+    static_assert(depth_test > DepthTest::split_box,
+                  "lightbin: this Binner slices depth: bin(view, lights, {.slices = *slices}), with what "
+                  "Slices::exponential() or linear() returns");
+    return {};
+}
+
 }  // namespace detail
 
 /// What Binner::bin() reads beside the lights: a member for each option that needs one, which must be given.
@@ -52,10 +64,15 @@ template <DepthTest depth_test, Slicing slicing = Slicing::none> struct Inputs {
     ZBounds bounds = detail::z_bounds_left_out<depth_test>();
 };
 template <> struct Inputs<DepthTest::none> {};
-template <DepthTest depth_test> struct Inputs<depth_test, Slicing::clusters> { const Slices& slices; };
-template <> struct Inputs<DepthTest::none, Slicing::z_bins> { const Slices& slices; };
+template <DepthTest depth_test> struct Inputs<depth_test, Slicing::clusters> {
+    const Slices& slices = detail::slices_left_out<depth_test>();
+};
+template <DepthTest depth_test>
+requires(depth_test == DepthTest::none) struct Inputs<depth_test, Slicing::z_bins> {
+    const Slices& slices = detail::slices_left_out<depth_test>();
+};
 template <DepthTest depth_test> struct Inputs<depth_test, Slicing::z_bins> {
-    const Slices& slices;
+    const Slices& slices = detail::slices_left_out<depth_test>();
     ZBounds bounds = detail::z_bounds_left_out<depth_test>();
 };
 
@@ -101,6 +118,8 @@ template <Options options = Options{}> class Binner {
 public:
     using Id = std::conditional_t<options.ids == IdWidth::u16, std::uint16_t, std::uint32_t>;
     using Inputs = lightbin::Inputs<options.depth_test, options.slicing>;
+    /// The form of the grid as it is, for a shader that reads it: ShaderOptions::format.
+    static constexpr ListFormat list_format = {.ids = options.ids};
 
     Binner() = default;
     /// Takes over the other's memory and grid. The other is as new.

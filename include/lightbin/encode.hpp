@@ -3,9 +3,9 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/names.hpp>
 #include <lightbin/detail/sizes.hpp>
 #include <lightbin/light_grid.hpp>
+#include <lightbin/list_format.hpp>
 #include <lightbin/result.hpp>
 
 #include <algorithm>
@@ -18,27 +18,6 @@
 #include <lightbin/detail/warnings_off.inl>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
-
-/// How the lights of a tile are written down.
-enum class ListEncoding : std::uint8_t {
-    offset_count,  ///< grid.ranges(), and the ids of all tiles one after the other (Tiled Shading, Figure 1)
-    /// `capacity` ids a tile; a shorter list ends with the sentinel, the largest value of the id's width.
-    /// Needs no table of tiles (Light Indexed Deferred Rendering).
-    sentinel,
-    bitmask,  ///< (max_lights + 31) / 32 words of 32 bits a tile: bit b of word w is light 32 w + b
-};
-
-constexpr const char* to_string(ListEncoding encoding) {
-    return detail::name_at(encoding, {"offset_count", "sentinel", "bitmask"});
-}
-
-/// A form of the lists. What encode() writes and what a shader reads must have the same.
-struct ListFormat {
-    ListEncoding encoding = ListEncoding::offset_count;
-    IdWidth ids = IdWidth::u32;    ///< offset_count, sentinel
-    std::uint32_t capacity = 0;    ///< sentinel: lights a tile can hold, 1 or more
-    std::uint32_t max_lights = 0;  ///< ids are below it; bitmask: needed, others: 0 is as many as ids number
-};
 
 /// Returns how many lights ids of a format can number.
 inline std::uint64_t countable_lights(const ListFormat& format) {

@@ -4,13 +4,14 @@
 
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/world_to_view.hpp>
+#include <lightbin/matrix.hpp>
 #include <lightbin/sphere.hpp>
 #include <lightbin/spot.hpp>
 
 #include <concepts>
 #include <functional>
+#include <iterator>
 #include <optional>
-#include <ranges>
 #include <span>
 #include <type_traits>
 
@@ -33,23 +34,67 @@ concept Vec4Of = requires(const Light& light) {
 /// How a light becomes a Sphere or a Spot by default: what is one, derives from one or converts to one, as it is; else a
 /// Sphere of the x, y, z and w of a vec4 of floats, or of doubles, which are rounded outward.
 struct AsLight {
-    template <class Light> constexpr auto operator()(const Light& light) const {
-        if constexpr (std::convertible_to<const Light&, Spot>) {
+    template <class Light>
+    requires(std::convertible_to<const Light&, Sphere> || detail::Vec4Of<Light, float> ||
+             detail::Vec4Of<Light, double>) constexpr auto
+    operator()(const Light& light) const {
+        if constexpr (std::convertible_to<const Light&, Spot>)
             return static_cast<Spot>(light);
-        } else if constexpr (std::convertible_to<const Light&, Sphere>) {
+        else if constexpr (std::convertible_to<const Light&, Sphere>)
             return static_cast<Sphere>(light);
-        } else if constexpr (detail::Vec4Of<Light, float>) {
+        else if constexpr (detail::Vec4Of<Light, float>)
             return Sphere{light.x, light.y, light.z, light.w};
-        } else {
-            static_assert(
-                detail::Vec4Of<Light, double>,
-                "lightbin: this light is no Sphere or Spot and has no float or double x, y, z and w (the "
-                "radius): pass view_space(lights, to_light) or world_space(lights, view_matrix, to_light), "
-                "where to_light makes a lightbin::Sphere or a lightbin::Spot of a light");
+        else
             return detail::sphere_around(light.x, light.y, light.z, light.w);
-        }
     }
 };
+
+namespace detail {
+
+template <class Range>
+concept Array = requires(const Range& range) {
+    std::span(std::data(range), std::size(range));
+};
+template <class ToLight, class Light>
+concept MakesLights = std::convertible_to<std::invoke_result_t<const ToLight&, const Light&>, Sphere>;
+
+/// Returns `to_light`, or where it can't be one, the compiler's sentence and one that can, so that no other error follows.
+template <class Light, class ToLight> constexpr auto checked_to_light(const ToLight& to_light) {
+    constexpr bool can_be_called = std::invocable<const ToLight&, const Light&>;
+    if constexpr (std::same_as<ToLight, AsLight>)
+        static_assert(
+            can_be_called,
+            "lightbin: this light is no Sphere or Spot and has no float or double x, y, z and w (the "
+            "radius): pass view_space(lights, to_light) or world_space(lights, view_matrix, to_light), "
+            "where to_light makes a lightbin::Sphere or a lightbin::Spot of a light");
+    else
+        static_assert(
+            can_be_called,
+            "lightbin: to_light is called, as const, with a const reference to one of the lights, and "
+            "can't be called with it");
+    if constexpr (MakesLights<ToLight, Light>) {
+        return to_light;
+    } else {
+        static_assert(!can_be_called,
+                      "lightbin: to_light must return a lightbin::Sphere or a lightbin::Spot");
+        return [](const Light&) { return Sphere(); };
+    }
+}
+
+/// Returns the caller's array, or where it is none, the compiler's sentence and an empty one.
+template <class Range> auto checked_array(const Range& lights) {
+    static_assert(
+        Array<Range>,
+        "lightbin: lights are an array, a std::vector, a std::span or another range whose elements lie one "
+        "after another, with data() and size()");
+    if constexpr (Array<Range>)
+        return std::span<const std::remove_cvref_t<decltype(*std::data(lights))>>(std::data(lights),
+                                                                                  std::size(lights));
+    else
+        return std::span<const Sphere>();
+}
+
+}  // namespace detail
 
 /// Lights made by view_space() or world_space(): a view of the caller's array, how an element becomes a Sphere or a Spot,
 /// and how that is moved to view space.
@@ -86,20 +131,21 @@ template <class Light, class ToLight> struct Lights {
 /// must live until the Binner's call returns.
 ///
 /// to_light  a callable that makes a Sphere, or a Spot, of an element; it is copied, and called as const
-template <std::ranges::contiguous_range Range, class ToLight = AsLight>
-auto view_space(const Range& lights, ToLight to_light = {}) {
-    using Light = std::ranges::range_value_t<const Range>;
-    return Lights<Light, ToLight>{
-        std::span<const Light>(std::ranges::data(lights), std::ranges::size(lights)), to_light, {}};
+template <class Range, class ToLight = AsLight>
+auto view_space(const Range& lights, const ToLight& to_light = {}) {
+    const auto array = detail::checked_array(lights);
+    const auto checked = detail::checked_to_light<typename decltype(array)::value_type>(to_light);
+    return Lights<typename decltype(array)::value_type, std::remove_const_t<decltype(checked)>>{
+        array, checked, {}};
 }
 
-/// Returns lights in world space, moved by `view_matrix` (view_matrix[column][row], affine: rotation,
+/// Returns lights in world space, moved by `view_matrix` (any type that matrix.hpp lists; affine: rotation,
 /// translation, scale) as they are read. The rounding of the move is in the spheres and cones: no light is missed by
 /// it. A matrix that is far from a rotation and a scale bends cones out of shape: spots are moved as least spheres then.
-template <std::ranges::contiguous_range Range, class Matrix, class ToLight = AsLight>
-auto world_space(const Range& lights, const Matrix& view_matrix, ToLight to_light = {}) {
+template <class Range, class ViewMatrix, class ToLight = AsLight>
+auto world_space(const Range& lights, const ViewMatrix& view_matrix, const ToLight& to_light = {}) {
     auto result = view_space(lights, to_light);
-    result.to_view.emplace(view_matrix);
+    result.to_view.emplace(detail::to_matrix(view_matrix));
     return result;
 }
 

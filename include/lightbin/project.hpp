@@ -29,7 +29,8 @@ namespace detail {
 /// The lights that no stage takes, ids being 32 bits at most.
 template <class Light, class ToLight>
 std::optional<Error> refuse(const Lights<Light, ToLight>& lights, std::uint64_t most = 0xffffffff) {
-    if (lights.to_view && !lights.to_view->affine()) return Error{ErrorCode::view_matrix_not_affine};
+    if (lights.to_view)
+        if (const auto code = lights.to_view->refusal()) return Error{*code};
     if (lights.array.size() > most) return Error{ErrorCode::too_many_lights, lights.array.size(), most};
     return std::nullopt;
 }

@@ -24,6 +24,7 @@ enum class ErrorCode : std::uint8_t {
     // View::from_projection
     matrix_not_finite,
     not_a_projection,
+    projection_transposed,
     eye_not_at_origin,
     image_axes_rotated,
     oblique_depth,
@@ -33,6 +34,7 @@ enum class ErrorCode : std::uint8_t {
     tile_size_out_of_range,
     // lights
     view_matrix_not_affine,
+    view_matrix_transposed,
     too_many_lights,
     // light grid
     too_many_entries,
@@ -78,14 +80,19 @@ constexpr const char* to_string(ErrorCode code) {
         return "the projection matrix has a NaN or infinite entry";
     case ErrorCode::not_a_projection:
         return "the matrix is neither a perspective nor an orthographic projection: its w row must read z "
-               "alone, or be a positive constant alone";
+               "alone, or be a positive constant alone. Pass the projection alone, not projection times view "
+               "(lights in world space go through world_space()), and not the view matrix";
+    case ErrorCode::projection_transposed:
+        return "the matrix is a projection when it is transposed: pass lightbin::matrix(numbers, "
+               "MatrixLayout::row_major), or your type as it is where matrix.hpp lists it";
     case ErrorCode::eye_not_at_origin:
         return "the perspective matrix does not have its eye at the origin of view space: pass the "
                "projection alone, not projection times view (lights in world space go through world_space())";
     case ErrorCode::image_axes_rotated:
         return "the projection rotates or shears the image (its x row reads y, its y row reads x, or an "
-               "orthographic row reads z): pass the projection without that rotation and apply it to the "
-               "pixels";
+               "orthographic row reads z). Pass the projection alone, not projection times view, and not the "
+               "view "
+               "matrix; where the projection itself turns the image, apply that to the pixels";
     case ErrorCode::oblique_depth:
         return "the projection has an oblique near plane (its z row reads x or y): pass the projection "
                "without it; its tiles are the same and its near plane misses no light";
@@ -99,7 +106,13 @@ constexpr const char* to_string(ErrorCode code) {
     case ErrorCode::tile_size_out_of_range:
         return "the tile size must be at least 1 pixel, and is {given}";
     case ErrorCode::view_matrix_not_affine:
-        return "the world-to-view matrix is not affine: its entries must be finite and its last row 0 0 0 1";
+        return "the world-to-view matrix is not affine: its entries must be finite and its last row 0 0 0 1. "
+               "Pass "
+               "the view matrix alone, not projection times view";
+    case ErrorCode::view_matrix_transposed:
+        return "the world-to-view matrix is transposed, its last column is 0 0 0 1: pass "
+               "lightbin::matrix(numbers, "
+               "MatrixLayout::row_major), or your type as it is where matrix.hpp lists it";
     case ErrorCode::too_many_lights:
         return "{needed} lights are too many for the id type, which counts to {available}: use wider "
                "Options::ids or fewer lights";
@@ -214,6 +227,13 @@ public:
     const T& operator*() const { return *value(state_); }
     T* operator->() { return value(state_); }
     const T* operator->() const { return value(state_); }
+
+    /// Where a T is wanted, a Result is none yet: the compiler says so.
+    operator const T&() const {
+        static_assert(
+            sizeof(T) == 0,
+            "lightbin: this is still a Result: if (!result) it has result.error(), else pass *result");
+    }
 
     const Error& error() const {
         LIGHTBIN_ASSERT(!has_value());

@@ -4,15 +4,15 @@
 
 #include <lightbin/detail/camera.hpp>
 #include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/matrix.hpp>
 #include <lightbin/detail/names.hpp>
 #include <lightbin/detail/rounding.hpp>
+#include <lightbin/matrix.hpp>
 #include <lightbin/result.hpp>
+#include <lightbin/view_summary.hpp>
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 
 #include <lightbin/detail/warnings_off.inl>
@@ -87,22 +87,20 @@ public:
 
     /// Returns the view of a projection matrix, or an Error that names why the matrix or a size is refused.
     ///
-    /// projection  maps view space to clip space, columns first: projection[column][row] in float or double,
-    ///             a glm::mat4 as it is. Perspective: symmetric or not, jittered, finite or infinite far,
-    ///             standard or reversed Z, looking down -z or +z, x or y flipped. Orthographic: centred or
-    ///             not.
+    /// projection  maps view space to clip space. A glm::mat4 or any projection[column][row] of floats or doubles, and
+    ///             other types as they are: see matrix.hpp. Perspective: symmetric or not, jittered, finite or
+    ///             infinite far, standard or reversed Z, looking down -z or +z, x or y flipped. Orthographic:
+    ///             centred or not.
     /// viewport    0 to max_side pixels a side. An empty one has no tiles.
     template <class Matrix>
     static Result<View> from_projection(const Matrix& projection, Extent viewport,
                                         const ViewOptions& options = {}) {
-        double m[4][4];
-        detail::copy_matrix(projection, m);
-        return from_rows(m, viewport, options);
+        return from_columns(detail::to_matrix(projection), viewport, options);
     }
 
     /// Returns the same projection and viewport on a grid of other tiles, as from_projection makes it.
     Result<View> with_tile_size(int tile_size) const {
-        return from_rows(projection_, viewport_, {tile_size, clip_depth_, origin_, reversed_});
+        return from_columns(projection_, viewport_, {tile_size, clip_depth_, origin_, reversed_});
     }
 
     Extent viewport() const { return viewport_; }
@@ -115,6 +113,37 @@ public:
     WindowOrigin origin() const { return origin_; }
     bool orthographic() const { return camera_.orthographic; }
     bool reversed_z() const { return reversed_; }
+
+    /// Returns what was read from the matrix, and what looks like a mistake: std::puts(to_string(view.summary()).c_str()).
+    ViewSummary summary() const {
+        const bool flat = orthographic();
+        const auto size = [&](const detail::ImageAxis& axis, int side) {
+            const double low = slope(axis, 0), high = slope(axis, side);
+            return std::fabs(flat ? high - low
+                                  : (std::atan(high) - std::atan(low)) * (180 / 3.14159265358979324));
+        };
+        const Matrix& m = projection_;
+        // At a view depth of 1, or anywhere: w by scale is half of the image's width or height.
+        const double aspect = std::fabs(m[1][1] / m[0][0]),
+                     pixel_aspect = aspect * viewport_.height / viewport_.width;
+        const auto is_one = [](double x) { return std::fabs(x) == 1; };
+        return {flat,
+                size(camera_.x, viewport_.width),
+                size(camera_.y, viewport_.height),
+                aspect,
+                depth_at(ndc(reversed_ ? 1 : 0), 0),
+                depth_at(ndc(reversed_ ? 0 : 1), 0),
+                camera_.z_sign < 0,
+                reversed_,
+                m[0][0] < 0,
+                m[1][1] < 0,
+                viewport_.width,
+                viewport_.height,
+                tile_size_,
+                !flat && one_is_transposed(m),
+                flat && is_one(m[0][0]) && is_one(m[1][1]) && is_one(m[2][2]),
+                m[0][0] < 0 && m[1][1]<0, tile_count()> 0 && !(std::fabs(pixel_aspect - 1) <= 0.02)};
+    }
 
     /// View depth of the near plane, rounded down, and of the far plane, rounded up (+inf where there is
     /// none).
@@ -153,6 +182,12 @@ public:
                 static_cast<double>(camera_.z_sign) * point.depth};
     }
 
+    /// Returns the tile of a pixel. None where it lies outside of the viewport.
+    std::optional<TilePosition> tile_of_pixel(int x, int y) const {
+        if (x < 0 || x >= viewport_.width || y < 0 || y >= viewport_.height) return std::nullopt;
+        return TilePosition{x / tile_size_, y / tile_size_};
+    }
+
     /// Returns the tile of a place in the image, for LightGrid::lights_in(). None where that lies outside of the
     /// viewport, or not in front of a perspective view's eye.
     std::optional<TilePosition> tile_at(const ImagePoint& point) const {
@@ -167,7 +202,26 @@ private:
 
     View() = default;  // from_projection() alone makes one
 
-    static Result<View> from_rows(const double (&m)[4][4], Extent viewport, const ViewOptions& options) {
+    /// Why a matrix is of no promised kind, whatever its numbers are.
+    static std::optional<ErrorCode> wrong_shape(const Matrix& m) {
+        const double w_x = m[0][3], w_y = m[1][3], w_z = m[2][3], w_1 = m[3][3];
+        const bool perspective = w_x == 0 && w_y == 0 && w_z != 0 && w_1 == 0;
+        const bool orthographic = w_x == 0 && w_y == 0 && w_z == 0 && w_1 > 0;
+        if (w_x == 0 && w_y == 0 && w_z != 0 && w_1 != 0) return ErrorCode::eye_not_at_origin;
+        if (!perspective && !orthographic) return ErrorCode::not_a_projection;
+        if (perspective && (m[3][0] != 0 || m[3][1] != 0)) return ErrorCode::eye_not_at_origin;
+        if (m[1][0] != 0 || m[0][1] != 0) return ErrorCode::image_axes_rotated;
+        if (orthographic && (m[2][0] != 0 || m[2][1] != 0)) return ErrorCode::image_axes_rotated;
+        if (m[0][2] != 0 || m[1][2] != 0) return ErrorCode::oblique_depth;
+        return std::nullopt;
+    }
+
+    /// A perspective's one, or minus one, is what its w reads of z. Transposed, it is what z reads of 1.
+    static bool one_is_transposed(const Matrix& m) {
+        return std::fabs(m[3][2]) == 1 && std::fabs(m[2][3]) != 1;
+    }
+
+    static Result<View> from_columns(const Matrix& m, Extent viewport, const ViewOptions& options) {
         const auto error = [](ErrorCode code, int value = 0, int available = 0) {
             return Error{code, static_cast<std::uint64_t>(value), static_cast<std::uint64_t>(available)};
         };
@@ -175,19 +229,16 @@ private:
             if (side < 0 || side > max_side) return error(ErrorCode::viewport_out_of_range, side, max_side);
         if (options.tile_size < 1) return error(ErrorCode::tile_size_out_of_range, options.tile_size);
         if (!detail::finite(m)) return error(ErrorCode::matrix_not_finite);
-
-        const double w_x = m[0][3], w_y = m[1][3], w_z = m[2][3], w_1 = m[3][3];
-        const bool perspective = w_x == 0 && w_y == 0 && w_z != 0 && w_1 == 0;
-        const bool orthographic = w_x == 0 && w_y == 0 && w_z == 0 && w_1 > 0;
-        if (w_x == 0 && w_y == 0 && w_z != 0 && w_1 != 0) return error(ErrorCode::eye_not_at_origin);
-        if (!perspective && !orthographic) return error(ErrorCode::not_a_projection);
-        if (perspective && (m[3][0] != 0 || m[3][1] != 0)) return error(ErrorCode::eye_not_at_origin);
-        if (m[1][0] != 0 || m[0][1] != 0) return error(ErrorCode::image_axes_rotated);
-        if (orthographic && (m[2][0] != 0 || m[2][1] != 0)) return error(ErrorCode::image_axes_rotated);
-        if (m[0][2] != 0 || m[1][2] != 0) return error(ErrorCode::oblique_depth);
+        if (const auto wrong = wrong_shape(m)) {
+            const bool transposed = !wrong_shape(detail::transposed(m)) &&
+                                    (*wrong != ErrorCode::oblique_depth || one_is_transposed(m));
+            return error(transposed ? ErrorCode::projection_transposed : *wrong);
+        }
+        const double w_z = m[2][3], w_1 = m[3][3];
+        const bool orthographic = w_z == 0;
 
         View view;
-        std::memcpy(view.projection_, m, sizeof m);
+        view.projection_ = m;
         view.viewport_ = viewport;
         view.tile_size_ = options.tile_size;
         view.origin_ = options.origin;
@@ -287,7 +338,7 @@ private:
     }
 
     detail::Camera camera_;
-    double projection_[4][4] = {};
+    Matrix projection_ = {};
     Extent viewport_;
     int tile_size_ = 1;
     WindowOrigin origin_ = WindowOrigin::lower_left;

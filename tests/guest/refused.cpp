@@ -1,31 +1,51 @@
-// Mistakes that must not compile, a number each. The comment behind a case is what the compiler must say.
+// Mistakes that must not compile, a number each. The comment behind a case is what the compiler must say, in one error.
 #include <lightbin/lightbin.hpp>
 
+#include <array>
+#include <list>
 #include <string>
 #include <vector>
 
+namespace {
+
+struct Lamp {
+    std::string name;
+    float position[3], range;
+};
+
+/// As Eigen's and OpenSceneGraph's are.
+struct Vec4 {
+    float numbers[4];
+    float x() const { return numbers[0]; }
+    float y() const { return numbers[1]; }
+    float z() const { return numbers[2]; }
+    float w() const { return numbers[3]; }
+};
+
+/// As Irrlicht's, Qt's and others are: nobody knows whether its vectors are rows or columns.
+struct CalledMatrix {
+    float operator()(int row, int column) const { return row == column ? 1.0f : 0.0f; }
+};
+
+}  // namespace
+
 void mistake() {
     [[maybe_unused]] lightbin::Binner<> binner;
+    [[maybe_unused]] lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::box}> tested;
+    const double projection[4][4] = {};
+    const auto view = lightbin::View::from_projection(projection, {64, 64});
+    [[maybe_unused]] const std::vector<lightbin::Sphere> lights;
+    [[maybe_unused]] const std::vector<Lamp> lamps;
 #if MISTAKE == 1  // a Parallel refers to `run`, and this one is gone after the expression
     [[maybe_unused]] const lightbin::Parallel parallel(8, [](std::size_t n, const auto& body) {
         for (std::size_t i = 0; i < n; ++i)
             body(i);
     });
 #elif MISTAKE == 2  // this light is no Sphere or Spot and has no float or double x, y, z and w .*: pass view_space
-    struct Lamp {
-        std::string name;
-        float position[3], range;
-    };
-    const double projection[4][4] = {};
-    (void)binner.bin(*lightbin::View::from_projection(projection, {64, 64}), std::vector<Lamp>());
+    (void)binner.bin(*view, lamps);
 #elif MISTAKE == 3  // View.*private|private.*View
-    [[maybe_unused]] lightbin::View view;
-#elif MISTAKE >= 4
-    const double projection[4][4] = {};
-    const auto view = lightbin::View::from_projection(projection, {64, 64});
-    const std::vector<lightbin::Sphere> lights;
-    [[maybe_unused]] lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::box}> tested;
-#if MISTAKE == 4    // this Binner's depth test needs Z bounds: bin.view, lights, ..bounds =
+    [[maybe_unused]] lightbin::View none;
+#elif MISTAKE == 4  // this Binner's depth test needs Z bounds: bin.view, lights, ..bounds =
     (void)tested.bin(*view, lights);
 #elif MISTAKE == 5  // this Binner's depth test needs Z bounds
     (void)tested.bin(*view, lights, {}, lightbin::Serial());
@@ -35,6 +55,48 @@ void mistake() {
     (void)binner.bin(*view, lights, {.bounds = {}});
 #elif MISTAKE == 8  // a Binner's ids have 16 or 32 bits
     [[maybe_unused]] lightbin::Binner<lightbin::Options{.ids = lightbin::IdWidth::u8}> narrow;
-#endif
+#elif MISTAKE ==                                                                                             \
+    9  // this light is no Sphere or Spot and has no float or double x, y, z and w .*: pass view_space
+    (void)binner.bin(*view, std::vector<Vec4>());
+#elif MISTAKE == 10  // this light is no Sphere or Spot
+    (void)binner.bin(*view, lightbin::world_space(lamps, projection));
+#elif MISTAKE == 11  // to_light is called, as const, with a const reference to one of the lights
+    (void)binner.bin(*view, lightbin::view_space(lamps, [](Lamp&) { return lightbin::Sphere(); }));
+#elif MISTAKE == 12  // to_light must return a lightbin::Sphere or a lightbin::Spot
+    (void)binner.bin(*view, lightbin::view_space(lamps, [](const Lamp& lamp) { return lamp.range; }));
+#elif MISTAKE ==                                                                                             \
+    13  // lights are an array, a std::vector, a std::span or another range whose elements lie one after
+    (void)binner.bin(*view, std::list<lightbin::Sphere>());
+#elif MISTAKE == 14  // this is still a Result: .*pass \*result
+    (void)binner.bin(view, lights);
+#elif MISTAKE == 15  // sixteen numbers do not say which matrix they are: pass lightbin::matrix
+    const float numbers[16] = {};
+    (void)lightbin::View::from_projection(numbers, {64, 64});
+#elif MISTAKE == 16  // sixteen numbers do not say which matrix they are
+    (void)binner.bin(*view, lightbin::world_space(lights, std::array<float, 16>()));
+#elif MISTAKE == 17  // sixteen numbers do not say which matrix they are
+    const double* const pointer = projection[0];
+    (void)lightbin::View::from_projection(pointer, {64, 64});
+#elif MISTAKE == 18  // this is no matrix.column..row. and none of Eigen's
+    (void)lightbin::View::from_projection(CalledMatrix(), {64, 64});
+#elif MISTAKE == 19  // this matrix is not 4x4
+    const float affine[3][4] = {};
+    (void)binner.bin(*view, lightbin::world_space(lights, affine));
+#elif MISTAKE == 20  // a matrix has sixteen numbers, this array has not
+    const float numbers[12] = {};
+    (void)lightbin::matrix(numbers, lightbin::MatrixLayout::row_major);
+#elif MISTAKE == 21  // matrix.. takes sixteen numbers, one after another
+    (void)lightbin::matrix(CalledMatrix(), lightbin::MatrixLayout::row_major);
+#elif MISTAKE == 22  // this is still a Result
+    [[maybe_unused]] const lightbin::View copied = view;
+#elif MISTAKE == 23  // this Binner slices depth
+    lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::clusters}> sliced;
+    (void)sliced.bin(*view, lights);
+#elif MISTAKE == 24  // this is still a Result
+    lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::z_bins}> sliced;
+    (void)sliced.bin(*view, lights, {.slices = lightbin::Slices::linear(8, 0, 1)});
+#elif MISTAKE == 25  // this Binner slices depth
+    lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::z_bins}> sliced;
+    (void)sliced.bin(*view, lights);
 #endif
 }

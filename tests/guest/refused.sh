@@ -1,5 +1,5 @@
 #!/bin/sh
-# refused.sh COMPILER: each mistake of refused.cpp does not compile, and the first error says what its comment does.
+# refused.sh COMPILER: each mistake of refused.cpp does not compile, and the one error that there is says what its comment does.
 set -eu
 compiler=$1
 here=$(cd "$(dirname "$0")" && pwd)
@@ -27,7 +27,8 @@ for mistake in $mistakes; do
         echo "$compiler accepts mistake $mistake" >&2
         exit 1
     fi
-    echo "$said" | grep -m 1 -E 'error' | grep -qE "$expected" || {
+    errors=$(echo "$said" | grep -E 'error:')
+    [ "$(echo "$errors" | wc -l)" -eq 1 ] && echo "$errors" | grep -qE "$expected" || {
         echo "$compiler says of mistake $mistake:" >&2
         echo "$said" >&2
         exit 1

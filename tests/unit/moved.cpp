@@ -16,7 +16,9 @@ TEST_CASE("lights that are moved in doubles are the same on every tier where the
         const auto matrix = [&](double scale) {  // flat, for floats
             return glm::dmat4(scale, 0, 0, 0, 0, scale / 40, 0, 0, 0, 0, scale, 0, offset, 0, 0, 1);
         };
-        const auto radius = [&](double scale) { return detail::WorldToView(matrix(scale))(light).radius; };
+        const auto radius = [&](double scale) {
+            return detail::WorldToView(detail::to_matrix(matrix(scale)))(light).radius;
+        };
         double low = first, high = first * (1 + 0x1p-20);
         if (radius(low) == radius(high)) continue;
         while (std::nextafter(low, 4.0) < high) {

@@ -8,6 +8,7 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/mat4x4.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -154,17 +155,77 @@ TEST_CASE("matrices that are no projection of the promised kinds are refused by 
     CHECK(refusal(with(2, 2, 0.0f, box)) == ErrorCode::no_near_plane);
 }
 
-TEST_CASE("any matrix indexable as m[column][row] will do") {
-    const glm::mat4 m = glm::perspective(1.0f, 1.5f, 0.1f, 100.0f);
-    float plain[4][4];
-    double wide[4][4];
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row)
-            plain[column][row] = m[column][row], wide[column][row] = static_cast<double>(m[column][row]);
-    const float near = View::from_projection(m, full_hd)->near_depth();
-    CHECK(View::from_projection(plain, full_hd)->near_depth() == near);
-    CHECK(View::from_projection(wide, full_hd)->near_depth() == near);
-    CHECK(View::from_projection(glm::dmat4(m), full_hd)->near_depth() == near);
+TEST_CASE("a transposed matrix is refused as that, where it can be told") {
+    const auto transposed = [](const glm::mat4& matrix) { return refusal(glm::transpose(matrix)); };
+    CHECK(transposed(glm::frustum(-1.0f, 2.0f, -3.0f, 0.5f, 0.2f, 512.0f)) ==
+          ErrorCode::projection_transposed);
+    CHECK(transposed(glm::ortho(-4.0f, 4.0f, -3.0f, 3.0f, 0.0f, 10.0f)) == ErrorCode::projection_transposed);
+    CHECK(transposed(glm::ortho(-4.0f, 9.0f, -3.0f, 3.0f, -5.0f, 10.0f)) == ErrorCode::projection_transposed);
+
+    // What is refused for another reason keeps it.
+    const glm::mat4 view = glm::lookAt(glm::vec3(1, 2, 3), glm::vec3(0, 0, 0), glm::vec3(0, 1, 0)),
+                    good = glm::perspective(1.0f, 1.5f, 0.1f, 100.0f);
+    CHECK(refusal(good * view) == ErrorCode::not_a_projection);
+    CHECK(transposed(good * view) == ErrorCode::not_a_projection);
+    CHECK(refusal(view) == ErrorCode::image_axes_rotated);
+}
+
+TEST_CASE("a view says what it read, and what is seldom meant") {
+    const glm::mat4 good = glm::perspective(glm::radians(60.0f), 16.0f / 9, 0.25f, 512.0f);
+    const auto summary = [](const glm::mat4& matrix, lightbin::Extent viewport = full_hd,
+                            ViewOptions options = {}) {
+        const auto view = View::from_projection(matrix, viewport, options);
+        REQUIRE(view);
+        return view->summary();
+    };
+    const auto read = summary(good);
+    CHECK(!read.orthographic);
+    CHECK(read.y_size == doctest::Approx(60));
+    CHECK(read.x_size == doctest::Approx(2 * glm::degrees(std::atan(std::tan(glm::radians(30.0)) * 16 / 9))));
+    CHECK(read.aspect == doctest::Approx(16.0 / 9));
+    CHECK(read.near_depth == doctest::Approx(0.25));
+    CHECK(read.far_depth == doctest::Approx(512).epsilon(1e-3));
+    CHECK(read.looks_down_negative_z);
+    CHECK(to_string(read) ==
+          "perspective, 91.49 x 60 degrees, aspect 1.778, near 0.25, far 512, looks down -z "
+          "(right-handed), 1920 x 1080 pixels in tiles of 32");
+    const glm::mat4 flipped = glm::scale(glm::mat4(1.0f), {1.0f, -1.0f, 1.0f});
+    const auto vulkan = summary(flipped * glm::perspectiveLH_ZO(1.0f, 1.5f, 100.0f, 0.25f), {150, 100},
+                                {.clip_depth = ClipDepth::zero_to_one});
+    CHECK(!vulkan.looks_down_negative_z);
+    CHECK(vulkan.reversed_z);
+    CHECK(vulkan.y_flipped);
+    CHECK(!vulkan.x_flipped);
+    CHECK(vulkan.near_depth == doctest::Approx(0.25));
+    CHECK(vulkan.far_depth == doctest::Approx(100).epsilon(1e-3));
+    const auto flat = summary(glm::ortho(-4.0f, 12.0f, -3.0f, 6.0f, 0.0f, 10.0f));
+    CHECK(flat.orthographic);
+    CHECK(flat.x_size == doctest::Approx(16));
+    CHECK(flat.y_size == doctest::Approx(9));
+    CHECK(flat.near_depth == doctest::Approx(0));
+    CHECK(flat.far_depth == doctest::Approx(10));
+
+    const auto doubts = [](const lightbin::ViewSummary& of) {
+        const std::string line = to_string(of);
+        CHECK(std::count(line.begin(), line.end(), '?') ==
+              of.looks_transposed + of.looks_like_view_matrix + of.looks_turned + of.pixels_not_square);
+        return std::vector<bool>{of.looks_transposed, of.looks_like_view_matrix, of.looks_turned,
+                                 of.pixels_not_square};
+    };
+    using Doubts = std::vector<bool>;
+    for (const auto& fine : {read, vulkan, flat, summary(3.0f * good), summary(good, {1366, 768}),
+                             summary(glm::infinitePerspective(1.0f, 16.0f / 9, 0.1f)), summary(good, {})})
+        CHECK(doubts(fine) == Doubts{false, false, false, false});
+    for (const float z_near : {0.1f, 0.2f, 0.4f, 1.0f, 3.0f})
+        CHECK(doubts(summary(glm::transpose(glm::perspective(1.0f, 16.0f / 9, z_near, 512.0f)))) ==
+              Doubts{true, false, false, false});
+    CHECK(doubts(summary(glm::mat4(1.0f), {100, 100})) == Doubts{false, true, false, false});
+    CHECK(doubts(summary(glm::translate(glm::mat4(1.0f), {1.0f, 2.0f, 3.0f}), {100, 100})) ==
+          Doubts{false, true, false, false});
+    CHECK(doubts(summary(glm::perspective(60.0f, 16.0f / 9, 0.25f, 512.0f))) ==
+          Doubts{false, false, true, false});
+    CHECK(doubts(summary(good, {1080, 1920})) == Doubts{false, false, false, true});
+    CHECK(doubts(summary(good, {1280, 1024})) == Doubts{false, false, false, true});
 }
 
 TEST_CASE("a view's grid can be made anew with other tiles") {
@@ -305,7 +366,11 @@ TEST_CASE("the tile of each pixel, and of what is none") {
                 REQUIRE(tile);
                 CHECK(tile->x == x / 8);
                 CHECK(tile->y == y / 8);
+                CHECK(view->tile_of_pixel(x, y)->x == x / 8);
+                CHECK(view->tile_of_pixel(x, y)->y == y / 8);
             }
+    for (const auto& [x, y] : {std::pair(-1, 0), {0, -1}, {50, 0}, {0, 31}})
+        CHECK(!view->tile_of_pixel(x, y));
     const double nan = std::numeric_limits<double>::quiet_NaN(),
                  inf = std::numeric_limits<double>::infinity();
     for (const lightbin::ImagePoint& place : {lightbin::ImagePoint{-0.001, 1, 1},

@@ -14,13 +14,15 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/matrix.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/rounding.hpp>
+#include <lightbin/matrix.hpp>
+#include <lightbin/result.hpp>
 #include <lightbin/sphere.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <lightbin/detail/warnings_off.inl>
 
@@ -44,9 +46,7 @@ struct FloatMove {
 
 class WorldToView {
 public:
-    template <class Matrix> explicit WorldToView(const Matrix& matrix) {
-        copy_matrix(matrix, m_);
-        affine_ = finite(m_) && m_[0][3] == 0 && m_[1][3] == 0 && m_[2][3] == 0 && m_[3][3] == 1;
+    explicit WorldToView(const Matrix& matrix) : m_(matrix), affine_(finite(m_) && last_row_is_plain(m_)) {
         // The largest singular value is at most the root of the largest row sum of M^T M. Where a product overflows, sums
         // are infinite or NaN, which no comparison takes for the largest: then there is no bound.
         // In the same way the square of the smallest is at least the least diagonal element less what stands beside it.
@@ -67,7 +67,12 @@ public:
         if (affine_) find_floats();
     }
 
-    bool affine() const { return affine_; }
+    /// Why no light can be moved by it.
+    std::optional<ErrorCode> refusal() const {
+        if (affine_) return std::nullopt;
+        return finite(m_) && last_row_is_plain(transposed(m_)) ? ErrorCode::view_matrix_transposed
+                                                               : ErrorCode::view_matrix_not_affine;
+    }
     const FloatMove& floats() const { return floats_; }
 
     /// The image of any sphere, in doubles. Bad input stays bad. Not inline: within a tier's kernel, compilers fuse its
@@ -104,6 +109,10 @@ public:
     }
 
 private:
+    static bool last_row_is_plain(const Matrix& m) {
+        return m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
+    }
+
     /// Only for maps near to a rotation and a scale: others can take p - o far beyond the image, and its rounding too. So
     /// a column is no shorter than 2^-26, and an entry of it that is flushed to zero is no more than 2^-100 of that.
     void find_floats() {
@@ -154,10 +163,10 @@ private:
         floats_.most = 0x1p40f;
     }
 
-    double m_[4][4];
+    Matrix m_;
+    bool affine_;
     double stretch_;  ///< the most that it makes a length longer
     double uneven_;   ///< how much shorter, relative to that, it makes one at most
-    bool affine_;
     FloatMove floats_ = {};
 };
 

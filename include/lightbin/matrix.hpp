@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// Matrices as the caller has them. Here end the caller's types, and all conventions but one: M v, columns first.
+//
+//   what                                      memory's first four   pass
+//   GLM, cglm, float[4][4] of columns         column of M v         the matrix itself
+//   Eigen                                     either                the matrix or transform itself
+//   DirectXMath's XMFLOAT4X4, D3DMATRIX       row of v M            the matrix itself (an XMMATRIX: XMStoreFloat4x4 first)
+//   OpenSceneGraph's Matrixf, Matrixd         row of v M            the matrix itself
+//   Irrlicht, Panda3D                         row of v M            matrix(m.pointer(), MatrixLayout::row_vectors)
+//   Qt's QMatrix4x4                           column of M v         matrix(m.constData(), MatrixLayout::column_major)
+//   OGRE, rows of one's own                   row of M v            matrix(m[0], MatrixLayout::row_major)
+//
+// The rows of v M are the columns of M v: the first, third and last lines of MatrixLayout's names differ on paper, but
+// column_major and row_vectors not in memory. Which one numbers have shows a view matrix: its translation is the last four
+// of column_major and row_vectors, and the fourth, eighth and twelfth of row_major.
+#pragma once
+
+#include <lightbin/detail/flavour.hpp>
+#include <lightbin/result.hpp>
+
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
+
+/// What sixteen numbers in memory are.
+enum class MatrixLayout : std::uint8_t {
+    column_major,  ///< the columns of M, for M v: OpenGL's
+    row_major,     ///< the rows of M, for M v: as it is written on paper
+    row_vectors,   ///< the rows of M, for v M: Direct3D's, OpenSceneGraph's
+};
+
+/// A 4x4 matrix M for column vectors, M v: matrix[column][row].
+struct Matrix {
+    double columns[4][4];
+
+    const double* operator[](int column) const { return columns[column]; }
+};
+
+namespace detail {
+
+template <class M>
+concept SubscriptMatrix = requires(const M& m) {
+    { m[0][0] } -> std::convertible_to<double>;
+};
+template <class M>
+concept EigenLikeMatrix = requires(const M& m) {
+    { m.matrix()(0, 0) } -> std::convertible_to<double>;
+    m.matrix().rows() + m.matrix().cols();
+};
+template <class M>
+concept DirectXLikeMatrix = requires(const M& m) {
+    m._11 + m._44;
+    { m.m[0][0] } -> std::convertible_to<double>;
+};
+template <class M>
+concept OpenSceneGraphLikeMatrix = requires(const M& m) {
+    { m(0, 0) } -> std::convertible_to<double>;
+    m.getTrans();
+    m.ptr();
+};
+template <class M>
+concept SixteenNumbers = requires(const M& m) {
+    { m[0] } -> std::convertible_to<double>;
+};
+
+/// The matrix whose entries are at<column, row>(): constants, as no type of index warns of those.
+template <class At> Matrix from_entries(const At& at) {
+    Matrix result;
+    [&]<int... place>(std::integer_sequence<int, place...>) {
+        ((result.columns[place / 4][place % 4] =
+              static_cast<double>(at.template operator()<place / 4, place % 4>())),
+         ...);
+    }
+    (std::make_integer_sequence<int, 16>());
+    return result;
+}
+
+/// Returns a matrix of any type of the table above.
+template <class M> Matrix to_matrix(const M& m) {
+    if constexpr (SubscriptMatrix<M>) {
+        if constexpr (std::is_array_v<M>)
+            static_assert(std::extent_v<M, 0> == 4 && std::extent_v<M, 1> == 4,
+                          "lightbin: this matrix is not 4x4");
+        else if constexpr (requires { M::length(); })  // GLM's
+            static_assert(M::length() == 4, "lightbin: this matrix is not 4x4");
+        return from_entries([&]<int column, int row>() { return m[column][row]; });
+    } else if constexpr (EigenLikeMatrix<M>) {
+        LIGHTBIN_ASSERT(m.matrix().rows() == 4 && m.matrix().cols() == 4);
+        return from_entries([&]<int column, int row>() { return m.matrix()(row, column); });
+    } else if constexpr (DirectXLikeMatrix<M>) {
+        return from_entries([&]<int column, int row>() { return m.m[column][row]; });
+    } else if constexpr (OpenSceneGraphLikeMatrix<M>) {
+        return from_entries([&]<int column, int row>() { return m(column, row); });
+    } else {
+        static_assert(
+            !SixteenNumbers<M>,
+            "lightbin: sixteen numbers do not say which matrix they are: pass lightbin::matrix(numbers, "
+            "lightbin::MatrixLayout::column_major), or row_major or row_vectors, see MatrixLayout");
+        static_assert(
+            SixteenNumbers<M>,
+            "lightbin: this is no matrix[column][row] and none of Eigen's, DirectXMath's or "
+            "OpenSceneGraph's types: pass lightbin::matrix(numbers, layout) with its sixteen numbers");
+        return {};
+    }
+}
+
+inline bool finite(const Matrix& m) {
+    for (const auto& column : m.columns)
+        for (const double entry : column)
+            if (!std::isfinite(entry)) return false;
+    return true;
+}
+
+inline Matrix transposed(const Matrix& m) {
+    return from_entries([&]<int column, int row>() { return m[row][column]; });
+}
+
+}  // namespace detail
+
+/// Returns the matrix that sixteen numbers are.
+///
+/// numbers  float[16], double[16], a pointer to the first, std::array, std::vector or std::span: sixteen of them
+template <class Numbers> Matrix matrix(const Numbers& numbers, MatrixLayout layout) {
+    static_assert(
+        detail::SixteenNumbers<Numbers>,
+        "lightbin: matrix() takes sixteen numbers, one after another: float[16], a pointer, std::array");
+    if constexpr (std::is_array_v<Numbers>)
+        static_assert(std::extent_v<Numbers> == 16,
+                      "lightbin: a matrix has sixteen numbers, this array has not");
+    else if constexpr (requires { numbers.size(); })
+        LIGHTBIN_ASSERT(numbers.size() == 16);
+    Matrix columns = {};
+    if constexpr (detail::SixteenNumbers<Numbers>)
+        columns = detail::from_entries([&]<int column, int row>() { return numbers[4 * column + row]; });
+    return layout == MatrixLayout::row_major ? detail::transposed(columns) : columns;
+}
+
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
