@@ -507,7 +507,7 @@ TEST_CASE("any input") {
     CHECK(advise(view, bad, {}, {.max = few}).error().code == ErrorCode::z_bounds_too_small);
     CHECK(advise(view, bad, {}, {.min = zeros, .gap_min = few}).error().code ==
           ErrorCode::z_bounds_too_small);
-    const float projective[4][4] = {{1, 0, 0, 1}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+    const float projective[4][4] = {{1, 0, 0, 1}, {0, 1, 0, 0}, {0, 0, 1, 0}, {5, 0, 0, 1}};
     CHECK(advise(view, world_space(bad, projective)).error().code == ErrorCode::view_matrix_not_affine);
     const std::vector<Sphere> many(65537, Sphere{0, 0, 9, 1});
     CHECK(advise<narrow>(view, many).error().code == ErrorCode::too_many_lights);
