@@ -55,8 +55,7 @@ void mistake() {
     (void)binner.bin(*view, lights, {.bounds = {}});
 #elif MISTAKE == 8  // a Binner's ids have 16 or 32 bits
     [[maybe_unused]] lightbin::Binner<lightbin::Options{.ids = lightbin::IdWidth::u8}> narrow;
-#elif MISTAKE ==                                                                                             \
-    9  // this light is no Sphere or Spot and has no float or double x, y, z and w .*: pass view_space
+#elif MISTAKE == 9  // this light is no Sphere or Spot
     (void)binner.bin(*view, std::vector<Vec4>());
 #elif MISTAKE == 10  // this light is no Sphere or Spot
     (void)binner.bin(*view, lightbin::world_space(lamps, projection));
@@ -64,8 +63,7 @@ void mistake() {
     (void)binner.bin(*view, lightbin::view_space(lamps, [](Lamp&) { return lightbin::Sphere(); }));
 #elif MISTAKE == 12  // to_light must return a lightbin::Sphere or a lightbin::Spot
     (void)binner.bin(*view, lightbin::view_space(lamps, [](const Lamp& lamp) { return lamp.range; }));
-#elif MISTAKE ==                                                                                             \
-    13  // lights are an array, a std::vector, a std::span or another range whose elements lie one after
+#elif MISTAKE == 13  // lights are an array, a std::vector, a std::span or another range
     (void)binner.bin(*view, std::list<lightbin::Sphere>());
 #elif MISTAKE == 14  // this is still a Result: .*pass \*result
     (void)binner.bin(view, lights);

@@ -21,6 +21,7 @@ compile() {
 compile -DMISTAKE=0
 
 mistakes=$(grep -oE 'MISTAKE == [0-9]+' "$here/refused.cpp" | grep -oE '[0-9]+')
+count=0
 for mistake in $mistakes; do
     expected=$(sed -nE "s,.*MISTAKE == $mistake  // (.*),\1,p" "$here/refused.cpp")
     if said=$(compile "-DMISTAKE=$mistake"); then
@@ -33,5 +34,7 @@ for mistake in $mistakes; do
         echo "$said" >&2
         exit 1
     }
+    count=$((count + 1))
 done
-echo "$compiler: $(echo "$mistakes" | wc -w) mistakes, each refused by name"
+[ "$mistake" -eq "$count" ]
+echo "$compiler: $count mistakes, each refused by name"
