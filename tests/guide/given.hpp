@@ -1,0 +1,64 @@
+// What the guide's blocks of code take for granted: a reader's own renderer.
+#pragma once
+
+#include <lightbin/lightbin.hpp>
+
+#include <lightbin/advise.hpp>
+#include <lightbin/shader.hpp>
+
+#include <epoxy/gl.h>
+#include <glm/glm.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+struct Lamp {
+    glm::vec3 position, direction;
+    float range, candela, cos_outer;
+    std::uint32_t mask;
+};
+
+struct ThreadPool {
+    std::size_t size() const;
+    template <class Body> void parallel_for(std::size_t count, const Body& body);
+};
+
+int fail(const std::string& message);
+int grow(std::size_t ranges, std::size_t ids);
+void warn(const char* message);
+template <class... Arguments> void upload(Arguments&&... arguments);
+
+extern const glm::mat4 projection, view_matrix;
+extern const float numbers[16];
+extern const lightbin::Result<lightbin::View> view;
+extern const lightbin::Result<lightbin::LightGrid<std::uint32_t>> grid;
+extern lightbin::Binner<> binner;
+extern const std::vector<glm::vec4> spheres;
+extern const std::vector<Lamp> lamps;
+extern const Lamp lamp;
+extern const std::vector<float> depth_buffer;
+extern const float white, distance, range;
+extern const std::uint32_t this_view_shows;
+extern const lightbin::Costs costs;
+extern ThreadPool pool;
+
+extern std::span<lightbin::ListRange> mapped_ranges;
+extern std::span<std::uint32_t> mapped_ids;
+extern int tile_buffer, list_buffer, constant_buffer;
+extern const std::string vertex_text, your_fragment_text, your_pixel_shader;
+GLuint link(const std::string& vertex, const std::string& fragment);
+extern GLuint program, ranges_buffer, ids_buffer, ranges_texture, ids_texture;
+
+// Vulkan's, as far as the guide calls it.
+using VkCommandBuffer = struct VkCommandBuffer_T*;
+using VkPipelineLayout = struct VkPipelineLayout_T*;
+constexpr std::uint32_t VK_SHADER_STAGE_FRAGMENT_BIT = 16;
+void vkCmdPushConstants(VkCommandBuffer, VkPipelineLayout, std::uint32_t, std::uint32_t, std::uint32_t, const void*);
+extern const VkCommandBuffer commands;
+extern const VkPipelineLayout layout;
+std::vector<std::uint32_t> compile_spirv(const std::string& text);
