@@ -34,6 +34,14 @@ std::string whole(lightbin::ShaderLanguage language, const std::string& block) {
                    "void main() {\ncolour = vec3(0);\n" + block + "}\n";
 }
 
+void compile_opengl(const std::string& text) {
+    glslang::TShader shader(EShLangFragment);
+    const char* begin = text.c_str();
+    shader.setStrings(&begin, 1);
+    if (!shader.parse(GetDefaultResources(), 100, false, EShMsgDefault))
+        throw std::runtime_error(shader.getInfoLog());
+}
+
 /// Compiles the blocks of a language in a page, and returns how many there are.
 int compile_blocks(const char* page, const std::string& text, lightbin::ShaderLanguage language, const std::string& name) {
     const bool hlsl = language == lightbin::ShaderLanguage::hlsl_5_0;
@@ -43,7 +51,7 @@ int compile_blocks(const char* page, const std::string& text, lightbin::ShaderLa
         at += begin.size();
         const std::string shader = whole(language, text.substr(at, text.find("```", at) - at));
         try {
-            compile_spirv(shader, EShLangFragment, hlsl);
+            hlsl ? (void)compile_spirv(shader, EShLangFragment, hlsl) : compile_opengl(shader);
         } catch (const std::runtime_error& error) {
             throw std::runtime_error(page + std::string(": ") + error.what() + "\n" + shader);
         }
@@ -60,7 +68,7 @@ int main(int count, char** pages) try {
         std::ifstream file(pages[i]);
         const std::string text(std::istreambuf_iterator<char>(file), {});
         if (text.empty()) throw std::runtime_error(std::string("cannot read ") + pages[i]);
-        glsl += compile_blocks(pages[i], text, lightbin::ShaderLanguage::glsl_vulkan, "glsl");
+        glsl += compile_blocks(pages[i], text, lightbin::ShaderLanguage::glsl_430, "glsl");
         hlsl += compile_blocks(pages[i], text, lightbin::ShaderLanguage::hlsl_5_0, "hlsl");
     }
     std::printf("%d blocks of GLSL and %d of HLSL compile\n", glsl, hlsl);
