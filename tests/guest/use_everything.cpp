@@ -150,6 +150,8 @@ void use_view(Hash& hash, const View& view) {
     const ViewPoint back = view.view_point(place);
     if (const auto tile = view.tile_at(place)) hash.add(static_cast<std::uint64_t>(tile->x));
     hash.add(back.z < 0);
+    hash.add(view.tile_of_pixel(3, 4).has_value());
+    hash.add(to_string(view.summary()).size());
 
     const std::size_t pixels =
         static_cast<std::size_t>(view.viewport().width) * static_cast<std::size_t>(view.viewport().height);
@@ -183,7 +185,8 @@ void use_view(Hash& hash, const View& view) {
     spheres[0] = tube_sphere(corner, side, 2);
     spheres[1] = rectangle_sphere(corner, side, corner, 2);
     const glm::mat4 camera(0.8f, 0, 0.6f, 0, 0, 1, 0, 0, -0.6f, 0, 0.8f, 0, 1, 2, -3, 1);
-    const double identity[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+    const float numbers[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    const Matrix identity = matrix(numbers, MatrixLayout::row_major);
 
     Binner<> binner;
     use_encodings(hash, value_of(binner.bin(view, spheres)));
