@@ -35,45 +35,46 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 namespace detail {
 
-/// What takes the place of Z bounds that were not given: a sentence of the compiler.
-template <DepthTest depth_test> ZBounds z_bounds_left_out() {
-    static_assert(
-        depth_test == DepthTest::none,
-        "lightbin: this Binner's depth test needs Z bounds: bin(view, lights, {.bounds = ...}), with "
-        "what reduce_depth() returns or bounds of your own");
-    return {};
-}
+/// In place of an input that the options don't need. Given all the same, it is a sentence of the compiler.
+struct NotRead {
+    NotRead() = default;
+    template <class Given> NotRead(const Given&) {
+        static_assert(
+            sizeof(Given) == 0,
+            "lightbin: this Binner does not read this input: bounds want an Options::depth_test, and "
+            "slices an Options::slicing; clusters read no bounds");
+    }
+};
 
-/// The same for slices.
+/// In place of what is needed and was not given: the same.
+template <bool read> auto bounds_left_out() {
+    static_assert(
+        !read, "lightbin: this Binner's depth test needs Z bounds: bin(view, lights, {.bounds = ...}), with "
+               "what reduce_depth() returns or bounds of your own");
+    return std::conditional_t<read, ZBounds, NotRead>();
+}
 struct NoSlices {
     operator const Slices&() const;
 };
-template <DepthTest depth_test> NoSlices slices_left_out() {
-    static_assert(depth_test > DepthTest::split_box,
+template <bool read> auto slices_left_out() {
+    static_assert(!read,
                   "lightbin: this Binner slices depth: bin(view, lights, {.slices = *slices}), with what "
                   "Slices::exponential() or linear() returns");
-    return {};
+    return std::conditional_t<read, NoSlices, NotRead>();
 }
 
 }  // namespace detail
 
-/// What Binner::bin() reads beside the lights: a member for each option that needs one, which must be given.
-/// What no option needs has no member, so giving it does not compile.
+/// What Binner::bin() reads beside the lights. What the options need must be given, and nothing else can be.
 template <DepthTest depth_test, Slicing slicing = Slicing::none> struct Inputs {
+    static constexpr bool reads_slices = slicing != Slicing::none,
+                          reads_bounds = depth_test != DepthTest::none && slicing != Slicing::clusters;
+
+    std::conditional_t<reads_slices, const Slices&, detail::NotRead> slices =
+        detail::slices_left_out<reads_slices>();
     /// Minimum, maximum or both. See ZBounds for what an empty side means.
-    ZBounds bounds = detail::z_bounds_left_out<depth_test>();
-};
-template <> struct Inputs<DepthTest::none> {};
-template <DepthTest depth_test> struct Inputs<depth_test, Slicing::clusters> {
-    const Slices& slices = detail::slices_left_out<depth_test>();
-};
-template <DepthTest depth_test>
-requires(depth_test == DepthTest::none) struct Inputs<depth_test, Slicing::z_bins> {
-    const Slices& slices = detail::slices_left_out<depth_test>();
-};
-template <DepthTest depth_test> struct Inputs<depth_test, Slicing::z_bins> {
-    const Slices& slices = detail::slices_left_out<depth_test>();
-    ZBounds bounds = detail::z_bounds_left_out<depth_test>();
+    std::conditional_t<reads_bounds, ZBounds, detail::NotRead> bounds =
+        detail::bounds_left_out<reads_bounds>();
 };
 
 /// Returns the inputs of a Binner whose options vary, such as with_options() gives them: what they don't need is

@@ -51,8 +51,8 @@ void mistake() {
     (void)tested.bin(*view, lights, {}, lightbin::Serial());
 #elif MISTAKE == 6  // this Binner's depth test needs Z bounds
     (void)tested.bin_transparency(*view, lights, {});
-#elif MISTAKE == 7  // no matching (member )?function for call to .*bin
-    (void)binner.bin(*view, lights, {.bounds = {}});
+#elif MISTAKE == 7  // this Binner does not read this input: bounds want an Options::depth_test
+    (void)binner.bin(*view, lights, {.bounds = lightbin::ZBounds()});
 #elif MISTAKE == 8  // a Binner's ids have 16 or 32 bits
     [[maybe_unused]] lightbin::Binner<lightbin::Options{.ids = lightbin::IdWidth::u8}> narrow;
 #elif MISTAKE == 9  // this light is no Sphere or Spot
@@ -96,5 +96,7 @@ void mistake() {
 #elif MISTAKE == 25  // this Binner slices depth
     lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::z_bins}> sliced;
     (void)sliced.bin(*view, lights);
+#elif MISTAKE == 26  // this Binner does not read this input
+    (void)tested.bin(*view, lights, {.slices = *lightbin::Slices::linear(8, 0, 1), .bounds = {}});
 #endif
 }
