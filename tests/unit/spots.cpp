@@ -111,17 +111,17 @@ TEST_CASE("bitmasks of spots are those of their lists, and transparent ones are 
     std::vector<float> min, max;
     const ZBounds bounds = some_bounds(view, min, max);
     Binner<Options{.depth_test = DepthTest::box}> binner;
-    const auto listed = test::to_lists(*binner.bin(view, spots, {bounds}));
+    const auto listed = test::to_lists(*binner.bin(view, spots, {.bounds = bounds}));
     std::vector<std::uint32_t> bits(view.tile_count() * 10);
-    REQUIRE(binner.bin_bits(view, spots, 300, bits, {bounds}));
+    REQUIRE(binner.bin_bits(view, spots, 300, bits, {.bounds = bounds}));
     for (std::size_t tile = 0; tile < listed.size(); ++tile)
         for (std::uint32_t id = 0; id < 300; ++id)
             REQUIRE((bits[10 * tile + id / 32] >> id % 32 & 1) ==
                     std::count(listed[tile].begin(), listed[tile].end(), id));
-    const auto both = binner.bin_transparency(view, spots, {bounds});
+    const auto both = binner.bin_transparency(view, spots, {.bounds = bounds});
     REQUIRE(both);
     CHECK((test::to_lists(both->opaque) == listed));
-    CHECK((test::to_lists(both->transparent) == test::to_lists(*binner.bin(view, spots, {{.max = max}}))));
+    CHECK((test::to_lists(both->transparent) == test::to_lists(*binner.bin(view, spots, {.bounds = {.max = max}}))));
 }
 
 TEST_CASE("a matrix that bends cones makes spheres of spots") {
