@@ -14,8 +14,7 @@ package("lightbin")
     end)
 
     on_test(function (package)
-        assert(package:check_cxxsnippets(
-            {test = "const auto view = lightbin::View::from_projection(glm, {64, 64});"},
-            {configs = {languages = "c++20"}, includes = "lightbin/view.hpp"}))
+        assert(package:check_cxxsnippets({test = "lightbin::Binner<> binner;"},
+            {configs = {languages = "c++20"}, includes = "lightbin/lightbin.hpp"}))
     end)
 package_end()
