@@ -1,4 +1,4 @@
-# A recipe for Conan 2 and the sources that it lies in: conan create LIGHTBIN/packaging/conan
+# A recipe for Conan 2 and the sources that it lies in: conan create LIGHTBIN/packaging/conan -s compiler.cppstd=20
 # For CMake the package is called lightbin and its target lightbin::lightbin.
 import os
 import re
