@@ -11,7 +11,8 @@ mkdir -p "$(dirname "$file")"
 {
     cat <<EOF
 // lightbin $version in one file, made of the headers in include/lightbin by packaging/single_header.sh: change those.
-// A header of the library that a comment names is in here, too.
+// A header of the library that a comment names is in here, too. Files that need lightbin.hpp alone are compiled sooner with
+// LIGHTBIN_CORE_ONLY defined.
 //
 EOF
     sed 's|^|// |; s| *$||' LICENSE
@@ -61,7 +62,9 @@ EOF
 
         BEGIN {
             write("lightbin/lightbin.hpp")
+            print "#if !defined(LIGHTBIN_CORE_ONLY)\n"
             for (i = 1; i < ARGC; ++i) write(substr(ARGV[i], length("include/") + 1))
+            print "#endif"
             exit failed
         }' include/lightbin/*.hpp
 } >"$file.part"

@@ -16,7 +16,11 @@ cmp "$single" "$work/again.hpp"
 
 echo '#include <lightbin/lightbin.hpp>' >"$work/single.cpp"
 cd "$include"
-printf '#include <%s>\n' lightbin/lightbin.hpp lightbin/*.hpp >"$work/headers.cpp"
+{
+    printf '#include <lightbin/lightbin.hpp>\n#if !defined(LIGHTBIN_CORE_ONLY)\n'
+    printf '#include <%s>\n' lightbin/*.hpp
+    echo '#endif'
+} >"$work/headers.cpp"
 
 # same FILTER FLAG...: what the preprocessor makes of both, through the filter
 same() {
@@ -32,6 +36,7 @@ macros() { grep LIGHTBIN | sort; }
 assertion='-DLIGHTBIN_ASSERT(condition)=check(condition)' # the standard one names file and line
 same words -P "$assertion"
 same words -P "$assertion" -DLIGHTBIN_NO_SIMD
+same words -P "$assertion" -DLIGHTBIN_CORE_ONLY
 same macros -dM
 
 "$compiler" -std=c++20 -I "$work/single" "$here/main.cpp" "$work/single.cpp" -o "$work/program"
