@@ -1,6 +1,6 @@
 #!/bin/sh
-# Writes the whole library as one header: `sh packaging/single_header.sh [FILE]`, FILE is build/single/lightbin.hpp if not
-# named. The same sources give the same bytes.
+# Writes the whole library as one header: `sh packaging/single_header.sh [FILE]`, if FILE is not named then to
+# build/single/lightbin.hpp. The same sources give the same bytes.
 set -eu
 export LC_ALL=C
 cd "$(dirname "$0")/.."
@@ -11,8 +11,8 @@ mkdir -p "$(dirname "$file")"
 {
     cat <<EOF
 // lightbin $version in one file, made of the headers in include/lightbin by packaging/single_header.sh: change those.
-// A header of the library that a comment names is in here, too. Files that need lightbin.hpp alone are compiled sooner with
-// LIGHTBIN_CORE_ONLY defined.
+// A header of the library that a comment names is in here, too. With LIGHTBIN_CORE_ONLY defined all but lightbin.hpp is
+// left out, which takes less time to compile.
 //
 EOF
     sed 's|^|// |; s| *$||' LICENSE

@@ -1,6 +1,6 @@
 #!/bin/sh
-# single_header.sh COMPILER: the single header is made twice the same, is to the compiler what the headers are that it is made
-# of, and serves a program of two units.
+# single_header.sh COMPILER: the single header is made twice the same, is to the compiler what the headers are that it is
+# made of, and serves a program of two units.
 set -eu
 export LC_ALL=C
 compiler=$1

@@ -1,5 +1,5 @@
-# cmake -DWORK=FOLDER -DGENERATOR=NAME -P vcpkg.cmake: runs the port for vcpkg where there is no vcpkg. The functions that it
-# calls do here what matters of them for a library of headers, and refuse what they do not know.
+# cmake -DWORK=FOLDER -DGENERATOR=NAME -P vcpkg.cmake: runs the port for vcpkg where there is no vcpkg. The functions
+# that it calls do here what matters of them for a library of headers, and refuse what they do not know.
 cmake_minimum_required(VERSION 3.19)  # string(JSON)
 get_filename_component(root ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
 set(port_folder ${root}/packaging/vcpkg/lightbin)
@@ -50,8 +50,8 @@ include(${port_folder}/portfile.cmake)
 
 file(GLOB_RECURSE installed RELATIVE ${CURRENT_PACKAGES_DIR} ${CURRENT_PACKAGES_DIR}/*)
 file(GLOB_RECURSE wanted RELATIVE ${root} ${root}/include/*)
-list(APPEND wanted share/lightbin/copyright share/lightbin/lightbinConfig.cmake share/lightbin/lightbinConfigVersion.cmake
-    share/lightbin/usage share/pkgconfig/lightbin.pc)
+list(APPEND wanted share/lightbin/copyright share/lightbin/lightbinConfig.cmake
+    share/lightbin/lightbinConfigVersion.cmake share/lightbin/usage share/pkgconfig/lightbin.pc)
 list(SORT installed)
 list(SORT wanted)
 if(NOT installed STREQUAL wanted)

@@ -1,6 +1,6 @@
 # An overlay port for the sources that it lies in: vcpkg install lightbin --overlay-ports=LIGHTBIN/packaging/vcpkg
-# vcpkg looks for changes in this folder alone: when the sources have changed, remove lightbin, and install it again with
-# --no-binarycaching.
+# vcpkg looks for changes in this folder alone: when the sources have changed, remove lightbin, and install it again
+# with --no-binarycaching.
 set(VCPKG_BUILD_TYPE release)  # headers: a debug build has the same
 get_filename_component(SOURCE_PATH "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
 
