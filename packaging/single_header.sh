@@ -1,6 +1,6 @@
 #!/bin/sh
-# Writes the whole library as one header: `sh packaging/single_header.sh [FILE]`, if FILE is not named then to
-# build/single/lightbin.hpp. The same sources give the same bytes.
+# Writes the whole library as one header: `sh packaging/single_header.sh [FILE]`. FILE, build/single/lightbin.hpp if not
+# named, is seen from the top folder. The same sources give the same bytes.
 set -eu
 export LC_ALL=C
 cd "$(dirname "$0")/.."
