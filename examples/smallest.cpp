@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The smallest of all: a window by GLFW, OpenGL 3.3 and 1,500 moving lights in one file. Copy it and go on from here.
-// `smallest --check` draws four frames twice, by the lists and by every light for every pixel, and compares their bytes.
+// The smallest of all: a window by GLFW, OpenGL 3.3, 1,500 moving lights, in one file. Copy it and go on from here.
+// `smallest --check` draws four frames by the lists and by every light for every pixel, and compares their bytes.
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader.hpp>
 

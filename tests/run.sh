@@ -27,10 +27,11 @@ microsoft="libc++-19-dev mingw-w64-x86-64-dev" # the libraries behind a compiler
 libraries="doctest-dev libglm-dev libeigen3-dev"
 oracle="libboost-dev libgmp-dev"
 examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
+renderers="libopenscenegraph-dev xvfb" # somebody else's, and a display that nobody sees, for a window
 opengl="libgl1-mesa-dri libgles2" # Mesa draws where there is no GPU
 shaders="glslang-dev glslang-tools spirv-tools" # the first names files of the second
 # shellcheck disable=SC2086  # one word a package
-install_packages $compilers $tools $emulators $x86_32 $microsoft $libraries $oracle $examples $opengl $shaders
+install_packages $compilers $tools $emulators $x86_32 $microsoft $libraries $oracle $examples $renderers $opengl $shaders
 
 # follow COMMAND...: waits for the last process in the background. Until then says what COMMAND prints: every 20 seconds,
 # or on a terminal every second on the same line.

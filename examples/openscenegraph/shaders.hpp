@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The shaders, written in the GLSL that OpenSceneGraph's own nodes feed: gl_Vertex, gl_Normal, gl_Color and its matrices.
+// The shaders, in the GLSL that OpenSceneGraph's nodes feed: gl_Vertex, gl_Normal, gl_Color and its matrices.
 #pragma once
 
 inline const char* const vertex_text = R"(#version 330 compatibility
