@@ -6,18 +6,15 @@
 #include <lightbin/detail/names.hpp>
 #include <lightbin/encode.hpp>
 #include <lightbin/options.hpp>
+#include <lightbin/shader_checks.hpp>
+#include <lightbin/shader_slices.hpp>
 #include <lightbin/shader_text.hpp>
-#include <lightbin/slices.hpp>
 #include <lightbin/view.hpp>
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <initializer_list>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,41 +34,6 @@ constexpr const char* to_string(ListStorage value) {
     return detail::name_at(value,
                            {"storage_buffer", "texel_buffer", "texture_2d", "uniform_block", "byte_address"});
 }
-
-namespace detail {
-
-/// About which slice a depth is in: by_log2 * log2(depth) + by_depth * depth + offset.
-struct SliceGuess {
-    float by_log2, by_depth, offset;
-};
-
-/// Returns what is exact for Slices::exponential or linear but for rounding, and for other boundaries goes through
-/// the first and the last.
-inline SliceGuess best_guess(std::span<const float> boundaries) {
-    SliceGuess best = {0, 0, 0};
-    if (boundaries.empty()) return best;
-    double least_error = std::numeric_limits<double>::infinity();
-    for (const bool by_log2 : {false, true}) {
-        const auto place = [&](float depth) {
-            const double exact = static_cast<double>(depth);
-            return by_log2 ? std::log2(exact) : exact;
-        };
-        const double first = place(boundaries.front()), last = place(boundaries.back());
-        const double slope =
-            boundaries.size() == 1 ? 0 : (static_cast<double>(boundaries.size()) - 1) / (last - first);
-        const double offset = 1 - slope * first;
-        double error = 0;
-        for (std::size_t i = 0; i < boundaries.size(); ++i)
-            error += std::fabs(slope * place(boundaries[i]) + offset - static_cast<double>(i + 1));
-        if (!(error < least_error)) continue;  // nor if it is NaN: what is not positive has no logarithm
-        least_error = error;
-        const float factor = static_cast<float>(slope);
-        best = {by_log2 ? factor : 0, by_log2 ? 0 : factor, static_cast<float>(offset)};
-    }
-    return best;
-}
-
-}  // namespace detail
 
 struct ShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
@@ -93,6 +55,9 @@ struct ShaderOptions {
     /// The lanes of a wave go through the lights of all their lists together, so that what is read of a light is read once
     /// for all of them (Drobot 2017). GLSL 4.30, ES 3.10: with GL_KHR_shader_subgroup_arithmetic; Vulkan 1.1; HLSL 6.0.
     bool wave_loop = false;
+    bool view_check = false;  ///< also `check_view`
+    bool list_check = false;  ///< also `for_each_missing`
+    bool window = false;      ///< also `window`, as light_window()
 
     std::uint32_t texture_width = 2048;  ///< texture_2d: texels a row, 1 to 16384; a power of two is best
     std::uint32_t max_tiles = 0;         ///< uniform blocks: the most tiles they hold, those of all slices,
@@ -100,7 +65,7 @@ struct ShaderOptions {
     std::uint32_t max_slices = 0;        ///< and slicing: the most slices
     std::uint32_t uniform_block_bytes = 16384;  ///< the most that the device allows; every one has 16384
 
-    ShaderSlot tiles = {0}, lists = {1}, grid = {2}, slices = {3}, bins = {4};
+    ShaderSlot tiles = {0}, lists = {1}, grid = {2}, slices = {3}, bins = {4}, view = {5};  ///< view: of view_check
     bool push_constants = false;  ///< Vulkan: `grid` as push constants
     std::string_view prefix = "lightbin_";
 };
@@ -122,27 +87,7 @@ inline ShaderGrid shader_grid(const View& view, int corner_x = 0, int corner_y =
     return {u(view.tile_size()), u(view.tiles_x()), u(size.width), u(size.height), corner_x, corner_y};
 }
 
-/// Returns the words of the buffer `slices`: how to guess the slice of a depth, the last slice, and the boundaries, as
-/// numbers that order as they do. Four and one a boundary: slices.count() + 3.
-inline std::vector<std::uint32_t> shader_slices(const Slices& slices) {
-    const std::span<const float> boundaries = slices.boundaries();
-    const detail::SliceGuess guess = detail::best_guess(boundaries);
-    std::vector<std::uint32_t> words = {
-        std::bit_cast<std::uint32_t>(guess.by_log2), std::bit_cast<std::uint32_t>(guess.by_depth),
-        std::bit_cast<std::uint32_t>(guess.offset), static_cast<std::uint32_t>(boundaries.size())};
-    for (const float boundary : boundaries) {
-        const std::uint32_t bits = std::bit_cast<std::uint32_t>(boundary), sign = 0x80000000;
-        words.push_back(bits & sign ? ~bits : bits | sign);
-    }
-    return words;
-}
-
 namespace detail {
-
-/// The words of shader_slices().
-inline std::uint64_t slice_words(std::uint32_t slices) {
-    return slices + std::uint64_t{3};
-}
 
 inline bool is_prefix(std::string_view prefix) {
     const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -169,7 +114,7 @@ inline std::optional<Error> refuse_names(const Dialect& dialect, std::string_vie
 inline std::optional<Error> refuse(const ShaderOptions& options) {
     const Dialect dialect = detail::dialect(options.language);
     if (auto error = refuse_names(dialect, options.prefix,
-                                  {options.tiles, options.lists, options.grid, options.slices, options.bins},
+                                  {options.tiles, options.lists, options.grid, options.slices, options.bins, options.view},
                                   options.push_constants))
         return error;
     if (options.storage == ListStorage::storage_buffer && !dialect.storage_buffers)
@@ -220,35 +165,27 @@ inline ShaderResource resource(ListStorage storage) {
     return by_storage[static_cast<std::size_t>(storage)];
 }
 
-/// `tile`: the tile of a pixel.
-inline void add_tile(ShaderWriter& writer, const ShaderOptions& options) {
-    writer.add("\n// The tile that a pixel lies in.\nuvec2 $tile(uvec2 pixel) {\n");
-    if (options.viewport_corner) writer.add("    pixel -= uvec2($corner);\n");
-    if (options.flip_y) writer.add("    pixel.y = $grid.w - 1u - pixel.y;\n");
-    writer.add("    return pixel / " +
-               (options.tile_size == 0 ? "$grid.x" : std::to_string(options.tile_size) + "u") + ";\n}\n");
+inline std::string number_text(std::uint64_t number) {
+    return std::to_string(number) + "u";
 }
 
-/// `slice`: the slice of a view depth. A guess, by a logarithm that a device may round as it likes, and from there to where
-/// the boundaries have it. They and the depth are compared as words: devices may take tiny floats for zero.
-inline void add_slice(ShaderWriter& writer, const ShaderBuffer& slices) {
-    const auto word = [&](const std::string& index) { return writer.read(slices, index); };
-    const auto number = [&](const std::string& index) { return "uintBitsToFloat(" + word(index) + ")"; };
-    writer.add(
-        "\n// The slice that a view depth lies in.\nuint $slice(float view_depth) {\n    float guess = " +
-        number("0u") + " * log2(max(view_depth, 1e-37)) + " + number("1u") + " * view_depth + " +
-        number("2u") + ";\n    uint last = " + word("3u") +
-        R"(;
-    uint slice = min(uint(clamp(guess, 0.0, 1e9)), last);
-    uint bits = floatBitsToUint(view_depth);
-    uint key = bits > 0x80000000u ? ~bits : bits | 0x80000000u;
-    while (slice > 0u && key < )" +
-        word("slice + 3u") + R"() slice -= 1u;
-    while (slice < last && key >= )" +
-        word("slice + 4u") + R"() slice += 1u;
-    return slice;
+/// The side of a tile.
+inline std::string tile_size_text(const ShaderOptions& options) {
+    return options.tile_size == 0 ? "$grid.x" : number_text(static_cast<std::uint64_t>(options.tile_size));
 }
-)");
+
+/// Lines that turn a pixel as the shader counts it to that of the view. What lies outside of the viewport stays outside:
+/// numbers below 0 wrap to large ones.
+inline std::string to_grid_lines(const ShaderOptions& options) {
+    return std::string(options.viewport_corner ? "    pixel -= uvec2($corner);\n" : "") +
+           (options.flip_y ? "    pixel.y = $grid.w - 1u - pixel.y;\n" : "");
+}
+
+/// `tile`: the tile of a pixel. Unset constants divide by 1, not by 0.
+inline void add_tile(ShaderWriter& writer, const ShaderOptions& options) {
+    const std::string size = tile_size_text(options);
+    writer.add("\n// The tile that a pixel lies in.\nuvec2 $tile(uvec2 pixel) {\n" + to_grid_lines(options) +
+               "    return pixel / " + (options.tile_size == 0 ? "max(" + size + ", 1u)" : size) + ";\n}\n");
 }
 
 /// `id_at`: the id at a place of the lists.
@@ -287,11 +224,8 @@ inline ListBuffers list_buffers(const ShaderOptions& options) {
                      options.texture_width}};
 }
 
-inline std::string number_text(std::uint64_t number) {
-    return std::to_string(number) + "u";
-}
-
-/// `cursor` and `begin`, their names led by `own`.
+/// `cursor` and `begin`, their names led by `own`. Nothing is read and nothing divided for a pixel that the grid has no tile
+/// for: its constants are unset, or those of a smaller picture or of other tiles.
 inline void add_begin(ShaderWriter& writer, const ShaderOptions& options, const ListBuffers& buffers,
                       const std::string& own) {
     const ListFormat& format = options.format;
@@ -300,44 +234,47 @@ inline void add_begin(ShaderWriter& writer, const ShaderOptions& options, const 
     writer.add("\nstruct $" + own + "cursor {\n    uint id;\n    uint at;\n    uint end;\n");
     if (bits) writer.add("    uint bits;\n");
     if (binned) writer.add("    uint last;\n");
-    writer.add("};\n\n$" + own + "cursor $" + own +
-               "begin(uvec2 pixel, float view_depth) {\n    uvec2 tile = $tile(pixel);\n");
-    if (options.slicing != Slicing::none) writer.add("    uint slice = $slice(view_depth);\n");
+    writer.add("};\n\n$" + own + "cursor $" + own + "begin(uvec2 pixel, float view_depth) {\n" +
+               to_grid_lines(options) + "    $" + own + "cursor c;\n    c.at = 0u;\n    c.end = 0u;\n" +
+               (bits && !binned ? "    c.id = 0u - 32u;\n" : "    c.id = 0u;\n"));
+    if (bits) writer.add("    c.bits = 0u;\n");
+    if (binned) writer.add("    c.last = 0u;\n");
+    const std::string tile_size = tile_size_text(options);
+    writer.add("    if (pixel.x < $grid.z && pixel.y < $grid.w" +
+               (options.tile_size == 0 ? "" : " && $grid.x == " + tile_size) + ") {\n        uvec2 tile = pixel / " +
+               tile_size + ";\n");
+    if (options.slicing != Slicing::none) writer.add("        uint slice = $slice(view_depth);\n");
     if (options.slicing == Slicing::clusters)
-        writer.add("    tile.y += slice * (($grid.w - 1u) / " +
-                   (options.tile_size == 0 ? "$grid.x"
-                                           : number_text(static_cast<std::uint64_t>(options.tile_size))) +
-                   " + 1u);\n");
-    if (binned) writer.add("    uvec2 bin = " + writer.read(buffers.bins, "slice") + ";\n");
-    writer.add("    uint place = tile.y * $grid.y + tile.x;\n    $" + own + "cursor c;\n");
+        writer.add("        tile.y += slice * (($grid.w - 1u) / " + tile_size + " + 1u);\n");
+    if (binned)
+        writer.add("        uvec2 bin = " + writer.read(buffers.bins, "slice") + ";\n        c.last = bin.y;\n");
+    writer.add("        uint place = tile.y * $grid.y + tile.x;\n");
     const std::string each = number_text(places_a_tile(format));
     if (table)
-        writer.add("    uvec2 list = " +
+        writer.add("        uvec2 list = " +
                    (buffers.tiles.resource == ShaderResource::texture_2d
                         ? writer.read_texel(buffers.tiles, "int(tile.x), int(tile.y)")
                         : writer.read(buffers.tiles, "place")) +
-                   ";\n    c.at = list.x;\n    c.end = list.x + list.y;\n");
+                   ";\n        c.at = list.x;\n        c.end = list.x + list.y;\n");
     else
-        writer.add("    c.at = place * " + each + ";\n    c.end = c.at + " +
+        writer.add("        c.at = place * " + each + ";\n        c.end = c.at + " +
                    (bits && binned ? "(bin.y >> 5u) + 1u" : each) + ";\n");
-    writer.add(bits && !binned ? "    c.id = 0u - 32u;\n    c.bits = 0u;\n" : "    c.id = 0u;\n");
-    if (binned) writer.add("    c.last = bin.y;\n");
     // The list is entered at the bin's first light. Words end with that of the bin's last one.
     if (binned && bits)
-        writer.add("    c.at += bin.x >> 5u;\n    c.id = bin.x & ~31u;\n    c.bits = " +
+        writer.add("        c.at += bin.x >> 5u;\n        c.id = bin.x & ~31u;\n        c.bits = " +
                    writer.read(buffers.lists, "c.at") +
-                   " & (0xffffffffu << (bin.x & 31u));\n    c.at += 1u;\n");
+                   " & (0xffffffffu << (bin.x & 31u));\n        c.at += 1u;\n");
     else if (binned && table)
-        writer.add(R"(    uint end = c.end;
-    while (c.at < end) {
-        uint middle = c.at + ((end - c.at) >> 1u);
-        if ($id_at(middle) < bin.x) c.at = middle + 1u;
-        else end = middle;
-    }
+        writer.add(R"(        uint end = c.end;
+        while (c.at < end) {
+            uint middle = c.at + ((end - c.at) >> 1u);
+            if ($id_at(middle) < bin.x) c.at = middle + 1u;
+            else end = middle;
+        }
 )");
     else if (binned)
-        writer.add("    while (c.at < c.end && $id_at(c.at) < bin.x) c.at += 1u;\n");
-    writer.add("    return c;\n}\n");
+        writer.add("        while (c.at < c.end && $id_at(c.at) < bin.x) c.at += 1u;\n");
+    writer.add("    }\n    return c;\n}\n");
 }
 
 /// `next`, its name led by `own`. One return: fxc's shader model 5.1 takes a second one for a value that was not set.
@@ -410,6 +347,18 @@ vec3 $heat(uvec2 pixel, float view_depth, float most) {
 )");
 }
 
+/// `window`, as light_window().
+inline void add_window(ShaderWriter& writer) {
+    writer.add(R"(
+// 1 at a light, falling smoothly to 0 at its range and beyond.
+float $window(float apart, float range) {
+    float x = apart / range;
+    float w = 1.0 - x * x * x * x;
+    return apart < range ? w * w : 0.0;
+}
+)");
+}
+
 }  // namespace detail
 
 /// Returns text to insert before its use and after `#version`, or an Error that names the limit that the
@@ -423,6 +372,9 @@ vec3 $heat(uvec2 pixel, float view_depth, float most) {
 ///     #define lightbin_for_each_light(cursor, pixel, view_depth)      // the loop
 ///     uint lightbin_count(uvec2 pixel, float view_depth);             // with heat_map: the number of lights, and as
 ///     vec3 lightbin_heat(uvec2 pixel, float view_depth, float most);  // a colour: blue, cyan, green, yellow, red = most
+///     float lightbin_window(float apart, float range);                // with window: as light_window()
+///     bool lightbin_check_view(uvec2 pixel, vec3 position);           // with view_check, see below
+///     #define lightbin_for_each_missing(cursor, lights, pixel, view_depth)  // with list_check, see below
 ///
 /// The same in every language and for every encoding, storage and slicing:
 ///
@@ -432,10 +384,21 @@ vec3 $heat(uvec2 pixel, float view_depth, float most) {
 /// that of the tile in the depth's slice; with z_bins that of the tile from the least to the greatest rank of the
 /// depth's bin.
 ///
-/// `break`, `continue` and `return` work in the loop's body, and loops nest. A pixel must lie in the
-/// viewport. Ids come in ascending order, each once. With wave_loop no `else` can follow the body, and what depends on the
+/// `break`, `continue` and `return` work in the loops' bodies, and loops nest. The list is empty of a pixel outside of the
+/// viewport, and of every pixel where `grid` is not set, or its tiles are not of options.tile_size: no place outside of the
+/// table of tiles that `grid` tells of is read. Tiles and lists must be of one build: a table that points beyond the lists
+/// reads there what the graphics API has it read (Direct3D: 0; OpenGL, Vulkan: robust access is a setting). Ids come in ascending order, each once. With wave_loop no `else` can follow the body, and what depends on the
 /// id alone is the same in the whole wave; `begin` and `next` then give the wave's lights, and cursor.own tells whether one
 /// is the lane's own.
+///
+/// Two checks, to colour what is wrong:
+///
+///     if (!lightbin_check_view(pixel, position)) colour = magenta;
+///     lightbin_for_each_missing(light, light_count, pixel, depth) { if (shade(light.id) > 0) colour = magenta; }
+///
+/// The first is whether the View has `position`, in view space, in this pixel (within ShaderView's tolerance) and not
+/// before its near plane. The second is a loop over every light below light_count that the pixel's list lacks, whatever the
+/// encoding. Both are for looking for mistakes: the loop goes through all lights.
 inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
     using namespace detail;
     if (const auto error = refuse(options)) return *error;
@@ -446,6 +409,7 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
     std::vector<ShaderConstant> constants = {{"uvec4", "grid"}};
     if (options.viewport_corner) constants.push_back({"ivec2", "corner"});
     writer.declare_constants(constants, options.grid, options.push_constants);
+    if (options.view_check) writer.declare_constants({{"vec4", "image"}, {"vec4", "depths"}}, options.view, false);
     if (options.format.encoding == ListEncoding::offset_count) writer.declare(buffers.tiles);
     writer.declare(buffers.lists);
     if (options.slicing != Slicing::none) writer.declare(buffers.slices);
@@ -463,6 +427,9 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
                            "$begin(pixel, view_depth); $next(cursor);)") +
                (options.wave_loop ? " if (cursor.own)\n" : "\n"));
     if (options.heat_map) add_heat_map(writer, options, own);
+    if (options.window) add_window(writer);
+    if (options.view_check) add_view_check(writer, to_grid_lines(options));
+    if (options.list_check) add_list_check(writer, own);
     return writer.finish();
 }
 

@@ -5,6 +5,7 @@
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/names.hpp>
 #include <lightbin/result.hpp>
+#include <lightbin/texel_format.hpp>
 
 #include <cctype>
 #include <cstdint>
@@ -33,7 +34,7 @@ constexpr const char* to_string(ShaderLanguage value) {
 
 /// What a name in the text is bound to.
 enum class ShaderResource : std::uint8_t {
-    uniform_vector,   ///< loose uniforms `grid` (uvec4) and `corner` (ivec2)
+    uniform_vector,   ///< loose uniforms, in OpenGL: `grid` (uvec4), `corner` (ivec2), `image` (vec4) and the like
     uniform_block,    ///< GLSL: std140 block; HLSL: cbuffer, register b
     push_constants,   ///< Vulkan
     storage_buffer,   ///< GLSL: std430 block; HLSL: StructuredBuffer, register t
@@ -48,13 +49,6 @@ constexpr const char* to_string(ShaderResource value) {
                                    "byte_address", "texel_buffer", "texture_2d", "writable_buffer"});
 }
 
-/// Texel of a texture or buffer texture: GL_R8UI, VK_FORMAT_R8_UINT, DXGI_FORMAT_R8_UINT and so on.
-enum class TexelFormat : std::uint8_t { none, r8ui, r16ui, r32ui, rg32ui, r32f };
-
-constexpr const char* to_string(TexelFormat value) {
-    return detail::name_at(value, {"none", "r8ui", "r16ui", "r32ui", "rg32ui", "r32f"});
-}
-
 /// Where a resource is bound. GLSL: binding and set; HLSL: register number and space. OpenGL 3.3 and ES 3.0
 /// have no bindings in the text: set the sampler or block by its name.
 struct ShaderSlot {
@@ -67,10 +61,10 @@ struct ShaderBinding {
     std::string name = {};  ///< of the uniform, sampler, block or buffer in the text
     ShaderResource resource = ShaderResource::uniform_vector;
     ShaderSlot slot = {};
-    TexelFormat format = TexelFormat::none;
+    TexelFormat format = TexelFormat::none;  ///< gl_format(), vk_format(), dxgi_format()
     std::uint32_t stride = 0;  ///< bytes of one element or texel
     std::uint32_t bytes = 0;   ///< uniform blocks, push constants: size in the text; otherwise 0, as the data
-    std::uint32_t width = 0;   ///< texture_2d: texels a row; 0: as many as there are tiles across
+    std::uint32_t width = 0;   ///< texture_2d: texels a row, see texture_rows(); 0: as many as there are tiles across
 };
 
 /// A text and what it wants bound, in the order of the text.

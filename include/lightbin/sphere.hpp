@@ -35,6 +35,18 @@ inline float light_range(float intensity, float cutoff) {
                                (1 + 0x1p-50));
 }
 
+/// Returns what to multiply a light by so that it ends at its range, smoothly: 1 at the light, (1 - (distance / range)^4)^2 on
+/// the way, and exactly 0 from the range on. Without such a window what a light still gives beyond its range is lit in
+/// some tiles and not in their neighbours, and seams are seen. ShaderOptions::window makes the same of shader text.
+/// Range +inf: 1.
+///
+/// Source: Karis, Real Shading in Unreal Engine 4, SIGGRAPH 2013.
+inline float light_window(float distance, float range) {
+    if (!(distance < range)) return 0;
+    const float x = distance / range, w = 1 - x * x * x * x;
+    return w * w;
+}
+
 namespace detail {
 
 /// Returns the smallest sphere found around one of doubles: exact where floats hold it. A centre out of their range gives

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// What tells, in the shader, that something is wrong: whether the View is that of the picture, and which lights a list
+// lacks. Text on request: ShaderOptions::view_check and list_check.
+#pragma once
+
+#include <lightbin/detail/camera.hpp>
+#include <lightbin/detail/flavour.hpp>
+#include <lightbin/shader_text.hpp>
+#include <lightbin/view.hpp>
+
+#include <cmath>
+#include <string>
+
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
+
+/// What the constants `image` and `depths` of a text with view_check are set to. In a uniform block: this struct.
+struct ShaderView {
+    float scale_x, scale_y, offset_x, offset_y;       ///< image: pixel = scale * x / depth + offset
+    float forward, perspective, nearest, tolerance;  ///< depths: depth = forward * z; 1 or 0; depth; pixels
+};
+static_assert(sizeof(ShaderView) == 32);  // so there is no padding
+
+/// Returns the constants of a view.
+///
+/// tolerance  in pixels: how far from its pixel a position may be. Half a pixel is for one that is taken at a sample.
+///            The rest is for rounding: interpolated over a triangle whose corners are r away, a position at depth d is
+///            wrong by up to about 2^-22 r / d of the picture's height in pixels. Larger only where r / d exceeds some
+///            thousand.
+inline ShaderView shader_view(const View& view, float tolerance = 2) {
+    const detail::Camera& camera = detail::camera_of(view);
+    const auto pixels = [&](double tiles) { return static_cast<float>(tiles * view.tile_size()); };
+    const auto scale = [&](const detail::ImageAxis& axis) {
+        return pixels(axis.scale * static_cast<double>(axis.sign));
+    };
+    // A depth on the near plane comes out of the rasteriser as one beside it.
+    const float near_depth = view.near_depth();
+    const float slack = view.orthographic() ? 0x1p-10f * (std::fabs(near_depth) + std::fabs(view.far_depth()))
+                                            : 0x1p-8f * near_depth;
+    return {scale(camera.x),
+            scale(camera.y),
+            pixels(camera.x.offset),
+            pixels(camera.y.offset),
+            camera.z_sign,
+            view.orthographic() ? 0.0f : 1.0f,
+            near_depth - slack,
+            tolerance};
+}
+
+namespace detail {
+
+/// `check_view`. `to_grid` turns the pixel as the shader counts it to that of the view.
+inline void add_view_check(ShaderWriter& writer, const std::string& to_grid) {
+    writer.add("\n// Whether the View has a position of view space in this pixel, and not before its near plane.\n"
+               "bool $check_view(uvec2 pixel, vec3 position) {\n" +
+               to_grid + R"(    float depth = $depths.x * position.z;
+    vec2 at = $image.xy * position.xy / ($depths.y > 0.0 ? depth : 1.0) + $image.zw;
+    vec2 apart = abs(at - (vec2(pixel) + 0.5));
+    return apart.x < $depths.w && apart.y < $depths.w && depth >= $depths.z;
+}
+)");
+}
+
+/// `missing`, `begin_missing`, `next_missing` and their loop. As ids ascend, list and numbers are walked side by side.
+inline void add_list_check(ShaderWriter& writer, const std::string& own) {
+    const std::string cursor = "$" + own + "cursor", begin = "$" + own + "begin", next = "$" + own + "next";
+    writer.add("\n// A light that the pixel's list lacks.\nstruct $missing {\n    uint id;\n    bool more;\n    " + cursor +
+               " listed;\n};\n\n$missing $begin_missing(uvec2 pixel, float view_depth) {\n    $missing m;\n"
+               "    m.id = 0xffffffffu;\n    m.listed = " +
+               begin + "(pixel, view_depth);\n    m.more = " + next +
+               "(m.listed);\n    return m;\n}\n\nbool $next_missing(inout $missing m, uint lights) {\n"
+               "    m.id += 1u;\n    while (m.more && m.listed.id == m.id) {\n        m.more = " +
+               next + R"((m.listed);
+        m.id += 1u;
+    }
+    return m.id < lights;
+}
+
+#define $for_each_missing(cursor, lights, pixel, view_depth) for ($missing cursor = $begin_missing(pixel, view_depth); $next_missing(cursor, lights);)
+)");
+}
+
+}  // namespace detail
+}  // namespace lightbin

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// The slice of a view depth, in shader text: what is uploaded, and how it is looked up.
+#pragma once
+
+#include <lightbin/detail/flavour.hpp>
+#include <lightbin/shader_text.hpp>
+#include <lightbin/slices.hpp>
+
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lightbin::inline LIGHTBIN_FLAVOUR {
+
+namespace detail {
+
+/// About which slice a depth is in: by_log2 * log2(depth) + by_depth * depth + offset.
+struct SliceGuess {
+    float by_log2, by_depth, offset;
+};
+
+/// Returns what is exact for Slices::exponential or linear but for rounding, and for other boundaries goes through
+/// the first and the last.
+inline SliceGuess best_guess(std::span<const float> boundaries) {
+    SliceGuess best = {0, 0, 0};
+    if (boundaries.empty()) return best;
+    double least_error = std::numeric_limits<double>::infinity();
+    for (const bool by_log2 : {false, true}) {
+        const auto place = [&](float depth) {
+            const double exact = static_cast<double>(depth);
+            return by_log2 ? std::log2(exact) : exact;
+        };
+        const double first = place(boundaries.front()), last = place(boundaries.back());
+        const double slope =
+            boundaries.size() == 1 ? 0 : (static_cast<double>(boundaries.size()) - 1) / (last - first);
+        const double offset = 1 - slope * first;
+        double error = 0;
+        for (std::size_t i = 0; i < boundaries.size(); ++i)
+            error += std::fabs(slope * place(boundaries[i]) + offset - static_cast<double>(i + 1));
+        if (!(error < least_error)) continue;  // nor if it is NaN: what is not positive has no logarithm
+        least_error = error;
+        const float factor = static_cast<float>(slope);
+        best = {by_log2 ? factor : 0, by_log2 ? 0 : factor, static_cast<float>(offset)};
+    }
+    return best;
+}
+
+}  // namespace detail
+
+/// Returns the words of the buffer `slices`: how to guess the slice of a depth, the last slice, and the boundaries, as
+/// numbers that order as they do. Four and one a boundary: slices.count() + 3.
+inline std::vector<std::uint32_t> shader_slices(const Slices& slices) {
+    const std::span<const float> boundaries = slices.boundaries();
+    const detail::SliceGuess guess = detail::best_guess(boundaries);
+    std::vector<std::uint32_t> words = {
+        std::bit_cast<std::uint32_t>(guess.by_log2), std::bit_cast<std::uint32_t>(guess.by_depth),
+        std::bit_cast<std::uint32_t>(guess.offset), static_cast<std::uint32_t>(boundaries.size())};
+    for (const float boundary : boundaries) {
+        const std::uint32_t bits = std::bit_cast<std::uint32_t>(boundary), sign = 0x80000000;
+        words.push_back(bits & sign ? ~bits : bits | sign);
+    }
+    return words;
+}
+
+namespace detail {
+
+/// The words of shader_slices().
+inline std::uint64_t slice_words(std::uint32_t slices) {
+    return slices + std::uint64_t{3};
+}
+
+/// `slice`: the slice of a view depth. A guess, by a logarithm that a device may round as it likes, and from there to where
+/// the boundaries have it. They and the depth are compared as words: devices may take tiny floats for zero.
+inline void add_slice(ShaderWriter& writer, const ShaderBuffer& slices) {
+    const auto word = [&](const std::string& index) { return writer.read(slices, index); };
+    const auto number = [&](const std::string& index) { return "uintBitsToFloat(" + word(index) + ")"; };
+    writer.add(
+        "\n// The slice that a view depth lies in.\nuint $slice(float view_depth) {\n    float guess = " +
+        number("0u") + " * log2(max(view_depth, 1e-37)) + " + number("1u") + " * view_depth + " +
+        number("2u") + ";\n    uint last = " + word("3u") +
+        R"(;
+    uint slice = min(uint(clamp(guess, 0.0, 1e9)), last);
+    uint bits = floatBitsToUint(view_depth);
+    uint key = bits > 0x80000000u ? ~bits : bits | 0x80000000u;
+    while (slice > 0u && key < )" +
+        word("slice + 3u") + R"() slice -= 1u;
+    while (slice < last && key >= )" +
+        word("slice + 4u") + R"() slice += 1u;
+    return slice;
+}
+)");
+}
+
+}  // namespace detail
+}  // namespace lightbin
