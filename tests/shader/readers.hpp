@@ -37,6 +37,8 @@ inline std::string name_of(const lightbin::ShaderOptions& options) {
     option(options.heat_map, "heat map");
     option(options.slicing != lightbin::Slicing::none, to_string(options.slicing));
     option(options.wave_loop, "wave loop");
+    option(options.view_check, "view check");
+    option(options.list_check, "list check");
     return name;
 }
 
@@ -82,6 +84,10 @@ inline lightbin::ShaderOptions with_switches(lightbin::ShaderOptions options, un
     options.viewport_corner = switches & 2;
     options.tile_size = switches & 4 ? 16 : 0;
     options.heat_map = switches & 8;
+    // With every pair of the others both on and off.
+    options.view_check = std::popcount(switches & 13u) % 2 == 1;
+    options.list_check = std::popcount(switches & 14u) % 2 == 1;
+    options.window = std::popcount(switches & 7u) % 2 == 1;
     return options;
 }
 
@@ -104,6 +110,7 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderLanguage 
     options.grid = {5, 0};
     options.slices = {6, set};
     options.bins = {7, set};
+    options.view = {8, set};
     if (set != 0) options.prefix = "my_";
 
     std::vector<lightbin::ShaderOptions> every = every_list(options);
@@ -169,6 +176,50 @@ constexpr int corner_x = 3, corner_y = 5;
 
 constexpr int result_binding = 2;  // compute
 
+/// What is drawn is wider and higher than the viewport by so many pixels, which have no lights.
+constexpr int beyond = 3;
+
+/// The lights that a check goes through: in large pictures few, as it does so in every pixel.
+inline std::uint32_t checked_lights(std::uint32_t width) {
+    return width > 100 ? 8 : 3000;
+}
+
+/// The scales of the projection of reader_job().
+constexpr float scale_x = 1.2f, scale_y = 1.7f;
+
+/// Lines that add to `hash` where a check or the window function says what is not so. `grid` is the pixel as the view
+/// counts it. What lists lack is what a loop of their own counts.
+inline std::string reader_checks(const lightbin::ShaderOptions& options, std::uint32_t width) {
+    const std::string prefix(options.prefix), lights = std::to_string(checked_lights(width)) + "u";
+    std::string text;
+    if (options.view_check)
+        text += "    highp vec2 size = vec2(" + prefix + "grid.zw);\n    highp uvec2 grid = pixel;\n" +
+                (options.viewport_corner ? "    grid -= uvec2(" + prefix + "corner);\n" : "") +
+                (options.flip_y ? "    grid.y = " + prefix + "grid.w - 1u - grid.y;\n" : "") +
+                "    bool inside = grid.x < " + prefix + "grid.z && grid.y < " + prefix +
+                R"(grid.w;
+    highp vec2 ndc = 2.0 * (vec2(grid) + 0.5) / size - 1.0;
+    highp vec3 far_off = vec3(ndc / vec2()" +
+                std::to_string(scale_x) + ", " + std::to_string(scale_y) + R"(), -1.0);
+    highp vec3 aside = far_off + vec3(2.2 / ()" +
+                std::to_string(scale_x) + R"( * size.x) * 2.0, 0.0, 0.0);
+    if (inside && !)" +
+                prefix + "check_view(pixel, 7.0 * far_off)) hash += 1u;\n    if (inside && !" + prefix +
+                "check_view(pixel, far_off * 0.11)) hash += 2u;\n    if (inside && " + prefix +
+                "check_view(pixel, far_off * 0.09)) hash += 4u;\n    if (inside && " + prefix +
+                "check_view(pixel, 7.0 * aside)) hash += 8u;\n    if (inside && " + prefix +
+                "check_view(pixel, -7.0 * far_off)) hash += 16u;\n";
+    if (options.list_check)
+        text += "    highp uint listed = 0u;\n    " + prefix + "for_each_light(one, pixel, depth) {\n" +
+                "        if (one.id < " + lights + ") listed += one.id + 1u;\n    }\n    " + prefix +
+                "for_each_missing(other, " + lights + ", pixel, depth) listed += other.id + 1u;\n    if (listed != " +
+                std::to_string(checked_lights(width) * (checked_lights(width) + 1) / 2) + "u) hash += 32u;\n";
+    if (options.window)
+        text += "    if (" + prefix + "window(3.0, 3.0) != 0.0 || " + prefix + "window(0.0, 3.0) != 1.0 || abs(" +
+                prefix + "window(1.5, 3.0) - 0.87890625) > 1e-5) hash += 64u;\n";
+    return text;
+}
+
 /// Returns a whole shader. It writes for every pixel: its tile, the length of its list, and two sums over the
 /// ids that depend on their order.
 inline std::string reader_text(const lightbin::ShaderOptions& options, const lightbin::ShaderText& snippet,
@@ -184,7 +235,8 @@ inline std::string reader_text(const lightbin::ShaderOptions& options, const lig
     if (sliced && options.heat_map) text += "#define log2(x) (0.6 * log2(x) - 1.0)\n";
     text += snippet.text + "\n";
     if (dialect.hlsl)
-        text += "#define highp\n#define uvec2 uint2\n#define uvec4 uint4\n#define uintBitsToFloat asfloat\n";
+        text += "#define highp\n#define uvec2 uint2\n#define uvec4 uint4\n#define uintBitsToFloat asfloat\n"
+                "#define vec2 float2\n#define vec3 float3\n";
     const std::vector<float> depths = reader_depths();
     std::string depth = "0.0", words;
     for (const float value : depths)
@@ -216,6 +268,7 @@ uvec4 read_list(highp uvec2 pixel) {
     if (options.heat_map)
         text += "    if (" + prefix + "count(pixel, depth) != count || " + prefix +
                 "heat(pixel, depth, 8.0).x > 1.0) hash += 1u;\n";
+    text += reader_checks(options, width);
     text += "    highp uvec2 tile = " + prefix +
             "tile(pixel);\n    return uvec4(tile.x + (tile.y << 16u), count, hash, sum);\n}\n\n";
 
@@ -263,7 +316,7 @@ inline std::vector<lightbin::Sphere> reader_lights(std::size_t count) {
 
 /// The bytes of what a snippet binds.
 inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin::ShaderOptions& options,
-                          const lightbin::ShaderGrid& constants,
+                          const lightbin::ShaderGrid& constants, const lightbin::ShaderView& view,
                           const lightbin::LightGrid<std::uint32_t>& grid, std::span<const std::byte> lists) {
     const std::string name = binding.name.substr(options.prefix.size());
     Input input;
@@ -274,6 +327,10 @@ inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin
         data = std::as_bytes(std::span(&constants, 1));
     else if (name.starts_with("corner"))
         data = std::as_bytes(std::span(&constants.corner_x, 2));
+    else if (name == "depths")
+        data = std::as_bytes(std::span(&view.forward, 4));
+    else if (name.starts_with("image"))
+        data = std::as_bytes(std::span(&view, 1));
     else if (name.starts_with("tiles"))
         data = std::as_bytes(grid.ranges());
     else if (name.starts_with("slices"))
@@ -294,11 +351,12 @@ inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin
 }
 
 /// Returns a run of a snippet, fit to a screen: options.tile_size other than 0 becomes that of the screen.
+/// unset  the constants of the grid are 0: no pixel has lights
 template <lightbin::Slicing slicing>
-Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& screen) {
+Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& screen, bool unset) {
     using namespace lightbin;
     constexpr float projection[4][4] = {
-        {1.2f, 0, 0, 0}, {0, 1.7f, 0, 0}, {0, 0, -1.01f, -1}, {0, 0, -0.2f, 0}};
+        {scale_x, 0, 0, 0}, {0, scale_y, 0, 0}, {0, 0, -1.01f, -1}, {0, 0, -0.2f, 0}};
     const auto view =
         View::from_projection(projection, {screen.width, screen.height}, {.tile_size = screen.tile_size});
     constexpr Options of_binner = {.slicing = slicing};
@@ -322,34 +380,41 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
 
     job.stage = stage;
     job.hlsl = detail::dialect(options.language).hlsl;
-    job.width = static_cast<std::uint32_t>(screen.width);
-    job.height = static_cast<std::uint32_t>(screen.height);
+    job.width = static_cast<std::uint32_t>(screen.width + beyond);
+    job.height = static_cast<std::uint32_t>(screen.height + beyond);
     job.corner = {corner_x, corner_y};
     job.groups = {(job.width + 7) / 8, (job.height + 7) / 8};
     job.text = reader_text(options, *snippet, stage, job.width, job.height);
-    const ShaderGrid constants = shader_grid(*view, corner_x, corner_y);
+    ShaderGrid constants = shader_grid(*view, corner_x, corner_y);
+    if (unset) constants = {0, 0, 0, 0, corner_x, corner_y};
     for (const ShaderBinding& binding : snippet->bindings)
-        job.inputs.push_back(reader_input(binding, options, constants, *grid, lists));
+        job.inputs.push_back(reader_input(binding, options, constants, shader_view(*view), *grid, lists));
 
+    // As the shader has it: the constants may be unset, and what is beyond the viewport wraps below row 0.
+    const std::uint32_t tile_size = unset && options.tile_size == 0 ? 1 : static_cast<std::uint32_t>(screen.tile_size);
     const std::vector<float> depths = reader_depths();
-    for (int y = 0; y < screen.height; ++y)
-        for (int x = 0; x < screen.width; ++x) {
-            const int tx = x / screen.tile_size,
-                      ty = (options.flip_y ? screen.height - 1 - y : y) / screen.tile_size;
+    for (std::uint32_t y = 0; y < job.height; ++y)
+        for (std::uint32_t x = 0; x < job.width; ++x) {
+            const std::uint32_t row = options.flip_y ? constants.height - 1 - y : y, tx = x / tile_size,
+                                ty = row / tile_size;
             std::uint32_t hash = 2166136261u, sum = 0, count = 0, listed = 0;
             const float depth = depths[static_cast<std::size_t>(5 * x + 3 * y) % depths.size()];
             const int slice = slices.slice_at(depth);
             const BinRange all = {0, 0xffffffff};
             const BinRange bin =
                 slicing == Slicing::z_bins ? grid->ranks().bins[static_cast<std::size_t>(slice)] : all;
-            for (const std::uint32_t id : grid->lights_in(tx, ty, slicing == Slicing::clusters ? slice : 0)) {
+            std::span<const std::uint32_t> list;
+            if (x < constants.width && row < constants.height)
+                list = grid->lights_in(static_cast<int>(tx), static_cast<int>(ty),
+                                       slicing == Slicing::clusters ? slice : 0);
+            for (const std::uint32_t id : list) {
                 if (options.format.encoding == ListEncoding::sentinel && listed++ == options.format.capacity)
                     break;
                 if (id < bin.least || id > bin.greatest) continue;
                 hash = (hash ^ id) * 16777619u;
                 sum += ++count * id;
             }
-            for (const std::uint32_t word : {static_cast<std::uint32_t>(tx + (ty << 16)), count, hash, sum})
+            for (const std::uint32_t word : {tx + (ty << 16), count, hash, sum})
                 job.expected.push_back(word);
         }
     if (stage == Stage::compute) {
@@ -373,16 +438,19 @@ struct ReaderRun {
     lightbin::ShaderOptions options;
     Stage stage;
     ScreenSize screen;
+    bool unset = false;
     Job job() const {
         using lightbin::Slicing;
-        return options.slicing == Slicing::none       ? reader_job<Slicing::none>(options, stage, screen)
-               : options.slicing == Slicing::clusters ? reader_job<Slicing::clusters>(options, stage, screen)
-                                                      : reader_job<Slicing::z_bins>(options, stage, screen);
+        return options.slicing == Slicing::none ? reader_job<Slicing::none>(options, stage, screen, unset)
+               : options.slicing == Slicing::clusters
+                   ? reader_job<Slicing::clusters>(options, stage, screen, unset)
+                   : reader_job<Slicing::z_bins>(options, stage, screen, unset);
     }
 };
 
 /// What a language runs: every list, flipped and not, in fragment and compute shaders, at each small screen;
-/// the other options take turns. At the large screen: one width of ids. With slicing and wave loops: flipped in compute
+/// the other options take turns, and now and then the
+/// constants are not set. At the large screen: one width of ids. With slicing and wave loops: flipped in compute
 /// shaders, not flipped in fragment shaders, or where there are only those in both, at two small screens in turns.
 /// each_flip  false: half of the small screens are flipped, the other half not; the next list has it the other way round
 /// waves      the device has what wave loops need
@@ -400,6 +468,7 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
         const auto add = [&](const ScreenSize& screen) {
             turn = (turn + 1) % (switch_count / 2);
             runs.push_back({with_switches(list, 2 * turn + flip), stage, screen});
+            if (turn == 3) runs.push_back({with_switches(list, 2 * (place % 8) + flip), stage, screen, true});
         };
         const bool few = list.slicing != Slicing::none || list.wave_loop;
         if (few && computes && (stage == Stage::compute) != (flip == 1)) return;
