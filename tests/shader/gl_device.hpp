@@ -16,6 +16,17 @@
 #include <string>
 #include <vector>
 
+constexpr bool is_gl(lightbin::TexelFormat format, GLenum internal, GLenum layout, GLenum type) {
+    const lightbin::GlFormat gl = lightbin::gl_format(format);
+    return gl.internal == internal && gl.layout == layout && gl.type == type;
+}
+static_assert(is_gl(lightbin::TexelFormat::none, GL_NONE, GL_NONE, GL_NONE));
+static_assert(is_gl(lightbin::TexelFormat::r8ui, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE));
+static_assert(is_gl(lightbin::TexelFormat::r16ui, GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT));
+static_assert(is_gl(lightbin::TexelFormat::r32ui, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT));
+static_assert(is_gl(lightbin::TexelFormat::rg32ui, GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT));
+static_assert(is_gl(lightbin::TexelFormat::r32f, GL_R32F, GL_RED, GL_FLOAT));
+
 class GlDevice {
 public:
     /// glsl  330, 430, or ES: 300, 310
@@ -125,7 +136,7 @@ private:
         default:
             break;
         }
-        const TexelForm form = texel_form(input.binding.format);
+        const lightbin::GlFormat form = lightbin::gl_format(input.binding.format);
         glGenTextures(1, &textures.back());
         glActiveTexture(GL_TEXTURE0 + slot);
         if (input.binding.resource == ShaderResource::texel_buffer) {
@@ -143,7 +154,7 @@ private:
             glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
             glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(form.internal),
                          static_cast<GLsizei>(input.width), static_cast<GLsizei>(input.height), 0,
-                         form.format, form.type, input.bytes.data());
+                         form.layout, form.type, input.bytes.data());
         }
         if (glsl_ == 330 || glsl_ == 300) glUniform1i(place, static_cast<GLint>(slot));
     }
@@ -206,24 +217,6 @@ void main() {
             glUniform2iv(place, 1, reinterpret_cast<const GLint*>(bytes));
         else
             glUniform4fv(place, 1, reinterpret_cast<const GLfloat*>(bytes));
-    }
-
-    struct TexelForm {
-        GLenum internal, format, type;
-    };
-    static TexelForm texel_form(lightbin::TexelFormat format) {
-        switch (format) {
-        case lightbin::TexelFormat::r8ui:
-            return {GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE};
-        case lightbin::TexelFormat::r16ui:
-            return {GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT};
-        case lightbin::TexelFormat::r32ui:
-            return {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT};
-        case lightbin::TexelFormat::rg32ui:
-            return {GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT};
-        default:
-            return {GL_R32F, GL_RED, GL_FLOAT};
-        }
     }
 
     OffscreenContext context_;

@@ -84,10 +84,10 @@ inline lightbin::ShaderOptions with_switches(lightbin::ShaderOptions options, un
     options.viewport_corner = switches & 2;
     options.tile_size = switches & 4 ? 16 : 0;
     options.heat_map = switches & 8;
-    // With every pair of the others both on and off.
-    options.view_check = std::popcount(switches & 13u) % 2 == 1;
-    options.list_check = std::popcount(switches & 14u) % 2 == 1;
-    options.window = std::popcount(switches & 7u) % 2 == 1;
+    // One of these at a time, in pixels of every kind.
+    options.view_check = switches / 4 == 3;
+    options.list_check = switches / 4 == 2;
+    options.window = switches / 4 == 1;
     return options;
 }
 
@@ -201,22 +201,25 @@ inline std::string reader_checks(const lightbin::ShaderOptions& options, std::ui
     highp vec2 ndc = 2.0 * (vec2(grid) + 0.5) / size - 1.0;
     highp vec3 far_off = vec3(ndc / vec2()" +
                 std::to_string(scale_x) + ", " + std::to_string(scale_y) + R"(), -1.0);
-    highp vec3 aside = far_off + vec3(2.2 / ()" +
-                std::to_string(scale_x) + R"( * size.x) * 2.0, 0.0, 0.0);
+    highp vec3 aside = far_off + vec3(4.4 / ()" +
+                std::to_string(scale_x) + R"( * size.x), 0.0, 0.0);
+    highp vec3 below = far_off - vec3(0.0, 4.4 / ()" +
+                std::to_string(scale_y) + R"( * size.y), 0.0);
     if (inside && !)" +
                 prefix + "check_view(pixel, 7.0 * far_off)) hash += 1u;\n    if (inside && !" + prefix +
                 "check_view(pixel, far_off * 0.11)) hash += 2u;\n    if (inside && " + prefix +
                 "check_view(pixel, far_off * 0.09)) hash += 4u;\n    if (inside && " + prefix +
                 "check_view(pixel, 7.0 * aside)) hash += 8u;\n    if (inside && " + prefix +
-                "check_view(pixel, -7.0 * far_off)) hash += 16u;\n";
+                "check_view(pixel, 7.0 * below)) hash += 16u;\n    if (inside && " + prefix +
+                "check_view(pixel, -7.0 * far_off)) hash += 32u;\n";
     if (options.list_check)
         text += "    highp uint listed = 0u;\n    " + prefix + "for_each_light(one, pixel, depth) {\n" +
                 "        if (one.id < " + lights + ") listed += one.id + 1u;\n    }\n    " + prefix +
                 "for_each_missing(other, " + lights + ", pixel, depth) listed += other.id + 1u;\n    if (listed != " +
-                std::to_string(checked_lights(width) * (checked_lights(width) + 1) / 2) + "u) hash += 32u;\n";
+                std::to_string(checked_lights(width) * (checked_lights(width) + 1) / 2) + "u) hash += 64u;\n";
     if (options.window)
         text += "    if (" + prefix + "window(3.0, 3.0) != 0.0 || " + prefix + "window(0.0, 3.0) != 1.0 || abs(" +
-                prefix + "window(1.5, 3.0) - 0.87890625) > 1e-5) hash += 64u;\n";
+                prefix + "window(1.5, 3.0) - 0.87890625) > 1e-5) hash += 128u;\n";
     return text;
 }
 
@@ -299,7 +302,8 @@ uvec4 read_list(highp uvec2 pixel) {
            less_corner + ");\n}\n";
 }
 
-/// About 40 of `count` spheres are in view, the last among them; the others are behind the eye.
+/// About 40 of `count` spheres are in view, half of them just behind one another, the last among them; the others are
+/// behind the eye.
 inline std::vector<lightbin::Sphere> reader_lights(std::size_t count) {
     std::mt19937 engine(5);
     const auto number = [&](float low, float high) {
@@ -308,7 +312,7 @@ inline std::vector<lightbin::Sphere> reader_lights(std::size_t count) {
     std::vector<lightbin::Sphere> lights(count, {0, 0, 5, 1});
     for (std::size_t i = 1; i <= 40; ++i) {
         const float z = -number(2, 20);
-        lights[count * i / 40 - 1] = {number(-0.8f, 0.8f) * z, number(-0.6f, 0.6f) * z, z,
+        lights[count * ((i + 1) / 2) / 20 - 1 - i % 2] = {number(-0.8f, 0.8f) * z, number(-0.6f, 0.6f) * z, z,
                                       number(0.05f, 0.2f) * -z};
     }
     return lights;

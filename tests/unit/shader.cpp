@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -64,7 +65,7 @@ TEST_CASE("each option brings its own lines and no others") {
     CHECK(has(text_of({.language = ShaderLanguage::hlsl_5_1, .wave_loop = true}), "WaveActiveMin"));
     CHECK(has(refusal({.language = ShaderLanguage::hlsl_5_0, .wave_loop = true}), "HLSL 6"));
     CHECK(has(text_of({.heat_map = true}), "lightbin_heat"));
-    CHECK(!has(text_of({.tile_size = 16}), "grid.x"));
+    CHECK(!has(text_of({.tile_size = 16}), "/ lightbin_grid.x"));
     const std::string bound = text_of({.tiles = {5}, .lists = {9}});
     CHECK(has(bound, "binding = 5"));
     CHECK(has(bound, "binding = 9"));
@@ -219,4 +220,68 @@ TEST_CASE("reduction and build shaders: what is off leaves no line, what can't b
     CHECK(has(build_shader({.slicing = Slicing::z_bins}).error().message(), "z-bins"));
     CHECK(has(build_shader({.language = ShaderLanguage::essl_300}).error().message(), "compute"));
     CHECK(has(build_shader({.pass = BuildPass::fill, .lists = {0}}).error().message(), "binding 0"));
+}
+
+TEST_CASE("checks and window: a block of their own, and nothing of them in a text without") {
+    const std::string plain = text_of({});
+    for (const char* absent : {"image", "depths", "check", "missing", "window", "View"})
+        CHECK(!has(plain, absent));
+    const auto checked = shader_snippet({.language = ShaderLanguage::glsl_vulkan,
+                                         .view_check = true,
+                                         .list_check = true,
+                                         .window = true,
+                                         .view = {9, 1},
+                                         .push_constants = true});
+    REQUIRE(checked);
+    CHECK(has(checked->text, "bool lightbin_check_view(uvec2 pixel, vec3 position)"));
+    CHECK(has(checked->text, "#define lightbin_for_each_missing(cursor, lights, pixel, view_depth)"));
+    CHECK(has(checked->text, "float lightbin_window(float apart, float range)"));
+    const ShaderBinding& view = checked->bindings[1];
+    CHECK(view.name == "lightbin_image_block");
+    CHECK(view.resource == ShaderResource::uniform_block);
+    CHECK(view.slot.binding == 9);
+    CHECK(view.slot.set == 1);
+    CHECK(view.bytes == sizeof(ShaderView));
+    CHECK(has(refusal({.language = ShaderLanguage::glsl_vulkan, .view_check = true, .view = {2}}), "binding 2"));
+}
+
+TEST_CASE("shader_view: where a View has a point, and how near it may be") {
+    glm::mat4 off_centre = glm::perspective(1.0f, 1.5f, 0.1f, 100.0f);
+    off_centre[2][0] = 0.3f;
+    off_centre[2][1] = -0.2f;
+    const glm::mat4 orthographic = glm::ortho(-3.0f, 8.0f, -2.0f, 9.0f, -5.0f, 50.0f);
+    for (const glm::mat4& projection : {off_centre, orthographic})
+        for (const WindowOrigin origin : {WindowOrigin::lower_left, WindowOrigin::upper_left}) {
+            const auto view = View::from_projection(projection, {1919, 1079}, {.tile_size = 7, .origin = origin});
+            const ShaderView shader = shader_view(*view, 3);
+            const ImagePoint there = view->image_point({0.4, -0.3, -2});
+            const float depth = shader.forward * -2, by = shader.perspective > 0 ? depth : 1;
+            CHECK(static_cast<double>(depth) == there.depth);
+            CHECK(static_cast<double>(shader.scale_x * 0.4f / by + shader.offset_x) == doctest::Approx(there.x));
+            CHECK(static_cast<double>(shader.scale_y * -0.3f / by + shader.offset_y) == doctest::Approx(there.y));
+            CHECK(shader.tolerance == 3);
+            CHECK(shader.nearest < view->near_depth());
+            CHECK(shader.nearest > view->near_depth() - 0.1f);
+        }
+}
+
+TEST_CASE("light_window: 1 at the light, 0 at the range, beyond it and for what is no distance") {
+    const float endless = std::numeric_limits<float>::infinity(), no_number = std::numeric_limits<float>::quiet_NaN();
+    CHECK(light_window(0, 4) == 1);
+    CHECK(light_window(2, 4) == doctest::Approx(0.87890625));
+    CHECK(light_window(1e30f, endless) == 1);
+    for (const float range : {1e-30f, 0.1f, 3.0f, 1e30f}) {
+        CHECK(light_window(range, range) == 0);
+        CHECK(light_window(std::nextafter(range, endless), range) == 0);
+        CHECK(light_window(0.999f * range, range) > 0);
+    }
+    for (const float range : {0.0f, -1.0f, no_number})
+        CHECK(light_window(0, range) == 0);
+    CHECK(light_window(no_number, 1) == 0);
+}
+
+TEST_CASE("texture_rows") {
+    static_assert(texture_rows(0, 2048) == 1 && texture_rows(1, 2048) == 1 && texture_rows(2048, 2048) == 1);
+    static_assert(texture_rows(2049, 2048) == 2 && texture_rows(4096, 2048) == 2 && texture_rows(5, 1) == 5);
+    CHECK(texture_rows(std::size_t{1} << 40, 1) == std::size_t{1} << 40);
 }

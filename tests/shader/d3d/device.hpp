@@ -35,6 +35,13 @@ private:
     T* object_ = nullptr;
 };
 
+static_assert(lightbin::dxgi_format(lightbin::TexelFormat::none) == DXGI_FORMAT_UNKNOWN);
+static_assert(lightbin::dxgi_format(lightbin::TexelFormat::r8ui) == DXGI_FORMAT_R8_UINT);
+static_assert(lightbin::dxgi_format(lightbin::TexelFormat::r16ui) == DXGI_FORMAT_R16_UINT);
+static_assert(lightbin::dxgi_format(lightbin::TexelFormat::r32ui) == DXGI_FORMAT_R32_UINT);
+static_assert(lightbin::dxgi_format(lightbin::TexelFormat::rg32ui) == DXGI_FORMAT_R32G32_UINT);
+static_assert(lightbin::dxgi_format(lightbin::TexelFormat::r32f) == DXGI_FORMAT_R32_FLOAT);
+
 class D3d11Device {
 public:
     D3d11Device() {
@@ -68,24 +75,6 @@ float4 main(uint index : SV_VertexID) : SV_Position {  // clockwise, as the othe
     }
 
 private:
-    static DXGI_FORMAT texel_format(lightbin::TexelFormat format) {
-        using lightbin::TexelFormat;
-        switch (format) {
-        case TexelFormat::r8ui:
-            return DXGI_FORMAT_R8_UINT;
-        case TexelFormat::r16ui:
-            return DXGI_FORMAT_R16_UINT;
-        case TexelFormat::r32ui:
-            return DXGI_FORMAT_R32_UINT;
-        case TexelFormat::rg32ui:
-            return DXGI_FORMAT_R32G32_UINT;
-        case TexelFormat::r32f:
-            return DXGI_FORMAT_R32_FLOAT;
-        default:
-            return DXGI_FORMAT_UNKNOWN;
-        }
-    }
-
     void bind(const Input& input, Com<ID3D11Buffer>& buffer) {
         using lightbin::ShaderResource;
         const auto slot = static_cast<UINT>(input.binding.slot.binding);
@@ -120,7 +109,7 @@ private:
             break;
         default:  // texel_buffer
             info.BindFlags = D3D11_BIND_SHADER_RESOURCE;
-            view.Format = texel_format(input.binding.format);
+            view.Format = static_cast<DXGI_FORMAT>(lightbin::dxgi_format(input.binding.format));
             view.ViewDimension = D3D11_SRV_DIMENSION_BUFFER;
             view.Buffer.NumElements = bytes / input.binding.stride;
         }
@@ -148,7 +137,7 @@ private:
         info.Width = input.width;
         info.Height = input.height;
         info.MipLevels = info.ArraySize = info.SampleDesc.Count = 1;
-        info.Format = texel_format(input.binding.format);
+        info.Format = static_cast<DXGI_FORMAT>(lightbin::dxgi_format(input.binding.format));
         info.BindFlags = D3D11_BIND_SHADER_RESOURCE;
         const D3D11_SUBRESOURCE_DATA data{input.bytes.data(), input.width * input.binding.stride, 0};
         Com<ID3D11Texture2D> texture;

@@ -23,6 +23,13 @@ inline void check(VkResult result, const char* what) {
     std::exit(1);
 }
 
+static_assert(lightbin::vk_format(lightbin::TexelFormat::none) == VK_FORMAT_UNDEFINED);
+static_assert(lightbin::vk_format(lightbin::TexelFormat::r8ui) == VK_FORMAT_R8_UINT);
+static_assert(lightbin::vk_format(lightbin::TexelFormat::r16ui) == VK_FORMAT_R16_UINT);
+static_assert(lightbin::vk_format(lightbin::TexelFormat::r32ui) == VK_FORMAT_R32_UINT);
+static_assert(lightbin::vk_format(lightbin::TexelFormat::rg32ui) == VK_FORMAT_R32G32_UINT);
+static_assert(lightbin::vk_format(lightbin::TexelFormat::r32f) == VK_FORMAT_R32_SFLOAT);
+
 /// Calls what was put in, the last one first.
 class Undo {
 public:
@@ -315,24 +322,6 @@ private:
         }
     }
 
-    static VkFormat texel_format(lightbin::TexelFormat format) {
-        using lightbin::TexelFormat;
-        switch (format) {
-        case TexelFormat::r8ui:
-            return VK_FORMAT_R8_UINT;
-        case TexelFormat::r16ui:
-            return VK_FORMAT_R16_UINT;
-        case TexelFormat::r32ui:
-            return VK_FORMAT_R32_UINT;
-        case TexelFormat::rg32ui:
-            return VK_FORMAT_R32G32_UINT;
-        case TexelFormat::r32f:
-            return VK_FORMAT_R32_SFLOAT;
-        default:
-            return VK_FORMAT_UNDEFINED;
-        }
-    }
-
     // The job's inputs in memory, and descriptor sets that point at them.
     Descriptors bind(const Job& job, VkCommandBuffer commands, Undo& undo) {
         Descriptors descriptors;
@@ -404,7 +393,7 @@ private:
         write.pBufferInfo = &buffer_info;
         write.pImageInfo = &image_info;
         write.pTexelBufferView = &buffer_view;
-        const VkFormat format = texel_format(input.binding.format);
+        const VkFormat format = static_cast<VkFormat>(lightbin::vk_format(input.binding.format));
         const Buffer buffer =
             make_buffer(input.bytes, input.bytes.size(),
                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
