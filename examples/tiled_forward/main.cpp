@@ -8,12 +8,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace {
 
@@ -23,6 +25,8 @@ struct Options {
     std::string output = "tiled_forward.png";
     bool headless = false;
     bool check = false;
+    bool check_in_shader = false;
+    bool stale_size = false;
     bool heat_map = false;
     int view = 0;
     int lights = 0;
@@ -84,8 +88,13 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
     app.add_flag("--headless", options.headless, "No window, although there is a display");
     app.add_flag("--check", options.check,
                  "Draw again with every light in every fragment and compare; no window");
+    app.add_flag("--check-in-shader", options.check_in_shader,
+                 "Draw in grey, and magenta where a fragment is not where the View has it, or its list lacks a "
+                 "light that reaches it; no window");
+    app.add_flag("--stale-size", options.stale_size,
+                 "Make the lists for a picture of half the size, to see --check-in-shader fail");
     app.add_option("--drop-light", options.frame.dropped_light,
-                   "Leave this light out of the lists, to see --check fail")
+                   "Leave this light out of the lists, to see --check and --check-in-shader fail")
         ->check(CLI::NonNegativeNumber);
 
     exit_code = 0;
@@ -175,6 +184,35 @@ bool check(Renderer& renderer, const Scene& scene, const Camera& camera, const F
     return false;
 }
 
+// Draws with the checks of the shader text, and says how many pixels each makes magenta. Returns whether none.
+bool check_in_shader(Renderer& renderer, const Camera& camera, FrameSettings frame) {
+    const auto magenta = [&](ShaderChecks checks) {
+        frame.checks = checks;
+        renderer.draw(camera, frame);
+        const std::vector<std::uint8_t> rgb = renderer.read_picture().rgb;
+        std::size_t pixels = 0;
+        for (std::size_t i = 0; i < rgb.size(); i += 3)
+            pixels += rgb[i] != rgb[i + 1];  // all else is grey
+        return pixels;
+    };
+    const std::size_t misplaced = magenta({.view = true}), unlit = magenta({.lists = true});
+    magenta({.view = true, .lists = true});  // the picture that is written
+    if (misplaced > 0)
+        std::printf("view check   MAGENTA: in %zu of %d x %d pixels something is not where the View has it, or before "
+                    "its near plane: is the View made of the projection, size and origin that are drawn with?\n",
+                    misplaced, frame.width, frame.height);
+    else
+        std::printf("view check   right: all that is drawn is where the View has it\n");
+    if (unlit > 0)
+        std::printf("list check   MAGENTA: in %zu of %d x %d pixels a light is missing that reaches them: have Binner "
+                    "and shader the same lights, in the same order, space and range, and ids as wide?\n",
+                    unlit, frame.width, frame.height);
+    else
+        std::printf("list check   right: no list lacks a light that reaches a pixel\n");
+    if (misplaced + unlit > 0) std::printf("             docs/troubleshooting.md has the usual mistakes\n");
+    return misplaced + unlit == 0;
+}
+
 // Draws the picture, writes it, and checks it if asked to. Returns the exit code.
 int draw_picture(const Options& options, const Scene& scene) {
     const OffscreenContext context(options.glsl);
@@ -191,10 +229,14 @@ int draw_picture(const Options& options, const Scene& scene) {
 
     const Picture tiled = renderer.read_picture();
     if (options.heat_map) renderer.draw_heat_map(report, frame);
-    write_png(options.heat_map ? renderer.read_picture() : tiled, options.output);
+    frame.count_evaluations = false;
+    frame.stale_size = options.stale_size;
+    const bool right = !options.check_in_shader || check_in_shader(renderer, camera, frame);
+    write_png(renderer.read_picture(), options.output);
     std::printf("picture      %s\n", options.output.c_str());
     std::fflush(stdout);
-    return options.check && !check(renderer, scene, camera, frame, tiled) ? EXIT_FAILURE : EXIT_SUCCESS;
+    const bool same = !options.check || check(renderer, scene, camera, frame, tiled);
+    return right && same ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 int run(const Options& options) {
@@ -216,7 +258,7 @@ int run(const Options& options) {
     std::fflush(stdout);
 
     const int exit_code = draw_picture(options, scene);
-    if (!options.headless && !options.check)
+    if (!options.headless && !options.check && !options.check_in_shader)
         show_in_window(std::move(scene), options.glsl, options.view, options.frame, options.stops,
                        options.heat_map);
     return exit_code;

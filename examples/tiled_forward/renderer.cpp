@@ -73,8 +73,9 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     watch.lap();
 
     // 1. The view: the projection matrix, the viewport and the tile size fix the grid of tiles.
+    const int part = settings.stale_size ? 2 : 1;
     const lightbin::View view = value_of(lightbin::View::from_projection(
-        projection_, {settings.width, settings.height}, {.tile_size = settings.tile_size}));
+        projection_, {settings.width / part, settings.height / part}, {.tile_size = settings.tile_size}));
 
     // 2. Depth alone, and from it the depths between which each tile has anything to light.
     const bool pre_pass = settings.depth == DepthUse::pre_pass;
@@ -118,6 +119,7 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
 
     // 4. To the GPU.
     grid_ = lightbin::shader_grid(view);
+    shader_view_ = lightbin::shader_view(view);
     upload_lights();
     upload_lists(opaque_lists_, opaque);
     if (glass) upload_lists(transparent_lists_, transparent);
@@ -133,7 +135,8 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     // 5. The picture.
     const std::uint32_t longest = list_lengths(opaque).longest;
     check_loop(glass ? list_lengths(transparent).longest : longest);  // no shorter than the opaque one
-    draw_triangles(tiled_program(slicing_of(settings)), true, settings);
+    if (settings.checks.lists) check_loop(scene_.lights.size());
+    draw_triangles(tiled_program(settings), true, settings);
     report.milliseconds.draw = watch.lap();
 
     const lightbin::LightCounts& counts = opaque.light_counts();
@@ -268,6 +271,7 @@ float Renderer::meter(const Camera& camera, const FrameSettings& settings) {
     small.samples = 1;
     small.tile_size = 8;
     small.exposure = 0;
+    small.checks = {};
     draw(camera, small);
 
     std::vector<glm::vec4> pixels(static_cast<std::size_t>(small.width) *
@@ -331,7 +335,9 @@ void Renderer::start(const Camera& camera, const FrameSettings& settings) {
     glBindVertexArray(vertex_array_);  // another's may be bound
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
-    glClearColor(0.02f, 0.025f, 0.04f, 0);  // alpha tells the light meter where nothing is drawn
+    const bool grey = settings.checks != ShaderChecks{};
+    // Alpha tells the light meter where nothing is drawn.
+    glClearColor(grey ? 0.025f : 0.02f, 0.025f, grey ? 0.025f : 0.04f, 0);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
@@ -360,11 +366,13 @@ void Renderer::draw_depth() const {
     glDepthFunc(GL_LEQUAL);  // what follows is at the depths already there
 }
 
-GLuint Renderer::tiled_program(lightbin::Slicing slicing) {
-    GLuint& program = tiled_programs_[static_cast<std::size_t>(slicing)];
+GLuint Renderer::tiled_program(const FrameSettings& settings) {
+    const lightbin::Slicing slicing = slicing_of(settings);
+    GLuint& program = tiled_programs_[{slicing, settings.checks}];
     if (program == 0)
         program = link_program(geometry_vertex_shader(glsl_),
-                               forward_fragment_shader(glsl_, LightLoop::tile_list, has_spots_, slicing));
+                               forward_fragment_shader(glsl_, LightLoop::tile_list, has_spots_, slicing,
+                                                       settings.checks));
     return program;
 }
 
@@ -417,6 +425,9 @@ bool Renderer::shows_glass(const FrameSettings& settings) const {
 // Hands the lists to the text that lightbin/shader.hpp generates.
 void Renderer::bind_lists(GLuint program, const Lists& lists) const {
     glUniform4uiv(uniform(program, "lightbin_grid"), 1, &grid_.tile_size);
+    // Where the program has no view check they are at -1, which sets nothing.
+    glUniform4fv(glGetUniformLocation(program, "lightbin_image"), 1, &shader_view_.scale_x);
+    glUniform4fv(glGetUniformLocation(program, "lightbin_depths"), 1, &shader_view_.forward);
     if (list_binding_.resource == lightbin::ShaderResource::storage_buffer) {
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, lists.tiles.buffer);
         glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, lists.indices.buffer);
@@ -476,7 +487,8 @@ void Renderer::upload(const GpuBuffer& target, const void* data, std::size_t byt
     glBindTexture(target_of(target.resource), target.texture);
     if (target.resource == ShaderResource::texture_2d) {
         const auto rows = static_cast<GLsizei>(bytes / row), rest = static_cast<GLsizei>(bytes % row / texel);
-        glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(target.format), width, std::max(rows + 1, 1), 0,
+        const auto height = lightbin::texture_rows(bytes / texel, static_cast<std::size_t>(width));
+        glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(target.format), width, static_cast<GLsizei>(height), 0,
                      target.layout, target.type, nullptr);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);

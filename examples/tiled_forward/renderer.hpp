@@ -6,6 +6,7 @@
 #include "gpu_light.hpp"
 #include "picture.hpp"
 #include "scene.hpp"
+#include "shaders.hpp"
 
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader.hpp>
@@ -39,7 +40,9 @@ struct FrameSettings {
     ZBoundsUse z_bounds = ZBoundsUse::both;  // of the pre-pass
     bool count_evaluations = false;          // takes longer than the picture
     float exposure = 1;                      // 0: linear radiance, see Renderer::meter
-    int dropped_light = -1;                  // left out of the lists, to see --check fail
+    ShaderChecks checks;
+    int dropped_light = -1;   // left out of the lists, to see --check fail
+    bool stale_size = false;  // lists for a smaller picture than is drawn, to see --check-in-shader fail
 };
 
 // What a frame cost and what its lists hold.
@@ -109,7 +112,7 @@ private:
     template <class Lights>
     Grids bin_lights(const lightbin::View& view, const Lights& lights, const lightbin::ZBounds& z_bounds,
                      bool glass, const FrameSettings& settings);
-    GLuint tiled_program(lightbin::Slicing slicing);
+    GLuint tiled_program(const FrameSettings& settings);
     GLuint heat_map_program(lightbin::Slicing slicing);
     void set_matrices(GLuint program) const;
     void draw_triangles(GLuint program, bool with_lists, const FrameSettings& settings) const;
@@ -129,7 +132,8 @@ private:
     lightbin::ShaderBinding list_binding_;
     bool has_spots_;
     GLuint depth_program_, brute_force_program_;
-    GLuint tiled_programs_[3] = {}, heat_map_programs_[3] = {};  // [slicing]
+    std::map<std::tuple<lightbin::Slicing, ShaderChecks>, GLuint> tiled_programs_;
+    GLuint heat_map_programs_[3] = {};  // [slicing]
     GLuint vertex_array_ = 0;
     std::map<std::tuple<int, bool, bool>, GLuint> reduce_programs_;  // [samples, orthographic, skip]
     FrameBuffer frame_buffer_;
@@ -141,6 +145,7 @@ private:
     // Of the frame
     glm::mat4 projection_{1}, view_{1};
     lightbin::ShaderGrid grid_{};
+    lightbin::ShaderView shader_view_{};
     std::vector<GpuLight> gpu_lights_, ordered_lights_;
     std::vector<std::uint32_t>
         light_order_;  // z-bins: in which the lights are uploaded, those out of view last

@@ -26,16 +26,19 @@ lightbin::ShaderOptions list_options(int glsl) {
 }
 
 // Declares lightbin_for_each_light() and what it reads.
-std::string tile_lists(int glsl, lightbin::Slicing slicing, bool heat_map = false) {
+std::string tile_lists(int glsl, lightbin::Slicing slicing, bool heat_map = false, ShaderChecks checks = {}) {
     lightbin::ShaderOptions options = list_options(glsl);
     options.slicing = slicing;
     options.heat_map = heat_map;
+    options.view_check = checks.view;
+    options.list_check = checks.lists;
     return lightbin::shader_snippet(options)->text;
 }
 
 // What light `id` sends to the surface at `position`, all in view space.
 const char* const lighting = R"(
 uniform highp sampler2D lights;  // three texels each, see GpuLight
+uniform int light_count;
 
 vec4 light_texel(int i) {
     return texelFetch(lights, ivec2(i % LIGHTS_WIDTH, i / LIGHTS_WIDTH), 0);
@@ -82,7 +85,6 @@ vec3 view_position() {
 const char* const forward_main = R"(
 uniform vec3 moon;       // the way to it, in view space
 uniform float exposure;  // 0: write linear radiance, for the light meter
-uniform int light_count;
 uniform int sun_count;   // the directional lights follow the others
 
 in vec3 surface_normal;
@@ -113,8 +115,23 @@ void main() {
         vec3 display = 1.0 - exp(-exposure * radiance - night);
         pixel = vec4(pow(display, vec3(1.0 / 2.2)), 1.0);
     }
+    check(pixel, position, normal);
 }
 )";
+
+// Grey, so that what is magenta can be counted.
+std::string check_function(ShaderChecks checks) {
+    std::string text = "\nvoid check(inout vec4 pixel, vec3 position, vec3 normal) {\n";
+    if (checks.view || checks.lists)
+        text += "    const vec4 magenta = vec4(1.0, 0.0, 1.0, 1.0);\n"
+                "    pixel.rgb = vec3(dot(pixel.rgb, vec3(0.3, 0.6, 0.1)));\n"
+                "    uvec2 here = uvec2(gl_FragCoord.xy);\n";
+    if (checks.view) text += "    if (!lightbin_check_view(here, position)) pixel = magenta;\n";
+    if (checks.lists)
+        text += "    lightbin_for_each_missing(light, uint(light_count), here, -position.z)\n"
+                "        if (irradiance(int(light.id), position, normal) != vec3(0.0)) pixel = magenta;\n";
+    return text + "}\n";
+}
 
 }  // namespace
 
@@ -155,14 +172,15 @@ std::string depth_fragment_shader(int glsl) {
     return version_line(glsl) + "void main() {}\n";
 }
 
-std::string forward_fragment_shader(int glsl, LightLoop loop, bool has_spots, lightbin::Slicing slicing) {
+std::string forward_fragment_shader(int glsl, LightLoop loop, bool has_spots, lightbin::Slicing slicing,
+                                    ShaderChecks checks) {
     std::string text = version_line(glsl) + "#define LIGHTS_WIDTH " + std::to_string(lights_width) + "\n";
     if (has_spots) text += "#define SPOTS\n";
     if (loop == LightLoop::every_light)
         text += "#define EVERY_LIGHT\n";
     else
-        text += tile_lists(glsl, slicing);
-    return text + lighting + surface + forward_main;
+        text += tile_lists(glsl, slicing, false, checks);
+    return text + lighting + surface + check_function(checks) + forward_main;
 }
 
 std::string overlay_vertex_shader(int glsl) {

@@ -122,8 +122,8 @@ void show_in_window(Scene scene, int wanted_glsl, int view, FrameSettings settin
     Renderer renderer(scene, glsl);
 
     std::printf(
-        "W A S D Q E: move (shift: faster), mouse button held: turn, 1-9: views, H: heat map, space: stop or "
-        "start the lights, Escape: end\n");
+        "W A S D Q E: move (shift: faster), mouse button held: turn, 1-9: views, H: heat map, V: check the view, L: check "
+        "the lists (what is wrong is magenta), space: stop or start the lights, Escape: end\n");
     const double speed = walking_speed(scene);
     FreeCamera walker(scene.cameras[0], speed);
     const auto go_to = [&](std::size_t index) {
@@ -135,11 +135,13 @@ void show_in_window(Scene scene, int wanted_glsl, int view, FrameSettings settin
     const std::vector<Light> places = scene.lights;
     bool lights_move = true;
     double last = glfwGetTime(), last_title = 0, light_seconds = 0;
-    Tap h{GLFW_KEY_H}, space{GLFW_KEY_SPACE};
+    Tap h{GLFW_KEY_H}, v{GLFW_KEY_V}, l{GLFW_KEY_L}, space{GLFW_KEY_SPACE};
     while (!glfwWindowShouldClose(window)) {
         glfwPollEvents();
         if (glfwGetKey(window, GLFW_KEY_ESCAPE) == GLFW_PRESS) break;
         if (h.happened(window)) heat_map = !heat_map;
+        if (v.happened(window)) settings.checks.view = !settings.checks.view;
+        if (l.happened(window)) settings.checks.lists = !settings.checks.lists;
         if (space.happened(window)) lights_move = !lights_move;
         for (int i = 0; i < 9; ++i)
             if (static_cast<std::size_t>(i) < scene.cameras.size() &&
