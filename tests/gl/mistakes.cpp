@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: MIT
+// mistakes TROUBLESHOOTING.md: makes every mistake of that page's table for real, and sees that what the page says tells
+// of it does, and nothing else. Where nothing is wrong, nothing does. --print: what was seen, as a table.
+#include <stdexcept>
+
+struct AssertionFailed : std::logic_error {
+    using logic_error::logic_error;
+};
+#define LIGHTBIN_ASSERT(condition) ((condition) ? void() : throw AssertionFailed(#condition))
+
+#include "gl_context.hpp"
+#include "gl_program.hpp"
+#include "set_ups.hpp"
+
+#include <epoxy/gl.h>
+
+#include <glm/gtc/type_ptr.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+struct Seen {
+    std::set<std::string> by;  // what tells
+    int drawn = 0, misplaced = 0, unlit = 0, lit = 0;
+};
+
+const char* const vertex_text = R"(#version 330 core
+uniform mat4 view;
+uniform mat4 projection;
+layout(location = 0) in vec3 point;
+SAMPLING out vec3 position;
+void main() {
+    position = vec3(view * vec4(point, 1.0));
+    gl_Position = projection * vec4(position, 1.0);
+}
+)";
+
+// Red: the view check; green: the list check; blue: what the list's lights give.
+const char* const fragment_text = R"(
+uniform vec4 spheres[48];
+uniform uint lights;
+SAMPLING in vec3 position;
+out vec4 colour;
+
+float shade(uint id) {
+    vec4 sphere = spheres[id];
+    float apart = distance(sphere.xyz, position);
+    return WINDOW / (1.0 + apart * apart);
+}
+
+void main() {
+    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    colour = vec4(0.0, 0.0, 0.0, 1.0);
+    if (!lightbin_check_view(pixel, position)) colour.r = 1.0;
+    lightbin_for_each_missing(light, lights, pixel, DEPTH)
+        if (shade(light.id) > 0.0) colour.g = 1.0;
+    lightbin_for_each_light(light, pixel, DEPTH)
+        if (light.id < 48u) colour.b += shade(light.id);
+}
+)";
+
+std::string with(std::string text, const std::string& word, const std::string& meaning) {
+    for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + meaning.size()))
+        text.replace(at, word.size(), meaning);
+    return text;
+}
+
+// A floor, a wall behind it, and a small board just before the eye.
+std::vector<glm::vec3> triangles(const Setup& setup) {
+    std::vector<glm::vec3> points;
+    const auto board = [&](const glm::vec3& corner, const glm::vec3& a, const glm::vec3& b) {
+        for (const glm::vec3& point : {corner, corner + a, corner + b, corner + b, corner + a, corner + a + b})
+            points.push_back(point);
+    };
+    const float s = setup.floor_size;
+    board({-s, -1, s}, {2 * s, 0, 0}, {0, 0, -2 * s});
+    board({-20, -1, -14}, {40, 0, 0}, {0, 4, 0});
+    const glm::vec3 corner = before_eye(0.02f, 0.0f, -0.25f);
+    board(corner, before_eye(0.12f, 0.0f, -0.35f) - corner, before_eye(0.02f, 0.05f, -0.25f) - corner);
+    return points;
+}
+
+class Stage {
+public:
+    Stage() {
+        GLuint vertices = 0;
+        glGenVertexArrays(1, &vertices);
+        glBindVertexArray(vertices);
+        glGenBuffers(1, &corners_);
+        glBindBuffer(GL_ARRAY_BUFFER, corners_);
+        glEnableVertexAttribArray(0);
+        glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(glm::vec3), nullptr);
+        glGenBuffers(4, buffers_);
+        glGenTextures(4, textures_);
+        for (const int samples : {1, 4})
+            make_target(samples);
+        glEnable(GL_DEPTH_TEST);
+    }
+
+    Seen draw(const Setup& setup) {
+        Seen seen;
+        const auto snippet = lightbin::shader_snippet(setup.shader);
+        const auto view =
+            lightbin::View::from_projection(setup.given_projection, setup.given_size, setup.view_options);
+        if (setup.looked_at && (!snippet || !view)) return {.by = {"error"}};
+        const lightbin::ViewSummary summary = view->summary();
+        if (summary.looks_transposed || summary.looks_like_view_matrix || summary.looks_turned ||
+            summary.pixels_not_square)
+            seen.by.insert("summary");
+        const bool binned = setup.shader.slicing == lightbin::Slicing::clusters ? bin(clusters_, setup, *view, seen)
+                            : setup.shader.slicing == lightbin::Slicing::z_bins ? bin(z_bins_, setup, *view, seen)
+                            : setup.narrow_ids                                  ? bin(narrow_, setup, *view, seen)
+                                                                                : bin(wide_, setup, *view, seen);
+        if (!binned) return {.by = {"error"}};
+        start(setup, snippet->text);
+        set_constants(setup, *view);
+        glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(triangles(setup).size()));
+        count(setup, seen);
+        return seen;
+    }
+
+private:
+    // Uploads the lists. Returns whether there are any.
+    template <lightbin::Options options>
+    bool bin(lightbin::Binner<options>& binner, const Setup& setup, const lightbin::View& view, Seen& seen) {
+        const auto as_is = [](const lightbin::Sphere& light) { return light; };
+        const auto slices = *lightbin::Slices::exponential(16, 0.3f, 25);
+        const auto grid = binner.bin(view, lightbin::world_space(setup.given_lights, setup.given_view, as_is),
+                                     lightbin::inputs_for<options>({}, slices));
+        if (setup.looked_at && !grid) return false;
+        if (grid->light_counts().rejected > 0) seen.by.insert("counts");
+        if (setup.tiles_uploaded) upload(0, grid->ranges().data(), grid->ranges().size_bytes());
+        upload(1, grid->ids().data(), grid->ids().size_bytes());
+        const std::vector<std::uint32_t> words = lightbin::shader_slices(slices);
+        upload(2, words.data(), 4 * words.size());
+        upload(3, grid->ranks().bins.data(), grid->ranks().bins.size_bytes());
+        order_.assign(grid->ranks().order.begin(), grid->ranks().order.end());
+        return true;
+    }
+
+    void upload(int which, const void* data, std::size_t bytes) const {
+        glBindBuffer(GL_TEXTURE_BUFFER, buffers_[which]);
+        glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(bytes + 16), nullptr, GL_STREAM_DRAW);
+        glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
+        glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(which));
+        glBindTexture(GL_TEXTURE_BUFFER, textures_[which]);
+        const auto format = which % 3 == 0 ? lightbin::TexelFormat::rg32ui : lightbin::TexelFormat::r32ui;
+        glTexBuffer(GL_TEXTURE_BUFFER, lightbin::gl_format(format).internal, buffers_[which]);
+    }
+
+    void make_target(int samples) {
+        GLuint& target = targets_[samples];
+        GLuint planes[2];
+        glGenFramebuffers(1, &target);
+        glGenRenderbuffers(2, planes);
+        glBindFramebuffer(GL_FRAMEBUFFER, target);
+        for (const int i : {0, 1}) {
+            glBindRenderbuffer(GL_RENDERBUFFER, planes[i]);
+            glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples == 1 ? 0 : samples,
+                                             i == 0 ? GL_RGBA8 : GL_DEPTH_COMPONENT32F, 2 * width, 2 * height);
+            glFramebufferRenderbuffer(GL_FRAMEBUFFER, i == 0 ? GL_COLOR_ATTACHMENT0 : GL_DEPTH_ATTACHMENT,
+                                      GL_RENDERBUFFER, planes[i]);
+        }
+        if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+            throw std::runtime_error("no picture of " + std::to_string(samples) + " samples");
+    }
+
+    void start(const Setup& setup, const std::string& snippet) {
+        const std::string sampling = setup.centroid ? "centroid" : "",
+                          window = setup.windowed ? "lightbin_window(apart, sphere.w)" : "1.0";
+        std::string text = with(with(fragment_text, "SAMPLING", sampling), "WINDOW", window);
+        text = "#version 330 core\n" + snippet + with(text, "DEPTH", setup.depth_grows ? "-position.z" : "position.z");
+        GLuint& program = programs_[text + sampling];
+        if (program == 0) program = link_program(with(vertex_text, "SAMPLING", sampling), text);
+        program_ = program;
+        glUseProgram(program);
+        glBindFramebuffer(GL_FRAMEBUFFER, targets_.at(setup.samples));
+        glViewport(setup.corner[0], setup.corner[1], width, height);
+        const bool reversed = setup.projection[3][2] > 0 && setup.projection[2][3] != 0;
+        glDepthFunc(reversed ? GL_GREATER : GL_LESS);
+        glClearDepth(reversed ? 0 : 1);
+        glClearColor(0, 0, 0, 0);
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        const std::vector<glm::vec3> points = triangles(setup);
+        glBindBuffer(GL_ARRAY_BUFFER, corners_);
+        glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(points.size() * sizeof points[0]), points.data(),
+                     GL_STREAM_DRAW);
+    }
+
+    // All that is not set is 0, as in a program just linked.
+    void set_constants(const Setup& setup, const lightbin::View& view) const {
+        const lightbin::ShaderGrid grid = setup.grid_set
+                                              ? lightbin::shader_grid(view, setup.corner[0], setup.corner[1])
+                                              : lightbin::ShaderGrid{};
+        const lightbin::ShaderView image = setup.image_set ? lightbin::shader_view(view) : lightbin::ShaderView{};
+        const auto place = [&](const char* name) { return glGetUniformLocation(program_, name); };
+        glUniform4uiv(place("lightbin_grid"), 1, &grid.tile_size);
+        glUniform2iv(place("lightbin_corner"), 1, &grid.corner_x);
+        glUniform4fv(place("lightbin_image"), 1, &image.scale_x);
+        glUniform4fv(place("lightbin_depths"), 1, &image.forward);
+        glUniform1i(place("lightbin_tiles"), 0);
+        glUniform1i(place("lightbin_lists"), setup.samplers_set ? 1 : 0);
+        glUniform1i(place("lightbin_slices"), 2);
+        glUniform1i(place("lightbin_bins"), 3);
+        glUniformMatrix4fv(place("view"), 1, GL_FALSE, glm::value_ptr(setup.view));
+        glUniformMatrix4fv(place("projection"), 1, GL_FALSE, glm::value_ptr(setup.projection));
+        std::vector<glm::vec4> spheres;
+        for (const lightbin::Sphere& light : setup.lights)
+            spheres.push_back(
+                {glm::vec3(setup.view * glm::vec4(light.x, light.y, light.z, 1)), light.radius});
+        // In the order of ranks; what is out of view follows, and is not asked for.
+        const std::vector<glm::vec4> unordered = spheres;
+        for (std::size_t rank = 0; setup.ranked && rank < order_.size(); ++rank)
+            spheres[rank] = unordered[order_[rank]];
+        glUniform1ui(place("lights"), static_cast<GLuint>(order_.empty() ? light_count : order_.size()));
+        glUniform4fv(place("spheres"), light_count, glm::value_ptr(spheres[0]));
+    }
+
+    void count(const Setup& setup, Seen& seen) {
+        const int x = setup.corner[0], y = setup.corner[1];
+        if (setup.samples > 1) {
+            glBindFramebuffer(GL_DRAW_FRAMEBUFFER, targets_.at(1));
+            glBlitFramebuffer(0, 0, 2 * width, 2 * height, 0, 0, 2 * width, 2 * height, GL_COLOR_BUFFER_BIT,
+                              GL_NEAREST);
+            glBindFramebuffer(GL_FRAMEBUFFER, targets_.at(1));
+        }
+        std::vector<std::array<std::uint8_t, 4>> pixels(std::size_t{width} * height);
+        glReadPixels(x, y, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+        for (const auto& [red, green, blue, drawn] : pixels) {
+            seen.drawn += drawn > 0;
+            seen.misplaced += red > 0;
+            seen.unlit += green > 0;
+            seen.lit += blue > 0;
+        }
+        if (seen.misplaced > 0) seen.by.insert("view check");
+        if (seen.unlit > 0) seen.by.insert("list check");
+        if (glGetError() != GL_NO_ERROR) throw std::runtime_error("OpenGL reports an error");
+    }
+
+    GLuint corners_ = 0, program_ = 0;
+    GLuint buffers_[4] = {}, textures_[4] = {};  // tiles, lists, slices, bins
+    std::map<int, GLuint> targets_;              // [samples]
+    std::map<std::string, GLuint> programs_;
+    std::vector<std::uint32_t> order_;  // of the lights, with z-bins
+    lightbin::Binner<> wide_;
+    lightbin::Binner<lightbin::Options{.ids = lightbin::IdWidth::u16}> narrow_;
+    lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::clusters}> clusters_;
+    lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::z_bins}> z_bins_;
+};
+
+// The page's rows: the cell "What is wrong" and the cell "Told by".
+std::map<std::string, std::set<std::string>> rows_of(const char* path) {
+    std::map<std::string, std::set<std::string>> rows;
+    std::ifstream file(path);
+    if (!file) throw std::runtime_error(std::string("cannot open ") + path);
+    for (std::string line; std::getline(file, line);) {
+        std::vector<std::string> cells;
+        for (std::size_t at = line.find("| "), end = 0; at != line.npos && (end = line.find(" |", at)) != line.npos;
+             at = line.find("| ", end))
+            cells.push_back(line.substr(at + 2, end - at - 2));
+        if (cells.size() != 4 || cells[1] == "What is wrong" || cells[1].starts_with("---")) continue;
+        std::set<std::string>& by = rows[cells[1]];
+        for (std::size_t at = 0; at < cells[2].size();) {
+            const std::size_t end = std::min(cells[2].find(", ", at), cells[2].size());
+            by.insert(cells[2].substr(at, end - at));
+            at = end + 2;
+        }
+    }
+    return rows;
+}
+
+std::string listed(const std::set<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words)
+        text += (text.empty() ? "" : ", ") + word;
+    return text;
+}
+
+int run(const char* page, bool print) {
+    const OffscreenContext context(330);
+    Stage stage;
+    std::map<std::string, std::set<std::string>> rows = rows_of(page);
+    int wrong = 0;
+    const auto draw = [&](const Case& each) {
+        Setup setup;
+        each.change(setup);
+        try {
+            return stage.draw(setup);
+        } catch (const AssertionFailed&) {
+            return Seen{.by = {"assertion"}};
+        }
+    };
+    const auto report = [&](const Case& each, const Seen& seen, const std::string& complaint) {
+        wrong += !complaint.empty();
+        if (print || !complaint.empty())
+            std::printf("%-45s %-30s drawn %4d, misplaced %4d, unlit %4d, lit %4d %s\n", each.name.c_str(),
+                        listed(seen.by).c_str(), seen.drawn, seen.misplaced, seen.unlit, seen.lit,
+                        complaint.c_str());
+    };
+    for (const Case& each : right_ones()) {
+        const Seen seen = draw(each);
+        report(each, seen,
+               !seen.by.empty()                                             ? "<- a false alarm"
+               : seen.drawn < width * height / 3 || seen.lit < seen.drawn / 2 ? "<- too little to see"
+                                                                            : "");
+    }
+    for (const Case& each : mistakes()) {
+        const Seen seen = draw(each);
+        const auto row = rows.find(each.name);
+        report(each, seen,
+               row == rows.end()                                                   ? "<- not on the page"
+               : row->second != (seen.by.empty() ? std::set<std::string>{"nothing"} : seen.by)
+                   ? "<- the page says: " + listed(row->second)
+                   : "");
+        if (row != rows.end()) rows.erase(row);
+    }
+    for (const auto& [name, by] : rows) {
+        std::printf("on the page, and not made here: %s\n", name.c_str());
+        ++wrong;
+    }
+    std::printf("%zu mistakes, %zu right set-ups, %d complaints\n", mistakes().size(), right_ones().size(), wrong);
+    return wrong > 0;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+    try {
+        if (count < 2) return 2;
+        return run(words[1], count > 2);
+    } catch (const std::exception& problem) {
+        std::printf("%s\n", problem.what());
+        return 1;
+    }
+}
