@@ -257,9 +257,15 @@ private:
     lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::z_bins}> z_bins_;
 };
 
-// The page's rows: the cell "What is wrong" and the cell "Told by".
-std::map<std::string, std::set<std::string>> rows_of(const char* path) {
-    std::map<std::string, std::set<std::string>> rows;
+// A row of the page.
+struct Row {
+    std::string picture;
+    std::set<std::string> by;
+};
+
+// The page's rows, by the cell "What is wrong".
+std::map<std::string, Row> rows_of(const char* path) {
+    std::map<std::string, Row> rows;
     std::ifstream file(path);
     if (!file) throw std::runtime_error(std::string("cannot open ") + path);
     for (std::string line; std::getline(file, line);) {
@@ -268,7 +274,8 @@ std::map<std::string, std::set<std::string>> rows_of(const char* path) {
              at = line.find("| ", end))
             cells.push_back(line.substr(at + 2, end - at - 2));
         if (cells.size() != 4 || cells[1] == "What is wrong" || cells[1].starts_with("---")) continue;
-        std::set<std::string>& by = rows[cells[1]];
+        rows[cells[1]].picture = cells[0];
+        std::set<std::string>& by = rows[cells[1]].by;
         for (std::size_t at = 0; at < cells[2].size();) {
             const std::size_t end = std::min(cells[2].find(", ", at), cells[2].size());
             by.insert(cells[2].substr(at, end - at));
@@ -276,6 +283,15 @@ std::map<std::string, std::set<std::string>> rows_of(const char* path) {
         }
     }
     return rows;
+}
+
+// Whether the picture is as black or as right as the row has it.
+bool looks_so(const std::string& picture, const Seen& seen, int lit_when_right) {
+    const bool dark = 10 * seen.lit < lit_when_right;
+    return picture == "-"                                                            ? seen.drawn == 0
+           : picture.starts_with("right")                                            ? seen.unlit == 0 && !dark
+           : picture.starts_with("black") || picture.starts_with("nearly black")     ? seen.drawn > 0 && dark
+                                                                                     : !dark || seen.drawn == 0;
 }
 
 std::string listed(const std::set<std::string>& words) {
@@ -288,8 +304,8 @@ std::string listed(const std::set<std::string>& words) {
 int run(const char* page, bool print) {
     const OffscreenContext context(330);
     Stage stage;
-    std::map<std::string, std::set<std::string>> rows = rows_of(page);
-    int wrong = 0;
+    std::map<std::string, Row> rows = rows_of(page);
+    int wrong = 0, lit_when_right = 0;
     const auto draw = [&](const Case& each) {
         Setup setup;
         each.change(setup);
@@ -308,6 +324,7 @@ int run(const char* page, bool print) {
     };
     for (const Case& each : right_ones()) {
         const Seen seen = draw(each);
+        lit_when_right = std::max(lit_when_right, each.name == "plain" ? seen.lit : 0);
         report(each, seen,
                !seen.by.empty()                                             ? "<- a false alarm"
                : seen.drawn < width * height / 3 || seen.lit < seen.drawn / 2 ? "<- too little to see"
@@ -316,17 +333,18 @@ int run(const char* page, bool print) {
     for (const Case& each : mistakes()) {
         const Seen seen = draw(each);
         const auto row = rows.find(each.name);
+        const std::set<std::string> by = seen.by.empty() ? std::set<std::string>{"nothing"} : seen.by;
         report(each, seen,
-               row == rows.end()                                                   ? "<- not on the page"
-               : row->second != (seen.by.empty() ? std::set<std::string>{"nothing"} : seen.by)
-                   ? "<- the page says: " + listed(row->second)
+               row == rows.end()      ? "<- not on the page"
+               : row->second.by != by ? "<- the page says: " + listed(row->second.by)
+               : !looks_so(row->second.picture, seen, lit_when_right)
+                   ? "<- the page says of the picture: " + row->second.picture
                    : "");
         if (row != rows.end()) rows.erase(row);
     }
-    for (const auto& [name, by] : rows) {
-        std::printf("on the page, and not made here: %s\n", name.c_str());
-        ++wrong;
-    }
+    for (const auto& row : rows)
+        std::printf("on the page, and not made here: %s\n", row.first.c_str());
+    wrong += static_cast<int>(rows.size());
     std::printf("%zu mistakes, %zu right set-ups, %d complaints\n", mistakes().size(), right_ones().size(), wrong);
     return wrong > 0;
 }
