@@ -83,6 +83,8 @@ struct Question {
     std::vector<Wanted> wanted;     ///< in the order of the text, but for the constants before them
     std::vector<std::string> constants = {"grid"};
     ShaderSlot constants_slot;
+    bool view_check = false;  ///< constants of its own
+    ShaderSlot view_slot;
     std::uint32_t block_bytes = 0;   ///< the most of a block of other things than constants
     std::vector<std::string> names;  ///< in the text, without the prefix
 };
@@ -171,6 +173,9 @@ void check_bindings(const ShaderText& made, const Question& question) {
     if (block) wanted.push_back({question.constants.front(), question.constants_slot, bytes});
     for (std::size_t i = 0; i < question.constants.size() && !block; ++i)
         wanted.push_back({question.constants[i], {}, question.constants[i] == "corner" ? 8u : 16u});
+    const std::size_t grid_constants = wanted.size();
+    if (question.view_check && block) wanted.push_back({"image", question.view_slot, 32});
+    if (question.view_check && !block) wanted.insert(wanted.end(), {{"image", {}, 16}, {"depths", {}, 16}});
     wanted.insert(wanted.end(), question.wanted.begin(), question.wanted.end());
     require(made.bindings.size() == wanted.size(), "not the bindings wanted", text);
 
@@ -182,7 +187,7 @@ void check_bindings(const ShaderText& made, const Question& question) {
         require(binding.slot.binding == wanted[i].slot.binding && binding.slot.set == wanted[i].slot.set,
                 "another slot", text);
         const bool constant = i < wanted.size() - question.wanted.size(),
-                   push = constant && question.push_constants;
+                   push = i < grid_constants && question.push_constants;
         require(constant ? binding.bytes == wanted[i].bytes : binding.bytes <= question.block_bytes,
                 "a block of another size, or larger than allowed", text);
 
@@ -265,7 +270,14 @@ void fuzz_snippet(Bytes& bytes) {
     take_rest(bytes, options, {&options.tiles, &options.lists, &options.grid}, question);
     options.slicing = take_enum(bytes, Slicing::z_bins);
     options.max_slices = take_size(bytes);
-    options.wave_loop = (bytes.byte() & 1) != 0;
+    const unsigned more_flags = bytes.byte();
+    options.wave_loop = (more_flags & 1) != 0;
+    options.view_check = (more_flags & 2) != 0;
+    options.list_check = (more_flags & 4) != 0;
+    options.window = (more_flags & 8) != 0;
+    if ((more_flags & 16) != 0) take_slot(bytes, options.view);
+    for (const ShaderSlot slot : {options.slices, options.bins, options.view})
+        question.slots.push_back(slot);
 
     const ListFormat& format = options.format;
     const Language language(options.language);
@@ -315,6 +327,11 @@ void fuzz_snippet(Bytes& bytes) {
     if (binned) question.wanted.push_back({"bins", options.bins});
     question.names = {"tile", "cursor", "begin", "next", "for_each_light"};
     if (options.heat_map) question.names.insert(question.names.end(), {"count", "heat"});
+    if (options.view_check) question.names.push_back("check_view(");
+    if (options.list_check) question.names.push_back("for_each_missing(");
+    if (options.window) question.names.push_back("window(");
+    question.view_check = options.view_check;
+    question.view_slot = options.view;
     check(shader_snippet(options), question);
 }
 
