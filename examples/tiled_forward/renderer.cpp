@@ -312,9 +312,10 @@ Renderer::Renderer(const Scene& scene, int glsl)
                               reinterpret_cast<const void*>(attribute * sizeof(glm::vec3)));
     }
 
-    lights_ = {lightbin::ShaderResource::texture_2d, GL_RGBA32F, GL_RGBA, GL_FLOAT, 16};
-    opaque_lists_ = {{list_binding_.resource, GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, 8},
-                     {list_binding_.resource, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4}};
+    using lightbin::TexelFormat;
+    lights_ = {lightbin::ShaderResource::texture_2d, {GL_RGBA32F, GL_RGBA, GL_FLOAT}, 16};
+    opaque_lists_ = {{list_binding_.resource, lightbin::gl_format(TexelFormat::rg32ui), 8},
+                     {list_binding_.resource, lightbin::gl_format(TexelFormat::r32ui), 4}};
     transparent_lists_ = opaque_lists_;
     slices_buffer_ = opaque_lists_.indices;
     bins_buffer_ = opaque_lists_.tiles;
@@ -488,12 +489,12 @@ void Renderer::upload(const GpuBuffer& target, const void* data, std::size_t byt
     if (target.resource == ShaderResource::texture_2d) {
         const auto rows = static_cast<GLsizei>(bytes / row), rest = static_cast<GLsizei>(bytes % row / texel);
         const auto height = lightbin::texture_rows(bytes / texel, static_cast<std::size_t>(width));
-        glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(target.format), width, static_cast<GLsizei>(height), 0,
-                     target.layout, target.type, nullptr);
+        glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(target.format.internal), width, static_cast<GLsizei>(height), 0,
+                     target.format.layout, target.format.type, nullptr);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, rows, target.layout, target.type, data);
-        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, rows, rest, rest > 0 ? 1 : 0, target.layout, target.type,
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, rows, target.format.layout, target.format.type, data);
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, rows, rest, rest > 0 ? 1 : 0, target.format.layout, target.format.type,
                         static_cast<const std::byte*>(data) + static_cast<std::size_t>(rows) * row);
         return;
     }
@@ -502,7 +503,7 @@ void Renderer::upload(const GpuBuffer& target, const void* data, std::size_t byt
                  GL_STREAM_DRAW);
     glBufferSubData(GL_COPY_WRITE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
     if (target.resource == ShaderResource::texel_buffer)
-        glTexBuffer(GL_TEXTURE_BUFFER, target.format, target.buffer);
+        glTexBuffer(GL_TEXTURE_BUFFER, target.format.internal, target.buffer);
 }
 
 // Z bounds without reading the depth buffer back: only a tile's two depths are. No `min`: it is not wanted.

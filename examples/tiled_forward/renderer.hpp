@@ -91,9 +91,7 @@ private:
     // What shaders read as a storage buffer, a buffer texture or a 2D texture.
     struct GpuBuffer {
         lightbin::ShaderResource resource = lightbin::ShaderResource::storage_buffer;
-        GLenum format = 0;  // of a texel
-        GLenum layout = 0;  // its parts
-        GLenum type = 0;    // of a part
+        lightbin::GlFormat format = {};  // of a texel
         int texel_bytes = 0;
         GLuint buffer = 0;
         GLuint texture = 0;
