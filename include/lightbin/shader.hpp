@@ -398,7 +398,7 @@ float $window(float apart, float range) {
 ///
 /// The first is whether the View has `position`, in view space, in this pixel (within ShaderView's tolerance) and not
 /// before its near plane. The second is a loop over every light below light_count that the pixel's list lacks, whatever the
-/// encoding. Both are for looking for mistakes: the loop goes through all lights.
+/// encoding; no `else` can follow its body. Both are for looking for mistakes: the loop goes through all lights.
 inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
     using namespace detail;
     if (const auto error = refuse(options)) return *error;

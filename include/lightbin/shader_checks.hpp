@@ -63,19 +63,18 @@ inline void add_view_check(ShaderWriter& writer, const std::string& to_grid) {
 /// `missing`, `begin_missing`, `next_missing` and their loop. As ids ascend, list and numbers are walked side by side.
 inline void add_list_check(ShaderWriter& writer, const std::string& own) {
     const std::string cursor = "$" + own + "cursor", begin = "$" + own + "begin", next = "$" + own + "next";
-    writer.add("\n// A light that the pixel's list lacks.\nstruct $missing {\n    uint id;\n    bool more;\n    " + cursor +
-               " listed;\n};\n\n$missing $begin_missing(uvec2 pixel, float view_depth) {\n    $missing m;\n"
-               "    m.id = 0xffffffffu;\n    m.listed = " +
+    writer.add("\n// A light, and whether the pixel's list lacks it.\nstruct $missing {\n    uint id;\n    bool lacked;\n"
+               "    bool more;\n    " +
+               cursor + " listed;\n};\n\n$missing $begin_missing(uvec2 pixel, float view_depth) {\n    $missing m;\n"
+                        "    m.id = 0xffffffffu;\n    m.lacked = false;\n    m.listed = " +
                begin + "(pixel, view_depth);\n    m.more = " + next +
-               "(m.listed);\n    return m;\n}\n\nbool $next_missing(inout $missing m, uint lights) {\n"
-               "    m.id += 1u;\n    while (m.more && m.listed.id == m.id) {\n        m.more = " +
+               "(m.listed);\n    return m;\n}\n\nbool $next_missing(inout $missing m, uint lights) {\n    m.id += 1u;\n"
+               "    m.lacked = !(m.more && m.listed.id == m.id);\n    if (!m.lacked) m.more = " +
                next + R"((m.listed);
-        m.id += 1u;
-    }
     return m.id < lights;
 }
 
-#define $for_each_missing(cursor, lights, pixel, view_depth) for ($missing cursor = $begin_missing(pixel, view_depth); $next_missing(cursor, lights);)
+#define $for_each_missing(cursor, lights, pixel, view_depth) for ($missing cursor = $begin_missing(pixel, view_depth); $next_missing(cursor, lights);) if (cursor.lacked)
 )");
 }
 

@@ -86,7 +86,7 @@ inline lightbin::ShaderOptions with_switches(lightbin::ShaderOptions options, un
     options.heat_map = switches & 8;
     // One of these at a time, in pixels of every kind.
     options.view_check = switches / 4 == 3;
-    options.list_check = switches / 4 == 2;
+    options.list_check = switches / 4 == 0;
     options.window = switches / 4 == 1;
     return options;
 }
@@ -188,7 +188,7 @@ inline std::uint32_t checked_lights(std::uint32_t width) {
 constexpr float scale_x = 1.2f, scale_y = 1.7f;
 
 /// Lines that add to `hash` where a check or the window function says what is not so. `grid` is the pixel as the view
-/// counts it. What lists lack is what a loop of their own counts.
+/// counts it. `listed` is the sum of 1 + id of the lights listed.
 inline std::string reader_checks(const lightbin::ShaderOptions& options, std::uint32_t width) {
     const std::string prefix(options.prefix), lights = std::to_string(checked_lights(width)) + "u";
     std::string text;
@@ -213,9 +213,7 @@ inline std::string reader_checks(const lightbin::ShaderOptions& options, std::ui
                 "check_view(pixel, 7.0 * below)) hash += 16u;\n    if (inside && " + prefix +
                 "check_view(pixel, -7.0 * far_off)) hash += 32u;\n";
     if (options.list_check)
-        text += "    highp uint listed = 0u;\n    " + prefix + "for_each_light(one, pixel, depth) {\n" +
-                "        if (one.id < " + lights + ") listed += one.id + 1u;\n    }\n    " + prefix +
-                "for_each_missing(other, " + lights + ", pixel, depth) listed += other.id + 1u;\n    if (listed != " +
+        text += "    " + prefix + "for_each_missing(other, " + lights + ", pixel, depth) listed += other.id + 1u;\n    if (listed != " +
                 std::to_string(checked_lights(width) * (checked_lights(width) + 1) / 2) + "u) hash += 64u;\n";
     if (options.window)
         text += "    if (" + prefix + "window(3.0, 3.0) != 0.0 || " + prefix + "window(0.0, 3.0) != 1.0 || abs(" +
@@ -261,11 +259,13 @@ uvec4 read_list(highp uvec2 pixel) {
     highp uint hash = 2166136261u;
     highp uint sum = 0u;
     highp uint count = 0u;
+    highp uint listed = 0u;
     )" + prefix +
             R"(for_each_light(light, pixel, depth) {
         hash = (hash ^ light.id) * 16777619u;
         count += 1u;
         sum += count * light.id;
+        if (light.id < )" + std::to_string(checked_lights(width)) + R"(u) listed += light.id + 1u;
     }
 )";
     if (options.heat_map)

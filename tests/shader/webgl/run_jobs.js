@@ -36,7 +36,8 @@ void main() {
         const place = gl.getUniformLocation(program, input.name);
         if (input.resource === 'vector') {
             if (input.name.endsWith('corner')) gl.uniform2iv(place, new Int32Array(bytes.buffer, 0, 2));
-            else gl.uniform4uiv(place, new Uint32Array(bytes.buffer));
+            else if (input.name.endsWith('grid')) gl.uniform4uiv(place, new Uint32Array(bytes.buffer, 0, 4));
+            else gl.uniform4fv(place, new Float32Array(bytes.buffer, 0, 4));
         } else if (input.resource === 'block') {
             const buffer = gl.createBuffer();
             made.push(() => gl.deleteBuffer(buffer));
