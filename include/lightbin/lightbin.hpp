@@ -27,7 +27,7 @@
 //   For all depths without a depth buffer (no pre-pass, fog, glass): Slices::exponential(24, 5, 200)  slices.hpp
 //      once, a Binner<Options{.slicing = Slicing::clusters}> or z_bins, and binner.bin(view, lights, {.slices = *slices}).
 //   5. #include <lightbin/shader.hpp>. Put shader_snippet({...})->text in your shader, and bind what its
-//      bindings list. shader.md has it step by step.
+//      bindings list. docs/README.md leads to the steps, API by API.
 //
 // This header includes steps 1 to 4. What else there is, one include each:
 //   shader.hpp        the shader text that reads the lists, in GLSL and HLSL

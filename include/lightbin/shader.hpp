@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage 4b: the shader text that reads a light grid. shader.md beside it shows its use.
+// Stage 4b: the shader text that reads a light grid. docs/shader.md shows its use.
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
