@@ -20,12 +20,13 @@ vec3 shade(uint id, vec3 position, vec3 normal) { return shade(id, position) + n
 vec3 shade_point(uint id) { return shade(id); }
 vec3 shade_spot(uint id) { return shade(id); }
 vec3 blend_decal(vec3 colour, uint id) { return mix(colour, shade(id), 0.5); }
-const uint first_spot = 10u, first_decal = 20u;
+const uint first_spot = 10u, first_decal = 20u, light_count = 30u;
 )";
 
 /// A shader of a block: what has no main() is the inside of one.
 std::string whole(lightbin::ShaderLanguage language, const std::string& block) {
-    const auto snippet = lightbin::shader_snippet({.language = language});
+    const auto snippet = lightbin::shader_snippet(
+        {.language = language, .view_check = true, .list_check = true, .window = true});
     if (language == lightbin::ShaderLanguage::hlsl_5_0)
         return snippet->text + "float3 shade(uint id, float3 position) { return float3(id, 0, 0) + position; }\n" + block;
     const std::string start = "#version 450\n" + snippet->text + given;
