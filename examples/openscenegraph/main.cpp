@@ -62,7 +62,7 @@ struct Buffer {
 // those that will be drawn with, near and far planes as OpenSceneGraph has fitted them, whoever has the viewer's loop.
 struct LightLists : osg::Camera::DrawCallback {
     std::vector<Light> lights;
-    mutable lightbin::Binner<> binner;
+    mutable lightbin::Binner<> binner;  // the callback is const
     Buffer tiles, ids, light_data;
     osg::ref_ptr<osg::Uniform> grid = new osg::Uniform(osg::Uniform::UNSIGNED_INT_VEC4, "lightbin_grid");
     osg::ref_ptr<osg::Uniform> every_light = new osg::Uniform("every_light", false);
@@ -112,7 +112,7 @@ osg::ref_ptr<osg::Group> make_scene() {
         osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform;
         place->setMatrix(osg::Matrixd::rotate(i, osg::Z_AXIS) *
                          osg::Matrixd::translate(3.4 * (i % 25 - 12), 3.4 * (i / 25 - 12), 0));
-        place->addChild(new osg::ShapeDrawable(shape.get()));
+        place->addChild(new osg::ShapeDrawable(shape.get()));  // of a ref_ptr 3.6 makes a black one
         scene->addChild(place);
     }
     return scene;
@@ -159,7 +159,7 @@ bool check(osgViewer::Viewer& viewer, LightLists& lists, const osg::Image& image
         lists.every_light->set(false);
         const bool same = std::equal(by_lists.begin(), by_lists.end(), image.data());
         const auto bright = std::count_if(by_lists.begin(), by_lists.end(), [](int b) { return b > 127; });
-        std::printf("%d x %d pixels, %ld bytes bright: %s\n", image.s(), image.t(), bright,
+        std::printf("%d x %d pixels, %td bytes bright: %s\n", image.s(), image.t(), bright,
                     same ? "identical" : "DIFFERENT");
         identical = identical && same;
         if (stale) viewer.getCamera()->setInitialDrawCallback(nullptr);

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Each block of code in a page is in the files that it quotes: quoted.sh PAGE FILE... Lines that follow one another there
-# do so here, indented as they may be.
+# Sees that each block of code in a page stands, line after line, in the files that it quotes, whatever the indent:
+#   quoted.sh PAGE FILE...
 set -eu
 page=$1
 shift
