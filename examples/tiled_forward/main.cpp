@@ -88,9 +88,10 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
     app.add_flag("--headless", options.headless, "No window, although there is a display");
     app.add_flag("--check", options.check,
                  "Draw again with every light in every fragment and compare; no window");
-    app.add_flag("--check-in-shader", options.check_in_shader,
-                 "Draw in grey, and magenta where a fragment is not where the View has it, or its list lacks a "
-                 "light that reaches it; no window");
+    app.add_flag(
+        "--check-in-shader", options.check_in_shader,
+        "Draw in grey, and magenta where a fragment is not where the View has it, or its list lacks a "
+        "light that reaches it; no window");
     app.add_flag("--stale-size", options.stale_size,
                  "Make the lists for a picture of half the size, to see --check-in-shader fail");
     app.add_option("--drop-light", options.frame.dropped_light,
@@ -198,13 +199,16 @@ bool check_in_shader(Renderer& renderer, const Camera& camera, FrameSettings fra
     const std::size_t misplaced = magenta({.view = true}), unlit = magenta({.lists = true});
     magenta({.view = true, .lists = true});  // the picture that is written
     if (misplaced > 0)
-        std::printf("view check   MAGENTA: in %zu of %d x %d pixels something is not where the View has it, or before "
-                    "its near plane: is the View made of the projection, size and origin that are drawn with?\n",
-                    misplaced, frame.width, frame.height);
+        std::printf(
+            "view check   MAGENTA: in %zu of %d x %d pixels something is not where the View has it, or "
+            "before "
+            "its near plane: is the View made of the projection, size and origin that are drawn with?\n",
+            misplaced, frame.width, frame.height);
     else
         std::printf("view check   right: all that is drawn is where the View has it\n");
     if (unlit > 0)
-        std::printf("list check   MAGENTA: in %zu of %d x %d pixels a light is missing that reaches them: have Binner "
+        std::printf("list check   MAGENTA: in %zu of %d x %d pixels a light is missing that reaches them: "
+                    "have Binner "
                     "and shader the same lights, in the same order, space and range, and ids as wide?\n",
                     unlit, frame.width, frame.height);
     else

@@ -371,9 +371,9 @@ GLuint Renderer::tiled_program(const FrameSettings& settings) {
     const lightbin::Slicing slicing = slicing_of(settings);
     GLuint& program = tiled_programs_[{slicing, settings.checks}];
     if (program == 0)
-        program = link_program(geometry_vertex_shader(glsl_),
-                               forward_fragment_shader(glsl_, LightLoop::tile_list, has_spots_, slicing,
-                                                       settings.checks));
+        program = link_program(
+            geometry_vertex_shader(glsl_),
+            forward_fragment_shader(glsl_, LightLoop::tile_list, has_spots_, slicing, settings.checks));
     return program;
 }
 
@@ -489,12 +489,13 @@ void Renderer::upload(const GpuBuffer& target, const void* data, std::size_t byt
     if (target.resource == ShaderResource::texture_2d) {
         const auto rows = static_cast<GLsizei>(bytes / row), rest = static_cast<GLsizei>(bytes % row / texel);
         const auto height = lightbin::texture_rows(bytes / texel, static_cast<std::size_t>(width));
-        glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(target.format.internal), width, static_cast<GLsizei>(height), 0,
-                     target.format.layout, target.format.type, nullptr);
+        glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(target.format.internal), width,
+                     static_cast<GLsizei>(height), 0, target.format.layout, target.format.type, nullptr);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
         glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, rows, target.format.layout, target.format.type, data);
-        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, rows, rest, rest > 0 ? 1 : 0, target.format.layout, target.format.type,
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, rows, rest, rest > 0 ? 1 : 0, target.format.layout,
+                        target.format.type,
                         static_cast<const std::byte*>(data) + static_cast<std::size_t>(rows) * row);
         return;
     }

@@ -26,14 +26,16 @@ enum class LightLoop {
     every_light  // all there are, without any list: what --check compares with
 };
 
-// What the fragments of tile lists check, see lightbin::shader_snippet(). The picture is grey then, and what is wrong magenta.
+// What the fragments of tile lists check, see lightbin::shader_snippet(). The picture is grey then, and what is wrong
+// magenta.
 struct ShaderChecks {
     bool view = false;   // is this fragment where the View has it?
     bool lists = false;  // has its list every light that reaches it?
     auto operator<=>(const ShaderChecks&) const = default;
 };
 std::string forward_fragment_shader(int glsl, LightLoop loop, bool has_spots,
-                                    lightbin::Slicing slicing = lightbin::Slicing::none, ShaderChecks checks = {});
+                                    lightbin::Slicing slicing = lightbin::Slicing::none,
+                                    ShaderChecks checks = {});
 
 // A triangle that covers the picture.
 std::string overlay_vertex_shader(int glsl);

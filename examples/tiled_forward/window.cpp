@@ -121,9 +121,9 @@ void show_in_window(Scene scene, int wanted_glsl, int view, FrameSettings settin
     glfwSetInputMode(window, GLFW_STICKY_KEYS, GLFW_TRUE);  // a key tapped within a slow frame counts
     Renderer renderer(scene, glsl);
 
-    std::printf(
-        "W A S D Q E: move (shift: faster), mouse button held: turn, 1-9: views, H: heat map, V: check the view, L: check "
-        "the lists (what is wrong is magenta), space: stop or start the lights, Escape: end\n");
+    std::printf("W A S D Q E: move (shift: faster), mouse button held: turn, 1-9: views, H: heat map, V: "
+                "check the view, L: check "
+                "the lists (what is wrong is magenta), space: stop or start the lights, Escape: end\n");
     const double speed = walking_speed(scene);
     FreeCamera walker(scene.cameras[0], speed);
     const auto go_to = [&](std::size_t index) {

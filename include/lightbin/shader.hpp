@@ -55,7 +55,7 @@ struct ShaderOptions {
     /// The lanes of a wave go through the lights of all their lists together, so that what is read of a light is read once
     /// for all of them (Drobot 2017). GLSL 4.30, ES 3.10: with GL_KHR_shader_subgroup_arithmetic; Vulkan 1.1; HLSL 6.0.
     bool wave_loop = false;
-    bool view_check = false;  ///< also `check_view`
+    bool view_check = false;  ///< also `check_view`, whose constants are at `view`
     bool list_check = false;  ///< also `for_each_missing`
     bool window = false;      ///< also `window`, as light_window()
 
@@ -65,7 +65,7 @@ struct ShaderOptions {
     std::uint32_t max_slices = 0;        ///< and slicing: the most slices
     std::uint32_t uniform_block_bytes = 16384;  ///< the most that the device allows; every one has 16384
 
-    ShaderSlot tiles = {0}, lists = {1}, grid = {2}, slices = {3}, bins = {4}, view = {5};  ///< view: of view_check
+    ShaderSlot tiles = {0}, lists = {1}, grid = {2}, slices = {3}, bins = {4}, view = {5};
     bool push_constants = false;  ///< Vulkan: `grid` as push constants
     std::string_view prefix = "lightbin_";
 };
@@ -113,9 +113,10 @@ inline std::optional<Error> refuse_names(const Dialect& dialect, std::string_vie
 
 inline std::optional<Error> refuse(const ShaderOptions& options) {
     const Dialect dialect = detail::dialect(options.language);
-    if (auto error = refuse_names(dialect, options.prefix,
-                                  {options.tiles, options.lists, options.grid, options.slices, options.bins, options.view},
-                                  options.push_constants))
+    if (auto error = refuse_names(
+            dialect, options.prefix,
+            {options.tiles, options.lists, options.grid, options.slices, options.bins, options.view},
+            options.push_constants))
         return error;
     if (options.storage == ListStorage::storage_buffer && !dialect.storage_buffers)
         return Error{ErrorCode::no_storage_buffers};
@@ -174,8 +175,8 @@ inline std::string tile_size_text(const ShaderOptions& options) {
     return options.tile_size == 0 ? "$grid.x" : number_text(static_cast<std::uint64_t>(options.tile_size));
 }
 
-/// Lines that turn a pixel as the shader counts it to that of the view. What lies outside of the viewport stays outside:
-/// numbers below 0 wrap to large ones.
+/// Lines that turn a pixel as the shader counts it to that of the view. What lies outside of the viewport stays
+/// outside: numbers below 0 wrap to large ones.
 inline std::string to_grid_lines(const ShaderOptions& options) {
     return std::string(options.viewport_corner ? "    pixel -= uvec2($corner);\n" : "") +
            (options.flip_y ? "    pixel.y = $grid.w - 1u - pixel.y;\n" : "");
@@ -224,8 +225,8 @@ inline ListBuffers list_buffers(const ShaderOptions& options) {
                      options.texture_width}};
 }
 
-/// `cursor` and `begin`, their names led by `own`. Nothing is read and nothing divided for a pixel that the grid has no tile
-/// for: its constants are unset, or those of a smaller picture or of other tiles.
+/// `cursor` and `begin`, their names led by `own`. Nothing is read and nothing divided for a pixel that the grid has no
+/// tile for: its constants are unset, or those of a smaller picture or of other tiles.
 inline void add_begin(ShaderWriter& writer, const ShaderOptions& options, const ListBuffers& buffers,
                       const std::string& own) {
     const ListFormat& format = options.format;
@@ -241,13 +242,14 @@ inline void add_begin(ShaderWriter& writer, const ShaderOptions& options, const 
     if (binned) writer.add("    c.last = 0u;\n");
     const std::string tile_size = tile_size_text(options);
     writer.add("    if (pixel.x < $grid.z && pixel.y < $grid.w" +
-               (options.tile_size == 0 ? "" : " && $grid.x == " + tile_size) + ") {\n        uvec2 tile = pixel / " +
-               tile_size + ";\n");
+               (options.tile_size == 0 ? "" : " && $grid.x == " + tile_size) +
+               ") {\n        uvec2 tile = pixel / " + tile_size + ";\n");
     if (options.slicing != Slicing::none) writer.add("        uint slice = $slice(view_depth);\n");
     if (options.slicing == Slicing::clusters)
         writer.add("        tile.y += slice * (($grid.w - 1u) / " + tile_size + " + 1u);\n");
     if (binned)
-        writer.add("        uvec2 bin = " + writer.read(buffers.bins, "slice") + ";\n        c.last = bin.y;\n");
+        writer.add("        uvec2 bin = " + writer.read(buffers.bins, "slice") +
+                   ";\n        c.last = bin.y;\n");
     writer.add("        uint place = tile.y * $grid.y + tile.x;\n");
     const std::string each = number_text(places_a_tile(format));
     if (table)
@@ -384,12 +386,13 @@ float $window(float apart, float range) {
 /// that of the tile in the depth's slice; with z_bins that of the tile from the least to the greatest rank of the
 /// depth's bin.
 ///
-/// `break`, `continue` and `return` work in the loops' bodies, and loops nest. The list is empty of a pixel outside of the
-/// viewport, and of every pixel where `grid` is not set, or its tiles are not of options.tile_size: no place outside of the
-/// table of tiles that `grid` tells of is read. Tiles and lists must be of one build: a table that points beyond the lists
-/// reads there what the graphics API has it read (Direct3D: 0; OpenGL, Vulkan: robust access is a setting). Ids come in ascending order, each once. With wave_loop no `else` can follow the body, and what depends on the
-/// id alone is the same in the whole wave; `begin` and `next` then give the wave's lights, and cursor.own tells whether one
-/// is the lane's own.
+/// `break`, `continue` and `return` work in the loops' bodies, and loops nest. The list is empty of a pixel outside of
+/// the viewport, and of every pixel where `grid` is not set, or its tiles are not of options.tile_size: no place
+/// outside of the table of tiles that `grid` tells of is read. Tiles and lists must be of one build: a table that
+/// points beyond the lists reads there what the graphics API has it read (Direct3D: 0; OpenGL, Vulkan: robust access is
+/// a setting). Ids come in ascending order, each once. With wave_loop no `else` can follow the body, and what depends
+/// on the id alone is the same in the whole wave; `begin` and `next` then give the wave's lights, and cursor.own tells
+/// whether one is the lane's own.
 ///
 /// Two checks, to colour what is wrong:
 ///
@@ -397,8 +400,8 @@ float $window(float apart, float range) {
 ///     lightbin_for_each_missing(light, light_count, pixel, depth) { if (shade(light.id) > 0) colour = magenta; }
 ///
 /// The first is whether the View has `position`, in view space, in this pixel (within ShaderView's tolerance) and not
-/// before its near plane. The second is a loop over every light below light_count that the pixel's list lacks, whatever the
-/// encoding; no `else` can follow its body. Both are for looking for mistakes: the loop goes through all lights.
+/// before its near plane. The second is a loop over every light below light_count that the pixel's list lacks, whatever
+/// the encoding; no `else` can follow its body. Both are for looking for mistakes: the loop goes through all lights.
 inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
     using namespace detail;
     if (const auto error = refuse(options)) return *error;
@@ -409,7 +412,8 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
     std::vector<ShaderConstant> constants = {{"uvec4", "grid"}};
     if (options.viewport_corner) constants.push_back({"ivec2", "corner"});
     writer.declare_constants(constants, options.grid, options.push_constants);
-    if (options.view_check) writer.declare_constants({{"vec4", "image"}, {"vec4", "depths"}}, options.view, false);
+    if (options.view_check)
+        writer.declare_constants({{"vec4", "image"}, {"vec4", "depths"}}, options.view, false);
     if (options.format.encoding == ListEncoding::offset_count) writer.declare(buffers.tiles);
     writer.declare(buffers.lists);
     if (options.slicing != Slicing::none) writer.declare(buffers.slices);

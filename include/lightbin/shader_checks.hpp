@@ -15,7 +15,7 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// What the constants `image` and `depths` of a text with view_check are set to. In a uniform block: this struct.
 struct ShaderView {
-    float scale_x, scale_y, offset_x, offset_y;       ///< image: pixel = scale * x / depth + offset
+    float scale_x, scale_y, offset_x, offset_y;      ///< image: pixel = scale * x / depth + offset
     float forward, perspective, nearest, tolerance;  ///< depths: depth = forward * z; 1 or 0; depth; pixels
 };
 static_assert(sizeof(ShaderView) == 32);  // so there is no padding
@@ -36,23 +36,19 @@ inline ShaderView shader_view(const View& view, float tolerance = 2) {
     const float near_depth = view.near_depth();
     const float slack = view.orthographic() ? 0x1p-10f * (std::fabs(near_depth) + std::fabs(view.far_depth()))
                                             : 0x1p-8f * near_depth;
-    return {scale(camera.x),
-            scale(camera.y),
-            pixels(camera.x.offset),
-            pixels(camera.y.offset),
-            camera.z_sign,
-            view.orthographic() ? 0.0f : 1.0f,
-            near_depth - slack,
-            tolerance};
+    return {scale(camera.x),         scale(camera.y), pixels(camera.x.offset),
+            pixels(camera.y.offset), camera.z_sign,   view.orthographic() ? 0.0f : 1.0f,
+            near_depth - slack,      tolerance};
 }
 
 namespace detail {
 
 /// `check_view`. `to_grid` turns the pixel as the shader counts it to that of the view.
 inline void add_view_check(ShaderWriter& writer, const std::string& to_grid) {
-    writer.add("\n// Whether the View has a position of view space in this pixel, and not before its near plane.\n"
-               "bool $check_view(uvec2 pixel, vec3 position) {\n" +
-               to_grid + R"(    float depth = $depths.x * position.z;
+    writer.add(
+        "\n// Whether the View has a position of view space in this pixel, and not before its near plane.\n"
+        "bool $check_view(uvec2 pixel, vec3 position) {\n" +
+        to_grid + R"(    float depth = $depths.x * position.z;
     vec2 at = $image.xy * position.xy / ($depths.y > 0.0 ? depth : 1.0) + $image.zw;
     vec2 apart = abs(at - (vec2(pixel) + 0.5));
     return apart.x < $depths.w && apart.y < $depths.w && depth >= $depths.z;
@@ -63,20 +59,23 @@ inline void add_view_check(ShaderWriter& writer, const std::string& to_grid) {
 /// `missing`, `begin_missing`, `next_missing` and their loop. As ids ascend, list and numbers are walked side by side.
 inline void add_list_check(ShaderWriter& writer, const std::string& own) {
     const std::string cursor = "$" + own + "cursor", begin = "$" + own + "begin", next = "$" + own + "next";
-    writer.add("\n// A light, and whether the pixel's list lacks it.\nstruct $missing {\n    uint id;\n    bool lacked;\n"
+    writer.add("\n// A light, and whether the pixel's list lacks it.\nstruct $missing {\n    uint id;\n    "
+               "bool lacked;\n"
                "    bool more;\n    " +
-               cursor + " listed;\n};\n\n$missing $begin_missing(uvec2 pixel, float view_depth) {\n    $missing m;\n"
-                        "    m.id = 0xffffffffu;\n    m.lacked = false;\n    m.listed = " +
+               cursor +
+               " listed;\n};\n\n$missing $begin_missing(uvec2 pixel, float view_depth) {\n    $missing m;\n"
+               "    m.id = 0xffffffffu;\n    m.lacked = false;\n    m.listed = " +
                begin + "(pixel, view_depth);\n    m.more = " + next +
-               "(m.listed);\n    return m;\n}\n\nbool $next_missing(inout $missing m, uint lights) {\n    m.id += 1u;\n"
+               "(m.listed);\n    return m;\n}\n\nbool $next_missing(inout $missing m, uint lights) {\n    "
+               "m.id += 1u;\n"
                "    m.lacked = !(m.more && m.listed.id == m.id);\n    if (!m.lacked) m.more = " +
                next + R"((m.listed);
     return m.id < lights;
 }
 
-#define $for_each_missing(cursor, lights, pixel, view_depth) for ($missing cursor = $begin_missing(pixel, view_depth); $next_missing(cursor, lights);) if (cursor.lacked)
-)");
+#define $for_each_missing(cursor, lights, pixel, view_depth) for ($missing cursor = )" +
+               "$begin_missing(pixel, view_depth); $next_missing(cursor, lights);) if (cursor.lacked)\n");
 }
 
 }  // namespace detail
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR

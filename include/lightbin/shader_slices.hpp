@@ -74,8 +74,8 @@ inline std::uint64_t slice_words(std::uint32_t slices) {
     return slices + std::uint64_t{3};
 }
 
-/// `slice`: the slice of a view depth. A guess, by a logarithm that a device may round as it likes, and from there to where
-/// the boundaries have it. They and the depth are compared as words: devices may take tiny floats for zero.
+/// `slice`: the slice of a view depth. A guess, by a logarithm that a device may round as it likes, and from there to
+/// where the boundaries have it. They and the depth are compared as words: devices may take tiny floats for zero.
 inline void add_slice(ShaderWriter& writer, const ShaderBuffer& slices) {
     const auto word = [&](const std::string& index) { return writer.read(slices, index); };
     const auto number = [&](const std::string& index) { return "uintBitsToFloat(" + word(index) + ")"; };
@@ -97,4 +97,4 @@ inline void add_slice(ShaderWriter& writer, const ShaderBuffer& slices) {
 }
 
 }  // namespace detail
-}  // namespace lightbin
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR

@@ -34,7 +34,7 @@ constexpr const char* to_string(ShaderLanguage value) {
 
 /// What a name in the text is bound to.
 enum class ShaderResource : std::uint8_t {
-    uniform_vector,   ///< loose uniforms, in OpenGL: `grid` (uvec4), `corner` (ivec2), `image` (vec4) and the like
+    uniform_vector,  ///< loose uniforms, in OpenGL: `grid` (uvec4), `corner` (ivec2), `image` (vec4) and the like
     uniform_block,    ///< GLSL: std140 block; HLSL: cbuffer, register b
     push_constants,   ///< Vulkan
     storage_buffer,   ///< GLSL: std430 block; HLSL: StructuredBuffer, register t
@@ -64,7 +64,8 @@ struct ShaderBinding {
     TexelFormat format = TexelFormat::none;  ///< gl_format(), vk_format(), dxgi_format()
     std::uint32_t stride = 0;  ///< bytes of one element or texel
     std::uint32_t bytes = 0;   ///< uniform blocks, push constants: size in the text; otherwise 0, as the data
-    std::uint32_t width = 0;   ///< texture_2d: texels a row, see texture_rows(); 0: as many as there are tiles across
+    std::uint32_t width =
+        0;  ///< texture_2d: texels a row, see texture_rows(); 0: as many as there are tiles across
 };
 
 /// A text and what it wants bound, in the order of the text.

@@ -35,10 +35,10 @@ inline float light_range(float intensity, float cutoff) {
                                (1 + 0x1p-50));
 }
 
-/// Returns what to multiply a light by so that it ends at its range, smoothly: 1 at the light, (1 - (distance / range)^4)^2 on
-/// the way, and exactly 0 from the range on. Without such a window what a light still gives beyond its range is lit in
-/// some tiles and not in their neighbours, and seams are seen. ShaderOptions::window makes the same of shader text.
-/// Range +inf: 1.
+/// Returns what to multiply a light by so that it ends at its range, smoothly: 1 at the light, (1 - (distance /
+/// range)^4)^2 on the way, and exactly 0 from the range on. Without such a window what a light still gives beyond its
+/// range is lit in some tiles and not in their neighbours, and seams are seen. ShaderOptions::window makes the same of
+/// shader text. Range +inf: 1.
 ///
 /// Source: Karis, Real Shading in Unreal Engine 4, SIGGRAPH 2013.
 inline float light_window(float distance, float range) {

@@ -47,8 +47,8 @@ constexpr std::uint32_t dxgi_format(TexelFormat format) {
     return formats[static_cast<std::size_t>(format)];
 }
 
-/// Returns how many rows a 2D texture of `width` texels a row has where it holds `count`: at least 1. The last one may be
-/// partly filled.
+/// Returns how many rows a 2D texture of `width` texels a row has where it holds `count`: at least 1. The last one may
+/// be partly filled.
 constexpr std::size_t texture_rows(std::size_t count, std::size_t width) {
     return count == 0 ? 1 : (count - 1) / width + 1;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// mistakes TROUBLESHOOTING.md: makes every mistake of that page's table for real, and sees that what the page says tells
-// of it does, and nothing else. Where nothing is wrong, nothing does. --print: what was seen, as a table.
+// mistakes TROUBLESHOOTING.md: makes every mistake of that page's table for real, and sees that what the page says
+// tells of it does, and nothing else. Where nothing is wrong, nothing does. --print: what was seen, as a table.
 #include <stdexcept>
 
 struct AssertionFailed : std::logic_error {
@@ -78,7 +78,8 @@ std::string with(std::string text, const std::string& word, const std::string& m
 std::vector<glm::vec3> triangles(const Setup& setup) {
     std::vector<glm::vec3> points;
     const auto board = [&](const glm::vec3& corner, const glm::vec3& a, const glm::vec3& b) {
-        for (const glm::vec3& point : {corner, corner + a, corner + b, corner + b, corner + a, corner + a + b})
+        for (const glm::vec3& point :
+             {corner, corner + a, corner + b, corner + b, corner + a, corner + a + b})
             points.push_back(point);
     };
     const float s = setup.floor_size;
@@ -116,10 +117,11 @@ public:
         if (summary.looks_transposed || summary.looks_like_view_matrix || summary.looks_turned ||
             summary.pixels_not_square)
             seen.by.insert("summary");
-        const bool binned = setup.shader.slicing == lightbin::Slicing::clusters ? bin(clusters_, setup, *view, seen)
-                            : setup.shader.slicing == lightbin::Slicing::z_bins ? bin(z_bins_, setup, *view, seen)
-                            : setup.narrow_ids                                  ? bin(narrow_, setup, *view, seen)
-                                                                                : bin(wide_, setup, *view, seen);
+        const bool binned =
+            setup.shader.slicing == lightbin::Slicing::clusters ? bin(clusters_, setup, *view, seen)
+            : setup.shader.slicing == lightbin::Slicing::z_bins ? bin(z_bins_, setup, *view, seen)
+            : setup.narrow_ids                                  ? bin(narrow_, setup, *view, seen)
+                                                                : bin(wide_, setup, *view, seen);
         if (!binned) return {.by = {"error"}};
         start(setup, snippet->text);
         set_constants(setup, *view);
@@ -166,7 +168,8 @@ private:
         for (const int i : {0, 1}) {
             glBindRenderbuffer(GL_RENDERBUFFER, planes[i]);
             glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples == 1 ? 0 : samples,
-                                             i == 0 ? GL_RGBA8 : GL_DEPTH_COMPONENT32F, 2 * width, 2 * height);
+                                             i == 0 ? GL_RGBA8 : GL_DEPTH_COMPONENT32F, 2 * width,
+                                             2 * height);
             glFramebufferRenderbuffer(GL_FRAMEBUFFER, i == 0 ? GL_COLOR_ATTACHMENT0 : GL_DEPTH_ATTACHMENT,
                                       GL_RENDERBUFFER, planes[i]);
         }
@@ -178,7 +181,8 @@ private:
         const std::string sampling = setup.centroid ? "centroid" : "",
                           window = setup.windowed ? "lightbin_window(apart, sphere.w)" : "1.0";
         std::string text = with(with(fragment_text, "SAMPLING", sampling), "WINDOW", window);
-        text = "#version 330 core\n" + snippet + with(text, "DEPTH", setup.depth_grows ? "-position.z" : "position.z");
+        text = "#version 330 core\n" + snippet +
+               with(text, "DEPTH", setup.depth_grows ? "-position.z" : "position.z");
         GLuint& program = programs_[text + sampling];
         if (program == 0) program = link_program(with(vertex_text, "SAMPLING", sampling), text);
         program_ = program;
@@ -192,8 +196,8 @@ private:
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         const std::vector<glm::vec3> points = triangles(setup);
         glBindBuffer(GL_ARRAY_BUFFER, corners_);
-        glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(points.size() * sizeof points[0]), points.data(),
-                     GL_STREAM_DRAW);
+        glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(points.size() * sizeof points[0]),
+                     points.data(), GL_STREAM_DRAW);
     }
 
     // All that is not set is 0, as in a program just linked.
@@ -201,7 +205,8 @@ private:
         const lightbin::ShaderGrid grid = setup.grid_set
                                               ? lightbin::shader_grid(view, setup.corner[0], setup.corner[1])
                                               : lightbin::ShaderGrid{};
-        const lightbin::ShaderView image = setup.image_set ? lightbin::shader_view(view) : lightbin::ShaderView{};
+        const lightbin::ShaderView image =
+            setup.image_set ? lightbin::shader_view(view) : lightbin::ShaderView{};
         const auto place = [&](const char* name) { return glGetUniformLocation(program_, name); };
         glUniform4uiv(place("lightbin_grid"), 1, &grid.tile_size);
         glUniform2iv(place("lightbin_corner"), 1, &grid.corner_x);
@@ -270,8 +275,8 @@ std::map<std::string, Row> rows_of(const char* path) {
     if (!file) throw std::runtime_error(std::string("cannot open ") + path);
     for (std::string line; std::getline(file, line);) {
         std::vector<std::string> cells;
-        for (std::size_t at = line.find("| "), end = 0; at != line.npos && (end = line.find(" |", at)) != line.npos;
-             at = line.find("| ", end))
+        for (std::size_t at = line.find("| "), end = 0;
+             at != line.npos && (end = line.find(" |", at)) != line.npos; at = line.find("| ", end))
             cells.push_back(line.substr(at + 2, end - at - 2));
         if (cells.size() != 4 || cells[1] == "What is wrong" || cells[1].starts_with("---")) continue;
         rows[cells[1]].picture = cells[0];
@@ -288,10 +293,10 @@ std::map<std::string, Row> rows_of(const char* path) {
 // Whether the picture is as black or as right as the row has it.
 bool looks_so(const std::string& picture, const Seen& seen, int lit_when_right) {
     const bool dark = 10 * seen.lit < lit_when_right;
-    return picture == "-"                                                            ? seen.drawn == 0
-           : picture.starts_with("right")                                            ? seen.unlit == 0 && !dark
-           : picture.starts_with("black") || picture.starts_with("nearly black")     ? seen.drawn > 0 && dark
-                                                                                     : !dark || seen.drawn == 0;
+    return picture == "-"                                                        ? seen.drawn == 0
+           : picture.starts_with("right")                                        ? seen.unlit == 0 && !dark
+           : picture.starts_with("black") || picture.starts_with("nearly black") ? seen.drawn > 0 && dark
+                                                                                 : !dark || seen.drawn == 0;
 }
 
 std::string listed(const std::set<std::string>& words) {
@@ -326,9 +331,9 @@ int run(const char* page, bool print) {
         const Seen seen = draw(each);
         lit_when_right = std::max(lit_when_right, each.name == "plain" ? seen.lit : 0);
         report(each, seen,
-               !seen.by.empty()                                             ? "<- a false alarm"
+               !seen.by.empty()                                               ? "<- a false alarm"
                : seen.drawn < width * height / 3 || seen.lit < seen.drawn / 2 ? "<- too little to see"
-                                                                            : "");
+                                                                              : "");
     }
     for (const Case& each : mistakes()) {
         const Seen seen = draw(each);
@@ -345,7 +350,8 @@ int run(const char* page, bool print) {
     for (const auto& row : rows)
         std::printf("on the page, and not made here: %s\n", row.first.c_str());
     wrong += static_cast<int>(rows.size());
-    std::printf("%zu mistakes, %zu right set-ups, %d complaints\n", mistakes().size(), right_ones().size(), wrong);
+    std::printf("%zu mistakes, %zu right set-ups, %d complaints\n", mistakes().size(), right_ones().size(),
+                wrong);
     return wrong > 0;
 }
 

@@ -22,7 +22,8 @@ constexpr int width = 96, height = 64;
 constexpr float aspect = 1.5f;
 constexpr std::size_t light_count = 48;
 
-inline const glm::mat4 camera = glm::lookAt(glm::vec3(1, 1.5f, 4), glm::vec3(-1, -0.5f, -6), glm::vec3(0, 1, 0));
+inline const glm::mat4 camera =
+    glm::lookAt(glm::vec3(1, 1.5f, 4), glm::vec3(-1, -0.5f, -6), glm::vec3(0, 1, 0));
 
 // A point of the camera's view space in world space.
 inline glm::vec3 before_eye(float x, float y, float z) {
@@ -122,17 +123,29 @@ inline std::vector<Case> mistakes() {
          [](Setup& s) { s.given_projection = perspective(1.1f, aspect, 1.0f, 50.0f); }},
         {"degrees where radians are wanted",
          [](Setup& s) { s.given_projection = perspective(60.0f, aspect, 0.2f, 50.0f); }},
-        {"half of the field of view", [](Setup& s) { s.given_projection = perspective(0.55f, aspect, 0.2f, 50.0f); }},
-        {"aspect inverted", [](Setup& s) { s.given_projection = perspective(1.1f, 1 / aspect, 0.2f, 50.0f); }},
+        {"half of the field of view",
+         [](Setup& s) { s.given_projection = perspective(0.55f, aspect, 0.2f, 50.0f); }},
+        {"aspect inverted",
+         [](Setup& s) { s.given_projection = perspective(1.1f, 1 / aspect, 0.2f, 50.0f); }},
         {"jitter drawn, not given", [](Setup& s) { s.projection = jittered(s.projection); }},
-        {"stale size", [](Setup& s) { s.given_size = {64, 48}; }},
-        {"stale size of the same aspect", [](Setup& s) { s.given_size = {width * 3 / 4, height * 3 / 4}; }},
-        {"stale view matrix", [](Setup& s) { s.given_view = glm::rotate(glm::mat4(1), 0.1f, glm::vec3(0, 1, 0)) * s.view; }},
+        {"stale size",
+         [](Setup& s) {
+             s.given_size = {64, 48};
+         }},
+        {"stale size of the same aspect",
+         [](Setup& s) {
+             s.given_size = {width * 3 / 4, height * 3 / 4};
+         }},
+        {"stale view matrix",
+         [](Setup& s) { s.given_view = glm::rotate(glm::mat4(1), 0.1f, glm::vec3(0, 1, 0)) * s.view; }},
         {"16-bit Binner, format of 32 bits", [](Setup& s) { s.narrow_ids = true; }},
         {"samplers unset", [](Setup& s) { s.samplers_set = false; }},
         {"grid uniform unset", [](Setup& s) { s.grid_set = false; }},
         {"constants of the view check unset", [](Setup& s) { s.image_set = false; }},
-        {"viewport's corner not given", [](Setup& s) { s.corner = {40, 24}; }},
+        {"viewport's corner not given",
+         [](Setup& s) {
+             s.corner = {40, 24};
+         }},
         {"tile_size of the text not the View's", [](Setup& s) { s.shader.tile_size = 16; }},
         {"lists of this frame, tiles of another",
          [](Setup& s) {
@@ -158,7 +171,8 @@ inline std::vector<Case> mistakes() {
              s.shader.slicing = lightbin::Slicing::z_bins;
              s.ranked = false;
          }},
-        {"storage buffers in GLSL 3.30", [](Setup& s) { s.shader.storage = lightbin::ListStorage::storage_buffer; }},
+        {"storage buffers in GLSL 3.30",
+         [](Setup& s) { s.shader.storage = lightbin::ListStorage::storage_buffer; }},
         {"a light of NaN", [=](Setup& s) { s.given_lights[3].x = s.lights[3].x = nan; }},
         {"70,000 lights in 16 bits",
          [](Setup& s) {
@@ -214,7 +228,8 @@ inline std::vector<Case> right_ones() {
         {"16 bits on both sides",
          [](Setup& s) {
              s.narrow_ids = true;
-             s.shader.format = lightbin::Binner<lightbin::Options{.ids = lightbin::IdWidth::u16}>::list_format;
+             s.shader.format =
+                 lightbin::Binner<lightbin::Options{.ids = lightbin::IdWidth::u16}>::list_format;
              s.shader.packed_ids = true;
          }},
     };

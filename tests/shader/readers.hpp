@@ -213,11 +213,13 @@ inline std::string reader_checks(const lightbin::ShaderOptions& options, std::ui
                 "check_view(pixel, 7.0 * below)) hash += 16u;\n    if (inside && " + prefix +
                 "check_view(pixel, -7.0 * far_off)) hash += 32u;\n";
     if (options.list_check)
-        text += "    " + prefix + "for_each_missing(other, " + lights + ", pixel, depth) listed += other.id + 1u;\n    if (listed != " +
+        text += "    " + prefix + "for_each_missing(other, " + lights +
+                ", pixel, depth) listed += other.id + 1u;\n    if (listed != " +
                 std::to_string(checked_lights(width) * (checked_lights(width) + 1) / 2) + "u) hash += 64u;\n";
     if (options.window)
-        text += "    if (" + prefix + "window(3.0, 3.0) != 0.0 || " + prefix + "window(0.0, 3.0) != 1.0 || abs(" +
-                prefix + "window(1.5, 3.0) - 0.87890625) > 1e-5) hash += 128u;\n";
+        text += "    if (" + prefix + "window(3.0, 3.0) != 0.0 || " + prefix +
+                "window(0.0, 3.0) != 1.0 || abs(" + prefix +
+                "window(1.5, 3.0) - 0.87890625) > 1e-5) hash += 128u;\n";
     return text;
 }
 
@@ -265,7 +267,8 @@ uvec4 read_list(highp uvec2 pixel) {
         hash = (hash ^ light.id) * 16777619u;
         count += 1u;
         sum += count * light.id;
-        if (light.id < )" + std::to_string(checked_lights(width)) + R"(u) listed += light.id + 1u;
+        if (light.id < )" +
+            std::to_string(checked_lights(width)) + R"(u) listed += light.id + 1u;
     }
 )";
     if (options.heat_map)
@@ -313,7 +316,7 @@ inline std::vector<lightbin::Sphere> reader_lights(std::size_t count) {
     for (std::size_t i = 1; i <= 40; ++i) {
         const float z = -number(2, 20);
         lights[count * ((i + 1) / 2) / 20 - 1 - i % 2] = {number(-0.8f, 0.8f) * z, number(-0.6f, 0.6f) * z, z,
-                                      number(0.05f, 0.2f) * -z};
+                                                          number(0.05f, 0.2f) * -z};
     }
     return lights;
 }
@@ -395,7 +398,8 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
         job.inputs.push_back(reader_input(binding, options, constants, shader_view(*view), *grid, lists));
 
     // As the shader has it: the constants may be unset, and what is beyond the viewport wraps below row 0.
-    const std::uint32_t tile_size = unset && options.tile_size == 0 ? 1 : static_cast<std::uint32_t>(screen.tile_size);
+    const std::uint32_t tile_size =
+        unset && options.tile_size == 0 ? 1 : static_cast<std::uint32_t>(screen.tile_size);
     const std::vector<float> depths = reader_depths();
     for (std::uint32_t y = 0; y < job.height; ++y)
         for (std::uint32_t x = 0; x < job.width; ++x) {

@@ -242,7 +242,8 @@ TEST_CASE("checks and window: a block of their own, and nothing of them in a tex
     CHECK(view.slot.binding == 9);
     CHECK(view.slot.set == 1);
     CHECK(view.bytes == sizeof(ShaderView));
-    CHECK(has(refusal({.language = ShaderLanguage::glsl_vulkan, .view_check = true, .view = {2}}), "binding 2"));
+    CHECK(has(refusal({.language = ShaderLanguage::glsl_vulkan, .view_check = true, .view = {2}}),
+              "binding 2"));
 }
 
 TEST_CASE("shader_view: where a View has a point, and how near it may be") {
@@ -252,13 +253,16 @@ TEST_CASE("shader_view: where a View has a point, and how near it may be") {
     const glm::mat4 orthographic = glm::ortho(-3.0f, 8.0f, -2.0f, 9.0f, -5.0f, 50.0f);
     for (const glm::mat4& projection : {off_centre, orthographic})
         for (const WindowOrigin origin : {WindowOrigin::lower_left, WindowOrigin::upper_left}) {
-            const auto view = View::from_projection(projection, {1919, 1079}, {.tile_size = 7, .origin = origin});
+            const auto view =
+                View::from_projection(projection, {1919, 1079}, {.tile_size = 7, .origin = origin});
             const ShaderView shader = shader_view(*view, 3);
             const ImagePoint there = view->image_point({0.4, -0.3, -2});
             const float depth = shader.forward * -2, by = shader.perspective > 0 ? depth : 1;
             CHECK(static_cast<double>(depth) == there.depth);
-            CHECK(static_cast<double>(shader.scale_x * 0.4f / by + shader.offset_x) == doctest::Approx(there.x));
-            CHECK(static_cast<double>(shader.scale_y * -0.3f / by + shader.offset_y) == doctest::Approx(there.y));
+            CHECK(static_cast<double>(shader.scale_x * 0.4f / by + shader.offset_x) ==
+                  doctest::Approx(there.x));
+            CHECK(static_cast<double>(shader.scale_y * -0.3f / by + shader.offset_y) ==
+                  doctest::Approx(there.y));
             CHECK(shader.tolerance == 3);
             CHECK(shader.nearest < view->near_depth());
             CHECK(shader.nearest > view->near_depth() - 0.1f);
@@ -266,7 +270,8 @@ TEST_CASE("shader_view: where a View has a point, and how near it may be") {
 }
 
 TEST_CASE("light_window: 1 at the light, 0 at the range, beyond it and for what is no distance") {
-    const float endless = std::numeric_limits<float>::infinity(), no_number = std::numeric_limits<float>::quiet_NaN();
+    const float endless = std::numeric_limits<float>::infinity(),
+                no_number = std::numeric_limits<float>::quiet_NaN();
     CHECK(light_window(0, 4) == 1);
     CHECK(light_window(2, 4) == doctest::Approx(0.87890625));
     CHECK(light_window(1e30f, endless) == 1);
