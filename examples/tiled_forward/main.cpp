@@ -201,15 +201,13 @@ bool check_in_shader(Renderer& renderer, const Camera& camera, FrameSettings fra
     if (misplaced > 0)
         std::printf(
             "view check   MAGENTA: in %zu of %d x %d pixels something is not where the View has it, or "
-            "before "
-            "its near plane: is the View made of the projection, size and origin that are drawn with?\n",
+            "before its near plane: is the View made of the projection, size and origin that are drawn with?\n",
             misplaced, frame.width, frame.height);
     else
         std::printf("view check   right: all that is drawn is where the View has it\n");
     if (unlit > 0)
         std::printf("list check   MAGENTA: in %zu of %d x %d pixels a light is missing that reaches them: "
-                    "have Binner "
-                    "and shader the same lights, in the same order, space and range, and ids as wide?\n",
+                    "have Binner and shader the same lights, in the same order, space and range, and ids as wide?\n",
                     unlit, frame.width, frame.height);
     else
         std::printf("list check   right: no list lacks a light that reaches a pixel\n");
