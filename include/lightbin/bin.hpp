@@ -6,7 +6,9 @@
 #include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/kernels.hpp>
+#include <lightbin/detail/maybe.hpp>
 #include <lightbin/detail/parts.hpp>
+#include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/options.hpp>
@@ -16,14 +18,11 @@
 #include <lightbin/view.hpp>
 #include <lightbin/z_bounds.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
 #include <type_traits>
-#include <vector>
 
 #include <lightbin/detail/warnings_off.inl>
 
@@ -67,8 +66,8 @@ public:
     /// parallel    Serial or Parallel
     /// spots       the lights are spots
     template <bool spots, class Lit, class Threads>
-    std::optional<Error> build(Isa isa, const View& view, const Lit& footprints, const ZBounds& bounds,
-                               std::vector<detail::Scratch>& scratch,
+    detail::Maybe<Error> build(Isa isa, const View& view, const Lit& footprints, const ZBounds& bounds,
+                               detail::Buffer<detail::Scratch>& scratch,
                                [[maybe_unused]] const Threads& parallel) {
         tile_count_ = entries_ = 0;  // until there is a grid
         const std::size_t tiles = view.tile_count();
@@ -80,7 +79,7 @@ public:
         if constexpr (worded)
             if (capacity > most)
                 capacity =
-                    detail::scalar::count_entries<footprint, depth_test, false, spots>(job, scratch[0]);
+                    detail::scalar::count_entries<footprint, depth_test, false, spots>(job, scratch.data()[0]);
         if (capacity > most) return Error{ErrorCode::too_many_entries, capacity, most};
 
         job.tiles = tiles_.reserve(tiles + job.spare_tiles);
@@ -90,7 +89,7 @@ public:
         Id* list = indices_.reserve(capacity + slack);
         shared_ = false;
         if constexpr (!std::is_same_v<Threads, Serial>) {
-            const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), rows);
+            const std::size_t parts = detail::min_of<std::size_t>(parallel.workers(), rows);
             const double lights = footprints.visible(), entries = static_cast<double>(capacity);
             shared_ = parts > 1 && footprints.area() <= most &&
                       parallel.pays_off(kernel == detail::scatter_kernel<Id>(isa)
@@ -98,18 +97,18 @@ public:
                                             : detail::supertile_ns(isa, worded, lights, entries));
             if (shared_) {
                 entries_ = build_parts(isa, job, kernel, list, scratch, parallel, parts);
-                return std::nullopt;
+                return {};
             }
         }
-        entries_ = static_cast<std::size_t>(kernel(job, scratch[0], {0, rows, list, 0}));
-        return std::nullopt;
+        entries_ = static_cast<std::size_t>(kernel(job, scratch.data()[0], {0, rows, list, 0}));
+        return {};
     }
 
     /// Writes bitmasks of the footprints, `each` words a tile, see bits.inl. Errors as build() but for offsets. There is no
     /// grid then.
     template <bool spots, class Lit>
-    std::optional<Error> write_bits(Isa isa, const View& view, const Lit& footprints, const ZBounds& bounds,
-                                    std::vector<detail::Scratch>& scratch, const Parallel& parallel,
+    detail::Maybe<Error> write_bits(Isa isa, const View& view, const Lit& footprints, const ZBounds& bounds,
+                                    detail::Buffer<detail::Scratch>& scratch, const Parallel& parallel,
                                     std::uint32_t* bits, std::size_t each) {
         tile_count_ = entries_ = 0;
         Job job = {};
@@ -119,15 +118,15 @@ public:
         const bool share = parallel.pays_off(
             detail::supertile_ns(isa, true, footprints.visible(), static_cast<double>(footprints.area())));
         const std::size_t parts =
-            share ? (std::max<std::size_t>)((std::min)(parallel.workers(), bands), 1) : 1;
-        if (scratch.size() < parts) scratch.resize(parts);
+            share ? detail::max_of<std::size_t>(detail::min_of(parallel.workers(), bands), 1) : 1;
+        scratch.reserve(parts, parts);
         parallel.run(parts, [&](std::size_t i) {
             const auto row = [&](std::size_t part) {
-                return static_cast<unsigned>((std::min)(rows, part * bands / parts * 8));
+                return static_cast<unsigned>(detail::min_of(rows, part * bands / parts * 8));
             };
-            kernel(job, scratch[i], row(i), row(i + 1), bits, each);
+            kernel(job, scratch.data()[i], row(i), row(i + 1), bits, each);
         });
-        return std::nullopt;
+        return {};
     }
 
     std::span<const ListRange> tiles() const { return {tiles_.data(), tile_count_}; }
@@ -143,7 +142,7 @@ private:
 
     /// Makes a job that has no table yet.
     template <class Lit>
-    std::optional<Error> prepare(const View& view, const Lit& footprints, const ZBounds& bounds, Job& job) {
+    detail::Maybe<Error> prepare(const View& view, const Lit& footprints, const ZBounds& bounds, Job& job) {
         const std::size_t tiles = view.tile_count();
         job = {.camera = &detail::camera_of(view),
                .lights = footprints.arrays(),
@@ -168,18 +167,18 @@ private:
         if (footprints.area() > detail::surely_listed_area)
             if (const std::uint64_t places = detail::list_places(job); places > most)
                 return Error{ErrorCode::too_many_list_places, places, most};
-        return std::nullopt;
+        return {};
     }
 
     /// Builds `count` parts on the caller's threads, see make_parts(). Returns the number of entries.
     std::size_t build_parts(Isa isa, const Job& job, detail::BinKernel<Id> kernel, Id* list,
-                            std::vector<detail::Scratch>& scratch, const Parallel& parallel,
+                            detail::Buffer<detail::Scratch>& scratch, const Parallel& parallel,
                             std::size_t count) {
-        if (scratch.size() < count) scratch.resize(count);
+        scratch.reserve(count, count);
         detail::Part* parts = parts_.reserve(count);
         detail::make_parts(job, parallel, row_sums_, parts, count);
         if constexpr (!worded) {
-            if (spares_.size() < count) spares_.resize(count);
+            spares_.reserve(count, count);
             // Rectangles: a part's place in the list is known. Its last entries go there by way of spare memory,
             // as a kernel writes beyond its end, where the next part is at work.
             parallel.run(count, [&](std::size_t i) {
@@ -187,22 +186,22 @@ private:
                 Id* out = list + part.before;
                 if (i + 1 == count ||
                     kernel == detail::scatter_kernel<Id>(isa)) {  // which writes nothing beyond
-                    kernel(job, scratch[i],
+                    kernel(job, scratch.data()[i],
                            {part.begin, part.end, out, static_cast<std::uint32_t>(part.before)});
                     return;
                 }
-                Id* spare = spares_[i].reserve(part.spare_area + slack);
-                kernel(job, scratch[i],
+                Id* spare = spares_.data()[i].reserve(part.spare_area + slack);
+                kernel(job, scratch.data()[i],
                        {part.begin, part.end, out, static_cast<std::uint32_t>(part.before), part.spare_row,
                         spare});
-                std::copy_n(spare, part.spare_area, out + part.area - part.spare_area);
+                detail::copy_items(spare, part.spare_area, out + part.area - part.spare_area);
             });
             return static_cast<std::size_t>(parts[count - 1].before + parts[count - 1].area);
         } else {
             return static_cast<std::size_t>(detail::build_apart(
-                parallel, std::span(parts, count), job.tiles, static_cast<std::size_t>(job.camera->x.tiles),
+                parallel, {parts, count}, job.tiles, static_cast<std::size_t>(job.camera->x.tiles),
                 spares_, list, [&](std::size_t i, Id* out) {
-                    return kernel(job, scratch[i], {parts[i].begin, parts[i].end, out, 0});
+                    return kernel(job, scratch.data()[i], {parts[i].begin, parts[i].end, out, 0});
                 }));
         }
     }
@@ -211,7 +210,7 @@ private:
     detail::Buffer<Id> indices_;
     detail::TileEdges edges_;
     detail::Buffer<detail::Part> parts_;
-    std::vector<detail::Buffer<Id>> spares_;  ///< one a part: what it can't put in its place at once
+    detail::Buffer<detail::Buffer<Id>> spares_;  ///< one a part: what it can't put in its place at once
     detail::Buffer<std::uint64_t> row_sums_;
     std::size_t tile_count_ = 0, entries_ = 0;
     bool shared_ = false;

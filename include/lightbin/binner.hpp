@@ -5,6 +5,7 @@
 #include <lightbin/bin.hpp>
 #include <lightbin/clusters.hpp>
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/maybe.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/sizes.hpp>
 #include <lightbin/isa.hpp>
@@ -23,11 +24,9 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include <lightbin/detail/warnings_off.inl>
 
@@ -210,17 +209,17 @@ private:
         std::remove_cvref_t<decltype(detail::as_lights(std::declval<const LightRange&>()))>::spots;
 
     template <class LightRange>
-    std::optional<Error> project(const View& view, const LightRange& lights,
+    detail::Maybe<Error> project(const View& view, const LightRange& lights,
                                  [[maybe_unused]] const Inputs& inputs, const Parallel& threads) {
         const auto& source = detail::as_lights(lights);
         if (const auto error = detail::refuse(source, options.ids == IdWidth::u16 ? 0x10000 : 0xffffffff))
             return error;
-        if (scratch_.empty()) scratch_.resize(1);
+        scratch_.reserve(1, 1);
         isa_ = machine_isa(options.isa);
         footprints_.project(isa_, view, source, threads, lists_.shared(), with_boxes);
         if constexpr (z_bins)
             ranked_.template rank<spots<LightRange>>(isa_, view, footprints_, inputs.slices);
-        return std::nullopt;
+        return {};
     }
 
     const auto& lit() const {
@@ -253,7 +252,7 @@ private:
 
     void swap(Binner& other) noexcept {
         std::swap(isa_, other.isa_);
-        scratch_.swap(other.scratch_);
+        std::swap(scratch_, other.scratch_);
         std::swap(footprints_, other.footprints_);
         std::swap(ranked_, other.ranked_);
         std::swap(lists_, other.lists_);
@@ -261,7 +260,7 @@ private:
     }
 
     Isa isa_ = Isa::scalar;
-    std::vector<detail::Scratch> scratch_;  ///< one a worker
+    detail::Buffer<detail::Scratch> scratch_;  ///< one a worker
     Footprints<options.footprint, with_depth || options.slicing != Slicing::none> footprints_;
     std::conditional_t<z_bins, RankedFootprints<options.footprint, with_depth>, Nothing> ranked_;
     Lists lists_;

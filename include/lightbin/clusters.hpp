@@ -7,7 +7,9 @@
 #include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/kernels.hpp>
+#include <lightbin/detail/maybe.hpp>
 #include <lightbin/detail/parts.hpp>
+#include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/options.hpp>
@@ -18,14 +20,11 @@
 #include <lightbin/slices.hpp>
 #include <lightbin/view.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
 #include <type_traits>
-#include <vector>
 
 #include <lightbin/detail/warnings_off.inl>
 
@@ -46,8 +45,8 @@ public:
     ///
     /// spots  the lights are spots
     template <bool spots, class Threads>
-    std::optional<Error> build(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
-                               const Slices& slices, std::vector<detail::Scratch>& scratch,
+    detail::Maybe<Error> build(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
+                               const Slices& slices, detail::Buffer<detail::Scratch>& scratch,
                                [[maybe_unused]] const Threads& parallel) {
         cell_count_ = entries_ = 0;  // until there is a grid
         constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
@@ -74,7 +73,7 @@ public:
                 capacity = 0;
                 for (std::size_t slice = 0; slice < count; ++slice)
                     capacity += detail::scalar::count_entries<footprint, depth_test, by_slab, spots>(
-                        job_of(view, slices, slice), scratch[0]);
+                        job_of(view, slices, slice), scratch.data()[0]);
             }
         if (capacity > most) return Error{ErrorCode::too_many_entries, capacity, most};
 
@@ -84,7 +83,7 @@ public:
             for (std::size_t slice = begin; slice < end; ++slice) {
                 Job job = job_of(view, slices, slice);
                 // What is behind the last of these slices may be another thread's.
-                job.spare_tiles = end == count ? slack : (std::min)(slack, (end - slice - 1) * tiles);
+                job.spare_tiles = end == count ? slack : detail::min_of(slack, (end - slice - 1) * tiles);
                 const auto kernel = detail::bin_kernel<footprint, depth_test, Id, by_slab, spots>(
                     isa, view, job.visible, footprints_.runs()[slice].area);
                 const unsigned rows = static_cast<unsigned>(view.tiles_y());
@@ -95,24 +94,24 @@ public:
         cell_count_ = static_cast<std::size_t>(cells);
         shared_ = false;
         if constexpr (!std::is_same_v<Threads, Serial>) {
-            const std::size_t parts = (std::min<std::size_t>)(parallel.workers(), count);
+            const std::size_t parts = detail::min_of<std::size_t>(parallel.workers(), count);
             shared_ =
                 parts > 1 && parallel.pays_off(detail::supertile_ns(isa, worded, static_cast<double>(places),
                                                                     static_cast<double>(capacity)));
             if (shared_) {
-                if (scratch.size() < parts) scratch.resize(parts);
-                const std::span shares(parts_.reserve(parts), parts);
-                detail::share_steps(shares.data(), parts, count, detail::empty_row_cost(tiles),
+                scratch.reserve(parts, parts);
+                const detail::Items<detail::Part> shares = {parts_.reserve(parts), parts};
+                detail::share_steps(shares.first, parts, count, detail::empty_row_cost(tiles),
                                     [&](std::size_t slice) { return footprints_.runs()[slice].area; });
                 entries_ = static_cast<std::size_t>(detail::build_apart(
                     parallel, shares, cells_.data(), tiles, spares_, list, [&](std::size_t i, Id* out) {
-                        return build_some(shares[i].begin, shares[i].end, out, scratch[i]);
+                        return build_some(shares[i].begin, shares[i].end, out, scratch.data()[i]);
                     }));
-                return std::nullopt;
+                return {};
             }
         }
-        entries_ = static_cast<std::size_t>(build_some(0, count, list, scratch[0]));
-        return std::nullopt;
+        entries_ = static_cast<std::size_t>(build_some(0, count, list, scratch.data()[0]));
+        return {};
     }
 
     std::span<const ListRange> tiles() const { return {cells_.data(), cell_count_}; }
@@ -145,7 +144,7 @@ private:
     SlicedFootprints<footprint> footprints_;
     detail::TileEdges edges_;
     detail::Buffer<detail::Part> parts_;
-    std::vector<detail::Buffer<Id>> spares_;  ///< one a part: its list
+    detail::Buffer<detail::Buffer<Id>> spares_;  ///< one a part: its list
     detail::Buffer<ListRange> cells_;
     detail::Buffer<Id> ids_;
     std::size_t cell_count_ = 0, entries_ = 0;

@@ -4,9 +4,9 @@
 
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/names.hpp>
+#include <lightbin/detail/plain.hpp>
 #include <lightbin/result.hpp>
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -99,9 +99,9 @@ public:
         if (ranges.size() < ranges_.size())
             return Error{ErrorCode::range_buffer_too_small, ranges_.size(), ranges.size()};
         if (ids.size() < ids_.size()) return Error{ErrorCode::id_buffer_too_small, ids_.size(), ids.size()};
-        std::ranges::copy(ranges_, ranges.begin());
-        std::ranges::copy(ids_, ids.begin());
-        return LightGrid(tiles_x_, tiles_y_, ranges.first(ranges_.size()), ids.first(ids_.size()), counts_,
+        detail::copy_items(ranges_.data(), ranges_.size(), ranges.data());
+        detail::copy_items(ids_.data(), ids_.size(), ids.data());
+        return LightGrid(tiles_x_, tiles_y_, {ranges.data(), ranges_.size()}, {ids.data(), ids_.size()}, counts_,
                          slices_, ranks_);
     }
 
@@ -115,8 +115,9 @@ private:
 
 /// Returns the part of a tile's list that lies in a bin, which is what a shader goes through at the bin's depths.
 template <class Id> std::span<const Id> lights_of_bin(std::span<const Id> list, const BinRange& bin) {
-    const auto begin = std::ranges::lower_bound(list, bin.least);
-    return {begin, std::ranges::upper_bound(begin, list.end(), bin.greatest)};
+    const Id* const end = list.data() + list.size();
+    const Id* const begin = detail::first_not(list.data(), end, [&](Id id) { return id < bin.least; });
+    return {begin, detail::first_not(begin, end, [&](Id id) { return id <= bin.greatest; })};
 }
 
 /// How long a grid's lists are.
@@ -130,7 +131,7 @@ struct ListLengths {
 template <class Id> ListLengths list_lengths(const LightGrid<Id>& grid) {
     ListLengths lengths;
     for (const ListRange range : grid.ranges()) {
-        lengths.longest = (std::max)(lengths.longest, range.count);
+        lengths.longest = detail::max_of(lengths.longest, range.count);
         ++lengths.histogram[static_cast<std::size_t>(std::bit_width(range.count))];
     }
     return lengths;

@@ -3,15 +3,14 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/maybe.hpp>
+#include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/world_to_view.hpp>
 #include <lightbin/matrix.hpp>
 #include <lightbin/sphere.hpp>
 #include <lightbin/spot.hpp>
 
 #include <concepts>
-#include <functional>
-#include <iterator>
-#include <optional>
 #include <span>
 #include <type_traits>
 
@@ -101,7 +100,7 @@ template <class Range> auto checked_array(const Range& lights) {
 template <class Light, class ToLight> struct Lights {
     std::span<const Light> array;
     ToLight to_light;
-    std::optional<detail::WorldToView> to_view;
+    detail::Maybe<detail::WorldToView> to_view;
 
     /// Whether the lights are Spots, of which some may be whole spheres.
     static constexpr bool spots =
@@ -109,14 +108,14 @@ template <class Light, class ToLight> struct Lights {
 
     /// Returns a light of the array as a sphere in view space.
     Sphere view_sphere(const Light& light) const {
-        const Sphere sphere = std::invoke(to_light, light);
+        const Sphere sphere = detail::call(to_light, light);
         return to_view ? (*to_view)(sphere) : sphere;
     }
 
     /// Returns a light of the array in view space, a Spot with its axis rounded to nearest.
     auto view_light(const Light& light) const {
         if constexpr (spots) {
-            const Spot spot = std::invoke(to_light, light);
+            const Spot spot = detail::call(to_light, light);
             if (!to_view) return spot;
             const Sphere ball = (*to_view)(Sphere{spot.x, spot.y, spot.z, spot.radius});
             const Sphere axis = to_view->direction(spot.axis_x, spot.axis_y, spot.axis_z);
@@ -145,7 +144,7 @@ auto view_space(const Range& lights, const ToLight& to_light = {}) {
 template <class Range, class ViewMatrix, class ToLight = AsLight>
 auto world_space(const Range& lights, const ViewMatrix& view_matrix, const ToLight& to_light = {}) {
     auto result = view_space(lights, to_light);
-    result.to_view.emplace(detail::to_matrix(view_matrix));
+    result.to_view = detail::WorldToView(detail::to_matrix(view_matrix));
     return result;
 }
 

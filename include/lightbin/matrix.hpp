@@ -16,9 +16,9 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/math.hpp>
 #include <lightbin/result.hpp>
 
-#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <type_traits>
@@ -111,7 +111,7 @@ template <class M> Matrix to_matrix(const M& m) {
 inline bool finite(const Matrix& m) {
     for (const auto& column : m.columns)
         for (const double entry : column)
-            if (!std::isfinite(entry)) return false;
+            if (!is_finite(entry)) return false;
     return true;
 }
 

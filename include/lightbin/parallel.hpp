@@ -5,7 +5,6 @@
 #include <lightbin/detail/flavour.hpp>
 
 #include <cstddef>
-#include <memory>
 #include <type_traits>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
@@ -51,7 +50,7 @@ public:
                 "lightbin: a Parallel refers to `run`, and this one is gone after the expression: give it a "
                 "name that lives on");
             using Callable = std::remove_reference_t<Run>;
-            run_.object = const_cast<void*>(static_cast<const void*>(std::addressof(run)));
+            run_.object = &reinterpret_cast<char&>(const_cast<std::remove_cv_t<Callable>&>(run));
             start_ = [](CallersRun callers, std::size_t n, Body body) {
                 (*static_cast<Callable*>(callers.object))(n, body);
             };

@@ -7,17 +7,16 @@
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/kernels.hpp>
+#include <lightbin/detail/maybe.hpp>
+#include <lightbin/detail/plain.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/parallel.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/view.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <optional>
 #include <span>
 
 #include <lightbin/detail/warnings_off.inl>
@@ -28,11 +27,11 @@ namespace detail {
 
 /// The lights that no stage takes, ids being 32 bits at most.
 template <class Light, class ToLight>
-std::optional<Error> refuse(const Lights<Light, ToLight>& lights, std::uint64_t most = 0xffffffff) {
+Maybe<Error> refuse(const Lights<Light, ToLight>& lights, std::uint64_t most = 0xffffffff) {
     if (lights.to_view)
         if (const auto code = lights.to_view->refusal()) return Error{*code};
     if (lights.array.size() > most) return Error{ErrorCode::too_many_lights, lights.array.size(), most};
-    return std::nullopt;
+    return {};
 }
 
 /// See LightSource.
@@ -40,7 +39,7 @@ template <class Light, class ToLight>
 void copy_spheres(const void* lights, std::size_t first, std::size_t count, Sphere* to) {
     const auto& from = *static_cast<const Lights<Light, ToLight>*>(lights);
     for (std::size_t i = 0; i < count; ++i)
-        to[i] = std::invoke(from.to_light, from.array[first + i]);
+        to[i] = call(from.to_light, from.array[first + i]);
 }
 
 /// See SpotSource.
@@ -48,7 +47,7 @@ template <class Light, class ToLight>
 void copy_spots(const void* lights, std::size_t first, std::size_t count, Sphere* balls, Sphere* cones) {
     const auto& from = *static_cast<const Lights<Light, ToLight>*>(lights);
     for (std::size_t i = 0; i < count; ++i) {
-        const Spot spot = std::invoke(from.to_light, from.array[first + i]);
+        const Spot spot = call(from.to_light, from.array[first + i]);
         balls[i] = {spot.x, spot.y, spot.z, spot.radius};
         cones[i] = {spot.axis_x, spot.axis_y, spot.axis_z, spot.cos_half_angle};
     }
@@ -109,7 +108,7 @@ public:
     std::uint32_t rejected() const { return counts_.rejected; }  ///< bad input, see Sphere
     std::uint64_t area() const { return counts_.area; }          ///< sum of the rectangles' tiles
     const detail::FootprintArrays& arrays() const { return arrays_; }
-    std::span<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
+    detail::Items<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
 
 private:
     static constexpr std::size_t chunk = detail::ChunkRects::size;
@@ -125,7 +124,7 @@ private:
         const std::size_t chunks = lights_ / chunk + 1, parts = run_count_;
         const auto first_of = [&](std::size_t part) {
             return static_cast<std::size_t>(
-                (std::min<std::uint64_t>)(std::uint64_t{chunks} * part / parts * chunk, lights_));
+                detail::min_of<std::uint64_t>(std::uint64_t{chunks} * part / parts * chunk, lights_));
         };
         threads.run(parts, [&](std::size_t part) {
             const std::size_t first = first_of(part), end = first_of(part + 1);
@@ -174,7 +173,7 @@ private:
         constexpr std::uint64_t padding = 8;  // a vector of rows
         // Later lights than 32 bits can number the spans of keep their rectangles.
         const std::uint64_t capacity =
-            (std::min)(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
+            detail::min_of(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
         detail::RowSpan* spans = spans_.reserve(capacity + padding);
         arrays_.spans = spans;
         std::uint64_t place = 0;

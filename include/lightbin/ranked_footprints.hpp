@@ -7,6 +7,7 @@
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/kernels.hpp>
+#include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/slice_table.hpp>
 #include <lightbin/isa.hpp>
 #include <lightbin/light_grid.hpp>
@@ -15,7 +16,6 @@
 #include <lightbin/slices.hpp>
 #include <lightbin/view.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -43,7 +43,7 @@ public:
         area_ = footprints.area();
         bin_count_ = static_cast<std::size_t>(slices.count());
         table_.set(slices.boundaries());
-        reserve<spots>(footprints.arrays(), footprints.runs().back().end);
+        reserve<spots>(footprints.arrays(), footprints.runs().end()[-1].end);
         find_bins<spots>(isa, detail::camera_of(view).z_sign, footprints.arrays(), footprints.runs());
 
         // Sorted by counting: how many lights begin in a bin, where those begin, and then where they end.
@@ -64,7 +64,7 @@ public:
     std::uint32_t visible() const { return run_.end; }
     std::uint64_t area() const { return area_; }  ///< sum of the rectangles' tiles
     const detail::FootprintArrays& arrays() const { return arrays_; }
-    std::span<const detail::FootprintRun> runs() const { return {&run_, 1}; }
+    detail::Items<const detail::FootprintRun> runs() const { return {&run_, 1}; }
     LightRanks ranks() const { return {{order_.data(), run_.end}, {bins_.data(), bin_count_}}; }
 
 private:
@@ -73,14 +73,14 @@ private:
     /// Finds the bins that each light meets, and counts in `ends_` those that begin in each.
     template <bool spots>
     void find_bins(Isa isa, float z_sign, const detail::FootprintArrays& lights,
-                   std::span<const detail::FootprintRun> runs) {
+                   detail::Items<const detail::FootprintRun> runs) {
         const detail::SlicePlacesKernel kernel = detail::slice_places_kernel<spots>(isa);
         const bool by_places = table_.places_tell();
         std::uint32_t* const begins = ends_.data();
-        std::fill_n(begins, bin_count_, 0u);
+        detail::fill_items(begins, bin_count_, 0);
         for (const detail::FootprintRun& run : runs)
             for (std::uint32_t i = run.begin; i < run.end; i += chunk) {
-                const std::uint32_t count = (std::min)(run.end - i, chunk);
+                const std::uint32_t count = detail::min_of(run.end - i, chunk);
                 std::uint32_t *const first = first_bins_.data() + i, *const last = last_bins_.data() + i;
                 if (by_places) {
                     std::uint16_t nearest[chunk], farthest[chunk];
@@ -132,11 +132,11 @@ private:
         for (std::uint32_t rank = 0; rank < run_.end && to < end; ++rank)
             for (const BinRange* last = bins_.data() + last_bins[places[rank]]; to <= last; ++to)
                 to->least = rank;
-        std::fill(to, end, BinRange{0xffffffff, 0});
+        detail::fill_items(to, static_cast<std::size_t>(end - to), {0xffffffff, 0});
         // The last one that begins in a bin or before it, or the one before that where it has ended, and so on; what has
         // ended is passed by once.
         std::uint32_t* const passed = first_bins_.data();
-        std::fill_n(passed, run_.end, 0u);
+        detail::fill_items(passed, run_.end, 0);
         for (std::size_t bin = 0; bin < bin_count_; ++bin) {
             BinRange& range = bins_.data()[bin];
             if (ends_.data()[bin] <= range.least) {

@@ -3,13 +3,11 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/maybe.hpp>
+#include <lightbin/detail/string.hpp>
 
-#include <cstddef>
 #include <cstdint>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <variant>
 
 /// Called with a condition that only a bug in the calling program can make false. Define it before including
 /// lightbin to replace it; the default is the standard assert.
@@ -197,19 +195,30 @@ struct Error {
     std::uint64_t needed = 0;
     std::uint64_t available = 0;
 
-    /// Returns the sentence of to_string() with the numbers in it. Allocates; meant for the error path only.
-    std::string message() const {
-        std::string text = to_string(code);
-        fill_in(text, "{needed}", std::to_string(needed));
-        fill_in(text, "{given}", std::to_string(static_cast<std::int64_t>(needed)));
-        fill_in(text, "{available}", std::to_string(available));
+    /// Returns the sentence of to_string() with the numbers in it. Include <string> where you call it. Allocates; meant for
+    /// the error path only.
+    template <class Text = std::string> Text message() const {
+        const bool negative = static_cast<std::int64_t>(needed) < 0;
+        Text text = to_string(code);
+        fill_in(text, "{needed}", needed, false);
+        fill_in(text, "{given}", negative ? 0 - needed : needed, negative);
+        fill_in(text, "{available}", available, false);
         return text;
     }
 
 private:
-    static void fill_in(std::string& text, std::string_view name, const std::string& number) {
-        if (const std::size_t at = text.find(name); at != std::string::npos)
-            text.replace(at, name.size(), number);
+    template <class Text>
+    static void fill_in(Text& text, const char* name, std::uint64_t number, bool negative) {
+        const auto at = text.find(name);
+        if (at == Text::npos) return;
+        char digits[21], *first = digits + sizeof digits;  // the most is 20, or 19 and a sign
+        *--first = 0;
+        do {
+            *--first = static_cast<char>('0' + number % 10);
+            number /= 10;
+        } while (number != 0);
+        if (negative) *--first = '-';
+        text.replace(at, Text(name).size(), first);
     }
 };
 
@@ -217,16 +226,16 @@ private:
 /// asserts.
 template <class T> class [[nodiscard]] Result {
 public:
-    Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
-    Result(Error error) : state_(std::in_place_index<1>, error) {}
+    Result(T value) : value_(std::move(value)) {}
+    Result(Error error) : error_(error) {}
 
-    bool has_value() const { return state_.index() == 0; }
+    bool has_value() const { return static_cast<bool>(value_); }
     explicit operator bool() const { return has_value(); }
 
-    T& operator*() { return *value(state_); }
-    const T& operator*() const { return *value(state_); }
-    T* operator->() { return value(state_); }
-    const T* operator->() const { return value(state_); }
+    T& operator*() { return *value(value_); }
+    const T& operator*() const { return *value(value_); }
+    T* operator->() { return &*value(value_); }
+    const T* operator->() const { return &*value(value_); }
 
     /// Where a T is wanted, a Result is none yet: the compiler says so.
     operator const T&() const {
@@ -237,16 +246,17 @@ public:
 
     const Error& error() const {
         LIGHTBIN_ASSERT(!has_value());
-        return *std::get_if<1>(&state_);
+        return error_;
     }
 
 private:
-    template <class State> static auto* value(State& state) {
-        LIGHTBIN_ASSERT(state.index() == 0);
-        return std::get_if<0>(&state);
+    template <class Value> static Value& value(Value& of) {
+        LIGHTBIN_ASSERT(static_cast<bool>(of));
+        return of;
     }
 
-    std::variant<T, Error> state_;
+    detail::Maybe<T> value_;
+    Error error_ = {};
 };
 
 }  // namespace lightbin

@@ -7,6 +7,7 @@
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/kernels.hpp>
+#include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/slice_table.hpp>
 #include <lightbin/isa.hpp>
 #include <lightbin/options.hpp>
@@ -14,7 +15,6 @@
 #include <lightbin/slices.hpp>
 #include <lightbin/view.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -72,7 +72,7 @@ public:
     }
 
     const detail::FootprintArrays& arrays() const { return arrays_; }
-    std::span<const detail::SliceRun> runs() const { return {runs_.data(), run_count_}; }
+    detail::Items<const detail::SliceRun> runs() const { return {runs_.data(), run_count_}; }
 
 private:
     static constexpr std::uint32_t chunk = 64;  ///< lights, whole vectors
@@ -85,17 +85,17 @@ private:
     /// Finds the slices of each light, and where their runs begin, with a place between two. Returns where they end.
     template <bool spots>
     std::uint64_t find_slices(Isa isa, float z_sign, const detail::FootprintArrays& lights,
-                              std::span<const detail::FootprintRun> all, std::uint32_t visible,
+                              detail::Items<const detail::FootprintRun> all, std::uint32_t visible,
                               std::span<const float> boundaries) {
         detail::SliceRun* const runs = runs_.reserve(run_count_ + 1);
-        std::fill_n(runs, run_count_ + 1, detail::SliceRun{});
+        detail::fill_items(runs, run_count_ + 1, {});
         Met* met = met_.reserve(visible);
         const bool compare = boundaries.size() <= detail::most_boundaries_compared(isa);
         if (!compare) table_.set(boundaries);
         const detail::SlicesKernel kernel = detail::slices_kernel(isa);
         for (const detail::FootprintRun& run : all)
             for (std::uint32_t i = run.begin; i < run.end; i += chunk) {
-                const std::uint32_t count = (std::min)(run.end - i, chunk);
+                const std::uint32_t count = detail::min_of(run.end - i, chunk);
                 float nearest[chunk], farthest[chunk];
                 std::uint16_t first[chunk], last[chunk];
                 for (std::uint32_t j = 0; j < count; ++j) {

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/math.hpp>
 #include <lightbin/detail/rounding.hpp>
 
-#include <cmath>
 #include <cstring>
 
 #include <lightbin/detail/warnings_off.inl>
@@ -30,8 +30,8 @@ struct Sphere {
 /// cutoff     0 or less gives an infinite range
 inline float light_range(float intensity, float cutoff) {
     if (intensity <= 0) return 0;
-    if (cutoff <= 0 || (intensity > FLT_MAX && !std::isnan(cutoff))) return detail::infinity;
-    return detail::float_above(std::sqrt(static_cast<double>(intensity) / static_cast<double>(cutoff)) *
+    if (cutoff <= 0 || (intensity > FLT_MAX && !detail::is_nan(cutoff))) return detail::infinity;
+    return detail::float_above(detail::root_of(static_cast<double>(intensity) / static_cast<double>(cutoff)) *
                                (1 + 0x1p-50));
 }
 
@@ -52,13 +52,13 @@ namespace detail {
 /// Returns the smallest sphere found around one of doubles: exact where floats hold it. A centre out of their range gives
 /// one that covers everything; bad input stays bad.
 inline Sphere sphere_around(double x, double y, double z, double radius) {
-    if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z) || !(radius >= 0)) return {0, 0, 0, -1};
+    if (!is_finite(x) || !is_finite(y) || !is_finite(z) || !(radius >= 0)) return {0, 0, 0, -1};
     constexpr double most = static_cast<double>(FLT_MAX);
-    if (std::fabs(x) > most || std::fabs(y) > most || std::fabs(z) > most) return {0, 0, 0, infinity};
+    if (abs_of(x) > most || abs_of(y) > most || abs_of(z) > most) return {0, 0, 0, infinity};
     const Sphere nearest = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 0};
-    const double error = std::fabs(x - static_cast<double>(nearest.x)) +
-                         std::fabs(y - static_cast<double>(nearest.y)) +
-                         std::fabs(z - static_cast<double>(nearest.z));
+    const double error = abs_of(x - static_cast<double>(nearest.x)) +
+                         abs_of(y - static_cast<double>(nearest.y)) +
+                         abs_of(z - static_cast<double>(nearest.z));
     const double reach = error > 0 ? (radius + error) * (1 + 0x1p-50) : radius;
     return {nearest.x, nearest.y, nearest.z, float_above(reach)};
 }

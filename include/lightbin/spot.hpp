@@ -3,13 +3,13 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/math.hpp>
+#include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/sphere.hpp>
 
-#include <algorithm>
 #include <cfloat>
-#include <cmath>
 
 #include <lightbin/detail/warnings_off.inl>
 
@@ -55,11 +55,11 @@ template <class Point> Triple triple(const Point& p) {
 
 /// Within 2^-51 of itself where no square of a double leaves its range.
 inline double length(const Triple& v) {
-    return std::sqrt(rounded(v.x * v.x) + rounded(v.y * v.y) + rounded(v.z * v.z));
+    return root_of(rounded(v.x * v.x) + rounded(v.y * v.y) + rounded(v.z * v.z));
 }
 
 inline bool finite(const Triple& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+    return is_finite(v.x) && is_finite(v.y) && is_finite(v.z);
 }
 
 /// A sphere around one of doubles whose radius is known within 2^-50 of itself, and its centre within 2^-50 of the radius
@@ -68,7 +68,7 @@ inline Sphere sphere_around_nearly(const Triple& centre, double radius) {
     return sphere_around(
         centre.x, centre.y, centre.z,
         rounded(radius * (1 + 0x1p-48)) +
-            rounded((std::fabs(centre.x) + std::fabs(centre.y) + std::fabs(centre.z)) * 0x1p-52) + 0x1p-124);
+            rounded((abs_of(centre.x) + abs_of(centre.y) + abs_of(centre.z)) * 0x1p-52) + 0x1p-124);
 }
 
 inline constexpr Sphere bad_sphere = {0, 0, 0, -1};
@@ -84,7 +84,7 @@ inline Sphere least_sphere(const Spot& spot) {
                                  static_cast<double>(spot.axis_z)};
     const double axis_length = detail::length(axis), cosine = static_cast<double>(spot.cos_half_angle),
                  radius = static_cast<double>(spot.radius);
-    if (!(axis_length > 0) || !detail::finite(axis) || !(std::fabs(cosine) <= 1)) return detail::bad_sphere;
+    if (!(axis_length > 0) || !detail::finite(axis) || !(detail::abs_of(cosine) <= 1)) return detail::bad_sphere;
     const Sphere own = {spot.x, spot.y, spot.z, spot.radius};
     if (cosine <= 0 || spot.radius == detail::infinity) return own;
 
@@ -98,7 +98,7 @@ inline Sphere least_sphere(const Spot& spot) {
         detail::sphere_around_nearly({static_cast<double>(spot.x) + detail::rounded(step * axis.x),
                                       static_cast<double>(spot.y) + detail::rounded(step * axis.y),
                                       static_cast<double>(spot.z) + detail::rounded(step * axis.z)},
-                                     narrow ? along : radius * std::sqrt(1 - cosine2));
+                                     narrow ? along : radius * detail::root_of(1 - cosine2));
     return least.radius < own.radius ? least : own;
 }
 
@@ -133,7 +133,7 @@ Sphere rectangle_sphere(const Point& centre, const Point& half_x, const Point& h
     const detail::Triple c = detail::triple(centre), u = detail::triple(half_x), v = detail::triple(half_y);
     if (!detail::finite(c) || !detail::finite(u) || !detail::finite(v) || !(range >= 0))
         return detail::bad_sphere;
-    const double half_diagonal = (std::max)(detail::length({u.x + v.x, u.y + v.y, u.z + v.z}),
+    const double half_diagonal = detail::max_of(detail::length({u.x + v.x, u.y + v.y, u.z + v.z}),
                                             detail::length({u.x - v.x, u.y - v.y, u.z - v.z}));
     return detail::sphere_around_nearly(c, half_diagonal + static_cast<double>(range));
 }

@@ -4,13 +4,15 @@
 
 #include <lightbin/detail/camera.hpp>
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/math.hpp>
+#include <lightbin/detail/maybe.hpp>
 #include <lightbin/detail/names.hpp>
+#include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/matrix.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/view_summary.hpp>
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -119,14 +121,14 @@ public:
         const bool flat = orthographic();
         const auto size = [&](const detail::ImageAxis& axis, int side) {
             const double low = slope(axis, 0), high = slope(axis, side);
-            return std::fabs(flat ? high - low
-                                  : (std::atan(high) - std::atan(low)) * (180 / 3.14159265358979324));
+            return detail::abs_of(flat ? high - low
+                                  : (detail::arctan_of(high) - detail::arctan_of(low)) * (180 / 3.14159265358979324));
         };
         const Matrix& m = projection_;
         // At a view depth of 1, or anywhere: w by scale is half of the image's width or height.
-        const double aspect = std::fabs(m[1][1] / m[0][0]),
+        const double aspect = detail::abs_of(m[1][1] / m[0][0]),
                      pixel_aspect = aspect * viewport_.height / viewport_.width;
-        const auto is_one = [](double x) { return std::fabs(x) == 1; };
+        const auto is_one = [](double x) { return detail::abs_of(x) == 1; };
         return {flat,
                 size(camera_.x, viewport_.width),
                 size(camera_.y, viewport_.height),
@@ -142,7 +144,7 @@ public:
                 tile_size_,
                 !flat && one_is_transposed(m),
                 flat && is_one(m[0][0]) && is_one(m[1][1]) && is_one(m[2][2]),
-                m[0][0] < 0 && m[1][1]<0, tile_count()> 0 && !(std::fabs(pixel_aspect - 1) <= 0.02)};
+                m[0][0] < 0 && m[1][1]<0, tile_count()> 0 && !(detail::abs_of(pixel_aspect - 1) <= 0.02)};
     }
 
     /// View depth of the near plane, rounded down, and of the far plane, rounded up (+inf where there is
@@ -203,7 +205,7 @@ private:
     View() = default;  // from_projection() alone makes one
 
     /// Why a matrix is of no promised kind, whatever its numbers are.
-    static std::optional<ErrorCode> wrong_shape(const Matrix& m) {
+    static detail::Maybe<ErrorCode> wrong_shape(const Matrix& m) {
         const double w_x = m[0][3], w_y = m[1][3], w_z = m[2][3], w_1 = m[3][3];
         const bool perspective = w_x == 0 && w_y == 0 && w_z != 0 && w_1 == 0;
         const bool orthographic = w_x == 0 && w_y == 0 && w_z == 0 && w_1 > 0;
@@ -213,12 +215,12 @@ private:
         if (m[1][0] != 0 || m[0][1] != 0) return ErrorCode::image_axes_rotated;
         if (orthographic && (m[2][0] != 0 || m[2][1] != 0)) return ErrorCode::image_axes_rotated;
         if (m[0][2] != 0 || m[1][2] != 0) return ErrorCode::oblique_depth;
-        return std::nullopt;
+        return {};
     }
 
     /// A perspective's one, or minus one, is what its w reads of z. Transposed, it is what z reads of 1.
     static bool one_is_transposed(const Matrix& m) {
-        return std::fabs(m[3][2]) == 1 && std::fabs(m[2][3]) != 1;
+        return detail::abs_of(m[3][2]) == 1 && detail::abs_of(m[2][3]) != 1;
     }
 
     static Result<View> from_columns(const Matrix& m, Extent viewport, const ViewOptions& options) {
@@ -247,7 +249,7 @@ private:
 
         // Visible points have w > 0, so the sign of w_z is the viewing direction. An orthographic w has no
         // direction: there depth grows with NDC depth, or against it when Z is reversed.
-        const double w = orthographic ? w_1 : std::fabs(w_z);
+        const double w = orthographic ? w_1 : detail::abs_of(w_z);
         const bool forward = orthographic ? (m[2][2] > 0) != options.reversed_z : w_z > 0;
         view.camera_.z_sign = forward ? 1.0f : -1.0f;
         const double flip_z = forward ? 1.0 : -1.0;
@@ -272,7 +274,7 @@ private:
         const double tiles = static_cast<double>(side) / tile_size_;
         axis.tiles = side / tile_size_ + (side % tile_size_ != 0 ? 1 : 0);
         axis.sign = p < 0 ? -1.0f : 1.0f;
-        axis.scale = std::fabs(p) / w * (0.5 * tiles);
+        axis.scale = detail::abs_of(p) / w * (0.5 * tiles);
         axis.offset = (q / w + 1.0) * (0.5 * tiles);
         axis.scale_f = static_cast<float>(axis.scale);
         axis.offset_f = static_cast<float>(axis.offset);
@@ -283,10 +285,10 @@ private:
         // for the double steps above and for adding the margin itself; 2^-80 a scale is for a caller who
         // flushes denormal numbers to zero.
         axis.margin =
-            detail::float_above(0x1p-20 * (std::fabs(axis.offset) + axis.tiles) + 0x1p-80 * axis.scale);
+            detail::float_above(0x1p-20 * (detail::abs_of(axis.offset) + axis.tiles) + 0x1p-80 * axis.scale);
         if (!camera_.orthographic && axis.scale > 0) {
-            const double slope = (std::fmax)(axis.offset, tiles - axis.offset) / axis.scale;
-            const double length = std::sqrt(1 + slope * slope);
+            const double slope = detail::max_of(tiles - axis.offset, axis.offset) / axis.scale;
+            const double length = detail::root_of(1 + slope * slope);
             axis.side = static_cast<float>(1 / length);
             axis.side_z = static_cast<float>(-slope / length);
         }
@@ -294,7 +296,7 @@ private:
             axis.limit = -1;  // nothing is inside
             return p != 0;
         }
-        return axis.scale >= 0x1p-80 && axis.scale <= 0x1p80 && std::fabs(axis.offset) <= 0x1p80;
+        return axis.scale >= 0x1p-80 && axis.scale <= 0x1p80 && detail::abs_of(axis.offset) <= 0x1p80;
     }
 
     /// The pixel coordinate of a slope (orthographic: of a view-space coordinate), and back.
@@ -308,10 +310,10 @@ private:
     bool set_depth_range() {
         const DepthInterval range = view_depths(0, 1);
         camera_.near_depth = range.min;
-        camera_.near_fast = (std::fmax)(range.min, 0x1p-40f);
+        camera_.near_fast = detail::max_of(0x1p-40f, range.min);
         camera_.far_depth = range.max;
         if (!(range.min < range.max)) return false;
-        if (camera_.orthographic) return std::isfinite(range.min) && std::isfinite(range.max);
+        if (camera_.orthographic) return detail::is_finite(range.min) && detail::is_finite(range.max);
         return z_offset_ != 0 && range.min >= FLT_MIN;
     }
 
@@ -324,8 +326,8 @@ private:
     double depth_at(double v, int direction) const {
         double top = v * w_offset_ - z_offset_;
         double bottom = z_scale_ - v * w_scale_;
-        const double top_error = 0x1p-51 * (std::fabs(v * w_offset_) + std::fabs(z_offset_));
-        const double bottom_error = 0x1p-51 * (std::fabs(z_scale_) + std::fabs(v * w_scale_));
+        const double top_error = 0x1p-51 * (detail::abs_of(v * w_offset_) + detail::abs_of(z_offset_));
+        const double bottom_error = 0x1p-51 * (detail::abs_of(z_scale_) + detail::abs_of(v * w_scale_));
         if (reversed_) {
             top = -top;
             bottom = -bottom;

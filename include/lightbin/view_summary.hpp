@@ -3,10 +3,9 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/string.hpp>
 
-#include <cmath>
 #include <cstdio>
-#include <string>
 
 #include <lightbin/detail/warnings_off.inl>
 
@@ -36,8 +35,8 @@ struct ViewSummary {
     bool pixels_not_square;
 };
 
-/// Returns it in one line, with a question for each thing that is seldom meant.
-inline std::string to_string(const ViewSummary& view) {
+/// Returns it in one line, with a question for each thing that is seldom meant. Include <string> where you call it.
+template <class Text = std::string> Text to_string(const ViewSummary& view) {
     const bool flat = view.orthographic;
     char text[256];
     std::snprintf(
@@ -47,7 +46,7 @@ inline std::string to_string(const ViewSummary& view) {
         view.aspect, view.near_depth, view.far_depth,
         view.looks_down_negative_z ? "-z (right-handed)" : "+z (left-handed)", view.width, view.height,
         view.tile_size);
-    std::string line = text;
+    Text line = text;
     if (view.reversed_z) line += ", reversed Z";
     if (view.x_flipped) line += ", x flipped";
     if (view.y_flipped) line += ", y flipped";

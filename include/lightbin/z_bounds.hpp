@@ -5,13 +5,13 @@
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/kernels.hpp>
 #include <lightbin/detail/names.hpp>
+#include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/detail/sizes.hpp>
 #include <lightbin/isa.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/view.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -78,7 +78,7 @@ namespace detail {
 inline DepthInterval fragment_depths(const View& view, float lower, float upper, DepthFormat format) {
     const double low = static_cast<double>(lower), high = static_cast<double>(upper);
     const auto depths = [&](double from, double to) {
-        return view.view_depths(std::clamp(from, 0.0, 1.0), std::clamp(to, 0.0, 1.0));
+        return view.view_depths(min_of(max_of(from, 0.0), 1.0), min_of(max_of(to, 0.0), 1.0));
     };
     if (format != DepthFormat::float32) {
         const double step = format == DepthFormat::unorm24 ? 0x1.000002p-24 : 0x1.0002p-16;
@@ -87,7 +87,7 @@ inline DepthInterval fragment_depths(const View& view, float lower, float upper,
     // A denormal depth is rounded by up to all of itself, or to zero.
     constexpr double least_normal = 0x1p-126;
     return depths(low < least_normal ? 0 : low * (1 - 0x1p-23),
-                  (std::max)(high * (1 + 0x1p-23), least_normal));
+                  max_of(high * (1 + 0x1p-23), least_normal));
 }
 
 /// Smallest and largest of some numbers; lower > upper if there are none.
@@ -101,16 +101,16 @@ inline Extremes extremes(const float* lower, const float* upper, std::size_t cou
     std::size_t i = 0;
     for (; i + 4 <= count; i += 4)
         for (std::size_t chain = 0; chain < 4; ++chain) {
-            chains[chain].lower = (std::min)(chains[chain].lower, lower[i + chain]);
-            chains[chain].upper = (std::max)(chains[chain].upper, upper[i + chain]);
+            chains[chain].lower = min_of(chains[chain].lower, lower[i + chain]);
+            chains[chain].upper = max_of(chains[chain].upper, upper[i + chain]);
         }
     for (; i < count; ++i) {
-        chains[0].lower = (std::min)(chains[0].lower, lower[i]);
-        chains[0].upper = (std::max)(chains[0].upper, upper[i]);
+        chains[0].lower = min_of(chains[0].lower, lower[i]);
+        chains[0].upper = max_of(chains[0].upper, upper[i]);
     }
     for (std::size_t chain = 1; chain < 4; ++chain) {
-        chains[0].lower = (std::min)(chains[0].lower, chains[chain].lower);
-        chains[0].upper = (std::max)(chains[0].upper, chains[chain].upper);
+        chains[0].lower = min_of(chains[0].lower, chains[chain].lower);
+        chains[0].upper = max_of(chains[0].upper, chains[chain].upper);
     }
     return chains[0];
 }
@@ -126,12 +126,12 @@ void reduce_tile_row(std::size_t columns, std::size_t tile_columns, Reduce reduc
     float lower[most_columns], upper[most_columns];
     Extremes tile;
     for (std::size_t first = 0; first < columns; first += block) {
-        const std::size_t end = (std::min)(first + block, columns);
+        const std::size_t end = min_of(first + block, columns);
         reduce(first, end - first, lower, upper);
         for (std::size_t column = first; column < end;) {
             const std::size_t index = column / tile_columns;
-            const std::size_t tile_end = (std::min)((index + 1) * tile_columns, columns);
-            const std::size_t stop = (std::min)(tile_end, end);
+            const std::size_t tile_end = min_of((index + 1) * tile_columns, columns);
+            const std::size_t stop = min_of(tile_end, end);
             tile = extremes(lower + (column - first), upper + (column - first), stop - column, tile);
             if (stop == tile_end) {
                 finish(index, tile);
@@ -155,7 +155,10 @@ void reduce_tile_row(std::size_t columns, std::size_t tile_columns, Reduce reduc
 ///
 /// Source: Tiled Shading, section 3 (minimum and maximum depth a tile); Harada, "A 2.5D Culling for Forward+",
 /// SIGGRAPH Asia 2012 (depths with a gap).
-inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer, const ZBoundsBuffers& out,
+///
+/// (A template of nothing, so that who does not call it need not compile what it calls.)
+template <class = void>
+Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer, const ZBoundsBuffers& out,
                                     Isa isa = compiled_isa) {
     const Extent viewport = view.viewport();
     const std::size_t tiles = view.tile_count();
@@ -179,14 +182,14 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
     const bool gaps = !out.gap_min.empty() && !out.gap_max.empty();
     // As one of the viewport's size, a larger tile has a number of columns that can be counted.
     const std::size_t size =
-        static_cast<std::size_t>((std::min)(view.tile_size(), (std::max)(viewport.width, viewport.height)));
+        static_cast<std::size_t>(detail::min_of(view.tile_size(), detail::max_of(viewport.width, viewport.height)));
     const std::size_t tiles_x = static_cast<std::size_t>(view.tiles_x());
     const std::size_t height = static_cast<std::size_t>(viewport.height);
     isa = machine_isa(isa);
     for (std::size_t y = 0, first_tile = 0; first_tile < tiles; y += size, first_tile += tiles_x) {
         const auto rows = [&](std::size_t first, std::size_t columns) {
             return detail::DepthRows{buffer.depth.data() + y * pitch + first, pitch,
-                                     (std::min)(size, height - y), columns};
+                                     detail::min_of(size, height - y), columns};
         };
         const auto reduce = [&](float left_out, auto finish) {
             detail::reduce_tile_row(
@@ -222,8 +225,8 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
                 float split[detail::most_columns];
                 for (std::size_t i = 0; i < columns;) {
                     const std::size_t index = (first + i) / (size * samples);
-                    const std::size_t end = (std::min)((index + 1) * size * samples - first, columns);
-                    std::fill(split + i, split + end, out.gap_min[first_tile + index]);
+                    const std::size_t end = detail::min_of((index + 1) * size * samples - first, columns);
+                    detail::fill_items(split + i, end - i, out.gap_min[first_tile + index]);
                     i = end;
                 }
                 detail::depth_kernels(isa, columns).gaps(rows(first, columns), skipped, split, upper, lower);

@@ -158,12 +158,14 @@ LIGHTBIN_TARGET inline void store_tiles(std::uint16_t* tiles, Doubles values) {
     _mm_storel_epi64(reinterpret_cast<__m128i*>(tiles), _mm_packs_epi32(whole, whole));
 }
 
-/// For each byte, the places of its set bits in ascending order.
-inline constexpr std::array<std::array<std::uint8_t, 8>, 256> set_bits = [] {
-    std::array<std::array<std::uint8_t, 8>, 256> table = {};
-    for (unsigned byte = 0; byte < 256; ++byte)
-        for (std::uint8_t bit = 0, place = 0; bit < 8; ++bit)
-            if (byte >> bit & 1) table[byte][place++] = bit;
+/// For each byte, the places of its set bits in ascending order, a byte each: the first, then those of the rest.
+struct SetBits {
+    std::uint64_t of[256];
+};
+inline constexpr SetBits set_bits = [] {
+    SetBits table = {};
+    for (unsigned byte = 1; byte < 256; ++byte)
+        table.of[byte] = table.of[byte & (byte - 1)] << 8 | static_cast<unsigned>(std::countr_zero(byte));
     return table;
 }();
 
@@ -171,7 +173,7 @@ inline constexpr std::array<std::array<std::uint8_t, 8>, 256> set_bits = [] {
 LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCounts& counts,
                                            std::uint32_t first_id, unsigned visible, const ChunkRects& rects,
                                            std::uint32_t first) {
-    const __m128i places = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_bits[visible].data()));
+    const __m128i places = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_bits.of + visible));
     const __m128i twice = _mm_add_epi8(places, places);
     const __m128i bytes = _mm_add_epi8(_mm_unpacklo_epi8(twice, twice), _mm_set1_epi16(0x100));
     const __m128i x0 = _mm_load_si128(reinterpret_cast<const __m128i*>(rects.x0 + first));
@@ -222,8 +224,7 @@ LIGHTBIN_TARGET inline void split_bits(const std::uint8_t* bytes, std::uint64_t*
 /// Writes those of 8 ids whose bit is set, in order; then up to 8 elements that mean nothing. Returns how
 /// many.
 template <class Id> LIGHTBIN_TARGET inline std::uint32_t append(Id* out, __m256i ids, unsigned mask) {
-    std::uint64_t places;
-    std::memcpy(&places, set_bits[mask].data(), sizeof places);
+    const std::uint64_t places = set_bits.of[mask];
     const __m256i chosen = _mm256_permutevar8x32_epi32(
         ids, _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(places))));
     if constexpr (sizeof(Id) == 4)
@@ -243,7 +244,7 @@ LIGHTBIN_TARGET inline std::uint32_t append(Id* out, const std::uint32_t* ids, u
 LIGHTBIN_TARGET inline std::uint32_t append_lights(std::uint32_t* to_ids, std::uint8_t* to_columns,
                                                    const std::uint32_t* ids, const std::uint8_t* columns,
                                                    unsigned mask) {
-    const __m128i places = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_bits[mask].data())),
+    const __m128i places = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_bits.of + mask)),
                   eight = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(columns));
     _mm_storel_epi64(reinterpret_cast<__m128i*>(to_columns), _mm_shuffle_epi8(eight, places));
     return append(to_ids, ids, mask);
@@ -297,7 +298,7 @@ LIGHTBIN_TARGET inline Bytes coordinates(const std::uint16_t* from, unsigned mor
 LIGHTBIN_TARGET inline void append_chosen(ByteMask chosen, Bytes from, std::uint8_t* to) {
     const __m128i halves[] = {_mm256_castsi256_si128(from.v), _mm256_extracti128_si256(from.v, 1)};
     for (unsigned i = 0; i < 4; ++i, chosen >>= 8) {
-        __m128i places = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_bits[chosen & 0xff].data()));
+        __m128i places = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_bits.of + (chosen & 0xff)));
         if (i % 2 == 1) places = _mm_add_epi8(places, _mm_set1_epi8(8));
         _mm_storel_epi64(reinterpret_cast<__m128i*>(to), _mm_shuffle_epi8(halves[i / 2], places));
         to += std::popcount(chosen & 0xff);

@@ -313,7 +313,7 @@ LIGHTBIN_TARGET inline void load_listed_spheres(const Sphere* spheres, const Lis
                                                 std::uint32_t count, Floats& x, Floats& y, Floats& z,
                                                 Floats& radius) {
     ListId listed[lanes];
-    const __mmask16 first = static_cast<__mmask16>(0xffff >> (lanes - (std::min)(count, lanes)));
+    const __mmask16 first = static_cast<__mmask16>(0xffff >> (lanes - min_of(count, lanes)));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(listed), _mm256_maskz_loadu_epi16(first, places));
     load_spheres_at(spheres, listed, x, y, z, radius);
 }

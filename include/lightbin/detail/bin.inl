@@ -59,7 +59,7 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
     for (unsigned top = bands.begin; top < bands.end; top += 8) {
         const BandLists<ListId> band =
             make_lists < worded && !by_slab > (job, scratch, bands, top, width, listed);
-        const unsigned end_row = (std::min)(top + 8, bands.end);
+        const unsigned end_row = min_of(top + 8, bands.end);
         if (band.lists == nullptr ||
             !make_words<footprint, depth_test, by_slab, spots>(job, scratch, top, band, width)) {
             fill_empty(job.tiles + top * std::size_t{tiles_x}, (end_row - top) * std::size_t{tiles_x}, at);

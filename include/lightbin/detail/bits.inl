@@ -7,7 +7,7 @@ LIGHTBIN_TARGET void write_bits(const BinJob<Id>& job, Scratch& scratch, unsigne
                                 std::uint32_t* bits, std::size_t each) {
     const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles), width = (tiles_x + 7) / 8;
     const std::size_t each_row = tiles_x * each;
-    std::fill(bits + begin * each_row, bits + end * each_row, 0u);
+    fill_items(bits + begin * each_row, (end - begin) * each_row, 0);
     std::size_t places[64];  // of the words of a supertile's tiles
     for (unsigned tile = 0; tile < 64; ++tile)
         places[tile] = tile / 8 * each_row + tile % 8 * each;

@@ -22,13 +22,13 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/math.hpp>
+#include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/sphere.hpp>
 #include <lightbin/view.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
@@ -37,13 +37,13 @@ inline constexpr float flushed = 0x1p-120f;
 /// Writes a tile's two edges along an axis, as slopes or coordinates, `low` rounded down and `high` up.
 inline void tile_edges(const ImageAxis& axis, int tile, float& low, float& high) {
     constexpr double most = static_cast<double>(FLT_MAX);
-    const double error = 0x1p-48 * (std::fabs(axis.offset) + axis.tiles + 1);
-    const double end = (std::min)(tile + 1.0, static_cast<double>(axis.limit));
+    const double error = 0x1p-48 * (abs_of(axis.offset) + axis.tiles + 1);
+    const double end = min_of(tile + 1.0, static_cast<double>(axis.limit));
     double from = (tile - axis.offset - error) / axis.scale, to = (end - axis.offset + error) / axis.scale;
-    from -= std::fabs(from) * 0x1p-21 + 0x1p-100;
-    to += std::fabs(to) * 0x1p-21 + 0x1p-100;
-    low = from < -most ? -infinity : static_cast<float>((std::min)(from, most));
-    high = to > most ? infinity : static_cast<float>((std::max)(to, -most));
+    from -= abs_of(from) * 0x1p-21 + 0x1p-100;
+    to += abs_of(to) * 0x1p-21 + 0x1p-100;
+    low = from < -most ? -infinity : static_cast<float>(min_of(from, most));
+    high = to > most ? infinity : static_cast<float>(max_of(to, -most));
 }
 
 /// The boxes around the cells of a slice, which share their depths z0 to z1: their ends, low x and high x by column,

@@ -52,8 +52,8 @@ LIGHTBIN_TARGET inline void store_boxes(const Camera& camera, float* boxes, Floa
 template <DepthTest depth_test, class Id>
 LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, float* cells) {
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
-    const unsigned rows = (std::min)(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
-    const unsigned columns = (std::min)(8u, static_cast<unsigned>(width) - 8 * x);
+    const unsigned rows = min_of(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
+    const unsigned columns = min_of(8u, static_cast<unsigned>(width) - 8 * x);
     const float absent[] = {job.slab[0], job.slab[1], infinity, -infinity};
     std::uint64_t lit = 0;
     for (unsigned row = 0; row < rows; ++row) {
@@ -66,7 +66,7 @@ LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, u
             if (given != nullptr && columns == 8) continue;
             for (unsigned column = 0; column < 8; ++column)
                 padded[side][column] =
-                    given != nullptr ? given[(std::min)(column, columns - 1)] : absent[side];
+                    given != nullptr ? given[min_of(column, columns - 1)] : absent[side];
             sides[side] = padded[side];
         }
         for (unsigned column = 0; column < 8; column += lanes) {
@@ -91,8 +91,8 @@ LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, u
 template <class Id> LIGHTBIN_TARGET void arrange_slab(const BinJob<Id>& job, Scratch& scratch) {
     const Camera& camera = *job.camera;
     SlabBoxes& slab = scratch.slab;
-    slab.z0 = (std::min)((std::max)(job.slab[0], camera.near_depth), FLT_MAX);
-    slab.z1 = (std::min)(job.slab[1], camera.far_depth);
+    slab.z0 = min_of(max_of(job.slab[0], camera.near_depth), FLT_MAX);
+    slab.z1 = min_of(job.slab[1], camera.far_depth);
     const Floats front = all(camera.orthographic ? 1.0f : slab.z0),
                  back = all(camera.orthographic ? 1.0f : slab.z1);
     const std::size_t tiles[] = {static_cast<std::size_t>(camera.x.tiles),
@@ -120,6 +120,6 @@ LIGHTBIN_TARGET inline void load_listed_spheres(const Sphere* spheres, const Lis
                                                 Floats& radius) {
     Sphere some[lanes];
     for (std::uint32_t i = 0; i < lanes; ++i)
-        some[i] = load_sphere(spheres + places[(std::min)(i, count - 1)]);
+        some[i] = load_sphere(spheres + places[min_of(i, count - 1)]);
     load_spheres(some, x, y, z, radius);
 }

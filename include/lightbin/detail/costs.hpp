@@ -4,9 +4,9 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/plain.hpp>
 #include <lightbin/isa.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -20,7 +20,7 @@ inline double project_ns(Isa isa, double lights) {
 /// Into how many parts the chunks of lights are cut for so many threads: some a thread, so that a late one costs
 /// little. As many where they are not shared, as more take more memory.
 inline std::size_t project_parts(std::size_t chunks, std::size_t workers) {
-    return workers > 1 ? (std::min)(chunks, 4 * (std::min)(chunks, workers)) : 1;
+    return workers > 1 ? min_of(chunks, 4 * min_of(chunks, workers)) : 1;
 }
 
 /// Whether rectangles with `area` tiles in all are binned sooner by scattering than by supertiles. A walk over all
@@ -44,7 +44,7 @@ inline bool scatter_is_faster(Isa isa, std::uint64_t tiles, std::uint64_t lights
 /// About how many ns one thread of a fast processor takes to bin lights by scattering, apart from what each part of
 /// the work does again. In parts it does more for each light, as it can't predict which lights are in one.
 inline double scatter_ns(double lights, double entries) {
-    return (std::max)(0.6 * entries - 8 * lights, 0.0);
+    return max_of(0.6 * entries - 8 * lights, 0.0);
 }
 
 /// The same by supertiles. with_words: with row spans or a depth test.

@@ -6,7 +6,7 @@
 /// one of them is NaN. Samples equal to `skipped` (NaN: none are) do not count; +inf and -inf where none does.
 LIGHTBIN_TARGET inline void column_extremes(const DepthRows& depth, float skipped, float* lower,
                                             float* upper) {
-    const Floats infinite = all(HUGE_VALF);
+    const Floats infinite = all(infinity);
     for (std::size_t column = 0; column < depth.columns;) {
         // The last vector may overlap the one before it.
         if (depth.columns - column < lanes) column = depth.columns - lanes;
@@ -30,7 +30,7 @@ LIGHTBIN_TARGET inline void column_extremes(const DepthRows& depth, float skippe
 /// beyond it, -inf and +inf where there are none. Samples equal to `skipped`, and NaN, do not count.
 LIGHTBIN_TARGET inline void column_gaps(const DepthRows& depth, float skipped, const float* split,
                                         float* below, float* above) {
-    const Floats infinite = all(HUGE_VALF);
+    const Floats infinite = all(infinity);
     for (std::size_t column = 0; column < depth.columns;) {
         if (depth.columns - column < lanes) column = depth.columns - lanes;
         const float* samples = depth.samples + column;

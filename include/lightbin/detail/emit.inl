@@ -42,7 +42,7 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
     std::uint64_t* words = scratch.words.reserve(end, list.words) + list.words;
     if constexpr (with_words) {
         std::uint64_t* const masks = scratch.masks.data();
-        std::fill_n(masks + list.count, 8 * eights - list.count, 0u);
+        fill_items(masks + list.count, 8 * eights - list.count, 0);
         for (std::uint32_t i = 0; i < list.count; i += 8, words += 8)
             transpose_words(masks + i, words);
     } else {
@@ -66,7 +66,7 @@ template <class Light>
 LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SlabBoxes& slab, const Light* lights_by_id,
                                          const ListId* ids, std::uint32_t count, unsigned rows,
                                          std::uint64_t* words) {
-    std::fill_n(words, 8, 0u);
+    fill_items(words, 8, 0);
     for (std::uint32_t first = 0; first < 8 && first < count; first += lanes) {
         const auto lights = load_slab_lights(camera, slab, lights_by_id, ids + first, count - first);
         for (unsigned test = 0; test < lights.tests; ++test) {
@@ -94,7 +94,7 @@ LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scr
     const std::uint8_t* const rows = scratch.list_rows.data() + list.begin;
     std::memset(columns + list.count, 0, end - list.words - list.count);
     const ListId* const ids = band.ids + list.begin;
-    const unsigned height = (std::min)(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
+    const unsigned height = min_of(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
     SlabBoxes slab = scratch.slab;
     for (unsigned side = 0; side < 4; ++side)
         slab.ends[side] += side < 2 ? 8 * x : top;
@@ -198,7 +198,7 @@ LIGHTBIN_TARGET Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::u
                              const BandLists<ListId>& band, unsigned row) {
     const SupertileList* list = band.lists;
     for (const ListRange* const end = tiles + tiles_x; tiles < end; tiles += 8, ++list) {
-        const std::ptrdiff_t columns = (std::min<std::ptrdiff_t>)(end - tiles, 8);
+        const std::ptrdiff_t columns = min_of<std::ptrdiff_t>(end - tiles, 8);
         const Packed<Id>* ids = packed_ids<Id>(scratch, band, *list);
         const std::uint64_t* words = scratch.words.data() + list->words;
         std::uint32_t count = list->count;
@@ -207,7 +207,7 @@ LIGHTBIN_TARGET Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::u
 #endif
         Id* const from = out;
         if (count == 0)
-            std::fill_n(tiles, columns, ListRange{at, 0});
+            fill_items(tiles, static_cast<std::size_t>(columns), {at, 0});
         else if (count <= 16)
             out = append_tiles<with_words, Length::up_to_16>(out, tiles, columns, at, ids, count, words, row);
         else if (count <= 64)

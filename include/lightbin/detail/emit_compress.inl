@@ -276,7 +276,7 @@ LIGHTBIN_TARGET inline void store_short_row(__m512i tiles, unsigned row, std::ui
 /// end.
 LIGHTBIN_TARGET inline std::uint32_t store_no_words(Scratch& scratch) {
     constexpr std::uint32_t size = 24;
-    std::fill_n(scratch.words.reserve(size), size, 0u);
+    fill_items(scratch.words.reserve(size), size, 0);
     return size;
 }
 
@@ -316,7 +316,7 @@ LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scr
     const std::uint32_t count = list.count, groups = (count + 63) / 64;
     const std::uint32_t end = list.words + (count < 32 ? 40 : 64 * groups);
     std::uint64_t* const words = scratch.words.reserve(end, list.words) + list.words;
-    const unsigned height = (std::min)(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
+    const unsigned height = min_of(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
     SlabBoxes slab = scratch.slab;
     for (unsigned side = 0; side < 4; ++side)
         slab.ends[side] += side < 2 ? 8 * x : top;
@@ -421,7 +421,7 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsi
         const std::uint32_t lights = list->count;
         const std::uint64_t* words = all_words + list->words;
         const GroupedIds ids = all_ids.from(list->begin);
-        const unsigned columns = static_cast<unsigned>((std::min<std::ptrdiff_t>)(end - tiles, 8));
+        const unsigned columns = static_cast<unsigned>(min_of<std::ptrdiff_t>(end - tiles, 8));
         const __mmask8 stored = static_cast<__mmask8>(0xff >> (8 - columns));
         std::uint32_t count;
         if (lights > 64) {

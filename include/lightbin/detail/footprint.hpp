@@ -11,7 +11,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
@@ -113,7 +112,7 @@ struct ChunkRects {
 template <class Id> struct BinJob {
     const Camera* camera;
     FootprintArrays lights;
-    std::span<const FootprintRun> runs;
+    Items<const FootprintRun> runs;
     std::uint32_t visible;   ///< lights in all runs
     const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one
     float slab[2];  ///< what takes the place of absent min and max: -inf and +inf, or a slice's depths

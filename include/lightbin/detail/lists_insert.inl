@@ -13,8 +13,8 @@ struct RowsHere {
 template <class Id>
 LIGHTBIN_TARGET inline RowsHere rows_here(const FootprintArrays& lights, std::uint32_t i,
                                           const BandJob<Id>& bands) {
-    const unsigned first = (std::max<unsigned>)(lights.y0[i], bands.begin),
-                   last = (std::min<unsigned>)(lights.y1[i], bands.end - 1);
+    const unsigned first = max_of<unsigned>(lights.y0[i], bands.begin),
+                   last = min_of<unsigned>(lights.y1[i], bands.end - 1);
     return {first <= last, first - bands.begin, last - bands.begin};
 }
 

@@ -45,8 +45,8 @@ LIGHTBIN_TARGET inline ByteMask first_bytes(std::size_t count) {
 
 /// Fills scratch.blocks, apart from `before` and `capacity`; returns how many there are. Whole ids are one block.
 template <class Id> std::size_t find_blocks(const BinJob<Id>& job, Scratch& scratch) {
-    if (sizeof(ListId) == 4 || job.runs.empty()) {
-        *scratch.blocks.reserve(1) = {0, job.runs.empty() ? 0 : job.runs.back().end, 0, 0, 0};
+    if (sizeof(ListId) == 4 || job.runs.count == 0) {
+        *scratch.blocks.reserve(1) = {0, job.runs.count == 0 ? 0 : job.runs[job.runs.count - 1].end, 0, 0, 0};
         return 1;
     }
     const std::uint32_t* ids = job.lights.ids;
@@ -56,7 +56,8 @@ template <class Id> std::size_t find_blocks(const BinJob<Id>& job, Scratch& scra
             const std::uint32_t upper = ids[i] & 0xffff0000, last = upper | 0xffff;
             end = run.end;
             if (ids[end - 1] > last)
-                end = static_cast<std::uint32_t>(std::upper_bound(ids + i, ids + end, last) - ids);
+                end = static_cast<std::uint32_t>(
+                    first_not(ids + i, ids + end, [=](std::uint32_t id) { return id <= last; }) - ids);
             IdBlock* const blocks = scratch.blocks.reserve(count + 1, count);
             if (count > 0 && blocks[count - 1].upper == upper && end - blocks[count - 1].begin <= 0x10000)
                 blocks[count - 1].end = end;
@@ -73,7 +74,7 @@ template <class Id> std::size_t make_blocks(const BinJob<Id>& job, Scratch& scra
     for (IdBlock *block = scratch.blocks.data(), *const end = block + count; block < end; ++block) {
         block->before = before;
         block->capacity =
-            std::size_t{(std::min)(block->end - block->begin, job.visible)} + 64;  // of whole vectors
+            std::size_t{min_of(block->end - block->begin, job.visible)} + 64;  // of whole vectors
         before += block->capacity;
     }
     return count;
@@ -121,10 +122,10 @@ LIGHTBIN_TARGET void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigne
         to.blocks = scratch.blocks.data();
     }
     to.panels = (width + panel_side - 1) / panel_side;
-    const std::uint64_t together = std::clamp<std::uint64_t>(
-        most_band_places / (std::uint64_t{job.visible} * to.panels + 1), 1, panel_side);
+    const std::uint64_t together = min_of<std::uint64_t>(
+        max_of<std::uint64_t>(most_band_places / (std::uint64_t{job.visible} * to.panels + 1), 1), panel_side);
     to.begin = begin;
-    to.end = (std::min)(begin + 8 * static_cast<unsigned>(together), end);
+    to.end = min_of(begin + 8 * static_cast<unsigned>(together), end);
     to.count = (to.end - to.begin + 7) / 8 * to.panels;
     const std::uint64_t capacity = to.block_count > 0 ? to.place(to.block_count - 1, to.count) : 0;
     to.x0 = scratch.band_x0.reserve(capacity);
@@ -132,11 +133,11 @@ LIGHTBIN_TARGET void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigne
     to.rows = scratch.band_rows.reserve(capacity);
     to.ids = scratch.band_ids.template reserve<ListId>(capacity);
     to.size = scratch.band_size.reserve(to.block_count * to.count);
-    std::fill_n(to.size, to.block_count * to.count, 0u);
+    fill_items(to.size, to.block_count * to.count, 0);
     for (std::size_t block = 0; block < to.block_count; ++block)
         for (const FootprintRun& run : job.runs) {
-            const std::uint32_t last = (std::min)(run.end, to.blocks[block].end);
-            for (std::uint32_t i = (std::max)(run.begin, to.blocks[block].begin); i < last; i += byte_lanes)
+            const std::uint32_t last = min_of(run.end, to.blocks[block].end);
+            for (std::uint32_t i = max_of(run.begin, to.blocks[block].begin); i < last; i += byte_lanes)
                 add_to_bands<with_words>(job.lights, to, block, i, last - i);
         }
 }
@@ -207,7 +208,7 @@ LIGHTBIN_TARGET BandLists<ListId> make_lists(const BinJob<Id>& job, Scratch& scr
     std::uint32_t longest = 0;
     for (std::size_t block = 0; block < listed.block_count; ++block)
         for (std::size_t panel = 0; panel < listed.panels; ++panel)
-            longest = (std::max)(longest, listed.size[block * listed.count + band + panel]);
+            longest = max_of(longest, listed.size[block * listed.count + band + panel]);
     if (longest == 0) return {};
     SupertileList* const lists = scratch.supertile_lists.reserve(width);
     std::uint32_t used = 0;

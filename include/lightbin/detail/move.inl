@@ -79,7 +79,7 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void move_eight(const WorldToView& to_v
     }
     int plain[8], all_plain = 1;
     for (int i = 0; i < 8; ++i) {
-        away[i] = std::fabs(from_origin[0][i]) + std::fabs(from_origin[1][i]) + std::fabs(from_origin[2][i]);
+        away[i] = abs_of(from_origin[0][i]) + abs_of(from_origin[1][i]) + abs_of(from_origin[2][i]);
         plain[i] = (away[i] <= move.most) & (radius[i] >= FloatMove::least_radius) &
                    (radius[i] <= FloatMove::most_radius);
         all_plain &= plain[i];
@@ -106,7 +106,7 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void move_eight(const WorldToView& to_v
     if (all_plain == 0)
         for (int i = 0; i < 8; ++i)
             if (plain[i] == 0) after[i] = to_view(load_sphere(given + i));
-    std::copy_n(after, 8, moved);
+    copy_items(after, 8, moved);
 }
 LIGHTBIN_TARGET inline void move_in_eights(const WorldToView& to_view, const Sphere* given,
                                            std::uint32_t count, Sphere* moved) {
@@ -117,5 +117,5 @@ LIGHTBIN_TARGET inline void move_in_eights(const WorldToView& to_view, const Sph
     for (std::uint32_t i = 0; i < 8; ++i)
         rest[i] = load_sphere(given + (i < count ? i : 0));
     move_eight(to_view, rest, rest);
-    std::copy_n(rest, count, moved);
+    copy_items(rest, count, moved);
 }

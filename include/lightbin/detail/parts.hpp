@@ -7,13 +7,11 @@
 #include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/plain.hpp>
 #include <lightbin/parallel.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <span>
-#include <vector>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
@@ -58,7 +56,7 @@ void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
     std::uint64_t* row_area = sums.reserve(std::uint64_t{pitch} * job.runs.size());
     parallel.run(job.runs.size(), [&](std::size_t run) {
         std::uint64_t* steps = row_area + run * pitch;
-        std::fill_n(steps, pitch, 0u);
+        fill_items(steps, pitch, 0);
         for (std::uint32_t i = job.runs[run].begin; i < job.runs[run].end; ++i) {
             const std::uint64_t width = job.lights.x1[i] - job.lights.x0[i] + 1u;
             steps[job.lights.y0[i]] += width;
@@ -81,11 +79,11 @@ void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
 /// Has build(part, out) make a list of its own of each part, the first one in `list`, and puts the others in their places
 /// after it. A step's ranges are `width`. Returns the number of all entries.
 template <class Id, class Build>
-std::uint64_t build_apart(const Parallel& parallel, std::span<Part> parts, ListRange* ranges,
-                          std::size_t width, std::vector<Buffer<Id>>& spares, Id* list, Build build) {
-    if (spares.size() < parts.size()) spares.resize(parts.size());
+std::uint64_t build_apart(const Parallel& parallel, Items<Part> parts, ListRange* ranges,
+                          std::size_t width, Buffer<Buffer<Id>>& spares, Id* list, Build build) {
+    spares.reserve(parts.size(), parts.size());
     parallel.run(parts.size(), [&](std::size_t i) {
-        Id* const out = i == 0 ? list : spares[i].reserve(parts[i].area + BandJob<Id>::slack);
+        Id* const out = i == 0 ? list : spares.data()[i].reserve(parts[i].area + BandJob<Id>::slack);
         parts[i].area = build(i, out);
     });
     std::uint64_t entries = 0;
@@ -98,7 +96,7 @@ std::uint64_t build_apart(const Parallel& parallel, std::span<Part> parts, ListR
         for (ListRange *range = ranges + width * part.begin, *end = ranges + width * part.end; range < end;
              ++range)
             range->offset += static_cast<std::uint32_t>(part.before);
-        std::copy_n(spares[previous + 1].data(), static_cast<std::size_t>(part.area), list + part.before);
+        copy_items(spares.data()[previous + 1].data(), static_cast<std::size_t>(part.area), list + part.before);
     });
     return entries;
 }

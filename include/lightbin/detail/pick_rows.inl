@@ -18,7 +18,7 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void pick_row(Scratch& scratch, const S
     std::uint32_t picked = 0;
     for (std::uint32_t i = 0; i < count; i += 64) {
         std::uint64_t chosen = words[i / 4 + 8 + row];
-        const std::uint32_t end = (std::min)(i + 64, count);
+        const std::uint32_t end = min_of(i + 64, count);
         for (std::uint32_t j = i; j < end; j += 8, chosen >>= 8)
             picked += append_lights(to_ids + picked, to_columns + picked, ids + j, columns + j,
                                     static_cast<unsigned>(chosen & 0xff));

@@ -33,7 +33,7 @@ LIGHTBIN_TARGET inline void tangent_slopes(Reals c, Reals z, Reals r, Reals e, R
 /// it exists: the corner is taken only when it is beyond doubt. The smallest slope is the largest of -c.
 LIGHTBIN_TARGET inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, Doubles& low,
                                            Doubles& high) {
-    const Doubles near_z = all(near_depth), zero = all(0.0), infinite = all(HUGE_VAL);
+    const Doubles near_z = all(near_depth), zero = all(0.0), infinite = all(static_cast<double>(infinity));
     const Doubles a = abs(c);
     const Doubles h2 = mul(r - (near_z - z), r + (near_z - z));  // half chord, squared
     const Doubles h2_error = mul(r, r) * 0x1p-50;
@@ -147,8 +147,8 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline bool eight_out_of_view(const Camera& ca
     std::memcpy(eight, spheres, sizeof eight);
     int out = 1;
     for (const Sphere& sphere : eight) {
-        const float a = std::fabs(sphere.x), b = std::fabs(sphere.y), z = sphere.z * camera.z_sign;
-        const float r = sphere.radius, size = a + b + std::fabs(z) + r;
+        const float a = abs_of(sphere.x), b = abs_of(sphere.y), z = sphere.z * camera.z_sign;
+        const float r = sphere.radius, size = a + b + abs_of(z) + r;
         const float aside_x = a * camera.x.side + z * camera.x.side_z - r;
         const float aside_y = b * camera.y.side + z * camera.y.side_z - r;
         out &= (size <= 0x1p40f) & (r >= 0x1p-40f) &

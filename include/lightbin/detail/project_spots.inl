@@ -78,10 +78,10 @@ LIGHTBIN_TARGET inline void project_both_carefully(const Camera& camera, const S
     project_carefully(camera, least, places, count, second, also, counted_before);
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t place = places[i];
-        rects.x0[place] = (std::max)(rects.x0[place], second.x0[place]);
-        rects.y0[place] = (std::max)(rects.y0[place], second.y0[place]);
-        rects.x1[place] = (std::min)(rects.x1[place], second.x1[place]);
-        rects.y1[place] = (std::min)(rects.y1[place], second.y1[place]);
+        rects.x0[place] = max_of(rects.x0[place], second.x0[place]);
+        rects.y0[place] = max_of(rects.y0[place], second.y0[place]);
+        rects.x1[place] = min_of(rects.x1[place], second.x1[place]);
+        rects.y1[place] = min_of(rects.y1[place], second.y1[place]);
         const bool any = (also[place / lanes] >> place % lanes & 1) != 0 &&
                          rects.x0[place] <= rects.x1[place] && rects.y0[place] <= rects.y1[place];
         if (!any) visible[place / lanes] &= ~(1u << place % lanes);

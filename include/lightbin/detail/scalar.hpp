@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/math.hpp>
 #include <lightbin/detail/tier.hpp>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
@@ -19,7 +20,7 @@ inline constexpr std::uint32_t lanes = 1, double_lanes = 1;
 
 // One lane: numbers are their own vectors, and a mask is a bool. Of floats and of doubles.
 template <class Real> Real sqrt(Real a) {
-    return std::sqrt(a);
+    return root_of(a);
 }
 template <class Real> Real mul(Real a, Real b) {
     return rounded(a * b);
@@ -91,7 +92,7 @@ std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned beg
     std::memset(steps, 0, pitch * (end - begin) * sizeof *steps);
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i)
-            for (unsigned y = (std::max<unsigned>)(job.lights.y0[i], begin); y < end && y <= job.lights.y1[i];
+            for (unsigned y = max_of<unsigned>(job.lights.y0[i], begin); y < end && y <= job.lights.y1[i];
                  ++y) {
                 ++steps[(y - begin) * pitch + job.lights.x0[i]];
                 --steps[(y - begin) * pitch + job.lights.x1[i] + 1];
@@ -110,7 +111,7 @@ inline void fill_empty(ListRange* tiles, std::size_t count, std::uint32_t at) {
     if (at == 0)
         std::memset(static_cast<void*>(tiles), 0, count * sizeof *tiles);
     else
-        std::fill_n(tiles, count, ListRange{at, 0});
+        fill_items(tiles, count, {at, 0});
 }
 
 inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,

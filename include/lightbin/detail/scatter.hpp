@@ -6,10 +6,10 @@
 #include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/scratch.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -43,8 +43,8 @@ LIGHTBIN_NOINLINE void put_ids(const BinJob<Id>& job, Id* list, std::size_t begi
     // Backward, so that each offset walks from its list's end to its begin.
     for (std::size_t run = job.runs.size(); run-- > 0;)
         for (std::uint32_t i = job.runs[run].end; i-- > job.runs[run].begin;) {
-            const std::size_t y0 = (std::max<std::size_t>)(lights.y0[i], begin),
-                              y1 = (std::min<std::size_t>)(lights.y1[i] + 1u, end);
+            const std::size_t y0 = max_of<std::size_t>(lights.y0[i], begin),
+                              y1 = min_of<std::size_t>(lights.y1[i] + 1u, end);
             if (y0 < y1)
                 put_id(list, job.tiles + y0 * width + lights.x0[i], job.tiles + y1 * width, width,
                        lights.x1[i] - lights.x0[i] + std::size_t{1}, static_cast<Id>(lights.ids[i]));
@@ -59,7 +59,7 @@ std::uint64_t scatter_lights(const BinJob<Id>& job, Scratch& scratch, const Band
     const ListRange* const writable = job.tiles + bands.end * width + (to_the_end ? job.spare_tiles : 0);
     std::uint32_t at = bands.at;
     for (unsigned begin = bands.begin; begin < bands.end; begin += rows_laid_out)
-        at = lay_out_rows(job, scratch, begin, (std::min)(begin + rows_laid_out, bands.end), writable, at);
+        at = lay_out_rows(job, scratch, begin, min_of(begin + rows_laid_out, bands.end), writable, at);
 
     if (at == bands.at) return 0;  // the rows may have no tiles, too
 
@@ -67,7 +67,7 @@ std::uint64_t scatter_lights(const BinJob<Id>& job, Scratch& scratch, const Band
     const std::size_t step = rows_scattered(bands.end - bands.begin, width, job.visible, entries);
     Id* const list = bands.out - bands.at;  // the whole list
     for (std::size_t begin = bands.begin; begin < bands.end; begin += step)
-        put_ids(job, list, begin, (std::min<std::size_t>)(begin + step, bands.end));
+        put_ids(job, list, begin, min_of<std::size_t>(begin + step, bands.end));
     return entries;
 }
 
@@ -79,14 +79,14 @@ std::uint64_t scatter_one(const BinJob<Id>& job, const FootprintRun& run, const 
     std::uint32_t at = bands.at;
     if (run.begin < run.end) {
         const std::size_t x0 = job.lights.x0[run.begin], x1 = job.lights.x1[run.begin] + std::size_t{1};
-        const unsigned y1 = (std::min)(job.lights.y1[run.begin] + 1u, bands.end);
-        for (unsigned y = (std::max<unsigned>)(job.lights.y0[run.begin], bands.begin); y < y1; ++y) {
+        const unsigned y1 = min_of(job.lights.y1[run.begin] + 1u, bands.end);
+        for (unsigned y = max_of<unsigned>(job.lights.y0[run.begin], bands.begin); y < y1; ++y) {
             ListRange* const row = job.tiles + y * width;
             fill_empty(tile, static_cast<std::size_t>(row + x0 - tile), at);
             for (tile = row + x0; tile < row + x1; ++tile)
                 *tile = {at++, 1};
         }
-        std::fill_n(bands.out, at - bands.at, static_cast<Id>(job.lights.ids[run.begin]));
+        fill_items(bands.out, at - bands.at, static_cast<Id>(job.lights.ids[run.begin]));
     }
     fill_empty(tile, static_cast<std::size_t>(end - tile), at);
     return at - bands.at;
@@ -95,7 +95,7 @@ std::uint64_t scatter_one(const BinJob<Id>& job, const FootprintRun& run, const 
 /// Bins the tile rows of `bands`. Returns the number of entries. Never writes past them.
 template <class Id, LayOutRows<Id> lay_out_rows, FillEmpty fill_empty>
 std::uint64_t bin_scatter(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands) {
-    const FootprintRun run = job.runs.front();
+    const FootprintRun run = job.runs[0];
     if (job.runs.size() == 1 && run.end - run.begin <= 1) return scatter_one<Id, fill_empty>(job, run, bands);
     return scatter_lights<Id, lay_out_rows>(job, scratch, bands);
 }

@@ -102,7 +102,7 @@ LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scrat
     std::uint32_t *above = steps + pitch * band_count, *row_ends = above + pitch;
     for (const FootprintRun& run : job.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i) {
-            unsigned y0 = (std::max<unsigned>)(lights.y0[i], begin), y1 = (std::min)(lights.y1[i] + 1u, end);
+            unsigned y0 = max_of<unsigned>(lights.y0[i], begin), y1 = min_of(lights.y1[i] + 1u, end);
             if (y0 >= y1) continue;
             y0 -= begin;
             y1 -= begin;
@@ -129,7 +129,7 @@ LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scrat
         const std::size_t own = static_cast<std::size_t>(writable - tile), stored = band_rows * width + 4;
         ListRange* rows = own < stored ? scratch.last_rows.reserve(stored) : tile;
         lay_out(steps + band_rows, above, row_ends + row, columns, width, rows, EachTile{});
-        if (rows != tile) std::copy_n(rows, (std::min)(own, band_rows * width), tile);
+        if (rows != tile) copy_items(rows, min_of(own, band_rows * width), tile);
     }
     return at;
 }
@@ -147,7 +147,7 @@ LIGHTBIN_TARGET inline void fill_empty(ListRange* tiles, std::size_t count, std:
     if constexpr (tiles_stored == 2)
         if (at == 0)
             return static_cast<void>(std::memset(static_cast<void*>(tiles), 0, count * sizeof *tiles));
-    if (count < 16) return static_cast<void>(std::fill_n(tiles, count, ListRange{at, 0}));
+    if (count < 16) return fill_items(tiles, count, {at, 0});
     const Tiles empty = low_pairs(all_rows(at), Rows{});
     ListRange* const last = tiles + count - 16;
     fill_lines(tiles, empty);

@@ -28,8 +28,8 @@ struct RowTerms {
 LIGHTBIN_TARGET inline unsigned row_terms(const Camera& camera, const Sphere (&spheres)[lanes],
                                           RowTerms& terms) {
     const double row_offset = camera.y.offset, scale = camera.x.scale, offset = camera.x.offset;
-    const double most = (std::fabs(row_offset) + camera.y.tiles) / camera.y.scale;  // V
-    const double margin = 0x1p-48 * (std::fabs(offset) + camera.x.tiles) + 0x1p-80 * scale;
+    const double most = (abs_of(row_offset) + camera.y.tiles) / camera.y.scale;  // V
+    const double margin = 0x1p-48 * (abs_of(offset) + camera.x.tiles) + 0x1p-80 * scale;
     Floats floats[4];
     load_spheres(spheres, floats[0], floats[1], floats[2], floats[3]);
     unsigned known = 0;
@@ -41,7 +41,7 @@ LIGHTBIN_TARGET inline unsigned row_terms(const Camera& camera, const Sphere (&s
         const Doubles r = widened(floats[3], half), r2 = mul(r, r), one = all(1.0), zero = all(0.0);
         Doubles y_v = zero, g_z = one, r2_v = zero, middle = x * scale, reach = all(scale);
         Doubles left_v = y, right_v = y, largest_f = r;
-        auto whole = less(r, all(HUGE_VAL));
+        auto whole = less(r, all(static_cast<double>(infinity)));
         if (!camera.orthographic) {
             const Doubles a = abs(x), a2 = mul(x, x), e = mul(z - r, z + r), big_a = mul(y, y) + e;
             const Doubles per_a = scale / big_a, side = sqrt(a2 + e), q = mul(z, side) + mul(a, r);

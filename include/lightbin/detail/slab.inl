@@ -72,7 +72,7 @@ LIGHTBIN_TARGET inline SlabSpots load_slab_lights(const Camera&, const SlabBoxes
                                                   const ListId* places, std::uint32_t count) {
     Sphere balls[lanes], planes[4][lanes];
     for (std::uint32_t i = 0; i < lanes; ++i) {
-        const ViewSpot& spot = spots[places[(std::min)(i, count - 1)]];
+        const ViewSpot& spot = spots[places[min_of(i, count - 1)]];
         balls[i] = spot.ball;
         for (unsigned plane = 0; plane < 4; ++plane)
             std::memcpy(&planes[plane][i], &spot.planes[plane], sizeof(Sphere));

@@ -51,7 +51,7 @@ LIGHTBIN_TARGET inline void slice_places(const SlicePlaces& to, float z_sign, co
         const bool whole = count - i >= lanes;
         if (!whole)
             for (std::uint32_t lane = 0; lane < lanes; ++lane)
-                filled_up[lane] = ids[(std::min)(lane, count - i - 1)];
+                filled_up[lane] = ids[min_of(lane, count - i - 1)];
         Floats least, most;
         load_depths<spots>(lights, z_sign, whole ? ids : filled_up, least, most);
         store_tiles(nearest + i, slice_place(to, least));

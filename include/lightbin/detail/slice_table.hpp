@@ -3,16 +3,16 @@
 // ascend with it and begin with what a logarithm would say.
 #pragma once
 
+#include <lightbin/detail/buffer.hpp>
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/math.hpp>
+#include <lightbin/detail/plain.hpp>
 
-#include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <vector>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
@@ -31,7 +31,7 @@ struct SlicePlaces {
     std::size_t of(float depth) const {
         const float place = (coordinate(depth) - begin) * scale;
         return static_cast<std::size_t>(static_cast<std::int32_t>(
-            place > 0 ? (std::min)(place, last) : 0));  // NaN, of an infinite depth, is of one place only
+            place > 0 ? min_of(place, last) : 0));  // NaN, of an infinite depth, is of one place only
     }
 };
 
@@ -39,18 +39,17 @@ struct SlicePlaces {
 class SliceTable {
 public:
     void set(std::span<const float> boundaries) {
-        if (!boundaries_.empty() &&
-            std::equal(boundaries.begin(), boundaries.end(), boundaries_.begin(), boundaries_.end() - 1))
-            return;
-        boundaries_.clear();  // until there is a table, should there be no memory
-        boundaries_.reserve(boundaries.size() + 1);
+        if (same(boundaries)) return;
+        count_ = 0;  // until there is a table, should there be no memory
+        float* const to = boundaries_.reserve(boundaries.size() + 1);
         // Linear slices are alike in depth, exponential ones in their bits.
         fill_places(boundaries, false);
         const std::size_t shared_by_depth = shared_;
         fill_places(boundaries, true);
         if (shared_ > shared_by_depth) fill_places(boundaries, false);
-        boundaries_.assign(boundaries.begin(), boundaries.end());
-        boundaries_.push_back(std::numeric_limits<float>::quiet_NaN());  // neither before nor behind anything
+        copy_items(boundaries.data(), boundaries.size(), to);
+        to[boundaries.size()] = std::numeric_limits<float>::quiet_NaN();  // neither before nor behind anything
+        count_ = boundaries.size() + 1;
     }
 
     /// Whether no two boundaries are in one place, and 15 bits number those.
@@ -58,17 +57,19 @@ public:
 
     /// Returns how many boundaries are less than a depth that is not NaN.
     std::uint32_t before(float depth) const {
-        std::uint32_t slice = before_[places_.of(depth)];
-        slice += boundaries_[slice] < depth;  // rarely more than one, so the loop's branch is predicted
-        while (boundaries_[slice] < depth)
+        const float* const boundaries = boundaries_.data();
+        std::uint32_t slice = before_place(places_.of(depth));
+        slice += boundaries[slice] < depth;  // rarely more than one, so the loop's branch is predicted
+        while (boundaries[slice] < depth)
             ++slice;
         return slice;
     }
     /// The same of those that are not greater.
     std::uint32_t up_to(float depth) const {
-        std::uint32_t slice = before_[places_.of(depth)];
-        slice += boundaries_[slice] <= depth;
-        while (boundaries_[slice] <= depth)
+        const float* const boundaries = boundaries_.data();
+        std::uint32_t slice = before_place(places_.of(depth));
+        slice += boundaries[slice] <= depth;
+        while (boundaries[slice] <= depth)
             ++slice;
         return slice;
     }
@@ -76,33 +77,42 @@ public:
     /// For slice_places.inl: before_place() of a depth's place are the boundaries that are surely less than it;
     /// those of the next place are all that may not be greater.
     const SlicePlaces& places() const { return places_; }
-    std::uint32_t before_place(std::size_t place) const { return before_[place]; }
+    std::uint32_t before_place(std::size_t place) const { return before_.data()[place]; }
 
 private:
+    bool same(std::span<const float> boundaries) const {
+        if (count_ != boundaries.size() + 1) return false;
+        for (std::size_t i = 0; i < boundaries.size(); ++i)
+            if (boundaries_.data()[i] < boundaries[i] || boundaries[i] < boundaries_.data()[i]) return false;
+        return true;
+    }
+
     /// Finds how many boundaries are before each place.
     void fill_places(std::span<const float> boundaries, bool by_bits) {
         places_.by_bits = by_bits;
         // So many that few boundaries share one; no fewer than are in the cache anyway.
-        const std::size_t places = (std::max)(std::bit_ceil(4 * boundaries.size()), std::size_t{512});
+        const std::size_t places = max_of(std::bit_ceil(4 * boundaries.size()), std::size_t{512});
         places_.last = static_cast<float>(places - 1);
         places_.begin = boundaries.empty() ? 0 : places_.coordinate(boundaries.front());
         const float span = boundaries.empty() ? 0 : places_.coordinate(boundaries.back()) - places_.begin;
         places_.scale = places_.last / span;
-        if (!std::isfinite(places_.scale)) places_.scale = 0;  // there is one at most, or as good as one
+        if (!is_finite(places_.scale)) places_.scale = 0;  // there is one at most, or as good as one
 
-        before_.assign(places + 1, 0);
+        std::uint32_t* const before = before_.reserve(places + 1);
+        fill_items(before, places + 1, 0);
         for (const float boundary : boundaries)
-            ++before_[places_.of(boundary) + 1];
+            ++before[places_.of(boundary) + 1];
         shared_ = 0;
         for (std::size_t i = 1; i <= places; ++i) {
-            shared_ += before_[i] > 1 ? before_[i] - 1 : 0;
-            before_[i] += before_[i - 1];
+            shared_ += before[i] > 1 ? before[i] - 1 : 0;
+            before[i] += before[i - 1];
         }
     }
 
-    std::vector<float> boundaries_;      ///< and NaN
-    std::vector<std::uint32_t> before_;  ///< how many boundaries are before a place, and in all of them
-    std::size_t shared_ = 0;             ///< boundaries that are in the place of another
+    Buffer<float> boundaries_;      ///< and NaN
+    std::size_t count_ = 0;         ///< of those, NaN too; 0: there is no table
+    Buffer<std::uint32_t> before_;  ///< how many boundaries are before a place, and in all of them
+    std::size_t shared_ = 0;        ///< boundaries that are in the place of another
     SlicePlaces places_;
 };
 

@@ -6,6 +6,7 @@
 #include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
+#include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/portable.hpp>
 #include <lightbin/detail/scatter.hpp>
@@ -16,15 +17,12 @@
 #include <lightbin/spot.hpp>
 #include <lightbin/view.hpp>
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cfloat>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <memory>
 #include <type_traits>
 #include <utility>
 

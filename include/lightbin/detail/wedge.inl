@@ -31,7 +31,7 @@ LIGHTBIN_TARGET inline Doubles dot(const Doubles (&a)[3], const Doubles (&b)[3])
 
 LIGHTBIN_TARGET inline void find_wedges(const Camera& camera, const WedgeLanes& spots, unsigned at,
                                         WedgeTerms& terms) {
-    const Doubles zero = all(0.0), one = all(1.0), none = all(HUGE_VAL);
+    const Doubles zero = all(0.0), one = all(1.0), none = all(static_cast<double>(infinity));
     Doubles u[3] = {zero, zero, one};
     if (!camera.orthographic) {
         const Doubles per_length = 1.0 / sqrt(dot(spots.apex, spots.apex));
@@ -52,7 +52,7 @@ LIGHTBIN_TARGET inline void find_wedges(const Camera& camera, const WedgeLanes& 
         back[i] = mul(b[i], mul(per_s, cosine));
         aside[i] = mul(mul(u[j], b[k]) - mul(u[k], b[j]), mul(per_s, sine));
     }
-    const double rows = (std::fabs(camera.y.offset) + camera.y.tiles) / camera.y.scale;
+    const double rows = (abs_of(camera.y.offset) + camera.y.tiles) / camera.y.scale;
     const Doubles slack = spots.blur + 0x1p-40 * (1 + rows);
     for (unsigned side = 0; side < 2; ++side) {
         Doubles n[3];
@@ -129,7 +129,7 @@ struct SpotRows {
                     wedge.blur / greater(widened(nearest, half), all(static_cast<double>(camera.near_depth)));
             find_wedges(camera, wedge, half * double_lanes, wedges);
         }
-        const double margin = 0x1p-40 * (std::fabs(camera.x.offset) + camera.x.tiles);
+        const double margin = 0x1p-40 * (abs_of(camera.x.offset) + camera.x.tiles);
         low = camera.x.offset - margin;
         high = camera.x.offset + margin;
         return ~0u;

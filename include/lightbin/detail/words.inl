@@ -80,7 +80,10 @@ LIGHTBIN_TARGET inline DepthRange depth_range(const float* cells, std::uint64_t 
             }
     store_floats(min, least);
     store_floats(max, most);
-    return {*std::min_element(min, min + lanes), *std::max_element(max, max + lanes)};
+    DepthRange range = {min[0], max[0]};
+    for (std::uint32_t lane = 1; lane < lanes; ++lane)
+        range = {min_of(range.min, min[lane]), max_of(range.max, max[lane])};
+    return range;
 }
 
 /// Adds the tiles that they meet to the words of some of 64 lights with these bytes of columns and rows; the tiles of
@@ -202,7 +205,7 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
     std::uint64_t* masks = scratch.masks.reserve(std::uint64_t{list.count} + 64);
     std::uint32_t left = 0;
     for (std::uint32_t begin = 0; begin < list.count; begin += 64) {
-        const std::uint32_t count = (std::min)(list.count - begin, 64u);
+        const std::uint32_t count = min_of(list.count - begin, 64u);
         std::uint32_t first = 0;
         if constexpr (sizeof(ListId) == 2) first = begin_group(scratch, list, begin, left, masks);
         left += mask_64_lights<footprint, depth_test, spots>(job, x, top, cells, lit, range, lights + begin, first,

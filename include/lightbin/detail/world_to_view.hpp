@@ -14,15 +14,14 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/math.hpp>
+#include <lightbin/detail/maybe.hpp>
+#include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/rounding.hpp>
 #include <lightbin/matrix.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/sphere.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
 
 #include <lightbin/detail/warnings_off.inl>
 
@@ -50,26 +49,26 @@ public:
         // The largest singular value is at most the root of the largest row sum of M^T M. Where a product overflows, sums
         // are infinite or NaN, which no comparison takes for the largest: then there is no bound.
         // In the same way the square of the smallest is at least the least diagonal element less what stands beside it.
-        double square = 0, all = 0, least = HUGE_VAL;
+        double square = 0, all = 0, least = static_cast<double>(infinity);
         for (int i = 0; i < 3; ++i) {
             double row_sum = 0, diagonal = 0;
             for (int j = 0; j < 3; ++j) {
                 const double product = m_[i][0] * m_[j][0] + m_[i][1] * m_[j][1] + m_[i][2] * m_[j][2];
-                row_sum += std::fabs(product);
+                row_sum += abs_of(product);
                 if (j == i) diagonal = product;
             }
-            square = (std::max)(square, row_sum);
-            least = (std::min)(least, 2 * diagonal - row_sum);
+            square = max_of(square, row_sum);
+            least = min_of(least, 2 * diagonal - row_sum);
             all += row_sum;
         }
-        stretch_ = std::isfinite(all) ? std::sqrt(square) * (1 + 0x1p-48) : HUGE_VAL;
-        uneven_ = least > 0 && std::isfinite(all) ? 1 - std::sqrt(least / square) : 1;
+        stretch_ = is_finite(all) ? root_of(square) * (1 + 0x1p-48) : static_cast<double>(infinity);
+        uneven_ = least > 0 && is_finite(all) ? 1 - root_of(least / square) : 1;
         if (affine_) find_floats();
     }
 
     /// Why no light can be moved by it.
-    std::optional<ErrorCode> refusal() const {
-        if (affine_) return std::nullopt;
+    Maybe<ErrorCode> refusal() const {
+        if (affine_) return {};
         return finite(m_) && last_row_is_plain(transposed(m_)) ? ErrorCode::view_matrix_transposed
                                                                : ErrorCode::view_matrix_not_affine;
     }
@@ -78,7 +77,7 @@ public:
     /// The image of any sphere, in doubles. Bad input stays bad. Not inline: within a tier's kernel, compilers fuse its
     /// products and sums by that tier's instructions.
     LIGHTBIN_NOINLINE Sphere operator()(const Sphere& light) const {
-        if (!std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) ||
+        if (!is_finite(light.x) || !is_finite(light.y) || !is_finite(light.z) ||
             !(light.radius >= 0))
             return light;
         const double x = static_cast<double>(light.x), y = static_cast<double>(light.y),
@@ -87,10 +86,10 @@ public:
         for (int row = 0; row < 3; ++row) {
             const double a = m_[0][row] * x, b = m_[1][row] * y, c = m_[2][row] * z, d = m_[3][row];
             centre[row] = a + b + c + d;
-            if (!(std::fabs(centre[row]) <= static_cast<double>(FLT_MAX))) return {0, 0, 0, infinity};
+            if (!(abs_of(centre[row]) <= static_cast<double>(FLT_MAX))) return {0, 0, 0, infinity};
             // 2^-24 to round the centre to float, 2^-50 for the sum in double
-            error += 0x1p-24 * std::fabs(centre[row]) +
-                     0x1p-50 * (std::fabs(a) + std::fabs(b) + std::fabs(c) + std::fabs(d));
+            error += 0x1p-24 * abs_of(centre[row]) +
+                     0x1p-50 * (abs_of(a) + abs_of(b) + abs_of(c) + abs_of(d));
         }
         const double radius = (static_cast<double>(light.radius) * stretch_ + error) * (1 + 0x1p-23) +
                               static_cast<double>(FLT_MIN);
@@ -132,7 +131,7 @@ private:
                 length2 += m_[c][r] * m_[c][r];
             }
             norm2 += length2;
-            longest2 = (std::max)(longest2, length2);
+            longest2 = max_of(longest2, length2);
         }
         if (!(norm2 * inverse_norm2 <= 1024) || !(norm2 >= 0x1p-40) || !(norm2 <= 0x1p40)) return;
         double origin[3], before = 0, offset = 0;
@@ -140,24 +139,24 @@ private:
             origin[c] = 0;
             for (int r = 0; r < 3; ++r)
                 origin[c] -= inverse[r][c] * m_[3][r];
-            if (!(std::fabs(origin[c]) <= 0x1p60)) return;
+            if (!(abs_of(origin[c]) <= 0x1p60)) return;
             floats_.origin[c] = static_cast<float>(origin[c]);
             origin[c] = static_cast<double>(floats_.origin[c]);
         }
         for (int r = 0; r < 3; ++r) {
             double at = m_[3][r];
-            before += std::fabs(at);
+            before += abs_of(at);
             for (int c = 0; c < 3; ++c) {
                 at += m_[c][r] * origin[c];
-                before += std::fabs(m_[c][r] * origin[c]);
+                before += abs_of(m_[c][r] * origin[c]);
                 floats_.columns[c][r] = static_cast<float>(m_[c][r]);
             }
-            offset += std::fabs(at);
+            offset += abs_of(at);
             floats_.at_origin[r] = static_cast<float>(at);
         }
         // Each a little more than it must be, for the rounding of the moved radius; 2^-100 for what is flushed to zero.
         floats_.stretch = float_above(stretch_ * (1 + 0x1p-22));
-        floats_.error = float_above(std::sqrt(longest2) * (6 * 0x1p-24) * (1 + 0x1p-18));
+        floats_.error = float_above(root_of(longest2) * (6 * 0x1p-24) * (1 + 0x1p-18));
         floats_.least_error = float_above((offset * 0x1p-23 + before * 0x1p-50) * (1 + 0x1p-18) + 0x1p-100);
         floats_.bend = uneven_ < 0x1p-4 ? float_above(3 * uneven_ + 0x1p-40) : infinity;
         floats_.most = 0x1p40f;
