@@ -129,7 +129,9 @@ public:
         return {};
     }
 
-    std::span<const ListRange> tiles() const { return {tiles_.data(), tile_count_}; }
+    template <class Range = ListRange> std::span<const Range> tiles() const {
+        return {tiles_.data(), tile_count_};
+    }
     std::span<const Id> indices() const { return {indices_.data(), entries_}; }
 
     /// Whether the last grid was built on several threads.

@@ -252,7 +252,7 @@ private:
 
     void swap(Binner& other) noexcept {
         std::swap(isa_, other.isa_);
-        std::swap(scratch_, other.scratch_);
+        scratch_.swap(other.scratch_);
         std::swap(footprints_, other.footprints_);
         std::swap(ranked_, other.ranked_);
         std::swap(lists_, other.lists_);

@@ -114,7 +114,9 @@ public:
         return {};
     }
 
-    std::span<const ListRange> tiles() const { return {cells_.data(), cell_count_}; }
+    template <class Range = ListRange> std::span<const Range> tiles() const {
+        return {cells_.data(), cell_count_};
+    }
     std::span<const Id> indices() const { return {ids_.data(), entries_}; }
 
     /// Whether the last grid was built on several threads.

@@ -65,7 +65,9 @@ public:
     std::uint64_t area() const { return area_; }  ///< sum of the rectangles' tiles
     const detail::FootprintArrays& arrays() const { return arrays_; }
     detail::Items<const detail::FootprintRun> runs() const { return {&run_, 1}; }
-    LightRanks ranks() const { return {{order_.data(), run_.end}, {bins_.data(), bin_count_}}; }
+    template <class Ranks = LightRanks> Ranks ranks() const {
+        return {{order_.data(), run_.end}, {bins_.data(), bin_count_}};
+    }
 
 private:
     static constexpr std::uint32_t chunk = 64;  ///< lights, whole vectors
