@@ -78,8 +78,8 @@ public:
         // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.
         if constexpr (worded)
             if (capacity > most)
-                capacity =
-                    detail::scalar::count_entries<footprint, depth_test, false, spots>(job, scratch.data()[0]);
+                capacity = detail::scalar::count_entries<footprint, depth_test, false, spots>(
+                    job, scratch.data()[0]);
         if (capacity > most) return Error{ErrorCode::too_many_entries, capacity, most};
 
         job.tiles = tiles_.reserve(tiles + job.spare_tiles);
@@ -201,8 +201,8 @@ private:
             return static_cast<std::size_t>(parts[count - 1].before + parts[count - 1].area);
         } else {
             return static_cast<std::size_t>(detail::build_apart(
-                parallel, {parts, count}, job.tiles, static_cast<std::size_t>(job.camera->x.tiles),
-                spares_, list, [&](std::size_t i, Id* out) {
+                parallel, {parts, count}, job.tiles, static_cast<std::size_t>(job.camera->x.tiles), spares_,
+                list, [&](std::size_t i, Id* out) {
                     return kernel(job, scratch.data()[i], {parts[i].begin, parts[i].end, out, 0});
                 }));
         }

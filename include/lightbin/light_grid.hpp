@@ -101,8 +101,8 @@ public:
         if (ids.size() < ids_.size()) return Error{ErrorCode::id_buffer_too_small, ids_.size(), ids.size()};
         detail::copy_items(ranges_.data(), ranges_.size(), ranges.data());
         detail::copy_items(ids_.data(), ids_.size(), ids.data());
-        return LightGrid(tiles_x_, tiles_y_, {ranges.data(), ranges_.size()}, {ids.data(), ids_.size()}, counts_,
-                         slices_, ranks_);
+        return LightGrid(tiles_x_, tiles_y_, {ranges.data(), ranges_.size()}, {ids.data(), ids_.size()},
+                         counts_, slices_, ranks_);
     }
 
 private:

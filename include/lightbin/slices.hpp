@@ -74,7 +74,8 @@ public:
     int slice_at(float depth) const {
         const float* const first = boundaries_.data();
         return static_cast<int>(detail::first_not(first, first + boundary_count_,
-                                                  [=](float boundary) { return boundary <= depth; }) - first);
+                                                  [=](float boundary) { return boundary <= depth; }) -
+                                first);
     }
 
 private:

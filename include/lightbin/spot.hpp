@@ -65,10 +65,10 @@ inline bool finite(const Triple& v) {
 /// A sphere around one of doubles whose radius is known within 2^-50 of itself, and its centre within 2^-50 of the radius
 /// and 2^-53 of each coordinate. 2^-124 is for what is flushed to zero.
 inline Sphere sphere_around_nearly(const Triple& centre, double radius) {
-    return sphere_around(
-        centre.x, centre.y, centre.z,
-        rounded(radius * (1 + 0x1p-48)) +
-            rounded((abs_of(centre.x) + abs_of(centre.y) + abs_of(centre.z)) * 0x1p-52) + 0x1p-124);
+    return sphere_around(centre.x, centre.y, centre.z,
+                         rounded(radius * (1 + 0x1p-48)) +
+                             rounded((abs_of(centre.x) + abs_of(centre.y) + abs_of(centre.z)) * 0x1p-52) +
+                             0x1p-124);
 }
 
 inline constexpr Sphere bad_sphere = {0, 0, 0, -1};
@@ -84,7 +84,8 @@ inline Sphere least_sphere(const Spot& spot) {
                                  static_cast<double>(spot.axis_z)};
     const double axis_length = detail::length(axis), cosine = static_cast<double>(spot.cos_half_angle),
                  radius = static_cast<double>(spot.radius);
-    if (!(axis_length > 0) || !detail::finite(axis) || !(detail::abs_of(cosine) <= 1)) return detail::bad_sphere;
+    if (!(axis_length > 0) || !detail::finite(axis) || !(detail::abs_of(cosine) <= 1))
+        return detail::bad_sphere;
     const Sphere own = {spot.x, spot.y, spot.z, spot.radius};
     if (cosine <= 0 || spot.radius == detail::infinity) return own;
 
@@ -134,7 +135,7 @@ Sphere rectangle_sphere(const Point& centre, const Point& half_x, const Point& h
     if (!detail::finite(c) || !detail::finite(u) || !detail::finite(v) || !(range >= 0))
         return detail::bad_sphere;
     const double half_diagonal = detail::max_of(detail::length({u.x + v.x, u.y + v.y, u.z + v.z}),
-                                            detail::length({u.x - v.x, u.y - v.y, u.z - v.z}));
+                                                detail::length({u.x - v.x, u.y - v.y, u.z - v.z}));
     return detail::sphere_around_nearly(c, half_diagonal + static_cast<double>(range));
 }
 

@@ -122,7 +122,8 @@ public:
         const auto size = [&](const detail::ImageAxis& axis, int side) {
             const double low = slope(axis, 0), high = slope(axis, side);
             return detail::abs_of(flat ? high - low
-                                  : (detail::arctan_of(high) - detail::arctan_of(low)) * (180 / 3.14159265358979324));
+                                       : (detail::arctan_of(high) - detail::arctan_of(low)) *
+                                             (180 / 3.14159265358979324));
         };
         const Matrix& m = projection_;
         // At a view depth of 1, or anywhere: w by scale is half of the image's width or height.

@@ -86,8 +86,7 @@ inline DepthInterval fragment_depths(const View& view, float lower, float upper,
     }
     // A denormal depth is rounded by up to all of itself, or to zero.
     constexpr double least_normal = 0x1p-126;
-    return depths(low < least_normal ? 0 : low * (1 - 0x1p-23),
-                  max_of(high * (1 + 0x1p-23), least_normal));
+    return depths(low < least_normal ? 0 : low * (1 - 0x1p-23), max_of(high * (1 + 0x1p-23), least_normal));
 }
 
 /// Smallest and largest of some numbers; lower > upper if there are none.
@@ -159,7 +158,7 @@ void reduce_tile_row(std::size_t columns, std::size_t tile_columns, Reduce reduc
 /// (A template of nothing, so that who does not call it need not compile what it calls.)
 template <class = void>
 Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer, const ZBoundsBuffers& out,
-                                    Isa isa = compiled_isa) {
+                             Isa isa = compiled_isa) {
     const Extent viewport = view.viewport();
     const std::size_t tiles = view.tile_count();
     if (buffer.samples < 1 || buffer.samples > 8)
@@ -181,8 +180,8 @@ Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer, const 
     const float skipped = !buffer.skip_background ? none : view.reversed_z() ? 0.0f : 1.0f;
     const bool gaps = !out.gap_min.empty() && !out.gap_max.empty();
     // As one of the viewport's size, a larger tile has a number of columns that can be counted.
-    const std::size_t size =
-        static_cast<std::size_t>(detail::min_of(view.tile_size(), detail::max_of(viewport.width, viewport.height)));
+    const std::size_t size = static_cast<std::size_t>(
+        detail::min_of(view.tile_size(), detail::max_of(viewport.width, viewport.height)));
     const std::size_t tiles_x = static_cast<std::size_t>(view.tiles_x());
     const std::size_t height = static_cast<std::size_t>(viewport.height);
     isa = machine_isa(isa);

@@ -35,7 +35,8 @@ template <class T> constexpr T max_of(T a, T b) {
 }
 
 /// As std::invoke() of one argument.
-template <class Callable, class Light> constexpr decltype(auto) call(const Callable& callable, const Light& light) {
+template <class Callable, class Light>
+constexpr decltype(auto) call(const Callable& callable, const Light& light) {
     if constexpr (!std::is_member_pointer_v<Callable>)
         return callable(light);
     else if constexpr (requires { *light; })

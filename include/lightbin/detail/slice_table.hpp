@@ -48,7 +48,8 @@ public:
         fill_places(boundaries, true);
         if (shared_ > shared_by_depth) fill_places(boundaries, false);
         copy_items(boundaries.data(), boundaries.size(), to);
-        to[boundaries.size()] = std::numeric_limits<float>::quiet_NaN();  // neither before nor behind anything
+        to[boundaries.size()] =
+            std::numeric_limits<float>::quiet_NaN();  // neither before nor behind anything
         count_ = boundaries.size() + 1;
     }
 

@@ -77,8 +77,7 @@ public:
     /// The image of any sphere, in doubles. Bad input stays bad. Not inline: within a tier's kernel, compilers fuse its
     /// products and sums by that tier's instructions.
     LIGHTBIN_NOINLINE Sphere operator()(const Sphere& light) const {
-        if (!is_finite(light.x) || !is_finite(light.y) || !is_finite(light.z) ||
-            !(light.radius >= 0))
+        if (!is_finite(light.x) || !is_finite(light.y) || !is_finite(light.z) || !(light.radius >= 0))
             return light;
         const double x = static_cast<double>(light.x), y = static_cast<double>(light.y),
                      z = static_cast<double>(light.z);
@@ -88,8 +87,8 @@ public:
             centre[row] = a + b + c + d;
             if (!(abs_of(centre[row]) <= static_cast<double>(FLT_MAX))) return {0, 0, 0, infinity};
             // 2^-24 to round the centre to float, 2^-50 for the sum in double
-            error += 0x1p-24 * abs_of(centre[row]) +
-                     0x1p-50 * (abs_of(a) + abs_of(b) + abs_of(c) + abs_of(d));
+            error +=
+                0x1p-24 * abs_of(centre[row]) + 0x1p-50 * (abs_of(a) + abs_of(b) + abs_of(c) + abs_of(d));
         }
         const double radius = (static_cast<double>(light.radius) * stretch_ + error) * (1 + 0x1p-23) +
                               static_cast<double>(FLT_MIN);
