@@ -1,7 +1,7 @@
 #!/bin/sh
 # sh bench/include.sh [--rounds N]: what it costs to include the library: processor seconds to compile a file that includes
 # one header and uses nothing of it, the best of N rounds (9) over all headers, and beside them what that is beyond
-# <immintrin.h>, which the kernels can't do without. With g++ -O0, or $CXX and $CXXFLAGS. Half a minute.
+# <immintrin.h>, which the kernels can't do without. With g++ -O0, or $CXX and $CXXFLAGS. A minute at most.
 set -eu
 me=bench/include.sh
 cd "$(dirname "$0")/.."
