@@ -22,12 +22,14 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <functional>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace {
 

@@ -7,6 +7,7 @@
 #include <lightbin/spot.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>

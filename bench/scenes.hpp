@@ -14,6 +14,7 @@
 #include <glm/trigonometric.hpp>
 #include <glm/vec3.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>

@@ -8,6 +8,7 @@
 
 #include <lightbin/spot.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 

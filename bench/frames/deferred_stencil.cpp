@@ -8,6 +8,8 @@
 
 #include <gl_program.hpp>
 
+#include <string>
+
 namespace {
 
 // A copy, as what is tested against can't be read.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 void begin_picture(Stage& stage) {
     stage.memory.draw_to({stage.drawn()}, stage.depth());

@@ -3,6 +3,8 @@
 
 #include <lightbin/shader.hpp>
 
+#include <string>
+
 namespace {
 
 // Of every shader. MATERIAL(s) is the material of a surface: a constant where a shader has but one.

@@ -8,6 +8,7 @@
 #include <lightbin/shader_build.hpp>
 
 #include <stdexcept>
+#include <string>
 
 namespace {
 

@@ -10,6 +10,7 @@
 #include <memory>
 #include <numeric>
 #include <thread>
+#include <vector>
 
 namespace hunt {
 namespace {

@@ -6,6 +6,8 @@
 #include <lightbin/z_bounds.hpp>
 
 #include <span>
+#include <string>
+#include <vector>
 
 #if defined(__x86_64__)
 #include <xmmintrin.h>

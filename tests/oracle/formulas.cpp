@@ -8,7 +8,9 @@
 
 #include <quadmath.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 

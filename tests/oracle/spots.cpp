@@ -13,9 +13,13 @@
 
 #include <lightbin/spot.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <string>
+#include <vector>
 
 using namespace oracle;
 

@@ -7,6 +7,7 @@
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader_build.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>

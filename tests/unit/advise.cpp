@@ -4,11 +4,13 @@
 
 #include <lightbin/advise.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <random>
 #include <string>
 #include <utility>
+#include <vector>
 
 using namespace lightbin;
 

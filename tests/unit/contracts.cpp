@@ -3,11 +3,13 @@
 
 #include <lightbin/shader_build.hpp>
 
+#include <cmath>
 #include <functional>
 #include <set>
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 using namespace lightbin;
 

@@ -4,9 +4,12 @@
 #include <lightbin/advise.hpp>
 #include <lightbin/shader_build.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <new>
 #include <string>
+#include <vector>
 
 using namespace lightbin;
 

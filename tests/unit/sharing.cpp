@@ -3,7 +3,10 @@
 
 #include <lightbin/encode.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <vector>
 
 using namespace lightbin;
 
