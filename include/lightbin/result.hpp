@@ -4,9 +4,9 @@
 
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/maybe.hpp>
-#include <lightbin/detail/string.hpp>
 
 #include <cstdint>
+#include <string>
 #include <utility>
 
 /// Called with a condition that only a bug in the calling program can make false. Define it before including
@@ -195,7 +195,7 @@ struct Error {
     std::uint64_t needed = 0;
     std::uint64_t available = 0;
 
-    /// Returns the sentence of to_string() with the numbers in it. Include <string> where you call it. Allocates; meant for
+    /// Returns the sentence of to_string() with the numbers in it. Allocates; meant for
     /// the error path only.
     template <class Text = std::string> Text message() const {
         const bool negative = static_cast<std::int64_t>(needed) < 0;

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/string.hpp>
 
 #include <cstdio>
+#include <string>
 
 #include <lightbin/detail/warnings_off.inl>
 
@@ -35,7 +35,7 @@ struct ViewSummary {
     bool pixels_not_square;
 };
 
-/// Returns it in one line, with a question for each thing that is seldom meant. Include <string> where you call it.
+/// Returns it in one line, with a question for each thing that is seldom meant.
 template <class Text = std::string> Text to_string(const ViewSummary& view) {
     const bool flat = view.orthographic;
     char text[256];
