@@ -195,8 +195,8 @@ struct Error {
     std::uint64_t needed = 0;
     std::uint64_t available = 0;
 
-    /// Returns the sentence of to_string() with the numbers in it. Allocates; meant for
-    /// the error path only.
+    /// Returns the sentence of to_string() with the numbers in it. Allocates; meant for the error path only. (A
+    /// template, so that only who calls it compiles it.)
     template <class Text = std::string> Text message() const {
         const bool negative = static_cast<std::int64_t>(needed) < 0;
         Text text = to_string(code);

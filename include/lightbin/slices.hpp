@@ -64,7 +64,7 @@ public:
 
     int count() const { return static_cast<int>(boundary_count_) + 1; }
 
-    /// count() - 1 of them, ascending: slice i is from boundary i - 1 to boundary i.
+    /// count() - 1 of them, ascending: slice i is from boundary i - 1 to boundary i. (A template as Error::message().)
     template <class Float = float> std::span<const Float> boundaries() const& {
         return {boundaries_.data(), boundary_count_};
     }

@@ -35,7 +35,8 @@ struct ViewSummary {
     bool pixels_not_square;
 };
 
-/// Returns it in one line, with a question for each thing that is seldom meant.
+/// Returns it in one line, with a question for each thing that is seldom meant. (A template, so that only who calls it
+/// compiles it.)
 template <class Text = std::string> Text to_string(const ViewSummary& view) {
     const bool flat = view.orthographic;
     char text[256];

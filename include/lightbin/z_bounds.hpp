@@ -155,7 +155,7 @@ void reduce_tile_row(std::size_t columns, std::size_t tile_columns, Reduce reduc
 /// Source: Tiled Shading, section 3 (minimum and maximum depth a tile); Harada, "A 2.5D Culling for Forward+",
 /// SIGGRAPH Asia 2012 (depths with a gap).
 ///
-/// (A template of nothing, so that who does not call it need not compile what it calls.)
+/// (A template as Error::message().)
 template <class = void>
 Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer, const ZBoundsBuffers& out,
                              Isa isa = compiled_isa) {
