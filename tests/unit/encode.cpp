@@ -5,6 +5,8 @@
 #include <lightbin/lightbin.hpp>
 
 #include <algorithm>
+#include <bit>
+#include <cstddef>
 #include <cstring>
 #include <random>
 #include <string>
@@ -38,9 +40,12 @@ struct MadeGrid {
 };
 
 std::uint32_t number_at(const std::vector<std::byte>& bytes, std::size_t at, IdWidth width) {
+    const unsigned size = static_cast<unsigned>(width);
     std::uint32_t value = 0;
-    for (unsigned i = 0; i < static_cast<unsigned>(width); ++i)
-        value |= std::to_integer<std::uint32_t>(bytes.at(at * static_cast<unsigned>(width) + i)) << 8 * i;
+    for (unsigned i = 0; i < size; ++i) {
+        const unsigned place = std::endian::native == std::endian::little ? i : size - 1 - i;
+        value |= std::to_integer<std::uint32_t>(bytes.at(at * size + place)) << 8 * i;
+    }
     return value;
 }
 

@@ -100,11 +100,8 @@ LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scr
         slab.ends[side] += side < 2 ? 8 * x : top;
     for (std::uint32_t i = 0; i < list.count; i += 8, words += 8) {
         store_missed(*job.camera, slab, lights_of<spots>(job), ids + i, list.count - i, height, words);
-        std::uint64_t in_columns, in_rows;
-        std::memcpy(&in_columns, columns + i, 8);
-        std::memcpy(&in_rows, rows + i, 8);
-        in_columns = transpose_bits(in_columns);
-        in_rows = transpose_bits(in_rows);
+        const std::uint64_t in_columns = transpose_bits(load_8_bytes(columns + i)),
+                            in_rows = transpose_bits(load_8_bytes(rows + i));
         for (unsigned row = 0; row < height; ++row)
             words[row] = ~words[row] & in_columns & (in_rows >> 8 * row & 0xff) * 0x0101010101010101;
     }
@@ -182,7 +179,7 @@ append_tiles(Id* out, ListRange* tiles, std::ptrdiff_t columns, std::uint32_t at
         Id* const from = out;
         if constexpr (with_words)
             out = append_tile<length>(out, ids, count,
-                                      reinterpret_cast<const std::uint8_t*>(words) + 8 * row + column);
+                                      reinterpret_cast<const std::uint8_t*>(words) + 8 * row + byte_place(column));
         else
             out = append_tile<length>(out, ids, count, words + column, words + 8 + row);
         const std::uint32_t lights = static_cast<std::uint32_t>(out - from);

@@ -8,7 +8,6 @@
 #include <lightbin/detail/supertile.hpp>
 
 #include <cstdint>
-#include <cstring>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail::portable {
 
@@ -33,9 +32,7 @@ void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint
 /// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     for (unsigned i = 0; i < 64; i += 8) {
-        std::uint64_t eight;
-        std::memcpy(&eight, bytes + i, 8);
-        eight = transpose_bits(eight);
+        const std::uint64_t eight = transpose_bits(load_8_bytes(bytes + i));
         for (unsigned bit = 0; bit < 8; ++bit)
             words[bit] = (i == 0 ? 0 : words[bit]) | (eight >> 8 * bit & 0xff) << i;
     }

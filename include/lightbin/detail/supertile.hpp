@@ -9,6 +9,8 @@
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/options.hpp>
 
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -53,6 +55,22 @@ template <class Id> std::uint64_t list_places(const BinJob<Id>& job) {
 inline unsigned covered(unsigned first, unsigned last, unsigned begin) {
     const unsigned low = first > begin ? first - begin : 0, high = last - begin < 7 ? last - begin : 7;
     return ((2u << high) - 1) & (~0u << low);
+}
+
+/// 8 bytes as a word, the first of them its lowest, whatever the order of bytes in this machine's memory.
+inline std::uint64_t load_8_bytes(const std::uint8_t* bytes) {
+    std::uint64_t word = 0;
+    if constexpr (std::endian::native == std::endian::little)
+        std::memcpy(&word, bytes, 8);
+    else
+        for (unsigned i = 8; i > 0; --i)
+            word = word << 8 | bytes[i - 1];
+    return word;
+}
+
+/// Where in memory a word has its byte `i`, counted from the lowest.
+constexpr std::ptrdiff_t byte_place(std::ptrdiff_t i) {
+    return std::endian::native == std::endian::little ? i : 7 - i;
 }
 
 /// For each set bit of a byte a byte of ones.
