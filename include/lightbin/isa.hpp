@@ -18,7 +18,7 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR {
 /// Instruction sets with kernels of their own. All give the same bytes.
 enum class Isa : std::uint8_t {
     scalar,
-    sse2,
+    sse2,  ///< also WebAssembly's simd128, by emscripten's -msimd128 -msse2
     avx2,
     avx512,  ///< with VBMI2, BITALG and VPOPCNTDQ: Ice Lake, Zen 4 and later
     neon,    ///< 64-bit ARM
@@ -31,6 +31,8 @@ constexpr const char* to_string(Isa isa) {
 /// The widest instruction set that this compiler makes kernels for.
 #if defined(LIGHTBIN_X86) && defined(__MINGW32__) && !defined(__clang__)
 inline constexpr Isa compiled_isa = Isa::sse2;  // wider vectors are misaligned on the stack: GCC bug 54412
+#elif defined(LIGHTBIN_SSE2) && !defined(LIGHTBIN_X86)
+inline constexpr Isa compiled_isa = Isa::sse2;
 #elif defined(LIGHTBIN_X86)
 inline constexpr Isa compiled_isa = Isa::avx512;
 #elif defined(LIGHTBIN_NEON)
@@ -82,17 +84,20 @@ inline WideVectors wide_vectors() {
 #endif
 
 /// Returns the widest instruction set, `cap` or below, that was compiled in and that this machine runs: what a Binner
-/// with Options::isa = cap uses. On ARM all but scalar mean neon; on x86 neon means scalar.
+/// with Options::isa = cap uses. On ARM all but scalar mean neon; elsewhere neon means scalar.
 inline Isa machine_isa(Isa cap = compiled_isa) {
 #if defined(LIGHTBIN_NEON)
     return cap == Isa::scalar ? Isa::scalar : Isa::neon;
-#elif defined(LIGHTBIN_X86)
+#elif defined(LIGHTBIN_SSE2)
     if (cap == Isa::neon) return Isa::scalar;
+    if (cap > compiled_isa) cap = compiled_isa;
+#if defined(LIGHTBIN_X86)
     if (cap >= Isa::avx2) {
         const detail::WideVectors has = detail::wide_vectors();
         if (cap >= Isa::avx512 && has.avx512) return Isa::avx512;
         if (has.avx2) return Isa::avx2;
     }
+#endif
     return cap >= Isa::sse2 ? Isa::sse2 : Isa::scalar;
 #else
     static_cast<void>(cap);

@@ -4,6 +4,7 @@
 
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/plain.hpp>
+#include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/sizes.hpp>
 
 #include <cstddef>
@@ -70,7 +71,13 @@ public:
 private:
     /// Uninitialised. More elements than std::size_t counts are as many as it does: no memory has those.
     static T* made(std::uint64_t size) {
-        return new T[static_cast<std::size_t>(min_of<std::uint64_t>(size, ~std::size_t{0}))];
+        const std::size_t count = static_cast<std::size_t>(min_of<std::uint64_t>(size, ~std::size_t{0}));
+#if defined(LIGHTBIN_MEMORY_SANITIZER)
+        // Kernels read whole words and vectors; it takes what they leave unused of them for used.
+        return new T[count]();
+#else
+        return new T[count];
+#endif
     }
 
     T* memory_ = nullptr;

@@ -25,6 +25,8 @@
 #define LIGHTBIN_FLAVOUR_RUNG _sve2
 #elif defined(__ARM_FEATURE_SVE)
 #define LIGHTBIN_FLAVOUR_RUNG _sve
+#elif defined(__wasm_simd128__)
+#define LIGHTBIN_FLAVOUR_RUNG _simd128
 #else
 #define LIGHTBIN_FLAVOUR_RUNG _baseline
 #endif

@@ -24,6 +24,8 @@ template <class Pick> auto with_tier(Isa isa, Pick pick) {
 #if defined(LIGHTBIN_X86)
     if (isa == Isa::avx512) return pick(avx512::Tier{});
     if (isa == Isa::avx2) return pick(avx2::Tier{});
+#endif
+#if defined(LIGHTBIN_SSE2)
     if (isa == Isa::sse2) return pick(sse2::Tier{});
 #elif defined(LIGHTBIN_NEON)
     if (isa == Isa::neon) return pick(neon::Tier{});

@@ -1,12 +1,25 @@
 // SPDX-License-Identifier: MIT
-// What compilers and processors differ in. Define LIGHTBIN_NO_SIMD to have the scalar kernels alone.
+// What compilers and processors differ in. Define LIGHTBIN_NO_SIMD to have the scalar kernels alone. So has the memory
+// sanitizer, which does not know what most vector instructions leave unused.
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
 
-#if !defined(LIGHTBIN_NO_SIMD) && (defined(__x86_64__) || (defined(_M_X64) && !defined(_M_ARM64EC)))
+#include <cstring>
+
+#if defined(__has_feature)
+#if __has_feature(memory_sanitizer)
+#define LIGHTBIN_MEMORY_SANITIZER 1
+#endif
+#endif
+
+#if defined(LIGHTBIN_NO_SIMD) || defined(LIGHTBIN_MEMORY_SANITIZER)
+#elif defined(__x86_64__) || (defined(_M_X64) && !defined(_M_ARM64EC))
 #define LIGHTBIN_X86 1
-#elif !defined(LIGHTBIN_NO_SIMD) && defined(__aarch64__) && (defined(__GNUC__) || defined(__clang__))
+#define LIGHTBIN_SSE2 1
+#elif defined(__wasm_simd128__) && defined(__SSE2__)
+#define LIGHTBIN_SSE2 1  // emscripten makes its own instructions of these
+#elif defined(__aarch64__) && (defined(__GNUC__) || defined(__clang__))
 #define LIGHTBIN_NEON 1
 #endif
 
@@ -22,12 +35,16 @@
 #endif
 
 // Makes the compiler forget how a number or vector came about, or an array in memory. See rounded(). Microsoft's fuses
-// nothing unless told to.
-#if defined(__x86_64__)
+// nothing unless told to, and WebAssembly cannot. On processors without a tier of their own by way of memory, which all
+// compilers understand.
+#if defined(__x86_64__) || defined(__i386__)
 #define LIGHTBIN_FORGET(value) __asm__("" : "+v"(value))
 #define LIGHTBIN_FORGET_ARRAY(array) __asm__("" : "+m"(array))
 #elif defined(__aarch64__) && (defined(__GNUC__) || defined(__clang__))
 #define LIGHTBIN_FORGET(value) __asm__("" : "+w"(value))
+#define LIGHTBIN_FORGET_ARRAY(array) __asm__("" : "+m"(array))
+#elif defined(__GNUC__) && !defined(__wasm__)
+#define LIGHTBIN_FORGET(value) __asm__("" : "+m"(value))
 #define LIGHTBIN_FORGET_ARRAY(array) __asm__("" : "+m"(array))
 #else
 #define LIGHTBIN_FORGET(value) static_cast<void>(value)
@@ -41,6 +58,14 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 template <class Real> inline Real rounded(Real product) {
     LIGHTBIN_FORGET(product);
     return product;
+}
+
+/// As std::bit_cast, which not every library of C++20 has.
+template <class To, class From> To bit_cast(const From& from) {
+    static_assert(sizeof(To) == sizeof(From));
+    To to;
+    std::memcpy(&to, &from, sizeof to);
+    return to;
 }
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail

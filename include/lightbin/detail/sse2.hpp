@@ -5,7 +5,7 @@
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/tier.hpp>
 
-#if defined(LIGHTBIN_X86)
+#if defined(LIGHTBIN_SSE2)
 
 #include <emmintrin.h>
 
@@ -153,16 +153,24 @@ inline constexpr int chosen_first = [] {
     return order;
 }();
 
+// As functions: emscripten has macros for them, in which no pack is expanded.
+template <int order> __m128i in_order(__m128i four) {
+    return _mm_shuffle_epi32(four, order);
+}
+template <int order> __m128i low_in_order(__m128i words) {
+    return _mm_shufflelo_epi16(words, order);
+}
+
 template <class Id, std::size_t... mask>
 void pack_four(const std::uint32_t* ids, Packed<Id>* to, std::index_sequence<mask...>) {
     const __m128i four = _mm_loadu_si128(reinterpret_cast<const __m128i*>(ids));
     if constexpr (sizeof(Id) == 4) {
         __m128i* const choices = reinterpret_cast<__m128i*>(to);
-        (_mm_storeu_si128(choices + mask, _mm_shuffle_epi32(four, chosen_first<mask>)), ...);
+        (_mm_storeu_si128(choices + mask, in_order<chosen_first<mask>>(four)), ...);
     } else {
         const __m128i low = _mm_srai_epi32(_mm_slli_epi32(four, 16), 16), narrow = _mm_packs_epi32(low, low);
         (_mm_storel_epi64(reinterpret_cast<__m128i*>(reinterpret_cast<Id*>(to) + 4 * mask),
-                          _mm_shufflelo_epi16(narrow, chosen_first<mask>)),
+                          low_in_order<chosen_first<mask>>(narrow)),
          ...);
     }
 }
