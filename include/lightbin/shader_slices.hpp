@@ -3,10 +3,10 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/platform.hpp>
 #include <lightbin/shader_text.hpp>
 #include <lightbin/slices.hpp>
 
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -58,10 +58,10 @@ inline std::vector<std::uint32_t> shader_slices(const Slices& slices) {
     const std::span<const float> boundaries = slices.boundaries();
     const detail::SliceGuess guess = detail::best_guess(boundaries);
     std::vector<std::uint32_t> words = {
-        std::bit_cast<std::uint32_t>(guess.by_log2), std::bit_cast<std::uint32_t>(guess.by_depth),
-        std::bit_cast<std::uint32_t>(guess.offset), static_cast<std::uint32_t>(boundaries.size())};
+        detail::bit_cast<std::uint32_t>(guess.by_log2), detail::bit_cast<std::uint32_t>(guess.by_depth),
+        detail::bit_cast<std::uint32_t>(guess.offset), static_cast<std::uint32_t>(boundaries.size())};
     for (const float boundary : boundaries) {
-        const std::uint32_t bits = std::bit_cast<std::uint32_t>(boundary), sign = 0x80000000;
+        const std::uint32_t bits = detail::bit_cast<std::uint32_t>(boundary), sign = 0x80000000;
         words.push_back(bits & sign ? ~bits : bits | sign);
     }
     return words;

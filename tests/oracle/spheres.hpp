@@ -6,10 +6,10 @@
 #include "cameras.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cfloat>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -333,7 +333,9 @@ inline Light special(const Aim& aim, Random& random) {
         case 5:
             return static_cast<float>(random.sign() * aim.near_plane);
         default: {
-            const float any = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits()));
+            const auto bits = static_cast<std::uint32_t>(random.bits());
+            float any = 0;  // std::bit_cast is not in every library
+            std::memcpy(&any, &bits, sizeof any);
             return std::isfinite(any) ? any : 1.0f;
         }
         }

@@ -9,7 +9,6 @@
 #include <glm/mat4x4.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -180,7 +179,7 @@ TEST_CASE("shader_slices: the guess of a law is right but beside its boundaries"
          {*Slices::exponential(24, 5, 200), *Slices::linear(1024, 0, 200), *Slices::exponential(256, 0.1f, 1e6f),
           *Slices::linear(32, -40, 70), *Slices::linear(2, 0, 1)}) {
         const std::vector<std::uint32_t> words = shader_slices(slices);
-        const auto factor = [&](std::size_t i) { return std::bit_cast<float>(words[i]); };
+        const auto factor = [&](std::size_t i) { return detail::bit_cast<float>(words[i]); };
         const std::span<const float> ends = slices.boundaries();
         int wrong = 0;
         for (std::size_t i = 0; i + 1 < ends.size(); ++i) {

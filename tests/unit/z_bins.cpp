@@ -17,7 +17,8 @@ bool meets(const glm::vec4& light, const Slices& slices, int slice) {
 
 template <class Id>
 void check_bins(const LightGrid<Id>& grid, const std::vector<glm::vec4>& lights, const Slices& slices) {
-    const auto [order, bins] = grid.ranks();
+    const auto order = grid.ranks().order;
+    const auto bins = grid.ranks().bins;
     REQUIRE(bins.size() == static_cast<std::size_t>(slices.count()));
     const LightCounts& counts = grid.light_counts();
     REQUIRE(order.size() == counts.lights - counts.rejected - counts.culled);

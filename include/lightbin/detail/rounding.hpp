@@ -4,8 +4,8 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/platform.hpp>
 
-#include <bit>
 #include <cfloat>
 #include <cstdint>
 #include <limits>
@@ -36,7 +36,7 @@ inline constexpr float infinity = std::numeric_limits<float>::infinity();
 /// Returns the largest float below a finite `value`. (std::nextafter is a call.)
 inline float next_below(float value) {
     if (value == 0) return -FLT_TRUE_MIN;
-    return std::bit_cast<float>(std::bit_cast<std::int32_t>(value) + (value > 0 ? -1 : 1));
+    return bit_cast<float>(bit_cast<std::int32_t>(value) + (value > 0 ? -1 : 1));
 }
 
 /// Returns the largest float that is not above `value`; -inf below the float range.

@@ -73,7 +73,7 @@ inline void store_spheres(Sphere* spheres, float x, float y, float z, float radi
     std::memcpy(spheres, &sphere, sizeof sphere);
 }
 inline float ascending_bits(float value) {
-    const std::int32_t bits = std::bit_cast<std::int32_t>(value);
+    const std::int32_t bits = bit_cast<std::int32_t>(value);
     return static_cast<float>(bits ^ (bits >> 31 & 0x7fffffff));
 }
 template <class Real> void store_tiles(std::uint16_t* tiles, Real value) {

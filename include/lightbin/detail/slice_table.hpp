@@ -7,6 +7,7 @@
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/math.hpp>
 #include <lightbin/detail/plain.hpp>
+#include <lightbin/detail/platform.hpp>
 
 #include <bit>
 #include <cstddef>
@@ -24,7 +25,7 @@ struct SlicePlaces {
     /// Ascends with the depth.
     float coordinate(float depth) const {
         if (!by_bits) return depth;
-        const std::int32_t bits = std::bit_cast<std::int32_t>(depth + 0.0f);  // not -0
+        const std::int32_t bits = bit_cast<std::int32_t>(depth + 0.0f);  // not -0
         return static_cast<float>(bits ^ (bits >> 31 & 0x7fffffff));
     }
     /// Each step rounds the same everywhere and is monotone, so a depth in a later place is greater.
