@@ -1,0 +1,261 @@
+#!/bin/sh
+# sh tests/platforms.sh [NAME...]: the same tests on every platform that a user may have, on Debian 12, as root or with
+# sudo. Builds them with each compiler, runs them - in an emulator, Wine or node where the machine is another - and sees
+# that all platforms give the same light lists, byte for byte. Installs what the platforms asked for lack. All of them
+# take about half an hour on two cores; what was built is kept in build/platforms.
+#   NAME...  of these platforms only
+#   --list   names them
+#   --quick  of each platform the lists alone
+# The tests of a platform:
+#   lists    tests/platforms/lists.cpp: every option and instruction set, hashes of the lists
+#   unit     tests/unit, as far as they need doctest and GLM alone
+#   oracle   tests/oracle: no light is missed, by exact arithmetic, in 1,000 lights of each family
+#   threads  tests/platforms/threads.cpp: Binners in several threads at once
+set -eu
+me=tests/platforms.sh
+cd "$(dirname "$0")/.."
+. tests/packages.sh
+
+listing=
+wanted=
+all="lists unit oracle threads"
+for word in "$@"; do
+    case $word in
+    --list) listing=yes ;;
+    --quick) all=lists ;;
+    -h | --help)
+        sed -n '2,/^set/s/^# \{0,1\}//p' $me
+        exit
+        ;;
+    -*) fail "cannot do '$word': it takes names of platforms, --quick, --list or --help" ;;
+    *) wanted="$wanted $word" ;;
+    esac
+done
+
+out=$(pwd)/build/platforms
+wine_prefix=
+trap '[ -z "$wine_prefix" ] || wineserver -k || true' EXIT
+failed=
+found=
+
+# is_wanted NAME WORDS: whether this platform's turn has come
+is_wanted() {
+    if [ -n "$listing" ]; then
+        printf '  %-14s %s\n' "$1" "$2"
+        return 1
+    fi
+    case "$wanted " in
+    " " | *" $1 "*) found="$found $1" ;;
+    *) return 1 ;;
+    esac
+    echo "$me: $1: $2"
+    began=$(date +%s)
+    folder=$out/${3:-$1}
+    mkdir -p "$folder"
+}
+
+# result NAME WORDS TIERS RESULT: its line of the table
+result() {
+    case $4 in
+    *FAILED*) failed="$failed $1" ;;
+    esac
+    echo "$me: $1: $4 ($(($(date +%s) - began)) s)"
+    echo "| $2 | $3 | $4 |" >>"$out/table.md"
+}
+
+# build EXE PROGRAM...: with $compiler, $flags and $link, in $folder
+build() {
+    exe=$1
+    shift
+    targets=
+    for program in "$@"; do
+        targets="$targets $folder/$program$exe"
+    done
+    # shellcheck disable=SC2086  # one word a target
+    make -j "$jobs" -f tests/platforms/programs.mk OUT="$folder" CXX="$compiler" FLAGS="$flags" LINK="$link" EXE="$exe" \
+        $targets >"$folder/build.log" 2>&1 && return
+    grep -m 5 -E 'error|Error' "$folder/build.log" || true
+    return 1
+}
+
+# try PROGRAM ARGUMENT...: runs it with $run; what it says in $folder/PROGRAM.txt
+try() {
+    program=$1
+    shift
+    # shellcheck disable=SC2086  # several words
+    LIGHTBIN_TEST_SHARE=32 timeout 1200 $run "$folder/$program$exe" "$@" >"$folder/$program.log" 2>&1 && code=0 || code=$?
+    tr -d '\r' <"$folder/$program.log" >"$folder/$program.txt"
+    [ "$code" -eq 0 ] && return
+    tail -n 15 "$folder/$program.txt" | cut -c 1-200
+    return 1
+}
+
+# judged PROGRAM: what the table says of a program that ran
+judged() {
+    case $1 in
+    lists)
+        grep -v '^tiers' "$folder/lists.txt" >"$folder/lists.same"
+        cmp -s "$out/reference" "$folder/lists.same" && echo "same lists" && return
+        diff "$out/reference" "$folder/lists.same" >&2
+        return 1
+        ;;
+    unit) sed -n 's/.* assertions: *\([0-9]*\) .*/\1 assertions/p' "$folder/unit.txt" ;;
+    oracle) awk 'NF == 6 { cases += $2; missed += $5 } END { print cases " cases, " missed " missed" }' "$folder/oracle.txt" ;;
+    threads) sed -n 's/\([0-9]* Binners at once\).*/\1/p' "$folder/threads.txt" ;;
+    esac
+}
+
+# platform NAME WORDS PACKAGES TIERS [RUN [EXE [PROGRAMS [FOLDER]]]]: with $compiler, $flags and $link
+#   TIERS  the instruction sets that must be there, or `any`
+#   RUN    what runs a program that this machine doesn't
+platform() {
+    name=$1 words=$2 packages=$3 tiers=$4 run=${5-} exe=${6-} programs=${7:-$all}
+    is_wanted "$name" "$words" "${8-}" || return 0
+    # shellcheck disable=SC2086  # one word a package
+    get "$name" $packages || { result "$name" "$words" - "FAILED: what it needs is not to be had"; return 0; }
+    # shellcheck disable=SC2086  # one word a program
+    build "$exe" $programs || { result "$name" "$words" - "FAILED to build, see $folder/build.log"; return 0; }
+    said=
+    for program in $programs; do
+        case $name:$program in
+        *:oracle) argument=1000 ;;
+        # A request of more memory than there is ends the program there.
+        address:unit) argument="--no-colors=true --source-file-exclude=*/memory.cpp" ;;
+        *:unit) argument=--no-colors=true ;;
+        *) argument= ;;
+        esac
+        # shellcheck disable=SC2086  # or none
+        try "$program" $argument && verdict=$(judged "$program") && [ -n "$verdict" ] ||
+            verdict="FAILED: $program, see $folder/$program.txt"
+        said="$said${said:+, }$verdict"
+    done
+    has=$(sed -n 's/^tiers: //p' "$folder/lists.txt")
+    [ "$tiers" = any ] || [ "$tiers" = "$has" ] || said="FAILED: tiers are $has, not $tiers; $said"
+    result "$name" "$words" "$has" "$said"
+}
+
+# On this machine. Its lists are what all others are held against.
+host="g++-12 make doctest-dev libglm-dev libboost-dev"
+# Debian's libc++ 14 and 19 cannot be installed side by side: the older one is unpacked here.
+libcxx=$out/libc++-14.files/usr/lib/llvm-14
+unpack_libcxx_14() {
+    [ ! -e "$libcxx/lib/libc++.a" ] || return 0
+    mkdir -p "$out/libc++-14.files"
+    (cd "$out/libc++-14.files" && apt-get -q download libc++-14-dev libc++abi-14-dev >download.log 2>&1 &&
+        for package in *.deb; do dpkg -x "$package" . || exit 1; done)
+}
+start_wine() {
+    wine_prefix=$out/wine
+    export WINEPREFIX="$wine_prefix" WINEDEBUG=-all WINEDLLOVERRIDES="mscoree=;mshtml=;winemenubuilder.exe="
+    timeout 300 wine wineboot -i >"$out/wine.log" 2>&1
+}
+# get NAME PACKAGE...: what a platform needs
+get() {
+    name=$1
+    shift
+    (install_packages "$@") || return 1
+    case $name in
+    libc++-14) unpack_libcxx_14 ;;
+    windows) start_wine ;;
+    esac
+}
+
+# with COMPILER FLAGS [LINK]: for the platforms that follow
+with() {
+    compiler=$1 flags=$2 link=${3-}
+}
+prepare() {
+    # shellcheck disable=SC2086  # one word a package
+    install_packages $host
+    make_build_folder
+    jobs=$(nproc)
+    # A cross compiler does not look where header-only libraries are.
+    mkdir -p "$out/headers" "$out/gcc"
+    for library in doctest glm boost; do
+        ln -sfn /usr/include/$library "$out/headers/$library"
+    done
+    : >"$out/table.md"
+    echo "$me: building the lists that all others are held against"
+    folder=$out/gcc run='' exe=''
+    with g++-12 "-std=c++20"
+    build "" lists || fail "the lists do not compile"
+    try lists || fail "the lists differ by the instruction set"
+    grep -v '^tiers' "$folder/lists.txt" >"$out/reference"
+}
+[ -n "$listing" ] || prepare
+
+with g++-12 "-std=c++20"
+platform gcc "g++ 12, C++20" "" any
+platform no-avx "the same on an x86-64 without AVX (qemu, Nehalem)" qemu-user-static "scalar sse2" "qemu-x86_64-static -cpu Nehalem" "" "$all" gcc
+platform no-avx512 "the same without AVX-512 (qemu, Haswell)" qemu-user-static "scalar sse2 avx2" "qemu-x86_64-static -cpu Haswell" "" "$all" gcc
+with g++-12 "-std=c++23"
+platform gcc-23 "g++ 12, C++23" "" any "" "" "${all% oracle*}"
+with g++-12 "-m32 -msse2 -mfpmath=sse -std=c++20 -idirafter/usr/include/x86_64-linux-gnu"
+platform x86-32 "32-bit x86, g++ 12" g++-12-multilib scalar
+
+with clang++-14 "-std=c++20"
+platform clang-14 "clang 14, libstdc++, C++20" clang-14 any
+with clang++-14 "-std=c++2b"
+platform clang-14-23 "clang 14, libstdc++, C++23" clang-14 any "" "" "${all% oracle*}"
+with clang++-19 "-std=c++20"
+platform clang-19 "clang 19, libstdc++, C++20" clang-19 any
+with clang++-19 "-std=c++23"
+platform clang-19-23 "clang 19, libstdc++, C++23" clang-19 any "" "" "${all% oracle*}"
+with clang++-19 "-std=c++20 -stdlib=libc++"
+platform libc++-19 "clang 19, libc++, C++20" "clang-19 libc++-19-dev libc++abi-19-dev" any
+with clang++-19 "-std=c++23 -stdlib=libc++"
+platform libc++-19-23 "clang 19, libc++, C++23" "clang-19 libc++-19-dev libc++abi-19-dev" any "" "" "${all% oracle*}"
+
+with clang++-14 "-std=c++20 -nostdinc++ -isystem $libcxx/include/c++/v1" \
+    "-nostdlib++ -L$libcxx/lib -Wl,-Bstatic -lc++ -lc++abi -Wl,-Bdynamic -ldl"
+platform libc++-14 "clang 14, libc++, C++20" clang-14 any
+with x86_64-w64-mingw32-g++-posix "-std=c++20" "-static"
+platform windows "Windows (Wine), MinGW g++ 12" "g++-mingw-w64-x86-64-posix wine wine64" "scalar sse2" wine .exe
+
+with aarch64-linux-gnu-g++ "-std=c++20" "-static"
+platform aarch64 "64-bit ARM (qemu), g++ 12" "g++-aarch64-linux-gnu qemu-user-static" "scalar neon" qemu-aarch64-static
+with arm-linux-gnueabihf-g++ "-std=c++20 -mfpu=neon-vfpv4 -Wno-psabi" "-static"
+platform arm-32 "32-bit ARM (qemu), g++ 12" "g++-arm-linux-gnueabihf qemu-user-static" scalar qemu-arm-static
+with s390x-linux-gnu-g++ "-std=c++20" "-static"
+platform s390x "big-endian: IBM Z (qemu), g++ 12" "g++-s390x-linux-gnu qemu-user-static" scalar qemu-s390x-static
+
+# Debian's emscripten asks for a module that lies where its node does not look; and its loader takes node's fetch() for
+# a browser's.
+export NODE_PATH=/usr/share/nodejs
+emscripten_link="-fexceptions -sINITIAL_MEMORY=1GB -sPTHREAD_POOL_SIZE=16 -sEXIT_RUNTIME=1"
+with em++ "-std=c++20 -fexceptions" "$emscripten_link"
+platform wasm "WebAssembly (node), emscripten 3.1.6" "emscripten node-acorn nodejs" scalar "node --no-experimental-fetch" .js
+# Its clang 14 mixes up the scalar kernel's spots on the stack where it makes vectors of their code by itself, from -O2 on.
+with em++ "-std=c++20 -fexceptions -msimd128 -msse2 -fno-slp-vectorize" "$emscripten_link"
+platform wasm-simd "the same with simd128" "emscripten node-acorn nodejs" "scalar sse2" "node --no-experimental-fetch" .js
+
+with g++-12 "-std=c++20 -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"
+platform address "address and undefined behaviour sanitizer, g++ 12" "" any
+with clang++-19 "-std=c++20 -O1 -g -fsanitize=thread"
+platform thread "thread sanitizer, clang 19" "clang-19 libclang-rt-19-dev" any "" "" "lists threads"
+# Only what is compiled here says what it has written: no test library, no compiled part of the standard one.
+with clang++-19 "-std=c++20 -O1 -g -fsanitize=memory -D_GLIBCXX_EXTERN_TEMPLATE=0"
+platform memory "memory sanitizer, clang 19" "clang-19 libclang-rt-19-dev" scalar "" "" lists
+
+# Microsoft's compiler, as far as clang keeps its rules: code is made of all, and each header is read alone. Not run.
+words="Microsoft's rules, clang 19, C++20 and C++23"
+if is_wanted microsoft "$words"; then
+    said="FAILED, see $folder/log.txt"
+    (install_packages clang-19 libc++-19-dev mingw-w64-x86-64-dev binutils) &&
+        sh tests/guest/microsoft.sh "$out/headers" alone >"$folder/log.txt" 2>&1 &&
+        said="compiled, not run; $(tail -n 1 "$folder/log.txt")"
+    result microsoft "$words" "all of x86-64" "$said"
+fi
+
+[ -z "$listing" ] || exit 0
+for name in $wanted; do
+    case "$found " in
+    *" $name "*) ;;
+    *) fail "there is no platform '$name'; --list names them" ;;
+    esac
+done
+echo "$me: on $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)"
+echo "| platform | instruction sets | what ran |"
+echo "| --- | --- | --- |"
+cat "$out/table.md"
+[ -z "$failed" ] || fail "not every platform passed:$failed"

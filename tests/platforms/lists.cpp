@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: MIT
+// lists [SCENES]: builds the lists of so many random scenes (60 if not given) by every option, on every instruction set
+// that this machine has and for several threads, which must not change a byte. Prints a hash for each option, and one of
+// all of them: these are the same on every platform. tests/platforms.sh holds them against each other.
+//
+// Every input is a whole number times a power of two, or a rounded product: fused sums, functions, the distributions of
+// <random> and the order of calls within an expression are not the same everywhere. Nothing but the standard library, and of that no streams: the memory sanitizer
+// knows of no byte that a library writes which is not compiled with it.
+#include <lightbin/encode.hpp>
+#include <lightbin/lightbin.hpp>
+#include <lightbin/shader.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace lightbin;
+
+/// SplitMix64.
+class Random {
+public:
+    explicit Random(std::uint64_t seed) : state_(seed) {}
+    std::uint64_t bits() {
+        std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+        return z ^ (z >> 31);
+    }
+    int integer(int low, int high) {  ///< both ends included
+        return low + static_cast<int>(bits() % static_cast<std::uint64_t>(high - low + 1));
+    }
+    /// Of 20 bits behind the point; both ends in units of 2^-10.
+    float between(int low, int high) {
+        return static_cast<float>(integer(low * 1024, high * 1024)) * 0x1p-20f;
+    }
+    float unit() { return static_cast<float>(integer(-0xffffff, 0xffffff)) * 0x1p-24f; }
+    /// From 2^low to 2^high.
+    float magnitude(int low, int high) {
+        const float mantissa = static_cast<float>(integer(0x800000, 0xffffff)) * 0x1p-23f;
+        return std::ldexp(mantissa, integer(low, high - 1));
+    }
+    bool one_in(int n) { return integer(1, n) == 1; }
+    float sign(int n) { return one_in(n) ? -1.0f : 1.0f; }  ///< -1 in one of n
+
+private:
+    std::uint64_t state_;
+};
+
+/// Of numbers, so that the order of their bytes is no matter.
+class Hash {
+public:
+    void add(std::uint64_t number) {
+        value_ = (value_ ^ number) * 0x100000001b3u;
+        value_ ^= value_ >> 29;
+    }
+    void add(float number) { add(std::uint64_t{std::isnan(number) ? 0x7fc00000u : bits_of(number)}); }
+    std::uint64_t value() const { return value_; }
+
+private:
+    static std::uint32_t bits_of(float number) {
+        std::uint32_t bits;
+        std::memcpy(&bits, &number, sizeof bits);
+        return bits;
+    }
+    std::uint64_t value_ = 0xcbf29ce484222325u;
+};
+
+/// In a form of its own, so that it is read by a callable.
+struct Lamp {
+    double reach;
+    Spot spot;
+};
+
+struct Scene {
+    View view;
+    std::vector<Sphere> spheres{};
+    std::vector<Spot> spots{};
+    std::vector<Lamp> lamps{};
+    float to_view[4][4]{};
+    std::vector<float> min{}, max{}, gap_min{}, gap_max{};
+};
+
+View any_view(Random& random) {
+    const bool reversed = random.one_in(3), orthographic = random.one_in(4);
+    const double forward = random.sign(2);
+    const float near_plane = random.magnitude(-6, 2), depth = near_plane * random.magnitude(1, 12);
+    const float sign_x = random.sign(8), sign_y = random.sign(3);
+    double m[4][4] = {};
+    m[0][0] = sign_x * random.between(100, 3000);
+    m[1][1] = sign_y * random.between(100, 3000);
+    m[2][2] = forward * (reversed ? -1 : 1) * random.between(1025, 1200);
+    m[3][2] = (reversed ? 1 : -1) * static_cast<double>(near_plane);
+    if (orthographic) {
+        m[0][0] *= 0x1p-5;
+        m[1][1] *= 0x1p-5;
+        m[2][2] = forward * (reversed ? -1 : 1) / static_cast<double>(depth);
+        m[3][0] = random.between(-512, 512);
+        m[3][3] = 1;
+    } else {
+        m[2][0] = random.one_in(2) ? random.between(-700, 700) : 0;
+        m[2][1] = random.one_in(2) ? random.between(-700, 700) : 0;
+        m[2][3] = forward;
+    }
+    const int tile_size = random.integer(1, 48), most = tile_size * 90;
+    const int width = random.integer(1, random.one_in(9) ? 2000 : most < 800 ? most : 800);
+    const int height = random.integer(1, most < 500 ? most : 500);
+    return *View::from_projection(
+        m, {width, height},
+        {.tile_size = tile_size,
+         .clip_depth = random.one_in(2) ? ClipDepth::zero_to_one : ClipDepth::minus_one_to_one,
+         .origin = random.one_in(2) ? WindowOrigin::upper_left : WindowOrigin::lower_left,
+         .reversed_z = reversed});
+}
+
+/// What no sane caller has, in one of a hundred numbers.
+float or_special(float number, Random& random) {
+    constexpr float values[] = {0,
+                                -1,
+                                1e30f,
+                                -1e30f,
+                                1e-40f,
+                                std::numeric_limits<float>::infinity(),
+                                -std::numeric_limits<float>::infinity(),
+                                std::numeric_limits<float>::quiet_NaN()};
+    return random.one_in(100) ? values[random.integer(0, 7)] : number;
+}
+
+Sphere any_sphere(Random& random, int size) {
+    const float away = random.magnitude(-2, 8), z = -random.sign(6) * away;
+    const float x = random.unit() * 2 * away, y = random.unit() * 2 * away;
+    const float radius = random.magnitude(size, size + 3);
+    return {or_special(x, random), or_special(y, random), or_special(z, random), or_special(radius, random)};
+}
+
+/// A rotation by a multiple of the angle of the 3-4-5 triangle, a scale, a move.
+void any_move(float (&m)[4][4], Random& random) {
+    const float scale = random.magnitude(-2, 2), c = 0.6f * scale, s = 0.8f * scale;
+    const float columns[4][4] = {{c, 0, s, 0}, {0, scale, 0, 0}, {-s, 0, c, 0}, {0, 0, 0, 1}};
+    std::memcpy(m, columns, sizeof m);
+    for (int row = 0; row < 3; ++row)
+        m[3][row] = random.unit() * 8;
+}
+
+Scene make_scene(Random& random) {
+    Scene scene{any_view(random)};
+    const int size = random.integer(-4, 4);
+    const int count = random.one_in(8) ? random.integer(0, 3) : random.integer(4, 700);
+    for (int i = 0; i < count; ++i) {
+        const Sphere ball = any_sphere(random, size);
+        const float axis[] = {random.unit(), random.unit(), random.unit(), random.unit()};
+        const Spot spot = {ball.x,
+                           ball.y,
+                           ball.z,
+                           ball.radius,
+                           or_special(axis[0], random),
+                           axis[1],
+                           axis[2],
+                           or_special(axis[3], random)};
+        scene.spheres.push_back(ball);
+        scene.spots.push_back(spot);
+        scene.lamps.push_back({static_cast<double>(ball.radius), spot});
+    }
+    any_move(scene.to_view, random);
+    for (std::size_t i = 0; i < scene.view.tile_count(); ++i) {
+        const float min = random.magnitude(-3, 7), deep = min * random.magnitude(0, 4), gap = min * 1.5f;
+        scene.min.push_back(or_special(min, random));
+        scene.max.push_back(or_special(deep, random));
+        scene.gap_min.push_back(or_special(gap, random));
+        scene.gap_max.push_back(or_special(deep * 0.75f, random));
+    }
+    return scene;
+}
+
+const Slices& slices() {
+    static const Slices all = [] {
+        const float boundaries[] = {0.5f, 1, 1.75f, 3, 5, 8, 13, 21, 34, 55, 89, 144};
+        return *Slices::from_boundaries(boundaries);
+    }();
+    return all;
+}
+
+/// What a Parallel may be given: threads at their least helpful, one of which does all, from the end on.
+const auto backwards = [](std::size_t n, auto body) {
+    while (n > 0)
+        body(--n);
+};
+
+template <class Id> void add_grid(Hash& hash, const LightGrid<Id>& grid) {
+    hash.add(std::uint64_t{grid.light_counts().rejected});
+    for (const ListRange range : grid.ranges())
+        hash.add(range.offset | std::uint64_t{range.count} << 32);
+    for (const Id id : grid.ids())
+        hash.add(std::uint64_t{id});
+    for (const std::uint32_t light : grid.ranks().order)
+        hash.add(std::uint64_t{light});
+    for (const BinRange bin : grid.ranks().bins)
+        hash.add(bin.least | std::uint64_t{bin.greatest} << 32);
+}
+
+/// The elements that encode() writes, of a width.
+template <class Element>
+void add_encoded(Hash& hash, const LightGrid<std::uint32_t>& grid, const ListFormat& format) {
+    std::vector<std::byte> bytes(
+        static_cast<std::size_t>(encoded_bytes(format, grid.ranges().size(), grid.ids().size())));
+    const auto encoded = encode(grid, format, bytes);
+    hash.add(std::uint64_t{encoded.has_value()});
+    for (std::size_t i = 0; i < bytes.size(); i += sizeof(Element)) {
+        Element element;
+        std::memcpy(&element, bytes.data() + i, sizeof element);
+        hash.add(std::uint64_t{element});
+    }
+}
+
+/// Of the sentinel's lists the rest is left as it is: 0.
+void add_encodings(Hash& hash, const LightGrid<std::uint32_t>& grid) {
+    add_encoded<std::uint8_t>(hash, grid,
+                              {.encoding = ListEncoding::sentinel, .ids = IdWidth::u8, .capacity = 9});
+    add_encoded<std::uint16_t>(hash, grid,
+                               {.encoding = ListEncoding::sentinel, .ids = IdWidth::u16, .capacity = 5});
+    add_encoded<std::uint16_t>(hash, grid, {.ids = IdWidth::u16});
+    add_encoded<std::uint32_t>(hash, grid, {.encoding = ListEncoding::bitmask, .max_lights = 700});
+}
+
+/// One option on one instruction set.
+template <Options options> class Builder {
+public:
+    std::uint64_t hash(const Scene& scene, std::size_t number, const Parallel& parallel) {
+        const auto to_sphere = [](const Lamp& lamp) { return Sphere(lamp.spot); };
+        const auto to_spot = [](const Lamp& lamp) { return lamp.spot; };
+        switch (number % 5) {
+        case 0:
+            return built(scene, scene.spheres, parallel);
+        case 1:
+            return built(scene, scene.spots, parallel);
+        case 2:
+            return built(scene, world_space(scene.spheres, scene.to_view), parallel);
+        case 3:
+            return built(scene, world_space(scene.lamps, scene.to_view, to_spot), parallel);
+        default:
+            return built(scene, view_space(scene.lamps, to_sphere), parallel);
+        }
+    }
+
+private:
+    template <class Lights>
+    std::uint64_t built(const Scene& scene, const Lights& lights, const Parallel& parallel) {
+        const ZBounds bounds = {scene.min, scene.max, scene.gap_min, scene.gap_max};
+        const auto inputs = inputs_for<options>(bounds, slices());
+        Hash hash;
+        const auto grid = binner_.bin(scene.view, lights, inputs, parallel);
+        if (!grid) return 0;
+        add_grid(hash, *grid);
+        if constexpr (options.ids == IdWidth::u32 && options.slicing == Slicing::none &&
+                      options.depth_test == DepthTest::none)
+            add_encodings(hash, *grid);
+        if constexpr (options.slicing != Slicing::clusters) {
+            std::vector<std::uint32_t> bits(scene.view.tile_count() * 22);
+            hash.add(
+                std::uint64_t{binner_.bin_bits(scene.view, lights, 700, bits, inputs, parallel).has_value()});
+            for (const std::uint32_t word : bits)
+                hash.add(std::uint64_t{word});
+        }
+        return hash.value();
+    }
+
+    Binner<options> binner_;
+};
+
+constexpr Options with(Options options, Isa isa) {
+    options.isa = isa;
+    return options;
+}
+
+int failures = 0;
+Hash all;
+
+void print(const char* name, const Hash& hash) {
+    all.add(hash.value());
+    std::printf("%s: %016llx\n", name, static_cast<unsigned long long>(hash.value()));
+}
+
+template <Options options, Isa isa>
+void compare_tier(const char* name, const Scene& scene, std::size_t number, std::uint64_t expected) {
+    if (machine_isa(isa) != isa) return;
+    static Builder<with(options, isa)> builder;
+    for (const std::size_t workers : {1u, 3u})
+        if (builder.hash(scene, number, Parallel(workers, backwards, 0)) != expected && failures++ < 10)
+            std::printf("%s, scene %zu: %s with %zu workers differs\n", name, number, to_string(isa),
+                        workers);
+}
+
+template <Options options> void check(const char* name, const std::vector<Scene>& scenes) {
+    Hash hash;
+    Builder<with(options, Isa::scalar)> scalar;
+    for (std::size_t number = 0; number < scenes.size(); ++number) {
+        const Scene& scene = scenes[number];
+        const std::uint64_t expected = scalar.hash(scene, number, {});
+        hash.add(expected);
+        compare_tier<options, Isa::scalar>(name, scene, number, expected);
+#if defined(LIGHTBIN_SSE2)
+        compare_tier<options, Isa::sse2>(name, scene, number, expected);
+#endif
+#if defined(LIGHTBIN_X86)
+        compare_tier<options, Isa::avx2>(name, scene, number, expected);
+        compare_tier<options, Isa::avx512>(name, scene, number, expected);
+#elif defined(LIGHTBIN_NEON)
+        compare_tier<options, Isa::neon>(name, scene, number, expected);
+#endif
+    }
+    print(name, hash);
+}
+
+void check_views(const std::vector<Scene>& scenes) {
+    Hash hash;
+    for (const Scene& scene : scenes)
+        for (const double depth : {0.0, 0.25, 0.8125, 1.0}) {
+            const DepthInterval depths = scene.view.view_depths(depth, depth);
+            hash.add(depths.min);
+            hash.add(depths.max);
+        }
+    print("view depths", hash);
+}
+
+void check_depth(const std::vector<Scene>& scenes, Random& random) {
+    Hash hash;
+    for (const Scene& scene : scenes) {
+        const View& view = scene.view;
+        const std::size_t tiles = view.tile_count();
+        std::vector<float> depth, sides[5];
+        for (int i = 0; i < view.viewport().width * view.viewport().height; ++i)
+            depth.push_back(or_special(std::fabs(random.unit()), random));
+        for (std::vector<float>& side : sides)
+            side.resize(tiles);
+        const DepthBuffer buffer = {.depth = depth, .skip_background = random.one_in(2)};
+        const ZBoundsBuffers to = {sides[0], sides[1], sides[2], sides[3], sides[4]};
+        for (const Isa isa : {Isa::scalar, compiled_isa}) {
+            hash.add(std::uint64_t{reduce_depth(view, buffer, to, isa).has_value()});
+            for (const std::vector<float>& side : sides)
+                for (const float bound : side)
+                    hash.add(bound);
+        }
+    }
+    print("Z bounds", hash);
+}
+
+/// What the C library's functions are in, which is rounded to so few digits that it is the same all the same.
+void check_texts() {
+    Hash hash;
+    const Slices exponential = *Slices::exponential(24, 5, 200), linear = *Slices::linear(100, 0.5f, 80);
+    for (const Slices* law : {&exponential, &linear})
+        for (const float boundary : law->boundaries())
+            hash.add(boundary);
+    for (const ShaderLanguage language :
+         {ShaderLanguage::glsl_330, ShaderLanguage::glsl_430, ShaderLanguage::hlsl_5_0}) {
+        const ListStorage storage =
+            language == ShaderLanguage::glsl_330 ? ListStorage::texel_buffer : ListStorage::storage_buffer;
+        for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
+            const auto shader =
+                shader_snippet({.language = language, .storage = storage, .slicing = slicing});
+            hash.add(std::uint64_t{shader.has_value()});
+            for (const char letter : shader ? shader->text : std::string())
+                hash.add(std::uint64_t{static_cast<unsigned char>(letter)});
+        }
+    }
+    print("slices and shaders", hash);
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+    const int wanted = count > 1 ? std::atoi(words[1]) : 60;
+    Random random(7);
+    std::vector<Scene> scenes;
+    for (int i = 0; i < wanted; ++i)
+        scenes.push_back(make_scene(random));
+    check_views(scenes);
+    check_depth(scenes, random);
+    check_texts();
+    check<Options{}>("rectangle", scenes);
+    check<Options{.ids = IdWidth::u16}>("rectangle, 16 bits", scenes);
+    check<Options{.footprint = Footprint::silhouette}>("silhouette", scenes);
+    check<Options{.depth_test = DepthTest::interval}>("interval", scenes);
+    check<Options{.depth_test = DepthTest::box}>("box", scenes);
+    check<Options{
+        .ids = IdWidth::u16, .footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>(
+        "silhouette, split_box, 16 bits", scenes);
+    check<Options{.slicing = Slicing::clusters}>("clusters", scenes);
+    check<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>("box, clusters", scenes);
+    check<Options{.depth_test = DepthTest::box, .slicing = Slicing::z_bins}>("box, z_bins", scenes);
+    std::printf("tiers:");
+    for (const Isa isa : {Isa::scalar, Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon})
+        if (machine_isa(isa) == isa) std::printf(" %s", to_string(isa));
+    std::printf("\nhash: %016llx\n", static_cast<unsigned long long>(all.value()));
+    return failures == 0 ? 0 : 1;
+}

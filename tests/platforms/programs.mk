@@ -1,0 +1,33 @@
+# What tests/platforms.sh runs, for one platform: make -f tests/platforms/programs.mk OUT=FOLDER CXX=COMPILER FLAGS=...
+# LINK=... EXE=.exe FOLDER/lists.exe ... from the repository's root. In two units what takes long to compile, the
+# kernels, is the same for many files.
+
+# Left out: what measures time, needs gigabytes or a library more than doctest and GLM, and the tiers, which lists.cpp compares.
+unit := $(filter-out %/advise.cpp %/largest_grid.cpp %/matrix.cpp %/tiers.cpp,$(wildcard tests/unit/*.cpp))
+one := %/clusters.cpp %/z_bins.cpp %/lights.cpp %/spots.cpp
+headers := $(shell find include tests/unit tests/oracle bench/exact -name '*.hpp' -o -name '*.inl') tests/platforms/programs.mk
+compile = $(CXX) $(level) $(FLAGS) -pthread -Iinclude -I. -isystem $(OUT)/../headers -c -o $@
+level = -O1
+$(OUT)/lists.o $(OUT)/engine.o: level = -O2
+link = $(CXX) $(FLAGS) -pthread -o $@ $^ $(LINK)
+
+$(OUT)/%$(EXE): $(OUT)/%.o
+	$(link)
+$(OUT)/lists$(EXE): $(addprefix $(OUT)/,lists.o garbage.o)
+	$(link)
+$(OUT)/unit$(EXE): $(addprefix $(OUT)/,doctest_main.o unit_one.o unit_two.o)
+	$(link)
+$(OUT)/oracle$(EXE): $(addprefix $(OUT)/,campaign.o judge.o engine.o)
+	$(link)
+
+$(OUT)/unit_one.o: $(filter $(one),$(unit))
+$(OUT)/unit_two.o: $(filter-out $(one),$(unit))
+$(OUT)/unit_%.o: $(headers)
+	printf '#include "%s"\n' $(filter %.cpp,$^) | $(compile) -x c++ -
+$(OUT)/%.o: tests/%.cpp
+	$(compile) $<
+$(OUT)/%.o: tests/platforms/%.cpp $(headers)
+	$(compile) $<
+$(OUT)/%.o: tests/oracle/%.cpp $(headers)
+	$(compile) -DORACLE_WITHOUT_GMP $<
+.SECONDARY:
