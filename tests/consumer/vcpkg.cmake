@@ -23,9 +23,9 @@ macro(parse one many)
 endmacro()
 
 function(vcpkg_cmake_configure)
-    parse(SOURCE_PATH "" ${ARGN})
+    parse(SOURCE_PATH OPTIONS ${ARGN})
     run(${CMAKE_COMMAND} -S ${arg_SOURCE_PATH} -B ${WORK}/build -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Release
-        -DCMAKE_INSTALL_PREFIX=${CURRENT_PACKAGES_DIR})
+        -DCMAKE_INSTALL_PREFIX=${CURRENT_PACKAGES_DIR} ${arg_OPTIONS})
 endfunction()
 
 function(vcpkg_cmake_install)
