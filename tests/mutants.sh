@@ -19,9 +19,9 @@ work=build/mutants
 # or least_spheres.
 list() {
     # Rounding outward.
-    mutant cells view.hpp 's/detail::float_above(0x1p-20 \* (std::fabs(axis.offset) + axis.tiles) + 0x1p-80 \* axis.scale)/0.0f/'
+    mutant cells view.hpp 's/detail::float_above(0x1p-20 \* (detail::abs_of(axis.offset) + axis.tiles) + 0x1p-80 \* axis.scale)/0.0f/'
     mutant families detail/rounding.hpp 's/return static_cast<double>(nearest) > value ? next_below(nearest) : nearest;/return nearest;/'
-    mutant families detail/cell_boxes.hpp 's/from -= std::fabs(from) \* 0x1p-21 + 0x1p-100;/from += std::fabs(from) * 0x1p-21;/'
+    mutant families detail/cell_boxes.hpp 's/from -= abs_of(from) \* 0x1p-21 + 0x1p-100;/from += abs_of(from) * 0x1p-21;/'
     mutant families detail/cell_boxes.hpp 's/(1 + 0x1p-20f)) + 0x1p-125f/(1 - 0x1p-20f))/'
     mutant world detail/world_to_view.hpp 's/\* stretch_ + error) \* (1 + 0x1p-23) +/* stretch_) +/'
     mutant world detail/world_to_view.hpp 's/float_above(stretch_ \* (1 + 0x1p-22))/static_cast<float>(stretch_ * (1 - 0x1p-18))/'
@@ -44,7 +44,7 @@ list() {
     mutant spots detail/wedge.inl 's/widened(r, half) \* 0x1p-19 \/ widened(cosine, half)/all(0.0)/'
     mutant spots detail/wedge.inl 's/: -aside\[i\]) - back\[i\];/: -aside[i]) + back[i];/'
     mutant spots detail/slab.inl 's/select(less(normal, all(0.0f)), all(high), all(low))/select(less(normal, all(0.0f)), all(low), all(high))/'
-    mutant spots detail/world_to_view.hpp 's/least = (std::min)(least, 2 \* diagonal - row_sum);/least = (std::max)(square, row_sum);/'
+    mutant spots detail/world_to_view.hpp 's/least = min_of(least, 2 \* diagonal - row_sum);/least = max_of(square, row_sum);/'
     mutant least_spheres spot.hpp 's/axis_length;/(axis_length * (1 + 0x1p-18));/'
     # Projection.
     mutant families detail/project.inl 's/either(either(less(farthest, front)/either(either(less(nearest, front)/'
@@ -55,7 +55,7 @@ list() {
     mutant cells detail/project.inl 's/const auto whole = less(all(near_depth), nearest);/const auto whole = less(all(0.0), nearest);/'
     mutant families detail/project.inl 's/const Doubles h = sqrt(greater(h2, zero) + h2_error);/const Doubles h = sqrt(greater(h2, zero)) * 0.999;/'
     # Silhouettes.
-    mutant families detail/silhouette.inl 's/+ mul(reach, right_s) + all/+ mul(reach, right_s) * all(0.999) + all/'
+    mutant families detail/silhouette.inl 's/+ mul(reach, right_s) + high;/+ mul(reach, right_s) * all(0.999) + high;/'
     mutant families detail/silhouette.inl 's/right_v = select(negative, inner_v, outer_v);/right_v = select(negative, outer_v, inner_v);/'
     # Depth.
     mutant families detail/depth_columns.inl 's/store_floats(upper + column, select(numbers, most, infinite));/store_floats(upper + column, most);/'
@@ -75,7 +75,7 @@ list() {
     mutant families detail/emit_compress.inl 's/else if (count < 32)/else if (count <= 32)/'
     # Scattering, and the caller's threads.
     mutant families detail/scatter.inl 's/lights.x1\[i\] - lights.x0\[i\] + 1u;/lights.x1[i] - lights.x0[i];/'
-    mutant families detail/scatter.inl 's/(std::min)(lights.y1\[i\] + 1u, end)/(std::min)(lights.y1[i] + 0u, end)/'
+    mutant families detail/scatter.inl 's/min_of(lights.y1\[i\] + 1u, end)/min_of(lights.y1[i] + 0u, end)/'
     mutant families detail/parts.hpp 's/            ++step;$/            step += done < goal ? 1 : 2;/'
     # Clusters.
     mutant clusters detail/slices_met.inl 's/less_equal(all(boundary), to)/less(all(boundary), to)/'
