@@ -78,15 +78,16 @@ build() {
     return 1
 }
 
-# try PROGRAM ARGUMENT...: runs it with $run; what it says in $folder/PROGRAM.txt
+# try PROGRAM ARGUMENT...: runs it with $run; what it says in $folder/PROGRAM.txt, and what it and $run complain of in
+# $folder/PROGRAM.err
 try() {
     program=$1
     shift
     # shellcheck disable=SC2086  # several words
-    LIGHTBIN_TEST_SHARE=32 timeout 1200 $run "$folder/$program$exe" "$@" >"$folder/$program.log" 2>&1 && code=0 || code=$?
+    LIGHTBIN_TEST_SHARE=32 timeout 1200 $run "$folder/$program$exe" "$@" >"$folder/$program.log" 2>"$folder/$program.err" && code=0 || code=$?
     tr -d '\r' <"$folder/$program.log" >"$folder/$program.txt"
     [ "$code" -eq 0 ] && return
-    tail -n 15 "$folder/$program.txt" | cut -c 1-200
+    tail -n 15 "$folder/$program.txt" "$folder/$program.err" | cut -c 1-200
     return 1
 }
 

@@ -89,6 +89,8 @@ template <class Range> auto checked_array(const Range& lights) {
     if constexpr (Array<Range>)
         return std::span<const std::remove_cvref_t<decltype(*std::data(lights))>>(std::data(lights),
                                                                                   std::size(lights));
+    else if constexpr (requires { *std::begin(lights); })
+        return std::span<const std::remove_cvref_t<decltype(*std::begin(lights))>>();
     else
         return std::span<const Sphere>();
 }

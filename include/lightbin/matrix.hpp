@@ -6,12 +6,13 @@
 //   Eigen                                     either                the matrix or transform itself
 //   DirectXMath's XMFLOAT4X4, D3DMATRIX       row of v M            the matrix itself (an XMMATRIX: XMStoreFloat4x4 first)
 //   OpenSceneGraph's Matrixf, Matrixd         row of v M            the matrix itself
-//   Irrlicht, Panda3D                         row of v M            matrix(m.pointer(), MatrixLayout::row_vectors)
+//   Irrlicht                                  row of v M            matrix(m.pointer(), MatrixLayout::row_vectors)
+//   Panda3D                                   row of v M            matrix(m.get_data(), MatrixLayout::row_vectors)
 //   Qt's QMatrix4x4                           column of M v         matrix(m.constData(), MatrixLayout::column_major)
-//   OGRE, rows of one's own                   row of M v            matrix(m[0], MatrixLayout::row_major)
+//   OGRE, rows of one's own                   row of M v            matrix(&m[0][0], MatrixLayout::row_major)
 //
-// The rows of v M are the columns of M v: the first, third and last lines of MatrixLayout's names differ on paper, but
-// column_major and row_vectors not in memory. Which one numbers have shows a view matrix: its translation is the last four
+// The rows of v M are the columns of M v, so column_major and row_vectors are the same numbers in memory. A float[4][4] of
+// rows compiles as it is, and is read transposed. Which one numbers have shows a view matrix: its translation is the last four
 // of column_major and row_vectors, and the fourth, eighth and twelfth of row_major.
 #pragma once
 

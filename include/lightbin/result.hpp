@@ -82,7 +82,8 @@ constexpr const char* to_string(ErrorCode code) {
                "(lights in world space go through world_space()), and not the view matrix";
     case ErrorCode::projection_transposed:
         return "the matrix is a projection when it is transposed: pass lightbin::matrix(numbers, "
-               "MatrixLayout::row_major), or your type as it is where matrix.hpp lists it";
+               "layout) with the other layout, row_major or column_major, or your type as it is where "
+               "matrix.hpp lists it";
     case ErrorCode::eye_not_at_origin:
         return "the perspective matrix does not have its eye at the origin of view space: pass the "
                "projection alone, not projection times view (lights in world space go through world_space())";
@@ -109,8 +110,8 @@ constexpr const char* to_string(ErrorCode code) {
                "the view matrix alone, not projection times view";
     case ErrorCode::view_matrix_transposed:
         return "the world-to-view matrix is transposed, its last column is 0 0 0 1: pass "
-               "lightbin::matrix(numbers, "
-               "MatrixLayout::row_major), or your type as it is where matrix.hpp lists it";
+               "lightbin::matrix(numbers, layout) with the other layout, row_major or column_major, or your "
+               "type as it is where matrix.hpp lists it";
     case ErrorCode::too_many_lights:
         return "{needed} lights are too many for the id type, which counts to {available}: use wider "
                "Options::ids or fewer lights";
@@ -242,6 +243,7 @@ public:
         static_assert(
             sizeof(T) == 0,
             "lightbin: this is still a Result: if (!result) it has result.error(), else pass *result");
+        return **this;
     }
 
     const Error& error() const {

@@ -145,7 +145,9 @@ public:
                 tile_size_,
                 !flat && one_is_transposed(m),
                 flat && is_one(m[0][0]) && is_one(m[1][1]) && is_one(m[2][2]),
-                m[0][0] < 0 && m[1][1]<0, tile_count()> 0 && !(detail::abs_of(pixel_aspect - 1) <= 0.02)};
+                m[0][0] < 0 && m[1][1] < 0,
+                flat && far_depth() <= 0,
+                tile_count() > 0 && !(detail::abs_of(pixel_aspect - 1) <= 0.02)};
     }
 
     /// View depth of the near plane, rounded down, and of the far plane, rounded up (+inf where there is

@@ -31,6 +31,8 @@ struct ViewSummary {
     bool looks_like_view_matrix;
     /// As a field of view in degrees does where radians are wanted: the image is upside down.
     bool looks_turned;
+    /// An orthographic one, all of whose depths are behind the eye, as with reversed Z that ViewOptions does not say.
+    bool looks_behind;
     /// The viewport's pixels are not as wide as high, by more than 2 %: its size is stale, or the aspect is inverted.
     bool pixels_not_square;
 };
@@ -55,6 +57,7 @@ template <class Text = std::string> Text to_string(const ViewSummary& view) {
     if (view.looks_like_view_matrix)
         line += "; is this the view matrix, or an identity, in place of the projection?";
     if (view.looks_turned) line += "; upside down: degrees where radians are wanted?";
+    if (view.looks_behind) line += "; all of it is behind the eye: is ViewOptions::reversed_z right?";
     if (view.pixels_not_square)
         line += "; pixels are not square: is the viewport's size stale, or the aspect inverted?";
     return line;

@@ -98,5 +98,8 @@ void mistake() {
     (void)sliced.bin(*view, lights);
 #elif MISTAKE == 26  // this Binner does not read this input
     (void)tested.bin(*view, lights, {.slices = *lightbin::Slices::linear(8, 0, 1), .bounds = {}});
+#elif MISTAKE == 27  // lights are an array, a std::vector, a std::span or another range
+    const auto to_sphere = [](const Lamp& lamp) { return lightbin::Sphere{0, 0, 0, lamp.range}; };
+    (void)binner.bin(*view, lightbin::view_space(std::list<Lamp>(), to_sphere));
 #endif
 }

@@ -287,5 +287,5 @@ TEST_CASE("light_window: 1 at the light, 0 at the range, beyond it and for what 
 TEST_CASE("texture_rows") {
     static_assert(texture_rows(0, 2048) == 1 && texture_rows(1, 2048) == 1 && texture_rows(2048, 2048) == 1);
     static_assert(texture_rows(2049, 2048) == 2 && texture_rows(4096, 2048) == 2 && texture_rows(5, 1) == 5);
-    CHECK(texture_rows(std::size_t{1} << 40, 1) == std::size_t{1} << 40);
+    CHECK(texture_rows(~std::size_t{0}, 1) == ~std::size_t{0});
 }

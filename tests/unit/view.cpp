@@ -207,25 +207,31 @@ TEST_CASE("a view says what it read, and what is seldom meant") {
 
     const auto doubts = [](const lightbin::ViewSummary& of) {
         const std::string line = to_string(of);
-        CHECK(std::count(line.begin(), line.end(), '?') ==
-              of.looks_transposed + of.looks_like_view_matrix + of.looks_turned + of.pixels_not_square);
+        CHECK(std::count(line.begin(), line.end(), '?') == of.looks_transposed + of.looks_like_view_matrix +
+                                                               of.looks_turned + of.looks_behind +
+                                                               of.pixels_not_square);
         return std::vector<bool>{of.looks_transposed, of.looks_like_view_matrix, of.looks_turned,
-                                 of.pixels_not_square};
+                                 of.looks_behind, of.pixels_not_square};
     };
     using Doubts = std::vector<bool>;
     for (const auto& fine : {read, vulkan, flat, summary(3.0f * good), summary(good, {1366, 768}),
                              summary(glm::infinitePerspective(1.0f, 16.0f / 9, 0.1f)), summary(good, {})})
-        CHECK(doubts(fine) == Doubts{false, false, false, false});
+        CHECK(doubts(fine) == Doubts{false, false, false, false, false});
     for (const float z_near : {0.1f, 0.2f, 0.4f, 1.0f, 3.0f})
         CHECK(doubts(summary(glm::transpose(glm::perspective(1.0f, 16.0f / 9, z_near, 512.0f)))) ==
-              Doubts{true, false, false, false});
-    CHECK(doubts(summary(glm::mat4(1.0f), {100, 100})) == Doubts{false, true, false, false});
+              Doubts{true, false, false, false, false});
+    CHECK(doubts(summary(glm::mat4(1.0f), {100, 100})) == Doubts{false, true, false, false, false});
     CHECK(doubts(summary(glm::translate(glm::mat4(1.0f), {1.0f, 2.0f, 3.0f}), {100, 100})) ==
-          Doubts{false, true, false, false});
+          Doubts{false, true, false, true, false});
     CHECK(doubts(summary(glm::perspective(60.0f, 16.0f / 9, 0.25f, 512.0f))) ==
-          Doubts{false, false, true, false});
-    CHECK(doubts(summary(good, {1080, 1920})) == Doubts{false, false, false, true});
-    CHECK(doubts(summary(good, {1280, 1024})) == Doubts{false, false, false, true});
+          Doubts{false, false, true, false, false});
+    CHECK(doubts(summary(good, {1080, 1920})) == Doubts{false, false, false, false, true});
+    CHECK(doubts(summary(good, {1280, 1024})) == Doubts{false, false, false, false, true});
+    const glm::mat4 reversed = glm::orthoRH_ZO(-4.0f, 4.0f, -4.0f, 4.0f, 100.0f, 0.1f);
+    CHECK(doubts(summary(reversed, {100, 100}, {.clip_depth = ClipDepth::zero_to_one})) ==
+          Doubts{false, false, false, true, false});
+    CHECK(doubts(summary(reversed, {100, 100}, {.clip_depth = ClipDepth::zero_to_one, .reversed_z = true})) ==
+          Doubts{false, false, false, false, false});
 }
 
 TEST_CASE("a view's grid can be made anew with other tiles") {
