@@ -44,7 +44,6 @@ extern const Lamp lamp;
 extern const std::vector<float> depth_buffer;
 extern const float white, distance, range;
 extern const std::uint32_t this_view_shows;
-extern const lightbin::Costs costs;
 extern ThreadPool pool;
 
 extern std::span<lightbin::ListRange> mapped_ranges;
