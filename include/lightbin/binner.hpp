@@ -90,9 +90,10 @@ requires(options.slicing == Slicing::none) Inputs<options.depth_test> inputs_for
 template <Options options>
 Inputs<options.depth_test, options.slicing> inputs_for([[maybe_unused]] const ZBounds& bounds,
                                                        [[maybe_unused]] const Slices& slices) {
-    if constexpr (options.slicing == Slicing::none)
+    using Read = Inputs<options.depth_test, options.slicing>;
+    if constexpr (!Read::reads_slices)
         return inputs_for<options>(bounds);
-    else if constexpr (options.slicing == Slicing::z_bins && options.depth_test != DepthTest::none)
+    else if constexpr (Read::reads_bounds)
         return {.slices = slices, .bounds = bounds};
     else
         return {.slices = slices};
@@ -111,7 +112,7 @@ template <Options options = Options{}> class Binner {
                   "encode() make 8 bits of them");
     static constexpr bool clusters = options.slicing == Slicing::clusters,
                           z_bins = options.slicing == Slicing::z_bins,
-                          with_depth = options.depth_test != DepthTest::none && !clusters,
+                          with_depth = Inputs<options.depth_test, options.slicing>::reads_bounds,
                           with_boxes = options.depth_test == DepthTest::box ||
                                        options.depth_test == DepthTest::split_box;
 

@@ -3,6 +3,7 @@
 // precision, and aim is all they need: the sphere that is asked about is the float one that comes out.
 #pragma once
 
+#include "../split_mix.hpp"
 #include "cameras.hpp"
 
 #include <algorithm>
@@ -19,21 +20,11 @@ struct Light {
     float x, y, z, w;  ///< w = radius
 };
 
-/// SplitMix64. std:: distributions differ from one standard library to the next.
-class Random {
+class Random : public SplitMix {
 public:
-    explicit Random(std::uint64_t seed) : state_(seed) {}
-    std::uint64_t bits() {
-        std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return z ^ (z >> 31);
-    }
+    using SplitMix::SplitMix;
     double uniform(double low = 0, double high = 1) {
         return low + (high - low) * (static_cast<double>(bits() >> 11) * 0x1p-53);
-    }
-    int integer(int low, int high) {  ///< both ends included
-        return low + static_cast<int>(bits() % static_cast<std::uint64_t>(high - low + 1));
     }
     bool chance(double p) { return uniform() < p; }
     double sign() { return chance(0.5) ? 1 : -1; }
@@ -41,9 +32,6 @@ public:
         return std::sqrt(-2 * std::log(1 - uniform())) * std::cos(2 * std::acos(-1.0) * uniform());
     }
     double power_of_two(double low, double high) { return std::exp2(uniform(low, high)); }
-
-private:
-    std::uint64_t state_;
 };
 
 /// A seed from a name (FNV-1a), so that no two kinds of camera get the same spheres.

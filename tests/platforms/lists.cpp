@@ -4,8 +4,10 @@
 // all of them: these are the same on every platform. tests/platforms.sh holds them against each other.
 //
 // Every input is a whole number times a power of two, or a rounded product: fused sums, functions, the distributions of
-// <random> and the order of calls within an expression are not the same everywhere. Nothing but the standard library, and of that no streams: the memory sanitizer
-// knows of no byte that a library writes which is not compiled with it.
+// <random> and the order of calls within an expression are not the same everywhere. Nothing but the standard library, and
+// of that no streams: the memory sanitizer knows of no byte that a library writes which is not compiled with it.
+#include "tests/split_mix.hpp"
+
 #include <lightbin/encode.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader.hpp>
@@ -24,19 +26,9 @@ namespace {
 
 using namespace lightbin;
 
-/// SplitMix64.
-class Random {
+class Random : public SplitMix {
 public:
-    explicit Random(std::uint64_t seed) : state_(seed) {}
-    std::uint64_t bits() {
-        std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return z ^ (z >> 31);
-    }
-    int integer(int low, int high) {  ///< both ends included
-        return low + static_cast<int>(bits() % static_cast<std::uint64_t>(high - low + 1));
-    }
+    using SplitMix::SplitMix;
     /// Of 20 bits behind the point; both ends in units of 2^-10.
     float between(int low, int high) {
         return static_cast<float>(integer(low * 1024, high * 1024)) * 0x1p-20f;
@@ -49,9 +41,6 @@ public:
     }
     bool one_in(int n) { return integer(1, n) == 1; }
     float sign(int n) { return one_in(n) ? -1.0f : 1.0f; }  ///< -1 in one of n
-
-private:
-    std::uint64_t state_;
 };
 
 /// Of numbers, so that the order of their bytes is no matter.

@@ -5,7 +5,7 @@
 # Left out: what measures time, needs gigabytes or a library more than doctest and GLM, and the tiers, which lists.cpp compares.
 unit := $(filter-out %/advise.cpp %/largest_grid.cpp %/matrix.cpp %/tiers.cpp,$(wildcard tests/unit/*.cpp))
 one := %/clusters.cpp %/z_bins.cpp %/lights.cpp %/spots.cpp
-headers := $(shell find include tests/unit tests/oracle bench/exact -name '*.hpp' -o -name '*.inl') tests/platforms/programs.mk
+headers := $(shell find include tests/unit tests/oracle tests/split_mix.hpp bench/exact -name '*.hpp' -o -name '*.inl') tests/platforms/programs.mk
 compile = $(CXX) $(level) $(FLAGS) -pthread -Iinclude -I. -isystem $(OUT)/../headers -c -o $@
 level = -O1
 $(OUT)/lists.o $(OUT)/engine.o: level = -O2
