@@ -162,12 +162,13 @@ constexpr const char* to_string(ErrorCode code) {
         return "GLSL 3.30 and GLSL ES 3.00 have no storage buffers and no compute shaders: read the lists "
                "from texel_buffer (not ES), texture_2d or uniform_block";
     case ErrorCode::no_texel_buffers:
-        return "GLSL ES 3.00 and 3.10 have no buffer textures: use texture_2d, uniform_block or (ES 3.10) "
+        return "GLSL ES and WGSL have no buffer textures: use texture_2d, uniform_block or (not ES 3.00) "
                "storage_buffer";
     case ErrorCode::no_byte_address_buffers:
         return "byte_address buffers are HLSL's: use storage_buffer";
     case ErrorCode::no_sets:
-        return "this language has no descriptor sets or register spaces: ShaderSlot::set must be 0 and is "
+        return "this language has no descriptor sets, register spaces or groups: ShaderSlot::set must be 0 "
+               "and is "
                "{needed}";
     case ErrorCode::no_push_constants:
         return "push constants are Vulkan GLSL's: set ShaderOptions::push_constants to false";
@@ -176,7 +177,7 @@ constexpr const char* to_string(ErrorCode code) {
     case ErrorCode::no_such_slicing_shader:
         return "the build shaders have clusters, with none or box, and no z-bins: a Binner has those";
     case ErrorCode::no_wave_operations:
-        return "wave loops need GLSL 4.30, ES 3.10, Vulkan or HLSL 6 (hlsl_5_1)";
+        return "wave loops need GLSL 4.30, ES 3.10, Vulkan, HLSL 6 (hlsl_5_1) or WGSL";
     case ErrorCode::no_split_box_shader:
         return "build_shader has the depth tests none, interval and box, not split_box";
     case ErrorCode::texture_width_out_of_range:

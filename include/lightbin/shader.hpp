@@ -23,8 +23,8 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
 /// Where the lists lie.
 enum class ListStorage : std::uint8_t {
-    storage_buffer,  ///< GLSL 4.30, Vulkan, ES 3.10: storage buffers; HLSL: StructuredBuffer
-    texel_buffer,    ///< buffer textures; HLSL: Buffer (not ES)
+    storage_buffer,  ///< GLSL 4.30, Vulkan, ES 3.10, WGSL: storage buffers; HLSL: StructuredBuffer
+    texel_buffer,    ///< buffer textures; HLSL: Buffer (not ES, not WGSL)
     texture_2d,      ///< 2D textures (Tiled Shading, Listing 1)
     uniform_block,   ///< uniform blocks, cbuffers (Tiled Forward Shading, Listing 4.1)
     byte_address,    ///< HLSL: ByteAddressBuffer
@@ -53,7 +53,8 @@ struct ShaderOptions {
     bool viewport_corner = false;  ///< pixels are the window's, and the viewport's corner a uniform
     bool heat_map = false;         ///< also `count` and `heat`
     /// The lanes of a wave go through the lights of all their lists together, so that what is read of a light is read once
-    /// for all of them (Drobot 2017). GLSL 4.30, ES 3.10: with GL_KHR_shader_subgroup_arithmetic; Vulkan 1.1; HLSL 6.0.
+    /// for all of them (Drobot 2017). GLSL 4.30, ES 3.10: with GL_KHR_shader_subgroup_arithmetic; Vulkan 1.1; HLSL 6.0; WGSL:
+    /// with the device's feature `subgroups`.
     bool wave_loop = false;
     bool view_check = false;  ///< also `check_view`, whose constants are at `view`
     bool list_check = false;  ///< also `for_each_missing`
@@ -120,7 +121,8 @@ inline std::optional<Error> refuse(const ShaderOptions& options) {
         return error;
     if (options.storage == ListStorage::storage_buffer && !dialect.storage_buffers)
         return Error{ErrorCode::no_storage_buffers};
-    if (options.storage == ListStorage::texel_buffer && dialect.es) return Error{ErrorCode::no_texel_buffers};
+    if (options.storage == ListStorage::texel_buffer && (dialect.es || dialect.wgsl))
+        return Error{ErrorCode::no_texel_buffers};
     if (options.storage == ListStorage::byte_address && !dialect.hlsl)
         return Error{ErrorCode::no_byte_address_buffers};
     if (options.wave_loop && (!dialect.storage_buffers || options.language == ShaderLanguage::hlsl_5_0))
@@ -175,18 +177,18 @@ inline std::string tile_size_text(const ShaderOptions& options) {
     return options.tile_size == 0 ? "$grid.x" : number_text(static_cast<std::uint64_t>(options.tile_size));
 }
 
-/// Lines that turn a pixel as the shader counts it to that of the view. What lies outside of the viewport stays
+/// Lines that turn `pixel`, as the shader counts it, to `here`, as the view does. What lies outside of the viewport stays
 /// outside: numbers below 0 wrap to large ones.
 inline std::string to_grid_lines(const ShaderOptions& options) {
-    return std::string(options.viewport_corner ? "    pixel -= uvec2($corner);\n" : "") +
-           (options.flip_y ? "    pixel.y = $grid.w - 1u - pixel.y;\n" : "");
+    return std::string("    uvec2 here = pixel") + (options.viewport_corner ? " - uvec2($corner)" : "") +
+           ";\n" + (options.flip_y ? "    here.y = $grid.w - 1u - here.y;\n" : "");
 }
 
 /// `tile`: the tile of a pixel. Unset constants divide by 1, not by 0.
 inline void add_tile(ShaderWriter& writer, const ShaderOptions& options) {
     const std::string size = tile_size_text(options);
     writer.add("\n// The tile that a pixel lies in.\nuvec2 $tile(uvec2 pixel) {\n" + to_grid_lines(options) +
-               "    return pixel / " + (options.tile_size == 0 ? "max(" + size + ", 1u)" : size) + ";\n}\n");
+               "    return here / " + (options.tile_size == 0 ? "max(" + size + ", 1u)" : size) + ";\n}\n");
 }
 
 /// `id_at`: the id at a place of the lists.
@@ -237,13 +239,13 @@ inline void add_begin(ShaderWriter& writer, const ShaderOptions& options, const 
     if (binned) writer.add("    uint last;\n");
     writer.add("};\n\n$" + own + "cursor $" + own + "begin(uvec2 pixel, float view_depth) {\n" +
                to_grid_lines(options) + "    $" + own + "cursor c;\n    c.at = 0u;\n    c.end = 0u;\n" +
-               (bits && !binned ? "    c.id = 0u - 32u;\n" : "    c.id = 0u;\n"));
+               (bits && !binned ? "    c.id = 0xffffffe0u;  // 32 before the first\n" : "    c.id = 0u;\n"));
     if (bits) writer.add("    c.bits = 0u;\n");
     if (binned) writer.add("    c.last = 0u;\n");
     const std::string tile_size = tile_size_text(options);
-    writer.add("    if (pixel.x < $grid.z && pixel.y < $grid.w" +
+    writer.add("    if (here.x < $grid.z && here.y < $grid.w" +
                (options.tile_size == 0 ? "" : " && $grid.x == " + tile_size) +
-               ") {\n        uvec2 tile = pixel / " + tile_size + ";\n");
+               ") {\n        uvec2 tile = here / " + tile_size + ";\n");
     if (options.slicing != Slicing::none) writer.add("        uint slice = $slice(view_depth);\n");
     if (options.slicing == Slicing::clusters)
         writer.add("        tile.y += slice * (($grid.w - 1u) / " + tile_size + " + 1u);\n");
@@ -270,12 +272,12 @@ inline void add_begin(ShaderWriter& writer, const ShaderOptions& options, const 
         writer.add(R"(        uint end = c.end;
         while (c.at < end) {
             uint middle = c.at + ((end - c.at) >> 1u);
-            if ($id_at(middle) < bin.x) c.at = middle + 1u;
-            else end = middle;
+            if ($id_at(middle) < bin.x) { c.at = middle + 1u; }
+            else { end = middle; }
         }
 )");
     else if (binned)
-        writer.add("        while (c.at < c.end && $id_at(c.at) < bin.x) c.at += 1u;\n");
+        writer.add("        while (c.at < c.end && $id_at(c.at) < bin.x) { c.at += 1u; }\n");
     writer.add("    }\n    return c;\n}\n");
 }
 
@@ -317,15 +319,20 @@ $cursor $begin(uvec2 pixel, float view_depth) {
     $cursor c;
     c.id = 0u;
     c.own = false;
-    c.ahead = $own_begin(pixel, view_depth);
-    c.more = $own_next(c.ahead);
+    $own_cursor ahead = $own_begin(pixel, view_depth);
+    c.more = $own_next(&ahead);
+    c.ahead = ahead;
     return c;
 }
 
 bool $next(inout $cursor c) {
-    if (c.own) c.more = $own_next(c.ahead);
-    c.id = subgroupMin(c.more ? c.ahead.id : 0xffffffffu);
-    c.own = c.more && c.ahead.id == c.id;
+    $own_cursor ahead = c.ahead;
+    if (c.own) { c.more = $own_next(&ahead); }
+    c.ahead = ahead;
+    uint own = 0xffffffffu;
+    if (c.more) { own = ahead.id; }
+    c.id = subgroupMin(own);
+    c.own = c.more && own == c.id;
     return c.id != 0xffffffffu;
 }
 )");
@@ -339,12 +346,13 @@ inline void add_heat_map(ShaderWriter& writer, const ShaderOptions& options, con
                "begin(pixel, view_depth);\n" +
                (counted ? "    return c.end - c.at;\n"
                         : "    uint count = 0u;\n    while ($" + own +
-                              "next(c)) count += 1u;\n    return count;\n") +
+                              "next(&c)) { count += 1u; }\n    return count;\n") +
                R"(}
 
 vec3 $heat(uvec2 pixel, float view_depth, float most) {
     float heat = float($count(pixel, view_depth)) / most;
-    return clamp(vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat), 0.0, 1.0);
+    vec3 colour = vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat);
+    return clamp(colour, vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
 }
 )");
 }
@@ -355,8 +363,9 @@ inline void add_window(ShaderWriter& writer) {
 // 1 at a light, falling smoothly to 0 at its range and beyond.
 float $window(float apart, float range) {
     float x = apart / range;
-    float w = 1.0 - x * x * x * x;
-    return apart < range ? w * w : 0.0;
+    float w = 0.0;
+    if (apart < range) { w = 1.0 - x * x * x * x; }
+    return w * w;
 }
 )");
 }
@@ -407,7 +416,10 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
     if (const auto error = refuse(options)) return *error;
     ShaderWriter writer(options.language, options.prefix);
     const ListBuffers buffers = list_buffers(options);
-    if (options.wave_loop && !writer.dialect().hlsl)
+    if (options.wave_loop &&
+        writer.dialect().wgsl)  // no compiler sees that a wave's loop ends for all of its lanes at once
+        writer.add("enable subgroups;\ndiagnostic(off, subgroup_uniformity);\n");
+    else if (options.wave_loop && !writer.dialect().hlsl)
         writer.add("#extension GL_KHR_shader_subgroup_arithmetic : require\n");
     std::vector<ShaderConstant> constants = {{"uvec4", "grid"}};
     if (options.viewport_corner) constants.push_back({"ivec2", "corner"});
@@ -427,9 +439,9 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
     add_begin(writer, options, buffers, own);
     add_next(writer, options, buffers, own);
     if (options.wave_loop) add_wave_cursor(writer);
-    writer.add(std::string("\n#define $for_each_light(cursor, pixel, view_depth) for ($cursor cursor = "
-                           "$begin(pixel, view_depth); $next(cursor);)") +
-               (options.wave_loop ? " if (cursor.own)\n" : "\n"));
+    writer.add_macro("for_each_light(cursor, pixel, view_depth)",
+                     std::string("for ($cursor cursor = $begin(pixel, view_depth); $next(cursor);)") +
+                         (options.wave_loop ? " if (cursor.own)" : ""));
     if (options.heat_map) add_heat_map(writer, options, own);
     if (options.window) add_window(writer);
     if (options.view_check) add_view_check(writer, to_grid_lines(options));

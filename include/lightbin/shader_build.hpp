@@ -129,12 +129,20 @@ static_assert(sizeof(ShaderFootprint) == 32);
 
 namespace detail {
 
-inline constexpr const char* shader_infinity = "uintBitsToFloat(0x7f800000u)";
+/// Lines that declare `endless`, infinity. By way of a variable, as WGSL refuses it as a constant.
+inline constexpr const char* endless_lines = R"(    uint endless_bits = 0x7f800000u;
+    float endless = uintBitsToFloat(endless_bits);
+)";
 
 /// main() of a compute shader: hands its group's place and the thread's number to `$run`.
 inline void add_compute_main(ShaderWriter& writer, unsigned threads) {
     const std::string count = std::to_string(threads);
-    writer.add(writer.dialect().hlsl
+    const Dialect& dialect = writer.dialect();
+    writer.add(dialect.wgsl ? "\n@compute @workgroup_size(" + count +
+                                  ")\nfn main(@builtin(workgroup_id) group : vec3u, "
+                                  "@builtin(local_invocation_index) thread : u32) {\n"
+                                  "    $run(group.xy, thread);\n}\n"
+               : dialect.hlsl
                    ? "\n[numthreads(" + count +
                          ", 1, 1)]\nvoid main(uint3 group : SV_GroupID, uint thread : SV_GroupIndex) {\n"
                          "    $run(group.xy, thread);\n}\n"
@@ -178,7 +186,7 @@ inline void add_depth_sample(ShaderWriter& writer, const ReduceShaderOptions& op
     writer.add(std::string("\nvoid $sample(inout uvec2 range, float depth) {\n") +
                "    uint bits = floatBitsToUint(depth);\n" +
                (options.skip_background ? std::string("    if (bits == ") +
-                                              (options.reversed_z ? "0u" : "0x3f800000u") + ") return;\n"
+                                              (options.reversed_z ? "0u" : "0x3f800000u") + ") { return; }\n"
                                         : "") +
                R"(    uint low = bits;
     if ((bits & 0x7fffffffu) > 0x7f800000u) {
@@ -197,12 +205,13 @@ inline void add_depth_sample(ShaderWriter& writer, const ReduceShaderOptions& op
 /// `slope` 3u (View's depths are floats), their product and sum 2u more, e 1u (exact where it is small), a
 /// reciprocal up to 5u: 11u, and 2^-19 = 32u is allowed. Orthographic: 2^-20 of the two planes' depths.
 inline void add_view_depths(ShaderWriter& writer, const ReduceShaderOptions& options) {
-    const std::string endless = shader_infinity;
-    writer.add("\nvec2 $view_depths(uvec2 range) {\n");
+    writer.add(std::string("\nvec2 $view_depths(uvec2 range) {\n") + endless_lines);
     if (options.format == DepthFormat::float32)
         // Two units in the last place, and no denormals: no less than reduce_depth().
-        writer.add("    vec2 ends = vec2(uintBitsToFloat(range.x < 0x00800002u ? 0u : range.x - 2u), "
-                   "uintBitsToFloat(clamp(range.y + 2u, 0x00800000u, 0x3f800000u)));\n");
+        writer.add(R"(    uint first = 0u;
+    if (range.x >= 0x00800002u) { first = range.x - 2u; }
+    vec2 ends = vec2(uintBitsToFloat(first), uintBitsToFloat(clamp(range.y + 2u, 0x00800000u, 0x3f800000u)));
+)");
     else  // one step, and 2^-24 for the roundings of the texel and here
         writer.add(std::string("    float step = ") +
                    (options.format == DepthFormat::unorm24 ? "1.1920931e-7" : "1.5318642e-5") +
@@ -215,12 +224,12 @@ inline void add_view_depths(ShaderWriter& writer, const ReduceShaderOptions& opt
             "    vec2 depths = vec2($planes.x - $planes.y * e.x - $planes.z, $planes.x - $planes.y * e.y + "
             "$planes.z);\n");
     else
-        writer.add("    vec2 w = vec2($planes.x + $planes.y * e.x, $planes.x + $planes.y * e.y);\n"
-                   "    vec2 depths = vec2(1.0 / w.x * 0.999998, w.y > 0.0 ? 1.0 / w.y * 1.000002 : " +
-                   endless + ");\n");
+        writer.add(R"(    vec2 w = vec2($planes.x + $planes.y * e.x, $planes.x + $planes.y * e.y);
+    vec2 depths = vec2(1.0 / w.x * 0.999998, endless);
+    if (w.y > 0.0) { depths.y = 1.0 / w.y * 1.000002; }
+)");
     // One return, as in shader_snippet().
-    writer.add("    if (range.x > range.y) depths = vec2(" + endless + ", -" + endless +
-               ");\n    return depths;\n}\n");
+    writer.add("    if (range.x > range.y) { depths = vec2(endless, -endless); }\n    return depths;\n}\n");
 }
 
 }  // namespace detail
@@ -245,54 +254,61 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {})
     const std::string samples = std::to_string(options.samples);
     const bool compute = options.stage == ShaderStage::compute, many = options.samples > 1;
     writer.declare_opaque({"depth", ShaderResource::texture_2d, options.depth, TexelFormat::r32f, 4},
-                          many ? "Texture2DMS<float, " + samples + ">" : "Texture2D<float>",
-                          many ? "sampler2DMS" : "sampler2D");
+                          {.glsl = many ? "sampler2DMS" : "sampler2D",
+                           .hlsl = many ? "Texture2DMS<float, " + samples + ">" : "Texture2D<float>",
+                           .wgsl = many ? "texture_multisampled_2d<f32>" : "texture_2d<f32>"});
     if (compute) writer.declare_storage("z_bounds", "vec2", "writeonly", options.z_bounds, 8);
     add_depth_sample(writer, options);
     add_view_depths(writer, options);
 
     // The samples of one pixel of a tile, in the order of rows.
-    const bool hlsl = writer.dialect().hlsl;
+    const Dialect& dialect = writer.dialect();
     writer.add("\nvoid $pixel(inout uvec2 range, uvec2 first, uvec2 size, uint i) {\n"
                "    uvec2 pixel = first + uvec2(i % size.x, i / size.x);\n");
     if (options.flip_y) writer.add("    pixel.y = $grid.w - 1u - pixel.y;\n");
     writer.add(std::string("    ivec2 at = ivec2(int(pixel.x), int(pixel.y))") +
                (options.viewport_corner ? " + $corner;\n" : ";\n"));
-    if (many) writer.add("    for (int s = 0; s < " + samples + "; ++s)\n    ");
-    writer.add(std::string("    $sample(range, ") +
-               (hlsl   ? many ? "$depth.Load(at, s)" : "$depth.Load(int3(at, 0))"
-                : many ? "texelFetch($depth, at, s).x"
-                       : "texelFetch($depth, at, 0).x") +
-               ");\n}\n");
+    if (many)
+        writer.add("    for (int s = 0; s < " + samples + "; s += 1) { $sample(&range, " +
+                   (dialect.hlsl   ? "$depth.Load(at, s)"
+                    : dialect.wgsl ? "textureLoad($depth, at, s).x"
+                                   : "texelFetch($depth, at, s).x") +
+                   "); }\n}\n");
+    else
+        writer.add("    $sample(&range, " + writer.read_texel("$depth", "at") + ".x);\n}\n");
 
     const std::string area = "    uvec2 first = tile * $grid.x;\n"
                              "    uvec2 size = min(uvec2($grid.x, $grid.x), $grid.zw - first);\n"
                              "    uvec2 range = uvec2(0xffffffffu, 0u);\n";
     if (compute) {
-        writer.add("\nshared uint $low;\nshared uint $high;\n\nvoid $run(uvec2 tile, uint thread) {\n" +
-                   area +
-                   R"(    if (thread == 0u) {
-        $low = range.x;
-        $high = range.y;
+        writer.add("\n");
+        writer.declare_shared("low", 1, true);
+        writer.declare_shared("high", 1, true);
+        writer.add("\nvoid $run(uvec2 tile, uint thread) {\n" + area + "    if (thread == 0u) {\n        " +
+                   writer.store_atomic("$low", "range.x") + ";\n        " +
+                   writer.store_atomic("$high", "range.y") +
+                   R"(;
     }
     sync_group();
-    for (uint i = thread; i < size.x * size.y; i += 64u) $pixel(range, first, size, i);
-    atomicMin($low, range.x);
-    atomicMax($high, range.y);
+    for (uint i = thread; i < size.x * size.y; i += 64u) { $pixel(&range, first, size, i); }
+    atomicMin(&$low, range.x);
+    atomicMax(&$high, range.y);
     sync_group();
-    if (thread == 0u) $z_bounds[tile.y * $grid.y + tile.x] = $view_depths(uvec2($low, $high));
-}
-)");
+    if (thread == 0u) { $z_bounds[tile.y * $grid.y + tile.x] = $view_depths(uvec2()" +
+                   writer.load_atomic("$low") + ", " + writer.load_atomic("$high") + ")); }\n}\n");
         add_compute_main(writer, 64);
     } else {
         writer.add("\nvec2 $reduce(uvec2 tile) {\n" + area +
-                   "    for (uint i = 0u; i < size.x * size.y; i += 1u) $pixel(range, first, size, i);\n"
+                   "    for (uint i = 0u; i < size.x * size.y; i += 1u) { $pixel(&range, first, size, i); }\n"
                    "    return $view_depths(range);\n}\n\n");
-        writer.add(hlsl ? "float2 main(float4 position : SV_Position) : SV_Target {\n"
-                          "    return $reduce(uint2(position.xy));\n}\n"
-                        : std::string(writer.dialect().vulkan ? "layout(location = 0) " : "") +
-                              "out vec2 $z_bounds;\n\nvoid main() {\n"
-                              "    $z_bounds = $reduce(uvec2(gl_FragCoord.xy));\n}\n");
+        writer.add(dialect.wgsl
+                       ? "@fragment\nfn main(@builtin(position) position : vec4f) -> @location(0) vec2f {\n"
+                         "    return $reduce(vec2u(position.xy));\n}\n"
+                   : dialect.hlsl ? "float2 main(float4 position : SV_Position) : SV_Target {\n"
+                                    "    return $reduce(uint2(position.xy));\n}\n"
+                                  : std::string(dialect.vulkan ? "layout(location = 0) " : "") +
+                                        "out vec2 $z_bounds;\n\nvoid main() {\n"
+                                        "    $z_bounds = $reduce(uvec2(gl_FragCoord.xy));\n}\n");
     }
     return writer.finish();
 }
@@ -383,9 +399,9 @@ inline Result<ShaderText> build_shader(const BuildShaderOptions& options = {}) {
         writer.declare_constants(constants, options.grid, options.push_constants);
         writer.declare_storage("tiles", "uvec2", "", options.tiles, 8);
         writer.declare_storage("total", "uint", "writeonly", options.total, 4);
+        writer.add("\n");
+        writer.declare_shared("sums", 256, false);
         writer.add(R"(
-shared uint $sums[256];
-
 // Each thread sums a run of tiles; the sums of the runs before it are added up (Hillis, Steele 1986).
 void $run(uvec2 group, uint thread) {
     uint tiles = $grid.x * $grid.y;
@@ -393,11 +409,12 @@ void $run(uvec2 group, uint thread) {
     uint first = min(thread * each, tiles);
     uint last = min(first + each, tiles);
     uint sum = 0u;
-    for (uint i = first; i < last; i += 1u) sum += $tiles[i].y;
+    for (uint i = first; i < last; i += 1u) { sum += $tiles[i].y; }
     $sums[thread] = sum;
     sync_group();
     for (uint distance = 1u; distance < 256u; distance *= 2u) {
-        uint before = thread >= distance ? $sums[thread - distance] : 0u;
+        uint before = 0u;
+        if (thread >= distance) { before = $sums[thread - distance]; }
         sync_group();
         $sums[thread] += before;
         sync_group();
@@ -409,7 +426,7 @@ void $run(uvec2 group, uint thread) {
         $tiles[tile] = uvec2(begin, min(count, $grid.w - begin));
         offset += count;
     }
-    if (thread == 255u) $total[0] = offset;
+    if (thread == 255u) { $total[0] = offset; }
 }
 )");
         add_compute_main(writer, 256);
@@ -435,57 +452,76 @@ void $run(uvec2 group, uint thread) {
 )");
     if (depths)
         writer.add(std::string("    if (f.sphere.z - f.sphere.w > z.y") +
-                   (max_only ? "" : " || f.sphere.z + f.sphere.w < z.x") + ") met = false;\n");
+                   (max_only ? "" : " || f.sphere.z + f.sphere.w < z.x") + ") { met = false; }\n");
     if (box)
         writer.add(R"(    float x = max(max(cell.x - f.sphere.x, f.sphere.x - cell.y), 0.0);
     float y = max(max(cell.z - f.sphere.y, f.sphere.y - cell.w), 0.0);
     float d = max(max(z.x - f.sphere.z, f.sphere.z - z.y), 0.0);
-    if (x * x + y * y + d * d > f.reach2) met = false;
+    if (x * x + y * y + d * d > f.reach2) { met = false; }
 )");
-    writer.add("    return met;\n}\n\nshared uint $hits[2];\n\nvoid $run(uvec2 tile, uint thread) {\n"
+    writer.add("    return met;\n}\n\n");
+    if (box && !options.orthographic)  // the sides are slopes
+        writer.add(R"(float $least(float side, vec2 z) {
+    float depth = z.x;
+    if (side < 0.0) { depth = z.y; }
+    return side * depth - 7.5231638e-37;
+}
+
+float $greatest(float side, vec2 z) {
+    float depth = z.x;
+    if (side > 0.0) { depth = z.y; }
+    return side * depth + 7.5231638e-37;
+}
+
+)");
+    writer.declare_shared("hits", 2, true);
+    writer.add("\nvoid $run(uvec2 group, uint thread) {\n    uvec2 tile = group;\n"
                "    uint place = tile.y * $grid.x + tile.x;\n");
     if (clusters) writer.add("    uint slice = tile.y / uint($planes.z);\n    tile.y %= uint($planes.z);\n");
     std::string arguments = "tile";
     if (depths) {
         // NaN tests nothing. It is told by its bits, as compilers may take it that no float is one.
-        const std::string endless = shader_infinity, if_nan = "if ((floatBitsToUint(z.",
-                          above = ") & 0x7fffffffu) > 0x7f800000u) ";
-        writer.add(std::string("    vec2 z = $z_bounds[") + (clusters ? "slice" : "place") + "];\n    " +
-                   (max_only ? "" : if_nan + "x" + above) + "z.x = -" + endless + ";\n    " + if_nan + "y" +
-                   above + "z.y = " + endless + ";\n    bool lit = z.x <= z.y;\n");
+        const auto if_nan = [](const char* end) {
+            return "if ((floatBitsToUint(z." + std::string(end) + ") & 0x7fffffffu) > 0x7f800000u) ";
+        };
+        writer.add(endless_lines + ("    vec2 z = $z_bounds[" + std::string(clusters ? "slice" : "place")) +
+                   "];\n    " + (max_only ? "z.x = -endless;" : if_nan("x") + "{ z.x = -endless; }") +
+                   "\n    " + if_nan("y") + "{ z.y = endless; }\n    bool lit = z.x <= z.y;\n");
         arguments += ", z";
     }
     if (box) {  // see detail/cell_boxes.hpp
-        writer.add(R"(    z.x = min(z.x > $planes.x ? z.x : $planes.x, 3.4028234e38);
-    z.y = z.y < $planes.y ? z.y : $planes.y;
+        writer.add(R"(    z.x = min(max(z.x, $planes.x), 3.4028234e38);
+    z.y = min(z.y, $planes.y);
     vec4 cell = vec4($edges[tile.x], $edges[$grid.x + tile.y]);
 )");
         if (!options.orthographic)
-            writer.add(R"(    cell.x = cell.x * (cell.x < 0.0 ? z.y : z.x) - 7.5231638e-37;
-    cell.y = cell.y * (cell.y > 0.0 ? z.y : z.x) + 7.5231638e-37;
-    cell.z = cell.z * (cell.z < 0.0 ? z.y : z.x) - 7.5231638e-37;
-    cell.w = cell.w * (cell.w > 0.0 ? z.y : z.x) + 7.5231638e-37;
-)");
+            writer.add("    cell = vec4($least(cell.x, z), $greatest(cell.y, z), $least(cell.z, z), "
+                       "$greatest(cell.w, z));\n");
         arguments += ", cell";
     }
     if (fill) writer.add("    uvec2 list = $tiles[place];\n");
-    writer.add(
-        std::string("    uint count = 0u;\n    for (uint first = 0u; first < $grid.z; first += 64u) {\n") +
-        "        if (thread < 2u) $hits[thread] = 0u;\n        sync_group();\n"
-        "        uint i = first + thread;\n        bool hit = false;\n        if (" +
-        (depths ? "lit && " : "") + "i < $grid.z) hit = $meets($footprints[i], " + arguments + R"();
-        if (hit) atomicOr($hits[thread >> 5u], 1u << (thread & 31u));
+    writer.add("    uint count = 0u;\n    for (uint first = 0u; first < $grid.z; first += 64u) {\n"
+               "        if (thread < 2u) { " +
+               writer.store_atomic("$hits[thread]", "0u") + R"(; }
+        sync_group();
+        uint i = first + thread;
+        bool hit = false;
+        if ()" +
+               (depths ? "lit && " : "") + "i < $grid.z) { hit = $meets($footprints[i], " + arguments +
+               R"(); }
+        if (hit) { atomicOr(&$hits[thread >> 5u], 1u << (thread & 31u)); }
         sync_group();
 )");
+    const std::string low_hits = writer.load_atomic("$hits[0]"), high_hits = writer.load_atomic("$hits[1]");
     if (fill)
-        writer.add(R"(        uint before = (1u << (thread & 31u)) - 1u;
-        uint rank = count + uint(bitCount($hits[thread >> 5u] & before));
-        if (thread >= 32u) rank += uint(bitCount($hits[0]));
-        if (hit && rank < list.y) $lists[list.x + rank] = $footprints[i].id;
-)");
-    writer.add("        count += uint(bitCount($hits[0])) + uint(bitCount($hits[1]));\n        "
-               "sync_group();\n    }\n");
-    if (!fill) writer.add("    if (thread == 0u) $tiles[place] = uvec2(0u, count);\n");
+        writer.add(
+            "        uint before = (1u << (thread & 31u)) - 1u;\n        uint rank = count + uint(bitCount(" +
+            writer.load_atomic("$hits[thread >> 5u]") +
+            " & before));\n        if (thread >= 32u) { rank += uint(bitCount(" + low_hits +
+            ")); }\n        if (hit && rank < list.y) { $lists[list.x + rank] = $footprints[i].id; }\n");
+    writer.add("        count += uint(bitCount(" + low_hits + ")) + uint(bitCount(" + high_hits +
+               "));\n        sync_group();\n    }\n");
+    if (!fill) writer.add("    if (thread == 0u) { $tiles[place] = uvec2(0u, count); }\n");
     writer.add("}\n");
     add_compute_main(writer, 64);
     return writer.finish();

@@ -49,8 +49,10 @@ inline void add_view_check(ShaderWriter& writer, const std::string& to_grid) {
         "\n// Whether the View has a position of view space in this pixel, and not before its near plane.\n"
         "bool $check_view(uvec2 pixel, vec3 position) {\n" +
         to_grid + R"(    float depth = $depths.x * position.z;
-    vec2 at = $image.xy * position.xy / ($depths.y > 0.0 ? depth : 1.0) + $image.zw;
-    vec2 apart = abs(at - (vec2(pixel) + 0.5));
+    float w = 1.0;
+    if ($depths.y > 0.0) { w = depth; }
+    vec2 at = $image.xy * position.xy / w + $image.zw;
+    vec2 apart = abs(at - (vec2(here) + 0.5));
     return apart.x < $depths.w && apart.y < $depths.w && depth >= $depths.z;
 }
 )");
@@ -60,21 +62,22 @@ inline void add_view_check(ShaderWriter& writer, const std::string& to_grid) {
 inline void add_list_check(ShaderWriter& writer, const std::string& own) {
     const std::string cursor = "$" + own + "cursor", begin = "$" + own + "begin", next = "$" + own + "next";
     writer.add("\n// A light, and whether the pixel's list lacks it.\nstruct $missing {\n    uint id;\n    "
-               "bool lacked;\n"
-               "    bool more;\n    " +
+               "bool lacked;\n    bool more;\n    " +
+               cursor + " listed;\n};\n\n$missing $begin_missing(uvec2 pixel, float view_depth) {\n    " +
+               cursor + " listed = " + begin +
+               "(pixel, view_depth);\n    $missing m;\n    m.id = 0xffffffffu;\n    "
+               "m.lacked = false;\n    m.more = " +
+               next +
+               "(&listed);\n    m.listed = listed;\n    return m;\n}\n"
+               "\nbool $next_missing(inout $missing m, uint lights) {\n    m.id += 1u;\n    " +
                cursor +
-               " listed;\n};\n\n$missing $begin_missing(uvec2 pixel, float view_depth) {\n    $missing m;\n"
-               "    m.id = 0xffffffffu;\n    m.lacked = false;\n    m.listed = " +
-               begin + "(pixel, view_depth);\n    m.more = " + next +
-               "(m.listed);\n    return m;\n}\n\nbool $next_missing(inout $missing m, uint lights) {\n    "
-               "m.id += 1u;\n"
-               "    m.lacked = !(m.more && m.listed.id == m.id);\n    if (!m.lacked) m.more = " +
-               next + R"((m.listed);
-    return m.id < lights;
-}
-
-#define $for_each_missing(cursor, lights, pixel, view_depth) for ($missing cursor = )" +
-               "$begin_missing(pixel, view_depth); $next_missing(cursor, lights);) if (cursor.lacked)\n");
+               " listed = m.listed;\n    m.lacked = !(m.more && listed.id == m.id);\n    if (!m.lacked) { "
+               "m.more = " +
+               next + "(&listed); }\n    m.listed = listed;\n    return m.id < lights;\n}\n");
+    writer.add_macro(
+        "for_each_missing(cursor, lights, pixel, view_depth)",
+        "for ($missing cursor = $begin_missing(pixel, view_depth); $next_missing(cursor, lights);) "
+        "if (cursor.lacked)");
 }
 
 }  // namespace detail

@@ -86,11 +86,12 @@ inline void add_slice(ShaderWriter& writer, const ShaderBuffer& slices) {
         R"(;
     uint slice = min(uint(clamp(guess, 0.0, 1e9)), last);
     uint bits = floatBitsToUint(view_depth);
-    uint key = bits > 0x80000000u ? ~bits : bits | 0x80000000u;
+    uint key = bits | 0x80000000u;
+    if (bits > 0x80000000u) { key = ~bits; }
     while (slice > 0u && key < )" +
-        word("slice + 3u") + R"() slice -= 1u;
+        word("slice + 3u") + R"() { slice -= 1u; }
     while (slice < last && key >= )" +
-        word("slice + 4u") + R"() slice += 1u;
+        word("slice + 4u") + R"() { slice += 1u; }
     return slice;
 }
 )");

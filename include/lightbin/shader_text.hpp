@@ -4,6 +4,7 @@
 
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/names.hpp>
+#include <lightbin/detail/wgsl.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/texel_format.hpp>
 
@@ -25,23 +26,24 @@ enum class ShaderLanguage : std::uint8_t {
     essl_310,     ///< OpenGL ES 3.1 and later
     hlsl_5_0,     ///< shader model 5.0: Direct3D 11
     hlsl_5_1,     ///< shader models 5.1 and 6.x: Direct3D 12, and Vulkan by DXC
+    wgsl,         ///< WebGPU
 };
 
 constexpr const char* to_string(ShaderLanguage value) {
-    return detail::name_at(
-        value, {"glsl_330", "glsl_430", "glsl_vulkan", "essl_300", "essl_310", "hlsl_5_0", "hlsl_5_1"});
+    return detail::name_at(value, {"glsl_330", "glsl_430", "glsl_vulkan", "essl_300", "essl_310", "hlsl_5_0",
+                                   "hlsl_5_1", "wgsl"});
 }
 
 /// What a name in the text is bound to.
 enum class ShaderResource : std::uint8_t {
     uniform_vector,  ///< loose uniforms, in OpenGL: `grid` (uvec4), `corner` (ivec2), `image` (vec4) and the like
-    uniform_block,    ///< GLSL: std140 block; HLSL: cbuffer, register b
-    push_constants,   ///< Vulkan
-    storage_buffer,   ///< GLSL: std430 block; HLSL: StructuredBuffer, register t
-    byte_address,     ///< HLSL: ByteAddressBuffer, register t
-    texel_buffer,     ///< GLSL: buffer texture, uniform texel buffer; HLSL: Buffer, register t
-    texture_2d,       ///< read without a sampler; GLSL: NEAREST, no mipmaps
-    writable_buffer,  ///< storage buffer that is written; HLSL: RWStructuredBuffer, register u
+    uniform_block,   ///< GLSL: std140 block; HLSL: cbuffer, register b; WGSL: var<uniform>
+    push_constants,  ///< Vulkan
+    storage_buffer,  ///< GLSL: std430 block; HLSL: StructuredBuffer, register t; WGSL: var<storage, read>
+    byte_address,    ///< HLSL: ByteAddressBuffer, register t
+    texel_buffer,    ///< GLSL: buffer texture, uniform texel buffer; HLSL: Buffer, register t
+    texture_2d,  ///< read without a sampler; GLSL: NEAREST, no mipmaps; WGSL: of depth "unfilterable-float"
+    writable_buffer,  ///< storage buffer that is written; HLSL: RWStructuredBuffer, register u; WGSL: read_write
 };
 
 constexpr const char* to_string(ShaderResource value) {
@@ -49,11 +51,11 @@ constexpr const char* to_string(ShaderResource value) {
                                    "byte_address", "texel_buffer", "texture_2d", "writable_buffer"});
 }
 
-/// Where a resource is bound. GLSL: binding and set; HLSL: register number and space. OpenGL 3.3 and ES 3.0
+/// Where a resource is bound. GLSL: binding and set; HLSL: register number and space; WGSL: binding and group. OpenGL 3.3 and ES 3.0
 /// have no bindings in the text: set the sampler or block by its name.
 struct ShaderSlot {
     int binding = 0;
-    int set = 0;  ///< Vulkan and hlsl_5_1 only
+    int set = 0;  ///< Vulkan, hlsl_5_1 and wgsl only
 };
 
 /// Something to bind.
@@ -61,7 +63,7 @@ struct ShaderBinding {
     std::string name = {};  ///< of the uniform, sampler, block or buffer in the text
     ShaderResource resource = ShaderResource::uniform_vector;
     ShaderSlot slot = {};
-    TexelFormat format = TexelFormat::none;  ///< gl_format(), vk_format(), dxgi_format()
+    TexelFormat format = TexelFormat::none;  ///< gl_format(), vk_format(), dxgi_format(), webgpu_format()
     std::uint32_t stride = 0;  ///< bytes of one element or texel
     std::uint32_t bytes = 0;   ///< uniform blocks, push constants: size in the text; otherwise 0, as the data
     std::uint32_t width =
@@ -78,16 +80,19 @@ namespace detail {
 
 /// What a language has.
 struct Dialect {
-    bool hlsl, es, vulkan;
-    bool spaces;           ///< sets or register spaces
+    bool hlsl, es, vulkan, wgsl;
+    bool spaces;           ///< sets, register spaces or groups
     bool storage_buffers;  ///< and with them compute shaders, bindings in the text, findLSB
 };
 
 inline Dialect dialect(ShaderLanguage language) {
     using enum ShaderLanguage;
-    const bool hlsl = language == hlsl_5_0 || language == hlsl_5_1, vulkan = language == glsl_vulkan;
-    return {hlsl, language == essl_300 || language == essl_310, vulkan, vulkan || language == hlsl_5_1,
-            language != glsl_330 && language != essl_300};
+    return {.hlsl = language == hlsl_5_0 || language == hlsl_5_1,
+            .es = language == essl_300 || language == essl_310,
+            .vulkan = language == glsl_vulkan,
+            .wgsl = language == wgsl,
+            .spaces = language == glsl_vulkan || language == hlsl_5_1 || language == wgsl,
+            .storage_buffers = language != glsl_330 && language != essl_300};
 }
 
 /// The word of HLSL for a word of GLSL.
@@ -115,40 +120,41 @@ inline std::string_view hlsl_word(std::string_view word) {
     return word;
 }
 
-/// Returns a GLSL text in a language, `$` being the prefix. Types are declared highp in ES: a fragment
-/// shader's integers have 16 bits there otherwise, and no default precision is set, as it would reach the
+/// Returns a text in GLSL or HLSL, but for the prefix. `&` before a name is WGSL's. Types are declared highp in ES: a
+/// fragment shader's integers have 16 bits there otherwise, and no default precision is set, as it would reach the
 /// user's code.
-inline std::string translate(const Dialect& dialect, std::string_view prefix, std::string_view glsl) {
+inline std::string translate(const Dialect& dialect, std::string_view glsl) {
     constexpr std::string_view types[] = {"uint", "uvec2", "uvec4", "ivec2",      "int",       "float",
                                           "vec2", "vec3",  "vec4",  "usampler2D", "sampler2D", "sampler2DMS"};
-    const auto of_a_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
     std::string text;
     for (std::size_t at = 0; at < glsl.size();) {
-        std::size_t end = at;
-        while (end < glsl.size() && of_a_name(glsl[end]))
-            ++end;
-        const std::string_view word = glsl.substr(at, end - at);
+        const std::string_view word = word_at(glsl, at);
+        at += word.size();
         if (word.empty()) {
-            const char c = glsl[at++];
-            if (c == '$') {
-                text += prefix;
-                for (; at < glsl.size() && of_a_name(glsl[at]); ++at)
-                    text += glsl[at];
-            } else {
-                text += c;
-            }
+            const char sign = glsl[at++];
+            if (sign != '&' || word_at(glsl, at).empty()) text += sign;
             continue;
         }
-        const bool declares = end < glsl.size() && glsl[end] != '(';
+        const bool declares = at < glsl.size() && glsl[at] != '(';
         if (dialect.es && declares)
             for (const std::string_view type : types)
                 if (word == type) text += "highp ";
         text += dialect.hlsl           ? hlsl_word(word)
                 : word == "sync_group" ? std::string_view("memoryBarrierShared();\n    barrier")
                                        : word;
-        at = end;
     }
     return text;
+}
+
+/// Puts the prefix where `$` stands.
+inline std::string with_prefix(std::string_view text, std::string_view prefix) {
+    std::string result;
+    for (const char c : text)
+        if (c == '$')
+            result += prefix;
+        else
+            result += c;
+    return result;
 }
 
 /// A buffer of uint or uvec2 that a shader reads.
@@ -167,6 +173,11 @@ struct ShaderConstant {
     const char* name;
 };
 
+/// A type that each language has its own name for.
+struct OpaqueType {
+    std::string glsl = {}, hlsl = {}, wgsl = {};
+};
+
 /// Puts a text together in one language.
 class ShaderWriter {
 public:
@@ -175,34 +186,41 @@ public:
 
     const Dialect& dialect() const { return dialect_; }
 
-    void add(std::string_view glsl) { shader_.text += translate(dialect_, prefix_, glsl); }
+    /// Adds text in GLSL, see detail/wgsl.hpp; `$` stands for the prefix, `&` before a name for a variable that is handed
+    /// over to be written.
+    void add(std::string_view glsl) { shader_.text += glsl; }
+
+    /// A macro, where the language has them.
+    void add_macro(const std::string& call, const std::string& text) {
+        if (!dialect_.wgsl) add("\n#define $" + call + " " + text + "\n");
+    }
 
     /// Declares a read-only buffer and lists it among the bindings.
     void declare(const ShaderBuffer& buffer) {
         const bool pairs = buffer.format == TexelFormat::rg32ui;
         const std::string name = "$" + buffer.name, type = pairs ? "uvec2" : "uint";
         const std::uint32_t stride = pairs ? 8 : 4;
-        if (buffer.resource == ShaderResource::uniform_block)
-            return add_block(buffer.name + "_block",
-                             "    uvec4 " + name + "[" + std::to_string(buffer.vectors) + "];\n", buffer.slot,
-                             false, buffer.vectors * 16);
+        if (buffer.resource == ShaderResource::uniform_block) return declare_vectors(buffer);
         if (buffer.resource == ShaderResource::storage_buffer)
             return declare_storage(buffer.name, type, "readonly", buffer.slot, stride);
         if (buffer.resource == ShaderResource::byte_address)
             return declare_opaque({buffer.name, buffer.resource, buffer.slot, TexelFormat::none, stride},
-                                  "ByteAddressBuffer", "");
+                                  {.hlsl = "ByteAddressBuffer"});
         const bool texture = buffer.resource == ShaderResource::texture_2d;
         declare_opaque({buffer.name, buffer.resource, buffer.slot, buffer.format, texel_bytes(buffer.format),
                         0, texture ? buffer.width : 0},
-                       (texture ? "Texture2D<" : "Buffer<") + type + ">",
-                       texture ? "usampler2D" : "usamplerBuffer");
+                       {.glsl = texture ? "usampler2D" : "usamplerBuffer",
+                        .hlsl = (texture ? "Texture2D<" : "Buffer<") + type + ">",
+                        .wgsl = "texture_2d<u32>"});
     }
 
-    /// Declares a read-only resource of a type that each language has its own name for. `binding` has its name
-    /// without the prefix.
-    void declare_opaque(ShaderBinding binding, const std::string& hlsl, const std::string& glsl) {
-        add(dialect_.hlsl ? hlsl + " $" + binding.name + hlsl_register(binding.slot, 't') + ";\n"
-                          : layout("", binding.slot) + "uniform " + glsl + " $" + binding.name + ";\n");
+    /// Declares a read-only resource. `binding` has its name without the prefix.
+    void declare_opaque(ShaderBinding binding, const OpaqueType& type) {
+        const std::string name = " $" + binding.name;
+        add((dialect_.hlsl   ? type.hlsl + name + hlsl_register(binding.slot, 't')
+             : dialect_.wgsl ? layout("", binding.slot) + "var" + name + " : " + type.wgsl
+                             : layout("", binding.slot) + "uniform " + type.glsl + name) +
+            ";\n");
         bind(std::move(binding));
     }
 
@@ -237,20 +255,29 @@ public:
 
     /// The same of a texture_2d, at "x, y".
     std::string read_texel(const ShaderBuffer& buffer, const std::string& texel) const {
-        return (dialect_.hlsl ? "$" + buffer.name + ".Load(int3(" + texel + ", 0))"
-                              : "texelFetch($" + buffer.name + ", ivec2(" + texel + "), 0)") +
+        return read_texel("$" + buffer.name, "ivec2(" + texel + ")") +
                (buffer.format == TexelFormat::rg32ui ? ".xy" : ".x");
+    }
+
+    /// The expression that reads a texel of a texture, at an ivec2.
+    std::string read_texel(const std::string& texture, const std::string& at) const {
+        return dialect_.hlsl   ? texture + ".Load(int3(" + at + ", 0))"
+               : dialect_.wgsl ? "textureLoad(" + texture + ", " + at + ", 0)"
+                               : "texelFetch(" + texture + ", " + at + ", 0)";
     }
 
     /// Declares constants that the CPU sets, each at the next multiple of 16 bytes: uniforms in OpenGL, one
     /// block named after the first elsewhere.
     void declare_constants(const std::vector<ShaderConstant>& constants, ShaderSlot slot, bool push) {
-        const bool block = dialect_.hlsl || dialect_.vulkan;
+        const bool block = dialect_.hlsl || dialect_.vulkan || dialect_.wgsl;
+        const std::string name = std::string(constants.front().name) + "_block";
         std::string lines;
         for (const ShaderConstant& constant : constants) {
-            const std::string line = std::string(constant.type) + " $" + constant.name + ";";
+            const std::string own = constant.name,
+                              line = std::string(constant.type) + (dialect_.wgsl ? " " : " $") + own + ";";
             if (block) {
                 lines += "    " + line + "\n";
+                members_.push_back({"$" + own, "$" + name + "." + own});
                 continue;
             }
             add("uniform " + line + "\n");
@@ -258,7 +285,6 @@ public:
             bind({.name = constant.name, .stride = bytes, .bytes = bytes});
         }
         if (!block) return;
-        const std::string name = std::string(constants.front().name) + "_block";
         const auto bytes = static_cast<std::uint32_t>(16 * constants.size());
         add_block(name, lines, slot, push, bytes);
     }
@@ -267,19 +293,44 @@ public:
     void declare_storage(const std::string& name, const std::string& type, std::string_view access,
                          ShaderSlot slot, std::uint32_t stride) {
         const bool writable = access != "readonly";
-        if (dialect_.hlsl)
+        if (dialect_.wgsl)
+            add(layout("", slot) + "var<storage, " + (writable ? "read_write" : "read") + "> $" + name +
+                " : array<" + type + ">;\n");
+        else if (dialect_.hlsl)
             add((writable ? "RWStructuredBuffer<" : "StructuredBuffer<") + type + "> $" + name +
                 hlsl_register(slot, writable ? 'u' : 't') + ";\n");
         else
             add(layout("std430", slot) + std::string(access) + (access.empty() ? "" : " ") + "buffer $" +
                 name + "_block {\n    " + type + " $" + name + "[];\n};\n");
-        bind({name + (dialect_.hlsl ? "" : "_block"),
+        bind({name + (dialect_.hlsl || dialect_.wgsl ? "" : "_block"),
               writable ? ShaderResource::writable_buffer : ShaderResource::storage_buffer, slot,
               TexelFormat::none, stride});
     }
 
+    /// Declares what the threads of a group share: a uint, or `count` of them. What is atomic is read and written by the
+    /// functions below, and by GLSL's.
+    void declare_shared(const std::string& name, int count, bool atomic) {
+        const std::string places = std::to_string(count), type = atomic ? "atomic<uint>" : "uint";
+        if (dialect_.wgsl)
+            add("var<workgroup> $" + name + " : " +
+                (count == 1 ? type : "array<" + type + ", " + places + ">") + ";\n");
+        else
+            add("shared uint $" + name + (count == 1 ? "" : "[" + places + "]") + ";\n");
+    }
+
+    std::string load_atomic(const std::string& place) const {
+        return dialect_.wgsl ? "atomicLoad(&" + place + ")" : place;
+    }
+
+    std::string store_atomic(const std::string& place, const std::string& value) const {
+        return dialect_.wgsl ? "atomicStore(&" + place + ", " + value + ")" : place + " = " + value;
+    }
+
     /// Returns the text, or an Error if two of its resources are bound to one slot.
     Result<ShaderText> finish() {
+        shader_.text = with_prefix(dialect_.wgsl ? WgslTranslation(shader_.text, members_).text()
+                                                 : translate(dialect_, shader_.text),
+                                   prefix_);
         for (const ShaderBinding& a : shader_.bindings)
             for (const ShaderBinding& b : shader_.bindings)
                 if (&a < &b && same_place(a, b))
@@ -289,7 +340,20 @@ public:
     }
 
 private:
+    /// A buffer in a block: as vectors, since elements of arrays take 16 bytes there.
+    void declare_vectors(const ShaderBuffer& buffer) {
+        const std::string name = "$" + buffer.name, count = std::to_string(buffer.vectors);
+        const std::uint32_t bytes = 16 * buffer.vectors;
+        if (!dialect_.wgsl)
+            return add_block(buffer.name + "_block", "    uvec4 " + name + "[" + count + "];\n", buffer.slot,
+                             false, bytes);
+        add(layout("", buffer.slot) + "var<uniform> " + name + " : array<vec4u, " + count + ">;\n");
+        bind({buffer.name, ShaderResource::uniform_block, buffer.slot, TexelFormat::none, bytes, bytes});
+    }
+
     std::string layout(const std::string& packing, ShaderSlot slot) const {
+        if (dialect_.wgsl)
+            return "@group(" + std::to_string(slot.set) + ") @binding(" + std::to_string(slot.binding) + ") ";
         std::string inside = packing;
         const auto item = [&](const char* key, int value) {
             inside += (inside.empty() ? "" : ", ") + std::string(key) + " = " + std::to_string(value);
@@ -319,16 +383,20 @@ private:
 
     void add_block(const std::string& name, const std::string& lines, ShaderSlot slot, bool push,
                    std::uint32_t bytes) {
-        add(push            ? "layout(push_constant) uniform $" + name
-            : dialect_.hlsl ? "cbuffer $" + name + hlsl_register(slot, 'b')
-                            : layout("std140", slot) + "uniform $" + name);
-        add(" {\n" + lines + "};\n");
+        if (dialect_.wgsl)
+            add("struct $" + name + "_members {\n" + lines + "}\n" + layout("", slot) + "var<uniform> $" +
+                name + " : $" + name + "_members;\n");
+        else
+            add((push            ? "layout(push_constant) uniform $" + name
+                 : dialect_.hlsl ? "cbuffer $" + name + hlsl_register(slot, 'b')
+                                 : layout("std140", slot) + "uniform $" + name) +
+                " {\n" + lines + "};\n");
         bind({name, push ? ShaderResource::push_constants : ShaderResource::uniform_block, slot,
               TexelFormat::none, bytes, bytes});
     }
 
-    /// Vulkan has one row of bindings a set; elsewhere each kind has its own, and a text without bindings has
-    /// none to clash.
+    /// Vulkan has one row of bindings a set, WebGPU a group; elsewhere each kind has its own, and a text without bindings
+    /// has none to clash.
     bool same_place(const ShaderBinding& a, const ShaderBinding& b) const {
         const auto kind = [&](const ShaderBinding& binding) {
             switch (binding.resource) {
@@ -350,13 +418,14 @@ private:
         };
         const int kind_a = kind(a), kind_b = kind(b);
         return dialect_.storage_buffers && kind_a != 0 && kind_b != 0 &&
-               (dialect_.vulkan || kind_a == kind_b) && a.slot.binding == b.slot.binding &&
+               (dialect_.vulkan || dialect_.wgsl || kind_a == kind_b) && a.slot.binding == b.slot.binding &&
                a.slot.set == b.slot.set;
     }
 
     Dialect dialect_;
     std::string prefix_;
-    ShaderText shader_;
+    ShaderText shader_;  // its text in GLSL until finish()
+    std::vector<WgslName> members_;
 };
 
 }  // namespace detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The texels of textures and buffer textures, by the numbers that OpenGL, Vulkan and DXGI have for them.
+// The texels of textures and buffer textures, by the numbers that OpenGL, Vulkan and DXGI have for them, and WebGPU's names.
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
@@ -44,6 +44,12 @@ constexpr std::uint32_t vk_format(TexelFormat format) {
 /// DXGI_FORMAT_R8_UINT and so on; `none` is DXGI_FORMAT_UNKNOWN.
 constexpr std::uint32_t dxgi_format(TexelFormat format) {
     constexpr std::uint32_t formats[] = {0, 62, 57, 42, 17, 41};
+    return formats[static_cast<std::size_t>(format)];
+}
+
+/// A GPUTextureFormat: "r8uint" and so on; `none` is empty.
+constexpr const char* webgpu_format(TexelFormat format) {
+    constexpr const char* formats[] = {"", "r8uint", "r16uint", "r32uint", "rg32uint", "r32float"};
     return formats[static_cast<std::size_t>(format)];
 }
 

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// From the GLSL that the shader texts are written in to WGSL. It knows what they need, not all of GLSL: a declaration
+// holds one name, every branch and loop has braces, nothing is assigned to a parameter but through `inout`, no `?:`.
+#pragma once
+
+#include <lightbin/detail/flavour.hpp>
+
+#include <cctype>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <lightbin/detail/warnings_off.inl>
+
+namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
+
+/// A character of a name or number. `$` stands for the prefix.
+inline bool in_word(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '$';
+}
+
+/// The word that begins at `at`; empty if none does.
+inline std::string_view word_at(std::string_view text, std::size_t at) {
+    std::size_t end = at;
+    while (end < text.size() && in_word(text[end]))
+        ++end;
+    return text.substr(at, end - at);
+}
+
+/// The type of WGSL for one of GLSL, or nothing where the word is none.
+inline std::string_view wgsl_type(std::string_view word) {
+    static constexpr std::string_view types[][2] = {
+        {"bool", "bool"},   {"int", "i32"},     {"uint", "u32"},   {"float", "f32"},  {"ivec2", "vec2i"},
+        {"uvec2", "vec2u"}, {"uvec4", "vec4u"}, {"vec2", "vec2f"}, {"vec3", "vec3f"}, {"vec4", "vec4f"},
+    };
+    for (const auto& [glsl, wgsl] : types)
+        if (word == glsl) return wgsl;
+    return {};
+}
+
+/// The word of WGSL for any other one.
+inline std::string_view wgsl_word(std::string_view word) {
+    static constexpr std::string_view words[][2] = {
+        {"findLSB", "firstTrailingBit"},     {"bitCount", "countOneBits"},
+        {"floatBitsToUint", "bitcast<u32>"}, {"uintBitsToFloat", "bitcast<f32>"},
+        {"sync_group", "workgroupBarrier"},
+    };
+    for (const auto& [glsl, wgsl] : words)
+        if (word == glsl) return wgsl;
+    return word;
+}
+
+/// A name of the text that WGSL reads in another way: a constant is a member of its block.
+struct WgslName {
+    std::string glsl, wgsl;
+};
+
+class WgslTranslation {
+public:
+    WgslTranslation(std::string_view glsl, const std::vector<WgslName>& names) : glsl_(glsl), names_(names) {
+        while (at_ < glsl_.size())
+            if (const std::string_view word = word_at(glsl_, at_); word.empty())
+                take_sign(glsl_[at_++]);
+            else
+                take_word(word);
+    }
+
+    const std::string& text() const { return wgsl_; }
+
+private:
+    void take_sign(char sign) {
+        if (sign == '/' && glsl_.substr(at_).starts_with('/')) {  // a comment, whose words are no code
+            const std::size_t end = glsl_.find('\n', at_);
+            wgsl_ += glsl_.substr(at_ - 1, end - at_ + 1);
+            at_ = end;
+            return;
+        }
+        if (sign == '{') ++depth_;
+        if (sign == '}') in_struct_ = --depth_ > 0 && in_struct_;
+        // A pointer is handed on as it is.
+        if (sign == '&' && is_pointer(word_at(glsl_, at_))) {
+            const std::string_view word = word_at(glsl_, at_);
+            wgsl_ += word;
+            at_ += word.size();
+            return;
+        }
+        wgsl_ += sign == ';' && in_struct_ ? ',' : sign;
+        if (sign == ')' && in_parameters_) {
+            in_parameters_ = false;
+            if (!result_.empty()) wgsl_ += " -> " + result_;
+        }
+    }
+
+    void take_word(std::string_view word) {
+        at_ += word.size();
+        if (word == "struct") in_struct_ = true;
+        if (word == "inout") {
+            by_pointer_ = true;
+            ++at_;
+            return;
+        }
+        const std::string_view type = wgsl_type(word);
+        const std::string_view name = at_ < glsl_.size() && glsl_[at_] == ' ' ? word_at(glsl_, at_ + 1) : "";
+        if ((!type.empty() || word == "void" || word.starts_with('$')) && !name.empty()) {
+            at_ += 1 + name.size();
+            declare(type.empty() && word != "void" ? word : type, name);
+        } else if (is_pointer(word) && !wgsl_.ends_with('.')) {
+            wgsl_ += "(*" + std::string(word) + ")";
+        } else {
+            wgsl_ += type.empty() ? wgsl_word(renamed(word)) : type;
+        }
+    }
+
+    void declare(std::string_view type, std::string_view name) {
+        const std::string what(type);
+        if (in_struct_) {
+            wgsl_ += std::string(name) + " : " + what;
+        } else if (in_parameters_) {
+            wgsl_ += std::string(name) + " : " + (by_pointer_ ? "ptr<function, " + what + ">" : what);
+            if (by_pointer_) pointers_.push_back(name);
+            by_pointer_ = false;
+        } else if (depth_ == 0) {
+            wgsl_ += "fn " + std::string(name);
+            result_ = what;
+            in_parameters_ = true;
+            pointers_.clear();
+        } else {
+            wgsl_ += "var " + std::string(name) + " : " + what;
+        }
+    }
+
+    bool is_pointer(std::string_view word) const {
+        for (const std::string_view pointer : pointers_)
+            if (word == pointer) return true;
+        return false;
+    }
+
+    std::string_view renamed(std::string_view word) const {
+        for (const WgslName& name : names_)
+            if (word == name.glsl) return name.wgsl;
+        return word;
+    }
+
+    std::string_view glsl_;
+    const std::vector<WgslName>& names_;
+    std::string wgsl_, result_;
+    std::vector<std::string_view> pointers_;  // the inout parameters of the function
+    std::size_t at_ = 0;
+    int depth_ = 0;
+    bool in_struct_ = false, in_parameters_ = false, by_pointer_ = false;
+};
+
+}  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
+
+#include <lightbin/detail/warnings_on.inl>
