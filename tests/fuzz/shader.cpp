@@ -57,11 +57,12 @@ std::string take_prefix(Bytes& bytes) {
 /// What the languages have.
 struct Language {
     explicit Language(ShaderLanguage language)
-        : hlsl(language >= ShaderLanguage::hlsl_5_0), vulkan(language == ShaderLanguage::glsl_vulkan),
+        : hlsl(language == ShaderLanguage::hlsl_5_0 || language == ShaderLanguage::hlsl_5_1),
+          vulkan(language == ShaderLanguage::glsl_vulkan), wgsl(language == ShaderLanguage::wgsl),
           old(language == ShaderLanguage::glsl_330 || language == ShaderLanguage::essl_300),
           es(language == ShaderLanguage::essl_300 || language == ShaderLanguage::essl_310),
-          sets(vulkan || language == ShaderLanguage::hlsl_5_1) {}
-    bool hlsl, vulkan;
+          sets(vulkan || wgsl || language == ShaderLanguage::hlsl_5_1) {}
+    bool hlsl, vulkan, wgsl;
     bool old;  ///< no compute shaders and storage buffers, and no bindings in the text
     bool es, sets;
 };
@@ -113,7 +114,11 @@ const std::string language_words =
     " float vec3 void uint2 uint4 int2 float3 cbuffer register StructuredBuffer Texture2D inout"
     " static Buffer in out usampler2D usamplerBuffer utextureBuffer ByteAddressBuffer utexture2D vk"
     " push_constant ConstantBuffer flat precision mediump main shared groupshared writeonly vec2"
-    " vec4 float2 float4 sampler2D sampler2DMS Texture2DMS RWStructuredBuffer SV_Target ";
+    " vec4 float2 float4 sampler2D sampler2DMS Texture2DMS RWStructuredBuffer SV_Target"
+    " enable subgroups diagnostic group binding var storage read read_write array texture_2d "
+    "texture_multisampled_2d"
+    " fn u32 f32 vec2u vec4u vec2i vec2f vec3f vec4f workgroup atomic compute fragment workgroup_size "
+    "location ";
 
 /// Brackets pair; names at the outermost level, and those of members that blocks put there, have the prefix.
 void check_text(const std::string& text, const std::string& prefix) {
@@ -169,7 +174,7 @@ void check_bindings(const ShaderText& made, const Question& question) {
     const std::string& text = made.text;
     std::vector<Wanted> wanted;
     const auto bytes = static_cast<std::uint32_t>(16 * question.constants.size());
-    const bool block = language.hlsl || language.vulkan;
+    const bool block = language.hlsl || language.vulkan || language.wgsl;
     if (block) wanted.push_back({question.constants.front(), question.constants_slot, bytes});
     for (std::size_t i = 0; i < question.constants.size() && !block; ++i)
         wanted.push_back({question.constants[i], {}, question.constants[i] == "corner" ? 8u : 16u});
@@ -206,14 +211,15 @@ void check_bindings(const ShaderText& made, const Question& question) {
             continue;
         }
         const std::string place = language.hlsl     ? number + (language.sets ? ", space" + set : "") + ")"
+                                  : language.wgsl   ? "@group(" + set + ") @binding(" + number + ") var"
                                   : language.vulkan ? "set = " + set + ", binding = " + number + ")"
                                                     : "binding = " + number + ")";
         const std::size_t found = line.find(place);
         require(found != std::string::npos, "bound elsewhere", text);
         // A kind of its own: HLSL's letter before the number; OpenGL's kinds of objects.
-        const std::string kind = language.vulkan ? ""
-                                 : language.hlsl ? line.substr(found - 1, 1)
-                                                 : line.substr(0, line.find("binding"));
+        const std::string kind = language.vulkan || language.wgsl ? ""
+                                 : language.hlsl                  ? line.substr(found - 1, 1)
+                                                                  : line.substr(0, line.find("binding"));
         require(places.insert(kind + place).second, "two of them in one place", text);
     }
 }
@@ -249,7 +255,7 @@ void check(const Result<ShaderText>& made, Question question) {
 void fuzz_snippet(Bytes& bytes) {
     ShaderOptions options;
     Question question;
-    options.language = take_enum(bytes, ShaderLanguage::hlsl_5_1);
+    options.language = take_enum(bytes, ShaderLanguage::wgsl);
     options.storage = take_enum(bytes, ListStorage::byte_address);
     options.format.encoding = take_enum(bytes, ListEncoding::bitmask);
     options.format.ids = static_cast<IdWidth>(1u << bytes.byte() % 3);
@@ -289,7 +295,8 @@ void fuzz_snippet(Bytes& bytes) {
         if (condition) question.reasons.insert(code);
     };
     refuse_if(options.storage == ListStorage::storage_buffer && language.old, ErrorCode::no_storage_buffers);
-    refuse_if(options.storage == ListStorage::texel_buffer && language.es, ErrorCode::no_texel_buffers);
+    refuse_if(options.storage == ListStorage::texel_buffer && (language.es || language.wgsl),
+              ErrorCode::no_texel_buffers);
     refuse_if(options.storage == ListStorage::byte_address && !language.hlsl,
               ErrorCode::no_byte_address_buffers);
     refuse_if(options.wave_loop && (language.old || options.language == ShaderLanguage::hlsl_5_0),
@@ -325,10 +332,11 @@ void fuzz_snippet(Bytes& bytes) {
     question.wanted.push_back({"lists", options.lists});
     if (sliced) question.wanted.push_back({"slices", options.slices});
     if (binned) question.wanted.push_back({"bins", options.bins});
-    question.names = {"tile", "cursor", "begin", "next", "for_each_light"};
+    question.names = {"tile", "cursor", "begin", "next"};
+    if (!language.wgsl) question.names.push_back("for_each_light");
     if (options.heat_map) question.names.insert(question.names.end(), {"count", "heat"});
     if (options.view_check) question.names.push_back("check_view(");
-    if (options.list_check) question.names.push_back("for_each_missing(");
+    if (options.list_check) question.names.push_back(language.wgsl ? "next_missing(" : "for_each_missing(");
     if (options.window) question.names.push_back("window(");
     question.view_check = options.view_check;
     question.view_slot = options.view;
@@ -338,7 +346,7 @@ void fuzz_snippet(Bytes& bytes) {
 void fuzz_reduction(Bytes& bytes) {
     ReduceShaderOptions options;
     Question question;
-    options.language = take_enum(bytes, ShaderLanguage::hlsl_5_1);
+    options.language = take_enum(bytes, ShaderLanguage::wgsl);
     options.stage = take_enum(bytes, ShaderStage::fragment);
     options.format = take_enum(bytes, DepthFormat::unorm16);
     options.samples = static_cast<int>(bytes.byte() % 12) - 1;
@@ -367,7 +375,7 @@ void fuzz_reduction(Bytes& bytes) {
 void fuzz_build(Bytes& bytes) {
     BuildShaderOptions options;
     Question question;
-    options.language = take_enum(bytes, ShaderLanguage::hlsl_5_1);
+    options.language = take_enum(bytes, ShaderLanguage::wgsl);
     options.pass = take_enum(bytes, BuildPass::fill);
     options.depth_test = take_enum(bytes, DepthTest::split_box);
     const unsigned flags = bytes.byte();

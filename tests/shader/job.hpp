@@ -56,6 +56,7 @@ inline std::string version_line(lightbin::ShaderLanguage language) {
                                      "#version 300 es\n",
                                      "#version 310 es\n",
                                      "",
+                                     "",
                                      ""};
     return lines[static_cast<int>(language)];
 }

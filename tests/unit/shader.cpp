@@ -53,7 +53,7 @@ TEST_CASE("each option brings its own lines and no others") {
     CHECK(!has(texture, "0xffff"));  // an R16UI texture is already one id a texel
 
     CHECK(has(text_of({.format = {.ids = IdWidth::u16}}), "0xffff"));
-    CHECK(has(text_of({.flip_y = true}), "pixel.y ="));
+    CHECK(has(text_of({.flip_y = true}), "here.y ="));
     CHECK(has(text_of({.viewport_corner = true}), "lightbin_corner"));
     CHECK(has(text_of({.slicing = Slicing::clusters}), "lightbin_slice(view_depth)"));
     CHECK(!has(text_of({.slicing = Slicing::clusters}), "bins"));
@@ -135,6 +135,11 @@ TEST_CASE("a wrong option set is refused with a sentence that names the limit") 
     CHECK(has(refusal({.language = ShaderLanguage::hlsl_5_0, .tiles = {0, 1}}), "set"));
     CHECK(has(refusal({.tiles = {1}}), "binding 1"));
     CHECK(has(refusal({.push_constants = true}), "Vulkan"));
+    CHECK(has(refusal({.language = ShaderLanguage::wgsl, .push_constants = true}), "Vulkan"));
+    CHECK(
+        has(refusal({.language = ShaderLanguage::wgsl, .storage = ListStorage::texel_buffer}), "texture_2d"));
+    CHECK(has(refusal({.language = ShaderLanguage::wgsl, .storage = ListStorage::byte_address}), "HLSL"));
+    CHECK(has(refusal({.language = ShaderLanguage::wgsl, .grid = {0}}), "binding 0"));  // where the tiles are
     CHECK(has(refusal({.storage = ListStorage::texture_2d, .texture_width = 16385}), "16384"));
     CHECK(has(refusal({.tile_size = -1}), "-1"));
     CHECK(has(refusal({.storage = ListStorage::uniform_block, .slicing = Slicing::clusters, .max_tiles = 9, .max_entries = 9}),
@@ -144,12 +149,14 @@ TEST_CASE("a wrong option set is refused with a sentence that names the limit") 
 }
 
 TEST_CASE("every name declared carries the prefix") {
-    for (const ShaderLanguage language : {ShaderLanguage::glsl_430, ShaderLanguage::hlsl_5_0}) {
+    for (const ShaderLanguage language :
+         {ShaderLanguage::glsl_430, ShaderLanguage::hlsl_5_0, ShaderLanguage::wgsl}) {
         const std::string text = text_of({.language = language, .heat_map = true, .prefix = "my_"});
         CHECK(!has(text, "lightbin"));
         for (const char* name : {"my_grid", "my_tiles", "my_lists", "my_cursor ", "my_begin(", "my_next(",
-                                 "my_for_each_light(", "my_count(", "my_heat("})
+                                 "my_count(", "my_heat("})
             CHECK(has(text, name));
+        CHECK(has(text, "my_for_each_light(") == (language != ShaderLanguage::wgsl));  // which has no macros
     }
 }
 
@@ -195,11 +202,11 @@ TEST_CASE("shader_slices: the guess of a law is right but beside its boundaries"
 TEST_CASE("reduction and build shaders: what is off leaves no line, what can't be is refused") {
     const auto reduction = [](const ReduceShaderOptions& options) { return reduce_shader(options); };
     const std::string plain = reduction({})->text;
-    for (const char* absent : {"corner", "pixel.y =", "sampler2DMS", "== 0x3f800000u) return", "#version"})
+    for (const char* absent : {"corner", "pixel.y =", "sampler2DMS", "== 0x3f800000u) { return", "#version"})
         CHECK(!has(plain, absent));
     CHECK(has(reduction({.samples = 4})->text, "sampler2DMS"));
-    CHECK(has(reduction({.skip_background = true})->text, "== 0x3f800000u) return"));
-    CHECK(has(reduction({.reversed_z = true, .skip_background = true})->text, "== 0u) return"));
+    CHECK(has(reduction({.skip_background = true})->text, "== 0x3f800000u) { return"));
+    CHECK(has(reduction({.reversed_z = true, .skip_background = true})->text, "== 0u) { return"));
     CHECK(has(reduction({.language = ShaderLanguage::glsl_330}).error().message(), "compute"));
     CHECK(has(reduction({.samples = 9}).error().message(), "1 to 8"));
     CHECK(has(reduction({.language = ShaderLanguage::essl_300, .stage = ShaderStage::fragment, .samples = 4})
