@@ -30,7 +30,7 @@
 //      bindings list. docs/README.md leads to the steps, API by API.
 //
 // This header includes steps 1 to 4. What else there is, one include each:
-//   shader.hpp        the shader text that reads the lists, in GLSL and HLSL
+//   shader.hpp        the shader text that reads the lists, in GLSL, HLSL and WGSL
 //   encode.hpp        the lists in other forms: 8-bit ids, sentinel-terminated lists, bitmasks
 //   shader_build.hpp  shaders that do the same as steps 2 and 3 on the GPU
 //   advise.hpp        which tile size and options? advise(view, lights, costs[, bounds]) measures them

@@ -391,6 +391,13 @@ float $window(float apart, float range) {
 ///
 ///     lightbin_for_each_light(light, uvec2(gl_FragCoord.xy), depth) { colour += shade(light.id, position); }
 ///
+/// but for WGSL, which has no macros: there the loops are written out, and the second function takes a pointer.
+///
+///     var light = lightbin_begin(vec2u(pixel.xy), depth);
+///     while (lightbin_next(&light)) { colour += shade(light.id, position); }
+///     var other = lightbin_begin_missing(vec2u(pixel.xy), depth);
+///     while (lightbin_next_missing(&other, light_count)) { if (other.lacked) { ... } }
+///
 /// view_depth is the depth of what is lit, as in Slices; it is read with slicing only. With clusters the list is
 /// that of the tile in the depth's slice; with z_bins that of the tile from the least to the greatest rank of the
 /// depth's bin.
@@ -400,7 +407,7 @@ float $window(float apart, float range) {
 /// outside of the table of tiles that `grid` tells of is read. Tiles and lists must be of one build: a table that
 /// points beyond the lists reads there what the graphics API has it read (Direct3D: 0; OpenGL, Vulkan: robust access is
 /// a setting). Ids come in ascending order, each once. With wave_loop no `else` can follow the body, and what depends
-/// on the id alone is the same in the whole wave; `begin` and `next` then give the wave's lights, and cursor.own tells
+/// on the id alone is the same in the whole wave (WGSL: the text goes first in its module); `begin` and `next` then give the wave's lights, and cursor.own tells
 /// whether one is the lane's own.
 ///
 /// Two checks, to colour what is wrong:

@@ -222,7 +222,7 @@ std::uint64_t UNIT() {
          {View::from_projection(opengl, viewport), View::from_projection(reversed, viewport, upper),
           View::from_projection(infinite, viewport), View::from_projection(orthographic, viewport)})
         use_view(hash, value_of(view));
-    for (const ShaderLanguage language : {ShaderLanguage::glsl_430, ShaderLanguage::hlsl_5_0})
+    for (const ShaderLanguage language : {ShaderLanguage::glsl_430, ShaderLanguage::hlsl_5_0, ShaderLanguage::wgsl})
         for (const IdWidth ids : {IdWidth::u16, IdWidth::u32}) {
             const Result<ShaderText> shader = shader_snippet({.language = language, .format = {.ids = ids}});
             for (const char letter : value_of(shader).text)

@@ -48,8 +48,9 @@ extern ThreadPool pool;
 
 extern std::span<lightbin::ListRange> mapped_ranges;
 extern std::span<std::uint32_t> mapped_ids;
-extern int tile_buffer, list_buffer, constant_buffer;
-extern const std::string vertex_text, your_fragment_text, your_pixel_shader;
+extern int tile_buffer, list_buffer, constant_buffer, footprints_buffer;
+extern const std::string vertex_text, your_fragment_text, your_pixel_shader, your_wgsl;
+template <class... Arguments> void add_compute_pass(Arguments&&... arguments);
 GLuint link(const std::string& vertex, const std::string& fragment);
 extern GLuint program, ranges_buffer, ids_buffer, ranges_texture, ids_texture;
 
