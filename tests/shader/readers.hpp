@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Every form of the snippet, a shader around each that tells what every pixel reads, and what it must be.
+// Every form of the snippet, and runs of them: what every pixel reads is known.
 #pragma once
 
-#include "job.hpp"
+#include "reader_glsl.hpp"
+#include "reader_wgsl.hpp"
 
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader.hpp>
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstring>
-#include <limits>
+#include <cstddef>
+#include <cstdint>
 #include <random>
 #include <span>
 #include <string>
@@ -51,7 +50,7 @@ inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions o
          {ListStorage::storage_buffer, ListStorage::texel_buffer, ListStorage::texture_2d,
           ListStorage::uniform_block, ListStorage::byte_address}) {
         if ((storage == ListStorage::storage_buffer && !dialect.storage_buffers) ||
-            (storage == ListStorage::texel_buffer && dialect.es) ||
+            (storage == ListStorage::texel_buffer && (dialect.es || dialect.wgsl)) ||
             (storage == ListStorage::byte_address && !dialect.hlsl))
             continue;
         options.storage = storage;
@@ -152,157 +151,13 @@ inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguag
     return every;
 }
 
-/// Where depth is cut, by no law.
-inline lightbin::Slices reader_slices() {
-    constexpr float boundaries[] = {-1, 0, 2.5f, 4, 4.5f, 8, 12, 13};
-    return *lightbin::Slices::from_boundaries(boundaries);
-}
-
-/// The depths that pixels have in turns: the boundaries, the floats beside them, and others.
-inline std::vector<float> reader_depths() {
-    constexpr float endless = std::numeric_limits<float>::infinity();
-    std::vector<float> depths = {-0.0f, 1e-41f, -1e-41f, 3.3f, 7, 10, 1e30f, endless, -endless};
-    const lightbin::Slices slices = reader_slices();
-    for (const float boundary : slices.boundaries()) {
-        depths.push_back(boundary);
-        depths.push_back(std::nextafter(boundary, -endless));
-        depths.push_back(std::nextafter(boundary, endless));
-    }
-    return depths;
-}
-
-/// Where in the window the viewport begins.
-constexpr int corner_x = 3, corner_y = 5;
-
-constexpr int result_binding = 2;  // compute
-
-/// What is drawn is wider and higher than the viewport by so many pixels, which have no lights.
-constexpr int beyond = 3;
-
-/// The lights that a check goes through: in large pictures few, as it does so in every pixel.
-inline std::uint32_t checked_lights(std::uint32_t width) {
-    return width > 100 ? 8 : 3000;
-}
-
-/// The scales of the projection of reader_job().
-constexpr float scale_x = 1.2f, scale_y = 1.7f;
-
-/// Lines that add to `hash` where a check or the window function says what is not so. `grid` is the pixel as the view
-/// counts it. `listed` is the sum of 1 + id of the lights listed.
-inline std::string reader_checks(const lightbin::ShaderOptions& options, std::uint32_t width) {
-    const std::string prefix(options.prefix), lights = std::to_string(checked_lights(width)) + "u";
-    std::string text;
-    if (options.view_check)
-        text += "    highp vec2 size = vec2(" + prefix + "grid.zw);\n    highp uvec2 grid = pixel;\n" +
-                (options.viewport_corner ? "    grid -= uvec2(" + prefix + "corner);\n" : "") +
-                (options.flip_y ? "    grid.y = " + prefix + "grid.w - 1u - grid.y;\n" : "") +
-                "    bool inside = grid.x < " + prefix + "grid.z && grid.y < " + prefix +
-                R"(grid.w;
-    highp vec2 ndc = 2.0 * (vec2(grid) + 0.5) / size - 1.0;
-    highp vec3 far_off = vec3(ndc / vec2()" +
-                std::to_string(scale_x) + ", " + std::to_string(scale_y) + R"(), -1.0);
-    highp vec3 aside = far_off + vec3(4.4 / ()" +
-                std::to_string(scale_x) + R"( * size.x), 0.0, 0.0);
-    highp vec3 below = far_off - vec3(0.0, 4.4 / ()" +
-                std::to_string(scale_y) + R"( * size.y), 0.0);
-    if (inside && !)" +
-                prefix + "check_view(pixel, 7.0 * far_off)) hash += 1u;\n    if (inside && !" + prefix +
-                "check_view(pixel, far_off * 0.11)) hash += 2u;\n    if (inside && " + prefix +
-                "check_view(pixel, far_off * 0.09)) hash += 4u;\n    if (inside && " + prefix +
-                "check_view(pixel, 7.0 * aside)) hash += 8u;\n    if (inside && " + prefix +
-                "check_view(pixel, 7.0 * below)) hash += 16u;\n    if (inside && " + prefix +
-                "check_view(pixel, -7.0 * far_off)) hash += 32u;\n";
-    if (options.list_check)
-        text += "    " + prefix + "for_each_missing(other, " + lights +
-                ", pixel, depth) listed += other.id + 1u;\n    if (listed != " +
-                std::to_string(checked_lights(width) * (checked_lights(width) + 1) / 2) + "u) hash += 64u;\n";
-    if (options.window)
-        text += "    if (" + prefix + "window(3.0, 3.0) != 0.0 || " + prefix +
-                "window(0.0, 3.0) != 1.0 || abs(" + prefix +
-                "window(1.5, 3.0) - 0.87890625) > 1e-5) hash += 128u;\n";
-    return text;
-}
-
 /// Returns a whole shader. It writes for every pixel: its tile, the length of its list, and two sums over the
 /// ids that depend on their order.
 inline std::string reader_text(const lightbin::ShaderOptions& options, const lightbin::ShaderText& snippet,
                                Stage stage, std::uint32_t width, std::uint32_t height) {
-    const lightbin::detail::Dialect dialect = lightbin::detail::dialect(options.language);
-    const std::string prefix(options.prefix), binding = std::to_string(result_binding);
-    const auto pair = [](auto x, auto y) {
-        return "uvec2(" + std::to_string(x) + "u, " + std::to_string(y) + "u)";
-    };
-    std::string text = version_line(options.language);
-    const bool sliced = options.slicing != lightbin::Slicing::none;
-    // A device's logarithm may be as wrong as it likes.
-    if (sliced && options.heat_map) text += "#define log2(x) (0.6 * log2(x) - 1.0)\n";
-    text += snippet.text + "\n";
-    if (dialect.hlsl)
-        text += "#define highp\n#define uvec2 uint2\n#define uvec4 uint4\n#define uintBitsToFloat asfloat\n"
-                "#define vec2 float2\n#define vec3 float3\n";
-    const std::vector<float> depths = reader_depths();
-    std::string depth = "0.0", words;
-    for (const float value : depths)
-        words += (words.empty() ? "" : ", ") + std::to_string(std::bit_cast<std::uint32_t>(value)) + "u";
-    if (sliced) {
-        const std::string count = std::to_string(depths.size());
-        const std::string of_pixel =
-            options.viewport_corner ? "(pixel - " + pair(corner_x, corner_y) + ")" : "pixel";
-        text += dialect.hlsl
-                    ? "static const uint depths[" + count + "] = {" + words + "};\n"
-                    : "const highp uint depths[" + count + "] = uint[" + count + "](" + words + ");\n";
-        depth =
-            "uintBitsToFloat(depths[(5u * " + of_pixel + ".x + 3u * " + of_pixel + ".y) % " + count + "u])";
-    }
-    text += R"(
-uvec4 read_list(highp uvec2 pixel) {
-    highp float depth = )" +
-            depth + R"(;
-    highp uint hash = 2166136261u;
-    highp uint sum = 0u;
-    highp uint count = 0u;
-    highp uint listed = 0u;
-    )" + prefix +
-            R"(for_each_light(light, pixel, depth) {
-        hash = (hash ^ light.id) * 16777619u;
-        count += 1u;
-        sum += count * light.id;
-        if (light.id < )" +
-            std::to_string(checked_lights(width)) + R"(u) listed += light.id + 1u;
-    }
-)";
-    if (options.heat_map)
-        text += "    if (" + prefix + "count(pixel, depth) != count || " + prefix +
-                "heat(pixel, depth, 8.0).x > 1.0) hash += 1u;\n";
-    text += reader_checks(options, width);
-    text += "    highp uvec2 tile = " + prefix +
-            "tile(pixel);\n    return uvec4(tile.x + (tile.y << 16u), count, hash, sum);\n}\n\n";
-
-    if (stage == Stage::compute) {
-        const std::string add_corner = options.viewport_corner ? " + " + pair(corner_x, corner_y) : "";
-        const std::string size = pair(width, height);
-        if (dialect.hlsl)
-            text += "RWStructuredBuffer<uint4> result : register(u" + binding + ");\n" +
-                    "[numthreads(8, 8, 1)] void main(uint3 id : SV_DispatchThreadID) {\n" +
-                    "    uint2 pixel = id.xy;\n";
-        else
-            text += "layout(local_size_x = 8, local_size_y = 8) in;\nlayout(std430, binding = " + binding +
-                    ") writeonly buffer result_block {\n    highp uvec4 result[];\n};\n" +
-                    "void main() {\n    highp uvec2 pixel = gl_GlobalInvocationID.xy;\n";
-        return text + "    highp uvec2 size = " + size +
-               ";\n    if (pixel.x < size.x && pixel.y < size.y)\n"
-               "        result[pixel.y * size.x + pixel.x] = read_list(pixel" +
-               add_corner + ");\n}\n";
-    }
-    const std::string less_corner = options.viewport_corner ? "" : " - " + pair(corner_x, corner_y);
-    if (dialect.hlsl)
-        return text +
-               "uint4 main(float4 position : SV_Position) : SV_Target {\n    return read_list(uint2("
-               "position.xy)" +
-               less_corner + ");\n}\n";
-    return text + (dialect.vulkan ? "layout(location = 0) " : "") +
-           "out highp uvec4 colour;\nvoid main() {\n    colour = read_list(uvec2(gl_FragCoord.xy)" +
-           less_corner + ");\n}\n";
+    return options.language == lightbin::ShaderLanguage::wgsl
+               ? reader_wgsl(options, snippet, stage, width, height)
+               : reader_glsl(options, snippet, stage, width, height);
 }
 
 /// About 40 of `count` spheres are in view, half of them just behind one another, the last among them; the others are
