@@ -28,28 +28,28 @@ void main() {
         const error = gl.getError();
         return error ? 'OpenGL error ' + error : verdict;
     };
-    if (!job.expected) return finish('');
+    if (!job.runs) return finish('');
 
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
     job.inputs.forEach((input, unit) => {
         const bytes = unhex(input.bytes);
         const place = gl.getUniformLocation(program, input.name);
-        if (input.resource === 'vector') {
+        if (input.resource === 'uniform_vector') {
             if (input.name.endsWith('corner')) gl.uniform2iv(place, new Int32Array(bytes.buffer, 0, 2));
             else if (input.name.endsWith('grid')) gl.uniform4uiv(place, new Uint32Array(bytes.buffer, 0, 4));
             else gl.uniform4fv(place, new Float32Array(bytes.buffer, 0, 4));
-        } else if (input.resource === 'block') {
+        } else if (input.resource === 'uniform_block') {
             const buffer = gl.createBuffer();
             made.push(() => gl.deleteBuffer(buffer));
             gl.bindBufferBase(gl.UNIFORM_BUFFER, unit, buffer);
             gl.bufferData(gl.UNIFORM_BUFFER, bytes, gl.STATIC_DRAW);
             gl.uniformBlockBinding(program, gl.getUniformBlockIndex(program, input.name), unit);
         } else {
-            const [format, type, Texels] = {
-                R8UI: [gl.RED_INTEGER, gl.UNSIGNED_BYTE, Uint8Array],
-                R16UI: [gl.RED_INTEGER, gl.UNSIGNED_SHORT, Uint16Array],
-                R32UI: [gl.RED_INTEGER, gl.UNSIGNED_INT, Uint32Array],
-                RG32UI: [gl.RG_INTEGER, gl.UNSIGNED_INT, Uint32Array],
+            const [stored, format, type, Texels] = {
+                r8uint: [gl.R8UI, gl.RED_INTEGER, gl.UNSIGNED_BYTE, Uint8Array],
+                r16uint: [gl.R16UI, gl.RED_INTEGER, gl.UNSIGNED_SHORT, Uint16Array],
+                r32uint: [gl.R32UI, gl.RED_INTEGER, gl.UNSIGNED_INT, Uint32Array],
+                rg32uint: [gl.RG32UI, gl.RG_INTEGER, gl.UNSIGNED_INT, Uint32Array],
             }[input.format];
             const texture = gl.createTexture();
             made.push(() => gl.deleteTexture(texture));
@@ -57,7 +57,7 @@ void main() {
             gl.bindTexture(gl.TEXTURE_2D, texture);
             gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
             gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
-            gl.texImage2D(gl.TEXTURE_2D, 0, gl[input.format], input.width, input.height, 0, format, type,
+            gl.texImage2D(gl.TEXTURE_2D, 0, stored, input.width, input.height, 0, format, type,
                 new Texels(bytes.buffer));
             gl.uniform1i(place, unit);
         }
@@ -88,7 +88,7 @@ function runAll(jobs) {
         } catch (error) {
             problem = String(error);
         }
-        if (job.expected) ++runs;
+        if (job.runs) ++runs;
         if (problem && ++bad <= 3) lines.push(`${job.name}: ${problem}`, job.text);
     }
     lines.push(`${jobs.length - runs} texts compiled, ${runs} runs, ${bad} refused or wrong`);
