@@ -1,8 +1,9 @@
 #!/bin/sh
 # Proves the generated shader text where the normal test run does not: `sh tests/shaders.sh` on Debian 12, as
-# root or with sudo. Vulkan under its validation layer, WebGL 2 in a browser, Microsoft's compilers (fxc, dxc)
-# and Direct3D 11 under Wine. Installs what is missing; what can't be had is skipped, and the summary says so.
-# Takes about 10 minutes.
+# root or with sudo. Vulkan under its validation layer, WebGL 2 in a browser, WebGPU by its two implementations
+# (Chromium's Dawn and Firefox's wgpu, with their compilers Tint and naga), Microsoft's compilers (fxc, dxc) and
+# Direct3D 11 under Wine. Installs what is missing; what can't be had is skipped, and the summary says so.
+# Takes about 15 minutes.
 set -eu
 me=tests/shaders.sh
 cd "$(dirname "$0")/.."
@@ -89,22 +90,43 @@ if have WebGL g++ chromium; then
     run WebGL env HOME="$out" sh tests/shader/webgl/run_jobs.sh "$out"
 fi
 
-# Whether Microsoft's compilers, which come with an npm package, are in build/shaders/npm. Debian's npm is
-# installed only where there is none.
-have_compilers() {
-    package=webgpu@0.6.2
-    command -v npm >/dev/null || have Direct3D npm || return 1
-    mkdir -p "$out/npm"
+# have_npm PART PACKAGE: whether an npm package could be put into build/shaders/npm/PACKAGE. Debian's npm is installed
+# only where there is none.
+have_npm() {
+    part=$1 package=$2
+    command -v npm >/dev/null || have "$part" npm || return 1
+    mkdir -p "$out/npm/$package"
     # The prefix keeps it here: npm otherwise looks for a project in the folders above.
-    npm install --prefix "$out/npm" --cache "$out/npm.cache" --no-save --ignore-scripts --no-audit --no-fund \
-        $package >"$out/npm.log" 2>&1 && return
-    note Direct3D "SKIPPED, as npm could not install $package:" \
+    npm install --prefix "$out/npm/$package" --cache "$out/npm.cache" --no-save --ignore-scripts --no-audit \
+        --no-fund "$package" >"$out/npm.log" 2>&1 && return
+    note "$part" "SKIPPED, as npm could not install $package:" \
         "$(sed -n 's/^npm \(ERR!\|error\) //p' "$out/npm.log" | head -n 1)"
     return 1
 }
 
-if have Direct3D wine wine64 g++-mingw-w64-x86-64-posix xvfb libgl1-mesa-dri && have_compilers; then
-    dlls=$out/npm/node_modules/webgpu/dist/win32-x64
+# WebGPU, and with it Microsoft's compilers for Windows.
+dawn=webgpu@0.6.2
+deno=deno@2.9.6
+
+if have WGSL g++ nodejs chromium mesa-vulkan-drivers; then
+    echo "$me: building the writer of the jobs for WebGPU"
+    build g++ webgpu/write_jobs.cpp write_wgsl_jobs
+    mkdir -p "$out/runtime" && chmod 700 "$out/runtime"
+    # Debian's Mesa lacks what Dawn wants; the browser brings another Vulkan in software.
+    if have_npm "WGSL, Dawn" $dawn; then
+        run "WGSL, Dawn" env XDG_RUNTIME_DIR="$out/runtime" \
+            VK_ICD_FILENAMES=/usr/lib/chromium/vk_swiftshader_icd.json \
+            node tests/shader/webgpu/run_jobs.mjs "$out" "$out/npm/$dawn/node_modules/webgpu/index.js"
+    fi
+    if have_npm "WGSL, naga" $deno; then
+        run "WGSL, naga" env HOME="$out" DENO_NO_UPDATE_CHECK=1 XDG_RUNTIME_DIR="$out/runtime" \
+            VK_ICD_FILENAMES=/usr/share/vulkan/icd.d/lvp_icd.x86_64.json \
+            "$out/npm/$deno/node_modules/@deno/"linux-*-glibc/deno run -A tests/shader/webgpu/run_jobs.mjs "$out"
+    fi
+fi
+
+if have Direct3D wine wine64 g++-mingw-w64-x86-64-posix xvfb libgl1-mesa-dri && have_npm Direct3D $dawn; then
+    dlls=$out/npm/$dawn/node_modules/webgpu/dist/win32-x64
     cp "$dlls/d3dcompiler_47.dll" "$dlls/dxcompiler.dll" "$out"
     echo "$me: building the Direct3D programs"
     build x86_64-w64-mingw32-g++-posix d3d/compile.cpp compile.exe -static
