@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Hands every text of the library, and the example's shaders, to glslang; what is for Vulkan or HLSL becomes
-// SPIR-V, which the validator of SPIRV-Tools then reads.  compile PART PARTS: takes every PARTS-th language.
+// SPIR-V, which the validator of SPIRV-Tools then reads. Of WGSL the words are read.  compile PART PARTS: takes every
+// PARTS-th language.
 #include "vulkan/compile.hpp"
 #include "builders.hpp"
 #include "readers.hpp"
 #include "shaders.hpp"
+#include "wgsl_words.hpp"
 
 #include <spirv-tools/libspirv.hpp>
 
@@ -46,6 +48,9 @@ public:
         if (dialect.hlsl || dialect.vulkan) {
             good = is_valid(text, stage, dialect.hlsl);
             ++valid;
+        } else if (dialect.wgsl) {
+            error_ = WgslWords::problem(text);
+            good = error_.empty();
         } else {
             good = compiles(text, stage, error_);
         }
@@ -128,7 +133,7 @@ int main(int count, char** arguments) {
     const int part = count == 3 ? std::atoi(arguments[1]) : 0,
               parts = count == 3 ? std::atoi(arguments[2]) : 1;
     Compiler compiler;
-    for (int language = part; language < 7; language += parts)
+    for (int language = part; language < 8; language += parts)
         compile_language(compiler, static_cast<ShaderLanguage>(language));
     if (part == 0)
         for (const int glsl : {330, 430, 300, 310})

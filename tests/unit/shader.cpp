@@ -160,6 +160,35 @@ TEST_CASE("every name declared carries the prefix") {
     }
 }
 
+TEST_CASE("WGSL: constants in a block, sets are groups, what the language lacks is refused") {
+    const auto shader = shader_snippet({.language = ShaderLanguage::wgsl,
+                                        .storage = ListStorage::texture_2d,
+                                        .viewport_corner = true,
+                                        .wave_loop = true,
+                                        .tiles = {0, 1},
+                                        .lists = {1, 1},
+                                        .grid = {2, 1}});
+    REQUIRE(shader);
+    CHECK(shader->text.starts_with("enable subgroups;"));
+    for (const char* absent : {"#", "uvec2", "uint", "inout", "void", "$"})
+        CHECK(!has(shader->text, absent));
+    for (const ShaderBinding& binding : shader->bindings)
+        CHECK(has(shader->text, (" " + binding.name + " : ").c_str()));
+    const ShaderBinding &grid = shader->bindings[0], &lists = shader->bindings[2];
+    CHECK(has(shader->text, "@group(1) @binding(2) var<uniform> lightbin_grid_block"));
+    CHECK(grid.bytes == sizeof(ShaderGrid));
+    CHECK(std::string(webgpu_format(lists.format)) == "r32uint");
+
+    const auto refused = [](ShaderOptions options) {
+        options.language = ShaderLanguage::wgsl;
+        return refusal(options);
+    };
+    CHECK(has(refused({.storage = ListStorage::texel_buffer}), "texture_2d"));
+    CHECK(has(refused({.storage = ListStorage::byte_address}), "storage_buffer"));
+    CHECK(has(refused({.push_constants = true}), "Vulkan"));
+    CHECK(has(refused({.lists = {2}}), "binding 2"));  // a buffer's, and the block's
+}
+
 TEST_CASE("shader_grid") {
     const auto view =
         View::from_projection(glm::perspective(1.0f, 1.5f, 0.1f, 100.0f), {1919, 1079}, {.tile_size = 16});
