@@ -52,9 +52,9 @@ struct ShaderOptions {
     bool flip_y = false;           ///< the shader's pixel rows count against those of the view's WindowOrigin
     bool viewport_corner = false;  ///< pixels are the window's, and the viewport's corner a uniform
     bool heat_map = false;         ///< also `count` and `heat`
-    /// The lanes of a wave go through the lights of all their lists together, so that what is read of a light is read once
-    /// for all of them (Drobot 2017). GLSL 4.30, ES 3.10: with GL_KHR_shader_subgroup_arithmetic; Vulkan 1.1; HLSL 6.0; WGSL:
-    /// with the device's feature `subgroups`.
+    /// The lanes of a wave go through the lights of all their lists together, so that what is read of a light is
+    /// read once for all of them (Drobot 2017). GLSL 4.30, ES 3.10: with GL_KHR_shader_subgroup_arithmetic;
+    /// Vulkan 1.1; HLSL 6.0; WGSL: with the device's feature `subgroups`.
     bool wave_loop = false;
     bool view_check = false;  ///< also `check_view`, whose constants are at `view`
     bool list_check = false;  ///< also `for_each_missing`
@@ -402,13 +402,14 @@ float $window(float apart, float range) {
 /// that of the tile in the depth's slice; with z_bins that of the tile from the least to the greatest rank of the
 /// depth's bin.
 ///
-/// `break`, `continue` and `return` work in the loops' bodies, and loops nest. The list is empty of a pixel outside of
-/// the viewport, and of every pixel where `grid` is not set, or its tiles are not of options.tile_size: no place
+/// `break`, `continue` and `return` work in the loops' bodies, and loops nest. The list is empty of a pixel outside
+/// of the viewport, and of every pixel where `grid` is not set, or its tiles are not of options.tile_size: no place
 /// outside of the table of tiles that `grid` tells of is read. Tiles and lists must be of one build: a table that
-/// points beyond the lists reads there what the graphics API has it read (Direct3D: 0; OpenGL, Vulkan: robust access is
-/// a setting). Ids come in ascending order, each once. With wave_loop no `else` can follow the body, and what depends
-/// on the id alone is the same in the whole wave (WGSL: the text goes first in its module); `begin` and `next` then give the wave's lights, and cursor.own tells
-/// whether one is the lane's own.
+/// points beyond the lists reads there what the graphics API has it read (Direct3D: 0; WebGPU: 0 or one of theirs;
+/// OpenGL, Vulkan: robust access is a setting). Ids come in ascending order, each once. With wave_loop no `else`
+/// can follow the body, and what depends on the id alone is the same in the whole wave (WGSL: the text goes first
+/// in its module); `begin` and `next` then give the wave's lights, and cursor.own tells whether one is the lane's
+/// own.
 ///
 /// Two checks, to colour what is wrong:
 ///

@@ -51,8 +51,8 @@ constexpr const char* to_string(ShaderResource value) {
                                    "byte_address", "texel_buffer", "texture_2d", "writable_buffer"});
 }
 
-/// Where a resource is bound. GLSL: binding and set; HLSL: register number and space; WGSL: binding and group. OpenGL 3.3 and ES 3.0
-/// have no bindings in the text: set the sampler or block by its name.
+/// Where a resource is bound. GLSL: binding and set; HLSL: register number and space; WGSL: binding and group. OpenGL
+/// 3.3 and ES 3.0 have no bindings in the text: set the sampler or block by its name.
 struct ShaderSlot {
     int binding = 0;
     int set = 0;  ///< Vulkan, hlsl_5_1 and wgsl only

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The texels of textures and buffer textures, by the numbers that OpenGL, Vulkan and DXGI have for them, and WebGPU's names.
+// The texels of textures and buffer textures, by the numbers that OpenGL, Vulkan and DXGI have for them, and by WebGPU's
+// names.
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
