@@ -321,11 +321,8 @@ std::string first_line(const std::string& text) {
 
 }  // namespace
 
-Scene load_glb(const std::string& path, float cutoff) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) fail("cannot open '" + path + "'");
+Scene read_glb(std::span<const unsigned char> bytes, const std::string& path, float cutoff) {
     try {
-        const std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
         tinygltf::TinyGLTF gltf;
         gltf.SetImageLoader([](auto...) { return true; },
                             nullptr);  // no textures here, so no need to decode them
@@ -334,8 +331,7 @@ Scene load_glb(const std::string& path, float cutoff) {
         std::string warning;
         const std::string folder =
             path.find('/') == std::string::npos ? "." : path.substr(0, path.rfind('/'));
-        if (!gltf.LoadBinaryFromMemory(&model, &error, &warning,
-                                       reinterpret_cast<const unsigned char*>(bytes.data()),
+        if (!gltf.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(),
                                        static_cast<unsigned>(bytes.size()), folder))
             fail("not a readable glTF binary: " + first_line(error));
         for (const auto& extension : model.extensionsRequired)
@@ -347,4 +343,11 @@ Scene load_glb(const std::string& path, float cutoff) {
     } catch (const std::exception& problem) {
         fail("'" + path + "': " + problem.what());
     }
+}
+
+Scene load_glb(const std::string& path, float cutoff) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) fail("cannot open '" + path + "'");
+    const std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
+    return read_glb({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()}, path, cutoff);
 }

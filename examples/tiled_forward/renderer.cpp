@@ -31,11 +31,6 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-template <class T> T value_of(lightbin::Result<T> result) {
-    if (!result) throw std::runtime_error(result.error().message());
-    return *result;
-}
-
 GLenum target_of(lightbin::ShaderResource resource) {
     return resource == lightbin::ShaderResource::texture_2d ? GL_TEXTURE_2D : GL_TEXTURE_BUFFER;
 }
@@ -44,6 +39,13 @@ lightbin::Slicing slicing_of(const FrameSettings& settings) {
     return settings.depth == DepthUse::z_bins     ? lightbin::Slicing::z_bins
            : settings.depth == DepthUse::clusters ? lightbin::Slicing::clusters
                                                   : lightbin::Slicing::none;
+}
+
+DepthMethod method_of(const FrameSettings& settings) {
+    return settings.depth == DepthUse::z_bins     ? DepthMethod::z_bins
+           : settings.depth == DepthUse::clusters ? DepthMethod::clusters
+           : settings.depth == DepthUse::pre_pass ? DepthMethod::interval
+                                                  : DepthMethod::none;
 }
 
 // Mesa's software renderer ends a shader's loops after 65,535 rounds, and says nothing.
@@ -55,16 +57,6 @@ void check_loop(std::size_t lights) {
 }
 
 }  // namespace
-
-glm::mat4 projection_of(const Camera& camera, double aspect) {
-    if (camera.orthographic) {
-        const double y = camera.height / 2, x = y * aspect;
-        return glm::mat4(glm::ortho(-x, x, -y, y, camera.near, camera.far));
-    }
-    if (std::isinf(camera.far))
-        return glm::mat4(glm::infinitePerspective(camera.height, aspect, camera.near));
-    return glm::mat4(glm::perspective(camera.height, aspect, camera.near, camera.far));
-}
 
 // The frame, from top to bottom.
 FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) {
@@ -115,7 +107,9 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     report.milliseconds.reduce = watch.lap();
 
     // 3. The lists: which lights can reach which tile.
-    const auto [opaque, transparent] = bin_lights(view, z_bounds, glass, settings);
+    const auto [opaque, transparent] = binned_.bin(
+        view, {.method = method_of(settings), .glass = glass, .dropped_light = settings.dropped_light},
+        z_bounds);
     report.milliseconds.bin = watch.lap();
 
     // 4. To the GPU.
@@ -124,8 +118,8 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     upload_lights();
     upload_lists(opaque_lists_, opaque);
     if (glass) upload_lists(transparent_lists_, transparent);
-    if (slices_) {
-        const std::vector<std::uint32_t> words = lightbin::shader_slices(*slices_);
+    if (binned_.slices()) {
+        const std::vector<std::uint32_t> words = lightbin::shader_slices(*binned_.slices());
         const auto bins = std::as_bytes(opaque.ranks().bins);
         const int width = static_cast<int>(list_binding_.width);
         upload(slices_buffer_, words.data(), 4 * words.size(), width, "slices");
@@ -162,62 +156,6 @@ void Renderer::draw_every_light(const Camera& camera, const FrameSettings& setti
     draw_triangles(brute_force_program_, false, settings);
 }
 
-// Which lights can reach which tile, and at what depths. The lights are read as they go to the GPU: as spots where any is
-// one, and by their spheres alone where none is, which takes less time.
-Renderer::Grids Renderer::bin_lights(const lightbin::View& view, const lightbin::ZBounds& z_bounds,
-                                     bool glass, const FrameSettings& settings) {
-    const std::span local_lights(gpu_lights_.data(), scene_.lights.size());
-    const auto as_spot = [&](const GpuLight& light) {
-        const bool dropped = &light - gpu_lights_.data() == settings.dropped_light;
-        lightbin::Spot spot = spot_of(light);
-        if (dropped) spot.radius = -1;
-        return spot;
-    };
-    const auto as_sphere = [&](const GpuLight& light) {
-        const lightbin::Spot spot = as_spot(light);
-        return lightbin::Sphere{spot.x, spot.y, spot.z, spot.radius};
-    };
-    return has_spots_
-               ? bin_lights(view, lightbin::view_space(local_lights, as_spot), z_bounds, glass, settings)
-               : bin_lights(view, lightbin::view_space(local_lights, as_sphere), z_bounds, glass, settings);
-}
-
-template <class Lights>
-Renderer::Grids Renderer::bin_lights(const lightbin::View& view, const Lights& lights,
-                                     const lightbin::ZBounds& z_bounds, bool glass,
-                                     const FrameSettings& settings) {
-    light_order_.clear();
-    slices_.reset();
-    if (settings.depth == DepthUse::none || settings.depth == DepthUse::pre_pass) {
-        // Glass may stand anywhere before the opaque surfaces, so it has lists of its own.
-        if (glass) return value_of(binner_.bin_transparency(view, lights, {.bounds = z_bounds}));
-        const auto grid = value_of(binner_.bin(view, lights, {.bounds = z_bounds}));
-        return {grid, grid};
-    }
-
-    // As deep as any light reaches. What is at any depth has its lights, glass too.
-    float last = 0;
-    for (const GpuLight& light : std::span(gpu_lights_.data(), scene_.lights.size()))
-        last = std::max(last, light.sphere.w - light.sphere.z);
-    if (!(last < 1e30f)) last = 1e30f;  // a light without an end
-    if (last == 0) last = 1;            // all lights are behind the eye
-    if (settings.depth == DepthUse::clusters) {
-        slices_ = value_of(view.orthographic() ? lightbin::Slices::linear(24, 0, last)
-                                               : lightbin::Slices::exponential(24, last / 40, last));
-        const auto grid = value_of(cluster_binner_.bin(view, lights, {.slices = *slices_}));
-        return {grid, grid};
-    }
-    slices_ = value_of(lightbin::Slices::linear(1024, 0, last));
-    const auto grid = value_of(bin_binner_.bin(view, lights, {.slices = *slices_}));
-    light_order_.assign(grid.ranks().order.begin(), grid.ranks().order.end());
-    std::vector<bool> ranked(scene_.lights.size());
-    for (const std::uint32_t light : light_order_)
-        ranked[light] = true;
-    for (std::uint32_t light = 0; light < ranked.size(); ++light)
-        if (!ranked[light]) light_order_.push_back(light);
-    return {grid, grid};
-}
-
 // Counted for each pixel, from its depth, by the lists themselves.
 double Renderer::count_evaluations(const FrameSettings& settings,
                                    const lightbin::LightGrid<std::uint32_t>& grid) {
@@ -232,7 +170,7 @@ double Renderer::count_evaluations(const FrameSettings& settings,
                 pixel_depth_[static_cast<std::size_t>(y) * static_cast<std::size_t>(settings.width) +
                              static_cast<std::size_t>(x)];
             if (depth < 0 && std::isinf(depth)) continue;  // nothing is seen there
-            const int slice = slices_ ? slices_->slice_at(depth) : 0;
+            const int slice = binned_.slices() ? binned_.slices()->slice_at(depth) : 0;
             const auto list =
                 grid.lights_in(x / settings.tile_size, y / settings.tile_size, grid.slices() > 1 ? slice : 0);
             if (settings.depth != DepthUse::z_bins) {
@@ -252,7 +190,7 @@ void Renderer::draw_heat_map(const FrameReport& report, const FrameSettings& set
     glUniform1f(uniform(program, "longest_list"), static_cast<float>(std::max(report.longest_list, 1u)));
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    if (slices_) {
+    if (binned_.slices()) {
         set_matrices(program);
         glDepthFunc(GL_EQUAL);
         glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(scene_.triangles.size()));
@@ -290,13 +228,11 @@ float Renderer::meter(const Camera& camera, const FrameSettings& settings) {
 
 Renderer::Renderer(const Scene& scene, int glsl)
     : scene_(scene), glsl_(glsl), list_binding_(list_binding(glsl)),
-      has_spots_(
-          std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return l.spot; })),
-      frame_buffer_(glsl) {
+      binned_(scene), frame_buffer_(glsl) {
     const std::string geometry = geometry_vertex_shader(glsl);
     depth_program_ = link_program(geometry, depth_fragment_shader(glsl));
     brute_force_program_ =
-        link_program(geometry, forward_fragment_shader(glsl, LightLoop::every_light, has_spots_));
+        link_program(geometry, forward_fragment_shader(glsl, LightLoop::every_light, binned_.has_spots()));
 
     glGenVertexArrays(1, &vertex_array_);
     glBindVertexArray(vertex_array_);
@@ -343,19 +279,12 @@ void Renderer::start(const Camera& camera, const FrameSettings& settings) {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-// The matrices, and the lights in view space. In double, as a scene can be far from the origin.
+// The matrices, and the lights in view space.
 void Renderer::set_camera(const Camera& camera) {
     const glm::dmat4 view = glm::inverse(camera.to_world);
     view_ = glm::mat4(view);
     projection_ = projection_of(camera, static_cast<double>(frame_buffer_.width()) / frame_buffer_.height());
-
-    gpu_lights_.clear();
-    for (const Light& light : scene_.lights)
-        gpu_lights_.push_back(gpu_light(light, view));
-    const glm::dmat3 turn(view);
-    for (const Sun& sun : scene_.suns)
-        gpu_lights_.push_back({glm::vec4(-glm::vec3(turn * glm::dvec3(sun.direction)), 0),
-                               glm::vec4(sun.illuminance, 0), glm::vec4(0)});
+    binned_.place(view);
 }
 
 void Renderer::draw_depth() const {
@@ -374,7 +303,7 @@ GLuint Renderer::tiled_program(const FrameSettings& settings) {
     if (program == 0)
         program = link_program(
             geometry_vertex_shader(glsl_),
-            forward_fragment_shader(glsl_, LightLoop::tile_list, has_spots_, slicing, settings.checks));
+            forward_fragment_shader(glsl_, LightLoop::tile_list, binned_.has_spots(), slicing, settings.checks));
     return program;
 }
 
@@ -399,7 +328,7 @@ void Renderer::draw_triangles(GLuint program, bool with_lists, const FrameSettin
     glUniform2f(uniform(program, "picture_size"), static_cast<float>(frame_buffer_.width()),
                 static_cast<float>(frame_buffer_.height()));
     glUniform3fv(uniform(program, "moon"), 1,
-                 glm::value_ptr(glm::mat3(view_) * glm::normalize(glm::vec3(0.3f, 0.8f, 0.5f))));
+                 glm::value_ptr(glm::mat3(view_) * way_to_moon));
     glUniform1f(uniform(program, "exposure"), settings.exposure);
     glUniform1i(uniform(program, "light_count"), static_cast<int>(scene_.lights.size()));
     glUniform1i(uniform(program, "sun_count"), static_cast<int>(scene_.suns.size()));
@@ -452,11 +381,8 @@ void Renderer::bind_texture(GLuint program, int unit, const GpuBuffer& source, c
 
 // In the order of their ranks where the lists name those; suns follow.
 void Renderer::upload_lights() {
-    ordered_lights_ = gpu_lights_;
-    for (std::size_t rank = 0; rank < light_order_.size(); ++rank)
-        ordered_lights_[rank] = gpu_lights_[light_order_[rank]];
-    upload(lights_, ordered_lights_.data(), ordered_lights_.size() * sizeof(GpuLight), lights_width,
-           "lights");
+    const std::span<const GpuLight> lights = binned_.in_order();
+    upload(lights_, lights.data(), lights.size_bytes(), lights_width, "lights");
 }
 
 void Renderer::upload_lists(const Lists& target, const lightbin::LightGrid<std::uint32_t>& grid) const {

@@ -2,9 +2,10 @@
 // Tiled forward shading of a scene: renderer.cpp has the frame from top to bottom.
 #pragma once
 
+#include "binned_lights.hpp"
 #include "frame_buffer.hpp"
-#include "gpu_light.hpp"
 #include "picture.hpp"
+#include "projection.hpp"
 #include "scene.hpp"
 #include "shaders.hpp"
 
@@ -16,7 +17,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -61,9 +61,6 @@ struct FrameReport {
     } milliseconds{};
 };
 
-// What a camera makes of view space, for OpenGL. `aspect`: width / height of the picture.
-glm::mat4 projection_of(const Camera& camera, double aspect);
-
 class Renderer {
 public:
     // Needs a current OpenGL context, and leaves its objects to it: they live as long as the program. Keeps
@@ -99,17 +96,10 @@ private:
     struct Lists {
         GpuBuffer tiles, indices;
     };
-    using Grids = lightbin::TransparencyGrids<std::uint32_t>;
-
     void start(const Camera& camera, const FrameSettings& settings);
     void set_camera(const Camera& camera);
     bool shows_glass(const FrameSettings& settings) const;
     void draw_depth() const;
-    Grids bin_lights(const lightbin::View& view, const lightbin::ZBounds& z_bounds, bool glass,
-                     const FrameSettings& settings);
-    template <class Lights>
-    Grids bin_lights(const lightbin::View& view, const Lights& lights, const lightbin::ZBounds& z_bounds,
-                     bool glass, const FrameSettings& settings);
     GLuint tiled_program(const FrameSettings& settings);
     GLuint heat_map_program(lightbin::Slicing slicing);
     void set_matrices(GLuint program) const;
@@ -128,7 +118,7 @@ private:
     int glsl_;
 
     lightbin::ShaderBinding list_binding_;
-    bool has_spots_;
+    BinnedLights binned_;
     GLuint depth_program_, brute_force_program_;
     std::map<std::tuple<lightbin::Slicing, ShaderChecks>, GLuint> tiled_programs_;
     GLuint heat_map_programs_[3] = {};  // [slicing]
@@ -144,14 +134,5 @@ private:
     glm::mat4 projection_{1}, view_{1};
     lightbin::ShaderGrid grid_{};
     lightbin::ShaderView shader_view_{};
-    std::vector<GpuLight> gpu_lights_, ordered_lights_;
-    std::vector<std::uint32_t>
-        light_order_;  // z-bins: in which the lights are uploaded, those out of view last
     std::vector<float> depth_buffer_, min_depth_, max_depth_, transparent_max_, pixel_depth_;
-    std::optional<lightbin::Slices> slices_;
-    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> binner_;
-    lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::z_bins}> bin_binner_;
-    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::box,
-                                       .slicing = lightbin::Slicing::clusters}>
-        cluster_binner_;
 };

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,9 @@ struct Scene {
 // Reads a binary glTF 2.0 file. A light without a range gets the one at which it still gives `cutoff` lux
 // (0: it stays infinite). Throws std::runtime_error with one line of text.
 Scene load_glb(const std::string& path, float cutoff);
+
+// The same of a file that was read; `path` is where it was found, and its errors' name.
+Scene read_glb(std::span<const unsigned char> bytes, const std::string& path, float cutoff);
 
 // A small city at night with this many coloured lights in its streets. The same every time.
 Scene make_scene(int light_count);

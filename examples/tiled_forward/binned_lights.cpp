@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "binned_lights.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+lightbin::Slices slices_for(const BinSettings& settings, bool orthographic, std::span<const GpuLight> lights) {
+    float last = 0;  // as deep as any light reaches
+    for (const GpuLight& light : lights)
+        last = std::max(last, light.sphere.w - light.sphere.z);
+    if (!(last < 1e30f)) last = 1e30f;  // a light without an end
+    if (last == 0) last = 1;            // all lights are behind the eye
+    if (settings.method == DepthMethod::z_bins) return value_of(lightbin::Slices::linear(1024, 0, last));
+    return value_of(orthographic ? lightbin::Slices::linear(settings.clusters, 0, last)
+                                 : lightbin::Slices::exponential(settings.clusters, last / 40, last));
+}
+
+BinnedLights::BinnedLights(const Scene& scene)
+    : scene_(scene), has_spots_(std::any_of(scene.lights.begin(), scene.lights.end(),
+                                            [](const Light& light) { return light.spot; })) {}
+
+void BinnedLights::place(const glm::dmat4& world_to_view) {
+    placed_.clear();
+    for (const Light& light : scene_.lights)
+        placed_.push_back(gpu_light(light, world_to_view));
+    const glm::dmat3 turn(world_to_view);
+    for (const Sun& sun : scene_.suns)
+        placed_.push_back({glm::vec4(-glm::vec3(turn * glm::dvec3(sun.direction)), 0),
+                           glm::vec4(sun.illuminance, 0), glm::vec4(0)});
+}
+
+BinnedLights::Grids BinnedLights::bin(const lightbin::View& view, const BinSettings& settings,
+                                      const lightbin::ZBounds& z_bounds) {
+    return visit_lights(settings.dropped_light,
+                        [&](const auto& lights) { return bin(view, lights, settings, z_bounds); });
+}
+
+template <class Lights>
+BinnedLights::Grids BinnedLights::bin(const lightbin::View& view, const Lights& lights,
+                                      const BinSettings& settings, const lightbin::ZBounds& z_bounds) {
+    order_.clear();
+    slices_.reset();
+    const auto same = [](const lightbin::LightGrid<std::uint32_t>& grid) { return Grids{grid, grid}; };
+    switch (settings.method) {
+    case DepthMethod::none:
+        return same(value_of(binner_.bin(view, lights)));
+    case DepthMethod::interval:
+        return bin_bounded(interval_binner_, view, lights, settings.glass, z_bounds);
+    case DepthMethod::box:
+        return bin_bounded(box_binner_, view, lights, settings.glass, z_bounds);
+    case DepthMethod::z_bins:
+    case DepthMethod::clusters:
+        break;
+    }
+
+    // What is at any depth has its lights, glass too.
+    slices_ = slices_for(settings, view.orthographic(), this->lights());
+    if (settings.method == DepthMethod::clusters)
+        return same(value_of(cluster_binner_.bin(view, lights, {.slices = *slices_})));
+    const auto grid = value_of(bin_binner_.bin(view, lights, {.slices = *slices_}));
+    order_.assign(grid.ranks().order.begin(), grid.ranks().order.end());
+    std::vector<bool> ranked(scene_.lights.size());
+    for (const std::uint32_t light : order_)
+        ranked[light] = true;
+    for (std::uint32_t light = 0; light < ranked.size(); ++light)
+        if (!ranked[light]) order_.push_back(light);
+    return same(grid);
+}
+
+// Glass may stand anywhere before the opaque surfaces, so it has lists of its own.
+template <class Binner, class Lights>
+BinnedLights::Grids BinnedLights::bin_bounded(Binner& binner, const lightbin::View& view,
+                                              const Lights& lights, bool glass,
+                                              const lightbin::ZBounds& z_bounds) {
+    if (glass) return value_of(binner.bin_transparency(view, lights, {.bounds = z_bounds}));
+    const auto grid = value_of(binner.bin(view, lights, {.bounds = z_bounds}));
+    return {grid, grid};
+}
+
+std::span<const GpuLight> BinnedLights::in_order() {
+    if (order_.empty()) return placed_;
+    ordered_ = placed_;
+    for (std::size_t rank = 0; rank < order_.size(); ++rank)
+        ordered_[rank] = placed_[order_[rank]];
+    return ordered_;
+}

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// The lights of a frame and the lists of them: all that the pictures ask of lightbin, for any graphics API.
+#pragma once
+
+#include "gpu_light.hpp"
+#include "scene.hpp"
+
+#include <lightbin/lightbin.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+template <class T> T value_of(lightbin::Result<T> result) {
+    if (!result) throw std::runtime_error(result.error().message());
+    return *result;
+}
+
+// What keeps a light out of the lists of tiles that it covers.
+enum class DepthMethod {
+    none,      // nothing
+    interval,  // Z bounds: its depths must meet the tile's
+    box,       // Z bounds: its sphere must meet the box around what the tile has between them
+    z_bins,    // lists are entered and left by the bin of the fragment's depth
+    clusters   // each tile has a list for each slice of depth
+};
+
+struct BinSettings {
+    DepthMethod method = DepthMethod::none;
+    int clusters = 24;       // slices of depth
+    bool glass = false;      // Z bounds: lists for it, too
+    int dropped_light = -1;  // left out of the lists, so that a check can be seen to fail
+};
+
+// The slices of the depths that lights in view space reach; of z-bins a thousand.
+lightbin::Slices slices_for(const BinSettings& settings, bool orthographic, std::span<const GpuLight> lights);
+
+class BinnedLights {
+public:
+    using Grids = lightbin::TransparencyGrids<std::uint32_t>;
+
+    // Keeps the scene, whose lights may move from frame to frame.
+    explicit BinnedLights(const Scene& scene);
+
+    bool has_spots() const { return has_spots_; }
+
+    // Has lights and suns where the camera has them. In double, as a scene can be far from the origin.
+    void place(const glm::dmat4& world_to_view);
+
+    // In view space, without the suns.
+    std::span<const GpuLight> lights() const { return {placed_.data(), scene_.lights.size()}; }
+
+    // The lights and then the suns.
+    std::span<const GpuLight> lights_and_suns() const { return placed_; }
+
+    // Which lights can reach which tile, and at what depths. Both grids are the same one where glass needs no lists of its
+    // own. Valid until the next call.
+    Grids bin(const lightbin::View& view, const BinSettings& settings, const lightbin::ZBounds& z_bounds);
+
+    // Of the last bin(), with z-bins or clusters.
+    const std::optional<lightbin::Slices>& slices() const { return slices_; }
+
+    // The lights in the order of the ids of the last bin(), which are ranks with z-bins, and then the suns.
+    std::span<const GpuLight> in_order();
+
+    // Calls visit with the lights as a Binner takes them: as spots where any is one, and by their spheres alone where
+    // none is, which takes less time.
+    template <class Visit> auto visit_lights(int dropped_light, Visit visit) const {
+        const auto as_spot = [=, first = placed_.data()](const GpuLight& light) {
+            lightbin::Spot spot = spot_of(light);
+            if (&light - first == dropped_light) spot.radius = -1;
+            return spot;
+        };
+        const auto as_sphere = [=](const GpuLight& light) {
+            const lightbin::Spot spot = as_spot(light);
+            return lightbin::Sphere{spot.x, spot.y, spot.z, spot.radius};
+        };
+        return has_spots_ ? visit(lightbin::view_space(lights(), as_spot))
+                          : visit(lightbin::view_space(lights(), as_sphere));
+    }
+
+private:
+    template <class Lights>
+    Grids bin(const lightbin::View& view, const Lights& lights, const BinSettings& settings,
+              const lightbin::ZBounds& z_bounds);
+    template <class Binner, class Lights>
+    Grids bin_bounded(Binner& binner, const lightbin::View& view, const Lights& lights, bool glass,
+                      const lightbin::ZBounds& z_bounds);
+
+    const Scene& scene_;
+    bool has_spots_;
+    std::vector<GpuLight> placed_, ordered_;
+    std::vector<std::uint32_t> order_;  // z-bins: of the lights, those out of view last
+    std::optional<lightbin::Slices> slices_;
+    lightbin::Binner<> binner_;
+    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> interval_binner_;
+    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::box}> box_binner_;
+    lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::z_bins}> bin_binner_;
+    lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::box,
+                                       .slicing = lightbin::Slicing::clusters}>
+        cluster_binner_;
+};

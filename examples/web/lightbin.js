@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// lightbin in WebAssembly: module/ has what it does. No copy of anything large is made: the typed arrays that are handed
+// out are views of the module's memory, and valid until the next call.
+
+const array_types = { f32: Float32Array, u32: Uint32Array };
+
+/** Fetches and starts the module. Throws an Error with a sentence for the user. */
+export async function load(url = 'lightbin.wasm') {
+    const response = await fetch(url).catch(() => null);
+    if (!response?.ok) throw new Error(`${url} could not be fetched`);
+    return start(await response.arrayBuffer());
+}
+
+/** The same of a module that is there already. */
+export async function start(bytes) {
+    let memory;
+    const nothing = () => 0;
+    const imports = {
+        env: { emscripten_notify_memory_growth: nothing },
+        wasi_snapshot_preview1: {
+            clock_time_get(clock, precision, at) {
+                new DataView(memory.buffer).setBigUint64(at, BigInt(Math.round(performance.now() * 1e6)), true);
+                return 0;
+            },
+            proc_exit(code) {
+                throw new Error(`the module ended with ${code}`);
+            },
+            // What C++'s streams are linked with.
+            fd_close: nothing,
+            fd_seek: nothing,
+            fd_write: nothing,
+            environ_get: nothing,
+            environ_sizes_get: nothing,
+        },
+    };
+    if (!globalThis.WebAssembly) throw new Error('This browser has no WebAssembly.');
+    const { instance } = await WebAssembly.instantiate(bytes, imports).catch(() => {
+        throw new Error('This browser is too old: its WebAssembly has no vectors (SIMD) or no exceptions.');
+    });
+    memory = instance.exports.memory;
+    instance.exports._initialize();
+    return new Lightbin(instance.exports);
+}
+
+class Lightbin {
+    #module;
+
+    constructor(module) {
+        this.#module = module;
+        this.make('city', 1024);
+    }
+
+    /** The scene on show: see scene_json() in module/exports.cpp. */
+    get scene() {
+        return this.#ask('scene', {});
+    }
+
+    /** Shows a made scene: 'city' with so many lights, or 'street'. */
+    make(kind, lights = 1) {
+        return this.#ask('make', { kind, lights });
+    }
+
+    /** Shows a binary glTF file. Throws an Error with a sentence where it cannot; the scene from before stays then. */
+    open(bytes, name) {
+        this.#put(bytes);
+        return this.#ask('open', { name });
+    }
+
+    /** What is drawn with before any light: projection, view, moon, grid, shader_view, reduce, tiles_x, tiles_y. */
+    prepare(settings) {
+        return this.#ask('prepare', settings);
+    }
+
+    /** The same, and the lights and their lists. z_bounds: {min, max, transparent_max}, the last one where there is glass. */
+    frame(settings, z_bounds = null) {
+        if (z_bounds) this.#put(z_bounds.min, z_bounds.max, z_bounds.transparent_max ?? []);
+        return this.#ask('frame', { ...settings, bounds: z_bounds !== null, glass_bounds: !!z_bounds?.transparent_max });
+    }
+
+    /** A text that lightbin generates: 'snippet', 'reduce' or 'build'. See module/texts.cpp for the options. */
+    text(what, options) {
+        return this.#ask('text', { what, options });
+    }
+
+    #ask(what, question) {
+        const spread = (key, value) => (ArrayBuffer.isView(value) ? [...value] : value);
+        const words = new TextEncoder().encode(JSON.stringify(question, spread));
+        const at = this.#module.question(words.length);
+        new Uint8Array(this.#module.memory.buffer, at, words.length).set(words);
+
+        const from = this.#module[what]();
+        const said = new Uint8Array(this.#module.memory.buffer, from, this.#module.answer_length());
+        const answer = JSON.parse(new TextDecoder().decode(said), (key, value) => this.#revived(key, value));
+        if (answer.error) throw new Error(answer.error);
+        return answer;
+    }
+
+    #revived(key, value) {
+        if (key === 'far') return value ?? Infinity; // which JSON has not
+        if (!value?.type) return value;
+        return new array_types[value.type](this.#module.memory.buffer, value.at, value.count);
+    }
+
+    // Beside the question.
+    #put(...arrays) {
+        const bytes = arrays.reduce((sum, array) => sum + (array.byteLength ?? 0), 0);
+        let at = this.#module.data(bytes);
+        for (const array of arrays) {
+            new array.constructor(this.#module.memory.buffer, at, array.length).set(array);
+            at += array.byteLength ?? 0;
+        }
+    }
+}
