@@ -2,7 +2,7 @@
 // lightbin in WebAssembly: module/ has what it does. No copy of anything large is made: the typed arrays that are handed
 // out are views of the module's memory, and valid until the next call.
 
-const array_types = { f32: Float32Array, u32: Uint32Array };
+const array_types = { u32: Uint32Array, f32: Float32Array, f64: Float64Array };
 
 /** Fetches and starts the module. Throws an Error with a sentence for the user. */
 export async function load(url = 'lightbin.wasm') {
@@ -71,10 +71,16 @@ class Lightbin {
         return this.#ask('prepare', settings);
     }
 
-    /** The same, and the lights and their lists. z_bounds: {min, max, transparent_max}, the last one where there is glass. */
+    /** The same, and the lights and their lists. z_bounds: {min, max}, and where there is glass transparent_max. */
     frame(settings, z_bounds = null) {
-        if (z_bounds) this.#put(z_bounds.min, z_bounds.max, z_bounds.transparent_max ?? []);
-        return this.#ask('frame', { ...settings, bounds: z_bounds !== null, glass_bounds: !!z_bounds?.transparent_max });
+        if (!z_bounds) return this.#ask('frame', settings);
+        this.#put(...['min', 'max', 'transparent_max'].map((side) => z_bounds[side]).filter(Boolean));
+        return this.#ask('frame', { ...settings, bounds: true });
+    }
+
+    /** What the ways to light this view cost here, the cheapest first. Takes some tens of frames. */
+    advise(settings) {
+        return this.#ask('advise', settings);
     }
 
     /** A text that lightbin generates: 'snippet', 'reduce' or 'build'. See module/texts.cpp for the options. */
@@ -97,17 +103,17 @@ class Lightbin {
 
     #revived(key, value) {
         if (key === 'far') return value ?? Infinity; // which JSON has not
-        if (!value?.type) return value;
-        return new array_types[value.type](this.#module.memory.buffer, value.at, value.count);
+        const type = array_types[value?.type];
+        if (!type) return value;
+        return value.values ? type.from(value.values) : new type(this.#module.memory.buffer, value.at, value.count);
     }
 
     // Beside the question.
     #put(...arrays) {
-        const bytes = arrays.reduce((sum, array) => sum + (array.byteLength ?? 0), 0);
-        let at = this.#module.data(bytes);
+        let at = this.#module.data(arrays.reduce((bytes, array) => bytes + array.byteLength, 0));
         for (const array of arrays) {
             new array.constructor(this.#module.memory.buffer, at, array.length).set(array);
-            at += array.byteLength ?? 0;
+            at += array.byteLength;
         }
     }
 }

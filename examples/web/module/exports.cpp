@@ -15,6 +15,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -25,27 +26,30 @@ Stage stage;
 std::string question, answer;
 std::vector<unsigned char> data;  // beside the question: a file, or Z bounds
 
-template <class T> json array_of(const char* type, std::span<const T> items) {
-    return {{"type", type}, {"at", reinterpret_cast<std::uintptr_t>(items.data())}, {"count", items.size_bytes() / 4}};
+// Numbers of the module's memory, where they are.
+template <class T> json view_of(const char* type, std::span<const T> items) {
+    return {{"type", type},
+            {"at", reinterpret_cast<std::uintptr_t>(items.data())},
+            {"count", items.size_bytes() / sizeof(float)}};
 }
-template <class T> json floats(std::span<const T> items) {
-    return array_of("f32", items);
+template <class Items> json floats(const Items& items) {
+    return view_of("f32", std::span(items.data(), items.size()));
 }
-template <class T> json words(std::span<const T> items) {
-    return array_of("u32", items);
+template <class Items> json words(const Items& items) {
+    return view_of("u32", std::span(items.data(), items.size()));
 }
 
-// A struct of floats or of words, by value.
-template <class Number, class Struct> json numbers(const Struct& from) {
+// A small struct of such numbers, by value.
+template <class Number, class Struct> json copy_of(const char* type, const Struct& from) {
     std::vector<Number> values(sizeof from / sizeof(Number));
     std::memcpy(values.data(), &from, sizeof from);
-    return values;
+    return {{"type", type}, {"values", values}};
 }
-
-json settings_json(const Camera& camera) {
-    return {{"name", camera.name}, {"to_world", numbers<double>(camera.to_world)},
-            {"orthographic", camera.orthographic}, {"height", camera.height}, {"near", camera.near},
-            {"far", camera.far}};
+template <class Struct> json few_floats(const Struct& from) {
+    return copy_of<float>("f32", from);
+}
+template <class Struct> json few_words(const Struct& from) {
+    return copy_of<std::uint32_t>("u32", from);
 }
 
 FrameSettings settings_of(const json& from) {
@@ -81,6 +85,15 @@ FrameSettings settings_of(const json& from) {
     return settings;
 }
 
+json camera_json(const Camera& camera) {
+    return {{"name", camera.name},
+            {"to_world", copy_of<double>("f64", camera.to_world)},
+            {"orthographic", camera.orthographic},
+            {"height", camera.height},
+            {"near", camera.near},
+            {"far", camera.far}};
+}
+
 json scene_json() {
     const Scene& scene = stage.scene();
     glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
@@ -88,60 +101,93 @@ json scene_json() {
         low = glm::min(low, vertex.position);
         high = glm::max(high, vertex.position);
     }
-    const glm::vec3 centre = (low + high) / 2.0f;
     json cameras = json::array();
     for (const Camera& camera : scene.cameras)
-        cameras.push_back(settings_json(camera));
+        cameras.push_back(camera_json(camera));
     return {{"name", scene.name},
+            {"kind", stage.kind()},
             {"notes", scene.notes},
             {"lights", scene.lights.size()},
             {"suns", scene.suns.size()},
-            {"has_spots", std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return l.spot; })},
+            {"has_spots", stage.has_spots()},
             {"cameras", cameras},
-            {"centre", numbers<float>(centre)},
+            {"centre", few_floats(low + (high - low) / 2.0f)},
             {"radius", glm::length(high - low) / 2},
-            {"triangles", floats(std::span(scene.triangles))},
-            {"glass", floats(std::span(scene.transparent))}};
+            {"triangles", floats(scene.triangles)},
+            {"glass", floats(scene.transparent)}};
 }
 
 json prepared_json(const Prepared& prepared) {
     const lightbin::View& view = prepared.view;
-    return {{"projection", numbers<float>(prepared.projection)},
-            {"view", numbers<float>(prepared.world_to_view)},
-            {"moon", numbers<float>(prepared.moon)},
-            {"grid", numbers<std::uint32_t>(lightbin::shader_grid(view))},
-            {"shader_view", numbers<float>(lightbin::shader_view(view))},
-            {"reduce", numbers<std::uint32_t>(lightbin::shader_reduce(view))},
+    return {{"projection", few_floats(prepared.projection)},
+            {"view", few_floats(prepared.world_to_view)},
+            {"moon", few_floats(prepared.moon)},
+            {"grid", few_words(lightbin::shader_grid(view))},
+            {"shader_view", few_floats(lightbin::shader_view(view))},
+            {"reduce", few_words(lightbin::shader_reduce(view))},
             {"tiles_x", view.tiles_x()},
             {"tiles_y", view.tiles_y()}};
 }
 
-json frame_json(const json& from) {
-    const FrameSettings settings = settings_of(from);
-    json answer = prepared_json(stage.prepare(settings));
-    const std::size_t tiles = answer["tiles_x"].get<std::size_t>() * answer["tiles_y"].get<std::size_t>();
-    lightbin::ZBounds z_bounds;
-    if (from.value("bounds", false)) {
-        const auto side = [&](std::size_t i) {
-            return std::span(reinterpret_cast<const float*>(data.data()) + i * tiles, tiles);
-        };
-        z_bounds = {.min = side(0), .max = side(1), .background_skipped = true};
-        if (from.value("glass_bounds", false)) z_bounds.transparent_max = side(2);
-    }
-    const Frame& frame = stage.frame(settings, z_bounds);
-    answer["lights"] = floats(frame.lights);
-    answer["light_count"] = stage.scene().lights.size();
-    answer["sun_count"] = stage.scene().suns.size();
-    answer["ranges"] = words(frame.ranges);
-    answer["ids"] = words(frame.ids);
-    answer["slices"] = words(std::span<const std::uint32_t>(frame.slices));
-    answer["bins"] = words(frame.bins);
-    answer["ms"] = {{"lights", frame.light_ms}, {"bin", frame.bin_ms}};
-    answer["in_view"] = frame.counts.lights - frame.counts.culled - frame.counts.rejected;
-    answer["rejected"] = frame.counts.rejected;
-    answer["entries"] = frame.ids.size();
-    answer["longest"] = frame.longest;
-    return answer;
+// The minimum of all tiles, the maximum of all, and where there is glass transparent_max.
+lightbin::ZBounds z_bounds_of(const json& asked, std::size_t tiles) {
+    if (!asked.contains("bounds")) return {};
+    const auto side = [&](std::size_t i) {
+        return data.size() < (i + 1) * tiles * sizeof(float)
+                   ? std::span<const float>()
+                   : std::span(reinterpret_cast<const float*>(data.data()) + i * tiles, tiles);
+    };
+    return {.min = side(0), .max = side(1), .transparent_max = side(2), .background_skipped = true};
+}
+
+json frame_json(const json& asked) {
+    const FrameSettings settings = settings_of(asked);
+    const Prepared prepared = stage.prepare(settings);
+    const lightbin::View& view = prepared.view;
+    const Frame& frame = stage.frame(view, settings, z_bounds_of(asked, view.tile_count()));
+    json made = prepared_json(prepared);
+    made.update({{"lights", floats(frame.lights)},
+                 {"light_count", stage.scene().lights.size()},
+                 {"sun_count", stage.scene().suns.size()},
+                 {"ranges", words(frame.ranges)},
+                 {"ids", words(frame.ids)},
+                 {"glass_ranges", words(frame.glass_ranges)},
+                 {"glass_ids", words(frame.glass_ids)},
+                 {"slices", words(frame.slices)},
+                 {"bins", words(frame.bins)},
+                 {"ms", {{"lights", frame.light_ms}, {"bin", frame.bin_ms}}},
+                 {"in_view", frame.counts.lights - frame.counts.culled - frame.counts.rejected},
+                 {"rejected", frame.counts.rejected},
+                 {"entries", frame.ids.size()},
+                 {"longest", frame.longest}});
+    if (settings.on_gpu)
+        made.update({{"footprints", words(frame.footprints)},
+                     {"edges", floats(frame.edges)},
+                     {"slabs", floats(frame.slabs)},
+                     {"build", few_words(frame.build)}});
+    return made;
+}
+
+std::string words_of(const lightbin::Plan& plan) {
+    if (!plan.tiled) return "no tiling";
+    std::string words = to_string(plan.footprint);
+    if (plan.depth_test != lightbin::DepthTest::none) words += std::string(", ") + to_string(plan.depth_test);
+    return words;
+}
+
+json advice_json(const json& asked) {
+    const FrameSettings settings = settings_of(asked);
+    const lightbin::Advice advice = stage.advise(stage.prepare(settings).view, settings);
+    json plans = json::array();
+    for (const lightbin::Plan& plan : advice.plans())
+        plans.push_back({{"plan", words_of(plan)},
+                         {"tile_size", plan.tile_size},
+                         {"milliseconds", plan.total_ns * 1e-6},
+                         {"build_milliseconds", plan.build_ns * 1e-6},
+                         {"entries", plan.entries},
+                         {"evaluations", plan.evaluations},
+                         {"best", &plan == &advice.best()}});
+    return plans;
 }
 
 // Answers the question, or says in a sentence what is wrong with it.
@@ -181,8 +227,7 @@ EXPORT(make) const char* answer_make() {
 }
 EXPORT(open) const char* answer_open() {
     return answered([](const json& asked) {
-        stage.open(data, asked.at("name"));
-        data = {};
+        stage.open(std::exchange(data, {}), asked.at("name"));
         return scene_json();
     });
 }
@@ -194,6 +239,9 @@ EXPORT(prepare) const char* answer_prepare() {
 }
 EXPORT(frame) const char* answer_frame() {
     return answered(frame_json);
+}
+EXPORT(advise) const char* answer_advise() {
+    return answered(advice_json);
 }
 EXPORT(text) const char* answer_text() {
     return answered([](const json& asked) { return shader_text(asked.at("what"), asked.at("options")); });

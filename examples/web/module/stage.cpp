@@ -5,6 +5,7 @@
 #include "projection.hpp"
 
 #include <chrono>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -27,25 +28,22 @@ private:
 
 }  // namespace
 
-Stage::Stage() {
-    show(make_scene(1));
-}
-
 void Stage::make(const std::string& kind, int lights) {
-    if (kind == "street") return show(make_street());
+    if (kind == "street") return show(make_street(), kind);
     if (kind != "city") throw std::runtime_error("there is no made scene '" + kind + "'");
     if (lights < 1 || lights > most_lights)
         throw std::runtime_error("the city has 1 to " + std::to_string(most_lights) + " lights, not " +
                                  std::to_string(lights));
-    show(make_scene(lights));
+    show(make_scene(lights), kind);
 }
 
 void Stage::open(std::span<const unsigned char> bytes, const std::string& name) {
-    show(read_glb(bytes, name, cutoff));
+    show(read_glb(bytes, name, cutoff), "file");
 }
 
-void Stage::show(Scene scene) {
+void Stage::show(Scene scene, const std::string& kind) {
     scene_ = std::move(scene);
+    kind_ = kind;
     places_ = scene_.lights;
     frame_ = {};
     binned_.emplace(scene_);
@@ -67,20 +65,25 @@ void Stage::place(const FrameSettings& settings) {
     binned_->place(glm::inverse(settings.camera.to_world));
 }
 
-const Frame& Stage::frame(const FrameSettings& settings, const lightbin::ZBounds& z_bounds) {
-    const lightbin::View view = prepare(settings).view;
+const Frame& Stage::frame(const lightbin::View& view, const FrameSettings& settings,
+                          const lightbin::ZBounds& z_bounds) {
     frame_ = {};
     Stopwatch watch;
     place(settings);
     frame_.light_ms = watch.lap();
-
-    BinSettings bin = settings.bin;
-    bin.glass = !scene_.transparent.empty();
-    const auto [opaque, transparent] = binned_->bin(view, bin, z_bounds);
+    if (settings.on_gpu)
+        make_footprints(view, settings.bin);
+    else
+        make_lists(view, settings.bin, z_bounds);
     frame_.bin_ms = watch.lap();
-
-    frame_.lights = binned_->in_order();
+    frame_.lights = settings.on_gpu ? binned_->lights_and_suns() : binned_->in_order();
     frame_.light_ms += watch.lap();
+    return frame_;
+}
+
+void Stage::make_lists(const lightbin::View& view, BinSettings settings, const lightbin::ZBounds& z_bounds) {
+    settings.glass = !scene_.transparent.empty();
+    const auto [opaque, transparent] = binned_->bin(view, settings, z_bounds);
     frame_.ranges = opaque.ranges();
     frame_.ids = opaque.ids();
     if (transparent.ranges().data() != opaque.ranges().data()) {
@@ -91,5 +94,37 @@ const Frame& Stage::frame(const FrameSettings& settings, const lightbin::ZBounds
     frame_.bins = opaque.ranks().bins;
     frame_.counts = opaque.light_counts();
     frame_.longest = list_lengths(opaque).longest;
-    return frame_;
+}
+
+void Stage::make_footprints(const lightbin::View& view, const BinSettings& settings) {
+    if (settings.method == DepthMethod::z_bins)
+        throw std::runtime_error("z-bins are made on the processor, not by the GPU");
+    frame_.footprints = binned_->visit_lights(settings.dropped_light, [&](const auto& lights) {
+        return value_of(lightbin::shader_footprints(view, lights));
+    });
+    frame_.edges = lightbin::shader_edges(view);
+    auto slices = value_of(lightbin::Slices::linear(1, 0, 0));
+    if (settings.method == DepthMethod::clusters) {
+        slices = slices_for(settings, view.orthographic(), binned_->lights());
+        frame_.slices = lightbin::shader_slices(slices);
+        frame_.slabs = lightbin::shader_slabs(slices);
+    }
+    std::uint64_t room = 0;  // for all tiles of the rectangles, in all slices that the lights meet
+    for (const lightbin::ShaderFootprint& light : frame_.footprints) {
+        const int deep = slices.slice_at(light.z + light.radius) - slices.slice_at(light.z - light.radius) + 1;
+        room += std::uint64_t{1} * static_cast<unsigned>(deep) * (light.x1 - light.x0 + 1u) * (light.y1 - light.y0 + 1u);
+    }
+    if (room > std::numeric_limits<std::uint32_t>::max())
+        throw std::runtime_error("the lists would have " + std::to_string(room) + " entries: take larger tiles");
+    frame_.build = lightbin::shader_build(view, static_cast<std::uint32_t>(frame_.footprints.size()),
+                                          static_cast<std::uint32_t>(room), slices.count());
+    frame_.counts.lights = static_cast<std::uint32_t>(scene_.lights.size());
+    frame_.counts.culled = frame_.counts.lights - static_cast<std::uint32_t>(frame_.footprints.size());
+}
+
+lightbin::Advice Stage::advise(const lightbin::View& view, const FrameSettings& settings) {
+    place(settings);
+    return binned_->visit_lights(settings.bin.dropped_light, [&](const auto& lights) {
+        return value_of(lightbin::advise(view, lights));
+    });
 }

@@ -28,12 +28,11 @@ struct FrameSettings {
     bool on_gpu = false;  // no lists, but what the shaders of lightbin::build_shader() make them of
 };
 
-// What a camera and a picture's size make of the scene, before any light. The vectors are as long as ShaderGrid,
-// ShaderView and ShaderReduce.
+// What a camera and a picture's size make of the scene, before any light.
 struct Prepared {
     lightbin::View view;
     glm::mat4 projection, world_to_view;
-    glm::vec3 moon;
+    glm::vec3 moon;  // the way to it, in view space
 };
 
 // The spans are valid until the next frame.
@@ -47,7 +46,7 @@ struct Frame {
     std::uint32_t longest = 0;
     double light_ms = 0, bin_ms = 0;  // to move and place the lights; to bin them
 
-    // on_gpu
+    // on_gpu: what build_shader() reads. Lists have at most build.room entries.
     std::vector<lightbin::ShaderFootprint> footprints;
     std::vector<lightbin::ShaderEdges> edges, slabs;
     lightbin::ShaderBuild build = {};
@@ -55,8 +54,6 @@ struct Frame {
 
 class Stage {
 public:
-    Stage();
-
     // A made scene: `city` with this many lights, or `street`.
     void make(const std::string& kind, int lights);
 
@@ -64,19 +61,28 @@ public:
     void open(std::span<const unsigned char> bytes, const std::string& name);
 
     const Scene& scene() const { return scene_; }
+    const std::string& kind() const { return kind_; }  // `city`, `street` or `file`
+    bool has_spots() const { return binned_->has_spots(); }
 
     Prepared prepare(const FrameSettings& settings) const;
 
-    // Z bounds with DepthMethod::interval and box, unless on_gpu: of opaque surfaces, and with glass transparent_max.
-    const Frame& frame(const FrameSettings& settings, const lightbin::ZBounds& z_bounds);
+    // What is drawn in a prepared view.
+    //
+    // z_bounds  with DepthMethod::interval and box, unless on_gpu: of what is opaque, and where there is glass
+    //           transparent_max
+    const Frame& frame(const lightbin::View& view, const FrameSettings& settings, const lightbin::ZBounds& z_bounds);
 
-    lightbin::Advice advise(const FrameSettings& settings);
+    // What the ways to light this view cost here.
+    lightbin::Advice advise(const lightbin::View& view, const FrameSettings& settings);
 
 private:
-    void show(Scene scene);
+    void show(Scene scene, const std::string& kind);
     void place(const FrameSettings& settings);
+    void make_lists(const lightbin::View& view, BinSettings settings, const lightbin::ZBounds& z_bounds);
+    void make_footprints(const lightbin::View& view, const BinSettings& settings);
 
     Scene scene_;
+    std::string kind_;
     std::vector<Light> places_;  // of the lights at rest
     std::optional<BinnedLights> binned_;
     Frame frame_;
