@@ -67,14 +67,14 @@ class Lightbin {
     }
 
     /** What is drawn with before any light: projection, view, moon, grid, shader_view, reduce, tiles_x, tiles_y. */
-    prepare(settings) {
-        return this.#ask('prepare', settings);
+    view(settings) {
+        return this.#ask('view', settings);
     }
 
-    /** The same, and the lights and their lists. z_bounds: {min, max}, and where there is glass transparent_max. */
+    /** The same, and the lights and their lists. z_bounds: {min, max}, and where there is glass glass_max. */
     frame(settings, z_bounds = null) {
         if (!z_bounds) return this.#ask('frame', settings);
-        this.#put(...['min', 'max', 'transparent_max'].map((side) => z_bounds[side]).filter(Boolean));
+        this.#put(...['min', 'max', 'glass_max'].map((side) => z_bounds[side]).filter(Boolean));
         return this.#ask('frame', { ...settings, bounds: true });
     }
 

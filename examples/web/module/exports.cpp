@@ -129,7 +129,7 @@ json prepared_json(const Prepared& prepared) {
             {"tiles_y", view.tiles_y()}};
 }
 
-// The minimum of all tiles, the maximum of all, and where there is glass transparent_max.
+// The minimum of all tiles, the maximum of all, and where there is glass its maximum.
 lightbin::ZBounds z_bounds_of(const json& asked, std::size_t tiles) {
     if (!asked.contains("bounds")) return {};
     const auto side = [&](std::size_t i) {
@@ -168,19 +168,12 @@ json frame_json(const json& asked) {
     return made;
 }
 
-std::string words_of(const lightbin::Plan& plan) {
-    if (!plan.tiled) return "no tiling";
-    std::string words = to_string(plan.footprint);
-    if (plan.depth_test != lightbin::DepthTest::none) words += std::string(", ") + to_string(plan.depth_test);
-    return words;
-}
-
 json advice_json(const json& asked) {
     const FrameSettings settings = settings_of(asked);
     const lightbin::Advice advice = stage.advise(stage.prepare(settings).view, settings);
     json plans = json::array();
     for (const lightbin::Plan& plan : advice.plans())
-        plans.push_back({{"plan", words_of(plan)},
+        plans.push_back({{"plan", plan.tiled ? to_string(plan.footprint) : "no tiling"},
                          {"tile_size", plan.tile_size},
                          {"milliseconds", plan.total_ns * 1e-6},
                          {"build_milliseconds", plan.build_ns * 1e-6},
@@ -234,7 +227,7 @@ EXPORT(open) const char* answer_open() {
 EXPORT(scene) const char* answer_scene() {
     return answered([](const json&) { return scene_json(); });
 }
-EXPORT(prepare) const char* answer_prepare() {
+EXPORT(view) const char* answer_view() {
     return answered([](const json& asked) { return prepared_json(stage.prepare(settings_of(asked))); });
 }
 EXPORT(frame) const char* answer_frame() {

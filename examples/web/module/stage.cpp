@@ -86,10 +86,8 @@ void Stage::make_lists(const lightbin::View& view, BinSettings settings, const l
     const auto [opaque, transparent] = binned_->bin(view, settings, z_bounds);
     frame_.ranges = opaque.ranges();
     frame_.ids = opaque.ids();
-    if (transparent.ranges().data() != opaque.ranges().data()) {
-        frame_.glass_ranges = transparent.ranges();
-        frame_.glass_ids = transparent.ids();
-    }
+    frame_.glass_ranges = transparent.ranges();
+    frame_.glass_ids = transparent.ids();
     if (binned_->slices()) frame_.slices = lightbin::shader_slices(*binned_->slices());
     frame_.bins = opaque.ranks().bins;
     frame_.counts = opaque.light_counts();

@@ -38,7 +38,7 @@ struct Prepared {
 // The spans are valid until the next frame.
 struct Frame {
     std::span<const GpuLight> lights;  // and then suns; with z-bins in the order of rank
-    std::span<const lightbin::ListRange> ranges, glass_ranges;
+    std::span<const lightbin::ListRange> ranges, glass_ranges;  // glass may have the same ones
     std::span<const std::uint32_t> ids, glass_ids;
     std::vector<std::uint32_t> slices;
     std::span<const lightbin::BinRange> bins;
