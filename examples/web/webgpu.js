@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: MIT
+// The WebGPU renderer: draw() has the frame from top to bottom.
+import {depth_shader, frame_bindings, frame_constants, surface_shader} from './shading_wgsl.js';
+import {BuiltLists} from './webgpu_lists.js';
+import {Program, Store, usages} from './webgpu_parts.js';
+
+const picture_format = 'rgba8unorm', depth_format = 'depth32float';
+
+// Z bounds come from a depth pre-pass, and the lists are made where that is: on the GPU.
+const with_bounds = method => method === 'interval' || method === 'box';
+
+// What is read back of a frame: six times in nanoseconds, two counts of entries, and the table of the tiles built here.
+const entries_at = 48, tiles_at = 64;
+
+// Cuts a picture into bands of rows that no device takes long for: [first row, rows].
+function cut(width, height, lights) {
+    const rows = Math.max(1, Math.floor(2e7 / (width * lights)));
+    return Array.from({length: Math.ceil(height / rows)}, (_, i) => [i * rows, Math.min(rows, height - i * rows)]);
+}
+
+export class WebGpu {
+    name = 'WebGPU';
+    rows_from_below = false;
+    refused = {};
+    lost = null;  // a sentence, when the device is
+
+    static async create(canvas) {
+        const adapter = await navigator.gpu?.requestAdapter({powerPreference: 'high-performance'});
+        if (!adapter) throw new Error('This browser has no WebGPU, or it is switched off.');
+        const {maxBufferSize, maxStorageBufferBindingSize} = adapter.limits;
+        const device = await adapter.requestDevice({
+            requiredFeatures: ['timestamp-query'].filter(feature => adapter.features.has(feature)),
+            requiredLimits: {maxBufferSize, maxStorageBufferBindingSize},
+        });
+        return new WebGpu(canvas, device);
+    }
+
+    #canvas;
+    #context;
+    #device;
+    #clock = null;  // where the device tells the time
+    #picture = null;
+    #depth = null;
+    #stores = new Map();
+    #programs = new Map();
+    #lists;  // of interval and box
+    #glass_lists;
+    #opaque = 0;  // vertices of what is opaque; those of glass follow
+    #glass = 0;
+    #spots = false;
+
+    constructor(canvas, device) {
+        this.#canvas = canvas;
+        this.#device = device;
+        this.#context = canvas.getContext('webgpu');
+        this.#context.configure({device, format: picture_format, usage: GPUTextureUsage.COPY_DST, alphaMode: 'opaque'});
+        if (device.features.has('timestamp-query')) this.#clock = device.createQuerySet({type: 'timestamp', count: 6});
+        this.#lists = new BuiltLists(device, false);
+        this.#glass_lists = new BuiltLists(device, true);
+        device.lost.then(({message}) => this.lost ??= `The graphics device was lost. ${message}`);
+        device.addEventListener('uncapturederror', ({error}) => this.lost ??= `WebGPU reports: ${error.message}`);
+    }
+
+    destroy() {
+        this.#device.destroy();
+    }
+
+    set_scene(scene) {
+        this.#opaque = scene.triangles.length / 9;
+        this.#glass = scene.glass.length / 9;
+        this.#spots = scene.has_spots;
+        const vertices = this.#store('vertices', usages.vertices);
+        vertices.reserve(scene.triangles.byteLength + scene.glass.byteLength);
+        vertices.write(scene.triangles);
+        vertices.write(scene.glass, scene.triangles.byteLength);
+    }
+
+    // One at a time. Resolves when the device has drawn: what it reports is of this very frame.
+    async draw(lightbin, settings) {
+        try {
+            return await this.#draw(lightbin, settings);
+        } catch (error) {
+            throw this.lost ? new Error(this.lost) : error;
+        }
+    }
+
+    async #draw(lightbin, settings) {
+        const {width, height, method, exposure} = settings;
+        const look = settings.every_light ? 'every_light' : settings.look;
+        const programs = await this.#programs_for(lightbin, look, settings);
+        this.#resize(width, height);
+
+        // 1. The lists: which lights can reach which tile. With Z bounds: what they are built of.
+        const frame = lightbin.frame({...settings, clip: 'webgpu', on_gpu: with_bounds(method)});
+        const {in_view, rejected, entries, longest, tiles_x, tiles_y, light_count} = frame;
+        const report = {ms: {...frame.ms}, in_view, rejected, entries, longest, tiles_x, tiles_y,
+            timed: this.#clock ? 'gpu' : 'wall'};
+
+        // 2. To the GPU.
+        const start = performance.now(), constants = frame_constants(frame, exposure, width, height);
+        this.#upload(frame, programs);
+        report.ms.upload = performance.now() - start;
+
+        // 3. Depth, lists and picture. Once more where the lists had too little room, or where the heat map's colours were
+        // relative to another length than that of the longest list.
+        const bands = cut(width, height, look === 'every_light' || look === 'check' ? light_count : 1);
+        for (let right = false; !right;) {
+            this.#store('frame', usages.uniform).write(constants(report.longest));
+            const {times, built} = await this.#submit(programs, report, bands);
+            report.ms = {...report.ms, pre_pass: times[0], bin: frame.ms.bin + times[1], draw: times[2]};
+            right = !built || (this.#fit(built) && (look !== 'heat' || built.longest === report.longest));
+            Object.assign(report, built);
+        }
+        if (settings.show !== false) this.#show();
+        return report;
+    }
+
+    // Compiled when they are first wanted.
+    async #programs_for(lightbin, look, {method, camera: {orthographic}}) {
+        const bounded = with_bounds(method), glass = this.#glass > 0 && look !== 'heat';
+        const wanted = {surface: this.#surface_program(lightbin, look, method, false)};
+        if (glass) wanted.glass = this.#surface_program(lightbin, look, method, true);
+        if (bounded) wanted.depth = this.#program('depth', () => this.#rendering([[], frame_bindings], depth_shader));
+        if (bounded && look !== 'every_light') {
+            const kernels = for_glass => this.#program(`${method} ${orthographic} ${for_glass}`,
+                () => BuiltLists.kernels(this.#device, lightbin, method, orthographic, for_glass));
+            wanted.lists = kernels(false);
+            if (glass) wanted.glass_lists = kernels(true);
+        }
+        const names = Object.keys(wanted), made = await Promise.all(Object.values(wanted));
+        return Object.fromEntries(names.map((name, i) => [name, made[i]]));
+    }
+
+    #program(name, make) {
+        if (!this.#programs.has(name)) this.#programs.set(name, make());
+        return this.#programs.get(name);
+    }
+
+    #surface_program(lightbin, look, method, glass) {
+        const slicing = with_bounds(method) ? 'none' : method, check = look === 'check';
+        return this.#program(`${look} ${slicing} ${this.#spots} ${glass}`, () => {
+            const {text, bindings} = look === 'every_light' ? {text: '', bindings: []} : lightbin.text('snippet',
+                {language: 'wgsl', slicing, heat_map: look === 'heat', view_check: check, list_check: check});
+            // 1 - (1 - glass) (1 - behind): the light of both, whatever is drawn first, and never more than white.
+            const add = {srcFactor: 'one', dstFactor: 'one-minus-src'};
+            const target = {format: picture_format, blend: glass ? {color: add, alpha: add} : undefined};
+            return this.#rendering([bindings, frame_bindings], surface_shader(look, text, this.#spots), target, !glass);
+        });
+    }
+
+    #rendering(groups, text, target = null, depthWriteEnabled = true) {
+        const module = this.#device.createShaderModule({code: text});
+        const attributes = [0, 1, 2].map(i => ({shaderLocation: i, offset: 12 * i, format: 'float32x3'}));
+        return Program.for_surfaces(this.#device, groups, {
+            vertex: {module, buffers: [{arrayStride: 36, attributes}]},
+            fragment: target ? {module, targets: [target]} : undefined,
+            depthStencil: {format: depth_format, depthWriteEnabled, depthCompare: 'less-equal'},
+        });
+    }
+
+    #resize(width, height) {
+        if (this.#picture?.width === width && this.#picture.height === height) return;
+        this.#picture?.destroy();
+        this.#depth?.destroy();
+        const {RENDER_ATTACHMENT, COPY_SRC, TEXTURE_BINDING} = GPUTextureUsage, size = [width, height];
+        this.#picture = this.#device.createTexture({size, format: picture_format, usage: RENDER_ATTACHMENT | COPY_SRC});
+        this.#depth = this.#device.createTexture({size, format: depth_format, usage: RENDER_ATTACHMENT | TEXTURE_BINDING});
+    }
+
+    #store(name, usage = usages.storage) {
+        if (!this.#stores.has(name)) this.#stores.set(name, new Store(this.#device, usage));
+        return this.#stores.get(name);
+    }
+
+    #upload(frame, programs) {
+        this.#store('grid', usages.uniform).write(Uint32Array.from(frame.grid));
+        this.#store('view', usages.uniform).write(Float32Array.from(frame.shader_view));
+        this.#store('lights').write(frame.lights);
+        if (programs.lists) {
+            this.#store('footprints').write(frame.footprints);
+            this.#store('edges').write(frame.edges);
+            this.#lists.upload(frame);
+            this.#glass_lists.upload(frame);
+        } else {
+            this.#store('tiles').write(frame.ranges);
+            this.#store('lists').write(frame.ids);
+            this.#store('slices').write(frame.slices);
+            this.#store('bins').write(frame.bins);
+        }
+    }
+
+    // Both are asked, so that both grow at once.
+    #fit({entries, glass_entries}) {
+        const fits = this.#lists.fits(entries);
+        return this.#glass_lists.fits(glass_entries) && fits;
+    }
+
+    // Draws, band by band. Returns the milliseconds of pre-pass, lists and picture, and of the lists that were built here
+    // how long they are.
+    async #submit(programs, {tiles_x, tiles_y}, bands) {
+        const {queue} = this.#device, start = performance.now();
+        let encoder = this.#device.createCommandEncoder();
+        if (programs.depth) this.#draw_depth(encoder, programs.depth);
+        if (programs.lists) this.#build_lists(encoder, programs, tiles_x, tiles_y);
+        for (const [i, band] of bands.entries()) {
+            this.#draw_band(encoder, programs, band, i === 0, i === bands.length - 1);
+            if (i === bands.length - 1) break;
+            queue.submit([encoder.finish()]);
+            await queue.onSubmittedWorkDone();
+            encoder = this.#device.createCommandEncoder();
+        }
+
+        const tiles = programs.lists ? tiles_x * tiles_y : 0, results = this.#store('results', usages.results);
+        results.reserve(tiles_at + 8 * tiles);
+        this.#copy_results(encoder, results.buffer, tiles);
+        queue.submit([encoder.finish()]);
+        await results.buffer.mapAsync(GPUMapMode.READ);
+        const bytes = results.buffer.getMappedRange().slice(0), wall = performance.now() - start;
+        results.buffer.unmap();
+        const at = Array.from(new BigUint64Array(bytes, 0, 6), nanoseconds => Number(nanoseconds) / 1e6);
+        return {
+            times: this.#clock ? [at[1] - at[0], at[3] - at[2], at[5] - at[4]] : [0, 0, wall],
+            built: tiles > 0 ? list_sizes(new Uint32Array(bytes), tiles) : null,
+        };
+    }
+
+    #draw_depth(encoder, program) {
+        const pass = encoder.beginRenderPass({
+            colorAttachments: [],
+            depthStencilAttachment: this.#depth_attachment(true),
+            timestampWrites: this.#times(0, 1),
+        });
+        this.#draw_vertices(pass, program, this.#resources(), 0, this.#opaque);
+        pass.end();
+    }
+
+    #build_lists(encoder, programs, tiles_x, tiles_y) {
+        const inputs = {
+            lightbin_depth: this.#depth.createView(),
+            lightbin_footprints: this.#store('footprints'),
+            lightbin_edges: this.#store('edges'),
+        };
+        const pass = encoder.beginComputePass({timestampWrites: this.#times(2, 3)});
+        this.#lists.encode(pass, programs.lists, inputs, tiles_x, tiles_y);
+        if (programs.glass_lists) this.#glass_lists.encode(pass, programs.glass_lists, inputs, tiles_x, tiles_y);
+        pass.end();
+    }
+
+    #draw_band(encoder, {surface, glass, depth, lists, glass_lists}, [top, rows], first, last) {
+        const pass = encoder.beginRenderPass({
+            colorAttachments: [{view: this.#picture.createView(), loadOp: first ? 'clear' : 'load', storeOp: 'store'}],
+            depthStencilAttachment: this.#depth_attachment(first && !depth),
+            timestampWrites: this.#times(first ? 4 : undefined, last ? 5 : undefined),
+        });
+        pass.setScissorRect(0, top, this.#picture.width, rows);
+        this.#draw_vertices(pass, surface, this.#resources(lists && this.#lists), 0, this.#opaque);
+        if (glass)
+            this.#draw_vertices(pass, glass, this.#resources(glass_lists && this.#glass_lists), this.#opaque, this.#glass);
+        pass.end();
+    }
+
+    #depth_attachment(clear) {
+        const depthLoadOp = clear ? 'clear' : 'load';
+        return {view: this.#depth.createView(), depthClearValue: 1, depthLoadOp, depthStoreOp: 'store'};
+    }
+
+    #times(beginningOfPassWriteIndex, endOfPassWriteIndex) {
+        const wanted = this.#clock && (beginningOfPassWriteIndex ?? endOfPassWriteIndex) !== undefined;
+        return wanted ? {querySet: this.#clock, beginningOfPassWriteIndex, endOfPassWriteIndex} : undefined;
+    }
+
+    // What the names in the shaders of surfaces stand for. `built`: lists that were built here.
+    #resources(built = null) {
+        return {
+            frame: this.#store('frame'),
+            lights: this.#store('lights'),
+            lightbin_grid_block: this.#store('grid'),
+            lightbin_image_block: this.#store('view'),
+            lightbin_tiles: built?.tiles ?? this.#store('tiles'),
+            lightbin_lists: built?.lists ?? this.#store('lists'),
+            lightbin_slices: this.#store('slices'),
+            lightbin_bins: this.#store('bins'),
+        };
+    }
+
+    #draw_vertices(pass, program, resources, first, count) {
+        program.use(pass, resources);
+        pass.setVertexBuffer(0, this.#store('vertices').buffer);
+        pass.draw(count, 1, first);
+    }
+
+    #copy_results(encoder, results, tiles) {
+        if (this.#clock) {
+            const times = this.#store('times', GPUBufferUsage.QUERY_RESOLVE | GPUBufferUsage.COPY_SRC);
+            times.reserve(48);
+            encoder.resolveQuerySet(this.#clock, 0, 6, times.buffer, 0);
+            encoder.copyBufferToBuffer(times.buffer, 0, results, 0, 48);
+        }
+        if (tiles === 0) return;
+        encoder.copyBufferToBuffer(this.#lists.total.buffer, 0, results, entries_at, 4);
+        encoder.copyBufferToBuffer(this.#glass_lists.total.buffer, 0, results, entries_at + 4, 4);
+        encoder.copyBufferToBuffer(this.#lists.tiles.buffer, 0, results, tiles_at, 8 * tiles);
+    }
+
+    #show() {
+        const encoder = this.#device.createCommandEncoder(), {width, height} = this.#picture;
+        if (this.#canvas.width !== width) this.#canvas.width = width;
+        if (this.#canvas.height !== height) this.#canvas.height = height;
+        encoder.copyTextureToTexture({texture: this.#picture}, {texture: this.#context.getCurrentTexture()}, [width, height]);
+        this.#device.queue.submit([encoder.finish()]);
+    }
+
+    // The last picture as RGBA.
+    async read() {
+        const {width, height} = this.#picture, row = 256 * Math.ceil(width / 64);  // a copy's rows begin at such places
+        const pixels = this.#store('pixels', usages.results);
+        pixels.reserve(row * height);
+        const encoder = this.#device.createCommandEncoder();
+        encoder.copyTextureToBuffer({texture: this.#picture}, {buffer: pixels.buffer, bytesPerRow: row}, [width, height]);
+        this.#device.queue.submit([encoder.finish()]);
+        await pixels.buffer.mapAsync(GPUMapMode.READ);
+        const padded = new Uint8Array(pixels.buffer.getMappedRange()), bytes = new Uint8Array(4 * width * height);
+        for (let y = 0; y < height; y++) bytes.set(padded.subarray(row * y, row * y + 4 * width), 4 * width * y);
+        pixels.buffer.unmap();
+        return bytes;
+    }
+}
+
+// Of what was read back.
+function list_sizes(words, tiles) {
+    let longest = 0;
+    for (let tile = 0; tile < tiles; tile++) longest = Math.max(longest, words[tiles_at / 4 + 2 * tile + 1]);
+    const [entries, glass_entries] = words.subarray(entries_at / 4);
+    return {entries, glass_entries, longest};
+}
