@@ -9,8 +9,8 @@ const picture_format = 'rgba8unorm', depth_format = 'depth32float';
 // Z bounds come from a depth pre-pass, and the lists are made where that is: on the GPU.
 const with_bounds = method => method === 'interval' || method === 'box';
 
-// What is read back of a frame: six times in nanoseconds, two counts of entries, and the table of the tiles built here.
-const entries_at = 48, tiles_at = 64;
+// What is read back of a frame: six times in nanoseconds, and the table of the tiles built here.
+const tiles_at = 48;
 
 // Cuts a picture into bands of rows that no device takes long for: [first row, rows].
 function cut(width, height, lights) {
@@ -55,8 +55,8 @@ export class WebGpu {
         this.#context = canvas.getContext('webgpu');
         this.#context.configure({device, format: picture_format, usage: GPUTextureUsage.COPY_DST, alphaMode: 'opaque'});
         if (device.features.has('timestamp-query')) this.#clock = device.createQuerySet({type: 'timestamp', count: 6});
-        this.#lists = new BuiltLists(device, false);
-        this.#glass_lists = new BuiltLists(device, true);
+        this.#lists = new BuiltLists(device);
+        this.#glass_lists = new BuiltLists(device);
         device.lost.then(({message}) => this.lost ??= `The graphics device was lost. ${message}`);
         device.addEventListener('uncapturederror', ({error}) => this.lost ??= `WebGPU reports: ${error.message}`);
     }
@@ -101,14 +101,13 @@ export class WebGpu {
         this.#upload(frame, programs);
         report.ms.upload = performance.now() - start;
 
-        // 3. Depth, lists and picture. Once more where the lists had too little room, or where the heat map's colours were
-        // relative to another length than that of the longest list.
+        // 3. Depth, lists and picture: of the heat map once more, where its colours were not relative to the longest list.
         const bands = cut(width, height, look === 'every_light' || look === 'check' ? light_count : 1);
         for (let right = false; !right;) {
             this.#store('frame', usages.uniform).write(constants(report.longest));
             const {times, built} = await this.#submit(programs, report, bands);
-            report.ms = {...report.ms, pre_pass: times[0], bin: frame.ms.bin + times[1], draw: times[2]};
-            right = !built || (this.#fit(built) && (look !== 'heat' || built.longest === report.longest));
+            Object.assign(report.ms, {pre_pass: times[0], bin: frame.ms.bin + times[1], draw: times[2]});
+            right = !built || look !== 'heat' || built.longest === report.longest;
             Object.assign(report, built);
         }
         if (settings.show !== false) this.#show();
@@ -173,8 +172,8 @@ export class WebGpu {
     }
 
     #upload(frame, programs) {
-        this.#store('grid', usages.uniform).write(Uint32Array.from(frame.grid));
-        this.#store('view', usages.uniform).write(Float32Array.from(frame.shader_view));
+        this.#store('grid', usages.uniform).write(frame.grid);
+        this.#store('view', usages.uniform).write(frame.shader_view);
         this.#store('lights').write(frame.lights);
         if (programs.lists) {
             this.#store('footprints').write(frame.footprints);
@@ -187,12 +186,6 @@ export class WebGpu {
             this.#store('slices').write(frame.slices);
             this.#store('bins').write(frame.bins);
         }
-    }
-
-    // Both are asked, so that both grow at once.
-    #fit({entries, glass_entries}) {
-        const fits = this.#lists.fits(entries);
-        return this.#glass_lists.fits(glass_entries) && fits;
     }
 
     // Draws, band by band. Returns the milliseconds of pre-pass, lists and picture, and of the lists that were built here
@@ -218,9 +211,10 @@ export class WebGpu {
         const bytes = results.buffer.getMappedRange().slice(0), wall = performance.now() - start;
         results.buffer.unmap();
         const at = Array.from(new BigUint64Array(bytes, 0, 6), nanoseconds => Number(nanoseconds) / 1e6);
+        const taken = (there, first) => (there ? at[first + 1] - at[first] : 0);
         return {
-            times: this.#clock ? [at[1] - at[0], at[3] - at[2], at[5] - at[4]] : [0, 0, wall],
-            built: tiles > 0 ? list_sizes(new Uint32Array(bytes), tiles) : null,
+            times: this.#clock ? [taken(programs.depth, 0), taken(programs.lists, 2), taken(true, 4)] : [0, 0, wall],
+            built: tiles > 0 ? list_sizes(new Uint32Array(bytes, tiles_at, 2 * tiles)) : null,
         };
     }
 
@@ -296,10 +290,7 @@ export class WebGpu {
             encoder.resolveQuerySet(this.#clock, 0, 6, times.buffer, 0);
             encoder.copyBufferToBuffer(times.buffer, 0, results, 0, 48);
         }
-        if (tiles === 0) return;
-        encoder.copyBufferToBuffer(this.#lists.total.buffer, 0, results, entries_at, 4);
-        encoder.copyBufferToBuffer(this.#glass_lists.total.buffer, 0, results, entries_at + 4, 4);
-        encoder.copyBufferToBuffer(this.#lists.tiles.buffer, 0, results, tiles_at, 8 * tiles);
+        if (tiles > 0) encoder.copyBufferToBuffer(this.#lists.tiles.buffer, 0, results, tiles_at, 8 * tiles);
     }
 
     #show() {
@@ -326,10 +317,12 @@ export class WebGpu {
     }
 }
 
-// Of what was read back.
-function list_sizes(words, tiles) {
-    let longest = 0;
-    for (let tile = 0; tile < tiles; tile++) longest = Math.max(longest, words[tiles_at / 4 + 2 * tile + 1]);
-    const [entries, glass_entries] = words.subarray(entries_at / 4);
-    return {entries, glass_entries, longest};
+// Of a table of offsets and counts.
+function list_sizes(words) {
+    let entries = 0, longest = 0;
+    for (let at = 1; at < words.length; at += 2) {
+        entries += words[at];
+        longest = Math.max(longest, words[at]);
+    }
+    return {entries, longest};
 }
