@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The WebGPU renderer: draw() has the frame from top to bottom.
-import {depth_shader, frame_bindings, frame_constants, surface_shader} from './shading_wgsl.js';
-import {BuiltLists} from './webgpu_lists.js';
-import {Program, Store, usages} from './webgpu_parts.js';
-
-const picture_format = 'rgba8unorm', depth_format = 'depth32float';
-
-// Z bounds come from a depth pre-pass, and the lists are made where that is: on the GPU.
-const with_bounds = method => method === 'interval' || method === 'box';
+import {frame_constants} from './shading_wgsl.js';
+import {BuiltLists, with_bounds} from './webgpu_lists.js';
+import {Store, usages} from './webgpu_parts.js';
+import {Programs, depth_format, picture_format} from './webgpu_programs.js';
 
 // What is read back of a frame: six times in nanoseconds, and the table of the tiles built here.
 const tiles_at = 48;
@@ -42,7 +38,7 @@ export class WebGpu {
     #picture = null;
     #depth = null;
     #stores = new Map();
-    #programs = new Map();
+    #programs;
     #lists;  // of interval and box
     #glass_lists;
     #opaque = 0;  // vertices of what is opaque; those of glass follow
@@ -55,6 +51,7 @@ export class WebGpu {
         this.#context = canvas.getContext('webgpu');
         this.#context.configure({device, format: picture_format, usage: GPUTextureUsage.COPY_DST, alphaMode: 'opaque'});
         if (device.features.has('timestamp-query')) this.#clock = device.createQuerySet({type: 'timestamp', count: 6});
+        this.#programs = new Programs(device);
         this.#lists = new BuiltLists(device);
         this.#glass_lists = new BuiltLists(device);
         device.lost.then(({message}) => this.lost ??= `The graphics device was lost. ${message}`);
@@ -87,7 +84,8 @@ export class WebGpu {
     async #draw(lightbin, settings) {
         const {width, height, method, exposure} = settings;
         const look = settings.every_light ? 'every_light' : settings.look;
-        const programs = await this.#programs_for(lightbin, look, settings);
+        const scene = {has_spots: this.#spots, has_glass: this.#glass > 0};
+        const programs = await this.#programs.that_draw(lightbin, look, settings, scene);
         this.#resize(width, height);
 
         // 1. The lists: which lights can reach which tile. With Z bounds: what they are built of.
@@ -112,49 +110,6 @@ export class WebGpu {
         }
         if (settings.show !== false) this.#show();
         return report;
-    }
-
-    // Compiled when they are first wanted.
-    async #programs_for(lightbin, look, {method, camera: {orthographic}}) {
-        const bounded = with_bounds(method), glass = this.#glass > 0 && look !== 'heat';
-        const wanted = {surface: this.#surface_program(lightbin, look, method, false)};
-        if (glass) wanted.glass = this.#surface_program(lightbin, look, method, true);
-        if (bounded) wanted.depth = this.#program('depth', () => this.#rendering([[], frame_bindings], depth_shader));
-        if (bounded && look !== 'every_light') {
-            const kernels = for_glass => this.#program(`${method} ${orthographic} ${for_glass}`,
-                () => BuiltLists.kernels(this.#device, lightbin, method, orthographic, for_glass));
-            wanted.lists = kernels(false);
-            if (glass) wanted.glass_lists = kernels(true);
-        }
-        const names = Object.keys(wanted), made = await Promise.all(Object.values(wanted));
-        return Object.fromEntries(names.map((name, i) => [name, made[i]]));
-    }
-
-    #program(name, make) {
-        if (!this.#programs.has(name)) this.#programs.set(name, make());
-        return this.#programs.get(name);
-    }
-
-    #surface_program(lightbin, look, method, glass) {
-        const slicing = with_bounds(method) ? 'none' : method, check = look === 'check';
-        return this.#program(`${look} ${slicing} ${this.#spots} ${glass}`, () => {
-            const {text, bindings} = look === 'every_light' ? {text: '', bindings: []} : lightbin.text('snippet',
-                {language: 'wgsl', slicing, heat_map: look === 'heat', view_check: check, list_check: check});
-            // 1 - (1 - glass) (1 - behind): the light of both, whatever is drawn first, and never more than white.
-            const add = {srcFactor: 'one', dstFactor: 'one-minus-src'};
-            const target = {format: picture_format, blend: glass ? {color: add, alpha: add} : undefined};
-            return this.#rendering([bindings, frame_bindings], surface_shader(look, text, this.#spots), target, !glass);
-        });
-    }
-
-    #rendering(groups, text, target = null, depthWriteEnabled = true) {
-        const module = this.#device.createShaderModule({code: text});
-        const attributes = [0, 1, 2].map(i => ({shaderLocation: i, offset: 12 * i, format: 'float32x3'}));
-        return Program.for_surfaces(this.#device, groups, {
-            vertex: {module, buffers: [{arrayStride: 36, attributes}]},
-            fragment: target ? {module, targets: [target]} : undefined,
-            depthStencil: {format: depth_format, depthWriteEnabled, depthCompare: 'less-equal'},
-        });
     }
 
     #resize(width, height) {

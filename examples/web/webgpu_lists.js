@@ -2,6 +2,9 @@
 // Lists made where the depths are: lightbin's shaders reduce a depth buffer to Z bounds, and build the lists from those.
 import {Program, Store, usages} from './webgpu_parts.js';
 
+// Z bounds come from a depth pre-pass.
+export const with_bounds = method => method === 'interval' || method === 'box';
+
 export class BuiltLists {
     constructor(device) {
         for (const name of ['tiles', 'lists', 'total', 'z_bounds'])
