@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// What the page is set to: kept in its address, so that a link shows the same.
+
+export const most_lights = 50000, fewest_lights = 16;
+
+const defaults = {
+    scene: 'city',     // city, street, nova, darkness; file: one that was opened
+    view: 0,           // the scene's camera,
+    at: '',            // or where it was moved to
+    lights: 10000,     // of the city
+    move: true,
+    method: 'clusters',
+    tile: 64,
+    renderer: 'webgl',
+    look: 'lit',
+    size: 'auto',      // or percent of the window's pixels
+    stops: 0,          // brighter than the light meter says
+    drop: -1,          // a light that is left out of the lists, to see the checks fail
+    seconds: 0,        // where moving lights begin
+};
+
+const choices = {
+    scene: ['city', 'street', 'nova', 'darkness'],
+    method: ['none', 'z_bins', 'clusters', 'interval', 'box'],
+    renderer: ['webgl', 'webgpu'],
+    look: ['lit', 'heat', 'check'],
+};
+
+const ranges = {
+    view: [0, 1000], lights: [fewest_lights, most_lights], tile: [8, 128], stops: [-5, 5], drop: [-1, 1e6], seconds: [0, 1e6],
+};
+
+// The settings that a page address's hash holds; what is missing or makes no sense is as by default.
+export function parse_hash(hash) {
+    const settings = {...defaults};
+    if (matchMedia('(prefers-reduced-motion: reduce)').matches) settings.move = false;
+    for (const [name, text] of new URLSearchParams(hash.replace(/^#/, ''))) {
+        const number = Number(text);
+        if (choices[name]?.includes(text) || name === 'at') settings[name] = text;
+        else if (name === 'move') settings.move = text !== '0';
+        else if (name === 'size') settings.size = number >= 5 && number <= 200 ? String(number) : 'auto';
+        else if (name in ranges && number >= ranges[name][0] && number <= ranges[name][1]) settings[name] = number;
+    }
+    return settings;
+}
+
+export function to_hash(settings) {
+    const changed = Object.keys(defaults).filter(name => settings[name] !== defaults[name] && settings[name] !== 'file');
+    return '#' + changed.map(name => `${name}=${typeof settings[name] === 'boolean' ? +settings[name] : settings[name]}`)
+        .join('&');
+}
+
+// The slider of lights goes by ratio, 0 to 1000; numbers of two digits and zeros are what it stops at.
+export const lights_at = place => {
+    const exact = fewest_lights * (most_lights / fewest_lights) ** (place / 1000);
+    const unit = 10 ** Math.max(Math.floor(Math.log10(exact)) - 1, 0);
+    return Math.round(exact / unit) * unit;
+};
+export const place_of = lights => Math.round(1000 * Math.log(lights / fewest_lights) / Math.log(most_lights / fewest_lights));
