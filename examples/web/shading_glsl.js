@@ -3,8 +3,8 @@
 
 const head = '#version 300 es\nprecision highp float;\nprecision highp int;\n';
 
-// Texels a row of the lights' texture: whole lights, and no more than every device has.
-export const lights_width = 1536;
+// Texels a row of the lights' texture: as many as every device has.
+export const lights_width = 2048;
 
 export const vertex_text = head + `
 uniform mat4 view;
@@ -40,28 +40,27 @@ uniform highp sampler2D lights;  // three texels each: centre and range; colour;
 uniform int light_count;
 
 vec4 light_texel(int i) {
-    return texelFetch(lights, ivec2(i % ${lights_width}, i / ${lights_width}), 0);
+    return texelFetch(lights, ivec2(i & ${lights_width - 1}, i / ${lights_width}), 0);
 }
 
-// Inverse-square falloff, windowed to zero at the range, as KHR_lights_punctual recommends.
-float falloff(float square_distance, float inverse_square_range) {
-    float x = square_distance * inverse_square_range;
-    return clamp(1.0 - x * x, 0.0, 1.0) / max(square_distance, 1e-4);
-}
-
+// Inverse-square falloff, windowed to zero at the range, as KHR_lights_punctual recommends. What is out of reach ends
+// early: adding nothing is the same as not adding.
 vec3 irradiance(int id, vec3 position, vec3 normal) {
     vec4 sphere = light_texel(3 * id);
-    vec4 colour = light_texel(3 * id + 1);
     vec3 to_light = sphere.xyz - position;
     float square_distance = dot(to_light, to_light);
-    vec3 direction = to_light * inversesqrt(max(square_distance, 1e-20));
-    float facing = max(dot(normal, direction), 0.0);
+    float x = square_distance * (1.0 / (sphere.w * sphere.w));
+    float facing = dot(normal, to_light);
+    if (x >= 1.0 || facing <= 0.0) return vec3(0.0);
+    float falloff = (1.0 - x * x) / max(square_distance, 1e-4);
+    float over_distance = inversesqrt(max(square_distance, 1e-20));
+    facing *= over_distance;
 #ifdef SPOTS
     vec4 cone = light_texel(3 * id + 2);
-    float angular = clamp(dot(cone.xyz, direction) + cone.w, 0.0, 1.0);
+    float angular = clamp(dot(cone.xyz, to_light) * over_distance + cone.w, 0.0, 1.0);
     facing *= angular * angular;
 #endif
-    return colour.rgb * (facing * falloff(square_distance, 1.0 / (sphere.w * sphere.w)));
+    return light_texel(3 * id + 1).rgb * (facing * falloff);
 }
 `;
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The WebGL 2 renderer: draw() has the frame from top to bottom.
 import {depth_text, fragment_text, lights_width, overlay_text, reduce_text, vertex_text} from './shading_glsl.js';
-import {FrameBuffer, Program, Texture, Timer} from './webgl_parts.js';
+import {FrameBuffer, Program, Texture, Timer, until_done} from './webgl_parts.js';
 
 // Depth methods that want Z bounds from a depth pre-pass.
 const wants_bounds = method => method === 'interval' || method === 'box';
 
 export class WebGl {
     name = 'WebGL 2';
+    rows_from_below = true;  // of read()
     refused = {};  // depth methods that this browser cannot do, and why
 
     #canvas;
@@ -38,6 +39,7 @@ export class WebGl {
         this.#timer = new Timer(gl);
         gl.clearColor(0.006, 0.008, 0.014, 1);
         gl.enable(gl.DEPTH_TEST);
+        gl.depthFunc(gl.LEQUAL);
         canvas.addEventListener('webglcontextlost', event => event.preventDefault());  // so that it may come back
     }
 
@@ -75,6 +77,7 @@ export class WebGl {
         const lap = () => -last + (last = performance.now());
         this.#frame_buffer.resize(width, height);
         const program = this.#forward_program(lightbin, look, wants_bounds(method) ? 'none' : method);
+        if (wants_bounds(method)) await until_done(this.#gl);  // reading them would wait for the frame before, too
         lap();
 
         // 1. Depth alone, and from it the depths between which each tile has anything to light.
@@ -96,7 +99,7 @@ export class WebGl {
 
         // 4. The picture.
         this.#set_uniforms(program, frame, settings);
-        const draw = () => this.#draw_triangles(program, own_lists, look !== 'heat');
+        const draw = () => this.#draw_triangles(program, bounds !== null, own_lists, look !== 'heat');
         this.#frame_buffer.bind();
         if (look === 'every' || look === 'check') {
             await this.#draw_in_bands(draw);
@@ -104,9 +107,9 @@ export class WebGl {
         } else {
             this.#timer.begin();
             draw();
-            ms.draw = this.#timer.end();
+            ms.draw = await this.#timer.end();
         }
-        this.#frame_buffer.show(this.#canvas);
+        if (settings.show !== false) this.#frame_buffer.show(this.#canvas);
         const {in_view, rejected, entries, longest, tiles_y} = frame;
         return {ms, in_view, rejected, entries, longest, tiles_x, tiles_y, timed: this.#timer.kind};
     }
@@ -119,17 +122,19 @@ export class WebGl {
 
     // Z bounds of the tiles. Glass is lit before the sky, too: its maximum counts the background.
     #find_bounds(lightbin, settings) {
-        const gl = this.#gl, view = lightbin.view(settings);
+        const gl = this.#gl, view = lightbin.prepare(settings);
         const program = this.#named('depth', () => new Program(gl, vertex_text, depth_text));
         program.use();
         program.place_triangles(view);
         this.#frame_buffer.bind();
+        gl.drawBuffers([gl.NONE]);
         gl.clear(gl.DEPTH_BUFFER_BIT);
         gl.drawArrays(gl.TRIANGLES, 0, this.#opaque);
+        gl.drawBuffers([gl.COLOR_ATTACHMENT0]);
 
         gl.disable(gl.DEPTH_TEST);
         const bounds = this.#reduce(lightbin, settings, view, true);
-        if (this.#glass > 0) bounds.glass_max = this.#reduce(lightbin, settings, view, false).max;
+        if (this.#glass > 0) bounds.transparent_max = this.#reduce(lightbin, settings, view, false).max;
         gl.enable(gl.DEPTH_TEST);
         return bounds;
     }
@@ -141,8 +146,9 @@ export class WebGl {
             return new Program(gl, overlay_text, reduce_text(lightbin.text('reduce', options).text));
         });
         program.use();
-        gl.uniform4uiv(program.at('lightbin_grid'), reduce.grid);
-        gl.uniform4fv(program.at('lightbin_planes'), reduce.planes);
+        const words = Uint32Array.from(reduce);
+        gl.uniform4uiv(program.at('lightbin_grid'), words.subarray(0, 4));
+        gl.uniform4fv(program.at('lightbin_planes'), new Float32Array(words.buffer, 16, 4));
         program.bind('lightbin_depth', this.#frame_buffer.depth);
         const target = this.#texture('z_bounds', 'rg32f');
         target.reserve(tiles_x, tiles_y);
@@ -150,8 +156,8 @@ export class WebGl {
         gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target.texture, 0);
         gl.viewport(0, 0, tiles_x, tiles_y);
         gl.drawArrays(gl.TRIANGLES, 0, 3);
-        const tiles = tiles_x * tiles_y, read = new Float32Array(4 * tiles);  // RGBA can be read everywhere
-        gl.readPixels(0, 0, tiles_x, tiles_y, gl.RGBA, gl.FLOAT, read);
+        const tiles = tiles_x * tiles_y, read = new Float32Array(4 * tiles);
+        gl.readPixels(0, 0, tiles_x, tiles_y, gl.RGBA, gl.FLOAT, read);  // RGBA can be read everywhere
         const bounds = {min: new Float32Array(tiles), max: new Float32Array(tiles)};
         for (let tile = 0; tile < tiles; ++tile) {
             bounds.min[tile] = read[4 * tile];
@@ -183,14 +189,14 @@ export class WebGl {
         gl.uniform1i(program.at('light_count'), frame.light_count);
         gl.uniform1i(program.at('sun_count'), frame.sun_count);
         gl.uniform1f(program.at('longest_list'), Math.max(frame.longest, 1));
-        gl.uniform4uiv(program.at('lightbin_grid'), frame.grid.subarray(0, 4));
-        gl.uniform4fv(program.at('lightbin_image'), frame.shader_view.subarray(0, 4));
-        gl.uniform4fv(program.at('lightbin_depths'), frame.shader_view.subarray(4, 8));
+        gl.uniform4uiv(program.at('lightbin_grid'), frame.grid.slice(0, 4));
+        gl.uniform4fv(program.at('lightbin_image'), frame.shader_view.slice(0, 4));
+        gl.uniform4fv(program.at('lightbin_depths'), frame.shader_view.slice(4));
     }
 
-    #draw_triangles(program, glass_has_lists, with_glass) {
+    #draw_triangles(program, depth_is_there, glass_has_lists, with_glass) {
         const gl = this.#gl;
-        gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+        gl.clear(gl.COLOR_BUFFER_BIT | (depth_is_there ? 0 : gl.DEPTH_BUFFER_BIT));
         this.#bind_lists(program, 'lightbin');
         gl.drawArrays(gl.TRIANGLES, 0, this.#opaque);
         if (!with_glass || this.#glass === 0) return;
@@ -210,13 +216,13 @@ export class WebGl {
     async #draw_in_bands(draw) {
         const gl = this.#gl, {height} = this.#frame_buffer;
         gl.enable(gl.SCISSOR_TEST);
-        for (let row = 0, rows = 8; row < height; row += rows) {
+        for (let row = 0, rows = 8; row < height;) {
             const begun = performance.now();
             gl.scissor(0, row, this.#frame_buffer.width, rows);
             draw();
-            this.#timer.finish();
+            await until_done(gl);
+            row += rows;
             rows = performance.now() - begun < 60 ? 2 * rows : Math.max(rows >> 1, 1);
-            await new Promise(resolve => setTimeout(resolve));
         }
         gl.disable(gl.SCISSOR_TEST);
     }

@@ -108,6 +108,15 @@ export class Texture {
     }
 }
 
+// Waits until the GPU has done what it was given. The page lives on meanwhile.
+export async function until_done(gl) {
+    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    while (!gl.isContextLost() && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED)
+        await new Promise(resolve => setTimeout(resolve));
+    gl.deleteSync(fence);
+}
+
 // The picture and its depths, of exactly the size asked for.
 export class FrameBuffer {
     #gl;
@@ -151,8 +160,8 @@ export class FrameBuffer {
     }
 
     read() {
-        const gl = this.#gl, bytes = new Uint8Array(4 * this.width * this.height);
         this.bind();
+        const gl = this.#gl, bytes = new Uint8Array(4 * this.width * this.height);
         gl.readPixels(0, 0, this.width, this.height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
         return bytes;
     }
@@ -190,9 +199,9 @@ export class Timer {
     }
 
     // Milliseconds of the latest drawing that is known.
-    end() {
+    async end() {
         if (!this.#clock) {
-            this.finish();
+            await until_done(this.#gl);
             return performance.now() - this.#begun;
         }
         const gl = this.#gl;
@@ -204,11 +213,5 @@ export class Timer {
             this.#free.push(query);
         }
         return this.#latest;
-    }
-
-    // Returns when the GPU is done: a pixel can only be read then.
-    finish() {
-        const gl = this.#gl;
-        gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
     }
 }

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: MIT
+// The page: start() has how it begins, and run() a frame from top to bottom.
+import {FlyingKeys, FreeCamera, listen_to_pointers} from './camera.js';
+import {compare, meter} from './checks.js';
+import {by_id, Controls, counted, show_advice} from './controls.js';
+import {load} from './lightbin.js';
+import {Plot} from './plot.js';
+import {parse_hash, to_hash} from './settings.js';
+import {WebGl} from './webgl.js';
+
+const stage = by_id('stage');
+const settings = parse_hash(location.hash);
+const eye = new FreeCamera(), flying = new FlyingKeys();
+const plot = new Plot(by_id('plot'), by_id('costs'));
+const jobs = new Set();  // what is to be done before the next frame
+let controls, lightbin, renderer;
+let scene = null;  // what lightbin tells of the one on show; `of` is its name in the settings
+let exposure = 1;
+let seconds = settings.seconds;  // how long the lights have moved
+let stale = true;                // the picture is not that of the settings
+let held = false;                // nor is it to be: there is something to look at
+
+// Sides of the picture over those of the window, for a size that keeps the page fluent.
+const scales = [0.2, 0.28, 0.4, 0.56, 0.8, 1, 1.4, 2];
+let scale = 2, slow = 0, quick = 0;
+
+// What is wrong, in a sentence; none: nothing is.
+function complain(sentence = '') {
+    by_id('alert').textContent = sentence;
+    by_id('alert').hidden = sentence === '';
+}
+
+function tell(sentence = '', differs = false) {
+    by_id('verdict').hidden = sentence === '';
+    by_id('verdict').classList.toggle('differs', differs);
+    by_id('verdict').firstElementChild.textContent = sentence;
+    by_id('differences').hidden = !differs;
+    held = differs;
+}
+
+function frame_settings() {
+    const part = settings.size === 'auto' ? scales[scale] : settings.size / 100;
+    const {method, look, drop, tile: tile_size, stops} = settings;
+    const [width, height] = [stage.clientWidth, stage.clientHeight].map(side => Math.max(Math.round(side * part), 16));
+    return {camera: eye.camera, width, height, tile_size, method, look, drop, seconds, slices: 24, exposure: exposure * 2 ** stops};
+}
+
+// Three frames of 45 ms are too many; twelve below 14 ms have time to spare for a picture 1.4 times as wide.
+function keep_fluent(milliseconds) {
+    slow = milliseconds > 45 ? slow + 1 : 0;
+    quick = milliseconds < 14 ? quick + 1 : 0;
+    const step = slow >= 3 ? -1 : quick >= 12 ? 1 : 0;
+    if (step === 0 || !scales[scale + step]) return;
+    scale += step;
+    slow = quick = 0;
+    stale = true;
+}
+
+async function fetched(url) {
+    const response = await fetch(url);
+    if (!response.ok) throw new Error(`${url} could not be fetched.`);
+    return new Uint8Array(await response.arrayBuffer());
+}
+
+// Where the scene can't be had, the one on show stays.
+async function show_scene() {
+    const {scene: name} = settings;
+    try {
+        if (name === 'city' || name === 'street') lightbin.make(name, settings.lights);
+        else if (name !== 'file') lightbin.open(await fetched(`${name}.glb`), name);
+    } catch (error) {
+        settings.scene = scene?.of ?? 'city';
+        controls.show();
+        throw error;
+    }
+    take_scene(name);
+    await go_to(settings.view);
+}
+
+function take_scene(of) {
+    const {triangles, glass, has_spots, ...told} = lightbin.scene;
+    renderer.set_scene({triangles, glass, has_spots});
+    scene = {...told, of};
+    controls.show_scene(scene, of === 'file');
+}
+
+// Other lights in the same city, seen from where one is.
+async function change_lights() {
+    lightbin.make('city', settings.lights);
+    take_scene('city');
+}
+
+async function open_file(file) {
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    try {
+        lightbin.open(bytes, file.name);
+    } catch (error) {
+        throw new Error(`${file.name} can't be shown: ${error.message}.`);
+    }
+    Object.assign(settings, {scene: 'file', at: ''});
+    take_scene('file');
+    await go_to(0);
+}
+
+async function go_to(view) {
+    settings.view = Math.min(view, scene.cameras.length - 1);
+    eye.start(scene.cameras[settings.view], scene);
+    eye.place = settings.at;
+    controls.show();
+    exposure = await meter(renderer, lightbin, frame_settings());
+    stale = true;
+}
+
+async function use_renderer() {
+    const canvas = document.createElement('canvas');
+    const gpu = settings.renderer === 'webgpu';
+    try {
+        const made = await (gpu ? (await import('./webgpu.js')).WebGpu : WebGl).create(canvas);
+        renderer?.destroy();
+        renderer = made;
+    } catch (error) {
+        if (!gpu) throw error;
+        controls.refuse_webgpu(error.message);
+        settings.renderer = 'webgl';
+        controls.show();
+        if (!renderer) await use_renderer();
+        return;
+    }
+    stage.replaceChildren(canvas);
+    controls.refuse_methods(renderer.refused);
+    if (settings.method in renderer.refused) controls.set({method: 'clusters'});
+    if (scene) take_scene(scene.of);
+    stale = true;
+}
+
+async function check() {
+    by_id('compare').disabled = true;
+    tell('Drawing with every light');
+    await new Promise(requestAnimationFrame);
+    const {pixels, different, largest, milliseconds} = await compare(renderer, lightbin, frame_settings(), by_id('differences'));
+    const [lists, every] = milliseconds.map(ms => `${Math.round(ms).toLocaleString('en')} ms`);
+    if (different === 0)
+        tell(`The same picture, byte by byte: ${counted(pixels, 'pixel')}. With lists ${lists}, with every light ${every}.`);
+    else
+        tell(`${different.toLocaleString('en')} of ${counted(pixels, 'pixel')} differ, by up to ${largest} of 255: see the marks.`, true);
+    by_id('compare').disabled = false;
+}
+
+async function advise() {
+    const rows = lightbin.advise(frame_settings());
+    show_advice(rows, ({method, tile_size}) => controls.set({method, tile: tile_size}));
+}
+
+const actions = {
+    open: file => jobs.add(() => open_file(file)),
+    compare: () => jobs.add(check),
+    advise: () => jobs.add(advise),
+    camera: view => {
+        if (view >= scene.cameras.length) return;
+        settings.at = '';
+        jobs.add(() => go_to(view));
+    },
+};
+
+function change(names) {
+    complain();
+    tell();
+    stale = true;
+    if (names.includes('scene')) Object.assign(settings, {view: 0, at: ''});
+    const by_name = {scene: show_scene, lights: change_lights, renderer: use_renderer};
+    for (const name of names) if (by_name[name]) jobs.add(by_name[name]);
+}
+
+const summary = {frames: 0, since: 0, latest: null};
+
+// In words, four times a second, and at once where nothing moves.
+function summarise(report, {width, height}) {
+    ++summary.frames;
+    const now = performance.now(), apart = now - summary.since;
+    if (apart < 250 && settings.move) return;
+    const place = settings.method === 'clusters' ? 'cluster' : 'tile';
+    const skipped = report.rejected > 0 ? `, ${report.rejected} skipped` : '';
+    by_id('stats').textContent = `${counted(scene.lights, 'light')}, ${report.in_view.toLocaleString('en')} in view${skipped}, `
+        + `${report.longest} a ${place} at most, bin ${plot.mean('bin').toFixed(2)} ms`;
+    const rate = settings.move && apart < 2000 ? `, ${Math.round(1000 * summary.frames / apart)} frames a second` : '';
+    const dropped = settings.drop >= 0 ? `, light ${settings.drop} left out of the lists` : '';
+    by_id('frame').textContent = `${renderer.name}, ${width} \u00d7 ${height} pixels, ${report.tiles_x} \u00d7 ${report.tiles_y} tiles${rate}${dropped}`;
+    by_id('legend').hidden = settings.look === 'lit';
+    by_id('legend').className = settings.look;
+    by_id('legend_most').textContent = report.longest;
+    Object.assign(summary, {frames: 0, since: now});
+    const hash = to_hash(settings);
+    if (hash !== location.hash) history.replaceState(null, '', hash);
+}
+
+async function draw() {
+    const frame = frame_settings();
+    const report = await renderer.draw(lightbin, frame);
+    plot.add(report.ms, report.timed);
+    summarise(report, frame);
+    if (settings.size === 'auto') keep_fluent(Object.values(report.ms).reduce((sum, ms) => sum + ms));
+}
+
+// A graphics context may come back, see start(); a device of WebGPU does not.
+function go_on_without() {
+    if (settings.renderer === 'webgpu') {
+        controls.refuse_webgpu(renderer.lost);
+        settings.renderer = 'webgl';
+        jobs.add(use_renderer);
+    } else {
+        complain(renderer.lost);
+    }
+}
+
+async function run() {
+    let failed = false;  // not tried again until something changes
+    for (let last = performance.now(); ;) {
+        const now = await new Promise(requestAnimationFrame), elapsed = Math.min(Math.max(now - last, 0), 100) / 1000;
+        last = now;
+        try {
+            for (const job of jobs) {
+                jobs.delete(job);
+                await job();
+            }
+            if (renderer.lost) go_on_without();
+            if (renderer.lost || held) continue;
+            flying.move(eye, elapsed);
+            if (settings.move) seconds += elapsed;
+            if (settings.at !== eye.place) {
+                settings.at = eye.place;
+                controls.show();
+                stale = true;
+            }
+            if (!stale && (failed || !settings.move)) continue;
+            stale = false;
+            failed = true;
+            await draw();
+            failed = false;
+        } catch (error) {
+            complain(error.message);
+        }
+    }
+}
+
+async function look_for_webgpu() {
+    if (!navigator.gpu) controls.refuse_webgpu('this browser does not have it');
+    else if (!await navigator.gpu.requestAdapter()) controls.refuse_webgpu('the browser finds no graphics adapter for it');
+}
+
+async function start() {
+    controls = new Controls(settings, change, actions);
+    by_id('close_verdict').addEventListener('click', () => tell());
+    listen_to_pointers(stage, eye);
+    addEventListener('resize', () => { stale = true; });
+    addEventListener('hashchange', () => location.reload());  // somebody changed the address
+    // It does not bubble, but can be caught on its way down.
+    stage.addEventListener('webglcontextrestored', () => jobs.add(async () => {
+        await use_renderer();
+        complain();
+    }), true);
+    try {
+        [lightbin] = await Promise.all([load(), use_renderer()]);
+        await show_scene().catch(async error => {
+            complain(error.message);
+            await show_scene();
+        });
+        await draw();
+    } catch (error) {
+        document.body.classList.add('cannot');
+        complain(`${error.message} The page needs WebGL 2 and WebAssembly with vectors: Chrome or Edge 95, Firefox 100, Safari `
+            + '16.4, or later, with graphics switched on.');
+        return;
+    }
+    performance.mark('first picture');
+    jobs.add(look_for_webgpu);
+    await run();
+}
+
+start();
