@@ -26,11 +26,14 @@ export class FreeCamera {
         this.#apart = forward[1] < -0.15 ? Math.max(to_middle, 0.1 * radius) : 0;
     }
 
-    // What lightbin and the renderers take.
-    get camera() {
-        if (this.#to_world) return {...this.#lens, to_world: this.#to_world};
+    // What lightbin and the renderers take. aspect: width / height of the picture; a narrow one sees as much across as the
+    // scene's camera sees in its height.
+    camera(aspect) {
+        const {orthographic, height} = this.#lens, wider = Math.max(1, 1 / aspect);
+        const lens = {...this.#lens, height: orthographic ? height * wider : limit(2 * Math.atan(wider * Math.tan(height / 2)), 0, 2.5)};
+        if (this.#to_world) return {...lens, to_world: this.#to_world};
         const [right, up, back] = this.#axes();
-        return {...this.#lens, to_world: Float64Array.of(...right, 0, ...up, 0, ...back, 0, ...this.#position, 1)};
+        return {...lens, to_world: Float64Array.of(...right, 0, ...up, 0, ...back, 0, ...this.#position, 1)};
     }
 
     // As a text, for the page's address; '' where it was not moved.

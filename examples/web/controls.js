@@ -146,24 +146,25 @@ export class Controls {
     }
 }
 
-// advise()'s rows as a table; `take` gets the row whose button is pressed.
-export function show_advice(rows, take) {
-    const table = document.createElement('table'), head = table.createTHead().insertRow();
-    for (const title of ['Plan', 'ms', 'Entries', 'A pixel'])
-        head.append(Object.assign(document.createElement('th'), {textContent: title, scope: 'col'}));
-    const body = table.createTBody();
-    for (const row of rows) {
-        const line = body.insertRow();
-        line.classList.toggle('best', row.best);
-        const button = Object.assign(document.createElement('button'), {type: 'button', textContent: row.plan});
-        button.addEventListener('click', () => take(row));
-        line.insertCell().append(button);
-        for (const text of [row.milliseconds.toFixed(2), row.entries.toLocaleString('en'), row.evaluations.toFixed(1)])
-            line.insertCell().textContent = text;
+// advise()'s plans as a table; `take` gets the one whose button is pressed.
+export function show_advice(plans, pixels, take) {
+    const cell = (kind, text) => Object.assign(document.createElement(kind), {textContent: text});
+    const table = document.createElement('table'), head = table.createTHead().insertRow(), body = table.createTBody();
+    for (const title of ['Plan', 'Build', 'Entries', 'A pixel', 'Total']) head.append(cell('th', title));
+    for (const plan of plans) {
+        const {tile_size, milliseconds, build_milliseconds, entries, evaluations} = plan;
+        const tiled = tile_size > 0, row = body.insertRow();
+        row.classList.toggle('best', plan.best);
+        const button = cell('button', tiled ? `${tile_size} px, ${plan.plan}` : plan.plan);
+        button.type = 'button';
+        button.disabled = !tiled;
+        button.addEventListener('click', () => take(plan));
+        row.insertCell().append(button);
+        row.append(...[build_milliseconds.toFixed(2), entries.toLocaleString('en'), (evaluations / pixels).toFixed(1),
+            milliseconds.toFixed(1)].map(text => cell('td', text)));
     }
-    const words = Object.assign(document.createElement('p'), {textContent:
-        'Time of a build, list entries, and lights that a pixel goes through. Green: what costs least in all. Press a plan to take it.'});
-    by_id('advice').replaceChildren(table, words);
+    by_id('advice').replaceChildren(table, cell('p', 'advise() built this view\'s lists in each way, without depth: milliseconds of a '
+        + 'build, list entries, lights that a pixel goes through, and milliseconds with a guess of the shading. Press one to take it.'));
     by_id('advice').hidden = false;
     by_id('advice').focus();
 }

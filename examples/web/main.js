@@ -11,7 +11,7 @@ import {WebGl} from './webgl.js';
 const stage = by_id('stage');
 const settings = parse_hash(location.hash);
 const eye = new FreeCamera(), flying = new FlyingKeys();
-const plot = new Plot(by_id('plot'), by_id('costs'));
+const plot = new Plot(by_id('plot'), by_id('costs'), by_id('costs_note'));
 const jobs = new Set();  // what is to be done before the next frame
 let controls, lightbin, renderer;
 let scene = null;  // what lightbin tells of the one on show; `of` is its name in the settings
@@ -42,7 +42,7 @@ function frame_settings() {
     const part = settings.size === 'auto' ? scales[scale] : settings.size / 100;
     const {method, look, drop, tile: tile_size, stops} = settings;
     const [width, height] = [stage.clientWidth, stage.clientHeight].map(side => Math.max(Math.round(side * part), 16));
-    return {camera: eye.camera, width, height, tile_size, method, look, drop, seconds, slices: 24, exposure: exposure * 2 ** stops};
+    return {camera: eye.camera(width / height), width, height, tile_size, method, look, drop, seconds, slices: 24, exposure: exposure * 2 ** stops};
 }
 
 // Three frames of 45 ms are too many; twelve below 14 ms have time to spare for a picture 1.4 times as wide.
@@ -147,8 +147,9 @@ async function check() {
 }
 
 async function advise() {
-    const rows = lightbin.advise(frame_settings());
-    show_advice(rows, ({method, tile_size}) => controls.set({method, tile: tile_size}));
+    const frame = frame_settings();
+    show_advice(lightbin.advise({...frame, clip: 'webgl'}), frame.width * frame.height,
+        ({tile_size}) => controls.set({method: 'none', tile: tile_size}));
 }
 
 const actions = {
@@ -185,9 +186,8 @@ function summarise(report, {width, height}) {
     const rate = settings.move && apart < 2000 ? `, ${Math.round(1000 * summary.frames / apart)} frames a second` : '';
     const dropped = settings.drop >= 0 ? `, light ${settings.drop} left out of the lists` : '';
     by_id('frame').textContent = `${renderer.name}, ${width} \u00d7 ${height} pixels, ${report.tiles_x} \u00d7 ${report.tiles_y} tiles${rate}${dropped}`;
-    by_id('legend').hidden = settings.look === 'lit';
-    by_id('legend').className = settings.look;
-    by_id('legend_most').textContent = report.longest;
+    for (const look of ['heat', 'check']) by_id(`${look}_legend`).hidden = settings.look !== look;
+    by_id('longest').textContent = report.longest;
     Object.assign(summary, {frames: 0, since: now});
     const hash = to_hash(settings);
     if (hash !== location.hash) history.replaceState(null, '', hash);

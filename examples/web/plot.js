@@ -12,6 +12,7 @@ const frames = 120, averaged = 60;
 
 export class Plot {
     #canvas;
+    #note;
     #costs = [];  // of the latest frames
     #shown = new Set(layers.map(layer => layer.name));
     #numbers = new Map();
@@ -19,8 +20,9 @@ export class Plot {
     #written = 0;
 
     // `legend`: where the numbers go; each is a button that hides its layer, so that the others can be seen.
-    constructor(canvas, legend) {
+    constructor(canvas, legend, note) {
         this.#canvas = canvas;
+        this.#note = note;
         for (const {name, title, colour} of layers) {
             const button = document.createElement('button');
             button.type = 'button';
@@ -48,10 +50,9 @@ export class Plot {
         if (performance.now() - this.#written < 250) return;  // as often as it can be read
         this.#written = performance.now();
         const means = layers.map(({name, title}) => [name, title, this.mean(name)]);
-        for (const [name, , mean] of means) this.#numbers.get(name).textContent = `${mean.toFixed(2)} ms`;
-        const draw = this.#numbers.get('draw').parentElement;
-        draw.title = timed === 'gpu' ? 'by the GPU\'s clock' : 'until the GPU is done';
-        draw.querySelector('span').textContent = timed === 'gpu' ? 'Draw (GPU)' : 'Draw (all of it)';
+        for (const [name, , mean] of means) this.#numbers.get(name).textContent = mean.toFixed(2);
+        this.#note.textContent = 'Milliseconds a frame. Draw: '
+            + (timed === 'gpu' ? 'by the GPU\'s clock.' : 'until the GPU is done.');
         this.#canvas.setAttribute('aria-label', 'Milliseconds a frame: '
             + means.map(([, title, mean]) => `${title} ${mean.toFixed(2)}`).join(', '));
     }

@@ -10,7 +10,7 @@ const defaults = {
     lights: 10000,     // of the city
     move: true,
     method: 'clusters',
-    tile: 64,
+    tile: 32,
     renderer: 'webgl',
     look: 'lit',
     size: 'auto',      // or percent of the window's pixels
@@ -27,7 +27,7 @@ const choices = {
 };
 
 const ranges = {
-    view: [0, 1000], lights: [fewest_lights, most_lights], tile: [8, 128], stops: [-5, 5], drop: [-1, 1e6], seconds: [0, 1e6],
+    view: [0, 1000], lights: [fewest_lights, most_lights], tile: [1, 4096], stops: [-5, 5], drop: [-1, 1e6], seconds: [0, 1e6],
 };
 
 // The settings that a page address's hash holds; what is missing or makes no sense is as by default.

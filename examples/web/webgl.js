@@ -122,7 +122,7 @@ export class WebGl {
 
     // Z bounds of the tiles. Glass is lit before the sky, too: its maximum counts the background.
     #find_bounds(lightbin, settings) {
-        const gl = this.#gl, view = lightbin.prepare(settings);
+        const gl = this.#gl, view = lightbin.view(settings);
         const program = this.#named('depth', () => new Program(gl, vertex_text, depth_text));
         program.use();
         program.place_triangles(view);
@@ -134,7 +134,7 @@ export class WebGl {
 
         gl.disable(gl.DEPTH_TEST);
         const bounds = this.#reduce(lightbin, settings, view, true);
-        if (this.#glass > 0) bounds.transparent_max = this.#reduce(lightbin, settings, view, false).max;
+        if (this.#glass > 0) bounds.glass_max = this.#reduce(lightbin, settings, view, false).max;
         gl.enable(gl.DEPTH_TEST);
         return bounds;
     }

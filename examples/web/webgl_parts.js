@@ -172,6 +172,7 @@ export class FrameBuffer {
         if (canvas.height !== height) canvas.height = height;
         this.bind();
         gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+        gl.clear(gl.COLOR_BUFFER_BIT);  // or Chromium does so later, as it takes the blit for no drawing
         gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
     }
 }
