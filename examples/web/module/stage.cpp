@@ -119,10 +119,3 @@ void Stage::make_footprints(const lightbin::View& view, const BinSettings& setti
     frame_.counts.lights = static_cast<std::uint32_t>(scene_.lights.size());
     frame_.counts.culled = frame_.counts.lights - static_cast<std::uint32_t>(frame_.footprints.size());
 }
-
-lightbin::Advice Stage::advise(const lightbin::View& view, const FrameSettings& settings) {
-    place(settings);
-    return binned_->visit_lights(settings.bin.dropped_light, [&](const auto& lights) {
-        return value_of(lightbin::advise(view, lights));
-    });
-}
