@@ -2,7 +2,7 @@
 # sh examples/web.sh [--build] [--port N]: lightbin in a browser, on Debian 12, as root or with sudo. Installs the packages
 # that are missing, makes a folder of static files, build/web, and serves it to this machine alone.
 #   --build   makes the folder and ends
-#   --port N  where to serve (default: 8000)
+#   --port N  where to serve (default: 8000; 0: any that is free)
 set -eu
 me=examples/web.sh
 cd "$(dirname "$0")/.."
@@ -30,8 +30,8 @@ done
 install_packages make python3 emscripten node-acorn nodejs libglm-dev libtinygltf-dev nlohmann-json3-dev
 make_build_folder
 [ -e build/web/lightbin.wasm ] || echo "$me: compiling to WebAssembly, which takes about a minute the first time"
-make -j "$(nproc)" -f examples/web/web.mk >build/web.log 2>&1 || { cat build/web.log; fail "the build failed"; }
+make -j "$(nproc)" -f examples/web/web.mk >build/web.log 2>&1 ||
+    { cat build/web.log; fail "the build failed"; }
 echo "$me: build/web has $(du -bc build/web/* | sed -n '$s/\t.*//p') bytes in all"
 [ -n "$serve" ] || exit 0
-echo "$me: http://127.0.0.1:$port/ (Ctrl+C ends)"
-exec python3 -m http.server --bind 127.0.0.1 --directory build/web "$port"
+exec python3 examples/web/serve.py build/web "$port"

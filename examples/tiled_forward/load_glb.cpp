@@ -15,6 +15,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -340,6 +341,8 @@ Scene read_glb(std::span<const unsigned char> bytes, const std::string& path, fl
         Scene scene = Loader(model, cutoff).load();
         scene.name = path.substr(path.rfind('/') + 1);
         return scene;
+    } catch (const std::bad_alloc&) {
+        throw;  // not the file's fault
     } catch (const std::exception& problem) {
         fail("'" + path + "': " + problem.what());
     }

@@ -62,7 +62,7 @@ class Lightbin {
 
     /** Shows a binary glTF file. Throws an Error with a sentence where it cannot; the scene from before stays then. */
     open(bytes, name) {
-        this.#put(bytes);
+        this.#put('data', bytes);
         return this.#ask('open', { name });
     }
 
@@ -74,8 +74,10 @@ class Lightbin {
     /** The same, and the lights and their lists. z_bounds: {min, max}, and where there is glass glass_max. */
     frame(settings, z_bounds = null) {
         if (!z_bounds) return this.#ask('frame', settings);
-        this.#put(...['min', 'max', 'glass_max'].map((side) => z_bounds[side]).filter(Boolean));
-        return this.#ask('frame', { ...settings, bounds: true });
+        const sides = ['min', 'max', 'glass_max'].filter((side) => z_bounds[side]);
+        this.#put('data', ...sides.map((side) => z_bounds[side]));
+        const bounds = Object.fromEntries(sides.map((side) => [side, z_bounds[side].length]));
+        return this.#ask('frame', { ...settings, bounds });
     }
 
     /** What the ways to light this view cost here, the cheapest first. Takes some tens of frames. */
@@ -90,10 +92,7 @@ class Lightbin {
 
     #ask(what, question) {
         const spread = (key, value) => (ArrayBuffer.isView(value) ? [...value] : value);
-        const words = new TextEncoder().encode(JSON.stringify(question, spread));
-        const at = this.#module.question(words.length);
-        new Uint8Array(this.#module.memory.buffer, at, words.length).set(words);
-
+        this.#put('question', new TextEncoder().encode(JSON.stringify(question, spread)));
         const from = this.#module[what]();
         const said = new Uint8Array(this.#module.memory.buffer, from, this.#module.answer_length());
         const answer = JSON.parse(new TextDecoder().decode(said), (key, value) => this.#revived(key, value));
@@ -101,19 +100,21 @@ class Lightbin {
         return answer;
     }
 
+    // Writes arrays one after another where the module reads the question, or the data beside it.
+    #put(where, ...arrays) {
+        const bytes = arrays.reduce((sum, array) => sum + array.byteLength, 0);
+        let at = this.#module[where](bytes);
+        if (bytes > 0 && at === 0) throw new Error('there is not enough memory for this');
+        for (const array of arrays) {
+            new array.constructor(this.#module.memory.buffer, at, array.length).set(array);
+            at += array.byteLength;
+        }
+    }
+
     #revived(key, value) {
         if (key === 'far') return value ?? Infinity; // which JSON has not
         const type = array_types[value?.type];
         if (!type) return value;
         return value.values ? type.from(value.values) : new type(this.#module.memory.buffer, value.at, value.count);
-    }
-
-    // Beside the question.
-    #put(...arrays) {
-        let at = this.#module.data(arrays.reduce((bytes, array) => bytes + array.byteLength, 0));
-        for (const array of arrays) {
-            new array.constructor(this.#module.memory.buffer, at, array.length).set(array);
-            at += array.byteLength;
-        }
     }
 }

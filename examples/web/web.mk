@@ -1,40 +1,37 @@
 # make -f examples/web/web.mk OUT=FOLDER: the page's folder, its objects beside it. Needs emscripten, GLM, tinygltf and
-# nlohmann-json, where Debian has them.
+# nlohmann-json, where Debian has them. With FOLDER.objects/lists: what tests/web/module.mjs compares with.
 here := examples/web
 OUT := build/web
 objects := $(OUT).objects
-page := $(filter-out %.mk,$(wildcard $(here)/*.*)) $(wildcard tests/fixtures/*.glb)
+page := $(filter-out %.mk %.py,$(wildcard $(here)/*.*)) $(wildcard tests/fixtures/*.glb)
 
 # Vectors, and exceptions as WebAssembly has them, which every browser since 2022 knows. -fno-slp-vectorize: see
 # tests/platforms.sh. No file is opened by its name, and no texture is read.
-flags := -std=c++20 -fwasm-exceptions -msimd128 -msse2 -fno-slp-vectorize -Wall -Wextra -Werror \
+flags = -std=c++20 -fwasm-exceptions -msimd128 -msse2 -fno-slp-vectorize -Wall -Wextra -Werror \
     -DTINYGLTF_NO_FS -DTINYGLTF_NO_STB_IMAGE -DTINYGLTF_NO_STB_IMAGE_WRITE -DTINYGLTF_NO_EXTERNAL_IMAGE \
-    -Iinclude -Iexamples/tiled_forward -isystem $(objects)/include
+    $(headers) -isystem $(objects)/include -O2
+headers := -Iinclude -Iexamples/tiled_forward -I$(here)/module
 shared := binned_lights gpu_light load_glb made_scene made_street moving_lights projection
 sources := $(wildcard $(here)/module/*.cpp) $(shared:%=examples/tiled_forward/%.cpp)
-objs := $(patsubst %.cpp,$(objects)/%.o,$(notdir $(sources)))
-vpath %.cpp $(here)/module examples/tiled_forward
+compiled := $(patsubst %.cpp,$(objects)/%.o,$(notdir $(sources)))
+native := $(patsubst %,$(objects)/native/%.o,lists stage $(shared))
+vpath %.cpp $(here)/module examples/tiled_forward tests/web
 
 # It asks for a module that lies where its node does not look.
 export NODE_PATH := /usr/share/nodejs
 
 all: $(OUT)/lightbin.wasm $(addprefix $(OUT)/,$(notdir $(page)))
 
-$(OUT)/lightbin.wasm: $(objs) | $(OUT)
-	em++ $(flags) -O2 $(objs) -o $@ -sSTANDALONE_WASM --no-entry -sALLOW_MEMORY_GROWTH
+$(OUT)/lightbin.wasm: $(compiled) | $(OUT)
+	em++ $(flags) $(compiled) -o $@ -sSTANDALONE_WASM --no-entry -sALLOW_MEMORY_GROWTH
 
 $(objects)/%.o: %.cpp $(here)/web.mk | $(objects)/include
-	em++ $(flags) $(optimise) -MMD -c $< -o $@
-
-optimise = -O2
+	em++ $(flags) -MMD -c $< -o $@
 
 # The host's headers must not be looked at, but for these.
 $(objects)/include:
 	mkdir -p $@
 	ln -s /usr/include/glm /usr/include/nlohmann /usr/include/tiny_gltf.h $@
-
-$(OUT):
-	mkdir -p $@
 
 define copy
 $(OUT)/$(notdir $(1)): $(1) | $(OUT)
@@ -42,4 +39,13 @@ $(OUT)/$(notdir $(1)): $(1) | $(OUT)
 endef
 $(foreach file,$(page),$(eval $(call copy,$(file))))
 
--include $(objs:.o=.d)
+$(objects)/lists: $(native)
+	g++ $^ -ltinygltf -o $@
+
+$(objects)/native/%.o: %.cpp | $(objects)/native
+	g++ -std=c++20 -O1 $(headers) -MMD -c $< -o $@
+
+$(objects)/native $(OUT):
+	mkdir -p $@
+
+-include $(compiled:.o=.d) $(native:.o=.d)

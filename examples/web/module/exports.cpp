@@ -129,22 +129,22 @@ json prepared_json(const Prepared& prepared) {
             {"tiles_y", view.tiles_y()}};
 }
 
-// The minimum of all tiles, the maximum of all, and where there is glass its maximum.
-lightbin::ZBounds z_bounds_of(const json& asked, std::size_t tiles) {
+// The data: one side after another, as long as the question says.
+lightbin::ZBounds z_bounds_of(const json& asked) {
     if (!asked.contains("bounds")) return {};
-    const auto side = [&](std::size_t i) {
-        return data.size() < (i + 1) * tiles * sizeof(float)
-                   ? std::span<const float>()
-                   : std::span(reinterpret_cast<const float*>(data.data()) + i * tiles, tiles);
+    const float* at = reinterpret_cast<const float*>(data.data());
+    const auto side = [&](const char* name) {
+        const auto count = asked.at("bounds").value(name, std::size_t{0});
+        return std::span(std::exchange(at, at + count), count);
     };
-    return {.min = side(0), .max = side(1), .transparent_max = side(2), .background_skipped = true};
+    return {.min = side("min"), .max = side("max"), .transparent_max = side("glass_max"), .background_skipped = true};
 }
 
 json frame_json(const json& asked) {
     const FrameSettings settings = settings_of(asked);
     const Prepared prepared = stage.prepare(settings);
     const lightbin::View& view = prepared.view;
-    const Frame& frame = stage.frame(view, settings, z_bounds_of(asked, view.tile_count()));
+    const Frame& frame = stage.frame(view, settings, z_bounds_of(asked));
     json made = prepared_json(prepared);
     made.update({{"lights", floats(frame.lights)},
                  {"light_count", stage.scene().lights.size()},
@@ -197,17 +197,25 @@ template <class Make> const char* answered(Make make) {
     return answer.c_str();
 }
 
+// Null where there is no memory.
+template <class Bytes> auto room(Bytes& bytes, std::size_t size) -> decltype(bytes.data()) {
+    try {
+        bytes.resize(size);
+        return bytes.data();
+    } catch (const std::exception&) {
+        return nullptr;
+    }
+}
+
 }  // namespace
 
 #define EXPORT(name) extern "C" __attribute__((export_name(#name)))
 
 EXPORT(question) char* question_room(std::size_t bytes) {
-    question.resize(bytes);
-    return question.data();
+    return room(question, bytes);
 }
 EXPORT(data) unsigned char* data_room(std::size_t bytes) {
-    data.resize(bytes);
-    return data.data();
+    return room(data, bytes);
 }
 EXPORT(answer_length) std::size_t answer_length() {
     return answer.size();
