@@ -136,14 +136,21 @@ async function use_renderer() {
 async function check() {
     by_id('compare').disabled = true;
     tell('Drawing with every light');
-    await new Promise(requestAnimationFrame);
-    const {pixels, different, largest, milliseconds} = await compare(renderer, lightbin, frame_settings(), by_id('differences'));
-    const [lists, every] = milliseconds.map(ms => `${Math.round(ms).toLocaleString('en')} ms`);
-    if (different === 0)
-        tell(`The same picture, byte by byte: ${counted(pixels, 'pixel')}. With lists ${lists}, with every light ${every}.`);
-    else
-        tell(`${different.toLocaleString('en')} of ${counted(pixels, 'pixel')} differ, by up to ${largest} of 255: see the marks.`, true);
-    by_id('compare').disabled = false;
+    try {
+        await new Promise(requestAnimationFrame);  // so that this can be read
+        const found = await compare(renderer, lightbin, frame_settings(), by_id('differences'));
+        const of_all = `${found.different.toLocaleString('en')} of ${counted(found.pixels, 'pixel')}`;
+        const [lists, every] = found.milliseconds.map(ms => `${Math.round(ms).toLocaleString('en')} ms`);
+        const times = ` With lists ${lists}, with every light ${every}.`;
+        if (found.different === 0) tell(`The same picture, byte by byte: ${counted(found.pixels, 'pixel')}.${times}`);
+        else if (found.largest === 1) tell(`The same picture but for 1 of 255 in ${of_all}: two shaders may be rounded differently.${times}`);
+        else tell(`${of_all} differ, by up to ${found.largest} of 255: see the marks.`, true);
+    } catch (error) {
+        tell();
+        throw error;
+    } finally {
+        by_id('compare').disabled = false;
+    }
 }
 
 async function advise() {

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// The page in a browser: a server of build/web on this machine, Debian's Chromium on a software renderer, and what a
+// test does with a page.
+import {readFile} from 'node:fs/promises';
+import {createServer} from 'node:http';
+import {extname} from 'node:path';
+import {chromium} from '../../build/web-tests/node_modules/playwright-core/index.mjs';
+
+export const folder = new URL('../../build/web/', import.meta.url);
+export const pictures = new URL('../../build/web-tests/', import.meta.url);
+
+const types = {
+    '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm', '.glb': 'model/gltf-binary',
+};
+
+// The headers are those of examples/web.sh: with them clocks have fine steps.
+async function serve() {
+    const server = createServer(async (request, response) => {
+        const name = new URL(request.url, 'http://127.0.0.1').pathname.slice(1) || 'index.html';
+        const bytes = await readFile(new URL(name, folder)).catch(() => null);
+        response.writeHead(bytes ? 200 : 404, {
+            'Content-Type': types[extname(name)] ?? 'text/plain', 'Cross-Origin-Opener-Policy': 'same-origin',
+            'Cross-Origin-Embedder-Policy': 'require-corp',
+        });
+        response.end(bytes);
+    });
+    await new Promise(resolve => server.listen(0, '127.0.0.1', resolve));
+    return server;
+}
+
+// WebGL 2 and WebGPU both drawn by SwiftShader; nothing looked for outside of this machine.
+const flags = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
+    '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--enable-features=Vulkan',
+    '--use-vulkan=swiftshader', '--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader'];
+
+// Chromium says this of its own reading of a canvas, where a program draws that and not a GPU.
+const own_warning = /GL Driver Message \(OpenGL, Performance.*GPU stall due to ReadPixels/;
+
+export class Browser {
+    static async start() {
+        const browser = await chromium.launch({executablePath: '/usr/bin/chromium', args: flags});
+        return new Browser(await serve(), browser);
+    }
+
+    constructor(server, browser) {
+        this.server = server;
+        this.browser = browser;
+    }
+
+    async close() {
+        await this.browser.close();
+        this.server.close();
+    }
+
+    // A page, until the test ends, that has drawn its first picture, or said why it can't. `before`: what runs in the page before its own
+    // script. `complaints` are what the console has of errors and warnings.
+    async open(test, hash, {width = 720, height = 400, touch = false, before = () => {}, ...options} = {}) {
+        const context = await this.browser.newContext({
+            viewport: {width, height}, hasTouch: touch, isMobile: touch, deviceScaleFactor: touch ? 2 : 1, ...options});
+        test.after(() => context.close());
+        const page = await context.newPage();
+        page.complaints = [];
+        page.on('pageerror', error => page.complaints.push(error.stack));
+        page.on('console', message => {
+            if (['error', 'warning'].includes(message.type()) && !own_warning.test(message.text()))
+                page.complaints.push(`${message.type()}: ${message.text()}`);
+        });
+        await page.addInitScript(before);
+        await page.goto(`http://127.0.0.1:${this.server.address().port}/#${hash}`);
+        await page.waitForFunction(() => performance.getEntriesByName('first picture').length > 0
+            || document.body.classList.contains('cannot'));
+        return page;
+    }
+}
+
+export const text_of = (page, id) => page.locator('#' + id).textContent();
+
+// Waits until the text of an element says what it should, and returns it.
+export async function wait_for_text(page, id, pattern) {
+    const handle = await page.waitForFunction(([id, source]) => {
+        const text = document.getElementById(id).textContent;
+        return new RegExp(source).test(text) && [text];
+    }, [id, pattern.source]);
+    return (await handle.jsonValue())[0];
+}
+
+export async function set_slider(page, id, value) {
+    await page.locator('#' + id).evaluate((slider, value) => {
+        slider.value = value;
+        slider.dispatchEvent(new Event('input', {bubbles: true}));
+    }, value);
+}
+
+// The page's own comparison with every light: what it says in the end.
+export async function compare(page) {
+    await page.locator('#compare').click();
+    return wait_for_text(page, 'verdict', /same picture|differ/i);
+}
+
+// Drops a file on the page.
+export async function drop(page, name, bytes) {
+    await page.evaluate(([name, bytes]) => {
+        const files = new DataTransfer();
+        files.items.add(new File([Uint8Array.from(atob(bytes), c => c.charCodeAt(0))], name));
+        document.body.dispatchEvent(new DragEvent('drop', {dataTransfer: files, bubbles: true, cancelable: true}));
+    }, [name, Buffer.from(bytes).toString('base64')]);
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Every scene, depth method and renderer of the page draws what every light in every fragment draws, byte by byte; and a
+// list that lacks a light is found.
+import assert from 'node:assert/strict';
+import {after, before, test} from 'node:test';
+import {Browser, compare, text_of, wait_for_text} from './browser.mjs';
+
+const scenes = {city: /^300 lights/, street: /^598 lights/, nova: /^255 lights/, darkness: /^226 lights/};
+const methods = ['none', 'z_bins', 'clusters', 'interval', 'box'];
+const renderers = {webgl: 'WebGL 2', webgpu: 'WebGPU'};
+
+let browser;
+before(async () => { browser = await Browser.start(); });
+after(() => browser.close());
+
+for (const [renderer, name] of Object.entries(renderers))
+    test(`${name}: each scene with each depth method`, async t => {
+        const page = await browser.open(t, `renderer=${renderer}&lights=300&size=20&tile=16`);
+        for (const [scene, stats] of Object.entries(scenes)) {
+            await page.locator('#scene').selectOption(scene);
+            await wait_for_text(page, 'stats', stats);
+            for (const method of methods) {
+                await page.locator('#method').selectOption(method);
+                assert.match(await compare(page), /^The same picture, byte by byte: 11,520 pixels/, `${scene}, ${method}`);
+                assert.equal(await text_of(page, 'alert'), '');
+            }
+        }
+        await wait_for_text(page, 'frame', new RegExp(name));
+        assert.deepEqual(page.complaints, []);
+    });
+
+for (const [renderer, name] of Object.entries(renderers))
+    test(`${name}: a light that the lists lack is found`, async t => {
+        const page = await browser.open(t, `renderer=${renderer}&lights=16&view=2&size=20&tile=16&drop=3&move=0`);
+        for (const method of methods) {
+            await page.locator('#method').selectOption(method);
+            assert.match(await compare(page), /[0-9,]+ of 11,520 pixels differ, by up to/, method);
+            assert.ok(await page.locator('#differences').isVisible());
+            await page.locator('#close_verdict').click();
+            assert.ok(!await page.locator('#differences').isVisible());
+        }
+        await wait_for_text(page, 'frame', new RegExp(`${name}.*light 3 left out`));
+    });
