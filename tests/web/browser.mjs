@@ -1,31 +1,18 @@
 // SPDX-License-Identifier: MIT
 // The page in a browser: a server of build/web on this machine, Debian's Chromium on a software renderer, and what a
 // test does with a page.
-import {readFile} from 'node:fs/promises';
-import {createServer} from 'node:http';
-import {extname} from 'node:path';
+import {spawn} from 'node:child_process';
+import {once} from 'node:events';
 import {chromium} from '../../build/web-tests/node_modules/playwright-core/index.mjs';
 
-export const folder = new URL('../../build/web/', import.meta.url);
+const folder = new URL('../../build/web/', import.meta.url);
 export const pictures = new URL('../../build/web-tests/', import.meta.url);
 
-const types = {
-    '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm', '.glb': 'model/gltf-binary',
-};
-
-// The headers are those of examples/web.sh: with them clocks have fine steps.
+// What examples/web.sh serves with.
 async function serve() {
-    const server = createServer(async (request, response) => {
-        const name = new URL(request.url, 'http://127.0.0.1').pathname.slice(1) || 'index.html';
-        const bytes = await readFile(new URL(name, folder)).catch(() => null);
-        response.writeHead(bytes ? 200 : 404, {
-            'Content-Type': types[extname(name)] ?? 'text/plain', 'Cross-Origin-Opener-Policy': 'same-origin',
-            'Cross-Origin-Embedder-Policy': 'require-corp',
-        });
-        response.end(bytes);
-    });
-    await new Promise(resolve => server.listen(0, '127.0.0.1', resolve));
-    return server;
+    const server = spawn('python3', [new URL('../../examples/web/serve.py', import.meta.url).pathname, folder.pathname, '0']);
+    const [line] = await once(server.stdout, 'data');
+    return {url: String(line).match(/http:\S+/)[0], close: () => server.kill()};
 }
 
 // WebGL 2 and WebGPU both drawn by SwiftShader; nothing looked for outside of this machine.
@@ -52,8 +39,8 @@ export class Browser {
         this.server.close();
     }
 
-    // A page, until the test ends, that has drawn its first picture, or said why it can't. `before`: what runs in the page before its own
-    // script. `complaints` are what the console has of errors and warnings.
+    // A page, until the test ends, that has drawn its first picture, or said why it can't. `before`: what runs in the page
+    // before its own script. `complaints` are what the console has of errors and warnings.
     async open(test, hash, {width = 720, height = 400, touch = false, before = () => {}, ...options} = {}) {
         const context = await this.browser.newContext({
             viewport: {width, height}, hasTouch: touch, isMobile: touch, deviceScaleFactor: touch ? 2 : 1, ...options});
@@ -66,7 +53,7 @@ export class Browser {
                 page.complaints.push(`${message.type()}: ${message.text()}`);
         });
         await page.addInitScript(before);
-        await page.goto(`http://127.0.0.1:${this.server.address().port}/#${hash}`);
+        await page.goto(`${this.server.url}#${hash}`);
         await page.waitForFunction(() => performance.getEntriesByName('first picture').length > 0
             || document.body.classList.contains('cannot'));
         return page;

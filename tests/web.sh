@@ -1,0 +1,33 @@
+#!/bin/sh
+# Tests the page of examples/web in a browser: `sh tests/web.sh` on Debian 12, as root or with sudo. Installs what is
+# missing, builds the page, and runs it in headless Chromium on a software renderer, with WebGL 2 and with WebGPU. Leaves
+# pictures in build/web-tests. Takes about two minutes, and some more the first time.
+set -eu
+me=tests/web.sh
+cd "$(dirname "$0")/.."
+. tests/packages.sh
+
+install_packages chromium fonts-dejavu-core nodejs g++ libtinygltf-dev
+command -v npm >/dev/null || install_packages npm
+sh examples/web.sh --build
+
+# The prefix keeps it here: npm otherwise looks for a project in the folders above.
+playwright=playwright-core@1.65.1
+tests=build/web-tests
+mkdir -p $tests
+grep -qs '"version": "'${playwright#*@}'"' $tests/node_modules/playwright-core/package.json ||
+    npm install --prefix $tests --cache $tests/npm.cache --no-save --ignore-scripts --no-audit --no-fund \
+        $playwright >$tests/npm.log 2>&1 || { cat $tests/npm.log; fail "npm could not install $playwright"; }
+
+echo "$me: the module against this machine's program"
+make -f examples/web/web.mk build/web.objects/lists >$tests/lists.log 2>&1 || { cat $tests/lists.log; fail "the build failed"; }
+build/web.objects/lists tests/fixtures/nova.glb tests/fixtures/darkness.glb >$tests/lists.txt
+failed=
+node tests/web/module.mjs build/web $tests/lists.txt || failed=yes
+for part in page controls pictures; do
+    echo "$me: $part"
+    node --test-reporter=spec tests/web/$part.mjs >$tests/$part.log 2>&1 || failed=yes
+    grep -E '^(✔|✖|[0-9a-z]+ .*(bytes|ms)|    at |  [A-Z])' $tests/$part.log || true
+done
+[ -z "$failed" ] || fail "not every test passed; the logs are $tests/*.log"
+echo "$me: every test passed; pictures: $(echo $tests/*.png)"
