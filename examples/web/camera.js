@@ -117,7 +117,7 @@ export function listen_to_pointers(stage, camera) {
         const now = spread(), x = now.x - before.x, y = now.y - before.y;
         const height = stage.clientHeight;
         if (fingers.size === 1 && !(event.buttons & 6) && !event.shiftKey) {
-            camera.turn(-4 * x / height, -4 * y / height);
+            camera.turn(-3 * x / height, -3 * y / height);
             return;
         }
         camera.pan(x / height, y / height);
@@ -161,9 +161,5 @@ export class FlyingKeys {
         const way = [0, 0, 0];
         for (const [axis, sign] of [...this.#held].map(code => flying_keys[code])) way[axis] = sign;
         camera.fly(...way.map(sign => sign * this.#hurry * seconds));
-    }
-
-    get any() {
-        return this.#held.size > 0;
     }
 }

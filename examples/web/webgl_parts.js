@@ -177,14 +177,15 @@ export class FrameBuffer {
     }
 }
 
-// What the GPU takes: by its own clock where the browser lets that be read, some frames late; else until it is done.
+// What the GPU takes: by its own clock where the browser lets that be read, from the second drawing on a little late; else
+// until it is done.
 export class Timer {
     #gl;
     #clock;
     #free = [];
     #running = [];
     #begun = 0;
-    #latest = 0;
+    #latest = null;
 
     constructor(gl) {
         this.#gl = gl;
@@ -201,18 +202,20 @@ export class Timer {
 
     // Milliseconds of the latest drawing that is known.
     async end() {
-        if (!this.#clock) {
-            await until_done(this.#gl);
-            return performance.now() - this.#begun;
-        }
-        const gl = this.#gl;
-        gl.endQuery(this.#clock.TIME_ELAPSED_EXT);
-        const disjoint = gl.getParameter(this.#clock.GPU_DISJOINT_EXT);
+        if (this.#clock) this.#gl.endQuery(this.#clock.TIME_ELAPSED_EXT);
+        if (!this.#clock || this.#latest === null) await until_done(this.#gl);
+        const wall = performance.now() - this.#begun;
+        if (!this.#clock) return wall;
+        this.#collect();
+        return this.#latest ?? wall;
+    }
+
+    #collect() {
+        const gl = this.#gl, disjoint = gl.getParameter(this.#clock.GPU_DISJOINT_EXT);
         while (this.#running.length > 0 && gl.getQueryParameter(this.#running[0], gl.QUERY_RESULT_AVAILABLE)) {
             const query = this.#running.shift();
             if (!disjoint) this.#latest = gl.getQueryParameter(query, gl.QUERY_RESULT) / 1e6;
             this.#free.push(query);
         }
-        return this.#latest;
     }
 }
