@@ -138,6 +138,12 @@ const flying_keys = {
     KeyA: [0, -1], ArrowLeft: [0, -1], KeyD: [0, 1], ArrowRight: [0, 1], KeyQ: [1, -1], KeyE: [1, 1],
 };
 
+// Whether a key is not for the page: a control that has the focus wants it, or the browser.
+export function is_wanted({target, key, ctrlKey, metaKey, altKey}) {
+    if (ctrlKey || metaKey || altKey || target.closest?.('select, dialog')) return true;
+    return key === ' ' ? target.closest?.('input, button') : key.length > 1 && target.closest?.('input');
+}
+
 // The keys that fly, as long as they are held.
 export class FlyingKeys {
     #held = new Set();
@@ -145,8 +151,7 @@ export class FlyingKeys {
 
     constructor() {
         addEventListener('keydown', event => {
-            const in_control = event.target.closest?.('input, select, dialog');
-            if (!flying_keys[event.code] || event.ctrlKey || event.metaKey || event.altKey || in_control) return;
+            if (!flying_keys[event.code] || is_wanted(event)) return;
             event.preventDefault();
             this.#held.add(event.code);
         });

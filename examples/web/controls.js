@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The panel: what its controls show is what the settings say, and a control that is used changes them.
+import {is_wanted} from './camera.js';
 import {fewest_lights, lights_at, most_lights, place_of} from './settings.js';
 
 export const by_id = id => document.getElementById(id);
 export const counted = (n, what) => `${n.toLocaleString('en')} ${what}${n === 1 ? '' : 's'}`;
+export const sentence = words => (/[.!?]$/.test(words) ? words : words + '.');
 
 const selects = ['scene', 'method', 'renderer', 'look', 'size'];
-const methods = ['none', 'z_bins', 'clusters', 'interval', 'box'];
 
 export class Controls {
     #settings;
@@ -66,8 +67,7 @@ export class Controls {
     }
 
     show_scene({name, notes, cameras}, is_file) {
-        const choice = [...by_id('scene').options].find(option => option.value === 'file');
-        choice?.remove();
+        by_id('scene').querySelector('[value=file]')?.remove();
         if (is_file) by_id('scene').add(new Option(name, 'file'));
         by_id('view').replaceChildren(...cameras.map((camera, i) => new Option(camera.name || `Camera ${i + 1}`, i)),
             new Option('moved', ''));
@@ -90,7 +90,7 @@ export class Controls {
 
     #refused = {};
     #say_refused(what, reason, words) {
-        this.#refused[what] = reason ? words + reason + '.' : '';
+        this.#refused[what] = reason ? sentence(words + reason) : '';
         const lines = Object.values(this.#refused).filter(line => line !== '');
         by_id('refused').textContent = lines.join('\n');
         by_id('refused').hidden = lines.length === 0;
@@ -109,7 +109,7 @@ export class Controls {
             && this.set({lights: Math.min(Math.max(lights_at(place_of(settings.lights) + place), fewest_lights), most_lights)});
         const look = name => this.set({look: settings.look === name ? 'lit' : name});
         const next_method = () => {
-            const possible = methods.filter(name => ![...by_id('method').options].find(option => option.value === name).disabled);
+            const possible = [...by_id('method').options].filter(option => !option.disabled).map(option => option.value);
             this.set({method: possible[(possible.indexOf(settings.method) + 1) % possible.length]});
         };
         const keys = {
@@ -119,9 +119,7 @@ export class Controls {
             '?': () => by_id('keys').showModal(),
         };
         addEventListener('keydown', event => {
-            if (event.ctrlKey || event.metaKey || event.altKey || by_id('keys').open) return;
-            const in_control = event.target.closest('input, select') || (event.key === ' ' && event.target.closest('button'));
-            if (in_control) return;
+            if (is_wanted(event)) return;
             const key = event.key.toLowerCase();
             if (key >= '1' && key <= '9') act.camera(Number(key) - 1);
             else if (keys[key]) keys[key]();

@@ -2,7 +2,7 @@
 // The page: start() has how it begins, and run() a frame from top to bottom.
 import {FlyingKeys, FreeCamera, listen_to_pointers} from './camera.js';
 import {compare, meter} from './checks.js';
-import {by_id, Controls, counted, show_advice} from './controls.js';
+import {by_id, Controls, counted, sentence, show_advice} from './controls.js';
 import {load} from './lightbin.js';
 import {Plot} from './plot.js';
 import {parse_hash, to_hash} from './settings.js';
@@ -25,9 +25,10 @@ const scales = [0.2, 0.28, 0.4, 0.56, 0.8, 1, 1.4, 2];
 let scale = 2, slow = 0, quick = 0;
 
 // What is wrong, in a sentence; none: nothing is.
-function complain(sentence = '') {
-    by_id('alert').textContent = sentence;
-    by_id('alert').hidden = sentence === '';
+function complain(words = '') {
+    if (by_id('alert').textContent === words) return;  // it is not to be read out again
+    by_id('alert').textContent = words;
+    by_id('alert').hidden = words === '';
 }
 
 function tell(sentence = '', differs = false) {
@@ -42,7 +43,10 @@ function frame_settings() {
     const part = settings.size === 'auto' ? scales[scale] : settings.size / 100;
     const {method, look, drop, tile: tile_size, stops} = settings;
     const [width, height] = [stage.clientWidth, stage.clientHeight].map(side => Math.max(Math.round(side * part), 16));
-    return {camera: eye.camera(width / height), width, height, tile_size, method, look, drop, seconds, slices: 24, exposure: exposure * 2 ** stops};
+    return {
+        camera: eye.camera(width / height), width, height, tile_size, method, look, drop, seconds, slices: 24,
+        exposure: exposure * 2 ** stops,
+    };
 }
 
 // Three frames of 45 ms are too many, as is one of 135; twelve below 14 ms leave time for a picture 1.4 times as wide.
@@ -95,7 +99,7 @@ async function open_file(file) {
     try {
         lightbin.open(bytes, file.name);
     } catch (error) {
-        throw new Error(`${file.name} can't be shown: ${error.message}.`);
+        throw new Error(`Can't show ${error.message}`);
     }
     Object.assign(settings, {scene: 'file', at: ''});
     take_scene('file');
@@ -108,6 +112,14 @@ async function go_to(view) {
     eye.place = settings.at;
     controls.show();
     exposure = await meter(renderer, lightbin, frame_settings());
+    stale = true;
+}
+
+// The camera was moved.
+function look_from(place) {
+    settings.at = place;
+    controls.show();
+    if (held) tell();
     stale = true;
 }
 
@@ -179,7 +191,7 @@ function change(names) {
     for (const name of names) if (by_name[name]) jobs.add(by_name[name]);
 }
 
-const summary = {frames: 0, since: 0, latest: null};
+const summary = {frames: 0, since: 0};
 
 // In words, four times a second, and at once where nothing moves.
 function summarise(report, {width, height}) {
@@ -229,36 +241,34 @@ async function run() {
                 jobs.delete(job);
                 await job();
             }
-            if (renderer.lost) go_on_without();
-            if (renderer.lost || held) continue;
-            flying.move(eye, elapsed);
-            if (settings.move) seconds += elapsed;
-            if (settings.at !== eye.place) {
-                settings.at = eye.place;
-                controls.show();
-                stale = true;
+            if (renderer.lost) {
+                go_on_without();
+                continue;
             }
-            if (!stale && (failed || !settings.move)) continue;
+            flying.move(eye, elapsed);
+            if (settings.at !== eye.place) look_from(eye.place);
+            if (held || (!stale && (failed || !settings.move))) continue;
+            if (settings.move) seconds += elapsed;
             stale = false;
             failed = true;
             await draw();
             failed = false;
         } catch (error) {
-            complain(error.message);
+            complain(sentence(error.message));
         }
     }
 }
 
 async function look_for_webgpu() {
     if (!navigator.gpu) controls.refuse_webgpu('this browser does not have it');
-    else if (!await navigator.gpu.requestAdapter()) controls.refuse_webgpu('the browser finds no graphics adapter for it');
+    else if (!await navigator.gpu.requestAdapter().catch(() => null)) controls.refuse_webgpu('no graphics adapter has it');
 }
 
 async function start() {
     controls = new Controls(settings, change, actions);
     by_id('close_verdict').addEventListener('click', () => tell());
     listen_to_pointers(stage, eye);
-    addEventListener('resize', () => { stale = true; });
+    addEventListener('resize', () => change([]));
     addEventListener('hashchange', () => location.reload());  // somebody changed the address
     // It does not bubble, but can be caught on its way down.
     stage.addEventListener('webglcontextrestored', () => jobs.add(async () => {
@@ -268,19 +278,19 @@ async function start() {
     try {
         [lightbin] = await Promise.all([load(), use_renderer()]);
         await show_scene().catch(async error => {
-            complain(error.message);
+            complain(sentence(error.message));
             await show_scene();
         });
         await draw();
     } catch (error) {
         document.body.classList.add('cannot');
-        complain(`${error.message} The page needs WebGL 2 and WebAssembly with vectors: Chrome or Edge 95, Firefox 100, Safari `
+        complain(`${sentence(error.message)} The page needs WebGL 2 and WebAssembly with vectors: Chrome or Edge 95, Firefox 100, Safari `
             + '16.4, or later, with graphics switched on.');
         return;
     }
     performance.mark('first picture');
-    jobs.add(look_for_webgpu);
-    await run();
+    look_for_webgpu();
+    run();
 }
 
 start();

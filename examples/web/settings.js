@@ -44,8 +44,10 @@ export function parse_hash(hash) {
     return settings;
 }
 
+// A file that was opened is not in the link, nor where one looks at it from.
 export function to_hash(settings) {
-    const changed = Object.keys(defaults).filter(name => settings[name] !== defaults[name] && settings[name] !== 'file');
+    const left_out = settings.scene === 'file' ? ['scene', 'view', 'at'] : [];
+    const changed = Object.keys(defaults).filter(name => settings[name] !== defaults[name] && !left_out.includes(name));
     return '#' + changed.map(name => `${name}=${typeof settings[name] === 'boolean' ? +settings[name] : settings[name]}`)
         .join('&');
 }
