@@ -4,7 +4,7 @@
 // Three quarters of what is lit stay below the middle of the display's range, whatever unit the scene's lights are in.
 // Found by small pictures, until one is neither too dark nor too bright to tell.
 export async function meter(renderer, lightbin, settings) {
-    const small = {...settings, width: 96, height: 54, tile_size: 8, method: 'none', look: 'lit', show: false};
+    const small = {...settings, width: 96, height: 54, tile_size: 8, look: 'lit', show: false};
     let exposure = 1;
     for (let tries = 0; tries < 12; ++tries) {
         await renderer.draw(lightbin, {...small, exposure});

@@ -8,11 +8,12 @@ const array_types = { u32: Uint32Array, f32: Float32Array, f64: Float64Array };
 export async function load(url = 'lightbin.wasm') {
     const response = await fetch(url).catch(() => null);
     if (!response?.ok) throw new Error(`${url} could not be fetched`);
-    return start(await response.arrayBuffer());
+    const typed = response.headers.get('content-type') === 'application/wasm';  // it can be compiled while it arrives
+    return start(typed ? response : await response.arrayBuffer());
 }
 
 /** The same of a module that is there already. */
-export async function start(bytes) {
+export async function start(module) {
     let memory;
     const nothing = () => 0;
     const imports = {
@@ -34,7 +35,8 @@ export async function start(bytes) {
         },
     };
     if (!globalThis.WebAssembly) throw new Error('This browser has no WebAssembly.');
-    const { instance } = await WebAssembly.instantiate(bytes, imports).catch(() => {
+    const instantiate = module instanceof Response ? 'instantiateStreaming' : 'instantiate';
+    const { instance } = await WebAssembly[instantiate](module, imports).catch(() => {
         throw new Error('This browser is too old: its WebAssembly has no vectors (SIMD) or no exceptions.');
     });
     memory = instance.exports.memory;

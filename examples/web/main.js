@@ -22,7 +22,7 @@ let held = false;                // nor is it to be: there is something to look 
 
 // Sides of the picture over those of the window, for a size that keeps the page fluent.
 const scales = [0.2, 0.28, 0.4, 0.56, 0.8, 1, 1.4, 2];
-let scale = 2, slow = 0, quick = 0;
+let scale = 0, slow = 0, quick = 0;
 
 // What is wrong, in a sentence; none: nothing is.
 function complain(words = '') {
@@ -39,9 +39,11 @@ function tell(sentence = '', differs = false) {
     held = differs;
 }
 
-function frame_settings() {
-    const part = settings.size === 'auto' ? scales[scale] : settings.size / 100;
-    const {method, look, drop, tile: tile_size, stops} = settings;
+// `part`: that of a picture whose size keeps the page fluent. Its tiles are as small: else each had the lights of many.
+function frame_settings(part = scales[scale]) {
+    const {method, look, drop, stops, size} = settings;
+    if (size !== 'auto') part = size / 100;
+    const tile_size = size === 'auto' ? Math.max(Math.round(settings.tile * part), 4) : settings.tile;
     const [width, height] = [stage.clientWidth, stage.clientHeight].map(side => Math.max(Math.round(side * part), 16));
     return {
         camera: eye.camera(width / height), width, height, tile_size, method, look, drop, seconds, slices: 24,
@@ -52,7 +54,7 @@ function frame_settings() {
 // Three frames of 45 ms are too many, as is one of 135; twelve below 14 ms leave time for a picture 1.4 times as wide.
 function keep_fluent(milliseconds) {
     slow = milliseconds > 45 ? slow + milliseconds / 45 : 0;
-    quick = milliseconds < 14 ? quick + 1 : 0;
+    quick = milliseconds < 14 ? quick + (milliseconds < 4 ? 4 : 1) : 0;
     const step = slow >= 3 ? -1 : quick >= 12 ? 1 : 0;
     if (step === 0 || !scales[scale + step]) return;
     scale += step;
@@ -166,7 +168,7 @@ async function check() {
 }
 
 async function advise() {
-    const frame = frame_settings();
+    const frame = frame_settings(1);
     show_advice(lightbin.advise({...frame, clip: 'webgl'}), frame.width * frame.height,
         ({tile_size}) => controls.set({method: 'none', tile: tile_size}));
 }
