@@ -8,6 +8,7 @@
 #include "shading.hpp"
 
 #include <scene.hpp>
+#include <value_of.hpp>
 
 #include <lightbin/lightbin.hpp>
 
@@ -20,11 +21,6 @@
 #include <stdexcept>
 #include <string>
 #include <vector>
-
-template <class T> T value_of(lightbin::Result<T> result) {
-    if (!result) throw std::runtime_error(result.error().message());
-    return *result;
-}
 
 struct Pass {
     std::string name;

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 
-lightbin::Slices slices_for(const BinSettings& settings, bool orthographic, std::span<const GpuLight> lights) {
+lightbin::Slices slices_for(const BinSettings& settings, bool orthographic,
+                            std::span<const GpuLight> lights) {
     float last = 0;  // as deep as any light reaches
     for (const GpuLight& light : lights)
         last = std::max(last, light.sphere.w - light.sphere.z);

@@ -4,19 +4,14 @@
 
 #include "gpu_light.hpp"
 #include "scene.hpp"
+#include "value_of.hpp"
 
 #include <lightbin/lightbin.hpp>
 
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <vector>
-
-template <class T> T value_of(lightbin::Result<T> result) {
-    if (!result) throw std::runtime_error(result.error().message());
-    return *result;
-}
 
 // What keeps a light out of the lists of tiles that it covers.
 enum class DepthMethod {

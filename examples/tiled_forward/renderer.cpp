@@ -227,8 +227,7 @@ float Renderer::meter(const Camera& camera, const FrameSettings& settings) {
 }
 
 Renderer::Renderer(const Scene& scene, int glsl)
-    : scene_(scene), glsl_(glsl), list_binding_(list_binding(glsl)),
-      binned_(scene), frame_buffer_(glsl) {
+    : scene_(scene), glsl_(glsl), list_binding_(list_binding(glsl)), binned_(scene), frame_buffer_(glsl) {
     const std::string geometry = geometry_vertex_shader(glsl);
     depth_program_ = link_program(geometry, depth_fragment_shader(glsl));
     brute_force_program_ =
@@ -301,9 +300,9 @@ GLuint Renderer::tiled_program(const FrameSettings& settings) {
     const lightbin::Slicing slicing = slicing_of(settings);
     GLuint& program = tiled_programs_[{slicing, settings.checks}];
     if (program == 0)
-        program = link_program(
-            geometry_vertex_shader(glsl_),
-            forward_fragment_shader(glsl_, LightLoop::tile_list, binned_.has_spots(), slicing, settings.checks));
+        program = link_program(geometry_vertex_shader(glsl_),
+                               forward_fragment_shader(glsl_, LightLoop::tile_list, binned_.has_spots(),
+                                                       slicing, settings.checks));
     return program;
 }
 
@@ -327,8 +326,7 @@ void Renderer::draw_triangles(GLuint program, bool with_lists, const FrameSettin
     set_matrices(program);
     glUniform2f(uniform(program, "picture_size"), static_cast<float>(frame_buffer_.width()),
                 static_cast<float>(frame_buffer_.height()));
-    glUniform3fv(uniform(program, "moon"), 1,
-                 glm::value_ptr(glm::mat3(view_) * way_to_moon));
+    glUniform3fv(uniform(program, "moon"), 1, glm::value_ptr(glm::mat3(view_) * way_to_moon));
     glUniform1f(uniform(program, "exposure"), settings.exposure);
     glUniform1i(uniform(program, "light_count"), static_cast<int>(scene_.lights.size()));
     glUniform1i(uniform(program, "sun_count"), static_cast<int>(scene_.suns.size()));

@@ -18,7 +18,8 @@ namespace {
 class Hash {
 public:
     template <class T> void add(std::span<const T> items) {
-        for (const std::byte* at = std::as_bytes(items).data(), *end = at + items.size_bytes(); at != end; at += 4) {
+        for (const std::byte *at = std::as_bytes(items).data(), *end = at + items.size_bytes(); at != end;
+             at += 4) {
             std::uint32_t word;
             std::memcpy(&word, at, 4);
             hash_ = (hash_ ^ word) * 16777619;
@@ -40,7 +41,8 @@ void print_lists(Stage& stage, const std::string& scene, double seconds) {
         settings.bin.method = static_cast<DepthMethod>(method);
         settings.seconds = seconds;
         const lightbin::View view = stage.prepare(settings).view;
-        const std::vector<float> min(view.tile_count(), 10), max(view.tile_count(), 60), glass(view.tile_count(), 100);
+        const std::vector<float> min(view.tile_count(), 10), max(view.tile_count(), 60),
+            glass(view.tile_count(), 100);
         const Frame& frame = stage.frame(
             view, settings, {.min = min, .max = max, .transparent_max = glass, .background_skipped = true});
         Hash lists;

@@ -66,7 +66,8 @@ bool reaches(const Light& light, const glm::dvec3& point) {
     const double distance = glm::length(way);
     if (!(distance < (1 - 1e-5) * static_cast<double>(light.range))) return false;
     if (!light.spot) return true;
-    return glm::dot(way, glm::dvec3(light.direction)) > (static_cast<double>(light.cos_outer) + 1e-4) * distance;
+    return glm::dot(way, glm::dvec3(light.direction)) >
+           (static_cast<double>(light.cos_outer) + 1e-4) * distance;
 }
 
 // The slice of a depth as the shader looks it up: after the fourth word, the boundaries as words that ascend as they do.
@@ -76,13 +77,15 @@ std::size_t slice_at(const Frame& frame, double depth) {
     std::memcpy(&bits, &single, sizeof bits);
     const std::uint32_t key = bits | 0x80000000;  // depths here are not negative
     const auto first = frame.slices.begin() + 4;
-    return static_cast<std::size_t>(std::count_if(first, frame.slices.end(), [=](std::uint32_t b) { return b <= key; }));
+    return static_cast<std::size_t>(
+        std::count_if(first, frame.slices.end(), [=](std::uint32_t b) { return b <= key; }));
 }
 
 // The ids that the shader goes through at a point.
-std::vector<std::uint32_t> listed(const Frame& frame, const lightbin::View& view, DepthMethod method, const Sample& at,
-                                  bool glass) {
-    std::size_t place = static_cast<std::size_t>(at.y / view.tile_size() * view.tiles_x() + at.x / view.tile_size());
+std::vector<std::uint32_t> listed(const Frame& frame, const lightbin::View& view, DepthMethod method,
+                                  const Sample& at, bool glass) {
+    std::size_t place =
+        static_cast<std::size_t>(at.y / view.tile_size() * view.tiles_x() + at.x / view.tile_size());
     if (method == DepthMethod::clusters) place += slice_at(frame, at.depth) * view.tile_count();
     const auto range = (glass ? frame.glass_ranges : frame.ranges)[place];
     const auto ids = (glass ? frame.glass_ids : frame.ids).subspan(range.offset, range.count);
@@ -94,7 +97,8 @@ std::vector<std::uint32_t> listed(const Frame& frame, const lightbin::View& view
 }
 
 // Whether one of the ids is that of a light, by what is uploaded: ids are ranks with z-bins.
-bool has(const std::vector<std::uint32_t>& ids, const Frame& frame, const Light& light, const glm::dmat4& to_view) {
+bool has(const std::vector<std::uint32_t>& ids, const Frame& frame, const Light& light,
+         const glm::dmat4& to_view) {
     const glm::vec3 centre(to_view * glm::dvec4(light.position, 1));
     return std::any_of(ids.begin(), ids.end(), [&](std::uint32_t id) {
         const GpuLight& uploaded = frame.lights[id];
@@ -129,9 +133,11 @@ Count count_missing(Stage& stage, const FrameSettings& settings, double deepest)
     const lightbin::View view = stage.prepare(settings).view;
     Dice dice;  // the same points again where a light is left out
     const Bounds bounds = made_bounds(dice, view, deepest);
-    const Frame& frame = stage.frame(
-        view, settings,
-        {.min = bounds.min, .max = bounds.max, .transparent_max = bounds.glass_max, .background_skipped = true});
+    const Frame& frame = stage.frame(view, settings,
+                                     {.min = bounds.min,
+                                      .max = bounds.max,
+                                      .transparent_max = bounds.glass_max,
+                                      .background_skipped = true});
     const DepthMethod method = settings.bin.method;
     const bool bounded = method == DepthMethod::interval || method == DepthMethod::box;
     const glm::dmat4 to_view = glm::inverse(settings.camera.to_world);
@@ -144,8 +150,10 @@ Count count_missing(Stage& stage, const FrameSettings& settings, double deepest)
     Count count;
     std::vector<int> points(lights.size());
     for (int i = 0; i < 300; ++i) {
-        const int x = static_cast<int>(dice.between(0, settings.width)), y = static_cast<int>(dice.between(0, settings.height));
-        const auto tile = static_cast<std::size_t>(y / settings.tile_size * view.tiles_x() + x / settings.tile_size);
+        const int x = static_cast<int>(dice.between(0, settings.width)),
+                  y = static_cast<int>(dice.between(0, settings.height));
+        const auto tile =
+            static_cast<std::size_t>(y / settings.tile_size * view.tiles_x() + x / settings.tile_size);
         const bool glass = i % 3 == 0 && !stage.scene().transparent.empty();
         double low = settings.camera.near, high = deepest;
         if (bounded) {
@@ -176,8 +184,8 @@ FrameSettings settings_for(const Camera& camera, DepthMethod method) {
     return settings;
 }
 
-constexpr DepthMethod methods[] = {DepthMethod::none, DepthMethod::interval, DepthMethod::box, DepthMethod::z_bins,
-                                   DepthMethod::clusters};
+constexpr DepthMethod methods[] = {DepthMethod::none, DepthMethod::interval, DepthMethod::box,
+                                   DepthMethod::z_bins, DepthMethod::clusters};
 
 // Every method, as each graphics API counts, at rest and in motion; and it is seen where a light is left out.
 void check_lists(Stage& stage, double deepest, int at_least) {
@@ -186,8 +194,10 @@ void check_lists(Stage& stage, double deepest, int at_least) {
         CAPTURE(static_cast<int>(method));
         for (const bool webgpu : {false, true}) {
             CAPTURE(webgpu);
-            settings.clip_depth = webgpu ? lightbin::ClipDepth::zero_to_one : lightbin::ClipDepth::minus_one_to_one;
-            settings.origin = webgpu ? lightbin::WindowOrigin::upper_left : lightbin::WindowOrigin::lower_left;
+            settings.clip_depth =
+                webgpu ? lightbin::ClipDepth::zero_to_one : lightbin::ClipDepth::minus_one_to_one;
+            settings.origin =
+                webgpu ? lightbin::WindowOrigin::upper_left : lightbin::WindowOrigin::lower_left;
             settings.seconds = webgpu ? 12.5 : 0;
             const Count count = count_missing(stage, settings, deepest);
             CHECK(count.reached >= at_least);
@@ -238,7 +248,8 @@ TEST_CASE("lights move about their places") {
         stage.frame(stage.prepare(settings).view, settings, {});
         float most = 0;
         for (std::size_t i = 0; i < places.size(); ++i)
-            most = std::max(most, glm::length(stage.scene().lights[i].position - places[i].position) / places[i].range);
+            most = std::max(most, glm::length(stage.scene().lights[i].position - places[i].position) /
+                                      places[i].range);
         return most;
     };
     CHECK(farthest(0) == 0);

@@ -137,7 +137,10 @@ lightbin::ZBounds z_bounds_of(const json& asked) {
         const auto count = asked.at("bounds").value(name, std::size_t{0});
         return std::span(std::exchange(at, at + count), count);
     };
-    return {.min = side("min"), .max = side("max"), .transparent_max = side("glass_max"), .background_skipped = true};
+    return {.min = side("min"),
+            .max = side("max"),
+            .transparent_max = side("glass_max"),
+            .background_skipped = true};
 }
 
 json frame_json(const json& asked) {

@@ -53,11 +53,11 @@ Prepared Stage::prepare(const FrameSettings& settings) const {
     const double aspect = static_cast<double>(settings.width) / settings.height;
     const glm::mat4 projection = projection_of(settings.camera, aspect, settings.clip_depth),
                     world_to_view(glm::inverse(settings.camera.to_world));
-    return {value_of(lightbin::View::from_projection(projection, {settings.width, settings.height},
-                                                     {.tile_size = settings.tile_size,
-                                                      .clip_depth = settings.clip_depth,
-                                                      .origin = settings.origin})),
-            projection, world_to_view, glm::mat3(world_to_view) * way_to_moon};
+    return {
+        value_of(lightbin::View::from_projection(
+            projection, {settings.width, settings.height},
+            {.tile_size = settings.tile_size, .clip_depth = settings.clip_depth, .origin = settings.origin})),
+        projection, world_to_view, glm::mat3(world_to_view) * way_to_moon};
 }
 
 void Stage::place(const FrameSettings& settings) {
@@ -109,11 +109,14 @@ void Stage::make_footprints(const lightbin::View& view, const BinSettings& setti
     }
     std::uint64_t room = 0;  // for all tiles of the rectangles, in all slices that the lights meet
     for (const lightbin::ShaderFootprint& light : frame_.footprints) {
-        const int deep = slices.slice_at(light.z + light.radius) - slices.slice_at(light.z - light.radius) + 1;
-        room += std::uint64_t{1} * static_cast<unsigned>(deep) * (light.x1 - light.x0 + 1u) * (light.y1 - light.y0 + 1u);
+        const int deep =
+            slices.slice_at(light.z + light.radius) - slices.slice_at(light.z - light.radius) + 1;
+        room += std::uint64_t{1} * static_cast<unsigned>(deep) * (light.x1 - light.x0 + 1u) *
+                (light.y1 - light.y0 + 1u);
     }
     if (room > std::numeric_limits<std::uint32_t>::max())
-        throw std::runtime_error("the lists would have " + std::to_string(room) + " entries: take larger tiles");
+        throw std::runtime_error("the lists would have " + std::to_string(room) +
+                                 " entries: take larger tiles");
     frame_.build = lightbin::shader_build(view, static_cast<std::uint32_t>(frame_.footprints.size()),
                                           static_cast<std::uint32_t>(room), slices.count());
     frame_.counts.lights = static_cast<std::uint32_t>(scene_.lights.size());

@@ -70,7 +70,8 @@ public:
     //
     // z_bounds  with DepthMethod::interval and box, unless on_gpu: of what is opaque, and where there is glass
     //           transparent_max
-    const Frame& frame(const lightbin::View& view, const FrameSettings& settings, const lightbin::ZBounds& z_bounds);
+    const Frame& frame(const lightbin::View& view, const FrameSettings& settings,
+                       const lightbin::ZBounds& z_bounds);
 
     // What the ways to light this view cost here.
     lightbin::Advice advise(const lightbin::View& view, const FrameSettings& settings);

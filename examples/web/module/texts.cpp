@@ -30,8 +30,9 @@ bool flag(const json& options, const char* key) {
 lightbin::ShaderText snippet(const json& from) {
     lightbin::ShaderOptions options;
     options.language = named<lightbin::ShaderLanguage>(from, "language");
-    options.storage = options.language == lightbin::ShaderLanguage::essl_300 ? lightbin::ListStorage::texture_2d
-                                                                             : lightbin::ListStorage::storage_buffer;
+    options.storage = options.language == lightbin::ShaderLanguage::essl_300
+                          ? lightbin::ListStorage::texture_2d
+                          : lightbin::ListStorage::storage_buffer;
     options.slicing = named<lightbin::Slicing>(from, "slicing");
     options.heat_map = flag(from, "heat_map");
     options.view_check = flag(from, "view_check");
@@ -64,8 +65,9 @@ lightbin::ShaderText build(const json& from) {
 json shader_text(const std::string& what, const json& options) {
     const lightbin::ShaderText text = what == "snippet"  ? snippet(options)
                                       : what == "reduce" ? reduce(options)
-                                      : what == "build"  ? build(options)
-                                                         : throw std::runtime_error("there is no text '" + what + "'");
+                                      : what == "build"
+                                          ? build(options)
+                                          : throw std::runtime_error("there is no text '" + what + "'");
     json bindings = json::array();
     for (const lightbin::ShaderBinding& binding : text.bindings)
         bindings.push_back({{"name", binding.name},
