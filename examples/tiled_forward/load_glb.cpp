@@ -351,6 +351,11 @@ Scene read_glb(std::span<const unsigned char> bytes, const std::string& path, fl
 Scene load_glb(const std::string& path, float cutoff) {
     std::ifstream file(path, std::ios::binary);
     if (!file) fail("cannot open '" + path + "'");
-    const std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
+    std::vector<char> bytes;
+    try {
+        bytes.assign(std::istreambuf_iterator<char>(file), {});
+    } catch (const std::ios_base::failure& problem) {
+        fail("'" + path + "': " + problem.what());
+    }
     return read_glb({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()}, path, cutoff);
 }
