@@ -29,9 +29,8 @@ done
 
 install_packages make python3 emscripten node-acorn nodejs libglm-dev libtinygltf-dev nlohmann-json3-dev
 make_build_folder
-[ -e build/web/lightbin.wasm ] || echo "$me: compiling to WebAssembly, which takes about a minute the first time"
-make -j "$(nproc)" -f examples/web/web.mk >build/web.log 2>&1 ||
-    { cat build/web.log; fail "the build failed"; }
+echo "$me: building in build/web, which takes about a minute the first time"
+make -j "$(nproc)" -f examples/web/web.mk 2>build/web.log || { cat build/web.log; fail "the build failed"; }
 echo "$me: build/web has $(du -bc build/web/* | sed -n '$s/\t.*//p') bytes in all"
 [ -n "$serve" ] || exit 0
 exec python3 examples/web/serve.py build/web "$port"

@@ -49,10 +49,9 @@ class Lightbin {
 
     constructor(module) {
         this.#module = module;
-        this.make('city', 1024);
     }
 
-    /** The scene on show: see scene_json() in module/exports.cpp. */
+    /** The scene on show, none at first: see scene_json() in module/exports.cpp. */
     get scene() {
         return this.#ask('scene', {});
     }

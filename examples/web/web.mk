@@ -20,22 +20,26 @@ vpath %.cpp $(here)/module examples/tiled_forward tests/web
 # It asks for a module that lies where its node does not look.
 export NODE_PATH := /usr/share/nodejs
 
+.DELETE_ON_ERROR:
+
 all: $(OUT)/lightbin.wasm $(addprefix $(OUT)/,$(notdir $(page)))
 
 $(OUT)/lightbin.wasm: $(compiled) | $(OUT)
-	em++ $(flags) $(compiled) -o $@ -sSTANDALONE_WASM --no-entry -sALLOW_MEMORY_GROWTH
+	@echo "    linking $(@F)"
+	@em++ $(flags) $(compiled) -o $@ -sSTANDALONE_WASM --no-entry -sALLOW_MEMORY_GROWTH
 
 $(objects)/%.o: %.cpp $(here)/web.mk | $(objects)/include
-	em++ $(flags) -MMD -c $< -o $@
+	@echo "    compiling $<"
+	@em++ $(flags) -MMD -c $< -o $@
 
 # The host's headers must not be looked at, but for these.
 $(objects)/include:
-	mkdir -p $@
-	ln -s /usr/include/glm /usr/include/nlohmann /usr/include/tiny_gltf.h $@
+	@mkdir -p $@
+	@ln -sf /usr/include/glm /usr/include/nlohmann /usr/include/tiny_gltf.h $@
 
 define copy
 $(OUT)/$(notdir $(1)): $(1) | $(OUT)
-	cp $$< $$@
+	@cp $$< $$@
 endef
 $(foreach file,$(page),$(eval $(call copy,$(file))))
 
@@ -46,6 +50,6 @@ $(objects)/native/%.o: %.cpp | $(objects)/native
 	g++ -std=c++20 -O1 $(headers) -MMD -c $< -o $@
 
 $(objects)/native $(OUT):
-	mkdir -p $@
+	@mkdir -p $@
 
 -include $(compiled:.o=.d) $(native:.o=.d)

@@ -47,10 +47,18 @@ function same_lists() {
     return `${lines.length} light grids are those of this machine's program, byte for byte`;
 }
 
+function no_scene() {
+    const camera = { to_world: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], orthographic: false, height: 1, near: 1 };
+    const asked = { ...settings, camera: { ...camera, far: Infinity } };
+    assert.equal(lightbin.scene.lights, 0);
+    assert.throws(() => lightbin.frame(asked), /^Error: there is no scene yet$/);
+    assert.equal(lightbin.view(asked).projection[11], -1);
+    return 'there is no scene at first, which is a sentence too';
+}
+
 function sentences() {
     const nova = fs.readFileSync(path.join(folder, 'nova.glb'));
-    const scene = lightbin.make('city', 100);
-    const camera = scene.cameras[0];
+    const camera = lightbin.make('city', 100).cameras[0];
     const three = new Float32Array(3);
     const asked = [
         [() => lightbin.open(nova.subarray(0, 1000), 'a.glb'), /^'a.glb': not a readable glTF binary: .+/],
@@ -85,4 +93,4 @@ function small() {
     return `the page has ${bytes} bytes in all`;
 }
 
-for (const test of [same_lists, sentences, advice, small]) console.log(`module: ${test()}`);
+for (const test of [no_scene, same_lists, sentences, advice, small]) console.log(`module: ${test()}`);

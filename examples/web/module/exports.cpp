@@ -70,11 +70,11 @@ FrameSettings settings_of(const json& from) {
     settings.width = from.at("width");
     settings.height = from.at("height");
     settings.tile_size = from.at("tile_size");
-    if (from.at("clip") == "webgpu") {
+    if (from.value("clip", "webgl") == "webgpu") {
         settings.clip_depth = lightbin::ClipDepth::zero_to_one;
         settings.origin = lightbin::WindowOrigin::upper_left;
     }
-    const std::string method = from.at("method");
+    const std::string method = from.value("method", "none");
     const auto found = methods.find(method);
     if (found == methods.end()) throw std::runtime_error("there is no method '" + method + "'");
     settings.bin.method = found->second;

@@ -61,6 +61,7 @@ Prepared Stage::prepare(const FrameSettings& settings) const {
 }
 
 void Stage::place(const FrameSettings& settings) {
+    if (!binned_) throw std::runtime_error("there is no scene yet");
     move_lights(places_, settings.seconds, scene_.lights);
     binned_->place(glm::inverse(settings.camera.to_world));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The scene on show and its frames: all that the page asks for, in plain C++. Errors are a std::runtime_error with one
-// sentence; the scene from before is still there then.
+// The scene on show and its frames: all that the page asks for, in plain C++. At first there is none. Errors are a
+// std::runtime_error with one sentence; the scene from before is still there then.
 #pragma once
 
 #include "binned_lights.hpp"
@@ -62,7 +62,7 @@ public:
 
     const Scene& scene() const { return scene_; }
     const std::string& kind() const { return kind_; }  // `city`, `street` or `file`
-    bool has_spots() const { return binned_->has_spots(); }
+    bool has_spots() const { return binned_ && binned_->has_spots(); }
 
     Prepared prepare(const FrameSettings& settings) const;
 
