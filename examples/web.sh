@@ -30,7 +30,7 @@ done
 install_packages make python3 emscripten node-acorn nodejs libglm-dev libtinygltf-dev nlohmann-json3-dev
 make_build_folder
 echo "$me: building in build/web, which takes about a minute the first time"
-make -j "$(nproc)" -f examples/web/web.mk 2>build/web.log || { cat build/web.log; fail "the build failed"; }
+make -s -j "$(nproc)" -f examples/web/web.mk 2>build/web.log || { cat build/web.log; fail "the build failed"; }
 echo "$me: build/web has $(du -bc build/web/* | sed -n '$s/\t.*//p') bytes in all"
 [ -n "$serve" ] || exit 0
 exec python3 examples/web/serve.py build/web "$port"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # python3 serve.py FOLDER PORT: serves a folder to this machine alone. The two headers that isolate the page let it read
-# clocks to 5 us, which are 100 us otherwise, and no file is kept that may have been built anew.
+# clocks to 5 us, which are 100 us otherwise, and a file that was built anew is fetched anew.
 import functools
 import http.server
 import sys
@@ -8,7 +8,7 @@ import sys
 HEADERS = {
     "Cross-Origin-Opener-Policy": "same-origin",
     "Cross-Origin-Embedder-Policy": "require-corp",
-    "Cache-Control": "no-store",
+    "Cache-Control": "no-cache",
 }
 
 
@@ -22,12 +22,11 @@ class Handler(http.server.SimpleHTTPRequestHandler):
         pass
 
 
-folder, port = sys.argv[1], int(sys.argv[2])
-address = ("127.0.0.1", port)
+folder, port = sys.argv[1:]
 try:
-    server = http.server.ThreadingHTTPServer(address, functools.partial(Handler, directory=folder))
-except OSError as problem:
-    sys.exit(f"cannot serve at port {port}: {problem.strerror}; --port takes another")
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", int(port)), functools.partial(Handler, directory=folder))
+except (OSError, OverflowError, ValueError) as problem:
+    sys.exit(f"cannot serve at port {port} (--port takes another): {problem}")
 try:
     print(f"http://127.0.0.1:{server.server_port}/ (Ctrl+C ends)", flush=True)
     server.serve_forever()
