@@ -94,11 +94,22 @@ class Lightbin {
     #ask(what, question) {
         const spread = (key, value) => (ArrayBuffer.isView(value) ? [...value] : value);
         this.#put('question', new TextEncoder().encode(JSON.stringify(question, spread)));
-        const from = this.#module[what]();
+        const from = this.#run(what); // after which the memory may be another one
         const said = new Uint8Array(this.#module.memory.buffer, from, this.#module.answer_length());
         const answer = JSON.parse(new TextDecoder().decode(said), (key, value) => this.#revived(key, value));
         if (answer.error) throw new Error(answer.error);
         return answer;
+    }
+
+    // Where the answer is. What the module cannot catch itself, such as a file that is nested too deep, must not cost stack.
+    #run(what) {
+        const stack = this.#module.stackSave();
+        try {
+            return this.#module[what]();
+        } catch (error) {
+            this.#module.stackRestore(stack);
+            throw new Error(`this is too much for the browser: ${error.message}`);
+        }
     }
 
     // Writes arrays one after another where the module reads the question, or the data beside it.

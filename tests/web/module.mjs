@@ -56,6 +56,14 @@ function no_scene() {
     return 'there is no scene at first, which is a sentence too';
 }
 
+// A file of one node, with so many arrays in each other.
+function nested_glb(depth) {
+    const extras = '['.repeat(depth) + ']'.repeat(depth);
+    const json = `{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"extras":${extras}}]}`.padEnd(2 * depth + 96);
+    const words = Uint32Array.of(0x46546c67, 2, 20 + json.length + 12, json.length, 0x4e4f534a);
+    return Buffer.concat([Buffer.from(words.buffer), Buffer.from(json), Buffer.from(Uint32Array.of(4, 0x4e4942, 0).buffer)]);
+}
+
 function sentences() {
     const nova = fs.readFileSync(path.join(folder, 'nova.glb'));
     const camera = lightbin.make('city', 100).cameras[0];
@@ -63,6 +71,8 @@ function sentences() {
     const asked = [
         [() => lightbin.open(nova.subarray(0, 1000), 'a.glb'), /^'a.glb': not a readable glTF binary: .+/],
         [() => lightbin.open(new Uint8Array(0), 'a.glb'), /^'a.glb': not a readable glTF binary: .+/],
+        [() => lightbin.open(nested_glb(100), 'a.glb'), /^'a.glb': it has no point or spot lights/],
+        ...Array(30).fill([() => lightbin.open(nested_glb(20000), 'a.glb'), /^this is too much for the browser: /]),
         [() => lightbin.make('city', 0), /^the city has 1 to 1000000 lights, not 0$/],
         [() => lightbin.frame({ ...settings, camera, tile_size: 0 }), /^the tile size must be at least 1 pixel/],
         [() => lightbin.frame({ ...settings, camera, method: 'box' }, { min: three, max: three }), /Z bounds/],
@@ -75,7 +85,7 @@ function sentences() {
         assert.equal(lightbin.scene.lights, 100);
         assert.ok(lightbin.frame({ ...settings, camera }).entries > 0);
     }
-    return `${asked.length} mistakes are sentences, and the scene lives on`;
+    return `${new Set(asked).size} mistakes are sentences, and the scene lives on`;
 }
 
 function advice() {
