@@ -377,7 +377,6 @@ void Renderer::bind_texture(GLuint program, int unit, const GpuBuffer& source, c
     glUniform1i(glGetUniformLocation(program, name), unit);
 }
 
-// In the order of their ranks where the lists name those; suns follow.
 void Renderer::upload_lights() {
     const std::span<const GpuLight> lights = binned_.in_order();
     upload(lights_, lights.data(), lights.size_bytes(), lights_width, "lights");

@@ -96,6 +96,7 @@ private:
     struct Lists {
         GpuBuffer tiles, indices;
     };
+
     void start(const Camera& camera, const FrameSettings& settings);
     void set_camera(const Camera& camera);
     bool shows_glass(const FrameSettings& settings) const;
