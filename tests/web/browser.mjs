@@ -92,3 +92,24 @@ export async function drop(page, name, bytes) {
         document.body.dispatchEvent(new DragEvent('drop', {dataTransfer: files, bubbles: true, cancelable: true}));
     }, [name, Buffer.from(bytes).toString('base64')]);
 }
+
+// What the stage shows, without what lies over it: red, green and blue of each pixel.
+export async function picture(page) {
+    const png = await page.locator('#stage').screenshot({style: 'body > :not(main), main > :not(#stage) { visibility: hidden; }'});
+    const text = await page.evaluate(async png => {
+        const bytes = Uint8Array.from(atob(png), c => c.charCodeAt(0)), bitmap = await createImageBitmap(new Blob([bytes]));
+        const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+        context.drawImage(bitmap, 0, 0);
+        const rgb = context.getImageData(0, 0, bitmap.width, bitmap.height).data.filter((_, i) => i % 4 !== 3);
+        const parts = Array.from({length: Math.ceil(rgb.length / 30000)}, (_, i) => rgb.subarray(30000 * i, 30000 * (i + 1)));
+        return parts.map(part => btoa(String.fromCharCode(...part))).join('');
+    }, png.toString('base64'));
+    return Buffer.from(text, 'base64');
+}
+
+// Of two pictures, a byte; of one, how bright it is.
+export function mean_difference(a, b = Buffer.alloc(a.length)) {
+    let sum = 0;
+    for (let i = 0; i < a.length; ++i) sum += Math.abs(a[i] - b[i]);
+    return sum / a.length;
+}

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import {readFile} from 'node:fs/promises';
 import {after, before, test} from 'node:test';
-import {Browser, compare, drop, pictures, text_of, wait_for_text} from './browser.mjs';
+import {Browser, compare, drop, mean_difference, picture, pictures, text_of, wait_for_text} from './browser.mjs';
 
 const small = 'lights=100&size=20&tile=16';
 let browser;
@@ -102,6 +102,17 @@ test('without float targets there are no Z bounds, and the reason is given', asy
     assert.ok(await page.locator('#method option[value=box]').isDisabled());
     assert.equal(await page.locator('#method').inputValue(), 'clusters');
     assert.match(await compare(page), /^The same picture/);
+});
+
+test('without a clock of the GPU drawing is measured until it is done, and still shown', async t => {
+    const page = await browser.open(t, small, {before: () => {
+        const get_extension = WebGL2RenderingContext.prototype.getExtension;
+        WebGL2RenderingContext.prototype.getExtension = function (name) {
+            return name.includes('timer_query') ? null : get_extension.call(this, name);
+        };
+    }});
+    await wait_for_text(page, 'costs_note', /until the GPU is done/);
+    assert.ok(mean_difference(await picture(page)) > 30);
 });
 
 test('it says when the graphics context is lost, and goes on when it is back', async t => {

@@ -3,7 +3,7 @@
 // list that lacks a light is found.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {Browser, compare, text_of, wait_for_text} from './browser.mjs';
+import {Browser, compare, mean_difference, picture, text_of, wait_for_text} from './browser.mjs';
 
 const scenes = {city: /^300 lights/, street: /^598 lights/, nova: /^255 lights/, darkness: /^226 lights/};
 const methods = ['none', 'z_bins', 'clusters', 'interval', 'box'];
@@ -41,3 +41,17 @@ for (const [renderer, name] of Object.entries(renderers))
         }
         await wait_for_text(page, 'frame', new RegExp(`${name}.*light 3 left out`));
     });
+
+// Both could lack the same light in both of their pictures; then the other one would show it.
+test('WebGL 2 and WebGPU draw the same scenes', async t => {
+    for (const [scene, stats] of Object.entries(scenes)) {
+        const [webgl, webgpu] = await Promise.all(Object.entries(renderers).map(async ([renderer, name]) => {
+            const page = await browser.open(t, `renderer=${renderer}&scene=${scene}&lights=300&size=50&tile=16&move=0`);
+            await wait_for_text(page, 'stats', stats);
+            await wait_for_text(page, 'frame', new RegExp(name));
+            return picture(page);
+        }));
+        assert.ok(mean_difference(webgl) > 30, `${scene} is dark: ${mean_difference(webgl)}`);
+        assert.ok(mean_difference(webgl, webgpu) < 1, `${scene}: ${mean_difference(webgl, webgpu)} apart`);
+    }
+});
