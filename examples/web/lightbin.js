@@ -2,7 +2,7 @@
 // lightbin in WebAssembly: module/ has what it does. No copy of anything large is made: the typed arrays that are handed
 // out are views of the module's memory, and valid until the next call.
 
-const array_types = { u32: Uint32Array, f32: Float32Array, f64: Float64Array };
+const array_types = {u32: Uint32Array, f32: Float32Array, f64: Float64Array};
 
 /** Fetches and starts the module. Throws an Error with a sentence for the user. */
 export async function load(url = 'lightbin.wasm') {
@@ -17,7 +17,7 @@ export async function start(module) {
     let memory;
     const nothing = () => 0;
     const imports = {
-        env: { emscripten_notify_memory_growth: nothing },
+        env: {emscripten_notify_memory_growth: nothing},
         wasi_snapshot_preview1: {
             clock_time_get(clock, precision, at) {
                 new DataView(memory.buffer).setBigUint64(at, BigInt(Math.round(performance.now() * 1e6)), true);
@@ -36,7 +36,7 @@ export async function start(module) {
     };
     if (!globalThis.WebAssembly) throw new Error('This browser has no WebAssembly.');
     const instantiate = module instanceof Response ? 'instantiateStreaming' : 'instantiate';
-    const { instance } = await WebAssembly[instantiate](module, imports).catch(() => {
+    const {instance} = await WebAssembly[instantiate](module, imports).catch(() => {
         throw new Error('This browser is too old: its WebAssembly has no vectors (SIMD) or no exceptions.');
     });
     memory = instance.exports.memory;
@@ -58,13 +58,13 @@ class Lightbin {
 
     /** Shows a made scene: 'city' with so many lights, or 'street'. */
     make(kind, lights = 1) {
-        return this.#ask('make', { kind, lights });
+        return this.#ask('make', {kind, lights});
     }
 
     /** Shows a binary glTF file. Throws an Error with a sentence where it cannot; the scene from before stays then. */
     open(bytes, name) {
         this.#put('data', bytes);
-        return this.#ask('open', { name });
+        return this.#ask('open', {name});
     }
 
     /** What is drawn with before any light: projection, view, moon, grid, shader_view, reduce, tiles_x, tiles_y. */
@@ -75,10 +75,10 @@ class Lightbin {
     /** The same, and the lights and their lists. z_bounds: {min, max}, and where there is glass glass_max. */
     frame(settings, z_bounds = null) {
         if (!z_bounds) return this.#ask('frame', settings);
-        const sides = ['min', 'max', 'glass_max'].filter((side) => z_bounds[side]);
-        this.#put('data', ...sides.map((side) => z_bounds[side]));
-        const bounds = Object.fromEntries(sides.map((side) => [side, z_bounds[side].length]));
-        return this.#ask('frame', { ...settings, bounds });
+        const sides = ['min', 'max', 'glass_max'].filter(side => z_bounds[side]);
+        this.#put('data', ...sides.map(side => z_bounds[side]));
+        const bounds = Object.fromEntries(sides.map(side => [side, z_bounds[side].length]));
+        return this.#ask('frame', {...settings, bounds});
     }
 
     /** What the ways to light this view cost here, the cheapest first. Takes some tens of frames. */
@@ -88,13 +88,13 @@ class Lightbin {
 
     /** A text that lightbin generates: 'snippet', 'reduce' or 'build'. See module/texts.cpp for the options. */
     text(what, options) {
-        return this.#ask('text', { what, options });
+        return this.#ask('text', {what, options});
     }
 
     #ask(what, question) {
         const spread = (key, value) => (ArrayBuffer.isView(value) ? [...value] : value);
         this.#put('question', new TextEncoder().encode(JSON.stringify(question, spread)));
-        const from = this.#run(what); // after which the memory may be another one
+        const from = this.#run(what);  // after which the memory may be another one
         const said = new Uint8Array(this.#module.memory.buffer, from, this.#module.answer_length());
         const answer = JSON.parse(new TextDecoder().decode(said), (key, value) => this.#revived(key, value));
         if (answer.error) throw new Error(answer.error);
@@ -124,7 +124,7 @@ class Lightbin {
     }
 
     #revived(key, value) {
-        if (key === 'far') return value ?? Infinity; // which JSON has not
+        if (key === 'far') return value ?? Infinity;  // which JSON has not
         const type = array_types[value?.type];
         if (!type) return value;
         return value.values ? type.from(value.values) : new type(this.#module.memory.buffer, value.at, value.count);

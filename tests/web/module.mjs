@@ -4,12 +4,12 @@
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import path from 'node:path';
-import { pathToFileURL } from 'node:url';
+import {pathToFileURL} from 'node:url';
 
 const [folder, lists] = process.argv.slice(2);
-const { start } = await import(pathToFileURL(path.resolve(folder, 'lightbin.js')));
+const {start} = await import(pathToFileURL(path.resolve(folder, 'lightbin.js')));
 const lightbin = await start(fs.readFileSync(path.join(folder, 'lightbin.wasm')));
-const settings = { width: 640, height: 360, tile_size: 16, clip: 'webgl', method: 'none' };
+const settings = {width: 640, height: 360, tile_size: 16, clip: 'webgl', method: 'none'};
 
 // FNV-1a, a word at a time.
 function hash(...arrays) {
@@ -22,12 +22,12 @@ function hash(...arrays) {
 
 function list_lines(scene, seconds) {
     const tiles = 40 * 23;
-    const of_all = (depth) => new Float32Array(tiles).fill(depth);
-    const bounds = { min: of_all(10), max: of_all(60), glass_max: of_all(100) };
-    return ['none', 'interval', 'box', 'z_bins', 'clusters'].map((method) => {
+    const of_all = depth => new Float32Array(tiles).fill(depth);
+    const bounds = {min: of_all(10), max: of_all(60), glass_max: of_all(100)};
+    return ['none', 'interval', 'box', 'z_bins', 'clusters'].map(method => {
         const camera = lightbin.scene.cameras[0];
-        const frame = lightbin.frame({ ...settings, camera, method, seconds }, bounds);
-        const { ranges, ids, glass_ranges, glass_ids, slices, bins } = frame;
+        const frame = lightbin.frame({...settings, camera, method, seconds}, bounds);
+        const {ranges, ids, glass_ranges, glass_ids, slices, bins} = frame;
         return [scene, seconds, method, ids.length, hash(ranges, ids, glass_ranges, glass_ids, slices, bins)].join(' ');
     });
 }
@@ -48,8 +48,8 @@ function same_lists() {
 }
 
 function no_scene() {
-    const camera = { to_world: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], orthographic: false, height: 1, near: 1 };
-    const asked = { ...settings, camera: { ...camera, far: Infinity } };
+    const camera = {to_world: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], orthographic: false, height: 1, near: 1};
+    const asked = {...settings, camera: {...camera, far: Infinity}};
     assert.equal(lightbin.scene.lights, 0);
     assert.throws(() => lightbin.frame(asked), /^Error: there is no scene yet$/);
     assert.equal(lightbin.view(asked).projection[11], -1);
@@ -74,25 +74,25 @@ function sentences() {
         [() => lightbin.open(nested_glb(100), 'a.glb'), /^'a.glb': it has no point or spot lights/],
         ...Array(30).fill([() => lightbin.open(nested_glb(20000), 'a.glb'), /^this is too much for the browser: /]),
         [() => lightbin.make('city', 0), /^the city has 1 to 1000000 lights, not 0$/],
-        [() => lightbin.frame({ ...settings, camera, tile_size: 0 }), /^the tile size must be at least 1 pixel/],
-        [() => lightbin.frame({ ...settings, camera, method: 'box' }, { min: three, max: three }), /Z bounds/],
-        [() => lightbin.frame({ ...settings, camera, method: 'clusters', slices: 10000000 }), /4294967295/],
-        [() => lightbin.text('reduce', { language: 'essl_300', stage: 'compute' }), /no compute shaders/],
-        [() => lightbin.text('snippet', { language: 'basic' }), /^there is no language 'basic'$/],
+        [() => lightbin.frame({...settings, camera, tile_size: 0}), /^the tile size must be at least 1 pixel/],
+        [() => lightbin.frame({...settings, camera, method: 'box'}, {min: three, max: three}), /Z bounds/],
+        [() => lightbin.frame({...settings, camera, method: 'clusters', slices: 10000000}), /4294967295/],
+        [() => lightbin.text('reduce', {language: 'essl_300', stage: 'compute'}), /no compute shaders/],
+        [() => lightbin.text('snippet', {language: 'basic'}), /^there is no language 'basic'$/],
     ];
     for (const [ask, sentence] of asked) {
-        assert.throws(ask, (error) => sentence.test(error.message) && !error.message.includes('\n'));
+        assert.throws(ask, error => sentence.test(error.message) && !error.message.includes('\n'));
         assert.equal(lightbin.scene.lights, 100);
-        assert.ok(lightbin.frame({ ...settings, camera }).entries > 0);
+        assert.ok(lightbin.frame({...settings, camera}).entries > 0);
     }
     return `${new Set(asked).size} mistakes are sentences, and the scene lives on`;
 }
 
 function advice() {
-    const plans = lightbin.advise({ ...settings, camera: lightbin.make('city', 500).cameras[0] });
-    assert.ok(plans.length > 5 && plans[0].best && plans.filter((plan) => plan.best).length === 1);
+    const plans = lightbin.advise({...settings, camera: lightbin.make('city', 500).cameras[0]});
+    assert.ok(plans.length > 5 && plans[0].best && plans.filter(plan => plan.best).length === 1);
     assert.ok(plans.every((plan, i) => i === 0 || plans[i - 1].milliseconds <= plan.milliseconds));
-    const untiled = plans.find((plan) => plan.plan === 'no tiling');
+    const untiled = plans.find(plan => plan.plan === 'no tiling');
     assert.equal(untiled.evaluations, 500 * settings.width * settings.height);
     return `advise() weighs ${plans.length} plans`;
 }
