@@ -1,7 +1,7 @@
 #!/bin/sh
 # Tests the page of examples/web in a browser: `sh tests/web.sh` on Debian 12, as root or with sudo. Installs what is
-# missing, builds the page, and runs it in headless Chromium on a software renderer, with WebGL 2 and with WebGPU. Leaves
-# pictures in build/web-tests. Takes about two minutes, and some more the first time.
+# missing, builds the page, and runs it in headless Chromium on a software renderer, with WebGL 2 and with WebGPU.
+# Leaves pictures in build/web-tests. Takes about two minutes, and some more the first time.
 set -eu
 me=tests/web.sh
 cd "$(dirname "$0")/.."
@@ -20,7 +20,8 @@ grep -qs '"version": "'${playwright#*@}'"' $tests/node_modules/playwright-core/p
         $playwright >$tests/npm.log 2>&1 || { cat $tests/npm.log; fail "npm could not install $playwright"; }
 
 echo "$me: the module against this machine's program"
-make -f examples/web/web.mk build/web.objects/lists >$tests/lists.log 2>&1 || { cat $tests/lists.log; fail "the build failed"; }
+make -f examples/web/web.mk build/web.objects/lists >$tests/lists.log 2>&1 ||
+    { cat $tests/lists.log; fail "the build failed"; }
 build/web.objects/lists tests/fixtures/nova.glb tests/fixtures/darkness.glb >$tests/lists.txt
 failed=
 node --no-warnings tests/web/module.mjs build/web $tests/lists.txt || failed=yes

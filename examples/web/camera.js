@@ -26,11 +26,12 @@ export class FreeCamera {
         this.#apart = forward[1] < -0.15 ? Math.max(to_middle, 0.1 * radius) : 0;
     }
 
-    // What lightbin and the renderers take. aspect: width / height of the picture; a narrow one sees as much across as the
-    // scene's camera sees in its height.
+    // What lightbin and the renderers take. aspect: width / height of the picture; a narrow one sees as much across as
+    // the scene's camera sees in its height.
     camera(aspect) {
-        const {orthographic, height} = this.#lens, wider = Math.max(1, 1 / aspect);
-        const lens = {...this.#lens, height: orthographic ? height * wider : limit(2 * Math.atan(wider * Math.tan(height / 2)), 0, 2.5)};
+        const wider = Math.max(1, 1 / aspect), {orthographic, height} = this.#lens;
+        const angle = 2 * Math.atan(wider * Math.tan(height / 2));
+        const lens = {...this.#lens, height: orthographic ? height * wider : Math.min(angle, 2.5)};
         if (this.#to_world) return {...lens, to_world: this.#to_world};
         const [right, up, back] = this.#axes();
         return {...lens, to_world: Float64Array.of(...right, 0, ...up, 0, ...back, 0, ...this.#position, 1)};
@@ -86,7 +87,7 @@ export class FreeCamera {
     }
 
     #axes() {
-        const [cy, sy, cp, sp] = [Math.cos(this.#yaw), Math.sin(this.#yaw), Math.cos(this.#pitch), Math.sin(this.#pitch)];
+        const [cy, cp] = [this.#yaw, this.#pitch].map(Math.cos), [sy, sp] = [this.#yaw, this.#pitch].map(Math.sin);
         return [[cy, 0, -sy], [sy * sp, cp, cy * sp], [sy * cp, -sp, cy * cp]];
     }
 
@@ -102,9 +103,9 @@ export function listen_to_pointers(stage, camera) {
     const fingers = new Map();
     // The middle of the fingers, and how far they are from it.
     const spread = () => {
-        const all = [...fingers.values()];
-        const [x, y] = ['x', 'y'].map(axis => all.reduce((sum, finger) => sum + finger[axis], 0) / all.length);
-        return {x, y, radius: all.reduce((sum, finger) => sum + Math.hypot(finger.x - x, finger.y - y), 0) / all.length};
+        const all = [...fingers.values()], mean = of => all.reduce((sum, finger) => sum + of(finger), 0) / all.length;
+        const x = mean(finger => finger.x), y = mean(finger => finger.y);
+        return {x, y, radius: mean(finger => Math.hypot(finger.x - x, finger.y - y))};
     };
     stage.addEventListener('pointerdown', event => {
         stage.setPointerCapture(event.pointerId);

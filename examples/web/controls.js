@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The panel: what its controls show is what the settings say, and a control that is used changes them.
 import {is_wanted} from './camera.js';
-import {fewest_lights, lights_at, most_lights, place_of} from './settings.js';
+import {lights_at, place_of} from './settings.js';
 
 export const by_id = id => document.getElementById(id);
 export const counted = (n, what) => `${n.toLocaleString('en')} ${what}${n === 1 ? '' : 's'}`;
@@ -13,13 +13,13 @@ export class Controls {
     #settings;
     #change;
 
-    // change(names): called after settings of these names have changed. act: {open, compare, advise, camera}, functions.
+    // change(names): called after settings of these names have changed. act: functions, open, compare, advise, camera.
     constructor(settings, change, act) {
         this.#settings = settings;
         this.#change = change;
         for (const name of selects) by_id(name).addEventListener('change', () => this.set({[name]: by_id(name).value}));
         by_id('view').addEventListener('change', () => act.camera(Number(by_id('view').value)));
-        by_id('lights').addEventListener('input', () => this.set({lights: lights_at(Number(by_id('lights').value))}));
+        by_id('lights').addEventListener('input', () => this.set({lights: lights_at(by_id('lights').value)}));
         for (const name of ['tile', 'stops'])
             by_id(name).addEventListener('input', () => this.set({[name]: Number(by_id(name).value)}));
         by_id('move').addEventListener('change', () => this.set({move: by_id('move').checked}));
@@ -56,13 +56,14 @@ export class Controls {
         }
         by_id('view').value = settings.at === '' ? settings.view : '';
         by_id('lights_row').hidden = settings.scene !== 'city';
-        if (lights_at(Number(by_id('lights').value)) !== settings.lights) by_id('lights').value = place_of(settings.lights);
+        if (lights_at(by_id('lights').value) !== settings.lights) by_id('lights').value = place_of(settings.lights);
         by_id('lights_out').textContent = settings.lights.toLocaleString('en');
         by_id('lights').setAttribute('aria-valuetext', counted(settings.lights, 'light'));
         by_id('tile').value = settings.tile;
         by_id('tile_out').textContent = `${settings.tile} pixels`;
         by_id('stops').value = settings.stops;
-        by_id('stops_out').textContent = settings.stops === 0 ? 'as metered' : `${settings.stops > 0 ? '+' : ''}${settings.stops} stops`;
+        const stops = `${settings.stops > 0 ? '+' : ''}${settings.stops} stops`;
+        by_id('stops_out').textContent = settings.stops === 0 ? 'as metered' : stops;
         by_id('move').checked = settings.move;
     }
 
@@ -105,11 +106,12 @@ export class Controls {
     #listen_to_keys(act) {
         const settings = this.#settings;
         const step_tile = by => this.set({tile: Math.min(Math.max(settings.tile + by, 8), 128)});
-        const more_lights = place => settings.scene === 'city'
-            && this.set({lights: Math.min(Math.max(lights_at(place_of(settings.lights) + place), fewest_lights), most_lights)});
+        const more_lights = by => {
+            if (settings.scene === 'city') this.set({lights: lights_at(place_of(settings.lights) + by)});
+        };
         const look = name => this.set({look: settings.look === name ? 'lit' : name});
         const next_method = () => {
-            const possible = [...by_id('method').options].filter(option => !option.disabled).map(option => option.value);
+            const possible = [...by_id('method').options].filter(({disabled}) => !disabled).map(({value}) => value);
             this.set({method: possible[(possible.indexOf(settings.method) + 1) % possible.length]});
         };
         const keys = {
@@ -161,8 +163,9 @@ export function show_advice(plans, pixels, take) {
         row.append(...[build_milliseconds.toFixed(2), entries.toLocaleString('en'), (evaluations / pixels).toFixed(1),
             milliseconds.toFixed(1)].map(text => cell('td', text)));
     }
-    by_id('advice').replaceChildren(table, cell('p', 'advise() built this view\'s lists in each way, without depth: milliseconds of a '
-        + 'build, list entries, lights that a pixel goes through, and milliseconds with a guess of the shading. Press one to take it.'));
+    by_id('advice').replaceChildren(table, cell('p', 'advise() built this view\'s lists in each way, without depth: '
+        + 'milliseconds of a build, list entries, lights that a pixel goes through, and milliseconds with a guess of '
+        + 'the shading. Press one to take it.'));
     by_id('advice').hidden = false;
     by_id('advice').focus();
 }

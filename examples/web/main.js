@@ -6,12 +6,14 @@ import {by_id, Controls, counted, sentence, show_advice} from './controls.js';
 import {load} from './lightbin.js';
 import {Plot} from './plot.js';
 import {parse_hash, to_hash} from './settings.js';
+import {Summary} from './summary.js';
 import {WebGl} from './webgl.js';
 
 const stage = by_id('stage');
 const settings = parse_hash(location.hash);
 const eye = new FreeCamera(), flying = new FlyingKeys();
 const plot = new Plot(by_id('plot'), by_id('costs'), by_id('costs_note'));
+const summary = new Summary();
 const jobs = new Set();  // what is to be done before the next frame
 let controls, lightbin, renderer;
 let scene = null;  // what lightbin tells of the one on show; `of` is its name in the settings
@@ -156,8 +158,9 @@ async function check() {
         const of_all = `${found.different.toLocaleString('en')} of ${counted(found.pixels, 'pixel')}`;
         const [lists, every] = found.milliseconds.map(ms => `${Math.round(ms).toLocaleString('en')} ms`);
         const times = ` With lists ${lists}, with every light ${every}.`;
+        const but_for_rounding = `but for 1 of 255 in ${of_all}: two shaders may be rounded differently`;
         if (found.different === 0) tell(`The same picture, byte by byte: ${counted(found.pixels, 'pixel')}.${times}`);
-        else if (found.largest === 1) tell(`The same picture but for 1 of 255 in ${of_all}: two shaders may be rounded differently.${times}`);
+        else if (found.largest === 1) tell(`The same picture ${but_for_rounding}.${times}`);
         else tell(`${of_all} differ, by up to ${found.largest} of 255: see the marks.`, true);
     } catch (error) {
         tell();
@@ -193,32 +196,16 @@ function change(names) {
     for (const name of names) if (by_name[name]) jobs.add(by_name[name]);
 }
 
-const summary = {frames: 0, since: 0};
-
-// In words, four times a second, and at once where nothing moves.
-function summarise(report, {width, height}) {
-    ++summary.frames;
-    const now = performance.now(), apart = now - summary.since;
-    if (apart < 250 && settings.move) return;
-    const place = settings.method === 'clusters' ? 'cluster' : 'tile';
-    const skipped = report.rejected > 0 ? `, ${report.rejected} skipped` : '';
-    by_id('stats').textContent = `${counted(scene.lights, 'light')}, ${report.in_view.toLocaleString('en')} in view${skipped}, `
-        + `${report.longest} a ${place} at most, bin ${plot.mean('bin').toFixed(2)} ms`;
-    const rate = settings.move && apart < 2000 ? `, ${counted(Math.round(1000 * summary.frames / apart), 'frame')} a second` : '';
-    const dropped = settings.drop >= 0 ? `, light ${settings.drop} left out of the lists` : '';
-    by_id('frame').textContent = `${renderer.name}, ${width} \u00d7 ${height} pixels, ${report.tiles_x} \u00d7 ${report.tiles_y} tiles${rate}${dropped}`;
-    for (const look of ['heat', 'check']) by_id(`${look}_legend`).hidden = settings.look !== look;
-    by_id('longest').textContent = report.longest;
-    Object.assign(summary, {frames: 0, since: now});
-    const hash = to_hash(settings);
-    if (hash !== location.hash) history.replaceState(null, '', hash);
-}
-
 async function draw() {
     const frame = frame_settings();
     const report = await renderer.draw(lightbin, frame);
     plot.add(report.ms, report.timed);
-    summarise(report, frame);
+    if (summary.is_due(settings.move)) {
+        const {lights} = scene, {name} = renderer;
+        summary.show(report, {...settings, ...frame, lights, renderer: name, bin: plot.mean('bin')});
+        const hash = to_hash(settings);
+        if (hash !== location.hash) history.replaceState(null, '', hash);
+    }
     if (settings.size === 'auto') keep_fluent(Object.values(report.ms).reduce((sum, ms) => sum + ms));
 }
 
@@ -263,7 +250,8 @@ async function run() {
 
 async function look_for_webgpu() {
     if (!navigator.gpu) controls.refuse_webgpu('this browser does not have it');
-    else if (!await navigator.gpu.requestAdapter().catch(() => null)) controls.refuse_webgpu('no graphics adapter has it');
+    else if (!await navigator.gpu.requestAdapter().catch(() => null))
+        controls.refuse_webgpu('no graphics adapter has it');
 }
 
 async function start() {
@@ -286,8 +274,8 @@ async function start() {
         await draw();
     } catch (error) {
         document.body.classList.add('cannot');
-        complain(`${sentence(error.message)} The page needs WebGL 2 and WebAssembly with vectors: Chrome or Edge 95, Firefox 100, Safari `
-            + '16.4, or later, with graphics switched on.');
+        complain(`${sentence(error.message)} The page needs WebGL 2 and WebAssembly with vectors: Chrome or Edge 95, `
+            + 'Firefox 100, Safari 16.4, or later, with graphics switched on.');
         return;
     }
     performance.mark('first picture');

@@ -89,7 +89,8 @@ export class Plot {
         });
 
         // A line at a round number.
-        const unit = 10 ** Math.floor(Math.log10(this.#most)), line = unit * (this.#most / unit >= 5 ? 5 : this.#most / unit >= 2 ? 2 : 1);
+        const unit = 10 ** Math.floor(Math.log10(this.#most)), units = this.#most / unit;
+        const line = unit * (units >= 5 ? 5 : units >= 2 ? 2 : 1);
         context.fillStyle = 'rgb(255 255 255 / 35%)';
         context.fillRect(0, Math.round(y(line)), width, 1);
         context.fillStyle = '#c3cad7';

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the page is set to: kept in its address, so that a link shows the same.
 
-export const most_lights = 50000, fewest_lights = 16;
+const fewest_lights = 16, most_lights = 50000;
 
 const defaults = {
     scene: 'city',     // city, street, nova, darkness; file: one that was opened
@@ -27,7 +27,8 @@ const choices = {
 };
 
 const ranges = {
-    view: [0, 1000], lights: [fewest_lights, most_lights], tile: [1, 4096], stops: [-5, 5], drop: [-1, 1e6], seconds: [0, 1e6],
+    view: [0, 1000], lights: [fewest_lights, most_lights], tile: [1, 4096], stops: [-5, 5], drop: [-1, 1e6],
+    seconds: [0, 1e6],
 };
 
 // The settings that a page address's hash holds; what is missing or makes no sense is as by default.
@@ -47,15 +48,18 @@ export function parse_hash(hash) {
 // A file that was opened is not in the link, nor where one looks at it from.
 export function to_hash(settings) {
     const left_out = settings.scene === 'file' ? ['scene', 'view', 'at'] : [];
-    const changed = Object.keys(defaults).filter(name => settings[name] !== defaults[name] && !left_out.includes(name));
-    return '#' + changed.map(name => `${name}=${typeof settings[name] === 'boolean' ? +settings[name] : settings[name]}`)
-        .join('&');
+    const is_kept = ([name, value]) => value !== defaults[name] && !left_out.includes(name);
+    const as_text = ([name, value]) => `${name}=${typeof value === 'boolean' ? Number(value) : value}`;
+    return '#' + Object.entries(settings).filter(is_kept).map(as_text).join('&');
 }
 
 // The slider of lights goes by ratio, 0 to 1000; numbers of two digits and zeros are what it stops at.
-export const lights_at = place => {
-    const exact = fewest_lights * (most_lights / fewest_lights) ** (place / 1000);
+export function lights_at(place) {
+    const exact = fewest_lights * (most_lights / fewest_lights) ** (Math.min(Math.max(place, 0), 1000) / 1000);
     const unit = 10 ** Math.max(Math.floor(Math.log10(exact)) - 1, 0);
     return Math.round(exact / unit) * unit;
-};
-export const place_of = lights => Math.round(1000 * Math.log(lights / fewest_lights) / Math.log(most_lights / fewest_lights));
+}
+
+export function place_of(lights) {
+    return Math.round(1000 * Math.log(lights / fewest_lights) / Math.log(most_lights / fewest_lights));
+}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The shader texts of the WebGL 2 renderer, but for those that lightbin makes: how lists are read, how depth is reduced.
+// The shader texts of the WebGL 2 renderer, but for what lightbin makes: how lists are read, and depth is reduced.
 
 const head = '#version 300 es\nprecision highp float;\nprecision highp int;\n';
 

@@ -44,8 +44,8 @@ export class WebGl {
     }
 
     get lost() {
-        return this.#gl.isContextLost() ? 'The browser took the graphics context away. The picture goes on when it is back.'
-            : null;
+        if (!this.#gl.isContextLost()) return null;
+        return 'The browser took the graphics context away. The picture goes on when it is back.';
     }
 
     destroy() {
@@ -230,8 +230,9 @@ export class WebGl {
     #forward_program(lightbin, look, slicing) {
         return this.#named(`${look} ${slicing} ${this.#spots}`, () => {
             const check = look === 'check';
-            const options = {language: 'essl_300', slicing, heat_map: look === 'heat', view_check: check, list_check: check};
-            const {text, bindings} = look === 'every' ? {text: '', bindings: []} : lightbin.text('snippet', options);
+            const looks = {heat_map: look === 'heat', view_check: check, list_check: check};
+            const {text, bindings} = look === 'every' ? {text: '', bindings: []}
+                : lightbin.text('snippet', {language: 'essl_300', slicing, ...looks});
             return new Program(this.#gl, vertex_text, fragment_text(look, text, this.#spots), bindings);
         });
     }

@@ -81,8 +81,8 @@ export class Texture {
         if (width === this.#width && rows <= this.#rows) return false;
         const most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
         if (Math.max(width, rows) > most)
-            throw new Error(`What the shaders read takes ${width} x ${rows} texels, and this browser has ${most} a side: `
-                + 'use larger tiles, fewer lights or another depth method.');
+            throw new Error(`What the shaders read takes ${width} x ${rows} texels, and this browser has ${most} a `
+                + 'side: use larger tiles, fewer lights or another depth method.');
         gl.deleteTexture(this.texture);
         this.texture = gl.createTexture();
         gl.bindTexture(gl.TEXTURE_2D, this.texture);
@@ -177,8 +177,8 @@ export class FrameBuffer {
     }
 }
 
-// What the GPU takes: by its own clock where the browser lets that be read, from the second drawing on a little late; else
-// until it is done.
+// What the GPU takes: by its own clock where the browser lets that be read, from the second drawing on a little late;
+// else until it is done.
 export class Timer {
     #gl;
     #clock;

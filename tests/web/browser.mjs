@@ -10,15 +10,19 @@ export const pictures = new URL('../../build/web-tests/', import.meta.url);
 
 // What examples/web.sh serves with.
 async function serve() {
-    const server = spawn('python3', [new URL('../../examples/web/serve.py', import.meta.url).pathname, folder.pathname, '0']);
+    const program = new URL('../../examples/web/serve.py', import.meta.url);
+    const server = spawn('python3', [program.pathname, folder.pathname, '0']);
     const [line] = await once(server.stdout, 'data');
     return {url: String(line).match(/http:\S+/)[0], close: () => server.kill()};
 }
 
 // WebGL 2 and WebGPU both drawn by SwiftShader; nothing looked for outside of this machine.
-const flags = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
-    '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--enable-features=Vulkan',
-    '--use-vulkan=swiftshader', '--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader'];
+const flags = [
+    '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
+    '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
+    '--enable-features=Vulkan', '--use-vulkan=swiftshader', '--enable-unsafe-webgpu',
+    '--use-webgpu-adapter=swiftshader',
+];
 
 // Chromium says this of its own reading of a canvas, where a program draws that and not a GPU.
 const own_warning = /GL Driver Message \(OpenGL, Performance.*GPU stall due to ReadPixels/;
@@ -39,8 +43,8 @@ export class Browser {
         this.server.close();
     }
 
-    // A page, until the test ends, that has drawn its first picture, or said why it can't. `before`: what runs in the page
-    // before its own script. `complaints` are what the console has of errors and warnings.
+    // A page, until the test ends, that has drawn its first picture, or said why it can't. `before`: what runs in the
+    // page before its own script. `complaints` are what the console has of errors and warnings.
     async open(test, hash, {width = 720, height = 400, touch = false, before = () => {}, ...options} = {}) {
         const context = await this.browser.newContext({
             viewport: {width, height}, hasTouch: touch, isMobile: touch, deviceScaleFactor: touch ? 2 : 1, ...options});
@@ -95,14 +99,18 @@ export async function drop(page, name, bytes) {
 
 // What the stage shows, without what lies over it: red, green and blue of each pixel.
 export async function picture(page) {
-    const png = await page.locator('#stage').screenshot({style: 'body > :not(main), main > :not(#stage) { visibility: hidden; }'});
+    const style = 'body > :not(main), main > :not(#stage) { visibility: hidden; }';
+    const png = await page.locator('#stage').screenshot({style});
     const text = await page.evaluate(async png => {
-        const bytes = Uint8Array.from(atob(png), c => c.charCodeAt(0)), bitmap = await createImageBitmap(new Blob([bytes]));
+        const bytes = Uint8Array.from(atob(png), c => c.charCodeAt(0));
+        const bitmap = await createImageBitmap(new Blob([bytes]));
         const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
         context.drawImage(bitmap, 0, 0);
         const rgb = context.getImageData(0, 0, bitmap.width, bitmap.height).data.filter((_, i) => i % 4 !== 3);
-        const parts = Array.from({length: Math.ceil(rgb.length / 30000)}, (_, i) => rgb.subarray(30000 * i, 30000 * (i + 1)));
-        return parts.map(part => btoa(String.fromCharCode(...part))).join('');
+        let text = '';
+        for (let at = 0; at < rgb.length; at += 30000)
+            text += btoa(String.fromCharCode(...rgb.subarray(at, at + 30000)));
+        return text;
     }, png.toString('base64'));
     return Buffer.from(text, 'base64');
 }

@@ -120,7 +120,7 @@ test('the mouse turns, moves sideways and zooms', async t => {
     assert.ok(zoomed[5] < panned[5]);
 });
 
-test('one finger turns, two zoom', async t => {
+test('one finger turns, two zoom and move sideways', async t => {
     const page = await browser.open(t, small + '&move=0', {width: 390, height: 844, touch: true});
     const fingers = await page.context().newCDPSession(page);
     const touch = (type, ...points) =>
@@ -134,6 +134,11 @@ test('one finger turns, two zoom', async t => {
     await touch('touchEnd');
     const zoomed = await moved_from(page, turned.join());
     assert.ok(zoomed[5] < 0.7 * turned[5], `${turned} ${zoomed}`);
+    await touch('touchStart', [180, 300], [220, 300]);
+    await touch('touchMove', [180, 360], [220, 360]);
+    await touch('touchEnd');
+    const panned = await moved_from(page, zoomed.join());
+    assert.deepEqual(panned.slice(3, 6), zoomed.slice(3, 6));
 });
 
 test('keys fly, choose cameras and reach the main controls', async t => {
@@ -173,8 +178,8 @@ test('every control can be reached by Tab, is named, and shows its focus', async
         });
         reached.set(id, [name.trim(), outline]);
     }
-    for (const id of ['stage', 'fold', 'help', 'scene', 'view', 'lights', 'move', 'open', 'method', 'renderer', 'tile', 'look',
-        'size', 'stops', 'compare', 'advise']) {
+    for (const id of ['stage', 'fold', 'help', 'scene', 'view', 'lights', 'move', 'open', 'method', 'renderer', 'tile',
+        'look', 'size', 'stops', 'compare', 'advise']) {
         assert.ok(reached.has(id), `${id} is not reached`);
         assert.notEqual(reached.get(id)[0], '', `${id} has no name`);
         assert.notEqual(reached.get(id)[1], 'none', `${id} does not show its focus`);
@@ -195,7 +200,7 @@ test('advise() gives a table, and a row can be taken', async t => {
 test('a layer of the plot can be hidden', async t => {
     const page = await browser.open(t, small);
     const draw = page.locator('#costs button', {hasText: 'Draw'});
-    await page.waitForFunction(() => [...document.querySelectorAll('#costs b')].every(b => /^\d+\.\d\d$/.test(b.textContent)));
+    await wait_for_text(page, 'costs', /^(\D+\d+\.\d\d){5}$/);
     assert.match(await page.locator('#plot').getAttribute('aria-label'), /^Milliseconds a frame: .*Bin \d+\.\d\d/);
     const blue = () => page.locator('#plot').evaluate(plot => {
         const {data} = plot.getContext('2d').getImageData(0, 0, plot.width, plot.height);
@@ -211,7 +216,8 @@ test('a link restores what it was made of', async t => {
     const hash = 'scene=street&view=1&move=0&method=z_bins&tile=24&look=heat&size=25&stops=1.5';
     const page = await browser.open(t, hash);
     await page.waitForFunction(() => document.getElementById('stats').textContent.startsWith('598 lights'));
-    for (const [id, value] of Object.entries({scene: 'street', view: '1', method: 'z_bins', look: 'heat', size: '25', stops: '1.5'}))
+    const values = {scene: 'street', view: '1', method: 'z_bins', look: 'heat', size: '25', stops: '1.5'};
+    for (const [id, value] of Object.entries(values))
         assert.equal(await page.locator('#' + id).inputValue(), value, id);
     assert.deepEqual(new URL(page.url()).hash.slice(1).split('&').sort(), hash.split('&').sort());
 });

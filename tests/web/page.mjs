@@ -32,9 +32,10 @@ test('pictures to look at', async t => {
     await screenshot(lacking, 'differences');
 });
 
-const cut = async () => (await fixture('nova.glb')).subarray(0, 100000);
 const broken = {
-    'a text': async () => Buffer.from('This is no scene.'), 'an empty file': async () => Buffer.alloc(0), 'a file cut short': cut,
+    'a text': async () => Buffer.from('This is no scene.'),
+    'an empty file': async () => Buffer.alloc(0),
+    'a file cut short': async () => (await fixture('nova.glb')).subarray(0, 100000),
 };
 for (const [what, bytes] of Object.entries(broken))
     test(`${what} instead of a .glb gives a sentence, and the page lives on`, async t => {
@@ -118,7 +119,8 @@ test('without a clock of the GPU drawing is measured until it is done, and still
 test('it says when the graphics context is lost, and goes on when it is back', async t => {
     const page = await browser.open(t, small);
     await page.evaluate(() => {
-        globalThis.way_back = document.querySelector('#stage canvas').getContext('webgl2').getExtension('WEBGL_lose_context');
+        const gl = document.querySelector('#stage canvas').getContext('webgl2');
+        globalThis.way_back = gl.getExtension('WEBGL_lose_context');
         globalThis.way_back.loseContext();
     });
     await wait_for_text(page, 'alert', /took the graphics context away/);
@@ -149,18 +151,18 @@ for (const [width, height] of [[390, 844], [360, 640], [844, 390]])
         await page.locator('#advise').tap();
         await page.locator('#advice table').waitFor();
         const problems = await page.evaluate(() => {
-            const found = [], {innerWidth: width} = window;
-            if (document.documentElement.scrollWidth > width) found.push('the page scrolls sideways');
-            for (const name of ['summary', 'panel', 'fold'].map(id => document.getElementById(id))) {
-                const box = name.getBoundingClientRect();
-                if (box.left < 0 || box.right > width + 0.5 || name.scrollWidth > name.clientWidth + 1) found.push(name.id + ' is too wide');
-            }
-            for (const control of document.querySelectorAll('#panel :is(select, button, input[type=range], .check), #fold')) {
-                const box = control.getBoundingClientRect();
-                if (box.width > 0 && (box.height < 39.5 || box.width < 39.5)) found.push(`${control.id || control.textContent} is small`);
-                if (box.left < 0 || box.right > width + 0.5) found.push(`${control.id || control.textContent} sticks out`);
-            }
-            return found;
+            const kinds = '#fold, #panel :is(select, button, input[type=range], .check)';
+            const controls = [...document.querySelectorAll(kinds)];
+            const {documentElement: whole} = document, panel = document.getElementById('panel');
+            const box = element => element.getBoundingClientRect();
+            const side = control => Math.min(box(control).width, box(control).height);
+            const is_small = control => side(control) > 0 && side(control) < 39.5;
+            const sticks_out = element => box(element).left < 0 || box(element).right > innerWidth + 0.5;
+            return [
+                ...[whole, panel].filter(element => element.scrollWidth > element.clientWidth),
+                ...controls.filter(is_small),
+                ...[panel, document.getElementById('summary'), ...controls].filter(sticks_out),
+            ].map(element => element.id || element.textContent);
         });
         assert.deepEqual(problems, []);
         await page.locator('#panel').evaluate(panel => panel.scrollTo(0, 0));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every scene, depth method and renderer of the page draws what every light in every fragment draws, byte by byte; and a
-// list that lacks a light is found.
+// Every scene, depth method and renderer of the page draws what every light in every fragment draws, byte by byte; and
+// a list that lacks a light is found.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {Browser, compare, mean_difference, picture, text_of, wait_for_text} from './browser.mjs';
@@ -21,7 +21,8 @@ for (const [renderer, name] of Object.entries(renderers))
             await wait_for_text(page, 'stats', stats);
             for (const method of methods) {
                 await page.locator('#method').selectOption(method);
-                assert.match(await compare(page), /^The same picture, byte by byte: 11,520 pixels/, `${scene}, ${method}`);
+                const said = await compare(page);
+                assert.match(said, /^The same picture, byte by byte: 11,520 pixels/, `${scene}, ${method}`);
                 assert.equal(await text_of(page, 'alert'), '');
             }
         }
