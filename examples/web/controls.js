@@ -151,21 +151,47 @@ export function show_advice(plans, pixels, take) {
     const cell = (kind, text) => Object.assign(document.createElement(kind), {textContent: text});
     const table = document.createElement('table'), head = table.createTHead().insertRow(), body = table.createTBody();
     for (const title of ['Plan', 'Build', 'Entries', 'A pixel', 'Total']) head.append(cell('th', title));
-    for (const plan of plans) {
+    for (const plan of cheapest_of_each(plans)) {
         const {tile_size, milliseconds, build_milliseconds, entries, evaluations} = plan;
-        const tiled = tile_size > 0, row = body.insertRow();
+        const row = body.insertRow(), method = method_of(plan);
         row.classList.toggle('best', plan.best);
-        const button = cell('button', tiled ? `${tile_size} px, ${plan.plan}` : plan.plan);
+        const button = cell('button', plan.tiled ? `${tile_size} px, ${words_of(plan)}` : 'every light');
         button.type = 'button';
-        button.disabled = !tiled;
-        button.addEventListener('click', () => take(plan));
+        button.disabled = !method;
+        button.addEventListener('click', () => take({method, tile: tile_size}));
         row.insertCell().append(button);
         row.append(...[build_milliseconds.toFixed(2), entries.toLocaleString('en'), (evaluations / pixels).toFixed(1),
             milliseconds.toFixed(1)].map(text => cell('td', text)));
     }
-    by_id('advice').replaceChildren(table, cell('p', 'advise() built this view\'s lists in each way, without depth: '
-        + 'milliseconds of a build, list entries, lights that a pixel goes through, and milliseconds with a guess of '
-        + 'the shading. Press one to take it.'));
+    by_id('advice').replaceChildren(table, cell('p', 'advise() built this view\'s lists in each way, at four tile sizes, '
+        + 'of which the best is shown: milliseconds of a build (Z bounds: with their pre-pass), list entries, lights that '
+        + 'a pixel goes through, and milliseconds with a guess of the shading. Press one to take it.'));
     by_id('advice').hidden = false;
     by_id('advice').focus();
+}
+
+// In words, what a plan's lists are of.
+function words_of({footprint, depth_test, slicing}) {
+    const words = {none: [], z_bins: ['z-bins'], clusters: ['clusters']}[slicing];
+    if (footprint === 'silhouette') words.push('silhouettes');
+    if (depth_test !== 'none') words.push(slicing === 'none' ? `Z bounds, ${depth_test.replace('_', ' ')}` : 'boxes');
+    return words.join(', ') || 'tiles';
+}
+
+// The plans are the cheapest first.
+function cheapest_of_each(plans) {
+    const first = new Map();
+    for (const plan of plans) {
+        const words = plan.tiled ? words_of(plan) : '';
+        if (!first.has(words)) first.set(words, plan);
+    }
+    return first.values();
+}
+
+// The depth method of a plan, or none where this page does not draw it.
+function method_of({tiled, footprint, depth_test, slicing}) {
+    if (!tiled || footprint !== 'rectangle') return undefined;
+    if (slicing === 'clusters') return depth_test === 'box' ? 'clusters' : undefined;
+    if (slicing === 'z_bins') return 'z_bins';
+    return depth_test === 'split_box' ? undefined : depth_test;
 }

@@ -74,21 +74,28 @@ class Lightbin {
 
     /** The same, and the lights and their lists. z_bounds: {min, max}, and where there is glass glass_max. */
     frame(settings, z_bounds = null) {
-        if (!z_bounds) return this.#ask('frame', settings);
-        const sides = ['min', 'max', 'glass_max'].filter(side => z_bounds[side]);
-        this.#put('data', ...sides.map(side => z_bounds[side]));
-        const bounds = Object.fromEntries(sides.map(side => [side, z_bounds[side].length]));
-        return this.#ask('frame', {...settings, bounds});
+        return this.#ask_with('frame', settings, z_bounds);
     }
 
-    /** What the ways to light this view cost here, the cheapest first. Takes some tens of frames. */
-    advise(settings) {
-        return this.#ask('advise', settings);
+    /**
+     * What the ways to light this view cost here, the cheapest first; with z_bounds those with depth, too, and
+     * settings.z_bounds_milliseconds is what they took. Takes some hundreds of frames.
+     */
+    advise(settings, z_bounds = null) {
+        return this.#ask_with('advise', settings, z_bounds);
     }
 
     /** A text that lightbin generates: 'snippet', 'reduce' or 'build'. See module/texts.cpp for the options. */
     text(what, options) {
         return this.#ask('text', {what, options});
+    }
+
+    #ask_with(what, settings, z_bounds) {
+        if (!z_bounds) return this.#ask(what, settings);
+        const sides = ['min', 'max', 'glass_max'].filter(side => z_bounds[side]);
+        this.#put('data', ...sides.map(side => z_bounds[side]));
+        const bounds = Object.fromEntries(sides.map(side => [side, z_bounds[side].length]));
+        return this.#ask(what, {...settings, bounds});
     }
 
     #ask(what, question) {

@@ -171,9 +171,11 @@ async function check() {
 }
 
 async function advise() {
-    const frame = frame_settings(1);
-    show_advice(lightbin.advise({...frame, clip: 'webgl'}), frame.width * frame.height,
-        ({tile_size}) => controls.set({method: 'none', tile: tile_size}));
+    const frame = {...frame_settings(1), tile_size: 16, clip: renderer.rows_from_below ? 'webgl' : 'webgpu'};
+    const bounds = 'box' in renderer.refused ? null : await renderer.bounds(lightbin, frame);
+    const plans = lightbin.advise({...frame, z_bounds_milliseconds: bounds?.milliseconds ?? 0}, bounds);
+    show_advice(plans, frame.width * frame.height, settings => controls.set(settings));
+    stale = true;  // the pre-pass was drawn over the picture's depth
 }
 
 const actions = {

@@ -112,6 +112,28 @@ export class WebGpu {
         return report;
     }
 
+    // The Z bounds of a view's tiles, and what they took.
+    async bounds(lightbin, settings) {
+        const with_box = {...settings, method: 'box', look: 'lit', clip: 'webgpu', on_gpu: true};
+        const scene = {has_spots: this.#spots, has_glass: false};
+        const programs = await this.#programs.that_draw(lightbin, 'lit', with_box, scene);
+        this.#resize(settings.width, settings.height);
+        const frame = lightbin.frame(with_box), {tiles_x, tiles_y} = frame;
+        this.#upload(frame, programs);
+        this.#store('frame', usages.uniform).write(frame_constants(frame, 1, settings.width, settings.height)(0));
+        const {times} = await this.#submit(programs, {tiles_x, tiles_y}, []);
+
+        const encoder = this.#device.createCommandEncoder(), pairs = this.#store('bounds', usages.results);
+        pairs.reserve(8 * tiles_x * tiles_y);
+        encoder.copyBufferToBuffer(this.#lists.z_bounds.buffer, 0, pairs.buffer, 0, 8 * tiles_x * tiles_y);
+        this.#device.queue.submit([encoder.finish()]);
+        await pairs.buffer.mapAsync(GPUMapMode.READ);
+        const words = new Float32Array(pairs.buffer.getMappedRange().slice(0, 8 * tiles_x * tiles_y));
+        pairs.buffer.unmap();
+        const side = first => words.filter((_, i) => i % 2 === first);
+        return {min: side(0), max: side(1), milliseconds: times[0]};
+    }
+
     #resize(width, height) {
         if (this.#picture?.width === width && this.#picture.height === height) return;
         this.#picture?.destroy();

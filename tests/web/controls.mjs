@@ -191,10 +191,14 @@ test('advise() gives a table, and a row can be taken', async t => {
     await page.locator('#advise').click();
     await page.locator('#advice table').waitFor();
     assert.equal(await page.locator('#advice tr.best').count(), 1);
-    const row = page.locator('#advice tbody button', {hasText: /^64 px, rectangle/});
+    const plans = await page.locator('#advice tbody button').allTextContents();
+    for (const plan of ['tiles', 'silhouettes', 'Z bounds, interval', 'Z bounds, box', 'z-bins', 'clusters, boxes'])
+        assert.equal(plans.filter(text => text.endsWith(` px, ${plan}`)).length, 1, plan);
+    assert.ok(plans.includes('every light'));
+    const row = page.locator('#advice tbody button', {hasText: /px, Z bounds, box$/}), tile = parseInt(await row.textContent(), 10);
     await row.click();
-    await wait_for_text(page, 'frame', / 3 × 2 tiles/);
-    assert.equal(await page.locator('#method').inputValue(), 'none');
+    await page.waitForFunction(tile => document.getElementById('tile_out').textContent === `${tile} pixels`, tile);
+    assert.equal(await page.locator('#method').inputValue(), 'box');
 });
 
 test('a layer of the plot can be hidden', async t => {

@@ -89,11 +89,25 @@ function sentences() {
 }
 
 function advice() {
-    const plans = lightbin.advise({...settings, camera: lightbin.make('city', 500).cameras[0]});
-    assert.ok(plans.length > 5 && plans[0].best && plans.filter(plan => plan.best).length === 1);
-    assert.ok(plans.every((plan, i) => i === 0 || plans[i - 1].milliseconds <= plan.milliseconds));
-    const untiled = plans.find(plan => plan.plan === 'no tiling');
-    assert.equal(untiled.evaluations, 500 * settings.width * settings.height);
+    const seen = {...settings, camera: lightbin.make('city', 500).cameras[0]}, {tiles_x, tiles_y} = lightbin.view(seen);
+    const bounds = {min: new Float32Array(tiles_x * tiles_y).fill(20), max: new Float32Array(tiles_x * tiles_y).fill(60)};
+    bounds.glass_max = bounds.max;
+    const without_depth = lightbin.advise(seen), plans = lightbin.advise({...seen, z_bounds_milliseconds: 1000}, bounds);
+    for (const some of [without_depth, plans]) {
+        assert.ok(some.length > 5 && some[0].best && some.filter(plan => plan.best).length === 1);
+        assert.ok(some.every((plan, i) => i === 0 || some[i - 1].milliseconds <= plan.milliseconds));
+        assert.equal(some.find(plan => !plan.tiled).evaluations, 500 * settings.width * settings.height);
+    }
+    assert.ok(without_depth.every(plan => plan.depth_test === 'none' && plan.slicing === 'none'));
+
+    // A plan has as many entries as the lists that the page makes of it, and a pre-pass costs what it took.
+    for (const method of ['none', 'interval', 'box', 'z_bins', 'clusters']) {
+        const sliced = method === 'z_bins' || method === 'clusters', test = method === 'clusters' ? 'box' : sliced ? 'none' : method;
+        const plan = plans.find(({footprint, depth_test, slicing, tile_size}) => footprint === 'rectangle' && depth_test === test
+            && slicing === (sliced ? method : 'none') && tile_size === seen.tile_size);
+        assert.equal(plan.entries, lightbin.frame({...seen, method}, sliced || method === 'none' ? null : bounds).entries, method);
+        assert.equal(plan.build_milliseconds > 1000, method === 'interval' || method === 'box', method);
+    }
     return `advise() weighs ${plans.length} plans`;
 }
 

@@ -173,10 +173,15 @@ json frame_json(const json& asked) {
 
 json advice_json(const json& asked) {
     const FrameSettings settings = settings_of(asked);
-    const lightbin::Advice advice = stage.advise(stage.prepare(settings).view, settings);
+    const lightbin::View view = stage.prepare(settings).view;
+    const lightbin::Advice advice =
+        stage.advise(view, settings, z_bounds_of(asked), 1e6 * asked.value("z_bounds_milliseconds", 0.0));
     json plans = json::array();
     for (const lightbin::Plan& plan : advice.plans())
-        plans.push_back({{"plan", plan.tiled ? to_string(plan.footprint) : "no tiling"},
+        plans.push_back({{"tiled", plan.tiled},
+                         {"footprint", to_string(plan.footprint)},
+                         {"depth_test", to_string(plan.depth_test)},
+                         {"slicing", to_string(plan.slicing)},
                          {"tile_size", plan.tile_size},
                          {"milliseconds", plan.total_ns * 1e-6},
                          {"build_milliseconds", plan.build_ns * 1e-6},

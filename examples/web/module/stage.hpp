@@ -73,8 +73,9 @@ public:
     const Frame& frame(const lightbin::View& view, const FrameSettings& settings,
                        const lightbin::ZBounds& z_bounds);
 
-    // What the ways to light this view cost here.
-    lightbin::Advice advise(const lightbin::View& view, const FrameSettings& settings);
+    // What the ways to light this view cost here. With Z bounds, which took so long: those with depth, too.
+    lightbin::Advice advise(const lightbin::View& view, const FrameSettings& settings,
+                            const lightbin::ZBounds& z_bounds, double z_bounds_ns);
 
 private:
     void show(Scene scene, const std::string& kind);
