@@ -4,6 +4,7 @@ import {FlyingKeys, FreeCamera, listen_to_pointers} from './camera.js';
 import {compare, meter} from './checks.js';
 import {by_id, Controls, counted, sentence, show_advice} from './controls.js';
 import {load} from './lightbin.js';
+import {PictureSize} from './picture_size.js';
 import {Plot} from './plot.js';
 import {parse_hash, to_hash} from './settings.js';
 import {Summary} from './summary.js';
@@ -13,7 +14,7 @@ const stage = by_id('stage');
 const settings = parse_hash(location.hash);
 const eye = new FreeCamera(), flying = new FlyingKeys();
 const plot = new Plot(by_id('plot'), by_id('costs'), by_id('costs_note'));
-const summary = new Summary();
+const summary = new Summary(), picture_size = new PictureSize();
 const jobs = new Set();  // what is to be done before the next frame
 let controls, lightbin, renderer;
 let scene = null;  // what lightbin tells of the one on show; `of` is its name in the settings
@@ -21,10 +22,6 @@ let exposure = 1;
 let seconds = settings.seconds;  // how long the lights have moved
 let stale = true;                // the picture is not that of the settings
 let held = false;                // nor is it to be: there is something to look at
-
-// Sides of the picture over those of the window, for a size that keeps the page fluent.
-const scales = [0.2, 0.28, 0.4, 0.56, 0.8, 1, 1.4, 2];
-let scale = 0, slow = 0, quick = 0;
 
 // What is wrong, in a sentence; none: nothing is.
 function complain(words = '') {
@@ -42,7 +39,7 @@ function tell(sentence = '', differs = false) {
 }
 
 // `part`: that of a picture whose size keeps the page fluent. Its tiles are as small: else each had the lights of many.
-function frame_settings(part = scales[scale]) {
+function frame_settings(part = picture_size.part) {
     const {method, look, drop, stops, size} = settings;
     if (size !== 'auto') part = size / 100;
     const tile_size = size === 'auto' ? Math.max(Math.round(settings.tile * part), 4) : settings.tile;
@@ -53,15 +50,10 @@ function frame_settings(part = scales[scale]) {
     };
 }
 
-// Three frames of 45 ms are too many, as is one of 135; twelve below 14 ms leave time for a picture 1.4 times as wide.
-function keep_fluent(milliseconds) {
-    slow = milliseconds > 45 ? slow + milliseconds / 45 : 0;
-    quick = milliseconds < 14 ? quick + (milliseconds < 4 ? 4 : 1) : 0;
-    const step = slow >= 3 ? -1 : quick >= 12 ? 1 : 0;
-    if (step === 0 || !scales[scale + step]) return;
-    scale += step;
-    slow = quick = 0;
+// The picture is not that of the settings any more.
+function renew() {
     stale = true;
+    picture_size.move();
 }
 
 async function fetched(url) {
@@ -116,7 +108,7 @@ async function go_to(view) {
     eye.place = settings.at;
     controls.show();
     exposure = await meter(renderer, lightbin, frame_settings());
-    stale = true;
+    renew();
 }
 
 // The camera was moved.
@@ -124,7 +116,7 @@ function look_from(place) {
     settings.at = place;
     controls.show();
     if (held) tell();
-    stale = true;
+    renew();
 }
 
 async function use_renderer() {
@@ -146,12 +138,13 @@ async function use_renderer() {
     controls.refuse_methods(renderer.refused);
     if (settings.method in renderer.refused) controls.set({method: 'clusters'});
     if (scene) take_scene(scene.of);
-    stale = true;
+    renew();
 }
 
 async function check() {
     by_id('compare').disabled = true;
     tell('Drawing with every light');
+    renew();  // not for the sharper picture: every light in each of its pixels takes long
     try {
         await new Promise(requestAnimationFrame);  // so that this can be read
         const found = await compare(renderer, lightbin, frame_settings(), by_id('differences'));
@@ -175,7 +168,7 @@ async function advise() {
     const bounds = 'box' in renderer.refused ? null : await renderer.bounds(lightbin, frame);
     const plans = lightbin.advise({...frame, z_bounds_milliseconds: bounds?.milliseconds ?? 0}, bounds);
     show_advice(plans, frame.width * frame.height, settings => controls.set(settings));
-    stale = true;  // the pre-pass was drawn over the picture's depth
+    renew();  // the pre-pass was drawn over the picture's depth
 }
 
 const actions = {
@@ -192,14 +185,15 @@ const actions = {
 function change(names) {
     complain();
     tell();
-    stale = true;
+    renew();
     if (names.includes('scene')) Object.assign(settings, {view: 0, at: ''});
     const by_name = {scene: show_scene, lights: change_lights, renderer: use_renderer};
     for (const name of names) if (by_name[name]) jobs.add(by_name[name]);
 }
 
-async function draw() {
-    const frame = frame_settings();
+// exact: what it reports is of this very frame.
+async function draw(exact) {
+    const frame = {...frame_settings(), exact};
     const report = await renderer.draw(lightbin, frame);
     plot.add(report.ms, report.timed);
     if (summary.is_due(settings.move)) {
@@ -208,7 +202,8 @@ async function draw() {
         const hash = to_hash(settings);
         if (hash !== location.hash) history.replaceState(null, '', hash);
     }
-    if (settings.size === 'auto') keep_fluent(Object.values(report.ms).reduce((sum, ms) => sum + ms));
+    const better = picture_size.judge(Object.values(report.ms).reduce((sum, ms) => sum + ms));
+    if (better && settings.size === 'auto') stale = true;
 }
 
 // A graphics context may come back, see start(); a device of WebGPU does not.
@@ -238,11 +233,13 @@ async function run() {
             }
             flying.move(eye, elapsed);
             if (settings.at !== eye.place) look_from(eye.place);
-            if (held || (!stale && (failed || !settings.move))) continue;
+            if (held || (failed && !stale)) continue;
+            const still = !stale && !settings.move;
+            if (still && !(settings.size === 'auto' && picture_size.sharpen())) continue;
             if (settings.move) seconds += elapsed;
             stale = false;
             failed = true;
-            await draw();
+            await draw(still);
             failed = false;
         } catch (error) {
             complain(sentence(error.message));
@@ -273,7 +270,7 @@ async function start() {
             complain(sentence(error.message));
             await show_scene();
         });
-        await draw();
+        await draw(false);
     } catch (error) {
         document.body.classList.add('cannot');
         complain(`${sentence(error.message)} The page needs WebGL 2 and WebAssembly with vectors: Chrome or Edge 95, `

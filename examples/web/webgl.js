@@ -107,7 +107,7 @@ export class WebGl {
         } else {
             this.#timer.begin();
             draw();
-            ms.draw = await this.#timer.end();
+            ms.draw = await this.#timer.end(settings.exact);
         }
         if (settings.show !== false) this.#frame_buffer.show(this.#canvas);
         const {in_view, rejected, entries, longest, tiles_y} = frame;

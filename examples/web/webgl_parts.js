@@ -200,14 +200,13 @@ export class Timer {
         this.#gl.beginQuery(this.#clock.TIME_ELAPSED_EXT, this.#running.at(-1));
     }
 
-    // Milliseconds of the latest drawing that is known.
-    async end() {
+    // Milliseconds of the latest drawing that is known; exact: of this one.
+    async end(exact) {
         if (this.#clock) this.#gl.endQuery(this.#clock.TIME_ELAPSED_EXT);
-        if (!this.#clock || this.#latest === null) await until_done(this.#gl);
-        const wall = performance.now() - this.#begun;
-        if (!this.#clock) return wall;
-        this.#collect();
-        return this.#latest ?? wall;
+        const waits = exact || !this.#clock || this.#latest === null;
+        if (waits) await until_done(this.#gl);
+        if (this.#clock) this.#collect();
+        return waits ? performance.now() - this.#begun : this.#latest;
     }
 
     #collect() {

@@ -65,6 +65,17 @@ test('resolution, brightness and look change the picture', async t => {
     await page.waitForFunction(() => !location.hash.includes('size'));
 });
 
+test('a picture where nothing moves gets sharper, until something does', async t => {
+    const page = await browser.open(t, 'lights=100&tile=32&move=0');
+    const width = async () => parseInt((await text_of(page, 'frame')).match(/(\d+) ×/)[1]);
+    await page.waitForFunction(() => parseInt(document.getElementById('frame').textContent.match(/(\d+) ×/)?.[1]) > 144);
+    const sharp = await width();
+    await page.keyboard.down('w');
+    await page.waitForFunction(sharp => parseInt(document.getElementById('frame').textContent.match(/(\d+) ×/)[1]) < sharp, sharp);
+    await page.keyboard.up('w');
+    assert.deepEqual(page.complaints, []);
+});
+
 test('the list check is magenta where a list lacks a light, and nowhere else', async t => {
     const magenta = async page => {
         const seen = await picture(page);
