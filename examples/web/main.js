@@ -19,9 +19,9 @@ const jobs = new Set();  // what is to be done before the next frame
 let controls, lightbin, renderer;
 let scene = null;  // what lightbin tells of the one on show; `of` is its name in the settings
 let exposure = 1;
-let seconds = settings.seconds;  // how long the lights have moved
-let stale = true;                // the picture is not that of the settings
-let held = false;                // nor is it to be: there is something to look at
+let seconds = 0;    // how long the lights have moved
+let stale = true;   // the picture is not that of the settings
+let held = false;   // nor is it to be: there is something to look at
 
 // What is wrong, in a sentence; none: nothing is.
 function complain(words = '') {
@@ -45,7 +45,7 @@ function frame_settings(part = picture_size.part) {
     const tile_size = size === 'auto' ? Math.max(Math.round(settings.tile * part), 4) : settings.tile;
     const [width, height] = [stage.clientWidth, stage.clientHeight].map(side => Math.max(Math.round(side * part), 16));
     return {
-        camera: eye.camera(width / height), width, height, tile_size, method, look, drop, seconds, slices: 24,
+        camera: eye.camera(width / height), width, height, tile_size, method, look, drop, seconds,
         exposure: exposure * 2 ** stops,
     };
 }

@@ -16,7 +16,6 @@ const defaults = {
     size: 'auto',      // or percent of the window's pixels
     stops: 0,          // brighter than the light meter says
     drop: -1,          // a light that is left out of the lists, to see the checks fail
-    seconds: 0,        // where moving lights begin
 };
 
 const choices = {
@@ -28,7 +27,6 @@ const choices = {
 
 const ranges = {
     view: [0, 1000], lights: [fewest_lights, most_lights], tile: [1, 4096], stops: [-5, 5], drop: [-1, 1e6],
-    seconds: [0, 1e6],
 };
 
 // The settings that a page address's hash holds; what is missing or makes no sense is as by default.
