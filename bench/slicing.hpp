@@ -5,6 +5,7 @@
 #include "goals.hpp"
 #include "measure.hpp"
 #include "reference.hpp"
+#include "turns.hpp"
 
 #include <lightbin/binner.hpp>
 #include <lightbin/encode.hpp>
@@ -27,49 +28,19 @@ struct SlicingResult {
     double bits;  ///< bitmasks without lists, to building those and encoding them; 0 where that was not timed
 };
 
-/// Seconds of each turn.
-struct Turns {
-    std::vector<double> ours, theirs;
-    std::size_t together;  ///< frames a turn
-
-    SlicingResult result(const std::string& set, std::size_t lights, const lightbin::Options& options,
-                         std::size_t entries) const {
-        std::vector<double> ratios;
-        for (std::size_t i = 0; i < ours.size(); ++i)
-            ratios.push_back(ours[i] / theirs[i]);
-        const double all = double(lights * together);
-        return {.set = set,
-                .lights = lights,
-                .slicing = to_string(options.slicing),
-                .depth_test = to_string(options.depth_test),
-                .tier = to_string(options.isa),
-                .ns_per_light = 1e9 * median(ours) / all,
-                .entries_per_light = double(entries) / (all * double(ours.size())),
-                .ratio = median(ours) / median(theirs),
-                .spread = percentile(ratios, 0.9) - percentile(ratios, 0.1),
-                .bits = 0};
-    }
-};
-
-/// Times two ways to build in turns, each turn on other frames, some together where one is too short for the clock. Which
-/// comes first alternates, as the second finds the lights in the cache.
-template <class AnyFrame, class Ours, class Theirs>
-Turns take_turns(const std::vector<AnyFrame>& frames, double seconds_a_case, Ours ours, Theirs theirs) {
-    Turns turns = {{}, {}, std::max<std::size_t>(1, 256 / frames[0].lights.size())};
-    double spent = 0;
-    for (std::size_t turn = 0; spent < seconds_a_case || turn < 5; ++turn) {
-        const auto time = [&](std::vector<double>& times, auto& build) {
-            times.push_back(seconds([&] {
-                for (std::size_t i = 0; i < turns.together; ++i)
-                    build(frames[(turn * turns.together + i) % frames.size()]);
-            }));
-            spent += times.back();
-        };
-        if (turn % 2 == 0) time(turns.ours, ours);
-        time(turns.theirs, theirs);
-        if (turn % 2 == 1) time(turns.ours, ours);
-    }
-    return turns;
+inline SlicingResult slicing_result(const Turns& turns, const std::string& set, std::size_t lights,
+                                    const lightbin::Options& options, std::size_t entries) {
+    const double all = double(lights * turns.together);
+    return {.set = set,
+            .lights = lights,
+            .slicing = to_string(options.slicing),
+            .depth_test = to_string(options.depth_test),
+            .tier = to_string(options.isa),
+            .ns_per_light = 1e9 * median(turns.ours) / all,
+            .entries_per_light = double(entries) / (all * double(turns.ours.size())),
+            .ratio = turns.ratio(),
+            .spread = turns.spread(),
+            .bits = 0};
 }
 
 /// Stops the run unless each slice's lists are those of a grid whose tiles have the slice's ends for Z bounds.
@@ -106,7 +77,7 @@ SlicingResult time_clusters(const std::string& set, const std::vector<Frame>& fr
     const Turns turns = take_turns(
         frames, seconds_a_case, [&](const Frame& frame) { entries += build(frame).ids().size(); },
         [&](const Frame& frame) { flat.build<false>(flat_view, frame.lights, nullptr, nullptr); });
-    return turns.result(set, frames[0].lights.size(), options, entries);
+    return slicing_result(turns, set, frames[0].lights.size(), options, entries);
 }
 
 /// Stops the run unless the lists of ranks hold the same lights as those of ids.
@@ -143,7 +114,7 @@ SlicingResult time_z_bins(const std::string& set, const std::vector<Frame>& fram
     const Turns turns = take_turns(
         frames, seconds_a_case, [&](const Frame& frame) { entries += build(frame).ids().size(); },
         [&](const Frame& frame) { static_cast<void>(*plain.bin(view, frame.lights)); });
-    SlicingResult result = turns.result(set, frames[0].lights.size(), options, entries);
+    SlicingResult result = slicing_result(turns, set, frames[0].lights.size(), options, entries);
     if (frames[0].lights.size() > 1024) return result;
 
     const lightbin::ListFormat format = {.encoding = lightbin::ListEncoding::bitmask, .max_lights = 1024};
@@ -163,7 +134,7 @@ SlicingResult time_z_bins(const std::string& set, const std::vector<Frame>& fram
         std::exit(EXIT_FAILURE);
     }
     const Turns of_bits = take_turns(frames, seconds_a_case, write, encode);
-    result.bits = median(of_bits.ours) / median(of_bits.theirs);
+    result.bits = of_bits.ratio();
     return result;
 }
 

@@ -121,7 +121,7 @@ template <Options options> SpotTime time_spots(const SpotSet& set, KeptFrames& k
     const Turns turns = take_turns(
         frames, seconds_a_case, [&](const SpotFrame& frame) { of_spots += entries(frame.lights); },
         [&](const SpotFrame& frame) { of_spheres += entries(frame.spheres); });
-    const SlicingResult result = turns.result(set.name, set.lights, options, of_spots);
+    const SlicingResult result = slicing_result(turns, set.name, set.lights, options, of_spots);
     const double all = double(set.lights * turns.together);
     return {.set = set.name,
             .lights = set.lights,

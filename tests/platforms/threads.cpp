@@ -2,71 +2,20 @@
 // threads: Binners with every kind of options, each on a thread of its own, for one View, the same lights, Z bounds and
 // Slices, while another one's work is shared by a pool of threads. Every grid must be the one that is made alone; the
 // thread sanitizer says whether they shared more than that.
+#include "bench/pool.hpp"
+
 #include <lightbin/lightbin.hpp>
 
 #include <algorithm>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <functional>
-#include <mutex>
 #include <thread>
 #include <vector>
 
 namespace {
 
 using namespace lightbin;
-
-/// Threads that wait for work, as a renderer has them. Serves one call at a time.
-class Pool {
-public:
-    explicit Pool(std::size_t threads) {
-        for (std::size_t i = 0; i < threads; ++i)
-            threads_.emplace_back([this] { serve(); });
-    }
-    ~Pool() {
-        {
-            const std::lock_guard lock(mutex_);
-            stop_ = true;
-        }
-        more_.notify_all();
-        for (std::thread& thread : threads_)
-            thread.join();
-    }
-    Pool(const Pool&) = delete;
-    Pool& operator=(const Pool&) = delete;
-
-    void operator()(std::size_t n, const std::function<void(std::size_t)>& body) {
-        std::unique_lock lock(mutex_);
-        body_ = &body;
-        next_ = 0;
-        count_ = left_ = n;
-        more_.notify_all();
-        done_.wait(lock, [this] { return left_ == 0; });
-    }
-
-private:
-    void serve() {
-        std::unique_lock lock(mutex_);
-        for (;;) {
-            more_.wait(lock, [this] { return stop_ || next_ < count_; });
-            if (stop_) return;
-            const std::size_t i = next_++;
-            lock.unlock();
-            (*body_)(i);
-            lock.lock();
-            if (--left_ == 0) done_.notify_one();
-        }
-    }
-
-    std::mutex mutex_;
-    std::condition_variable more_, done_;
-    const std::function<void(std::size_t)>* body_ = nullptr;
-    std::size_t next_ = 0, count_ = 0, left_ = 0;
-    bool stop_ = false;
-    std::vector<std::thread> threads_;
-};
 
 struct Scene {
     View view;
