@@ -19,6 +19,29 @@
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace sse2 {
 
+#if defined(__wasm__)
+// Of these, emscripten makes four instructions or a loop of calls. WebAssembly's own do the same of numbers that an int
+// holds, and of NaN; here they hide emscripten's.
+inline __m128 _mm_min_ps(__m128 a, __m128 b) {
+    return wasm_f32x4_pmin(b, a);
+}
+inline __m128 _mm_max_ps(__m128 a, __m128 b) {
+    return wasm_f32x4_pmax(b, a);
+}
+inline __m128d _mm_min_pd(__m128d a, __m128d b) {
+    return wasm_f64x2_pmin(b, a);
+}
+inline __m128d _mm_max_pd(__m128d a, __m128d b) {
+    return wasm_f64x2_pmax(b, a);
+}
+inline __m128i _mm_cvttps_epi32(__m128 values) {
+    return wasm_i32x4_trunc_sat_f32x4(values);
+}
+inline __m128i _mm_cvttpd_epi32(__m128d values) {
+    return wasm_i32x4_trunc_sat_f64x2_zero(values);
+}
+#endif
+
 using FloatRegister = __m128;
 using DoubleRegister = __m128d;
 using ListId = std::uint32_t;
@@ -113,35 +136,18 @@ inline Floats ascending_bits(Floats values) {
     const __m128i bits = _mm_castps_si128(values);
     return _mm_cvtepi32_ps(_mm_xor_si128(bits, _mm_srli_epi32(_mm_srai_epi32(bits, 31), 1)));
 }
-
-/// Cut to whole numbers, which an int holds. Of SSE2's own, emscripten makes a loop of calls.
-#if defined(__wasm__)
-inline __m128i whole_lanes(__m128 values) {
-    return wasm_i32x4_trunc_sat_f32x4(values);
-}
-inline __m128i whole_lanes(__m128d values) {
-    return wasm_i32x4_trunc_sat_f64x2_zero(values);
-}
-#else
-inline __m128i whole_lanes(__m128 values) {
-    return _mm_cvttps_epi32(values);
-}
-inline __m128i whole_lanes(__m128d values) {
-    return _mm_cvttpd_epi32(values);
-}
-#endif
 inline void store_tiles(std::uint16_t* tiles, Floats values) {
-    const __m128i whole = whole_lanes(values.v);
+    const __m128i whole = _mm_cvttps_epi32(values);
     _mm_storel_epi64(reinterpret_cast<__m128i*>(tiles), _mm_packs_epi32(whole, whole));
 }
 inline void store_tiles(std::uint16_t* tiles, Doubles values) {
-    const __m128i whole = whole_lanes(values.v);
+    const __m128i whole = _mm_cvttpd_epi32(values);
     const int both_tiles = _mm_cvtsi128_si32(_mm_packs_epi32(whole, whole));
     std::memcpy(tiles, &both_tiles, sizeof both_tiles);
 }
 /// Of two lights' or rows' tiles each.
 inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
-    const __m128i pairs = _mm_or_si128(whole_lanes(first.v), _mm_slli_epi32(whole_lanes(last.v), 16));
+    const __m128i pairs = _mm_or_si128(_mm_cvttpd_epi32(first), _mm_slli_epi32(_mm_cvttpd_epi32(last), 16));
     _mm_storel_epi64(reinterpret_cast<__m128i*>(spans), pairs);
 }
 
