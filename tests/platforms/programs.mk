@@ -1,15 +1,15 @@
 # What tests/platforms.sh runs, for one platform: make -f tests/platforms/programs.mk OUT=FOLDER CXX=COMPILER FLAGS=...
-# LINK=... EXE=.exe FOLDER/lists.exe ... from the repository's root. In two units what takes long to compile, the
-# kernels, is the same for many files.
+# THREADS=-pthread LINK=... EXE=.exe FOLDER/lists.exe ... from the repository's root. In two units what takes long to
+# compile, the kernels, is the same for many files.
 
 # Left out: what measures time, needs gigabytes or a library more than doctest and GLM, and the tiers, which lists.cpp compares.
 unit := $(filter-out %/advise.cpp %/largest_grid.cpp %/matrix.cpp %/tiers.cpp,$(wildcard tests/unit/*.cpp))
 one := %/clusters.cpp %/z_bins.cpp %/lights.cpp %/spots.cpp
-headers := $(shell find include tests/unit tests/oracle tests/split_mix.hpp bench/exact -name '*.hpp' -o -name '*.inl') tests/platforms/programs.mk
-compile = $(CXX) $(level) $(FLAGS) -pthread -Iinclude -I. -isystem $(OUT)/../headers -c -o $@
+headers := $(shell find include tests/unit tests/oracle tests/split_mix.hpp bench/exact bench/pool.hpp -name '*.hpp' -o -name '*.inl') tests/platforms/programs.mk
+compile = $(CXX) $(level) $(FLAGS) $(THREADS) -Iinclude -I. -isystem $(OUT)/../headers -c -o $@
 level = -O1
 $(OUT)/lists.o $(OUT)/engine.o: level = -O2
-link = $(CXX) $(FLAGS) -pthread -o $@ $^ $(LINK)
+link = $(CXX) $(FLAGS) $(THREADS) -o $@ $^ $(LINK)
 
 $(OUT)/%$(EXE): $(OUT)/%.o
 	$(link)
