@@ -21,6 +21,8 @@
 #include <lightbin/binner.hpp>
 
 #include <benchmark/benchmark.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -192,6 +194,18 @@ Result result_of(const Case& which, const Options& options, const Times& times) 
             .read_ratio = times.reads.empty() ? 0 : ns / (1e9 * median(times.reads)),
             .gains = {}};
 }
+
+/// lightbin's work on at most so many of oneTBB's threads.
+class TbbLoop {
+public:
+    explicit TbbLoop(int threads) : arena_(threads) {}
+    template <class Body> void operator()(std::size_t n, const Body& body) {
+        arena_.execute([&] { tbb::parallel_for(std::size_t{0}, n, body); });
+    }
+
+private:
+    tbb::task_arena arena_;
+};
 
 /// Verifies one case, times it, and where it has threads measures what they gain.
 template <Options options> void build(benchmark::State& state, const Case& which) {

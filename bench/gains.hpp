@@ -7,27 +7,11 @@
 
 #include <lightbin/parallel.hpp>
 
-#include <benchmark/benchmark.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <thread>
 #include <vector>
-
-/// lightbin's work on at most so many of oneTBB's threads.
-class TbbLoop {
-public:
-    explicit TbbLoop(int threads) : arena_(threads) {}
-    template <class Body> void operator()(std::size_t n, const Body& body) {
-        arena_.execute([&] { tbb::parallel_for(std::size_t{0}, n, body); });
-    }
-
-private:
-    tbb::task_arena arena_;
-};
 
 /// How many times as fast threads are as one alone.
 struct Gains {
@@ -44,7 +28,7 @@ inline void churn(std::size_t steps) {
     for (std::size_t i = 0; i < steps; ++i)
         for (std::uint32_t& sum : sums)
             sum += (sum << 1) + 1;
-    benchmark::DoNotOptimize(sums);
+    keep(sums);
 }
 
 /// In turns, the same by one thread alone and by all. `bin(threads, turn)` builds and returns how many

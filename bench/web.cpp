@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // web [--quick] [threads]: a whole build, lights in to lists out, as a ratio to the flat loop that is timed in turns with
-// it, on rotating light sets; or with `threads` one by two threads, as a ratio to one. bench/web.sh builds it for
-// WebAssembly and for this machine, and sets the two beside each other. A line a case: set, instruction set, ratio, its
-// spread, nanoseconds a light.
+// it, on rotating light sets. A line a case: set, instruction set, ratio, its spread. Or what two threads gain, coming from
+// other work or from sleep, and what they gain at mere arithmetic. bench/web.sh builds it for WebAssembly and for this
+// machine, and sets the two beside each other.
+#include "gains.hpp"
 #include "lens.hpp"
 #include "pool.hpp"
 #include "spots_sets.hpp"
@@ -57,62 +58,61 @@ std::vector<SpotFrame> spot_frames(std::size_t count, float median_range) {
 }
 
 /// Times and prints a case, once the code that runs often has been compiled for speed, as browsers do.
-template <class AnyFrame, class Ours, class Theirs>
-void report(const std::string& set, Isa isa, const std::vector<AnyFrame>& frames, Ours ours, Theirs theirs) {
-    take_turns(frames, seconds_a_case / 2, ours, theirs);
-    const Turns turns = take_turns(frames, seconds_a_case, ours, theirs);
-    const double lights = double(frames[0].lights.size() * turns.together);
-    std::printf("%s %s %.3f %.3f %.2f\n", set.c_str(), to_string(isa), turns.ratio(), turns.spread(),
-                1e9 * median(turns.ours) / lights);
-    std::fflush(stdout);
-}
-
 template <Options options, class AnyFrame>
-void time_builds(const std::string& set, const std::vector<AnyFrame>& frames) {
+void time_builds(const char* set, const std::vector<AnyFrame>& frames) {
     static const MadeBounds made(tile_size);
     const lightbin::View view = Lens().view(tile_size);
     const FlatView flat_view = Lens().flat_view(tile_size);
     lightbin::Binner<options> binner;
     Flat<float> flat;
-    report(
-        set, options.isa, frames,
-        [&](const AnyFrame& frame) {
-            static_cast<void>(*binner.bin(view, frame.lights, lightbin::inputs_for<options>(made.bounds)));
-        },
-        [&](const AnyFrame& frame) { flat.build<false>(flat_view, spheres_of(frame), nullptr, nullptr); });
+    const auto time = [&](double seconds) {
+        return take_turns(
+            frames, seconds,
+            [&](const AnyFrame& frame) {
+                static_cast<void>(*binner.bin(view, frame.lights, lightbin::inputs_for<options>(made.bounds)));
+            },
+            [&](const AnyFrame& frame) {
+                flat.build<false>(flat_view, spheres_of(frame), nullptr, nullptr);
+            });
+    };
+    time(seconds_a_case / 2);
+    const Turns turns = time(seconds_a_case);
+    std::printf("%s %s %.3f %.3f\n", set, to_string(options.isa), turns.ratio(), turns.spread());
+    std::fflush(stdout);
 }
 
 /// On the instruction sets that WebAssembly has, too.
 template <DepthTest depth_test = DepthTest::none, class AnyFrame>
-void time_tiers(const std::string& set, const std::vector<AnyFrame>& frames) {
+void time_tiers(const char* set, const std::vector<AnyFrame>& frames) {
     visit_tier<Options{.depth_test = depth_test, .isa = Isa::scalar}>(
         [&]<Options one>() { time_builds<one>(set, frames); });
     visit_tier<Options{.depth_test = depth_test, .isa = Isa::sse2}>(
         [&]<Options one>() { time_builds<one>(set, frames); });
 }
 
-void time_threads(const std::string& set, const std::vector<Frame>& frames) {
+void time_threads() {
+    constexpr Options options = {.isa = Isa::sse2};
+    const std::vector<Frame> frames = field_frames(100000, field20_median);
     const lightbin::View view = Lens().view(tile_size);
     Pool pool(2);
-    const lightbin::Parallel two(2, pool);
-    lightbin::Binner<Options{.isa = Isa::sse2}> binner;
-    const auto build = [&](const lightbin::Parallel& threads) {
-        return [&](const Frame& frame) { static_cast<void>(*binner.bin(view, frame.lights, {}, threads)); };
-    };
-    report(set, Isa::sse2, frames, build(two), build({}));
+    lightbin::Binner<options> binner;
+    const Gains gains =
+        measure_gains({2, pool}, 4 * seconds_a_case, [&](const lightbin::Parallel& threads, std::size_t turn) {
+            return binner.bin(view, frames[turn % frames.size()].lights, {}, threads)->ids().size_bytes();
+        });
+    std::printf("%.2f %.2f %.2f\n", gains.awake, gains.asleep, gains.sums);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     bool threads = false;
-    for (const std::string word : std::vector<std::string>(argv + 1, argv + argc)) {
+    for (const std::string& word : std::vector<std::string>(argv + 1, argv + argc)) {
         if (word == "--quick") seconds_a_case = 0.2;
         threads = threads || word == "threads";
     }
     if (threads) {
-        for (const std::size_t count : {4096u, 10000u, 100000u})
-            time_threads("field20/" + std::to_string(count), field_frames(count, field20_median));
+        time_threads();
         return 0;
     }
     time_tiers("field4/4096", field_frames(4096, field4_median));
