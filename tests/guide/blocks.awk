@@ -22,6 +22,7 @@ inside && /^#include/ {
     next
 }
 inside {
+    if (/^extern "C"/) defines = 1
     if (/^(template|struct|void|int|bool) /) defines = defines || /\) \{$/
     body = body $0 "\n"
 }
