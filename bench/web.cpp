@@ -69,7 +69,8 @@ void time_builds(const char* set, const std::vector<AnyFrame>& frames) {
         return take_turns(
             frames, seconds,
             [&](const AnyFrame& frame) {
-                static_cast<void>(*binner.bin(view, frame.lights, lightbin::inputs_for<options>(made.bounds)));
+                static_cast<void>(
+                    *binner.bin(view, frame.lights, lightbin::inputs_for<options>(made.bounds)));
             },
             [&](const AnyFrame& frame) {
                 flat.build<false>(flat_view, spheres_of(frame), nullptr, nullptr);
@@ -96,8 +97,8 @@ void time_threads() {
     const lightbin::View view = Lens().view(tile_size);
     Pool pool(2);
     lightbin::Binner<options> binner;
-    const Gains gains =
-        measure_gains({2, pool}, 4 * seconds_a_case, [&](const lightbin::Parallel& threads, std::size_t turn) {
+    const Gains gains = measure_gains(
+        {2, pool}, 4 * seconds_a_case, [&](const lightbin::Parallel& threads, std::size_t turn) {
             return binner.bin(view, frames[turn % frames.size()].lights, {}, threads)->ids().size_bytes();
         });
     std::printf("%.2f %.2f %.2f\n", gains.awake, gains.asleep, gains.sums);
