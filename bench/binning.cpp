@@ -356,10 +356,7 @@ void add_threads(Case which) {
 /// Frames of `count` lights each of one of the made sets.
 template <class MakeLights> Make<Frame> made_frames(std::size_t count, Lens lens, MakeLights make) {
     return [=] {
-        std::vector<Frame> frames;
-        for (std::uint32_t seed = 0; seed < rotation(count); ++seed)
-            frames.push_back({lens, make(count, seed)});
-        return frames;
+        return frames_in_turn(count, [&](std::uint32_t seed) { return Frame{lens, make(count, seed)}; });
     };
 }
 

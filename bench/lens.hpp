@@ -16,6 +16,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -70,15 +72,21 @@ inline std::size_t rotation(std::size_t lights) {
     return std::max<std::size_t>(48, 50000 / std::max<std::size_t>(lights, 1));
 }
 
+/// What is met in turn of a set of so many lights: make(seed) of each seed.
+template <class MakeFrame> auto frames_in_turn(std::size_t lights, MakeFrame make) {
+    std::vector<decltype(make(std::uint32_t{}))> frames;
+    for (std::uint32_t seed = 0; seed < rotation(lights); ++seed)
+        frames.push_back(make(seed));
+    return frames;
+}
+
 /// The lights of a .glb file from its cameras in turn, each moved and turned a little.
 inline std::vector<Frame> scene_frames(const std::vector<BenchScene>& views, std::size_t lights) {
-    std::vector<Frame> frames;
-    for (std::uint32_t seed = 0; seed < rotation(lights); ++seed) {
+    return frames_in_turn(lights, [&](std::uint32_t seed) -> Frame {
         const BenchScene& view = views[seed % views.size()];
         const Frustum frustum(view.projection);
-        frames.push_back({{frustum.y, frustum.near_depth, frustum.far_depth}, view.lights(seed)});
-    }
-    return frames;
+        return {{frustum.y, frustum.near_depth, frustum.far_depth}, view.lights(seed)};
+    });
 }
 
 /// What the field sets' lights fall on, as Lens() sees it: ground 12 below the eye, boxes on it, a wall far

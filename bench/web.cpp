@@ -41,20 +41,16 @@ const Lights& spheres_of(const SpotFrame& frame) {
 }
 
 std::vector<Frame> field_frames(std::size_t count, float median_radius) {
-    std::vector<Frame> frames;
-    for (std::uint32_t seed = 0; seed < rotation(count); ++seed)
-        frames.push_back({{}, field(count, median_radius, seed)});
-    return frames;
+    return frames_in_turn(count, [=](std::uint32_t seed) {
+        return Frame{{}, field(count, median_radius, seed)};
+    });
 }
 
 std::vector<SpotFrame> spot_frames(std::size_t count, float median_range) {
-    std::vector<SpotFrame> frames;
-    for (std::uint32_t seed = 0; seed < rotation(count); ++seed) {
-        Spots spots = spot_field(count, median_range, seed);
-        Lights spheres = whole_spheres(spots);
-        frames.push_back({std::move(spots), std::move(spheres)});
-    }
-    return frames;
+    return frames_in_turn(count, [=](std::uint32_t seed) {
+        const Spots spots = spot_field(count, median_range, seed);
+        return SpotFrame{spots, whole_spheres(spots)};
+    });
 }
 
 /// Times and prints a case, once the code that runs often has been compiled for speed, as browsers do.

@@ -46,7 +46,7 @@ inline unsigned bits(bool mask) {
 template <class Real> Real select(bool mask, Real a, Real b) {
     return mask ? a : b;
 }
-// Not by an array of both: where clang 14 vectorizes for WebAssembly, it reads one of another call's.
+// By bits, as of an array of both clang 14 reads another call's where it makes vectors for WebAssembly.
 inline float select_unpredicted(bool mask, float a, float b) {
     const std::uint32_t if_set = 0u - std::uint32_t{mask};
     return bit_cast<float>((bit_cast<std::uint32_t>(a) & if_set) | (bit_cast<std::uint32_t>(b) & ~if_set));
