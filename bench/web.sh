@@ -21,7 +21,7 @@ esac
 
 install_packages clang-14 libglm-dev emscripten node-acorn nodejs
 make_build_folder
-out=build/web
+out=build/web-bench
 mkdir -p $out/headers
 ln -sfn /usr/include/glm $out/headers/glm  # em++ does not look where header-only libraries are
 export NODE_PATH=/usr/share/nodejs         # where Debian's emscripten has a module that it needs
