@@ -135,11 +135,6 @@ TEST_CASE("a wrong option set is refused with a sentence that names the limit") 
     CHECK(has(refusal({.language = ShaderLanguage::hlsl_5_0, .tiles = {0, 1}}), "set"));
     CHECK(has(refusal({.tiles = {1}}), "binding 1"));
     CHECK(has(refusal({.push_constants = true}), "Vulkan"));
-    CHECK(has(refusal({.language = ShaderLanguage::wgsl, .push_constants = true}), "Vulkan"));
-    CHECK(
-        has(refusal({.language = ShaderLanguage::wgsl, .storage = ListStorage::texel_buffer}), "texture_2d"));
-    CHECK(has(refusal({.language = ShaderLanguage::wgsl, .storage = ListStorage::byte_address}), "HLSL"));
-    CHECK(has(refusal({.language = ShaderLanguage::wgsl, .grid = {0}}), "binding 0"));  // where the tiles are
     CHECK(has(refusal({.storage = ListStorage::texture_2d, .texture_width = 16385}), "16384"));
     CHECK(has(refusal({.tile_size = -1}), "-1"));
     CHECK(has(refusal({.storage = ListStorage::uniform_block, .slicing = Slicing::clusters, .max_tiles = 9, .max_entries = 9}),
