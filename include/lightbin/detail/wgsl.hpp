@@ -56,6 +56,7 @@ struct WgslName {
     std::string glsl, wgsl;
 };
 
+/// Goes through a text once, sign by sign and word by word; text() is what came out.
 class WgslTranslation {
 public:
     WgslTranslation(std::string_view glsl, const std::vector<WgslName>& names) : glsl_(glsl), names_(names) {
@@ -100,6 +101,7 @@ private:
             ++at_;
             return;
         }
+        // A type, a space and a name declare something. Types of the text's own begin with the prefix.
         const std::string_view type = wgsl_type(word);
         const std::string_view name = at_ < glsl_.size() && glsl_[at_] == ' ' ? word_at(glsl_, at_ + 1) : "";
         if ((!type.empty() || word == "void" || word.starts_with('$')) && !name.empty()) {
