@@ -45,10 +45,11 @@ extern const std::vector<float> depth_buffer;
 extern const float white, distance, range;
 extern const std::uint32_t this_view_shows;
 extern ThreadPool pool;
+extern const std::uint32_t room;
 
 extern std::span<lightbin::ListRange> mapped_ranges;
 extern std::span<std::uint32_t> mapped_ids;
-extern int tile_buffer, list_buffer, constant_buffer, footprints_buffer;
+extern int tile_buffer, list_buffer, constant_buffer, footprints_buffer, edges_buffer;
 extern const std::string vertex_text, your_fragment_text, your_pixel_shader, your_wgsl;
 template <class... Arguments> void add_compute_pass(Arguments&&... arguments);
 GLuint link(const std::string& vertex, const std::string& fragment);
