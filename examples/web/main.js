@@ -141,13 +141,14 @@ async function use_renderer() {
     renew();
 }
 
+// Ends early, with nothing to tell, when its announcement is closed: by a button, or as something else was chosen.
 async function check() {
-    by_id('compare').disabled = true;
-    tell('Drawing with every light');
+    const wanted = () => !by_id('verdict').hidden;
     renew();  // not for the sharper picture: every light in each of its pixels takes long
     try {
         await new Promise(requestAnimationFrame);  // so that this can be read
-        const found = await compare(renderer, lightbin, frame_settings(), by_id('differences'));
+        const found = await compare(renderer, lightbin, {...frame_settings(), wanted}, by_id('differences'));
+        if (!wanted()) return;
         const of_all = `${found.different.toLocaleString('en')} of ${counted(found.pixels, 'pixel')}`;
         const [lists, every] = found.milliseconds.map(ms => `${Math.round(ms).toLocaleString('en')} ms`);
         const times = ` With lists ${lists}, with every light ${every}.`;
@@ -172,12 +173,22 @@ async function advise() {
 }
 
 const actions = {
-    open: file => jobs.add(() => open_file(file)),
-    compare: () => jobs.add(check),
+    open: file => {
+        complain();
+        tell();
+        jobs.add(() => open_file(file));
+    },
+    compare: () => {
+        if (by_id('compare').disabled) return;
+        by_id('compare').disabled = true;
+        tell('Drawing with every light');
+        jobs.add(check);
+    },
     advise: () => jobs.add(advise),
     camera: view => {
         if (view >= scene.cameras.length) return;
         settings.at = '';
+        tell();
         jobs.add(() => go_to(view));
     },
 };

@@ -102,7 +102,7 @@ export class WebGl {
         const draw = () => this.#draw_triangles(program, bounds !== null, own_lists, look !== 'heat');
         this.#frame_buffer.bind();
         if (look === 'every' || look === 'check') {
-            await this.#draw_in_bands(draw);
+            await this.#draw_in_bands(draw, settings.wanted);
             ms.draw = lap();
         } else {
             this.#timer.begin();
@@ -220,11 +220,11 @@ export class WebGl {
     }
 
     // Every light in every fragment takes long: the page lives on between bands of the picture, and no driver takes the
-    // GPU to hang.
-    async #draw_in_bands(draw) {
+    // GPU to hang. It ends early when it is not wanted any more.
+    async #draw_in_bands(draw, wanted = () => true) {
         const gl = this.#gl, {height} = this.#frame_buffer;
         gl.enable(gl.SCISSOR_TEST);
-        for (let row = 0, rows = 8; row < height;) {
+        for (let row = 0, rows = 8; row < height && wanted();) {
             const begun = performance.now();
             gl.scissor(0, row, this.#frame_buffer.width, rows);
             draw();

@@ -103,7 +103,7 @@ export class WebGpu {
         const bands = cut(width, height, look === 'every_light' || look === 'check' ? light_count : 1);
         for (let right = false; !right;) {
             this.#store('frame', usages.uniform).write(constants(report.longest));
-            const {times, built} = await this.#submit(programs, report, bands);
+            const {times, built} = await this.#submit(programs, report, bands, settings.wanted);
             Object.assign(report.ms, {pre_pass: times[0], bin: frame.ms.bin + times[1], draw: times[2]});
             right = !built || look !== 'heat' || built.longest === report.longest;
             Object.assign(report, built);
@@ -165,16 +165,18 @@ export class WebGpu {
         }
     }
 
-    // Draws, band by band. Returns the milliseconds of pre-pass, lists and picture, and of the lists that were built here
-    // how long they are.
-    async #submit(programs, {tiles_x, tiles_y}, bands) {
+    // Draws, band by band, as long as that is wanted. Returns the milliseconds of pre-pass, lists and picture, and of
+    // the lists that were built here how long they are.
+    async #submit(programs, {tiles_x, tiles_y}, bands, wanted = () => true) {
         const {queue} = this.#device, start = performance.now();
         let encoder = this.#device.createCommandEncoder();
         if (programs.depth) this.#draw_depth(encoder, programs.depth);
         if (programs.lists) this.#build_lists(encoder, programs, tiles_x, tiles_y);
         for (const [i, band] of bands.entries()) {
-            this.#draw_band(encoder, programs, band, i === 0, i === bands.length - 1);
-            if (i === bands.length - 1) break;
+            const first = i === 0, last = i === bands.length - 1;
+            if (!first && !last && !wanted()) continue;
+            this.#draw_band(encoder, programs, band, first, last);
+            if (last) break;
             queue.submit([encoder.finish()]);
             await queue.onSubmittedWorkDone();
             encoder = this.#device.createCommandEncoder();

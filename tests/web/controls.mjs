@@ -2,7 +2,7 @@
 // Each control of the page does what it says: by mouse, by finger and by key.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {Browser, mean_difference, picture, set_slider, text_of, wait_for_text} from './browser.mjs';
+import {Browser, compare, mean_difference, picture, set_slider, text_of, wait_for_text} from './browser.mjs';
 
 const small = 'lights=100&size=20&tile=16';
 let browser;
@@ -235,4 +235,27 @@ test('a link restores what it was made of', async t => {
     for (const [id, value] of Object.entries(values))
         assert.equal(await page.locator('#' + id).inputValue(), value, id);
     assert.deepEqual(new URL(page.url()).hash.slice(1).split('&').sort(), hash.split('&').sort());
+});
+
+for (const renderer of ['webgl', 'webgpu'])
+    test(`${renderer}: a comparison ends when something else is chosen, and tells nothing`, async t => {
+        const page = await browser.open(t, `renderer=${renderer}&lights=5000&size=50&tile=16&move=0`);
+        await page.keyboard.press('c');
+        await page.keyboard.press('c');  // there is one at a time
+        await wait_for_text(page, 'verdict', /^Drawing with every light/);
+        await page.locator('#scene').selectOption('nova');
+        await wait_for_text(page, 'stats', /^255 lights/);
+        assert.ok(!await page.locator('#verdict').isVisible());
+        assert.equal(await page.locator('#compare').isDisabled(), false);
+        assert.match(await compare(page), /^The same picture, byte by byte: 72,000 pixels/);
+        assert.deepEqual(page.complaints, []);
+    });
+
+test('marks of a comparison go when another camera or file is chosen', async t => {
+    const page = await browser.open(t, 'lights=16&view=2&size=20&tile=16&drop=3&move=0');
+    assert.match(await compare(page), /differ/);
+    await page.keyboard.press('1');
+    await page.waitForFunction(() => !location.hash.includes('view'));
+    assert.ok(!await page.locator('#differences').isVisible());
+    assert.ok(!await page.locator('#verdict').isVisible());
 });
