@@ -206,7 +206,9 @@ function change(names) {
 async function draw(exact) {
     const frame = {...frame_settings(), exact};
     const report = await renderer.draw(lightbin, frame);
-    plot.add(report.ms, report.timed);
+    const {method, look, width, height, tile_size} = frame;
+    const of = [renderer.name, scene.of, scene.lights, settings.view, method, look, width, height, tile_size].join();
+    plot.add(report.ms, report.timed, of);
     if (summary.is_due(settings.move)) {
         const {lights} = scene, {name} = renderer;
         summary.show(report, {...settings, ...frame, lights, renderer: name, bin: plot.mean('bin')});

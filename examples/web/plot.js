@@ -18,6 +18,8 @@ export class Plot {
     #numbers = new Map();
     #most = 1;
     #written = 0;
+    #of = '';
+    #alike = 0;  // so many of the latest frames
 
     // `legend`: where the numbers go; each is a button that hides its layer, so that the others can be seen.
     constructor(canvas, legend, note) {
@@ -42,12 +44,15 @@ export class Plot {
         }
     }
 
-    // ms: {pre_pass, lights, bin, upload, draw}; timed: how the drawing was, 'gpu' or 'wall'.
-    add(ms, timed) {
+    // ms: {pre_pass, lights, bin, upload, draw}; timed: how the drawing was, 'gpu' or 'wall'; of: what is drawn and
+    // how, as a text: the numbers are of frames that are alike.
+    add(ms, timed, of) {
+        this.#alike = of === this.#of ? this.#alike + 1 : 1;
+        this.#of = of;
         this.#costs.push(ms);
         if (this.#costs.length > frames) this.#costs.shift();
         this.#paint();
-        if (performance.now() - this.#written < 250) return;  // as often as it can be read
+        if (this.#alike > 1 && performance.now() - this.#written < 250) return;  // as often as it can be read
         this.#written = performance.now();
         const means = layers.map(({name, title}) => [name, title, this.mean(name)]);
         for (const [name, , mean] of means) this.#numbers.get(name).textContent = mean.toFixed(2);
@@ -59,8 +64,8 @@ export class Plot {
 
     // Milliseconds, over the last second or so: clocks of browsers have coarse steps.
     mean(name) {
-        const latest = this.#costs.slice(-averaged);
-        return latest.reduce((sum, ms) => sum + ms[name], 0) / Math.max(latest.length, 1);
+        const latest = this.#costs.slice(-Math.min(this.#alike, averaged));
+        return latest.reduce((sum, ms) => sum + ms[name], 0) / latest.length;
     }
 
     #paint() {

@@ -228,6 +228,15 @@ test('a layer of the plot can be hidden', async t => {
 });
 
 test('a link restores what it was made of', async t => {
+test('the numbers are of the picture on show, not of those before', async t => {
+    const page = await browser.open(t, small + '&move=0&method=box');
+    const pre_pass = async () => parseFloat(await page.locator('#costs b').first().textContent());
+    assert.ok(await pre_pass() > 0);
+    await page.locator('#method').selectOption('z_bins');
+    await page.waitForFunction(() => location.hash.includes('method=z_bins'));
+    assert.equal(await pre_pass(), 0);
+});
+
     const hash = 'scene=street&view=1&move=0&method=z_bins&tile=24&look=heat&size=25&stops=1.5';
     const page = await browser.open(t, hash);
     await page.waitForFunction(() => document.getElementById('stats').textContent.startsWith('598 lights'));
