@@ -283,7 +283,7 @@ async function start() {
             complain(sentence(error.message));
             await show_scene();
         });
-        await draw(false);
+        await draw(false).catch(error => complain(sentence(error.message)));  // another tile size may help
     } catch (error) {
         document.body.classList.add('cannot');
         complain(`${sentence(error.message)} The page needs WebGL 2 and WebAssembly with vectors: Chrome or Edge 95, `

@@ -34,11 +34,12 @@ export function parse_hash(hash) {
     const settings = {...defaults};
     if (matchMedia('(prefers-reduced-motion: reduce)').matches) settings.move = false;
     for (const [name, text] of new URLSearchParams(hash.replace(/^#/, ''))) {
-        const number = Number(text);
+        const number = Number(text), [low, high] = ranges[name] ?? [];
+        const may_be = number >= low && number <= high && (name === 'stops' || Number.isInteger(number));
         if (choices[name]?.includes(text) || name === 'at') settings[name] = text;
         else if (name === 'move') settings.move = text !== '0';
         else if (name === 'size') settings.size = number >= 5 && number <= 200 ? String(number) : 'auto';
-        else if (name in ranges && number >= ranges[name][0] && number <= ranges[name][1]) settings[name] = number;
+        else if (may_be) settings[name] = number;
     }
     return settings;
 }

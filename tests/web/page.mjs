@@ -3,7 +3,9 @@
 import assert from 'node:assert/strict';
 import {readFile} from 'node:fs/promises';
 import {after, before, test} from 'node:test';
-import {Browser, compare, drop, mean_difference, picture, pictures, text_of, wait_for_text} from './browser.mjs';
+import {
+    Browser, compare, drop, mean_difference, picture, pictures, set_slider, text_of, wait_for_text,
+} from './browser.mjs';
 
 const small = 'lights=100&size=20&tile=16';
 let browser;
@@ -17,7 +19,7 @@ test('it loads without a complaint, and soon has a picture', async t => {
     const page = await browser.open(t, '', {width: 1280, height: 720});
     const first = await page.evaluate(() => performance.getEntriesByName('first picture')[0].startTime);
     console.log(`first picture after ${Math.round(first)} ms`);
-    await wait_for_text(page, 'stats', /^10,000 lights, [0-9,]+ in view, \d+ a cluster at most, bin \d+\.\d\d ms$/);
+    await wait_for_text(page, 'stats', /^10,000 lights, [0-9,]+ in view, \d+ a cluster at most, bin\s\d+\.\d\d\sms$/);
     await page.waitForTimeout(1500);
     await screenshot(page, 'desktop');
     assert.equal(await text_of(page, 'alert'), '');
@@ -59,6 +61,32 @@ test('a .glb can be dropped, or opened by the button', async t => {
     await page.locator('#scene').selectOption('city');
     await wait_for_text(page, 'stats', /^100 lights/);
     assert.deepEqual(page.complaints, []);
+});
+
+test('a good file takes away what was said of a broken one', async t => {
+    const page = await browser.open(t, small);
+    await drop(page, 'broken.glb', Buffer.from('This is no scene.'));
+    await wait_for_text(page, 'alert', /./);
+    await drop(page, 'mine.glb', await fixture('nova.glb'));
+    await wait_for_text(page, 'stats', /^255 lights/);
+    assert.equal(await text_of(page, 'alert'), '');
+});
+
+test('an address that makes no sense does no harm', async t => {
+    const page = await browser.open(t, small + '&view=0.5&tile=13.7&lights=12.5&at=1,2&stops=x&scene=file');
+    await wait_for_text(page, 'stats', /^100 lights/);
+    assert.equal(await text_of(page, 'tile_out'), '16 pixels');
+    assert.equal(await page.locator('#view').inputValue(), '0');
+    assert.deepEqual(page.complaints, []);
+});
+
+test('where the first picture can\'t be drawn, another tile size helps', async t => {
+    const page = await browser.open(t, 'lights=100&size=200&tile=1&move=0', {width: 1280, height: 720});
+    await wait_for_text(page, 'alert', /use larger tiles/);
+    await page.locator('#size').selectOption('25');
+    await set_slider(page, 'tile', 64);
+    await wait_for_text(page, 'stats', /^100 lights/);
+    assert.equal(await text_of(page, 'alert'), '');
 });
 
 const lacks = {
