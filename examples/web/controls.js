@@ -33,7 +33,7 @@ export class Controls {
         by_id('advise').addEventListener('click', act.advise);
         by_id('help').addEventListener('click', () => by_id('keys').showModal());
         by_id('fold').addEventListener('click', () => this.#fold());
-        if (matchMedia('(max-width: 640px)').matches) this.#fold();
+        if (matchMedia('(max-width: 640px), (max-height: 480px) and (pointer: coarse)').matches) this.#fold();
         this.#listen_to_keys(act);
         this.#listen_to_drops(act);
         this.show();
@@ -163,9 +163,10 @@ export function show_advice(plans, pixels, take) {
         row.append(...[build_milliseconds.toFixed(2), entries.toLocaleString('en'), (evaluations / pixels).toFixed(1),
             milliseconds.toFixed(1)].map(text => cell('td', text)));
     }
-    by_id('advice').replaceChildren(table, cell('p', 'advise() built this view\'s lists in each way, at four tile sizes, '
-        + 'of which the best is shown: milliseconds of a build (Z bounds: with their pre-pass), list entries, lights that '
-        + 'a pixel goes through, and milliseconds with a guess of the shading. Press one to take it.'));
+    by_id('advice').replaceChildren(table, cell('p', 'advise() built this view\'s lists in each way, at four tile '
+        + 'sizes, of which the best is shown: milliseconds of a build (Z bounds: with their pre-pass), list entries, '
+        + 'lights that a pixel goes through, and milliseconds with a guess of the shading. Press one to take it; those '
+        + 'in grey are not drawn by this page.'));
     by_id('advice').hidden = false;
     by_id('advice').focus();
 }

@@ -20,7 +20,8 @@ export class Summary {
         const place = method === 'clusters' ? 'cluster' : 'tile';
         by_id('stats').textContent = [
             counted(lights, 'light'), `${in_view.toLocaleString('en')} in view`,
-            rejected > 0 ? `${rejected} skipped` : '', `${longest} a ${place} at most`, `bin ${bin.toFixed(2)} ms`,
+            rejected > 0 ? `${rejected} skipped` : '', `${longest.toLocaleString('en')} a ${place} at most`,
+            `bin\u00a0${bin.toFixed(2)}\u00a0ms`,
         ].filter(Boolean).join(', ');
         const rate = Math.round(1000 * this.#frames / this.#apart);
         by_id('frame').textContent = [
@@ -29,7 +30,7 @@ export class Summary {
             drop >= 0 ? `light ${drop} left out of the lists` : '',
         ].filter(Boolean).join(', ');
         for (const name of ['heat', 'check']) by_id(`${name}_legend`).hidden = look !== name;
-        by_id('longest').textContent = longest;
+        by_id('longest').textContent = longest.toLocaleString('en');
         this.#frames = 0;
         this.#since += this.#apart;
     }
