@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// lightbin in WebAssembly: module/ has what it does. No copy of anything large is made: the typed arrays that are handed
-// out are views of the module's memory, and valid until the next call.
+// lightbin in WebAssembly: module/ has what it does. No copy of anything large is made: the typed arrays that are
+// handed out are views of the module's memory, and valid until the next call.
 
 const array_types = {u32: Uint32Array, f32: Float32Array, f64: Float64Array};
 
@@ -108,7 +108,8 @@ class Lightbin {
         return answer;
     }
 
-    // Where the answer is. What the module cannot catch itself, such as a file that is nested too deep, must not cost stack.
+    // Where the answer is. What the module cannot catch itself, such as a file that is nested too deep, must not cost
+    // stack.
     #run(what) {
         const stack = this.#module.stackSave();
         try {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The shaders of the picture in WGSL, as examples/tiled_forward has them in GLSL. What they read is in group 1; group 0 is
-// lightbin's.
+// The shaders of the picture in WGSL, as examples/tiled_forward has them in GLSL. What they read is in group 1; group 0
+// is lightbin's.
 
 // Its constants come from frame_constants().
 const resources = `
@@ -44,8 +44,10 @@ struct Surface {
     @location(1) colour : vec3f,
 }
 
-@vertex fn vertex_main(@location(0) position : vec3f, @location(1) normal : vec3f, @location(2) colour : vec3f) -> Surface {
-    return Surface(frame.projection * (frame.view * vec4f(position, 1.0)), (frame.view * vec4f(normal, 0.0)).xyz, colour);
+@vertex fn vertex_main(@location(0) position : vec3f, @location(1) normal : vec3f,
+                       @location(2) colour : vec3f) -> Surface {
+    let place = frame.view * vec4f(position, 1.0);
+    return Surface(frame.projection * place, (frame.view * vec4f(normal, 0.0)).xyz, colour);
 }
 `;
 
@@ -154,7 +156,8 @@ fn view_position(at : vec4f) -> vec3f {
 }
 `;
 
-// `look`: 'lit', 'heat', 'check', or 'every_light', which reads no list; `snippet`: lightbin's text, '' for 'every_light'.
+// `look`: 'lit', 'heat', 'check', or 'every_light', which reads no list; `snippet`: lightbin's text, '' for
+// 'every_light'.
 export function surface_shader(look, snippet, has_spots) {
     const looks = {lit: lit_look, every_light: lit_look, heat: heat_look, check: check_look};
     return snippet + resources + `const has_spots = ${has_spots};\n` + vertex + lighting +

@@ -99,7 +99,8 @@ export class WebGpu {
         this.#upload(frame, programs);
         report.ms.upload = performance.now() - start;
 
-        // 3. Depth, lists and picture: of the heat map once more, where its colours were not relative to the longest list.
+        // 3. Depth, lists and picture: of the heat map once more, where its colours were not relative to the longest
+        // list.
         const bands = cut(width, height, look === 'every_light' || look === 'check' ? light_count : 1);
         for (let right = false; !right;) {
             this.#store('frame', usages.uniform).write(constants(report.longest));
@@ -139,8 +140,9 @@ export class WebGpu {
         this.#picture?.destroy();
         this.#depth?.destroy();
         const {RENDER_ATTACHMENT, COPY_SRC, TEXTURE_BINDING} = GPUTextureUsage, size = [width, height];
-        this.#picture = this.#device.createTexture({size, format: picture_format, usage: RENDER_ATTACHMENT | COPY_SRC});
-        this.#depth = this.#device.createTexture({size, format: depth_format, usage: RENDER_ATTACHMENT | TEXTURE_BINDING});
+        const texture = (format, usage) => this.#device.createTexture({size, format, usage});
+        this.#picture = texture(picture_format, RENDER_ATTACHMENT | COPY_SRC);
+        this.#depth = texture(depth_format, RENDER_ATTACHMENT | TEXTURE_BINDING);
     }
 
     #store(name, usage = usages.storage) {
@@ -227,8 +229,10 @@ export class WebGpu {
         });
         pass.setScissorRect(0, top, this.#picture.width, rows);
         this.#draw_vertices(pass, surface, this.#resources(lists && this.#lists), 0, this.#opaque);
-        if (glass)
-            this.#draw_vertices(pass, glass, this.#resources(glass_lists && this.#glass_lists), this.#opaque, this.#glass);
+        if (glass) {
+            const resources = this.#resources(glass_lists && this.#glass_lists);
+            this.#draw_vertices(pass, glass, resources, this.#opaque, this.#glass);
+        }
         pass.end();
     }
 
@@ -276,7 +280,8 @@ export class WebGpu {
         const encoder = this.#device.createCommandEncoder(), {width, height} = this.#picture;
         if (this.#canvas.width !== width) this.#canvas.width = width;
         if (this.#canvas.height !== height) this.#canvas.height = height;
-        encoder.copyTextureToTexture({texture: this.#picture}, {texture: this.#context.getCurrentTexture()}, [width, height]);
+        const canvas = {texture: this.#context.getCurrentTexture()};
+        encoder.copyTextureToTexture({texture: this.#picture}, canvas, [width, height]);
         this.#device.queue.submit([encoder.finish()]);
     }
 
@@ -286,7 +291,8 @@ export class WebGpu {
         const pixels = this.#store('pixels', usages.results);
         pixels.reserve(row * height);
         const encoder = this.#device.createCommandEncoder();
-        encoder.copyTextureToBuffer({texture: this.#picture}, {buffer: pixels.buffer, bytesPerRow: row}, [width, height]);
+        const target = {buffer: pixels.buffer, bytesPerRow: row};
+        encoder.copyTextureToBuffer({texture: this.#picture}, target, [width, height]);
         this.#device.queue.submit([encoder.finish()]);
         await pixels.buffer.mapAsync(GPUMapMode.READ);
         const padded = new Uint8Array(pixels.buffer.getMappedRange()), bytes = new Uint8Array(4 * width * height);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lists made where the depths are: lightbin's shaders reduce a depth buffer to Z bounds, and build the lists from those.
+// Lists made where the depths are: lightbin's shaders reduce a depth buffer to Z bounds, and build the lists from
+// those.
 import {Program, Store, usages} from './webgpu_parts.js';
 
 // Z bounds come from a depth pre-pass.
@@ -13,7 +14,8 @@ export class BuiltLists {
             this[name] = new Store(device, usages.uniform);
     }
 
-    // The shaders, in the order of their dispatches. Glass may stand anywhere before what is opaque, and before the sky.
+    // The shaders, in the order of their dispatches. Glass may stand anywhere before what is opaque, and before the
+    // sky.
     static async kernels(device, lightbin, depth_test, orthographic, for_glass) {
         const language = 'wgsl', max_only = for_glass;
         const reduce = lightbin.text('reduce', {language, stage: 'compute', orthographic, skip_background: !for_glass});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Prints a line for each light grid that tests/web/module.mjs makes in WebAssembly too: what it is of, its entries, and a
-// hash of ranges, ids, glass ranges and ids, slices and bins.
+// Prints a line for each light grid that tests/web/module.mjs makes in WebAssembly too: what it is of, its entries, and
+// a hash of ranges, ids, glass ranges and ids, slices and bins.
 #include "stage.hpp"
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the module of examples/web hands to the page: no list lacks a light, by brute force in world space, and a bad file
-// leaves the scene from before.
+// What the module of examples/web hands to the page: no list lacks a light, by brute force in world space, and a bad
+// file leaves the scene from before.
 #include "glb.hpp"
 
 #include "stage.hpp"
@@ -70,7 +70,8 @@ bool reaches(const Light& light, const glm::dvec3& point) {
            (static_cast<double>(light.cos_outer) + 1e-4) * distance;
 }
 
-// The slice of a depth as the shader looks it up: after the fourth word, the boundaries as words that ascend as they do.
+// The slice of a depth as the shader looks it up: after the fourth word, the boundaries as words that ascend as they
+// do.
 std::size_t slice_at(const Frame& frame, double depth) {
     const float single = static_cast<float>(depth);
     std::uint32_t bits;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// node tests/web/module.mjs FOLDER LISTS: the module that a browser gets, in FOLDER, makes the same lists as this machine's
-// program, whose output LISTS is; what is wrong is a sentence; and all files together are small enough for a page.
+// node tests/web/module.mjs FOLDER LISTS: the module that a browser gets, in FOLDER, makes the same lists as this
+// machine's program, whose output LISTS is; what is wrong is a sentence; and all files together are small enough for a
+// page.
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import path from 'node:path';
@@ -48,8 +49,8 @@ function same_lists() {
 }
 
 function no_scene() {
-    const camera = {to_world: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], orthographic: false, height: 1, near: 1};
-    const asked = {...settings, camera: {...camera, far: Infinity}};
+    const to_world = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+    const asked = {...settings, camera: {to_world, orthographic: false, height: 1, near: 1, far: Infinity}};
     assert.equal(lightbin.scene.lights, 0);
     assert.throws(() => lightbin.frame(asked), /^Error: there is no scene yet$/);
     assert.equal(lightbin.view(asked).projection[11], -1);
@@ -59,9 +60,11 @@ function no_scene() {
 // A file of one node, with so many arrays in each other.
 function nested_glb(depth) {
     const extras = '['.repeat(depth) + ']'.repeat(depth);
-    const json = `{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"extras":${extras}}]}`.padEnd(2 * depth + 96);
-    const words = Uint32Array.of(0x46546c67, 2, 20 + json.length + 12, json.length, 0x4e4f534a);
-    return Buffer.concat([Buffer.from(words.buffer), Buffer.from(json), Buffer.from(Uint32Array.of(4, 0x4e4942, 0).buffer)]);
+    const text = `{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"extras":${extras}}]}`;
+    const json = text.padEnd(2 * depth + 96);
+    const words = (...all) => Buffer.from(Uint32Array.from(all).buffer);
+    const head = words(0x46546c67, 2, 20 + json.length + 12, json.length, 0x4e4f534a);
+    return Buffer.concat([head, Buffer.from(json), words(4, 0x4e4942, 0)]);
 }
 
 function sentences() {
@@ -89,10 +92,12 @@ function sentences() {
 }
 
 function advice() {
-    const seen = {...settings, camera: lightbin.make('city', 500).cameras[0]}, {tiles_x, tiles_y} = lightbin.view(seen);
-    const bounds = {min: new Float32Array(tiles_x * tiles_y).fill(20), max: new Float32Array(tiles_x * tiles_y).fill(60)};
+    const seen = {...settings, camera: lightbin.make('city', 500).cameras[0]};
+    const {tiles_x, tiles_y} = lightbin.view(seen), all = depth => new Float32Array(tiles_x * tiles_y).fill(depth);
+    const bounds = {min: all(20), max: all(60)};
     bounds.glass_max = bounds.max;
-    const without_depth = lightbin.advise(seen), plans = lightbin.advise({...seen, z_bounds_milliseconds: 1000}, bounds);
+    const without_depth = lightbin.advise(seen);
+    const plans = lightbin.advise({...seen, z_bounds_milliseconds: 1000}, bounds);
     for (const some of [without_depth, plans]) {
         assert.ok(some.length > 5 && some[0].best && some.filter(plan => plan.best).length === 1);
         assert.ok(some.every((plan, i) => i === 0 || some[i - 1].milliseconds <= plan.milliseconds));
@@ -102,10 +107,12 @@ function advice() {
 
     // A plan has as many entries as the lists that the page makes of it, and a pre-pass costs what it took.
     for (const method of ['none', 'interval', 'box', 'z_bins', 'clusters']) {
-        const sliced = method === 'z_bins' || method === 'clusters', test = method === 'clusters' ? 'box' : sliced ? 'none' : method;
-        const plan = plans.find(({footprint, depth_test, slicing, tile_size}) => footprint === 'rectangle' && depth_test === test
-            && slicing === (sliced ? method : 'none') && tile_size === seen.tile_size);
-        assert.equal(plan.entries, lightbin.frame({...seen, method}, sliced || method === 'none' ? null : bounds).entries, method);
+        const sliced = method === 'z_bins' || method === 'clusters';
+        const test = method === 'clusters' ? 'box' : sliced ? 'none' : method;
+        const plan = plans.find(({footprint, depth_test, slicing, tile_size}) => footprint === 'rectangle'
+            && depth_test === test && slicing === (sliced ? method : 'none') && tile_size === seen.tile_size);
+        const lists = lightbin.frame({...seen, method}, sliced || method === 'none' ? null : bounds);
+        assert.equal(plan.entries, lists.entries, method);
         assert.equal(plan.build_milliseconds > 1000, method === 'interval' || method === 'box', method);
     }
     return `advise() weighs ${plans.length} plans`;
