@@ -205,7 +205,8 @@ function change(names) {
 // exact: what it reports is of this very frame.
 async function draw(exact) {
     const frame = {...frame_settings(), exact};
-    const report = await renderer.draw(lightbin, frame);
+    const slow = setTimeout(() => by_id('frame').textContent = 'Drawing, which takes a while here', 1000);
+    const report = await renderer.draw(lightbin, frame).finally(() => clearTimeout(slow));
     const {method, look, width, height, tile_size} = frame;
     const of = [renderer.name, scene.of, scene.lights, settings.view, method, look, width, height, tile_size].join();
     plot.add(report.ms, report.timed, of);
