@@ -125,12 +125,11 @@ export class WebGpu {
         const {times} = await this.#submit(programs, {tiles_x, tiles_y}, []);
 
         const encoder = this.#device.createCommandEncoder(), pairs = this.#store('bounds', usages.results);
-        pairs.reserve(8 * tiles_x * tiles_y);
-        encoder.copyBufferToBuffer(this.#lists.z_bounds.buffer, 0, pairs.buffer, 0, 8 * tiles_x * tiles_y);
+        const bytes = 8 * tiles_x * tiles_y;
+        pairs.reserve(bytes);
+        encoder.copyBufferToBuffer(this.#lists.z_bounds.buffer, 0, pairs.buffer, 0, bytes);
         this.#device.queue.submit([encoder.finish()]);
-        await pairs.buffer.mapAsync(GPUMapMode.READ);
-        const words = new Float32Array(pairs.buffer.getMappedRange().slice(0, 8 * tiles_x * tiles_y));
-        pairs.buffer.unmap();
+        const words = new Float32Array(await pairs.read(bytes));
         const side = first => words.filter((_, i) => i % 2 === first);
         return {min: side(0), max: side(1), milliseconds: times[0]};
     }
@@ -188,9 +187,7 @@ export class WebGpu {
         results.reserve(tiles_at + 8 * tiles);
         this.#copy_results(encoder, results.buffer, tiles);
         queue.submit([encoder.finish()]);
-        await results.buffer.mapAsync(GPUMapMode.READ);
-        const bytes = results.buffer.getMappedRange().slice(0), wall = performance.now() - start;
-        results.buffer.unmap();
+        const bytes = await results.read(tiles_at + 8 * tiles), wall = performance.now() - start;
         const at = Array.from(new BigUint64Array(bytes, 0, 6), nanoseconds => Number(nanoseconds) / 1e6);
         const taken = (there, first) => (there ? at[first + 1] - at[first] : 0);
         return {
@@ -294,10 +291,8 @@ export class WebGpu {
         const target = {buffer: pixels.buffer, bytesPerRow: row};
         encoder.copyTextureToBuffer({texture: this.#picture}, target, [width, height]);
         this.#device.queue.submit([encoder.finish()]);
-        await pixels.buffer.mapAsync(GPUMapMode.READ);
-        const padded = new Uint8Array(pixels.buffer.getMappedRange()), bytes = new Uint8Array(4 * width * height);
+        const padded = new Uint8Array(await pixels.read(row * height)), bytes = new Uint8Array(4 * width * height);
         for (let y = 0; y < height; y++) bytes.set(padded.subarray(row * y, row * y + 4 * width), 4 * width * y);
-        pixels.buffer.unmap();
         return bytes;
     }
 }

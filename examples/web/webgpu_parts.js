@@ -34,6 +34,14 @@ export class Store {
         this.reserve(at + words.byteLength);
         this.device.queue.writeBuffer(this.buffer, at, words);
     }
+
+    // The first bytes of results, when the device has written them.
+    async read(bytes) {
+        await this.buffer.mapAsync(GPUMapMode.READ);
+        const copy = this.buffer.getMappedRange().slice(0, bytes);
+        this.buffer.unmap();
+        return copy;
+    }
 }
 
 const {VERTEX: vertex, FRAGMENT: fragment, COMPUTE: compute} = globalThis.GPUShaderStage ?? {};

@@ -424,8 +424,8 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
     if (const auto error = refuse(options)) return *error;
     ShaderWriter writer(options.language, options.prefix);
     const ListBuffers buffers = list_buffers(options);
-    if (options.wave_loop &&
-        writer.dialect().wgsl)  // no compiler sees that a wave's loop ends for all of its lanes at once
+    // A wave's loop ends for all of its lanes at once, which no compiler of WGSL sees.
+    if (options.wave_loop && writer.dialect().wgsl)
         writer.add("enable subgroups;\ndiagnostic(off, subgroup_uniformity);\n");
     else if (options.wave_loop && !writer.dialect().hlsl)
         writer.add("#extension GL_KHR_shader_subgroup_arithmetic : require\n");
