@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Stage 3: footprints (+ Z bounds) -> the light grid.
+// Stage 3: footprints (+ Z bounds), of all lights in view or by slice -> the light grid.
 #pragma once
 
 #include <lightbin/detail/buffer.hpp>
+#include <lightbin/detail/cell_boxes.hpp>
 #include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/kernels.hpp>
 #include <lightbin/detail/maybe.hpp>
 #include <lightbin/detail/parts.hpp>
@@ -13,7 +15,6 @@
 #include <lightbin/light_grid.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/parallel.hpp>
-#include <lightbin/project.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/view.hpp>
 #include <lightbin/z_bounds.hpp>
@@ -28,95 +29,108 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
-namespace detail {
-
-/// The edges of all tiles, for boxes.
-class TileEdges {
-public:
-    void find(const Camera& camera) {
-        const ImageAxis* axes[] = {&camera.x, &camera.y};
-        for (std::size_t i = 0; i < 2; ++i) {
-            const std::size_t capacity = static_cast<std::size_t>(axes[i]->tiles) + 8;  // vectors are read
-            float *low = sides_[2 * i].reserve(capacity), *high = sides_[2 * i + 1].reserve(capacity);
-            for (int tile = 0; tile < axes[i]->tiles; ++tile)
-                tile_edges(*axes[i], tile, low[tile], high[tile]);
-        }
-    }
-    void give(const float* (&edges)[4]) const {
-        for (std::size_t i = 0; i < 4; ++i)
-            edges[i] = sides_[i].data();
-    }
-
-private:
-    Buffer<float> sides_[4];
-};
-
-}  // namespace detail
-
-/// A light grid in memory of its own, kept from call to call.
-template <class Id, Footprint footprint, DepthTest depth_test> class GridLists {
+/// Light grids in memory of their own, kept from call to call: one of all lights in view or, `sliced`, one of each slice.
+template <class Id, Footprint footprint, DepthTest depth_test, bool sliced> class GridLists {
+    static_assert(
+        !sliced || depth_test == DepthTest::none || depth_test == DepthTest::box,
+        "lightbin: with slices the depth test is none, as lights are in the slices that they meet, or box");
     static constexpr bool worded = detail::with_words<footprint, depth_test>,
-                          with_boxes = depth_test == DepthTest::box || depth_test == DepthTest::split_box;
+                          with_boxes = depth_test == DepthTest::box || depth_test == DepthTest::split_box,
+                          by_slab = sliced && with_boxes && footprint == Footprint::rectangle;
 
 public:
-    /// Builds the grid of the footprints with a kernel of an instruction set. Returns an Error if Z bounds
-    /// are shorter than the grid, or 32-bit offsets can't reach the list's end; then there is no grid.
+    /// Builds the grids with kernels of an instruction set: the tiles of the first slice row by row, then those of the next
+    /// one. Returns an Error if Z bounds are shorter than a grid, or 32-bit offsets can't reach the list's end; then there is
+    /// no grid.
     ///
-    /// footprints  Footprints or RankedFootprints, with spheres for a depth test
-    /// parallel    Serial or Parallel
-    /// spots       the lights are spots
+    /// spots     the lights are spots
+    /// lit       Footprints or RankedFootprints, with spheres for a depth test; sliced: SlicedFootprints
+    /// parallel  Serial or Parallel
     template <bool spots, class Lit, class Threads>
-    detail::Maybe<Error> build(Isa isa, const View& view, const Lit& footprints, const ZBounds& bounds,
+    detail::Maybe<Error> build(Isa isa, const View& view, const Lit& lit, const ZBounds& bounds,
                                detail::Buffer<detail::Scratch>& scratch,
                                [[maybe_unused]] const Threads& parallel) {
         tile_count_ = entries_ = 0;  // until there is a grid
-        const std::size_t tiles = view.tile_count();
-        Job job = {};
-        if (const auto error = prepare(view, footprints, bounds, job)) return error;
+        Job all = {};
+        if (const auto error = prepare(view, bounds, all)) return error;
+        const std::size_t tiles = view.tile_count(), slices = static_cast<std::size_t>(lit.slices());
         const unsigned rows = static_cast<unsigned>(view.tiles_y());
-        std::uint64_t capacity = footprints.area();
+        all.tiles = tiles_.reserve(std::uint64_t{tiles} * slices + all.spare_tiles);
+        std::uint64_t lights = 0, area = 0;
+        for (std::size_t slice = 0; slice < slices; ++slice) {
+            const Job job = job_of(all, lit, slice);
+            if (const auto error = check_places(job)) return error;
+            lights += job.visible;
+            area += job.area;
+        }
+        std::uint64_t capacity = area;
         // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.
         if constexpr (worded)
-            if (capacity > most)
-                capacity = detail::scalar::count_entries<footprint, depth_test, false, spots>(
-                    job, scratch.data()[0]);
+            if (area > most) {
+                capacity = 0;
+                for (std::size_t slice = 0; slice < slices; ++slice)
+                    capacity += detail::scalar::count_entries<footprint, depth_test, by_slab, spots>(
+                        job_of(all, lit, slice), scratch.data()[0]);
+            }
         if (capacity > most) return Error{ErrorCode::too_many_entries, capacity, most};
 
-        job.tiles = tiles_.reserve(tiles + job.spare_tiles);
-        tile_count_ = tiles;
-        const auto kernel = detail::bin_kernel<footprint, depth_test, Id, false, spots>(
-            isa, view, footprints.visible(), footprints.area());
-        Id* list = indices_.reserve(capacity + slack);
+        Id* const list = indices_.reserve(capacity + slack);
+        tile_count_ = tiles * slices;
+        const auto build_slices = [&](std::size_t begin, std::size_t end, Id* out, detail::Scratch& memory) {
+            std::uint32_t at = 0;
+            for (std::size_t slice = begin; slice < end; ++slice) {
+                Job job = job_of(all, lit, slice);
+                // What is behind the last of these slices may be another thread's.
+                if (end < slices) job.spare_tiles = detail::min_of(job.spare_tiles, (end - slice - 1) * tiles);
+                const auto kernel = kernel_of<spots>(isa, view, job);
+                at += static_cast<std::uint32_t>(kernel(job, memory, {0, rows, out + at, at}));
+            }
+            return std::uint64_t{at};
+        };
         shared_ = false;
         if constexpr (!std::is_same_v<Threads, Serial>) {
-            const std::size_t parts = detail::min_of<std::size_t>(parallel.workers(), rows);
-            const double lights = footprints.visible(), entries = static_cast<double>(capacity);
-            shared_ = parts > 1 && footprints.area() <= most &&
-                      parallel.pays_off(kernel == detail::scatter_kernel<Id>(isa)
-                                            ? detail::scatter_ns(lights, entries)
-                                            : detail::supertile_ns(isa, worded, lights, entries));
+            const std::size_t parts = detail::min_of<std::size_t>(parallel.workers(), sliced ? slices : rows);
+            const bool scatters = !worded && detail::scatter_is_faster(isa, tile_count_, lights, area);
+            const double count = static_cast<double>(lights), entries = static_cast<double>(area);
+            shared_ = parts > 1 && area <= most &&
+                      parallel.pays_off(scatters ? detail::scatter_ns(count, entries)
+                                                 : detail::supertile_ns(isa, worded, count, entries));
             if (shared_) {
-                entries_ = build_parts(isa, job, kernel, list, scratch, parallel, parts);
+                scratch.reserve(parts, parts);
+                const detail::Items<detail::Part> shares = {parts_.reserve(parts), parts};
+                if constexpr (sliced) {
+                    detail::share_steps(shares, slices, detail::empty_row_cost(tiles),
+                                        [&](std::size_t slice) { return lit.slice(slice).area; });
+                    entries_ = detail::build_apart(
+                        parallel, shares, all.tiles, tiles, spares_, list, [&](std::size_t i, Id* out) {
+                            return build_slices(shares[i].begin, shares[i].end, out, scratch.data()[i]);
+                        });
+                } else {
+                    const Job job = job_of(all, lit, 0);
+                    entries_ = build_parts(isa, job, kernel_of<spots>(isa, view, job), list, scratch, parallel, shares);
+                }
                 return {};
             }
         }
-        entries_ = static_cast<std::size_t>(kernel(job, scratch.data()[0], {0, rows, list, 0}));
+        entries_ = static_cast<std::size_t>(build_slices(0, slices, list, scratch.data()[0]));
         return {};
     }
 
     /// Writes bitmasks of the footprints, `each` words a tile, see bits.inl. Errors as build() but for offsets. There is no
     /// grid then.
     template <bool spots, class Lit>
-    detail::Maybe<Error> write_bits(Isa isa, const View& view, const Lit& footprints, const ZBounds& bounds,
+    detail::Maybe<Error> write_bits(Isa isa, const View& view, const Lit& lit, const ZBounds& bounds,
                                     detail::Buffer<detail::Scratch>& scratch, const Parallel& parallel,
                                     std::uint32_t* bits, std::size_t each) {
         tile_count_ = entries_ = 0;
-        Job job = {};
-        if (const auto error = prepare(view, footprints, bounds, job)) return error;
+        Job all = {};
+        if (const auto error = prepare(view, bounds, all)) return error;
+        const Job job = job_of(all, lit, 0);
+        if (const auto error = check_places(job)) return error;
         const auto kernel = detail::bits_kernel<footprint, depth_test, Id, spots>(isa);
         const std::size_t rows = static_cast<std::size_t>(view.tiles_y()), bands = (rows + 7) / 8;
-        const bool share = parallel.pays_off(
-            detail::supertile_ns(isa, true, footprints.visible(), static_cast<double>(footprints.area())));
+        const bool share =
+            parallel.pays_off(detail::supertile_ns(isa, true, job.visible, static_cast<double>(job.area)));
         const std::size_t parts =
             share ? detail::max_of<std::size_t>(detail::min_of(parallel.workers(), bands), 1) : 1;
         scratch.reserve(parts, parts);
@@ -142,75 +156,92 @@ private:
     static constexpr std::size_t slack = detail::BandJob<Id>::slack;
     static constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
 
-    /// Makes a job that has no table yet.
-    template <class Lit>
-    detail::Maybe<Error> prepare(const View& view, const Lit& footprints, const ZBounds& bounds, Job& job) {
+    /// Makes what the jobs of all slices share, but for the table.
+    detail::Maybe<Error> prepare(const View& view, const ZBounds& bounds, Job& all) {
         const std::size_t tiles = view.tile_count();
-        job = {.camera = &detail::camera_of(view),
-               .lights = footprints.arrays(),
-               .runs = footprints.runs(),
-               .visible = footprints.visible(),
-               .bounds = {},
-               .slab = {-detail::infinity, detail::infinity},
-               .edges = {},
-               .tiles = nullptr,
-               .spare_tiles = Job::slack(static_cast<std::size_t>(view.tiles_x()))};
+        all.camera = &detail::camera_of(view);
+        all.spare_tiles = Job::slack(static_cast<std::size_t>(view.tiles_x()));
         const std::span<const float> sides[] = {bounds.min, bounds.max, bounds.gap_min, bounds.gap_max};
         for (std::size_t side = 0; side < 4; ++side) {
             if (sides[side].empty()) continue;
             if (sides[side].size() < tiles)
                 return Error{ErrorCode::z_bounds_too_small, tiles, sides[side].size()};
-            job.bounds[side] = sides[side].data();
+            all.bounds[side] = sides[side].data();
         }
-        if constexpr (with_boxes) {
-            edges_.find(*job.camera);
-            edges_.give(job.edges);
+        if constexpr (with_boxes) find_edges(all);
+        return {};
+    }
+
+    /// Finds the edges of all tiles, for boxes.
+    void find_edges(Job& all) {
+        const detail::ImageAxis* axes[] = {&all.camera->x, &all.camera->y};
+        for (std::size_t i = 0; i < 2; ++i) {
+            const std::size_t capacity = static_cast<std::size_t>(axes[i]->tiles) + 8;  // vectors are read
+            float *low = edges_[2 * i].reserve(capacity), *high = edges_[2 * i + 1].reserve(capacity);
+            for (int tile = 0; tile < axes[i]->tiles; ++tile)
+                detail::tile_edges(*axes[i], tile, low[tile], high[tile]);
+            all.edges[2 * i] = low;
+            all.edges[2 * i + 1] = high;
         }
-        if (footprints.area() > detail::surely_listed_area)
+    }
+
+    template <class Lit> static Job job_of(const Job& all, const Lit& lit, std::size_t slice) {
+        Job job = all;
+        static_cast<detail::LitSlice&>(job) = lit.slice(slice);
+        if constexpr (sliced)
+            job.tiles += slice * static_cast<std::size_t>(all.camera->x.tiles) *
+                         static_cast<std::size_t>(all.camera->y.tiles);
+        return job;
+    }
+
+    static detail::Maybe<Error> check_places(const Job& job) {
+        if (job.area > detail::surely_listed_area)
             if (const std::uint64_t places = detail::list_places(job); places > most)
                 return Error{ErrorCode::too_many_list_places, places, most};
         return {};
     }
 
-    /// Builds `count` parts on the caller's threads, see make_parts(). Returns the number of entries.
+    template <bool spots>
+    static detail::BinKernel<Id> kernel_of(Isa isa, const View& view, const Job& job) {
+        return detail::bin_kernel<footprint, depth_test, Id, by_slab, spots>(isa, view, job.visible, job.area);
+    }
+
+    /// Builds parts of tile rows on the caller's threads. Returns the number of entries.
     std::size_t build_parts(Isa isa, const Job& job, detail::BinKernel<Id> kernel, Id* list,
                             detail::Buffer<detail::Scratch>& scratch, const Parallel& parallel,
-                            std::size_t count) {
-        scratch.reserve(count, count);
-        detail::Part* parts = parts_.reserve(count);
-        detail::make_parts(job, parallel, row_sums_, parts, count);
-        if constexpr (!worded) {
-            spares_.reserve(count, count);
+                            detail::Items<detail::Part> parts) {
+        detail::make_parts(job, parallel, row_sums_, parts);
+        if constexpr (worded) {
+            return detail::build_apart(
+                parallel, parts, job.tiles, static_cast<std::size_t>(job.camera->x.tiles), spares_, list,
+                [&](std::size_t i, Id* out) {
+                    return kernel(job, scratch.data()[i], {parts[i].begin, parts[i].end, out, 0});
+                });
+        } else {
+            spares_.reserve(parts.size(), parts.size());
             // Rectangles: a part's place in the list is known. Its last entries go there by way of spare memory,
             // as a kernel writes beyond its end, where the next part is at work.
-            parallel.run(count, [&](std::size_t i) {
+            parallel.run(parts.size(), [&](std::size_t i) {
                 const detail::Part& part = parts[i];
                 Id* out = list + part.before;
-                if (i + 1 == count ||
-                    kernel == detail::scatter_kernel<Id>(isa)) {  // which writes nothing beyond
-                    kernel(job, scratch.data()[i],
-                           {part.begin, part.end, out, static_cast<std::uint32_t>(part.before)});
-                    return;
+                detail::BandJob<Id> rows = {part.begin, part.end, out, static_cast<std::uint32_t>(part.before)};
+                // The last part has room for that, and scattering writes nothing beyond.
+                const bool beyond = i + 1 < parts.size() && kernel != detail::scatter_kernel<Id>(isa);
+                if (beyond) {
+                    rows.spare_row = part.spare_row;
+                    rows.spare = spares_.data()[i].reserve(part.spare_area + slack);
                 }
-                Id* spare = spares_.data()[i].reserve(part.spare_area + slack);
-                kernel(job, scratch.data()[i],
-                       {part.begin, part.end, out, static_cast<std::uint32_t>(part.before), part.spare_row,
-                        spare});
-                detail::copy_items(spare, part.spare_area, out + part.area - part.spare_area);
+                kernel(job, scratch.data()[i], rows);
+                if (beyond) detail::copy_items(rows.spare, part.spare_area, out + part.area - part.spare_area);
             });
-            return static_cast<std::size_t>(parts[count - 1].before + parts[count - 1].area);
-        } else {
-            return static_cast<std::size_t>(detail::build_apart(
-                parallel, {parts, count}, job.tiles, static_cast<std::size_t>(job.camera->x.tiles), spares_,
-                list, [&](std::size_t i, Id* out) {
-                    return kernel(job, scratch.data()[i], {parts[i].begin, parts[i].end, out, 0});
-                }));
+            const detail::Part& last = parts[parts.size() - 1];
+            return static_cast<std::size_t>(last.before + last.area);
         }
     }
 
     detail::Buffer<ListRange> tiles_;
     detail::Buffer<Id> indices_;
-    detail::TileEdges edges_;
+    detail::Buffer<float> edges_[4];
     detail::Buffer<detail::Part> parts_;
     detail::Buffer<detail::Buffer<Id>> spares_;  ///< one a part: what it can't put in its place at once
     detail::Buffer<std::uint64_t> row_sums_;

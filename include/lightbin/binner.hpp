@@ -3,7 +3,6 @@
 #pragma once
 
 #include <lightbin/bin.hpp>
-#include <lightbin/clusters.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/maybe.hpp>
 #include <lightbin/detail/scratch.hpp>
@@ -17,6 +16,7 @@
 #include <lightbin/project.hpp>
 #include <lightbin/ranked_footprints.hpp>
 #include <lightbin/result.hpp>
+#include <lightbin/sliced_footprints.hpp>
 #include <lightbin/slices.hpp>
 #include <lightbin/view.hpp>
 #include <lightbin/z_bounds.hpp>
@@ -146,12 +146,7 @@ public:
     Result<LightGrid<Id>> bin(const View& view, const LightRange& lights, const Inputs& inputs = {},
                               const Threads& threads = {}) {
         if (const auto error = project(view, lights, inputs, threads)) return *error;
-        if constexpr (clusters)
-            return build<spots<LightRange>>(lists_, view, inputs.slices, threads, inputs.slices.count());
-        else if constexpr (with_depth)
-            return build<spots<LightRange>>(lists_, view, inputs.bounds, threads);
-        else
-            return build<spots<LightRange>>(lists_, view, ZBounds(), threads);
+        return build<spots<LightRange>>(lists_, view, bounds_of(inputs), threads);
     }
 
     /// Returns both grids of a scene with transparent geometry from one projection, valid until the Binner's
@@ -192,18 +187,19 @@ public:
         if (const auto error = project(view, lights, inputs, threads)) return *error;
         const std::uint64_t numbered = z_bins ? footprints_.visible() : footprints_.lights();
         if (numbered > max_lights) return Error{ErrorCode::ids_too_narrow, numbered, max_lights};
-        ZBounds bounds;
-        if constexpr (with_depth) bounds = inputs.bounds;
-        if (const auto error = lists_.template write_bits<spots<LightRange>>(
-                isa_, view, lit(), bounds, scratch_, threads, bits.data(), static_cast<std::size_t>(each)))
+        if (const auto error =
+                lists_.template write_bits<spots<LightRange>>(isa_, view, lit(), bounds_of(inputs), scratch_, threads,
+                                                              bits.data(), static_cast<std::size_t>(each)))
             return *error;
         return LightBits{counts(), ranks()};
     }
 
 private:
-    using Lists = std::conditional_t<clusters, ClusterLists<Id, options.footprint, options.depth_test>,
-                                     GridLists<Id, options.footprint, options.depth_test>>;
+    using Lists = GridLists<Id, options.footprint, options.depth_test, clusters>;
     struct Nothing {};
+    using Ordered =
+        std::conditional_t<clusters, SlicedFootprints<options.footprint>,
+                           std::conditional_t<z_bins, RankedFootprints<options.footprint, with_depth>, Nothing>>;
 
     template <class LightRange>
     static constexpr bool spots =
@@ -218,25 +214,32 @@ private:
         scratch_.reserve(1, 1);
         isa_ = machine_isa(options.isa);
         footprints_.project(isa_, view, source, threads, lists_.shared(), with_boxes);
-        if constexpr (z_bins)
-            ranked_.template rank<spots<LightRange>>(isa_, view, footprints_, inputs.slices);
-        return {};
+        if constexpr (Inputs::reads_slices)
+            return ordered_.template order<spots<LightRange>>(isa_, view, footprints_, inputs.slices);
+        else
+            return {};
     }
 
     const auto& lit() const {
-        if constexpr (z_bins)
-            return ranked_;
+        if constexpr (Inputs::reads_slices)
+            return ordered_;
         else
             return footprints_;
     }
 
-    template <bool of_spots, class Depths, class Threads>
-    Result<LightGrid<Id>> build(Lists& lists, const View& view, const Depths& depths, const Threads& threads,
-                                int slices = 1) {
-        if (const auto error = lists.template build<of_spots>(isa_, view, lit(), depths, scratch_, threads))
+    static ZBounds bounds_of([[maybe_unused]] const Inputs& inputs) {
+        if constexpr (with_depth)
+            return inputs.bounds;
+        else
+            return {};
+    }
+
+    template <bool of_spots, class Threads>
+    Result<LightGrid<Id>> build(Lists& lists, const View& view, const ZBounds& bounds, const Threads& threads) {
+        if (const auto error = lists.template build<of_spots>(isa_, view, lit(), bounds, scratch_, threads))
             return *error;
-        return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), counts(), slices,
-                             ranks());
+        return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), counts(),
+                             lit().slices(), ranks());
     }
 
     LightCounts counts() const {
@@ -246,7 +249,7 @@ private:
 
     LightRanks ranks() const {
         if constexpr (z_bins)
-            return ranked_.ranks();
+            return ordered_.ranks();
         else
             return {};
     }
@@ -255,7 +258,7 @@ private:
         std::swap(isa_, other.isa_);
         scratch_.swap(other.scratch_);
         std::swap(footprints_, other.footprints_);
-        std::swap(ranked_, other.ranked_);
+        std::swap(ordered_, other.ordered_);
         std::swap(lists_, other.lists_);
         std::swap(transparent_, other.transparent_);
     }
@@ -263,7 +266,7 @@ private:
     Isa isa_ = Isa::scalar;
     detail::Buffer<detail::Scratch> scratch_;  ///< one a worker
     Footprints<options.footprint, with_depth || options.slicing != Slicing::none> footprints_;
-    std::conditional_t<z_bins, RankedFootprints<options.footprint, with_depth>, Nothing> ranked_;
+    Ordered ordered_;
     Lists lists_;
     std::conditional_t<with_depth, Lists, Nothing> transparent_;
 };

@@ -110,6 +110,10 @@ public:
     const detail::FootprintArrays& arrays() const { return arrays_; }
     detail::Items<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
 
+    /// All depths are one slice.
+    int slices() const { return 1; }
+    detail::LitSlice slice(std::size_t) const { return {arrays_, runs(), visible(), area()}; }
+
 private:
     static constexpr std::size_t chunk = detail::ChunkRects::size;
 
@@ -145,16 +149,8 @@ private:
     }
 
     void reserve(std::size_t parts) {
-        const std::uint64_t capacity = std::uint64_t{lights_} + parts * detail::FootprintArrays::padding;
-        arrays_ = {.ids = ids_.reserve(capacity),
-                   .x0 = x0_.reserve(capacity),
-                   .y0 = y0_.reserve(capacity),
-                   .x1 = x1_.reserve(capacity),
-                   .y1 = y1_.reserve(capacity),
-                   .span_begin = with_spans ? span_begin_.reserve(capacity) : nullptr,
-                   .spans = nullptr,
-                   .spheres = nullptr,
-                   .spots = nullptr};
+        const std::uint64_t padding = (parts - 1) * detail::FootprintArrays::padding;  // between two
+        arrays_ = buffers_.reserve(lights_ + padding, with_spans);
         runs_.reserve(parts);
         part_counts_.reserve(parts);
         run_count_ = parts;
@@ -189,9 +185,7 @@ private:
         });
     }
 
-    detail::Buffer<std::uint32_t> ids_;
-    detail::Buffer<std::uint16_t> x0_, y0_, x1_, y1_;
-    detail::Buffer<std::uint32_t> span_begin_;
+    detail::FootprintBuffers buffers_;
     detail::Buffer<detail::RowSpan> spans_;
     detail::Buffer<Sphere> spheres_;
     detail::Buffer<detail::ViewSpot> spots_;

@@ -7,12 +7,14 @@
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/kernels.hpp>
+#include <lightbin/detail/maybe.hpp>
 #include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/slice_table.hpp>
 #include <lightbin/isa.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/project.hpp>
+#include <lightbin/result.hpp>
 #include <lightbin/slices.hpp>
 #include <lightbin/view.hpp>
 
@@ -37,8 +39,8 @@ public:
     ///
     /// spots  the lights are spots
     template <bool spots>
-    void rank(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
-              const Slices& slices) {
+    detail::Maybe<Error> order(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
+                               const Slices& slices) {
         run_ = {0, footprints.visible()};
         area_ = footprints.area();
         bin_count_ = static_cast<std::size_t>(slices.count());
@@ -59,12 +61,12 @@ public:
                 places_.data()[ends_.data()[first_bins_.data()[i]]++] = i;
         put_lights<spots>(footprints.arrays());
         find_ranges();
+        return {};
     }
 
-    std::uint32_t visible() const { return run_.end; }
-    std::uint64_t area() const { return area_; }  ///< sum of the rectangles' tiles
-    const detail::FootprintArrays& arrays() const { return arrays_; }
-    detail::Items<const detail::FootprintRun> runs() const { return {&run_, 1}; }
+    /// All depths are one slice of tiles.
+    int slices() const { return 1; }
+    detail::LitSlice slice(std::size_t) const { return {arrays_, {&run_, 1}, run_.end, area_}; }
     template <class Ranks = LightRanks> Ranks ranks() const {
         return {{order_.data(), run_.end}, {bins_.data(), bin_count_}};
     }
@@ -106,6 +108,8 @@ private:
     /// Writes the lights in their order, an array at a time: what is read here and there is then one that is small.
     template <bool spots> void put_lights(const detail::FootprintArrays& lights) {
         put(lights.ids, order_.data());
+        for (std::uint32_t rank = 0; rank < run_.end; ++rank)
+            arrays_.ids[rank] = rank;
         put(lights.x0, arrays_.x0);
         put(lights.y0, arrays_.y0);
         put(lights.x1, arrays_.x1);
@@ -156,23 +160,12 @@ private:
 
     /// places  of the lights in their arrays
     template <bool spots> void reserve(const detail::FootprintArrays& lights, std::uint32_t places) {
-        const std::uint64_t capacity = std::uint64_t{run_.end} + detail::FootprintArrays::padding;
-        if (capacity > numbered_) {
-            numbered_ = 0;  // should there be no memory
-            std::uint32_t* const ids = ids_.reserve(capacity);
-            for (std::uint32_t rank = 0; rank < capacity; ++rank)
-                ids[rank] = rank;
-            numbered_ = capacity;
-        }
-        arrays_ = {.ids = ids_.data(),
-                   .x0 = x0_.reserve(capacity),
-                   .y0 = y0_.reserve(capacity),
-                   .x1 = x1_.reserve(capacity),
-                   .y1 = y1_.reserve(capacity),
-                   .span_begin = with_spans ? span_begin_.reserve(capacity) : nullptr,
-                   .spans = lights.spans,
-                   .spheres = with_spheres && !spots ? spheres_.reserve(capacity) : nullptr,
-                   .spots = with_spheres && spots ? spots_.reserve(capacity) : nullptr};
+        arrays_ = buffers_.reserve(run_.end, with_spans);
+        arrays_.spans = lights.spans;
+        if constexpr (with_spheres && spots)
+            arrays_.spots = spots_.reserve(run_.end);
+        else if constexpr (with_spheres)
+            arrays_.spheres = spheres_.reserve(run_.end);
         first_bins_.reserve(places);
         last_bins_.reserve(places);
         places_.reserve(run_.end);
@@ -186,13 +179,12 @@ private:
     detail::Buffer<std::uint32_t> places_, order_;           ///< of each rank: its light's old place, its id
     detail::Buffer<std::uint32_t> ends_;                     ///< of each bin: the first rank that begins behind it
     detail::Buffer<BinRange> bins_;
-    detail::Buffer<std::uint32_t> ids_, span_begin_;
-    detail::Buffer<std::uint16_t> x0_, y0_, x1_, y1_;
+    detail::FootprintBuffers buffers_;
     detail::Buffer<Sphere> spheres_;
     detail::Buffer<detail::ViewSpot> spots_;
     detail::FootprintArrays arrays_ = {};
     detail::FootprintRun run_ = {};
-    std::uint64_t area_ = 0, numbered_ = 0;
+    std::uint64_t area_ = 0;
     std::size_t bin_count_ = 0;
 };
 

@@ -7,16 +7,20 @@
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/kernels.hpp>
+#include <lightbin/detail/maybe.hpp>
 #include <lightbin/detail/plain.hpp>
+#include <lightbin/detail/rounding.hpp>
 #include <lightbin/detail/slice_table.hpp>
 #include <lightbin/isa.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/project.hpp>
+#include <lightbin/result.hpp>
 #include <lightbin/slices.hpp>
 #include <lightbin/view.hpp>
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include <lightbin/detail/warnings_off.inl>
@@ -38,24 +42,27 @@ template <Footprint footprint> class SlicedFootprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette;
 
 public:
-    /// Takes each light to the slices that its depths, z - r to z + r, meet, their ends included. Returns the number of
-    /// places that they take: for pairs of a light and a slice, and one more a slice; if 32 bits don't count them,
-    /// there are no runs.
+    /// Takes each light to the slices that its depths, z - r to z + r, meet, their ends included. Errors: there are more
+    /// than 2^32 - 1 cells, or pairs of a light and a slice.
     ///
     /// spots  the lights are spots
     template <bool spots>
-    std::uint64_t cut(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
-                      const Slices& slices) {
+    detail::Maybe<Error> order(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
+                               const Slices& slices) {
+        constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
         const detail::FootprintArrays& lights = footprints.arrays();
+        boundaries_ = slices.boundaries();
         run_count_ = static_cast<std::size_t>(slices.count());
+        const std::uint64_t cells = std::uint64_t{view.tile_count()} * run_count_;
+        if (cells > most) return Error{ErrorCode::too_many_cells, cells, most};
         const std::uint64_t places =
             find_slices<spots>(isa, detail::camera_of(view).z_sign, lights, footprints.runs(),
-                               footprints.visible(), slices.boundaries());
-        if (places > 0xffffffff) {
-            run_count_ = 0;
-            return places;
-        }
-        reserve(lights, places);
+                               footprints.visible());
+        if (places > most) return Error{ErrorCode::too_many_list_places, places, most};
+        arrays_ = buffers_.reserve(places, with_spans);
+        arrays_.spans = lights.spans;
+        arrays_.spheres = lights.spheres;
+        arrays_.spots = lights.spots;
         const Met* met = met_.data();
         for (const detail::FootprintRun& run : footprints.runs())
             for (std::uint32_t i = run.begin; i < run.end; ++i, ++met) {
@@ -68,11 +75,19 @@ public:
                 for (std::uint32_t slice = met->first + 2; slice <= met->last; ++slice)
                     put(lights, i, area, slice, 1);
             }
-        return places;
+        return {};
     }
 
-    const detail::FootprintArrays& arrays() const { return arrays_; }
-    detail::Items<const detail::SliceRun> runs() const { return {runs_.data(), run_count_}; }
+    int slices() const { return static_cast<int>(run_count_); }
+    detail::LitSlice slice(std::size_t i) const {
+        const detail::SliceRun& all = runs_.data()[i];
+        return {arrays_,
+                {&all.run, 1},
+                all.run.end - all.run.begin,
+                all.area,
+                {i == 0 ? -detail::infinity : boundaries_[i - 1],
+                 i == boundaries_.size() ? detail::infinity : boundaries_[i]}};
+    }
 
 private:
     static constexpr std::uint32_t chunk = 64;  ///< lights, whole vectors
@@ -85,13 +100,12 @@ private:
     /// Finds the slices of each light, and where their runs begin, with a place between two. Returns where they end.
     template <bool spots>
     std::uint64_t find_slices(Isa isa, float z_sign, const detail::FootprintArrays& lights,
-                              detail::Items<const detail::FootprintRun> all, std::uint32_t visible,
-                              std::span<const float> boundaries) {
+                              detail::Items<const detail::FootprintRun> all, std::uint32_t visible) {
         detail::SliceRun* const runs = runs_.reserve(run_count_ + 1);
         detail::fill_items(runs, run_count_ + 1, {});
         Met* met = met_.reserve(visible);
-        const bool compare = boundaries.size() <= detail::most_boundaries_compared(isa);
-        if (!compare) table_.set(boundaries);
+        const bool compare = boundaries_.size() <= detail::most_boundaries_compared(isa);
+        if (!compare) table_.set(boundaries_);
         const detail::SlicesKernel kernel = detail::slices_kernel(isa);
         for (const detail::FootprintRun& run : all)
             for (std::uint32_t i = run.begin; i < run.end; i += chunk) {
@@ -103,7 +117,7 @@ private:
                     nearest[j] = depths.nearest;
                     farthest[j] = depths.farthest;
                 }
-                if (compare) kernel(nearest, farthest, count, boundaries, first, last);
+                if (compare) kernel(nearest, farthest, count, boundaries_, first, last);
                 for (std::uint32_t j = 0; j < count; ++j, ++met) {
                     *met = compare ? Met{first[j], last[j]}
                                    : Met{table_.before(nearest[j]), table_.up_to(farthest[j])};
@@ -137,23 +151,12 @@ private:
         if constexpr (with_spans) arrays_.span_begin[to] = lights.span_begin[i];
     }
 
-    void reserve(const detail::FootprintArrays& lights, std::uint64_t places) {
-        const std::uint64_t capacity = places + detail::FootprintArrays::padding;
-        arrays_ = lights;
-        arrays_.ids = ids_.reserve(capacity);
-        arrays_.x0 = x0_.reserve(capacity);
-        arrays_.y0 = y0_.reserve(capacity);
-        arrays_.x1 = x1_.reserve(capacity);
-        arrays_.y1 = y1_.reserve(capacity);
-        if constexpr (with_spans) arrays_.span_begin = span_begin_.reserve(capacity);
-    }
-
     detail::SliceTable table_;
     detail::Buffer<Met> met_;
     detail::Buffer<detail::SliceRun> runs_;
-    detail::Buffer<std::uint32_t> ids_, span_begin_;
-    detail::Buffer<std::uint16_t> x0_, y0_, x1_, y1_;
+    detail::FootprintBuffers buffers_;
     detail::FootprintArrays arrays_ = {};
+    std::span<const float> boundaries_;  ///< the caller's, valid for a call
     std::size_t run_count_ = 0;
 };
 

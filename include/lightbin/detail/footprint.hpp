@@ -2,7 +2,10 @@
 // The types that pass between the stages' kernels, apart from the kernels themselves.
 #pragma once
 
+#include <lightbin/detail/buffer.hpp>
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/plain.hpp>
+#include <lightbin/detail/rounding.hpp>
 #include <lightbin/detail/view_spot.hpp>
 #include <lightbin/detail/world_to_view.hpp>
 #include <lightbin/light_grid.hpp>
@@ -89,6 +92,28 @@ struct FootprintArrays {
     }
 };
 
+/// Memory of footprint arrays, kept from call to call.
+class FootprintBuffers {
+public:
+    /// Returns arrays for `count` lights and the padding, with nothing yet that `ids` number.
+    FootprintArrays reserve(std::uint64_t count, bool with_spans) {
+        const std::uint64_t capacity = count + FootprintArrays::padding;
+        return {.ids = ids_.reserve(capacity),
+                .x0 = x0_.reserve(capacity),
+                .y0 = y0_.reserve(capacity),
+                .x1 = x1_.reserve(capacity),
+                .y1 = y1_.reserve(capacity),
+                .span_begin = with_spans ? span_begin_.reserve(capacity) : nullptr,
+                .spans = nullptr,
+                .spheres = nullptr,
+                .spots = nullptr};
+    }
+
+private:
+    Buffer<std::uint32_t> ids_, span_begin_;
+    Buffer<std::uint16_t> x0_, y0_, x1_, y1_;
+};
+
 /// Samples of a depth buffer, rows by columns.
 struct DepthRows {
     const float* samples;
@@ -108,14 +133,19 @@ struct ChunkRects {
     alignas(64) std::uint16_t x0[size], y0[size], x1[size], y1[size];
 };
 
-/// What binning works on and writes.
-template <class Id> struct BinJob {
-    const Camera* camera;
+/// The lights in view, or those of them that meet a slice.
+struct LitSlice {
     FootprintArrays lights;
     Items<const FootprintRun> runs;
-    std::uint32_t visible;   ///< lights in all runs
-    const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one
-    float slab[2];  ///< what takes the place of absent min and max: -inf and +inf, or a slice's depths
+    std::uint32_t visible;  ///< lights in all runs
+    std::uint64_t area;     ///< sum of their rectangles' tiles
+    float slab[2] = {-infinity, infinity};  ///< the slice's depths
+};
+
+/// What binning works on and writes.
+template <class Id> struct BinJob : LitSlice {
+    const Camera* camera;
+    const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one: `slab` then
     const float* edges[4];  ///< of the tiles, for boxes: low x, high x, low y, high y; see cell_boxes.hpp
     ListRange* tiles;       ///< the table to write
     std::size_t

@@ -24,10 +24,11 @@ struct Part {
     std::uint64_t spare_area;
 };
 
-/// Writes `count` parts of about equal work of `steps` tile rows or slices, no more parts than those. A step has area(step)
+/// Writes parts of about equal work of `steps` tile rows or slices, no more parts than those. A step has area(step)
 /// tiles in rectangles, and takes as long as `each` more of them.
 template <class Area>
-void share_steps(Part* parts, std::size_t count, std::size_t steps, std::uint64_t each, Area area) {
+void share_steps(Items<Part> parts, std::size_t steps, std::uint64_t each, Area area) {
+    const std::size_t count = parts.size();
     std::uint64_t work = 0, before = 0, done = 0;
     for (std::size_t step = 0; step < steps; ++step)
         work += area(step) + each;
@@ -47,10 +48,9 @@ void share_steps(Part* parts, std::size_t count, std::size_t steps, std::uint64_
     }
 }
 
-/// Writes `count` parts of about equal work, no more than there are tile rows.
+/// The same of a grid's tile rows.
 template <class Id>
-void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums, Part* parts,
-                std::size_t count) {
+void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums, Items<Part> parts) {
     // Each run of lights adds its widths to the steps between rows, in a column of its own.
     const std::size_t rows = static_cast<std::size_t>(job.camera->y.tiles), pitch = rows + 1;
     std::uint64_t* row_area = sums.reserve(std::uint64_t{pitch} * job.runs.size());
@@ -69,17 +69,17 @@ void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
             step_sum += row_area[run * pitch + row];
         row_area[row] = step_sum;
     }
-    share_steps(parts, count, rows, empty_row_cost(static_cast<std::uint64_t>(job.camera->x.tiles)),
+    share_steps(parts, rows, empty_row_cost(static_cast<std::uint64_t>(job.camera->x.tiles)),
                 [&](std::size_t row) { return row_area[row]; });
-    for (Part* part = parts; part < parts + count; ++part)
-        while (part->spare_row > part->begin && part->spare_area < BandJob<Id>::slack)
-            part->spare_area += row_area[--part->spare_row];
+    for (Part& part : parts)
+        while (part.spare_row > part.begin && part.spare_area < BandJob<Id>::slack)
+            part.spare_area += row_area[--part.spare_row];
 }
 
 /// Has build(part, out) make a list of its own of each part, the first one in `list`, and puts the others in their places
 /// after it. A step's ranges are `width`. Returns the number of all entries.
 template <class Id, class Build>
-std::uint64_t build_apart(const Parallel& parallel, Items<Part> parts, ListRange* ranges, std::size_t width,
+std::size_t build_apart(const Parallel& parallel, Items<Part> parts, ListRange* ranges, std::size_t width,
                           Buffer<Buffer<Id>>& spares, Id* list, Build build) {
     spares.reserve(parts.size(), parts.size());
     parallel.run(parts.size(), [&](std::size_t i) {
@@ -99,7 +99,7 @@ std::uint64_t build_apart(const Parallel& parallel, Items<Part> parts, ListRange
         copy_items(spares.data()[previous + 1].data(), static_cast<std::size_t>(part.area),
                    list + part.before);
     });
-    return entries;
+    return static_cast<std::size_t>(entries);
 }
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
