@@ -72,44 +72,27 @@ public:
     }
 
 private:
-    static constexpr std::uint32_t chunk = 64;  ///< lights, whole vectors
-
     /// Finds the bins that each light meets, and counts in `ends_` those that begin in each.
     template <bool spots>
     void find_bins(Isa isa, float z_sign, const detail::FootprintArrays& lights,
                    detail::Items<const detail::FootprintRun> runs) {
-        const detail::SlicePlacesKernel kernel = detail::slice_places_kernel<spots>(isa);
-        const bool by_places = table_.places_tell();
-        std::uint32_t* const begins = ends_.data();
+        std::uint32_t *const begins = ends_.data(), *const first_bins = first_bins_.data(),
+                             *const last_bins = last_bins_.data();
         detail::fill_items(begins, bin_count_, 0);
-        for (const detail::FootprintRun& run : runs)
-            for (std::uint32_t i = run.begin; i < run.end; i += chunk) {
-                const std::uint32_t count = detail::min_of(run.end - i, chunk);
-                std::uint32_t *const first = first_bins_.data() + i, *const last = last_bins_.data() + i;
-                if (by_places) {
-                    std::uint16_t nearest[chunk], farthest[chunk];
-                    kernel(table_.places(), z_sign, lights, lights.ids + i, count, nearest, farthest);
-                    for (std::uint32_t j = 0; j < count; ++j) {
-                        first[j] = table_.before_place(nearest[j]);
-                        last[j] = table_.before_place(farthest[j] + 1u);
-                        ++begins[first[j]];
-                    }
-                    continue;
-                }
-                for (std::uint32_t j = 0; j < count; ++j) {
-                    const detail::LightDepths depths = lights.depths<spots>(lights.ids[i + j], z_sign);
-                    first[j] = table_.before(depths.nearest);
-                    last[j] = table_.up_to(depths.farthest);
-                    ++begins[first[j]];
-                }
-            }
+        const auto found = [=](std::uint32_t i, std::uint32_t first, std::uint32_t last) {
+            first_bins[i] = first;
+            last_bins[i] = last;
+            ++begins[first];
+        };
+        table_.find(detail::slice_places_kernel<spots>(isa), true, z_sign, lights, runs, found);
     }
 
     /// Writes the lights in their order, an array at a time: what is read here and there is then one that is small.
     template <bool spots> void put_lights(const detail::FootprintArrays& lights) {
-        put(lights.ids, order_.data());
-        for (std::uint32_t rank = 0; rank < run_.end; ++rank)
+        for (std::uint32_t rank = 0; rank < run_.end; ++rank) {
+            order_.data()[rank] = lights.ids[places_.data()[rank]];
             arrays_.ids[rank] = rank;
+        }
         put(lights.x0, arrays_.x0);
         put(lights.y0, arrays_.y0);
         put(lights.x1, arrays_.x1);

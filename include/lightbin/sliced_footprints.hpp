@@ -90,8 +90,6 @@ public:
     }
 
 private:
-    static constexpr std::uint32_t chunk = 64;  ///< lights, whole vectors
-
     /// Slices first..last.
     struct Met {
         std::uint32_t first, last;
@@ -104,28 +102,14 @@ private:
         detail::SliceRun* const runs = runs_.reserve(run_count_ + 1);
         detail::fill_items(runs, run_count_ + 1, {});
         Met* met = met_.reserve(visible);
-        const bool compare = boundaries_.size() <= detail::most_boundaries_compared(isa);
-        if (!compare) table_.set(boundaries_);
-        const detail::SlicesKernel kernel = detail::slices_kernel(isa);
-        for (const detail::FootprintRun& run : all)
-            for (std::uint32_t i = run.begin; i < run.end; i += chunk) {
-                const std::uint32_t count = detail::min_of(run.end - i, chunk);
-                float nearest[chunk], farthest[chunk];
-                std::uint16_t first[chunk], last[chunk];
-                for (std::uint32_t j = 0; j < count; ++j) {
-                    const detail::LightDepths depths = lights.depths<spots>(lights.ids[i + j], z_sign);
-                    nearest[j] = depths.nearest;
-                    farthest[j] = depths.farthest;
-                }
-                if (compare) kernel(nearest, farthest, count, boundaries_, first, last);
-                for (std::uint32_t j = 0; j < count; ++j, ++met) {
-                    *met = compare ? Met{first[j], last[j]}
-                                   : Met{table_.before(nearest[j]), table_.up_to(farthest[j])};
-                    // First the steps of the lights' number from slice to slice: sums wrap, and come out right.
-                    ++runs[met->first].run.end;
-                    --runs[met->last + 1].run.end;
-                }
-            }
+        table_.set(boundaries_);
+        const auto found = [&](std::uint32_t, std::uint32_t first, std::uint32_t last) {
+            *met++ = {first, last};
+            // First the steps of the lights' number from slice to slice: sums wrap, and come out right.
+            ++runs[first].run.end;
+            --runs[last + 1].run.end;
+        };
+        table_.find(detail::slice_places_kernel<spots>(isa), false, z_sign, lights, all, found);
         std::uint64_t places = 0;
         std::uint32_t count = 0;
         for (detail::SliceRun* run = runs; run <= runs + run_count_; ++run) {

@@ -296,26 +296,23 @@ LIGHTBIN_TARGET inline Floats load_4_spheres(const Sphere* spheres, const Place*
     return _mm512_insertf32x4(four, _mm_loadu_ps(&spheres[places[3]].x), 3);
 }
 
-/// As in slice_places.inl.
-template <class Place>
-LIGHTBIN_TARGET inline void load_spheres_at(const Sphere* spheres, const Place* places, Floats& x, Floats& y, Floats& z,
-                                            Floats& radius) {
-    x = load_4_spheres(spheres, places);
-    y = load_4_spheres(spheres, places + 4);
-    z = load_4_spheres(spheres, places + 8);
-    radius = load_4_spheres(spheres, places + 12);
-    separate(x, y, z, radius);
-}
-
 /// As load_spheres(), of the spheres at `count` places, or as many as a vector has; if those are fewer, others are
 /// the first of all.
-LIGHTBIN_TARGET inline void load_listed_spheres(const Sphere* spheres, const ListId* places,
+template <class Place>
+LIGHTBIN_TARGET inline void load_listed_spheres(const Sphere* spheres, const Place* places,
                                                 std::uint32_t count, Floats& x, Floats& y, Floats& z,
                                                 Floats& radius) {
-    ListId listed[lanes];
+    Place listed[lanes];
     const __mmask16 first = static_cast<__mmask16>(0xffff >> (lanes - min_of(count, lanes)));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(listed), _mm256_maskz_loadu_epi16(first, places));
-    load_spheres_at(spheres, listed, x, y, z, radius);
+    if constexpr (sizeof(Place) == 2)
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(listed), _mm256_maskz_loadu_epi16(first, places));
+    else
+        _mm512_storeu_si512(listed, _mm512_maskz_loadu_epi32(first, places));
+    x = load_4_spheres(spheres, listed);
+    y = load_4_spheres(spheres, listed + 4);
+    z = load_4_spheres(spheres, listed + 8);
+    radius = load_4_spheres(spheres, listed + 12);
+    separate(x, y, z, radius);
 }
 
 using avx2::arrange_cells;

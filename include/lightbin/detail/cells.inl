@@ -115,7 +115,8 @@ template <class Id> LIGHTBIN_TARGET void arrange_slab(const BinJob<Id>& job, Scr
 
 /// As load_spheres(), of the spheres at `count` places, or as many as a vector has; if those are fewer, others are
 /// the last of them.
-LIGHTBIN_TARGET inline void load_listed_spheres(const Sphere* spheres, const ListId* places,
+template <class Place>
+LIGHTBIN_TARGET inline void load_listed_spheres(const Sphere* spheres, const Place* places,
                                                 std::uint32_t count, Floats& x, Floats& y, Floats& z,
                                                 Floats& radius) {
     Sphere some[lanes];

@@ -61,12 +61,6 @@ inline bool picking_is_faster(std::uint64_t lights, std::uint64_t in_row) {
     return (9 * 8 - 17) * lights > (9 * 8 + 8) * in_row + 8 * 200;
 }
 
-/// Up to how many boundaries it is sooner known which slices a light meets by comparing with all of them, in vectors,
-/// than by a table. A comparison with both ends of a vector of lights takes 7 instructions, the table 40 a light.
-inline std::size_t most_boundaries_compared(Isa isa) {
-    return isa == Isa::avx512 ? 64 : isa == Isa::avx2 ? 32 : 0;
-}
-
 /// What a row of tiles without lights costs a part of the work, in entries.
 inline std::uint64_t empty_row_cost(std::uint64_t tiles) {
     return tiles;

@@ -48,11 +48,6 @@ struct FootprintRun {
     std::uint32_t begin, end;
 };
 
-/// View depths, from the one to the other.
-struct LightDepths {
-    float nearest, farthest;
-};
-
 /// The lights in view, as parallel arrays: tiles x0..x1, y0..y1, both ends included. They lie in one or more
 /// runs; ids ascend within a run and from run to run. Readable (not meaningful) up to `padding` elements past
 /// the end.
@@ -73,17 +68,6 @@ struct FootprintArrays {
     const Sphere* spheres;
     /// Or, of lights that are spots, these.
     const ViewSpot* spots;
-
-    /// The depths of light `id`. Rounding is monotone: comparing them with floats loses no light.
-    template <bool of_spots> LightDepths depths(std::uint32_t id, float z_sign) const {
-        if constexpr (of_spots) {
-            return {spots[id].nearest, spots[id].farthest};
-        } else {
-            const Sphere sphere = load_sphere(spheres + id);
-            const float z = sphere.z * z_sign;
-            return {z - sphere.radius, z + sphere.radius};
-        }
-    }
 
     /// The same arrays with their first `begin` elements left out, for writing rectangles.
     FootprintArrays from(std::size_t begin) const {

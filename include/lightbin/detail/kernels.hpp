@@ -44,10 +44,6 @@ template <bool spots> RowSpanKernel row_span_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.template row_span_kernel<spots>(); });
 }
 
-inline SlicesKernel slices_kernel(Isa isa) {
-    return with_tier(isa, [](auto tier) { return tier.slices_kernel(); });
-}
-
 template <bool spots> SlicePlacesKernel slice_places_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.template slice_places_kernel<spots>(); });
 }

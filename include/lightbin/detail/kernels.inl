@@ -24,8 +24,7 @@
 //   append_lights                  with vectors of bytes: the same of ids and columns, for pick_rows.inl
 // or
 //   LIGHTBIN_TIER_COMPRESSES       defined: emits by emit_compress.inl; scatters, arranges cells and
-//                                  writes bits as AVX2 does; load_listed_spheres as in cells.inl, load_spheres_at as in
-//                                  slice_places.inl
+//                                  writes bits as AVX2 does; load_listed_spheres as in cells.inl
 // for step 1, lists_scan.inl, where it has fast vectors of bytes,
 //   LIGHTBIN_TIER_HAS_BYTES        defined: and so are these
 //   Bytes, ByteMask, byte_lanes    a vector of bytes without sign, a bit a byte, how many
@@ -58,10 +57,6 @@
 
 #include <lightbin/detail/row_spans.inl>
 
-#include <lightbin/detail/slices_met.inl>
-
-#include <lightbin/detail/slice_places.inl>
-
 #if defined(LIGHTBIN_TIER_HAS_ROWS)
 #include <lightbin/detail/scatter.inl>
 #endif
@@ -88,6 +83,8 @@
 #include <lightbin/detail/emit.inl>
 #endif
 
+#include <lightbin/detail/slice_places.inl>
+
 #include <lightbin/detail/words.inl>
 
 #if !defined(LIGHTBIN_TIER_COMPRESSES)
@@ -103,7 +100,6 @@ struct Tier {
     static ProjectKernel project_kernel() { return project; }
     static ProjectSpotsKernel project_spots_kernel() { return project_spots; }
     template <bool spots> static RowSpanKernel row_span_kernel() { return row_spans<std::conditional_t<spots, SpotRows, SphereRows>>; }
-    static SlicesKernel slices_kernel() { return slices_met; }
     template <bool spots> static SlicePlacesKernel slice_places_kernel() { return slice_places<spots>; }
     static DepthKernels depth_kernels() { return {column_extremes, column_gaps}; }
 

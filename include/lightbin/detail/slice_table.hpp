@@ -5,6 +5,7 @@
 
 #include <lightbin/detail/buffer.hpp>
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/math.hpp>
 #include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/platform.hpp>
@@ -36,6 +37,13 @@ struct SlicePlaces {
     }
 };
 
+/// The depths of some lights, and the places of those; written in whole vectors.
+struct PlacedDepths {
+    static constexpr std::uint32_t size = 64;
+    float nearest[size], farthest[size];
+    std::uint16_t first[size], last[size];
+};
+
 /// The slices of one list of boundaries, which ascend and are finite.
 class SliceTable {
 public:
@@ -54,34 +62,50 @@ public:
         count_ = boundaries.size() + 1;
     }
 
-    /// Whether no two boundaries are in one place, and 15 bits number those.
-    bool places_tell() const { return shared_ == 0 && places_.last < 0x7fff; }
+    /// Calls found(i, first, last) for each light i of the runs: its depths, ends included, meet the slices first..last.
+    /// Where `roughly`, these may be one more at either end, if that is sooner known.
+    ///
+    /// kernel  slice_places() of a tier
+    template <class Kernel, class Found>
+    void find(Kernel kernel, bool roughly, float z_sign, const FootprintArrays& lights, Items<const FootprintRun> runs,
+              Found found) const {
+        roughly = roughly && shared_ == 0 && places_.last < most_places - 1;
+        for (const FootprintRun& run : runs) {
+            fill_items(lights.ids + run.end, 16, lights.ids[run.begin]);  // whole vectors of lights are read
+            for (std::uint32_t i = run.begin; i < run.end; i += PlacedDepths::size) {
+                const std::uint32_t count = min_of(run.end - i, PlacedDepths::size);
+                PlacedDepths at;
+                kernel(places_, z_sign, lights, lights.ids + i, count, at);
+                for (std::uint32_t j = 0; j < count && roughly; ++j)
+                    found(i + j, before_.data()[at.first[j]], before_.data()[at.last[j] + 1u]);
+                for (std::uint32_t j = 0; j < count && !roughly; ++j)
+                    found(i + j, before(at.first[j], at.nearest[j]), up_to(at.last[j], at.farthest[j]));
+            }
+        }
+    }
 
-    /// Returns how many boundaries are less than a depth that is not NaN.
-    std::uint32_t before(float depth) const {
+private:
+    static constexpr std::size_t most_places = 0x8000;  // 15 bits number them
+
+    /// Returns how many boundaries are less than a depth that is not NaN, from its place on.
+    std::uint32_t before(std::size_t place, float depth) const {
         const float* const boundaries = boundaries_.data();
-        std::uint32_t slice = before_place(places_.of(depth));
+        std::uint32_t slice = before_.data()[place];
         slice += boundaries[slice] < depth;  // rarely more than one, so the loop's branch is predicted
         while (boundaries[slice] < depth)
             ++slice;
         return slice;
     }
     /// The same of those that are not greater.
-    std::uint32_t up_to(float depth) const {
+    std::uint32_t up_to(std::size_t place, float depth) const {
         const float* const boundaries = boundaries_.data();
-        std::uint32_t slice = before_place(places_.of(depth));
+        std::uint32_t slice = before_.data()[place];
         slice += boundaries[slice] <= depth;
         while (boundaries[slice] <= depth)
             ++slice;
         return slice;
     }
 
-    /// For slice_places.inl: before_place() of a depth's place are the boundaries that are surely less than it;
-    /// those of the next place are all that may not be greater.
-    const SlicePlaces& places() const { return places_; }
-    std::uint32_t before_place(std::size_t place) const { return before_.data()[place]; }
-
-private:
     bool same(std::span<const float> boundaries) const {
         if (count_ != boundaries.size() + 1) return false;
         for (std::size_t i = 0; i < boundaries.size(); ++i)
@@ -93,7 +117,7 @@ private:
     void fill_places(std::span<const float> boundaries, bool by_bits) {
         places_.by_bits = by_bits;
         // So many that few boundaries share one; no fewer than are in the cache anyway.
-        const std::size_t places = max_of(std::bit_ceil(4 * boundaries.size()), std::size_t{512});
+        const std::size_t places = min_of(max_of(std::bit_ceil(4 * boundaries.size()), std::size_t{512}), most_places);
         places_.last = static_cast<float>(places - 1);
         places_.begin = boundaries.empty() ? 0 : places_.coordinate(boundaries.front());
         const float span = boundaries.empty() ? 0 : places_.coordinate(boundaries.back()) - places_.begin;

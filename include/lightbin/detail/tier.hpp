@@ -35,11 +35,8 @@ using ProjectSpotsKernel = void (*)(const Camera& camera, const SpotSource& sour
                                     std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts);
 using RowSpanKernel = void (*)(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
                                RowSpan* spans, std::uint64_t place);
-using SlicesKernel = void (*)(const float* nearest, const float* farthest, std::uint32_t count,
-                              std::span<const float> boundaries, std::uint16_t* first, std::uint16_t* last);
 using SlicePlacesKernel = void (*)(const SlicePlaces& to, float z_sign, const FootprintArrays& lights,
-                                   const std::uint32_t* ids, std::uint32_t count, std::uint16_t* nearest,
-                                   std::uint16_t* farthest);
+                                   const std::uint32_t* ids, std::uint32_t count, PlacedDepths& out);
 struct DepthKernels {
     void (*extremes)(const DepthRows& depth, float skipped, float* lower, float* upper);
     void (*gaps)(const DepthRows& depth, float skipped, const float* split, float* below, float* above);
