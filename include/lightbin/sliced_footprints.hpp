@@ -103,7 +103,7 @@ private:
         detail::fill_items(runs, run_count_ + 1, {});
         Met* met = met_.reserve(visible);
         table_.set(boundaries_);
-        const auto found = [&](std::uint32_t, std::uint32_t first, std::uint32_t last) {
+        const auto found = [=](std::uint32_t, std::uint32_t first, std::uint32_t last) mutable {
             *met++ = {first, last};
             // First the steps of the lights' number from slice to slice: sums wrap, and come out right.
             ++runs[first].run.end;
