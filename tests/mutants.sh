@@ -78,8 +78,9 @@ list() {
     mutant families detail/scatter.inl 's/min_of(lights.y1\[i\] + 1u, end)/min_of(lights.y1[i] + 0u, end)/'
     mutant families detail/parts.hpp 's/            ++step;$/            step += done < goal ? 1 : 2;/'
     # Clusters.
-    mutant clusters detail/slices_met.inl 's/less_equal(all(boundary), to)/less(all(boundary), to)/'
-    mutant clusters detail/slices_met.inl 's/less(all(boundary), from)/less_equal(all(boundary), from)/'
+    mutant clusters detail/slice_table.hpp 's/return boundary <= farthest;/return boundary < farthest;/'
+    mutant clusters detail/slice_table.hpp 's/return boundary < nearest;/return boundary <= nearest;/'
+    mutant clusters detail/slice_places.inl 's/all(to.begin), all(to.scale))/all(to.begin), all(to.scale)) + all(1.0f)/'
     mutant clusters detail/slab.inl 's/all(1 + 0x1p-20f)) + all(0x1p-125f)/all(1 - 0x1p-20f))/'
     mutant clusters detail/slab.inl 's/z - all(slab.z1)), all(0.0f))/all(slab.z1) - z), all(0.0f))/'
     mutant clusters sliced_footprints.hpp 's/slice = met->first + 2; slice <= met->last/slice = met->first + 2; slice < met->last/'

@@ -44,9 +44,8 @@ public:
         run_ = {0, footprints.visible()};
         area_ = footprints.area();
         bin_count_ = static_cast<std::size_t>(slices.count());
-        table_.set(slices.boundaries());
         reserve<spots>(footprints.arrays(), footprints.runs().end()[-1].end);
-        find_bins<spots>(isa, detail::camera_of(view).z_sign, footprints.arrays(), footprints.runs());
+        find_bins<spots>(isa, detail::camera_of(view).z_sign, footprints.arrays(), footprints.runs(), slices);
 
         // Sorted by counting: how many lights begin in a bin, where those begin, and then where they end.
         std::uint32_t before = 0;
@@ -75,7 +74,7 @@ private:
     /// Finds the bins that each light meets, and counts in `ends_` those that begin in each.
     template <bool spots>
     void find_bins(Isa isa, float z_sign, const detail::FootprintArrays& lights,
-                   detail::Items<const detail::FootprintRun> runs) {
+                   detail::Items<const detail::FootprintRun> runs, const Slices& slices) {
         std::uint32_t *const begins = ends_.data(), *const first_bins = first_bins_.data(),
                              *const last_bins = last_bins_.data();
         detail::fill_items(begins, bin_count_, 0);
@@ -84,7 +83,7 @@ private:
             last_bins[i] = last;
             ++begins[first];
         };
-        table_.find(detail::slice_places_kernel<spots>(isa), true, z_sign, lights, runs, found);
+        detail::table_of(slices).find(detail::slice_places_kernel<spots>(isa), true, z_sign, lights, runs, found);
     }
 
     /// Writes the lights in their order, an array at a time: what is read here and there is then one that is small.
@@ -157,7 +156,6 @@ private:
         bins_.reserve(bin_count_);
     }
 
-    detail::SliceTable table_;
     detail::Buffer<std::uint32_t> first_bins_, last_bins_;   ///< of the lights in their old places
     detail::Buffer<std::uint32_t> places_, order_;           ///< of each rank: its light's old place, its id
     detail::Buffer<std::uint32_t> ends_;                     ///< of each bin: the first rank that begins behind it

@@ -21,7 +21,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 
 #include <lightbin/detail/warnings_off.inl>
 
@@ -51,7 +50,7 @@ public:
                                const Slices& slices) {
         constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
         const detail::FootprintArrays& lights = footprints.arrays();
-        boundaries_ = slices.boundaries();
+        table_ = &detail::table_of(slices);
         run_count_ = static_cast<std::size_t>(slices.count());
         const std::uint64_t cells = std::uint64_t{view.tile_count()} * run_count_;
         if (cells > most) return Error{ErrorCode::too_many_cells, cells, most};
@@ -85,8 +84,8 @@ public:
                 {&all.run, 1},
                 all.run.end - all.run.begin,
                 all.area,
-                {i == 0 ? -detail::infinity : boundaries_[i - 1],
-                 i == boundaries_.size() ? detail::infinity : boundaries_[i]}};
+                {i == 0 ? -detail::infinity : table_->boundaries()[i - 1],
+                 i + 1 == run_count_ ? detail::infinity : table_->boundaries()[i]}};
     }
 
 private:
@@ -102,14 +101,13 @@ private:
         detail::SliceRun* const runs = runs_.reserve(run_count_ + 1);
         detail::fill_items(runs, run_count_ + 1, {});
         Met* met = met_.reserve(visible);
-        table_.set(boundaries_);
         const auto found = [=](std::uint32_t, std::uint32_t first, std::uint32_t last) mutable {
             *met++ = {first, last};
             // First the steps of the lights' number from slice to slice: sums wrap, and come out right.
             ++runs[first].run.end;
             --runs[last + 1].run.end;
         };
-        table_.find(detail::slice_places_kernel<spots>(isa), false, z_sign, lights, all, found);
+        table_->find(detail::slice_places_kernel<spots>(isa), false, z_sign, lights, all, found);
         std::uint64_t places = 0;
         std::uint32_t count = 0;
         for (detail::SliceRun* run = runs; run <= runs + run_count_; ++run) {
@@ -135,12 +133,11 @@ private:
         if constexpr (with_spans) arrays_.span_begin[to] = lights.span_begin[i];
     }
 
-    detail::SliceTable table_;
+    const detail::SliceTable* table_ = nullptr;  ///< of the caller's Slices, for a call
     detail::Buffer<Met> met_;
     detail::Buffer<detail::SliceRun> runs_;
     detail::FootprintBuffers buffers_;
     detail::FootprintArrays arrays_ = {};
-    std::span<const float> boundaries_;  ///< the caller's, valid for a call
     std::size_t run_count_ = 0;
 };
 

@@ -7,15 +7,26 @@
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/math.hpp>
 #include <lightbin/detail/plain.hpp>
+#include <lightbin/detail/slice_table.hpp>
 #include <lightbin/result.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <utility>
 
 #include <lightbin/detail/warnings_off.inl>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
+
+class Slices;
+
+namespace detail {
+
+/// Where depths are in the slices.
+const SliceTable& table_of(const Slices& slices);
+
+}  // namespace detail
 
 /// Intervals of view depth, one behind another without a gap: the first begins at the near plane, the last one ends at
 /// the far plane, and between two lies a boundary.
@@ -28,8 +39,8 @@ public:
     static Result<Slices> exponential(int count, float first, float last) {
         if (count > 1 && !(0 < first && first < last)) return Error{ErrorCode::slices_do_not_ascend};
         const double ratio = static_cast<double>(last) / static_cast<double>(first);
-        return from_law(count, [=](int i) {
-            return static_cast<double>(first) * detail::power_of(ratio, (i - 1.0) / (count - 1.0));
+        return from_law(count, [=](std::size_t i) {
+            return static_cast<double>(first) * detail::power_of(ratio, static_cast<double>(i) / (count - 1.0));
         });
     }
 
@@ -38,75 +49,64 @@ public:
     /// count  from 1 on. Errors: it is less; not begin < end, where there are two slices or more
     static Result<Slices> linear(int count, float begin, float end) {
         if (count > 1 && !(begin < end)) return Error{ErrorCode::slices_do_not_ascend};
-        return from_law(count, [=](int i) {
+        return from_law(count, [=](std::size_t i) {
             return static_cast<double>(begin) +
-                   (static_cast<double>(end) - static_cast<double>(begin)) * i / count;
+                   (static_cast<double>(end) - static_cast<double>(begin)) * static_cast<double>(i + 1) / count;
         });
     }
 
     /// Returns one slice more than there are boundaries. Errors: they do not ascend, or one is NaN or infinite.
     static Result<Slices> from_boundaries(std::span<const float> boundaries) {
-        Slices slices(boundaries.size());
-        for (std::size_t i = 0; i < boundaries.size(); ++i)
-            slices.boundaries_.data()[i] = boundaries[i] + 0.0f;  // not -0
-        return checked(std::move(slices));
+        return from_law(static_cast<std::int64_t>(boundaries.size()) + 1,
+                        [=](std::size_t i) { return boundaries[i]; });
     }
 
-    Slices(const Slices& other) : Slices(other.boundary_count_) {
-        detail::copy_items(other.boundaries_.data(), boundary_count_, boundaries_.data());
-    }
-    Slices(Slices&& other) noexcept { swap(other); }
+    Slices(const Slices& other) : table_(other.table_.boundaries()) {}
     Slices& operator=(Slices other) noexcept {
-        swap(other);
+        std::swap(table_, other.table_);
         return *this;
     }
     ~Slices() = default;
 
-    int count() const { return static_cast<int>(boundary_count_) + 1; }
+    int count() const { return static_cast<int>(table_.boundaries().size()) + 1; }
 
     /// count() - 1 of them, ascending: slice i is from boundary i - 1 to boundary i. (A template as Error::message().)
     template <class Float = float> std::span<const Float> boundaries() const& {
-        return {boundaries_.data(), boundary_count_};
+        return {table_.boundaries().first, table_.boundaries().count};
     }
     void boundaries() && = delete;  // would dangle
 
     /// Returns the slice of a depth that is not NaN; of a boundary the one behind it.
     int slice_at(float depth) const {
-        const float* const first = boundaries_.data();
-        return static_cast<int>(detail::first_not(first, first + boundary_count_,
-                                                  [=](float boundary) { return boundary <= depth; }) -
-                                first);
+        const detail::Items<const float> all = table_.boundaries();
+        return static_cast<int>(
+            detail::first_not(all.begin(), all.end(), [=](float boundary) { return boundary <= depth; }) -
+            all.begin());
     }
 
 private:
-    explicit Slices(std::size_t boundary_count) : boundary_count_(boundary_count) {
-        boundaries_.reserve(boundary_count);
-    }
+    friend const detail::SliceTable& detail::table_of(const Slices& slices);
 
-    template <class Law> static Result<Slices> from_law(int count, Law boundary) {
-        if (count < 1) return Error{ErrorCode::no_slices, static_cast<std::uint64_t>(std::int64_t{count})};
-        Slices slices(static_cast<std::size_t>(count) - 1);
-        for (int i = 1; i < count; ++i)
-            slices.boundaries_.data()[i - 1] = static_cast<float>(boundary(i)) + 0.0f;  // not -0
-        return checked(std::move(slices));
-    }
+    explicit Slices(detail::Items<const float> boundaries) : table_(boundaries) {}
 
-    void swap(Slices& other) noexcept {
-        boundaries_.swap(other.boundaries_);
-        std::swap(boundary_count_, other.boundary_count_);
-    }
-
-    static Result<Slices> checked(Slices slices) {
-        const float* const boundaries = slices.boundaries_.data();
-        for (std::size_t i = 0; i < slices.boundary_count_; ++i)
+    template <class Law> static Result<Slices> from_law(std::int64_t count, Law boundary) {
+        if (count < 1) return Error{ErrorCode::no_slices, static_cast<std::uint64_t>(count)};
+        detail::Buffer<float> memory;
+        float* const boundaries = memory.reserve(static_cast<std::uint64_t>(count));
+        for (std::size_t i = 0; i < static_cast<std::size_t>(count) - 1; ++i) {
+            boundaries[i] = static_cast<float>(boundary(i)) + 0.0f;  // not -0
             if (!detail::is_finite(boundaries[i]) || (i > 0 && !(boundaries[i - 1] < boundaries[i])))
                 return Error{ErrorCode::slices_do_not_ascend, i};
-        return slices;
+        }
+        return Slices({boundaries, static_cast<std::size_t>(count) - 1});
     }
 
-    detail::Buffer<float> boundaries_;
-    std::size_t boundary_count_ = 0;
+    detail::SliceTable table_;
 };
+
+inline const detail::SliceTable& detail::table_of(const Slices& slices) {
+    return slices.table_;
+}
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR
 
