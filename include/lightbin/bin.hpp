@@ -12,6 +12,7 @@
 #include <lightbin/detail/parts.hpp>
 #include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/scratch.hpp>
+#include <lightbin/detail/supertile.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/parallel.hpp>
@@ -35,7 +36,7 @@ template <class Id, Footprint footprint, DepthTest depth_test, bool sliced> clas
         !sliced || depth_test == DepthTest::none || depth_test == DepthTest::box,
         "lightbin: with slices the depth test is none, as lights are in the slices that they meet, or box");
     static constexpr bool worded = detail::with_words<footprint, depth_test>,
-                          with_boxes = depth_test == DepthTest::box || depth_test == DepthTest::split_box,
+                          with_boxes = detail::with_boxes<depth_test>,
                           by_slab = sliced && with_boxes && footprint == Footprint::rectangle;
 
 public:
@@ -81,7 +82,8 @@ public:
             for (std::size_t slice = begin; slice < end; ++slice) {
                 Job job = job_of(all, lit, slice);
                 // What is behind the last of these slices may be another thread's.
-                if (end < slices) job.spare_tiles = detail::min_of(job.spare_tiles, (end - slice - 1) * tiles);
+                if (end < slices)
+                    job.spare_tiles = detail::min_of(job.spare_tiles, (end - slice - 1) * tiles);
                 const auto kernel = kernel_of<spots>(isa, view, job);
                 at += static_cast<std::uint32_t>(kernel(job, memory, {0, rows, out + at, at}));
             }
@@ -107,7 +109,8 @@ public:
                         });
                 } else {
                     const Job job = job_of(all, lit, 0);
-                    entries_ = build_parts(isa, job, kernel_of<spots>(isa, view, job), list, scratch, parallel, shares);
+                    entries_ = build_parts(isa, job, kernel_of<spots>(isa, view, job), list, scratch,
+                                           parallel, shares);
                 }
                 return {};
             }
@@ -201,9 +204,9 @@ private:
         return {};
     }
 
-    template <bool spots>
-    static detail::BinKernel<Id> kernel_of(Isa isa, const View& view, const Job& job) {
-        return detail::bin_kernel<footprint, depth_test, Id, by_slab, spots>(isa, view, job.visible, job.area);
+    template <bool spots> static detail::BinKernel<Id> kernel_of(Isa isa, const View& view, const Job& job) {
+        return detail::bin_kernel<footprint, depth_test, Id, by_slab, spots>(isa, view, job.visible,
+                                                                             job.area);
     }
 
     /// Builds parts of tile rows on the caller's threads. Returns the number of entries.
@@ -224,7 +227,8 @@ private:
             parallel.run(parts.size(), [&](std::size_t i) {
                 const detail::Part& part = parts[i];
                 Id* out = list + part.before;
-                detail::BandJob<Id> rows = {part.begin, part.end, out, static_cast<std::uint32_t>(part.before)};
+                detail::BandJob<Id> rows = {part.begin, part.end, out,
+                                            static_cast<std::uint32_t>(part.before)};
                 // The last part has room for that, and scattering writes nothing beyond.
                 const bool beyond = i + 1 < parts.size() && kernel != detail::scatter_kernel<Id>(isa);
                 if (beyond) {
@@ -232,7 +236,8 @@ private:
                     rows.spare = spares_.data()[i].reserve(part.spare_area + slack);
                 }
                 kernel(job, scratch.data()[i], rows);
-                if (beyond) detail::copy_items(rows.spare, part.spare_area, out + part.area - part.spare_area);
+                if (beyond)
+                    detail::copy_items(rows.spare, part.spare_area, out + part.area - part.spare_area);
             });
             const detail::Part& last = parts[parts.size() - 1];
             return static_cast<std::size_t>(last.before + last.area);

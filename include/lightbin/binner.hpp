@@ -7,6 +7,7 @@
 #include <lightbin/detail/maybe.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/sizes.hpp>
+#include <lightbin/detail/supertile.hpp>
 #include <lightbin/isa.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/lights.hpp>
@@ -112,9 +113,7 @@ template <Options options = Options{}> class Binner {
                   "encode() make 8 bits of them");
     static constexpr bool clusters = options.slicing == Slicing::clusters,
                           z_bins = options.slicing == Slicing::z_bins,
-                          with_depth = Inputs<options.depth_test, options.slicing>::reads_bounds,
-                          with_boxes = options.depth_test == DepthTest::box ||
-                                       options.depth_test == DepthTest::split_box;
+                          with_depth = Inputs<options.depth_test, options.slicing>::reads_bounds;
 
 public:
     using Id = std::conditional_t<options.ids == IdWidth::u16, std::uint16_t, std::uint32_t>;
@@ -187,9 +186,9 @@ public:
         if (const auto error = project(view, lights, inputs, threads)) return *error;
         const std::uint64_t numbered = z_bins ? footprints_.visible() : footprints_.lights();
         if (numbered > max_lights) return Error{ErrorCode::ids_too_narrow, numbered, max_lights};
-        if (const auto error =
-                lists_.template write_bits<spots<LightRange>>(isa_, view, lit(), bounds_of(inputs), scratch_, threads,
-                                                              bits.data(), static_cast<std::size_t>(each)))
+        if (const auto error = lists_.template write_bits<spots<LightRange>>(
+                isa_, view, lit(), bounds_of(inputs), scratch_, threads, bits.data(),
+                static_cast<std::size_t>(each)))
             return *error;
         return LightBits{counts(), ranks()};
     }
@@ -197,9 +196,9 @@ public:
 private:
     using Lists = GridLists<Id, options.footprint, options.depth_test, clusters>;
     struct Nothing {};
-    using Ordered =
-        std::conditional_t<clusters, SlicedFootprints<options.footprint>,
-                           std::conditional_t<z_bins, RankedFootprints<options.footprint, with_depth>, Nothing>>;
+    using Ordered = std::conditional_t<
+        clusters, SlicedFootprints<options.footprint>,
+        std::conditional_t<z_bins, RankedFootprints<options.footprint, with_depth>, Nothing>>;
 
     template <class LightRange>
     static constexpr bool spots =
@@ -213,7 +212,8 @@ private:
             return error;
         scratch_.reserve(1, 1);
         isa_ = machine_isa(options.isa);
-        footprints_.project(isa_, view, source, threads, lists_.shared(), with_boxes);
+        footprints_.project(isa_, view, source, threads, lists_.shared(),
+                            detail::with_boxes<options.depth_test>);
         if constexpr (Inputs::reads_slices)
             return ordered_.template order<spots<LightRange>>(isa_, view, footprints_, inputs.slices);
         else
@@ -235,7 +235,8 @@ private:
     }
 
     template <bool of_spots, class Threads>
-    Result<LightGrid<Id>> build(Lists& lists, const View& view, const ZBounds& bounds, const Threads& threads) {
+    Result<LightGrid<Id>> build(Lists& lists, const View& view, const ZBounds& bounds,
+                                const Threads& threads) {
         if (const auto error = lists.template build<of_spots>(isa_, view, lit(), bounds, scratch_, threads))
             return *error;
         return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), counts(),

@@ -171,12 +171,10 @@ template <class Light, class ToLight> const Sphere* as_they_are(const Lights<Lig
             return lights.array.data();
         } else if constexpr (!std::convertible_to<const Light&, Sphere> && Vec4Of<Light, float>) {
             const void* const array = lights.array.data();
+            const float* const numbers = static_cast<const float*>(array);
             const Light& first = lights.array.front();
-            const auto at = [&](const auto& member) {
-                return static_cast<const char*>(static_cast<const void*>(&member)) -
-                       static_cast<const char*>(array);
-            };
-            if (at(first.x) == 0 && at(first.y) == 4 && at(first.z) == 8 && at(first.w) == 12)
+            if (&first.x == numbers && &first.y == numbers + 1 && &first.z == numbers + 2 &&
+                &first.w == numbers + 3)
                 return static_cast<const Sphere*>(array);
         }
     }

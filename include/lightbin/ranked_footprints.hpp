@@ -45,7 +45,7 @@ public:
         area_ = footprints.area();
         bin_count_ = static_cast<std::size_t>(slices.count());
         reserve<spots>(footprints.arrays(), footprints.runs().end()[-1].end);
-        find_bins<spots>(isa, detail::camera_of(view).z_sign, footprints.arrays(), footprints.runs(), slices);
+        find_bins<spots>(isa, view, footprints, slices);
 
         // Sorted by counting: how many lights begin in a bin, where those begin, and then where they end.
         std::uint32_t before = 0;
@@ -73,8 +73,8 @@ public:
 private:
     /// Finds the bins that each light meets, and counts in `ends_` those that begin in each.
     template <bool spots>
-    void find_bins(Isa isa, float z_sign, const detail::FootprintArrays& lights,
-                   detail::Items<const detail::FootprintRun> runs, const Slices& slices) {
+    void find_bins(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
+                   const Slices& slices) {
         std::uint32_t *const begins = ends_.data(), *const first_bins = first_bins_.data(),
                              *const last_bins = last_bins_.data();
         detail::fill_items(begins, bin_count_, 0);
@@ -83,7 +83,9 @@ private:
             last_bins[i] = last;
             ++begins[first];
         };
-        detail::table_of(slices).find(detail::slice_places_kernel<spots>(isa), true, z_sign, lights, runs, found);
+        detail::table_of(slices).find(detail::slice_places_kernel<spots>(isa), true,
+                                      detail::camera_of(view).z_sign, footprints.arrays(), footprints.runs(),
+                                      found);
     }
 
     /// Writes the lights in their order, an array at a time: what is read here and there is then one that is small.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <lightbin/detail/buffer.hpp>
-#include <lightbin/detail/costs.hpp>
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/kernels.hpp>
@@ -26,16 +25,6 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
-namespace detail {
-
-/// The footprints in a slice, a part of the footprint arrays, and the sum of their rectangles' tiles.
-struct SliceRun {
-    FootprintRun run;
-    std::uint64_t area;
-};
-
-}  // namespace detail
-
 /// Footprints by slice, in ascending order of id in each. Keeps its memory from call to call.
 template <Footprint footprint> class SlicedFootprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette;
@@ -54,9 +43,7 @@ public:
         run_count_ = static_cast<std::size_t>(slices.count());
         const std::uint64_t cells = std::uint64_t{view.tile_count()} * run_count_;
         if (cells > most) return Error{ErrorCode::too_many_cells, cells, most};
-        const std::uint64_t places =
-            find_slices<spots>(isa, detail::camera_of(view).z_sign, lights, footprints.runs(),
-                               footprints.visible());
+        const std::uint64_t places = find_slices<spots>(isa, view, footprints);
         if (places > most) return Error{ErrorCode::too_many_list_places, places, most};
         arrays_ = buffers_.reserve(places, with_spans);
         arrays_.spans = lights.spans;
@@ -79,11 +66,11 @@ public:
 
     int slices() const { return static_cast<int>(run_count_); }
     detail::LitSlice slice(std::size_t i) const {
-        const detail::SliceRun& all = runs_.data()[i];
+        const SliceRun& run = runs_.data()[i];
         return {arrays_,
-                {&all.run, 1},
-                all.run.end - all.run.begin,
-                all.area,
+                {&run, 1},
+                run.end - run.begin,
+                run.area,
                 {i == 0 ? -detail::infinity : table_->boundaries()[i - 1],
                  i + 1 == run_count_ ? detail::infinity : table_->boundaries()[i]}};
     }
@@ -93,26 +80,30 @@ private:
     struct Met {
         std::uint32_t first, last;
     };
+    /// The footprints in a slice, and the sum of their rectangles' tiles.
+    struct SliceRun : detail::FootprintRun {
+        std::uint64_t area;
+    };
 
     /// Finds the slices of each light, and where their runs begin, with a place between two. Returns where they end.
     template <bool spots>
-    std::uint64_t find_slices(Isa isa, float z_sign, const detail::FootprintArrays& lights,
-                              detail::Items<const detail::FootprintRun> all, std::uint32_t visible) {
-        detail::SliceRun* const runs = runs_.reserve(run_count_ + 1);
+    std::uint64_t find_slices(Isa isa, const View& view, const Footprints<footprint, true>& footprints) {
+        SliceRun* const runs = runs_.reserve(run_count_ + 1);
         detail::fill_items(runs, run_count_ + 1, {});
-        Met* met = met_.reserve(visible);
+        Met* met = met_.reserve(footprints.visible());
         const auto found = [=](std::uint32_t, std::uint32_t first, std::uint32_t last) mutable {
             *met++ = {first, last};
             // First the steps of the lights' number from slice to slice: sums wrap, and come out right.
-            ++runs[first].run.end;
-            --runs[last + 1].run.end;
+            ++runs[first].end;
+            --runs[last + 1].end;
         };
-        table_->find(detail::slice_places_kernel<spots>(isa), false, z_sign, lights, all, found);
+        table_->find(detail::slice_places_kernel<spots>(isa), false, detail::camera_of(view).z_sign,
+                     footprints.arrays(), footprints.runs(), found);
         std::uint64_t places = 0;
         std::uint32_t count = 0;
-        for (detail::SliceRun* run = runs; run <= runs + run_count_; ++run) {
-            count += run->run.end;
-            run->run.begin = run->run.end = static_cast<std::uint32_t>(places);
+        for (SliceRun* run = runs; run <= runs + run_count_; ++run) {
+            count += run->end;
+            run->begin = run->end = static_cast<std::uint32_t>(places);
             places += count + std::uint64_t{1};
         }
         return places;
@@ -121,9 +112,9 @@ private:
     /// Puts light i in a slice; or, if `count` and `area` are 0, writes what the next one overwrites.
     void put(const detail::FootprintArrays& lights, std::uint32_t i, std::uint64_t area, std::uint32_t slice,
              std::uint32_t count) {
-        detail::SliceRun& run = runs_.data()[slice];
-        const std::uint32_t to = run.run.end;
-        run.run.end += count;
+        SliceRun& run = runs_.data()[slice];
+        const std::uint32_t to = run.end;
+        run.end += count;
         run.area += area;
         arrays_.ids[to] = lights.ids[i];
         arrays_.x0[to] = lights.x0[i];
@@ -135,7 +126,7 @@ private:
 
     const detail::SliceTable* table_ = nullptr;  ///< of the caller's Slices, for a call
     detail::Buffer<Met> met_;
-    detail::Buffer<detail::SliceRun> runs_;
+    detail::Buffer<SliceRun> runs_;
     detail::FootprintBuffers buffers_;
     detail::FootprintArrays arrays_ = {};
     std::size_t run_count_ = 0;

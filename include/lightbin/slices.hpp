@@ -40,7 +40,8 @@ public:
         if (count > 1 && !(0 < first && first < last)) return Error{ErrorCode::slices_do_not_ascend};
         const double ratio = static_cast<double>(last) / static_cast<double>(first);
         return from_law(count, [=](std::size_t i) {
-            return static_cast<double>(first) * detail::power_of(ratio, static_cast<double>(i) / (count - 1.0));
+            return static_cast<double>(first) *
+                   detail::power_of(ratio, static_cast<double>(i) / (count - 1.0));
         });
     }
 
@@ -50,8 +51,8 @@ public:
     static Result<Slices> linear(int count, float begin, float end) {
         if (count > 1 && !(begin < end)) return Error{ErrorCode::slices_do_not_ascend};
         return from_law(count, [=](std::size_t i) {
-            return static_cast<double>(begin) +
-                   (static_cast<double>(end) - static_cast<double>(begin)) * static_cast<double>(i + 1) / count;
+            return static_cast<double>(begin) + (static_cast<double>(end) - static_cast<double>(begin)) *
+                                                    static_cast<double>(i + 1) / count;
         });
     }
 

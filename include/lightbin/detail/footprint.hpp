@@ -121,8 +121,8 @@ struct ChunkRects {
 struct LitSlice {
     FootprintArrays lights;
     Items<const FootprintRun> runs;
-    std::uint32_t visible;  ///< lights in all runs
-    std::uint64_t area;     ///< sum of their rectangles' tiles
+    std::uint32_t visible;                  ///< lights in all runs
+    std::uint64_t area;                     ///< sum of their rectangles' tiles
     float slab[2] = {-infinity, infinity};  ///< the slice's depths
 };
 

@@ -26,8 +26,7 @@ struct Part {
 
 /// Writes parts of about equal work of `steps` tile rows or slices, no more parts than those. A step has area(step)
 /// tiles in rectangles, and takes as long as `each` more of them.
-template <class Area>
-void share_steps(Items<Part> parts, std::size_t steps, std::uint64_t each, Area area) {
+template <class Area> void share_steps(Items<Part> parts, std::size_t steps, std::uint64_t each, Area area) {
     const std::size_t count = parts.size();
     std::uint64_t work = 0, before = 0, done = 0;
     for (std::size_t step = 0; step < steps; ++step)
@@ -50,7 +49,8 @@ void share_steps(Items<Part> parts, std::size_t steps, std::uint64_t each, Area 
 
 /// The same of a grid's tile rows.
 template <class Id>
-void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums, Items<Part> parts) {
+void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums,
+                Items<Part> parts) {
     // Each run of lights adds its widths to the steps between rows, in a column of its own.
     const std::size_t rows = static_cast<std::size_t>(job.camera->y.tiles), pitch = rows + 1;
     std::uint64_t* row_area = sums.reserve(std::uint64_t{pitch} * job.runs.size());
@@ -80,7 +80,7 @@ void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
 /// after it. A step's ranges are `width`. Returns the number of all entries.
 template <class Id, class Build>
 std::size_t build_apart(const Parallel& parallel, Items<Part> parts, ListRange* ranges, std::size_t width,
-                          Buffer<Buffer<Id>>& spares, Id* list, Build build) {
+                        Buffer<Buffer<Id>>& spares, Id* list, Build build) {
     spares.reserve(parts.size(), parts.size());
     parallel.run(parts.size(), [&](std::size_t i) {
         Id* const out = i == 0 ? list : spares.data()[i].reserve(parts[i].area + BandJob<Id>::slack);

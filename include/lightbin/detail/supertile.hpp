@@ -23,6 +23,10 @@ inline constexpr bool with_words = footprint != Footprint::rectangle || depth_te
 /// Kernels that read spots are other ones than those of spheres; what their footprints say needs none.
 template <DepthTest depth_test> inline constexpr bool reads_spots = depth_test != DepthTest::none;
 
+/// Depth tests that ask for the boxes around cells.
+template <DepthTest depth_test>
+inline constexpr bool with_boxes = depth_test == DepthTest::box || depth_test == DepthTest::split_box;
+
 /// Planes of 64 floats that a depth test needs of a supertile, see arrange_cells().
 template <DepthTest depth_test>
 inline constexpr unsigned cell_planes = depth_test == DepthTest::split_box ? 12
