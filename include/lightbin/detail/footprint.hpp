@@ -123,13 +123,13 @@ struct LitSlice {
     Items<const FootprintRun> runs;
     std::uint32_t visible;                  ///< lights in all runs
     std::uint64_t area;                     ///< sum of their rectangles' tiles
-    float slab[2] = {-infinity, infinity};  ///< the slice's depths
+    float slab[2] = {-infinity, infinity};  ///< the slice's depths: they take the place of absent min and max
 };
 
 /// What binning works on and writes.
 template <class Id> struct BinJob : LitSlice {
     const Camera* camera;
-    const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one: `slab` then
+    const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one
     const float* edges[4];  ///< of the tiles, for boxes: low x, high x, low y, high y; see cell_boxes.hpp
     ListRange* tiles;       ///< the table to write
     std::size_t
