@@ -103,14 +103,15 @@ public:
                 if constexpr (sliced) {
                     detail::share_steps(shares, slices, detail::empty_row_cost(tiles),
                                         [&](std::size_t slice) { return lit.slice(slice).area; });
-                    entries_ = detail::build_apart(
+                    entries_ = static_cast<std::size_t>(detail::build_apart(
                         parallel, shares, all.tiles, tiles, spares_, list, [&](std::size_t i, Id* out) {
                             return build_slices(shares[i].begin, shares[i].end, out, scratch.data()[i]);
-                        });
+                        }));
                 } else {
                     const Job job = job_of(all, lit, 0);
-                    entries_ = build_parts(isa, job, kernel_of<spots>(isa, view, job), list, scratch,
-                                           parallel, shares);
+                    const auto kernel = kernel_of<spots>(isa, view, job);
+                    entries_ = static_cast<std::size_t>(
+                        build_parts(isa, job, kernel, list, scratch, parallel, shares));
                 }
                 return {};
             }
@@ -210,9 +211,9 @@ private:
     }
 
     /// Builds parts of tile rows on the caller's threads. Returns the number of entries.
-    std::size_t build_parts(Isa isa, const Job& job, detail::BinKernel<Id> kernel, Id* list,
-                            detail::Buffer<detail::Scratch>& scratch, const Parallel& parallel,
-                            detail::Items<detail::Part> parts) {
+    std::uint64_t build_parts(Isa isa, const Job& job, detail::BinKernel<Id> kernel, Id* list,
+                              detail::Buffer<detail::Scratch>& scratch, const Parallel& parallel,
+                              detail::Items<detail::Part> parts) {
         detail::make_parts(job, parallel, row_sums_, parts);
         if constexpr (worded) {
             return detail::build_apart(
@@ -240,7 +241,7 @@ private:
                     detail::copy_items(rows.spare, part.spare_area, out + part.area - part.spare_area);
             });
             const detail::Part& last = parts[parts.size() - 1];
-            return static_cast<std::size_t>(last.before + last.area);
+            return last.before + last.area;
         }
     }
 

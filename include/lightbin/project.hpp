@@ -136,7 +136,12 @@ private:
             detail::ProjectCounts sum;
             kernel(detail::camera_of(view), source, static_cast<std::uint32_t>(first),
                    static_cast<std::uint32_t>(end - first), arrays_.from(place), sum);
-            end_part(part, static_cast<std::uint32_t>(place), sum);
+            const std::uint32_t begin = static_cast<std::uint32_t>(place), end_place = begin + sum.visible;
+            if constexpr (with_spans)
+                for (std::uint32_t i = begin; i < end_place; ++i)
+                    sum.rows += arrays_.y1[i] - arrays_.y0[i] + 1u;
+            part_counts_.data()[part] = sum;
+            runs_.data()[part] = {begin, end_place};
         });
         counts_ = {};
         for (std::size_t part = 0; part < parts; ++part) {
@@ -154,15 +159,6 @@ private:
         runs_.reserve(parts);
         part_counts_.reserve(parts);
         run_count_ = parts;
-    }
-
-    /// Notes what became of a part, whose lights in view begin at `place` of the arrays.
-    void end_part(std::size_t part, std::uint32_t place, detail::ProjectCounts counts) {
-        if constexpr (with_spans)
-            for (std::uint32_t i = place; i < place + counts.visible; ++i)
-                counts.rows += arrays_.y1[i] - arrays_.y0[i] + 1u;
-        part_counts_.data()[part] = counts;
-        runs_.data()[part] = {place, place + counts.visible};
     }
 
     void add_spans(detail::RowSpanKernel kernel, const View& view, const Parallel& threads) {

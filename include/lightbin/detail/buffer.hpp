@@ -30,11 +30,8 @@ public:
     /// memory for them, or `std::size_t` does not count them, it throws as `new` does, and later calls are right.
     T* reserve(std::uint64_t size) {
         if (size > size_) {
-            delete[] memory_;
-            memory_ = nullptr;  // should there be no memory
-            size_ = 0;
-            memory_ = made(size);
-            size_ = static_cast<std::size_t>(size);
+            Buffer().swap(*this);
+            Buffer(size).swap(*this);
         }
         return memory_;
     }
@@ -42,17 +39,14 @@ public:
     /// The same, keeping the first `used` elements, or as many as there are; grows in large steps.
     T* reserve(std::uint64_t size, std::size_t used) {
         if (size > size_) {
-            const std::uint64_t larger = sum_of_sizes(size, size);
-            T* const memory = made(larger);
+            Buffer larger(sum_of_sizes(size, size));
             used = min_of(used, size_);
             if constexpr (std::is_trivially_copyable_v<T>)
-                copy_items(memory_, used, memory);
+                copy_items(memory_, used, larger.memory_);
             else
                 for (std::size_t i = 0; i < used; ++i)
-                    memory[i] = std::move(memory_[i]);
-            delete[] memory_;
-            memory_ = memory;
-            size_ = static_cast<std::size_t>(larger);
+                    larger.memory_[i] = std::move(memory_[i]);
+            swap(larger);
         }
         return memory_;
     }
@@ -70,13 +64,13 @@ public:
 
 private:
     /// Uninitialised. More elements than std::size_t counts are as many as it does: no memory has those.
-    static T* made(std::uint64_t size) {
-        const std::size_t count = static_cast<std::size_t>(min_of<std::uint64_t>(size, ~std::size_t{0}));
+    explicit Buffer(std::uint64_t size)
+        : size_(static_cast<std::size_t>(min_of<std::uint64_t>(size, ~std::size_t{0}))) {
 #if defined(LIGHTBIN_MEMORY_SANITIZER)
         // Kernels read whole words and vectors; it takes what they leave unused of them for used.
-        return new T[count]();
+        memory_ = new T[size_]();
 #else
-        return new T[count];
+        memory_ = new T[size_];
 #endif
     }
 

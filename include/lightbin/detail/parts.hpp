@@ -79,8 +79,8 @@ void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
 /// Has build(part, out) make a list of its own of each part, the first one in `list`, and puts the others in their places
 /// after it. A step's ranges are `width`. Returns the number of all entries.
 template <class Id, class Build>
-std::size_t build_apart(const Parallel& parallel, Items<Part> parts, ListRange* ranges, std::size_t width,
-                        Buffer<Buffer<Id>>& spares, Id* list, Build build) {
+std::uint64_t build_apart(const Parallel& parallel, Items<Part> parts, ListRange* ranges, std::size_t width,
+                          Buffer<Buffer<Id>>& spares, Id* list, Build build) {
     spares.reserve(parts.size(), parts.size());
     parallel.run(parts.size(), [&](std::size_t i) {
         Id* const out = i == 0 ? list : spares.data()[i].reserve(parts[i].area + BandJob<Id>::slack);
@@ -99,7 +99,7 @@ std::size_t build_apart(const Parallel& parallel, Items<Part> parts, ListRange* 
         copy_items(spares.data()[previous + 1].data(), static_cast<std::size_t>(part.area),
                    list + part.before);
     });
-    return static_cast<std::size_t>(entries);
+    return entries;
 }
 
 }  // namespace lightbin::inline LIGHTBIN_FLAVOUR::detail
