@@ -164,8 +164,8 @@ const Lights<Light, ToLight>& as_lights(const Lights<Light, ToLight>& lights) {
 /// The caller's array as spheres, if its elements are Spheres, or vec4s laid out like them; else null. Read it with
 /// load_sphere.
 template <class Light, class ToLight> const Sphere* as_they_are(const Lights<Light, ToLight>& lights) {
-    if constexpr (std::is_same_v<ToLight, AsLight> && sizeof(Light) == sizeof(Sphere) &&
-                  std::is_trivially_copyable_v<Light>) {
+    if constexpr (std::is_same_v<ToLight, AsLight> && !Lights<Light, ToLight>::spots &&
+                  sizeof(Light) == sizeof(Sphere) && std::is_trivially_copyable_v<Light>) {
         if (lights.array.empty()) return nullptr;
         if constexpr (std::is_base_of_v<Sphere, Light>) {
             return lights.array.data();

@@ -36,21 +36,17 @@ Maybe<Error> refuse(const Lights<Light, ToLight>& lights, std::uint64_t most = 0
 
 /// See LightSource.
 template <class Light, class ToLight>
-void copy_spheres(const void* lights, std::size_t first, std::size_t count, Sphere* to) {
+void copy_lights(const void* lights, std::size_t first, std::size_t count, Sphere* to,
+                 [[maybe_unused]] Sphere* cones) {
     const auto& from = *static_cast<const Lights<Light, ToLight>*>(lights);
     for (std::size_t i = 0; i < count; ++i)
-        to[i] = call(from.to_light, from.array[first + i]);
-}
-
-/// See SpotSource.
-template <class Light, class ToLight>
-void copy_spots(const void* lights, std::size_t first, std::size_t count, Sphere* balls, Sphere* cones) {
-    const auto& from = *static_cast<const Lights<Light, ToLight>*>(lights);
-    for (std::size_t i = 0; i < count; ++i) {
-        const Spot spot = call(from.to_light, from.array[first + i]);
-        balls[i] = {spot.x, spot.y, spot.z, spot.radius};
-        cones[i] = {spot.axis_x, spot.axis_y, spot.axis_z, spot.cos_half_angle};
-    }
+        if constexpr (Lights<Light, ToLight>::spots) {
+            const Spot spot = call(from.to_light, from.array[first + i]);
+            to[i] = {spot.x, spot.y, spot.z, spot.radius};
+            cones[i] = {spot.axis_x, spot.axis_y, spot.axis_z, spot.cos_half_angle};
+        } else {
+            to[i] = call(from.to_light, from.array[first + i]);
+        }
 }
 
 }  // namespace detail
@@ -72,34 +68,31 @@ public:
     /// for_boxes       have what boxes ask of spots at hand, too; only with_spheres
     template <class Light, class ToLight>
     void project(Isa isa, const View& view, const Lights<Light, ToLight>& lights, const Parallel& parallel,
-                 bool force_parallel = false, [[maybe_unused]] bool for_boxes = false) {
+                 bool force_parallel = false, bool for_boxes = false) {
         lights_ = lights.array.size();
         const bool share =
             force_parallel || parallel.pays_off(detail::project_ns(isa, static_cast<double>(lights_)));
         const Parallel threads = share ? parallel : Parallel();
         constexpr bool spots = Lights<Light, ToLight>::spots;
-        const detail::WorldToView* const to_view = lights.to_view ? &*lights.to_view : nullptr;
         // One light is done sooner than a vector is filled up with copies of it.
         const Isa taken = lights_ > 1 ? isa : Isa::scalar;
         reserve(parts_for(parallel));
-        if constexpr (spots) {
-            detail::SpotSource source = {&lights, detail::copy_spots<Light, ToLight>, to_view, nullptr,
-                                         for_boxes};
-            if constexpr (keep) arrays_.spots = source.kept = spots_.reserve(std::uint64_t{lights_} + chunk);
-            run_parts(view, source, detail::project_spots_kernel(taken), threads);
-        } else {
-            detail::LightSource source = {.spheres = detail::as_they_are(lights),
-                                          .lights = &lights,
-                                          .copy = nullptr,
-                                          .to_view = to_view,
-                                          .kept = nullptr};
-            if (source.spheres == nullptr) source.copy = detail::copy_spheres<Light, ToLight>;
-            arrays_.spheres = source.spheres;
-            if constexpr (keep)
-                if (source.copy != nullptr || source.to_view != nullptr)
-                    arrays_.spheres = source.kept = spheres_.reserve(std::uint64_t{lights_} + chunk);
-            run_parts(view, source, detail::project_kernel(taken), threads);
-        }
+        detail::LightSource source = {.spheres = detail::as_they_are(lights),
+                                      .lights = &lights,
+                                      .copy = nullptr,
+                                      .to_view = lights.to_view ? &*lights.to_view : nullptr,
+                                      .kept = nullptr,
+                                      .kept_spots = nullptr,
+                                      .with_planes = for_boxes};
+        if (source.spheres == nullptr) source.copy = detail::copy_lights<Light, ToLight>;
+        arrays_.spheres = source.spheres;
+        [[maybe_unused]] const std::uint64_t places = std::uint64_t{lights_} + chunk;
+        if constexpr (keep && spots)
+            arrays_.spots = source.kept_spots = spots_.reserve(places);
+        else if constexpr (keep)
+            if (source.copy != nullptr || source.to_view != nullptr)
+                arrays_.spheres = source.kept = spheres_.reserve(places);
+        run_parts(view, source, detail::project_kernel<spots>(taken), threads);
         if constexpr (with_spans) add_spans(detail::row_span_kernel<spots>(isa), view, threads);
     }
 
@@ -123,8 +116,8 @@ private:
     }
 
     /// Has a kernel project the lights, whole chunks a part.
-    template <class Source, class Kernel>
-    void run_parts(const View& view, const Source& source, Kernel kernel, const Parallel& threads) {
+    void run_parts(const View& view, const detail::LightSource& source, detail::ProjectKernel kernel,
+                   const Parallel& threads) {
         const std::size_t chunks = lights_ / chunk + 1, parts = run_count_;
         const auto first_of = [&](std::size_t part) {
             return static_cast<std::size_t>(

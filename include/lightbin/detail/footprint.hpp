@@ -18,24 +18,17 @@
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
 /// Where the projection finds the lights, by id: `spheres` as they are, or null and `copy`, which makes spheres of some
-/// of `lights`. They are moved by `to_view`, if not null. Those that are copied or moved stay in `kept`, if not null,
-/// which has some more places behind them.
+/// of `lights`, or of spots their balls, and as vec4s their axes and cosines. They are moved by `to_view`, if not null.
+/// Those that are copied or moved stay in `kept`, spots in `kept_spots`, if not null, which have some more places behind
+/// them.
 struct LightSource {
     const Sphere* spheres;  ///< to be read with load_sphere
     const void* lights;
-    void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* to);
+    void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* to, Sphere* cones);
     const WorldToView* to_view;
     Sphere* kept;
-};
-
-/// The same of spots: `copy` makes Spots of some lights, their balls, and as vec4s their axes and cosines. They stay in
-/// `kept`, if not null, which has some more places behind them.
-struct SpotSource {
-    const void* lights;
-    void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* balls, Sphere* cones);
-    const WorldToView* to_view;
-    ViewSpot* kept;
-    bool with_planes;  ///< of those in `kept`
+    ViewSpot* kept_spots;
+    bool with_planes;  ///< of those
 };
 
 /// The tiles first..last of one tile row that a light's silhouette reaches; none if first > last.

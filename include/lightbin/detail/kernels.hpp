@@ -34,11 +34,8 @@ template <class Pick> auto with_tier(Isa isa, Pick pick) {
     return pick(scalar::Tier{});
 }
 
-inline ProjectKernel project_kernel(Isa isa) {
-    return with_tier(isa, [](auto tier) { return tier.project_kernel(); });
-}
-inline ProjectSpotsKernel project_spots_kernel(Isa isa) {
-    return with_tier(isa, [](auto tier) { return tier.project_spots_kernel(); });
+template <bool spots> ProjectKernel project_kernel(Isa isa) {
+    return with_tier(isa, [](auto tier) { return tier.template project_kernel<spots>(); });
 }
 template <bool spots> RowSpanKernel row_span_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.template row_span_kernel<spots>(); });

@@ -97,8 +97,12 @@
 struct Tier {
     static constexpr std::size_t vector = lanes;
 
-    static ProjectKernel project_kernel() { return project; }
-    static ProjectSpotsKernel project_spots_kernel() { return project_spots; }
+    template <bool spots> static ProjectKernel project_kernel() {
+        if constexpr (spots)
+            return project_spots;
+        else
+            return project;
+    }
     template <bool spots> static RowSpanKernel row_span_kernel() { return row_spans<std::conditional_t<spots, SpotRows, SphereRows>>; }
     template <bool spots> static SlicePlacesKernel slice_places_kernel() { return slice_places<spots>; }
     static DepthKernels depth_kernels() { return {column_extremes, column_gaps}; }

@@ -161,7 +161,7 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline bool eight_out_of_view(const Camera& ca
 /// Copies and moves lights to `to`, for the scalar tier.
 inline void take(const LightSource& source, std::uint32_t first, std::uint32_t count, const Sphere* given,
                  Sphere* to) {
-    if (source.copy != nullptr) source.copy(source.lights, first, count, to);
+    if (source.copy != nullptr) source.copy(source.lights, first, count, to, nullptr);
     if (source.to_view != nullptr) move_in_eights(*source.to_view, given, count, to);
 }
 
@@ -202,7 +202,7 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
             take(source, first + eight, here - eight, given + eight, own + eight);
             if (most < usual) most *= 2;  // ask less often where the answer is no
         } else if (source.copy != nullptr) {
-            source.copy(source.lights, first, here, own);
+            source.copy(source.lights, first, here, own, nullptr);
         }
         std::uint32_t careful_count = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {

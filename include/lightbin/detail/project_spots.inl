@@ -124,7 +124,7 @@ LIGHTBIN_TARGET LIGHTBIN_INLINE void find_slopes(const SpotLanes& spots, Floats 
 }
 
 /// Appends the footprints of those of the spots first..first + count - 1 that are in view, as project() does.
-LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const SpotSource& source, std::uint32_t first,
+LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const LightSource& source, std::uint32_t first,
                                           std::uint32_t count, const FootprintArrays& out,
                                           ProjectCounts& counts) {
     ChunkRects rects;
@@ -161,8 +161,8 @@ LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const SpotSource
                            valid = used < 32 ? (1u << used) - 1 : ~0u;
             unsigned& in_view = visible[i / lanes] = 0;
             if ((~bits(culled) & valid) == 0) continue;
-            if (source.kept != nullptr) store_spots(source.kept + first + i, spots, nearest, farthest);
-            if (source.with_planes) store_planes(source.kept + first + i, spots);
+            if (source.kept_spots != nullptr) store_spots(source.kept_spots + first + i, spots, nearest, farthest);
+            if (source.with_planes) store_planes(source.kept_spots + first + i, spots);
             auto plain = and_not(usable, culled);
             ImageBounds bounds;
             if (camera.orthographic) {

@@ -9,7 +9,7 @@ struct SpotLanes {
 
 /// Makes whole spheres of those of a vector's spots that floats can't hold: their least spheres.
 ///
-/// balls, cones  the spots as they were given, see SpotSource
+/// balls, cones  the spots as they were given, see LightSource
 LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void take_least_spheres(const WorldToView* to_view, unsigned which,
                                                                  const Sphere* balls, const Sphere* cones,
                                                                  SpotLanes& spots) {

@@ -31,8 +31,6 @@ namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 // See project.inl, project_spots.inl, row_spans.inl, depth_columns.inl; bin.inl, bits.inl and scatter.hpp.
 using ProjectKernel = void (*)(const Camera& camera, const LightSource& source, std::uint32_t first,
                                std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts);
-using ProjectSpotsKernel = void (*)(const Camera& camera, const SpotSource& source, std::uint32_t first,
-                                    std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts);
 using RowSpanKernel = void (*)(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
                                RowSpan* spans, std::uint64_t place);
 using SlicePlacesKernel = void (*)(const SlicePlaces& to, float z_sign, const FootprintArrays& lights,
