@@ -56,7 +56,6 @@ public:
         if (const auto error = prepare(view, bounds, all)) return error;
         const std::size_t tiles = view.tile_count(), slices = static_cast<std::size_t>(lit.slices());
         const unsigned rows = static_cast<unsigned>(view.tiles_y());
-        all.tiles = tiles_.reserve(std::uint64_t{tiles} * slices + all.spare_tiles);
         std::uint64_t lights = 0, area = 0;
         for (std::size_t slice = 0; slice < slices; ++slice) {
             const Job job = job_of(all, lit, slice);
@@ -75,12 +74,14 @@ public:
             }
         if (capacity > most) return Error{ErrorCode::too_many_entries, capacity, most};
 
+        all.tiles = tiles_.reserve(std::uint64_t{tiles} * slices + all.spare_tiles);
         Id* const list = indices_.reserve(capacity + slack);
         tile_count_ = tiles * slices;
         const auto build_slices = [&](std::size_t begin, std::size_t end, Id* out, detail::Scratch& memory) {
             std::uint32_t at = 0;
             for (std::size_t slice = begin; slice < end; ++slice) {
                 Job job = job_of(all, lit, slice);
+                job.tiles += slice * tiles;
                 // What is behind the last of these slices may be another thread's.
                 if (end < slices)
                     job.spare_tiles = detail::min_of(job.spare_tiles, (end - slice - 1) * tiles);
@@ -192,9 +193,6 @@ private:
     template <class Lit> static Job job_of(const Job& all, const Lit& lit, std::size_t slice) {
         Job job = all;
         static_cast<detail::LitSlice&>(job) = lit.slice(slice);
-        if constexpr (sliced)
-            job.tiles += slice * static_cast<std::size_t>(all.camera->x.tiles) *
-                         static_cast<std::size_t>(all.camera->y.tiles);
         return job;
     }
 
