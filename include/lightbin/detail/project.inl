@@ -139,25 +139,6 @@ LIGHTBIN_TARGET inline void project_carefully(const Camera& camera, const Sphere
     }
 }
 
-/// Whether eight spheres are out of view beyond doubt, for the scalar tier: a loop that compilers make vectors of,
-/// and not inline, as within another they don't. They may fuse products and sums there, so it asks for twice the
-/// distance to a side plane that project does: what is out here is out there.
-LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline bool eight_out_of_view(const Camera& camera, const Sphere* spheres) {
-    Sphere eight[8];
-    std::memcpy(eight, spheres, sizeof eight);
-    int out = 1;
-    for (const Sphere& sphere : eight) {
-        const float a = abs_of(sphere.x), b = abs_of(sphere.y), z = sphere.z * camera.z_sign;
-        const float r = sphere.radius, size = a + b + abs_of(z) + r;
-        const float aside_x = a * camera.x.side + z * camera.x.side_z - r;
-        const float aside_y = b * camera.y.side + z * camera.y.side_z - r;
-        out &= (size <= 0x1p40f) & (r >= 0x1p-40f) &
-               ((z + r < camera.near_depth) | (z - r > camera.far_depth) |
-                ((aside_x > aside_y ? aside_x : aside_y) > size * 0x1p-20f));
-    }
-    return out != 0;
-}
-
 /// Copies and moves lights to `to`, for the scalar tier.
 inline void take(const LightSource& source, std::uint32_t first, std::uint32_t count, const Sphere* given,
                  Sphere* to) {
@@ -184,26 +165,17 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
                  side_yz = all(camera.y.side_z);
     const Floats front = all(camera.near_depth), back = all(camera.far_depth);
     // Copies are made a few at a time, so that the next lights are fetched while these are projected.
-    const std::uint32_t usual = source.copy != nullptr ? 32 : ChunkRects::size;
-    std::uint32_t most = lanes == 1 ? 8 : usual;
+    const std::uint32_t most = source.copy != nullptr ? 32 : ChunkRects::size;
     for (std::uint32_t here; count > 0; count -= here, first += here) {
         here = count < most ? count : most;
         // Where spheres come from, and where they are in view space.
         Sphere* const own = source.kept != nullptr ? source.kept + first : chunk;
         const Sphere* const given = source.spheres != nullptr ? source.spheres + first : own;
         const Sphere* const spheres = source.to_view != nullptr ? own : given;
-        if constexpr (lanes == 1) {
-            const std::uint32_t eight = here < 8 ? here : 8;
-            take(source, first, eight, given, own);
-            if (eight == 8 && eight_out_of_view(camera, spheres)) {
-                here = most = 8;
-                continue;
-            }
-            take(source, first + eight, here - eight, given + eight, own + eight);
-            if (most < usual) most *= 2;  // ask less often where the answer is no
-        } else if (source.copy != nullptr) {
+        if constexpr (lanes == 1)
+            take(source, first, here, given, own);
+        else if (source.copy != nullptr)
             source.copy(source.lights, first, here, own, nullptr);
-        }
         std::uint32_t careful_count = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
             const Sphere* from = (lanes == 1 ? spheres : given) + i;
