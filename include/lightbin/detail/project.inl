@@ -139,13 +139,6 @@ LIGHTBIN_TARGET inline void project_carefully(const Camera& camera, const Sphere
     }
 }
 
-/// Copies and moves lights to `to`, for the scalar tier.
-inline void take(const LightSource& source, std::uint32_t first, std::uint32_t count, const Sphere* given,
-                 Sphere* to) {
-    if (source.copy != nullptr) source.copy(source.lights, first, count, to, nullptr);
-    if (source.to_view != nullptr) move_in_eights(*source.to_view, given, count, to);
-}
-
 /// Appends the footprints of those of the lights first..first + count - 1 that are in view.
 ///
 /// In float where the error bound of tangent_slopes holds: no over- or underflow (sizes of 2^-40 to 2^40) and
@@ -157,8 +150,6 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
     std::uint8_t careful[ChunkRects::size];
     Sphere chunk[ChunkRects::size], padded[lanes];
     const MoveLanes move(source.to_view);
-    const bool by_vectors =
-        lanes > 1 && source.to_view != nullptr;  // the scalar tier moves them before, see take()
     // What each vector is asked first, in every lane: broadcasting it again would take narrow vectors as long as asking.
     const Floats sign_x = all(camera.x.sign), sign_y = all(camera.y.sign), sign_z = all(camera.z_sign);
     const Floats side_x = all(camera.x.side), side_xz = all(camera.x.side_z), side_y = all(camera.y.side),
@@ -172,13 +163,10 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
         Sphere* const own = source.kept != nullptr ? source.kept + first : chunk;
         const Sphere* const given = source.spheres != nullptr ? source.spheres + first : own;
         const Sphere* const spheres = source.to_view != nullptr ? own : given;
-        if constexpr (lanes == 1)
-            take(source, first, here, given, own);
-        else if (source.copy != nullptr)
-            source.copy(source.lights, first, here, own, nullptr);
+        if (source.copy != nullptr) source.copy(source.lights, first, here, own, nullptr);
         std::uint32_t careful_count = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
-            const Sphere* from = (lanes == 1 ? spheres : given) + i;
+            const Sphere* from = given + i;
             const std::uint32_t used = here - i < lanes ? here - i : lanes;
             if (used < lanes) {
                 for (std::uint32_t lane = 0; lane < lanes; ++lane)
@@ -187,7 +175,7 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
             }
             Floats x, y, z, r;
             load_spheres(from, x, y, z, r);
-            if (by_vectors) move_spheres(move, x, y, z, r);
+            if (source.to_view != nullptr) move_spheres(move, x, y, z, r);
             const Floats at[] = {x, y, z};
             x = x * sign_x;
             y = y * sign_y;
@@ -211,7 +199,7 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
                 tangent_slopes(y, z, r, e, per_e, bottom, top);
             }
             unsigned rest = ~bits(either(plain, culled)) & valid;
-            if (by_vectors && (source.kept != nullptr || rest != 0))
+            if (source.to_view != nullptr && (source.kept != nullptr || rest != 0))
                 store_spheres(own + i, at[0], at[1], at[2], r);
             for (; rest != 0; rest &= rest - 1)
                 careful[careful_count++] =
