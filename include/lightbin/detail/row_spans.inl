@@ -21,11 +21,10 @@ LIGHTBIN_TARGET inline void row_spans(const Camera& camera, const FootprintArray
             if ((known >> i & 1) == 0 || x0 == x1 || y0 == y1 || place + (y1 - y0) >= first) continue;
             first = static_cast<std::uint32_t>(place);
             const Doubles leftmost = all(static_cast<double>(x0)), rightmost = all(static_cast<double>(x1));
-            const auto light = rows.of(i);
             for (unsigned row = y0; row <= y1; row += double_lanes) {
                 const Doubles edge = lane + (static_cast<double>(row) - row_offset);
-                light.store(spans + place + (row - y0), edge * per_scale, (edge + 1.0) * per_scale, leftmost,
-                            rightmost);
+                rows.store(i, edge * per_scale, (edge + 1.0) * per_scale, leftmost, rightmost,
+                           spans + place + (row - y0));
             }
             place += y1 - y0 + 1;
         }

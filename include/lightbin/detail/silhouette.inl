@@ -78,41 +78,25 @@ LIGHTBIN_TARGET inline unsigned row_terms(const Camera& camera, const Sphere (&s
     return known;
 }
 
-/// A light's terms, in every lane a row.
-struct RowLanes {
-    LIGHTBIN_TARGET RowLanes(const RowTerms& terms, std::uint32_t i)
-        : y(all(terms.y[i])), y_v(all(terms.y_v[i])), z(all(terms.z[i])), r2(all(terms.r2[i])),
-          r2_v(all(terms.r2_v[i])), slack(all(terms.slack[i])), middle(all(terms.middle[i])),
-          reach(all(terms.reach[i])), low(all(terms.low[i])), high(all(terms.high[i])),
-          left_v(all(terms.left_v[i])), right_v(all(terms.right_v[i])) {}
-
-    /// Where the silhouette begins and ends in rows of the slopes v0 to v1, in tiles.
-    LIGHTBIN_TARGET LIGHTBIN_INLINE void ends(Doubles v0, Doubles v1, Doubles& begin, Doubles& end) const {
-        const Doubles left = lesser(greater(left_v, v0), v1), right = lesser(greater(right_v, v0), v1);
-        const Doubles left_e = y - mul(left, z), right_e = y - mul(right, z);
-        const Doubles left_s2 = r2 + mul(r2_v, mul(left, left)) - mul(left_e, left_e);
-        const Doubles right_s2 = r2 + mul(r2_v, mul(right, right)) - mul(right_e, right_e);
-        const Doubles left_s = sqrt(greater(left_s2, all(0.0)) + slack);
-        const Doubles right_s = sqrt(greater(right_s2, all(0.0)) + slack);
-        begin = mul(middle, mul(y_v, left) + z) - mul(reach, left_s) + low;
-        end = mul(middle, mul(y_v, right) + z) + mul(reach, right_s) + high;
-    }
-
-    /// Stores the spans of rows, of the tiles leftmost..rightmost.
-    LIGHTBIN_TARGET LIGHTBIN_INLINE void store(RowSpan* to, Doubles v0, Doubles v1, Doubles leftmost,
-                                               Doubles rightmost) const {
-        Doubles begin, end;
-        ends(v0, v1, begin, end);
-        store_spans(to, lesser(greater(begin, leftmost), rightmost), lesser(greater(end, leftmost), rightmost));
-    }
-
-    Doubles y, y_v, z, r2, r2_v, slack, middle, reach, low, high, left_v, right_v;
-};
+/// Where light i's silhouette begins and ends in rows of the slopes v0 to v1, a lane each, in tiles.
+LIGHTBIN_TARGET LIGHTBIN_INLINE void silhouette_ends(const RowTerms& terms, std::uint32_t i, Doubles v0,
+                                                     Doubles v1, Doubles& begin, Doubles& end) {
+    const Doubles y = all(terms.y[i]), y_v = all(terms.y_v[i]), z = all(terms.z[i]), r2 = all(terms.r2[i]);
+    const Doubles r2_v = all(terms.r2_v[i]), middle = all(terms.middle[i]), reach = all(terms.reach[i]);
+    const Doubles left = lesser(greater(all(terms.left_v[i]), v0), v1);
+    const Doubles right = lesser(greater(all(terms.right_v[i]), v0), v1);
+    const Doubles left_e = y - mul(left, z), right_e = y - mul(right, z);
+    const Doubles left_s2 = r2 + mul(r2_v, mul(left, left)) - mul(left_e, left_e);
+    const Doubles right_s2 = r2 + mul(r2_v, mul(right, right)) - mul(right_e, right_e);
+    const Doubles left_s = sqrt(greater(left_s2, all(0.0)) + terms.slack[i]);
+    const Doubles right_s = sqrt(greater(right_s2, all(0.0)) + terms.slack[i]);
+    begin = mul(middle, mul(y_v, left) + z) - mul(reach, left_s) + terms.low[i];
+    end = mul(middle, mul(y_v, right) + z) + mul(reach, right_s) + terms.high[i];
+}
 
 /// What becomes of `used` lights in view, from `begin` on.
 struct SphereRows {
-    using Lanes = RowLanes;
-
+    /// Returns a bit for each whose row spans are known.
     LIGHTBIN_TARGET unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin,
                                   std::uint32_t used) {
         Sphere spheres[lanes];
@@ -120,8 +104,14 @@ struct SphereRows {
             spheres[i] = load_sphere(lights.spheres + lights.ids[begin + (i < used ? i : 0)]);
         return row_terms(camera, spheres, terms);
     }
-    LIGHTBIN_TARGET RowLanes of(std::uint32_t i) const { return {terms, i}; }
+
+    /// Stores light i's spans of rows of the slopes v0 to v1, a lane each, of the tiles leftmost..rightmost.
+    LIGHTBIN_TARGET LIGHTBIN_INLINE void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost,
+                                               Doubles rightmost, RowSpan* to) const {
+        Doubles begin, end;
+        silhouette_ends(terms, i, v0, v1, begin, end);
+        store_spans(to, lesser(greater(begin, leftmost), rightmost), lesser(greater(end, leftmost), rightmost));
+    }
 
     RowTerms terms;
 };
-

@@ -66,34 +66,6 @@ LIGHTBIN_TARGET inline void find_wedges(const Camera& camera, const WedgeLanes& 
     }
 }
 
-/// A spot's terms, in every lane a row.
-struct SpotRowLanes {
-    LIGHTBIN_TARGET void store(RowSpan* to, Doubles v0, Doubles v1, Doubles leftmost,
-                               Doubles rightmost) const {
-        Doubles begin = leftmost, end = rightmost + 1.0;
-        if (ball_known) {
-            Doubles ball_begin, ball_end;
-            ball.ends(v0, v1, ball_begin, ball_end);
-            begin = greater(ball_begin, begin);
-            end = lesser(ball_end, end);
-        }
-        for (unsigned side = 0; side < 2; ++side) {
-            const Doubles here =
-                mul(most[side] - lesser(mul(n_y[side], v0), mul(n_y[side], v1)), per_x[side]);
-            const auto to_right = less(all(0.0), per_x[side]);
-            end = lesser(select(to_right, here + high, end), end);
-            begin = greater(select(to_right, begin, here + low), begin);
-        }
-        const auto none = less(end, begin);
-        store_spans(to, select(none, all(1.0), lesser(greater(begin, leftmost), rightmost)),
-                    select(none, all(0.0), lesser(greater(end, leftmost), rightmost)));
-    }
-
-    RowLanes ball;
-    bool ball_known;
-    Doubles per_x[2], n_y[2], most[2], low, high;
-};
-
 /// As SphereRows.
 struct SpotRows {
     LIGHTBIN_TARGET unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin,
@@ -135,14 +107,25 @@ struct SpotRows {
         return ~0u;
     }
 
-    LIGHTBIN_TARGET SpotRowLanes of(std::uint32_t i) const {
-        return {RowLanes(ball, i),
-                (balls_known >> i & 1) != 0,
-                {all(wedges.per_x[0][i]), all(wedges.per_x[1][i])},
-                {all(wedges.n_y[0][i]), all(wedges.n_y[1][i])},
-                {all(wedges.most[0][i]), all(wedges.most[1][i])},
-                all(low),
-                all(high)};
+    LIGHTBIN_TARGET void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost,
+                               RowSpan* to) const {
+        Doubles begin = leftmost, end = rightmost + 1.0;
+        if ((balls_known >> i & 1) != 0) {
+            Doubles ball_begin, ball_end;
+            silhouette_ends(ball, i, v0, v1, ball_begin, ball_end);
+            begin = greater(ball_begin, begin);
+            end = lesser(ball_end, end);
+        }
+        for (unsigned side = 0; side < 2; ++side) {
+            const Doubles per_x = all(wedges.per_x[side][i]), n_y = all(wedges.n_y[side][i]);
+            const Doubles here = mul(wedges.most[side][i] - lesser(mul(n_y, v0), mul(n_y, v1)), per_x);
+            const auto to_right = less(all(0.0), per_x);
+            end = lesser(select(to_right, here + high, end), end);
+            begin = greater(select(to_right, begin, here + low), begin);
+        }
+        const auto none = less(end, begin);
+        store_spans(to, select(none, all(1.0), lesser(greater(begin, leftmost), rightmost)),
+                    select(none, all(0.0), lesser(greater(end, leftmost), rightmost)));
     }
 
     RowTerms ball;
