@@ -41,7 +41,7 @@ list() {
     mutant spots detail/spot_lanes.inl 's/load_spheres(rest, spots.sine, spots.blur, unused\[0\], unused\[1\])/load_spheres(rest, spots.sine, spots.blur, unused[0], unused[0])/'
     mutant spots detail/project_spots.inl 's/select(narrow, half, mul(spots.radius, spots.sine)) +/select(narrow, half, mul(spots.radius, spots.sine)) * all(0.98f) +/'
     mutant spots detail/spot_lanes.inl 's/(off + mul(spots.radius, move.bend))/off/'
-    mutant spots detail/wedge.inl 's/widened(r, half) \* 0x1p-19 \/ widened(cosine, half)/all(0.0)/'
+    mutant spots detail/wedge.inl 's/radius \* 0x1p-19 \/ widened(cosine, half)/all(0.0)/'
     mutant spots detail/wedge.inl 's/: -aside\[i\]) - back\[i\];/: -aside[i]) + back[i];/'
     mutant spots detail/slab.inl 's/select(less(normal, all(0.0f)), all(high), all(low))/select(less(normal, all(0.0f)), all(low), all(high))/'
     mutant spots detail/world_to_view.hpp 's/least = min_of(least, 2 \* diagonal - row_sum);/least = max_of(square, row_sum);/'

@@ -24,58 +24,49 @@ struct RowTerms {
     double middle[lanes], reach[lanes], low[lanes], high[lanes], left_v[lanes], right_v[lanes];
 };
 
-/// Writes the terms of spheres. Returns a bit for each whose silhouette is known: those wholly beyond the near plane.
-LIGHTBIN_TARGET inline unsigned row_terms(const Camera& camera, const Sphere (&spheres)[lanes],
-                                          RowTerms& terms) {
+/// Writes the terms of spheres from place `at` on; x and y are as in an ImageAxis, z is the view depth. Returns a bit for
+/// each whose silhouette is known: those wholly beyond the near plane.
+LIGHTBIN_TARGET inline unsigned row_terms(const Camera& camera, Doubles x, Doubles y, Doubles z, Doubles r,
+                                          RowTerms& terms, unsigned at) {
     const double row_offset = camera.y.offset, scale = camera.x.scale, offset = camera.x.offset;
     const double most = (abs_of(row_offset) + camera.y.tiles) / camera.y.scale;  // V
     const double margin = 0x1p-48 * (abs_of(offset) + camera.x.tiles) + 0x1p-80 * scale;
-    Floats floats[4];
-    load_spheres(spheres, floats[0], floats[1], floats[2], floats[3]);
-    unsigned known = 0;
-    for (unsigned half = 0; half < lanes / double_lanes; ++half) {
-        const unsigned at = half * double_lanes;
-        const Doubles x = widened(floats[0], half) * static_cast<double>(camera.x.sign);
-        const Doubles y = widened(floats[1], half) * static_cast<double>(camera.y.sign);
-        const Doubles z = widened(floats[2], half) * static_cast<double>(camera.z_sign);
-        const Doubles r = widened(floats[3], half), r2 = mul(r, r), one = all(1.0), zero = all(0.0);
-        Doubles y_v = zero, g_z = one, r2_v = zero, middle = x * scale, reach = all(scale);
-        Doubles left_v = y, right_v = y, largest_f = r;
-        auto whole = less(r, all(static_cast<double>(infinity)));
-        if (!camera.orthographic) {
-            const Doubles a = abs(x), a2 = mul(x, x), e = mul(z - r, z + r), big_a = mul(y, y) + e;
-            const Doubles per_a = scale / big_a, side = sqrt(a2 + e), q = mul(z, side) + mul(a, r);
-            const Doubles outer_v = mul(y, q) / mul(side, e);
-            const Doubles inner_v = mul(y, a2 + mul(z, z)) / mul(side, q);
-            const auto negative = less(x, zero);
-            left_v = select(negative, outer_v, inner_v);
-            right_v = select(negative, inner_v, outer_v);
-            middle = mul(x, per_a);
-            reach = mul(sqrt(a2 + big_a), per_a);
-            y_v = y;
-            g_z = z;
-            r2_v = r2;
-            largest_f = mul(r, all(1 + most));
-            whole = less(all(static_cast<double>(camera.near_fast)), z - r);
-        }
-        const Doubles m = mul(g_z, all(most)) + abs(y) + largest_f;
-        const Doubles error =
-            (mul(abs(middle), mul(abs(y_v), all(most)) + g_z) + mul(reach, largest_f)) * 0x1p-46 + margin;
-        store_doubles(terms.y + at, y);
-        store_doubles(terms.y_v + at, y_v);
-        store_doubles(terms.z + at, g_z);
-        store_doubles(terms.r2 + at, r2);
-        store_doubles(terms.r2_v + at, r2_v);
-        store_doubles(terms.middle + at, middle);
-        store_doubles(terms.reach + at, reach);
-        store_doubles(terms.low + at, offset - error);
-        store_doubles(terms.high + at, offset + error);
-        store_doubles(terms.slack + at, mul(m, largest_f) * 0x1p-44 + mul(m, m) * 0x1p-93);
-        store_doubles(terms.left_v + at, left_v);
-        store_doubles(terms.right_v + at, right_v);
-        known |= bits(whole) << at;
+    const Doubles r2 = mul(r, r), one = all(1.0), zero = all(0.0);
+    Doubles y_v = zero, g_z = one, r2_v = zero, middle = x * scale, reach = all(scale);
+    Doubles left_v = y, right_v = y, largest_f = r;
+    auto whole = less(r, all(static_cast<double>(infinity)));
+    if (!camera.orthographic) {
+        const Doubles a = abs(x), a2 = mul(x, x), e = mul(z - r, z + r), big_a = mul(y, y) + e;
+        const Doubles per_a = scale / big_a, side = sqrt(a2 + e), q = mul(z, side) + mul(a, r);
+        const Doubles outer_v = mul(y, q) / mul(side, e);
+        const Doubles inner_v = mul(y, a2 + mul(z, z)) / mul(side, q);
+        const auto negative = less(x, zero);
+        left_v = select(negative, outer_v, inner_v);
+        right_v = select(negative, inner_v, outer_v);
+        middle = mul(x, per_a);
+        reach = mul(sqrt(a2 + big_a), per_a);
+        y_v = y;
+        g_z = z;
+        r2_v = r2;
+        largest_f = mul(r, all(1 + most));
+        whole = less(all(static_cast<double>(camera.near_fast)), z - r);
     }
-    return known;
+    const Doubles m = mul(g_z, all(most)) + abs(y) + largest_f;
+    const Doubles error =
+        (mul(abs(middle), mul(abs(y_v), all(most)) + g_z) + mul(reach, largest_f)) * 0x1p-46 + margin;
+    store_doubles(terms.y + at, y);
+    store_doubles(terms.y_v + at, y_v);
+    store_doubles(terms.z + at, g_z);
+    store_doubles(terms.r2 + at, r2);
+    store_doubles(terms.r2_v + at, r2_v);
+    store_doubles(terms.middle + at, middle);
+    store_doubles(terms.reach + at, reach);
+    store_doubles(terms.low + at, offset - error);
+    store_doubles(terms.high + at, offset + error);
+    store_doubles(terms.slack + at, mul(m, largest_f) * 0x1p-44 + mul(m, m) * 0x1p-93);
+    store_doubles(terms.left_v + at, left_v);
+    store_doubles(terms.right_v + at, right_v);
+    return bits(whole) << at;
 }
 
 /// Where light i's silhouette begins and ends in rows of the slopes v0 to v1, a lane each, in tiles.
@@ -102,7 +93,15 @@ struct SphereRows {
         Sphere spheres[lanes];
         for (std::uint32_t i = 0; i < lanes; ++i)
             spheres[i] = load_sphere(lights.spheres + lights.ids[begin + (i < used ? i : 0)]);
-        return row_terms(camera, spheres, terms);
+        Floats x, y, z, r;
+        load_spheres(spheres, x, y, z, r);
+        unsigned known = 0;
+        for (unsigned half = 0; half < lanes / double_lanes; ++half)
+            known |= row_terms(camera, widened(x, half) * static_cast<double>(camera.x.sign),
+                               widened(y, half) * static_cast<double>(camera.y.sign),
+                               widened(z, half) * static_cast<double>(camera.z_sign), widened(r, half), terms,
+                               half * double_lanes);
+        return known;
     }
 
     /// Stores light i's spans of rows of the slopes v0 to v1, a lane each, of the tiles leftmost..rightmost.

@@ -71,31 +71,30 @@ struct SpotRows {
     LIGHTBIN_TARGET unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin,
                                   std::uint32_t used) {
         Sphere balls[lanes], axes[lanes], rest[lanes];
-        const float sign_x = camera.x.sign, sign_y = camera.y.sign, sign_z = camera.z_sign;
         for (std::uint32_t i = 0; i < lanes; ++i) {
             const ViewSpot& spot = lights.spots[lights.ids[begin + (i < used ? i : 0)]];
-            balls[i] = {spot.ball.x * sign_x, spot.ball.y * sign_y, spot.ball.z * sign_z, spot.ball.radius};
-            axes[i] = {spot.axis_x, spot.axis_y, spot.axis_z, spot.sine};
-            rest[i] = {spot.nearest, spot.blur, spot.cosine, 0};
+            balls[i] = spot.ball;
+            axes[i] = {spot.axis_x, spot.axis_y, spot.axis_z, spot.cosine};
+            rest[i] = {spot.nearest, spot.farthest, spot.sine, spot.blur};
         }
-        balls_known = row_terms(camera, balls, ball);
-        Floats apex[3], r, axis[3], sine, nearest, blur, cosine, unused;
+        Floats apex[3], r, axis[3], cosine, nearest, farthest, sine, blur;
         load_spheres(balls, apex[0], apex[1], apex[2], r);
-        load_spheres(axes, axis[0], axis[1], axis[2], sine);
-        load_spheres(rest, nearest, blur, cosine, unused);
-        const double signs[] = {static_cast<double>(sign_x), static_cast<double>(sign_y),
-                                static_cast<double>(sign_z)};
+        load_spheres(axes, axis[0], axis[1], axis[2], cosine);
+        load_spheres(rest, nearest, farthest, sine, blur);
+        balls_known = 0;
         for (unsigned half = 0; half < lanes / double_lanes; ++half) {
             WedgeLanes wedge;
-            Doubles size = widened(r, half);
+            const Doubles radius = widened(r, half);
+            Doubles size = radius;
             for (unsigned i = 0; i < 3; ++i) {
-                wedge.apex[i] = widened(apex[i], half) * signs[i];
+                wedge.apex[i] = widened(apex[i], half);
                 wedge.axis[i] = widened(axis[i], half);
                 size = size + abs(wedge.apex[i]);
             }
+            balls_known |= row_terms(camera, wedge.apex[0], wedge.apex[1], wedge.apex[2], radius, ball,
+                                     half * double_lanes);
             wedge.sine = widened(sine, half);
-            wedge.blur =
-                widened(blur, half) + size * 0x1p-28 + widened(r, half) * 0x1p-19 / widened(cosine, half);
+            wedge.blur = widened(blur, half) + size * 0x1p-28 + radius * 0x1p-19 / widened(cosine, half);
             if (!camera.orthographic)
                 wedge.blur =
                     wedge.blur / greater(widened(nearest, half), all(static_cast<double>(camera.near_depth)));
