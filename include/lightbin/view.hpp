@@ -279,12 +279,10 @@ private:
         axis.sign = p < 0 ? -1.0f : 1.0f;
         axis.scale = detail::abs_of(p) / w * (0.5 * tiles);
         axis.offset = (q / w + 1.0) * (0.5 * tiles);
-        axis.scale_f = static_cast<float>(axis.scale);
-        axis.offset_f = static_cast<float>(axis.offset);
         axis.inside = static_cast<float>(axis.tiles) - 0.5f;
         axis.limit = detail::float_above(tiles);
-        // A float slope is within 10u of the truth (u = 2^-24, see project.inl), times scale_f 12u, plus u of
-        // offset_f and u of the sum; inside the viewport |scale * slope| <= |offset| + tiles. 16u leaves room
+        // A float slope is within 10u of the truth (u = 2^-24, see project.inl), times scale as a float 12u, plus u
+        // of offset and u of the sum; inside the viewport |scale * slope| <= |offset| + tiles. 16u leaves room
         // for the double steps above and for adding the margin itself; 2^-80 a scale is for a caller who
         // flushes denormal numbers to zero.
         axis.margin =

@@ -119,7 +119,8 @@ void compare(Worst& worst, const lightbin::detail::ImageAxis& axis, int tile_siz
         ++worst.endless;
         return;
     }
-    const float at = static_cast<float>(slope) * axis.scale_f + axis.offset_f;
+    const float at =
+        static_cast<float>(slope) * static_cast<float>(axis.scale) + static_cast<float>(axis.offset);
     const float margin = with_margin ? axis.margin : 0;
     const Quad tile = floorq(place);
     const float end = std::floor(side < 0 ? at - margin : at + margin);

@@ -17,9 +17,7 @@ namespace detail {
 struct ImageAxis {
     double scale = 0;  ///< > 0
     double offset = 0;
-    float sign = 1;     ///< of the view-space coordinate
-    float scale_f = 0;  ///< scale, offset rounded to nearest
-    float offset_f = 0;
+    float sign = 1;    ///< of the view-space coordinate
     float margin = 0;  ///< bound on the error of a float tile coordinate inside the viewport, in tiles
     float limit = 0;   ///< the viewport's far edge in tiles, rounded up
     float inside = 0;  ///< a coordinate in the last tile

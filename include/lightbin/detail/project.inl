@@ -73,9 +73,10 @@ LIGHTBIN_TARGET inline void clipped_slopes(Doubles c, Doubles z, Doubles r, doub
 /// Writes the tiles that the extents low..high touch, slopes (perspective) or view-space coordinates
 /// (orthographic), grown by the axis' margin. Takes those out of the viewport out of `visible`.
 template <class Real, class Reals, class Mask>
-LIGHTBIN_TARGET inline Mask tile_span(const ImageAxis& axis, Real scale, Real offset, Reals low, Reals high,
-                                      Mask visible, std::uint16_t* first, std::uint16_t* last) {
-    const Real margin = static_cast<Real>(axis.margin);
+LIGHTBIN_TARGET inline Mask tile_span(const ImageAxis& axis, Reals low, Reals high, Mask visible,
+                                      std::uint16_t* first, std::uint16_t* last) {
+    const Real scale = static_cast<Real>(axis.scale), offset = static_cast<Real>(axis.offset),
+               margin = static_cast<Real>(axis.margin);
     low = mul(low, all(scale)) + offset - margin;
     high = mul(high, all(scale)) + offset + margin;
     const Reals zero = Reals{}, inside = all(static_cast<Real>(axis.inside));
@@ -84,23 +85,22 @@ LIGHTBIN_TARGET inline Mask tile_span(const ImageAxis& axis, Real scale, Real of
     return both(visible, both(less_equal(zero, high), less_equal(low, all(static_cast<Real>(axis.limit)))));
 }
 
-/// The general case, in double, for up to `lanes` of a chunk's lights: near-plane straddlers, eye inside,
-/// tiny, huge and infinite spheres, bad input. Sets the bits of those in view in `visible`.
+/// The general case, in double, for some of a chunk's lights: near-plane straddlers, eye inside, tiny, huge and infinite
+/// spheres, bad input. Sets the bits of those in view in `visible`.
 LIGHTBIN_TARGET inline void project_carefully(const Camera& camera, const Sphere* spheres,
                                               const std::uint8_t* places, std::uint32_t count,
                                               ChunkRects& rects, unsigned* visible, ProjectCounts& counts) {
-    Sphere gathered[lanes];
-    for (std::uint32_t i = 0; i < lanes; ++i)
-        gathered[i] = load_sphere(spheres + places[i < count ? i : 0]);
-    Floats floats[4];
-    load_spheres(gathered, floats[0], floats[1], floats[2], floats[3]);
-    alignas(64) std::uint16_t x0[double_lanes], y0[double_lanes], x1[double_lanes], y1[double_lanes];
-    for (std::uint32_t from = 0; from < count; from += double_lanes) {
-        const unsigned half = from != 0;
-        const Doubles x = widened(floats[0], half) * static_cast<double>(camera.x.sign);
-        const Doubles y = widened(floats[1], half) * static_cast<double>(camera.y.sign);
-        const Doubles z = widened(floats[2], half) * static_cast<double>(camera.z_sign);
-        const Doubles radius = widened(floats[3], half), most = all(static_cast<double>(FLT_MAX));
+    for (std::uint32_t used; count > 0; count -= used, places += used) {
+        used = min_of(count, double_lanes);
+        Sphere gathered[lanes];
+        for (std::uint32_t i = 0; i < lanes; ++i)
+            gathered[i] = load_sphere(spheres + places[i < used ? i : 0]);
+        Floats floats[4];
+        load_spheres(gathered, floats[0], floats[1], floats[2], floats[3]);
+        const Doubles x = widened(floats[0], 0) * static_cast<double>(camera.x.sign);
+        const Doubles y = widened(floats[1], 0) * static_cast<double>(camera.y.sign);
+        const Doubles z = widened(floats[2], 0) * static_cast<double>(camera.z_sign);
+        const Doubles radius = widened(floats[3], 0), most = all(static_cast<double>(FLT_MAX));
         const double near_depth = static_cast<double>(camera.near_depth);
         const auto good = both(both(less_equal(abs(x), most), less_equal(abs(y), most)),
                                both(less_equal(abs(z), most), less_equal(all(0.0), radius)));
@@ -123,13 +123,13 @@ LIGHTBIN_TARGET inline void project_carefully(const Camera& camera, const Sphere
             bottom = select(whole, low, bottom);
             top = select(whole, high, top);
         }
-        seen = tile_span(camera.x, camera.x.scale, camera.x.offset, left, right, seen, x0, x1);
-        seen = tile_span(camera.y, camera.y.scale, camera.y.offset, bottom, top, seen, y0, y1);
-        const std::uint32_t used = count - from < double_lanes ? count - from : double_lanes;
+        alignas(64) std::uint16_t x0[double_lanes], y0[double_lanes], x1[double_lanes], y1[double_lanes];
+        seen = tile_span<double>(camera.x, left, right, seen, x0, x1);
+        seen = tile_span<double>(camera.y, bottom, top, seen, y0, y1);
         counts.rejected += used - static_cast<std::uint32_t>(std::popcount(bits(good) & ((1u << used) - 1)));
         const unsigned in_view = bits(seen);
         for (std::uint32_t i = 0; i < used; ++i) {
-            const std::uint32_t place = places[from + i];
+            const std::uint32_t place = places[i];
             rects.x0[place] = x0[i];
             rects.y0[place] = y0[i];
             rects.x1[place] = x1[i];
@@ -137,6 +137,19 @@ LIGHTBIN_TARGET inline void project_carefully(const Camera& camera, const Sphere
             visible[place / lanes] |= (in_view >> i & 1) << place % lanes;
         }
     }
+}
+
+/// Which of a vector's lights are out of view beyond doubt, if floats hold them; x and y are as in an ImageAxis and z is
+/// the view depth, of their balls, whose `size` is |x| + |y| + |z| + r.
+///
+/// Rounding is monotone and near and far are floats, so comparing rounded sums with them is exact. The distance to a side
+/// plane is within 4u of the sizes that it is made of.
+LIGHTBIN_TARGET LIGHTBIN_INLINE auto out_of_view(const Camera& camera, Floats x, Floats y, Floats z, Floats r,
+                                                 Floats nearest, Floats farthest, Floats size) {
+    const Floats aside_x = mul(abs(x), all(camera.x.side)) + mul(z, all(camera.x.side_z)),
+                 aside_y = mul(abs(y), all(camera.y.side)) + mul(z, all(camera.y.side_z));
+    return either(either(less(farthest, all(camera.near_depth)), less(all(camera.far_depth), nearest)),
+                  less(size * 0x1p-21f, greater(aside_x, aside_y) - r));
 }
 
 /// Appends the footprints of those of the lights first..first + count - 1 that are in view.
@@ -150,15 +163,10 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
     std::uint8_t careful[ChunkRects::size];
     Sphere chunk[ChunkRects::size], padded[lanes];
     const MoveLanes move(source.to_view);
-    // What each vector is asked first, in every lane: broadcasting it again would take narrow vectors as long as asking.
-    const Floats sign_x = all(camera.x.sign), sign_y = all(camera.y.sign), sign_z = all(camera.z_sign);
-    const Floats side_x = all(camera.x.side), side_xz = all(camera.x.side_z), side_y = all(camera.y.side),
-                 side_yz = all(camera.y.side_z);
-    const Floats front = all(camera.near_depth), back = all(camera.far_depth);
     // Copies are made a few at a time, so that the next lights are fetched while these are projected.
     const std::uint32_t most = source.copy != nullptr ? 32 : ChunkRects::size;
     for (std::uint32_t here; count > 0; count -= here, first += here) {
-        here = count < most ? count : most;
+        here = min_of(count, most);
         // Where spheres come from, and where they are in view space.
         Sphere* const own = source.kept != nullptr ? source.kept + first : chunk;
         const Sphere* const given = source.spheres != nullptr ? source.spheres + first : own;
@@ -167,7 +175,7 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
         std::uint32_t careful_count = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
             const Sphere* from = given + i;
-            const std::uint32_t used = here - i < lanes ? here - i : lanes;
+            const std::uint32_t used = min_of(lanes, here - i);
             if (used < lanes) {
                 for (std::uint32_t lane = 0; lane < lanes; ++lane)
                     padded[lane] = load_sphere(from + (lane < used ? lane : 0));
@@ -177,16 +185,12 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
             load_spheres(from, x, y, z, r);
             if (source.to_view != nullptr) move_spheres(move, x, y, z, r);
             const Floats at[] = {x, y, z};
-            x = x * sign_x;
-            y = y * sign_y;
-            z = z * sign_z;
-            const Floats nearest = z - r, farthest = z + r, a = abs(x), b = abs(y), size = a + b + abs(z) + r;
+            x = x * camera.x.sign;
+            y = y * camera.y.sign;
+            z = z * camera.z_sign;
+            const Floats nearest = z - r, farthest = z + r, size = abs(x) + abs(y) + abs(z) + r;
             const auto usable = both(less_equal(size, all(0x1p40f)), less_equal(all(0x1p-40f), r));
-            // Rounding is monotone and near and far are floats, so comparing rounded sums with them is exact.
-            // The distance to a side plane is within 4u of the sizes that it is made of.
-            const Floats aside = greater(mul(a, side_x) + mul(z, side_xz), mul(b, side_y) + mul(z, side_yz));
-            const auto culled = both(usable, either(either(less(farthest, front), less(back, nearest)),
-                                                    less(size * 0x1p-21f, aside - r)));
+            const auto culled = both(usable, out_of_view(camera, x, y, z, r, nearest, farthest, size));
             const unsigned valid = used < 32 ? (1u << used) - 1 : ~0u;
             unsigned& in_view = visible[i / lanes] = 0;
             if ((~bits(culled) & valid) == 0) continue;
@@ -204,15 +208,11 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
             for (; rest != 0; rest &= rest - 1)
                 careful[careful_count++] =
                     static_cast<std::uint8_t>(i + static_cast<unsigned>(std::countr_zero(rest)));
-            plain = tile_span(camera.x, camera.x.scale_f, camera.x.offset_f, left, right, plain, rects.x0 + i,
-                              rects.x1 + i);
-            plain = tile_span(camera.y, camera.y.scale_f, camera.y.offset_f, bottom, top, plain, rects.y0 + i,
-                              rects.y1 + i);
+            plain = tile_span<float>(camera.x, left, right, plain, rects.x0 + i, rects.x1 + i);
+            plain = tile_span<float>(camera.y, bottom, top, plain, rects.y0 + i, rects.y1 + i);
             in_view = bits(plain) & valid;
         }
-        for (std::uint32_t i = 0; i < careful_count; i += lanes)
-            project_carefully(camera, spheres, careful + i,
-                              careful_count - i < lanes ? careful_count - i : lanes, rects, visible, counts);
+        project_carefully(camera, spheres, careful, careful_count, rects, visible, counts);
         for (std::uint32_t i = 0; i < here; i += lanes)
             if (visible[i / lanes] != 0) append_visible(out, counts, first, visible[i / lanes], rects, i);
     }

@@ -134,7 +134,7 @@ LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const LightSourc
         cones[ChunkRects::size];  // as given, then of careful ones balls and least spheres
     const MoveLanes move(source.to_view);
     for (std::uint32_t here; count > 0; count -= here, first += here) {
-        here = count < ChunkRects::size ? count : ChunkRects::size;
+        here = min_of(count, ChunkRects::size);
         source.copy(source.lights, first, here, balls, cones);
         for (std::uint32_t i = here; i % lanes != 0; ++i) {
             balls[i] = balls[0];
@@ -144,21 +144,17 @@ LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const LightSourc
         for (std::uint32_t i = 0; i < here; i += lanes) {
             SpotLanes spots;
             shape_spots(camera, move, balls + i, cones + i, spots);
-            const Floats r = spots.radius, across_z = sqrt(mul(spots.axis[0], spots.axis[0]) +
-                                                           mul(spots.axis[1], spots.axis[1]));
+            const Floats across_z =
+                sqrt(mul(spots.axis[0], spots.axis[0]) + mul(spots.axis[1], spots.axis[1]));
             const Floats nearest = spots.z - spot_reach(spots, -spots.axis[2], across_z),
                          farthest = spots.z + spot_reach(spots, spots.axis[2], across_z);
 
-            // As project() does, which says why.
-            const Floats a = abs(spots.x), b = abs(spots.y), size = a + b + abs(spots.z) + r;
-            const Floats aside = greater(mul(a, all(camera.x.side)) + mul(spots.z, all(camera.x.side_z)),
-                                         mul(b, all(camera.y.side)) + mul(spots.z, all(camera.y.side_z)));
-            const auto usable = both(less_equal(size, all(0x1p40f)), less_equal(all(0x1p-40f), r));
-            const auto beyond =
-                either(less(farthest, all(camera.near_depth)), less(all(camera.far_depth), nearest));
-            const auto culled = both(usable, either(beyond, less(size * 0x1p-21f, aside - r)));
-            const unsigned used = here - i < lanes ? here - i : lanes,
-                           valid = used < 32 ? (1u << used) - 1 : ~0u;
+            const Floats size = abs(spots.x) + abs(spots.y) + abs(spots.z) + spots.radius;
+            const auto usable =
+                both(less_equal(size, all(0x1p40f)), less_equal(all(0x1p-40f), spots.radius));
+            const auto culled = both(usable, out_of_view(camera, spots.x, spots.y, spots.z, spots.radius,
+                                                         nearest, farthest, size));
+            const unsigned used = min_of(lanes, here - i), valid = used < 32 ? (1u << used) - 1 : ~0u;
             unsigned& in_view = visible[i / lanes] = 0;
             if ((~bits(culled) & valid) == 0) continue;
             if (source.kept_spots != nullptr) store_spots(source.kept_spots + first + i, spots, nearest, farthest);
@@ -169,7 +165,7 @@ LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const LightSourc
                 find_coordinates(spots, bounds);
             } else {
                 plain = both(plain,
-                             both(less(all(camera.near_fast), spots.z - r), less(size * 0x1p-16f, nearest)));
+                             both(less(all(camera.near_fast), spots.z - spots.radius), less(size * 0x1p-16f, nearest)));
                 find_slopes(spots, size, nearest, across_z, bounds);
             }
             unsigned rest = ~bits(either(plain, culled)) & valid;
@@ -177,16 +173,11 @@ LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const LightSourc
             for (; rest != 0; rest &= rest - 1)
                 careful[careful_count++] =
                     static_cast<std::uint8_t>(i + static_cast<unsigned>(std::countr_zero(rest)));
-            plain = tile_span(camera.x, camera.x.scale_f, camera.x.offset_f, bounds.left, bounds.right, plain,
-                              rects.x0 + i, rects.x1 + i);
-            plain = tile_span(camera.y, camera.y.scale_f, camera.y.offset_f, bounds.bottom, bounds.top, plain,
-                              rects.y0 + i, rects.y1 + i);
+            plain = tile_span<float>(camera.x, bounds.left, bounds.right, plain, rects.x0 + i, rects.x1 + i);
+            plain = tile_span<float>(camera.y, bounds.bottom, bounds.top, plain, rects.y0 + i, rects.y1 + i);
             in_view = bits(plain) & valid;
         }
-        for (std::uint32_t i = 0; i < careful_count; i += lanes)
-            project_both_carefully(camera, balls, cones, careful + i,
-                                   careful_count - i < lanes ? careful_count - i : lanes, rects, visible,
-                                   counts);
+        project_both_carefully(camera, balls, cones, careful, careful_count, rects, visible, counts);
         for (std::uint32_t i = 0; i < here; i += lanes)
             if (visible[i / lanes] != 0) append_visible(out, counts, first, visible[i / lanes], rects, i);
     }
