@@ -73,63 +73,70 @@ struct DepthBuffer {
 
 namespace detail {
 
-/// The view depths of fragments that may have left window depths `lower` and `upper` in a buffer, and all
-/// between. In double: a float sum near 1 would be off by a step of its own.
-inline DepthInterval fragment_depths(const View& view, float lower, float upper, DepthFormat format) {
-    const double low = static_cast<double>(lower), high = static_cast<double>(upper);
-    const auto depths = [&](double from, double to) {
-        return view.view_depths(min_of(max_of(from, 0.0), 1.0), min_of(max_of(to, 0.0), 1.0));
-    };
-    if (format != DepthFormat::float32) {
-        const double step = format == DepthFormat::unorm24 ? 0x1.000002p-24 : 0x1.0002p-16;
-        return depths(low - step, high + step);
-    }
-    // A denormal depth is rounded by up to all of itself, or to zero.
-    constexpr double least_normal = 0x1p-126;
-    return depths(low < least_normal ? 0 : low * (1 - 0x1p-23), max_of(high * (1 + 0x1p-23), least_normal));
-}
-
 /// Smallest and largest of some numbers; lower > upper if there are none.
 struct Extremes {
     float lower = infinity, upper = -infinity;
+
+    void take(float low, float high) {
+        lower = min_of(lower, low);
+        upper = max_of(upper, high);
+    }
 };
+
+/// The view depths of fragments that may have left window depths from `lower` to `upper` in a buffer. In double: a float
+/// sum near 1 would be off by a step of its own.
+inline DepthInterval fragment_depths(const View& view, Extremes window, DepthFormat format) {
+    if (!(window.lower <= window.upper)) return {infinity, -infinity};
+    double low = static_cast<double>(window.lower), high = static_cast<double>(window.upper);
+    if (format == DepthFormat::float32) {
+        // A denormal depth is rounded by up to all of itself, or to zero.
+        constexpr double least_normal = 0x1p-126;
+        low = low < least_normal ? 0 : low * (1 - 0x1p-23);
+        high = max_of(high * (1 + 0x1p-23), least_normal);
+    } else {
+        const double step = format == DepthFormat::unorm24 ? 0x1.000002p-24 : 0x1.0002p-16;
+        low = low - step;
+        high = high + step;
+    }
+    return view.view_depths(min_of(max_of(low, 0.0), 1.0), min_of(max_of(high, 0.0), 1.0));
+}
 
 /// In four chains, so that they need not wait for each other.
 inline Extremes extremes(const float* lower, const float* upper, std::size_t count, Extremes so_far) {
     Extremes chains[4] = {so_far, so_far, so_far, so_far};
     std::size_t i = 0;
     for (; i + 4 <= count; i += 4)
-        for (std::size_t chain = 0; chain < 4; ++chain) {
-            chains[chain].lower = min_of(chains[chain].lower, lower[i + chain]);
-            chains[chain].upper = max_of(chains[chain].upper, upper[i + chain]);
-        }
-    for (; i < count; ++i) {
-        chains[0].lower = min_of(chains[0].lower, lower[i]);
-        chains[0].upper = max_of(chains[0].upper, upper[i]);
-    }
-    for (std::size_t chain = 1; chain < 4; ++chain) {
-        chains[0].lower = min_of(chains[0].lower, chains[chain].lower);
-        chains[0].upper = max_of(chains[0].upper, chains[chain].upper);
-    }
+        for (std::size_t chain = 0; chain < 4; ++chain)
+            chains[chain].take(lower[i + chain], upper[i + chain]);
+    for (; i < count; ++i)
+        chains[0].take(lower[i], upper[i]);
+    for (std::size_t chain = 1; chain < 4; ++chain)
+        chains[0].take(chains[chain].lower, chains[chain].upper);
     return chains[0];
 }
 
-inline constexpr std::size_t most_columns = 512;
-
-/// Takes a row of tiles, `tile_columns` columns each, in blocks: calls reduce(first_column, count, lower, upper)
-/// for each, at most most_columns, which writes two numbers a column, and finish(tile, extremes) for each tile.
-template <class Reduce, class Finish>
-void reduce_tile_row(std::size_t columns, std::size_t tile_columns, Reduce reduce, Finish finish) {
-    const std::size_t block =
-        tile_columns < most_columns ? most_columns / tile_columns * tile_columns : most_columns;
-    float lower[most_columns], upper[most_columns];
+/// Reduces a row of tiles, `tile_columns` columns each, in blocks: calls finish(tile, extremes) for each tile.
+///
+/// by_split  see column_extremes(); `splits` has a number a tile
+template <bool by_split, class Finish>
+void reduce_tile_row(Isa isa, const DepthRows& row, std::size_t tile_columns, float skipped,
+                     const float* splits, Finish finish) {
+    constexpr std::size_t most = 512;
+    const std::size_t block = tile_columns < most ? most / tile_columns * tile_columns : most;
+    float lower[most], upper[most], split[by_split ? most : 1];
     Extremes tile;
-    for (std::size_t first = 0; first < columns; first += block) {
-        const std::size_t end = min_of(first + block, columns);
-        reduce(first, end - first, lower, upper);
+    for (std::size_t first = 0; first < row.columns; first += block) {
+        const std::size_t end = min_of(first + block, row.columns);
+        const DepthRows part = {row.samples + first, row.pitch, row.rows, end - first};
+        for (std::size_t column = first; by_split && column < end;) {
+            const std::size_t stop = min_of((column / tile_columns + 1) * tile_columns, end);
+            fill_items(split + (column - first), stop - column, splits[column / tile_columns]);
+            column = stop;
+        }
+        depth_kernel<by_split>(isa, part.columns)(part, skipped, split, lower, upper);
         for (std::size_t column = first; column < end;) {
             const std::size_t index = column / tile_columns;
-            const std::size_t tile_end = min_of((index + 1) * tile_columns, columns);
+            const std::size_t tile_end = min_of((index + 1) * tile_columns, row.columns);
             const std::size_t stop = min_of(tile_end, end);
             tile = extremes(lower + (column - first), upper + (column - first), stop - column, tile);
             if (stop == tile_end) {
@@ -163,8 +170,8 @@ Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer, const 
     const std::size_t tiles = view.tile_count();
     if (buffer.samples < 1 || buffer.samples > 8)
         return Error{ErrorCode::samples_out_of_range, static_cast<std::uint64_t>(buffer.samples), 8};
-    const std::size_t samples = static_cast<std::size_t>(buffer.samples);
-    const std::size_t row = static_cast<std::size_t>(viewport.width) * samples;
+    const std::size_t samples_a_pixel = static_cast<std::size_t>(buffer.samples);
+    const std::size_t row = static_cast<std::size_t>(viewport.width) * samples_a_pixel;
     const std::size_t pitch = buffer.row_pitch == 0 ? row : buffer.row_pitch;
     if (pitch < row) return Error{ErrorCode::row_pitch_too_small, row, pitch};
     const std::uint64_t before_last =
@@ -186,60 +193,40 @@ Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer, const 
     const std::size_t height = static_cast<std::size_t>(viewport.height);
     isa = machine_isa(isa);
     for (std::size_t y = 0, first_tile = 0; first_tile < tiles; y += size, first_tile += tiles_x) {
-        const auto rows = [&](std::size_t first, std::size_t columns) {
-            return detail::DepthRows{buffer.depth.data() + y * pitch + first, pitch,
-                                     detail::min_of(size, height - y), columns};
-        };
-        const auto reduce = [&](float left_out, auto finish) {
-            detail::reduce_tile_row(
-                row, size * samples,
-                [&](std::size_t first, std::size_t columns, float* lower, float* upper) {
-                    detail::depth_kernels(isa, columns)
-                        .extremes(rows(first, columns), left_out, lower, upper);
-                },
-                [&](std::size_t index, detail::Extremes range) {
-                    DepthInterval depths = {detail::infinity, -detail::infinity};
-                    if (range.lower <= range.upper)
-                        depths = detail::fragment_depths(view, range.lower, range.upper, buffer.format);
-                    finish(first_tile + index, range, depths);
-                });
-        };
-        reduce(skipped, [&](std::size_t tile, detail::Extremes range, DepthInterval depths) {
-            if (!out.min.empty()) out.min[tile] = depths.min;
-            if (!out.max.empty()) out.max[tile] = depths.max;
-            if (gaps)  // for now, where to split the tile; NaN: nowhere, as a sample is NaN
-                out.gap_min[tile] = range.lower > -detail::infinity
-                                        ? view.window_depth(0.5 * (static_cast<double>(depths.min) +
-                                                                   static_cast<double>(depths.max)))
-                                        : none;
-        });
-        if (!out.transparent_max.empty())
-            reduce(none, [&](std::size_t tile, detail::Extremes, DepthInterval depths) {
-                out.transparent_max[tile] = depths.max;
+        const detail::DepthRows samples = {buffer.depth.data() + y * pitch, pitch,
+                                           detail::min_of(size, height - y), row};
+        detail::reduce_tile_row<false>(
+            isa, samples, size * samples_a_pixel, skipped, nullptr,
+            [&](std::size_t tile, detail::Extremes range) {
+                const DepthInterval depths = detail::fragment_depths(view, range, buffer.format);
+                if (!out.min.empty()) out.min[first_tile + tile] = depths.min;
+                if (!out.max.empty()) out.max[first_tile + tile] = depths.max;
+                // For now, where to split the tile; NaN: nowhere, as a sample is NaN.
+                const double middle =
+                    0.5 * (static_cast<double>(depths.min) + static_cast<double>(depths.max));
+                if (gaps)
+                    out.gap_min[first_tile + tile] =
+                        range.lower > -detail::infinity ? view.window_depth(middle) : none;
             });
+        const auto set_transparent_max = [&](std::size_t tile, detail::Extremes range) {
+            out.transparent_max[first_tile + tile] = detail::fragment_depths(view, range, buffer.format).max;
+        };
+        if (!out.transparent_max.empty())
+            detail::reduce_tile_row<false>(isa, samples, size * samples_a_pixel, none, nullptr,
+                                           set_transparent_max);
         if (!gaps) continue;
-        detail::reduce_tile_row(
-            row, size * samples,
-            [&](std::size_t first, std::size_t columns, float* lower, float* upper) {
-                float split[detail::most_columns];
-                for (std::size_t i = 0; i < columns;) {
-                    const std::size_t index = (first + i) / (size * samples);
-                    const std::size_t end = detail::min_of((index + 1) * size * samples - first, columns);
-                    detail::fill_items(split + i, end - i, out.gap_min[first_tile + index]);
-                    i = end;
-                }
-                detail::depth_kernels(isa, columns).gaps(rows(first, columns), skipped, split, upper, lower);
-            },
-            [&](std::size_t index, detail::Extremes range) {
+        detail::reduce_tile_row<true>(
+            isa, samples, size * samples_a_pixel, skipped, out.gap_min.data() + first_tile,
+            [&](std::size_t tile, detail::Extremes next) {
                 // The fragments next to the gap, in window depth.
                 DepthInterval below = {-detail::infinity, detail::infinity}, above = below;  // no gap
-                if (range.upper > -detail::infinity && range.lower < detail::infinity) {
-                    below = detail::fragment_depths(view, range.upper, range.upper, buffer.format);
-                    above = detail::fragment_depths(view, range.lower, range.lower, buffer.format);
+                if (next.upper > -detail::infinity && next.lower < detail::infinity) {
+                    below = detail::fragment_depths(view, {next.upper, next.upper}, buffer.format);
+                    above = detail::fragment_depths(view, {next.lower, next.lower}, buffer.format);
                 }
                 if (view.reversed_z()) std::swap(below, above);
-                out.gap_min[first_tile + index] = below.max;
-                out.gap_max[first_tile + index] = above.min;
+                out.gap_min[first_tile + tile] = below.max;
+                out.gap_max[first_tile + tile] = above.min;
             });
     }
     const auto given = [&](std::span<float> side) {

@@ -4,10 +4,14 @@
 
 /// Writes to lower[i] and upper[i] the extremes of column i of `rows` rows of `columns` samples, -inf and +inf if
 /// one of them is NaN. Samples equal to `skipped` (NaN: none are) do not count; +inf and -inf where none does.
-LIGHTBIN_TARGET inline void column_extremes(const DepthRows& depth, float skipped, float* lower,
+///
+/// by_split  Of column i, upper[i] is of those samples alone that are no larger than split[i], lower[i] of those that are.
+///           NaN does not count.
+template <bool by_split>
+LIGHTBIN_TARGET inline void column_extremes(const DepthRows& depth, float skipped, const float* split, float* lower,
                                             float* upper) {
     const Floats infinite = all(infinity);
-    for (std::size_t column = 0; column < depth.columns;) {
+    for (std::size_t column = 0; column < depth.columns; column += lanes) {
         // The last vector may overlap the one before it.
         if (depth.columns - column < lanes) column = depth.columns - lanes;
         const float* samples = depth.samples + column;
@@ -16,34 +20,17 @@ LIGHTBIN_TARGET inline void column_extremes(const DepthRows& depth, float skippe
         for (std::size_t row = 0; row < depth.rows; ++row, samples += depth.pitch) {
             const Floats sample = load_floats(samples);
             const auto out = both(less_equal(sample, all(skipped)), less_equal(all(skipped), sample));
-            least = lesser(select(out, infinite, sample), least);
-            most = greater(select(out, -infinite, sample), most);
-            numbers = both(numbers, less_equal(sample, sample));
+            if constexpr (by_split) {
+                const Floats middle = load_floats(split + column);
+                least = lesser(select(and_not(less(middle, sample), out), sample, infinite), least);
+                most = greater(select(and_not(less_equal(sample, middle), out), sample, -infinite), most);
+            } else {
+                least = lesser(select(out, infinite, sample), least);
+                most = greater(select(out, -infinite, sample), most);
+                numbers = both(numbers, less_equal(sample, sample));
+            }
         }
         store_floats(lower + column, select(numbers, least, -infinite));
         store_floats(upper + column, select(numbers, most, infinite));
-        column += lanes;
-    }
-}
-
-/// Writes to below[i] the largest of column i's samples up to split[i] and to above[i] the smallest of those
-/// beyond it, -inf and +inf where there are none. Samples equal to `skipped`, and NaN, do not count.
-LIGHTBIN_TARGET inline void column_gaps(const DepthRows& depth, float skipped, const float* split,
-                                        float* below, float* above) {
-    const Floats infinite = all(infinity);
-    for (std::size_t column = 0; column < depth.columns;) {
-        if (depth.columns - column < lanes) column = depth.columns - lanes;
-        const float* samples = depth.samples + column;
-        const Floats middle = load_floats(split + column);
-        Floats most = -infinite, least = infinite;
-        for (std::size_t row = 0; row < depth.rows; ++row, samples += depth.pitch) {
-            const Floats sample = load_floats(samples);
-            const auto out = both(less_equal(sample, all(skipped)), less_equal(all(skipped), sample));
-            most = greater(select(and_not(less_equal(sample, middle), out), sample, -infinite), most);
-            least = lesser(select(and_not(less(middle, sample), out), sample, infinite), least);
-        }
-        store_floats(below + column, most);
-        store_floats(above + column, least);
-        column += lanes;
     }
 }

@@ -46,11 +46,11 @@ template <bool spots> SlicePlacesKernel slice_places_kernel(Isa isa) {
 }
 
 /// For rows of `columns` samples or more: of this tier or the widest below it whose vectors are no wider.
-inline DepthKernels depth_kernels(Isa isa, std::size_t columns) {
+template <bool by_split> DepthKernel depth_kernel(Isa isa, std::size_t columns) {
     if (with_tier(isa, [=](auto tier) { return columns >= tier.vector; }))
-        return with_tier(isa, [](auto tier) { return tier.depth_kernels(); });
+        return with_tier(isa, [](auto tier) { return tier.template depth_kernel<by_split>(); });
     const bool wide = isa == Isa::avx512 || isa == Isa::avx2;
-    return depth_kernels(wide ? static_cast<Isa>(static_cast<int>(isa) - 1) : Isa::scalar, columns);
+    return depth_kernel<by_split>(wide ? static_cast<Isa>(static_cast<int>(isa) - 1) : Isa::scalar, columns);
 }
 
 template <class Id> BinKernel<Id> scatter_kernel(Isa isa) {

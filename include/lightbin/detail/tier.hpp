@@ -35,10 +35,8 @@ using RowSpanKernel = void (*)(const Camera& camera, const FootprintArrays& ligh
                                RowSpan* spans, std::uint64_t place);
 using SlicePlacesKernel = void (*)(const SlicePlaces& to, float z_sign, const FootprintArrays& lights,
                                    const std::uint32_t* ids, std::uint32_t count, PlacedDepths& out);
-struct DepthKernels {
-    void (*extremes)(const DepthRows& depth, float skipped, float* lower, float* upper);
-    void (*gaps)(const DepthRows& depth, float skipped, const float* split, float* below, float* above);
-};
+using DepthKernel = void (*)(const DepthRows& depth, float skipped, const float* split, float* lower,
+                             float* upper);
 template <class Id>
 using BinKernel = std::uint64_t (*)(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands);
 template <class Id>
