@@ -311,7 +311,7 @@ private:
     bool set_depth_range() {
         const DepthInterval range = view_depths(0, 1);
         camera_.near_depth = range.min;
-        camera_.near_fast = detail::max_of(0x1p-40f, range.min);
+        camera_.near_fast = detail::max_of(detail::least_plain, range.min);
         camera_.far_depth = range.max;
         if (!(range.min < range.max)) return false;
         if (camera_.orthographic) return detail::is_finite(range.min) && detail::is_finite(range.max);

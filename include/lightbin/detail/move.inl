@@ -35,10 +35,9 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void move_carefully(const WorldToView& 
     load_spheres(after, moved[0], moved[1], moved[2], moved[3]);
 }
 
-LIGHTBIN_TARGET inline Floats moved_centre(const MoveLanes& move, unsigned row, Floats x, Floats y,
-                                           Floats z) {
-    return mul(x, move.columns[0][row]) + mul(y, move.columns[1][row]) + mul(z, move.columns[2][row]) +
-           move.at_origin[row];
+/// A row of A p.
+LIGHTBIN_TARGET inline Floats moved_direction(const MoveLanes& move, unsigned row, Floats x, Floats y, Floats z) {
+    return mul(x, move.columns[0][row]) + mul(y, move.columns[1][row]) + mul(z, move.columns[2][row]);
 }
 
 /// Moves spheres. Left to themselves, compilers make it a call, by way of memory.
@@ -47,12 +46,11 @@ LIGHTBIN_TARGET LIGHTBIN_INLINE void move_spheres(const MoveLanes& move, Floats&
     const Floats dx = x - move.origin[0], dy = y - move.origin[1], dz = z - move.origin[2];
     const Floats away = abs(dx) + abs(dy) + abs(dz);
     const auto plain =
-        both(less_equal(away, move.most), both(less_equal(all(FloatMove::least_radius), radius),
-                                               less_equal(radius, all(FloatMove::most_radius))));
+        both(less_equal(away, move.most), both(less_equal(all(least_plain), radius), less_equal(radius, all(most_plain))));
     const Floats given[] = {x, y, z, radius};
-    x = moved_centre(move, 0, dx, dy, dz);
-    y = moved_centre(move, 1, dx, dy, dz);
-    z = moved_centre(move, 2, dx, dy, dz);
+    x = moved_direction(move, 0, dx, dy, dz) + move.at_origin[0];
+    y = moved_direction(move, 1, dx, dy, dz) + move.at_origin[1];
+    z = moved_direction(move, 2, dx, dy, dz) + move.at_origin[2];
     radius = mul(radius, move.stretch) + (mul(away, move.error) + move.least_error);
     const unsigned rest = ~bits(plain) & static_cast<unsigned>(every_lane);
     if (rest == 0) return;

@@ -189,7 +189,7 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
             y = y * camera.y.sign;
             z = z * camera.z_sign;
             const Floats nearest = z - r, farthest = z + r, size = abs(x) + abs(y) + abs(z) + r;
-            const auto usable = both(less_equal(size, all(0x1p40f)), less_equal(all(0x1p-40f), r));
+            const auto usable = both(less_equal(size, all(most_plain)), less_equal(all(least_plain), r));
             const auto culled = both(usable, out_of_view(camera, x, y, z, r, nearest, farthest, size));
             const unsigned valid = used < 32 ? (1u << used) - 1 : ~0u;
             unsigned& in_view = visible[i / lanes] = 0;

@@ -32,6 +32,15 @@ struct RimLanes {
     Floats error;  ///< of slopes, by 1 + |slope|
 };
 
+/// Does a plane of some slope touch the ball within the cone? If in doubt, yes: the ball's slopes are right for all of it.
+///
+/// across  the plane's normal, of length sqrt(1 + slope^2), times the cone's axis
+LIGHTBIN_TARGET LIGHTBIN_INLINE auto touches_cap(const RimLanes& rim, Floats slope, Floats across) {
+    across = across + mul(1.0f + abs(slope), all(0x1p-18f));
+    return both(less_equal(Floats{}, across), less_equal(mul(rim.cosine2, 1.0f + mul(slope, slope)),
+                                                         mul(mul(across, across), all(1 + 0x1p-18f))));
+}
+
 /// Narrows the slopes low..high of the balls along an image axis to those of their sectors. `c` is the apex's coordinate,
 /// `axis` and `other` those of the cone's axis along this and the other image axis.
 ///
@@ -43,27 +52,17 @@ struct RimLanes {
 /// than 32u S (1 + the larger slope) / z of the point.
 LIGHTBIN_TARGET LIGHTBIN_INLINE void narrow_slopes(const RimLanes& rim, Floats c, Floats axis, Floats other,
                                                    Floats& low, Floats& high) {
-    const Floats zero = Floats{}, one = all(1.0f);
     const Floats x = c + mul(rim.along, axis), b = mul(x, rim.rim_z) + mul(rim.rho2, mul(axis, rim.axis_z));
     const Floats squares = mul(x, x) + mul(rim.rim_z, rim.rim_z),
                  q = mul(x, axis) + mul(rim.rim_z, rim.axis_z);
     const Floats d = mul(squares - rim.rho2, mul(other, other)) + mul(q, q);
-    const Floats root = mul(rim.rho, sqrt(greater(d, zero) + mul(squares + rim.rho2, all(0x1p-20f))));
+    const Floats root = mul(rim.rho, sqrt(greater(d, Floats{}) + mul(squares + rim.rho2, all(0x1p-20f))));
     const Floats tip = mul(c, rim.per_z);
     const Floats least = lesser(mul(b - root, rim.per_a), tip), most = greater(mul(b + root, rim.per_a), tip);
-    const Floats error = mul(rim.error, one + greater(abs(least), abs(most)));
+    const Floats error = mul(rim.error, 1.0f + greater(abs(least), abs(most)));
 
-    // Does the plane touch the ball within the cone? If in doubt, yes: the ball's slopes are right for all of it.
-    const Floats low_across = mul(low, rim.axis_z) - axis + mul(one + abs(low), all(0x1p-18f)),
-                 high_across = axis - mul(high, rim.axis_z) + mul(one + abs(high), all(0x1p-18f));
-    const auto low_on_cap =
-        both(less_equal(zero, low_across), less_equal(mul(rim.cosine2, one + mul(low, low)),
-                                                      mul(mul(low_across, low_across), all(1 + 0x1p-18f))));
-    const auto high_on_cap = both(less_equal(zero, high_across),
-                                  less_equal(mul(rim.cosine2, one + mul(high, high)),
-                                             mul(mul(high_across, high_across), all(1 + 0x1p-18f))));
-    low = select(low_on_cap, low, greater(least - error, low));
-    high = select(high_on_cap, high, lesser(most + error, high));
+    low = select(touches_cap(rim, low, mul(low, rim.axis_z) - axis), low, greater(least - error, low));
+    high = select(touches_cap(rim, high, axis - mul(high, rim.axis_z)), high, lesser(most + error, high));
 }
 
 /// Of some of a chunk's lights: the tiles of both the ball and the least sphere of each, by project_carefully().
@@ -151,7 +150,7 @@ LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const LightSourc
 
             const Floats size = abs(spots.x) + abs(spots.y) + abs(spots.z) + spots.radius;
             const auto usable =
-                both(less_equal(size, all(0x1p40f)), less_equal(all(0x1p-40f), spots.radius));
+                both(less_equal(size, all(most_plain)), less_equal(all(least_plain), spots.radius));
             const auto culled = both(usable, out_of_view(camera, spots.x, spots.y, spots.z, spots.radius,
                                                          nearest, farthest, size));
             const unsigned used = min_of(lanes, here - i), valid = used < 32 ? (1u << used) - 1 : ~0u;

@@ -41,11 +41,10 @@ LIGHTBIN_TARGET LIGHTBIN_INLINE void shape_spots(const Camera& camera, const Mov
     const Floats given_radius = spots.radius;
     const Floats away = abs(spots.x) + abs(spots.y) + abs(spots.z),
                  long_axis = abs(axis[0]) + abs(axis[1]) + abs(axis[2]);
-    auto plain = both(less_equal(away, all(PlainSpots::most_size)), less_equal(abs(cosine), all(1.0f)));
-    plain = both(plain, both(less_equal(all(PlainSpots::least_size), given_radius),
-                             less_equal(given_radius, all(PlainSpots::most_size))));
-    plain = both(plain, both(less_equal(all(PlainSpots::least_axis), long_axis),
-                             less_equal(long_axis, all(PlainSpots::most_axis))));
+    // What floats can make a ViewSpot of; others are binned as their least spheres.
+    auto plain = both(less_equal(away, all(most_plain)), less_equal(abs(cosine), all(1.0f)));
+    plain = both(plain, both(less_equal(all(least_plain), given_radius), less_equal(given_radius, all(most_plain))));
+    plain = both(plain, both(less_equal(all(0x1p-20f), long_axis), less_equal(long_axis, all(0x1p20f))));
     Floats blur = mul(spots.radius, all(0x1p-18f));
     if (move.to_view != nullptr) {
         plain = both(plain, less_equal(abs(spots.x - move.origin[0]) + abs(spots.y - move.origin[1]) +
@@ -53,8 +52,7 @@ LIGHTBIN_TARGET LIGHTBIN_INLINE void shape_spots(const Camera& camera, const Mov
                                        move.most));
         const Floats given[] = {axis[0], axis[1], axis[2]};
         for (unsigned row = 0; row < 3; ++row)
-            axis[row] = mul(given[0], move.columns[0][row]) + mul(given[1], move.columns[1][row]) +
-                        mul(given[2], move.columns[2][row]);
+            axis[row] = moved_direction(move, row, given[0], given[1], given[2]);
         move_spheres(move, spots.x, spots.y, spots.z, spots.radius);
         // By how far the centre may be off its radius was made longer.
         const Floats off = spots.radius - mul(given_radius, move.stretch);

@@ -38,13 +38,6 @@ struct ViewSpot {
     std::uint16_t corners[4][3];
 };
 
-/// What floats can make a ViewSpot of; others are binned as their least spheres. Squares neither over- nor underflow.
-struct PlainSpots {
-    static constexpr float least_size = 0x1p-40f,
-                           most_size = 0x1p40f;  ///< radius; and of the centre's |x| + |y| + |z|
-    static constexpr float least_axis = 0x1p-20f, most_axis = 0x1p20f;  ///< |x| + |y| + |z|
-};
-
 /// A spot as the depth tests see it.
 struct TestedSpot {
     TestedSpot() = default;

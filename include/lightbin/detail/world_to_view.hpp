@@ -37,10 +37,8 @@ struct FloatMove {
     float least_error;    ///< and of at_origin
     float
         bend;  ///< how far a point of a cone may move beside its image, by its distance from the apex; inf: any
-    /// As far from the origin it serves; less than 0 where doubles must.
+    /// As far from the origin it serves, for plain radii; less than 0 where doubles must.
     float most = -1;
-    /// And so it does for radii from one to the other.
-    static constexpr float least_radius = 0x1p-40f, most_radius = 0x1p40f;
 };
 
 class WorldToView {
@@ -158,7 +156,7 @@ private:
         floats_.error = float_above(root_of(longest2) * (6 * 0x1p-24) * (1 + 0x1p-18));
         floats_.least_error = float_above((offset * 0x1p-23 + before * 0x1p-50) * (1 + 0x1p-18) + 0x1p-100);
         floats_.bend = uneven_ < 0x1p-4 ? float_above(3 * uneven_ + 0x1p-40) : infinity;
-        floats_.most = 0x1p40f;
+        floats_.most = most_plain;
     }
 
     Matrix m_;
