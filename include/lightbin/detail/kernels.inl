@@ -47,15 +47,11 @@
 
 #include <lightbin/detail/spot_lanes.inl>
 
-#include <lightbin/detail/view_spots.inl>
-
 #include <lightbin/detail/project_spots.inl>
 
 #include <lightbin/detail/silhouette.inl>
 
 #include <lightbin/detail/wedge.inl>
-
-#include <lightbin/detail/row_spans.inl>
 
 #if defined(LIGHTBIN_TIER_HAS_ROWS)
 #include <lightbin/detail/scatter.inl>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Spots to tile rectangles, a vector of lights at a time. Included once a tier, after project.inl, whose parts it takes, and
-// view_spots.inl.
+// spot_lanes.inl.
 //
 // A spot is the sector of a ball that a cone holds. Of all points of a sector, the one that is farthest in some direction
 // is the apex, on the rim where cone and ball meet, or on the cap within the rim; on the cap it is the ball's own. So its

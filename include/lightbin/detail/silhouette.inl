@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Row spans: where a sphere's projection, an ellipse, meets each tile row. Included once a tier, after its
-// vectors; in double.
+// Row spans: where a light's projection meets each tile row. Included once a tier, after its vectors; in double.
 //
+// A sphere's projection is an ellipse; wedge.inl has that of a spot.
 // The plane  y = v z  through the eye cuts the sphere in a disc whose projection reaches over the slopes
 //     u(v) = (x g -+ t S) / A,  g = y v + z,  S^2 = r^2 (1 + v^2) - (y - v z)^2,  A = y^2 + z^2 - r^2,  t^2 = A + x^2
 // (the tangent cone, solved for u). The ellipse is convex, so within a row its right end is at the row slope v
@@ -114,3 +114,33 @@ struct SphereRows {
 
     RowTerms terms;
 };
+
+/// Writes the row spans of the lights in view in a run, from spans[place] on; whole vectors are stored. A light gets none
+/// where they could drop nothing or can't be numbered. A sphere's row has at least one tile.
+template <class Rows>
+LIGHTBIN_TARGET inline void row_spans(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
+                                      RowSpan* spans, std::uint64_t place) {
+    static constexpr double count_up[] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const Doubles lane = load_doubles(count_up);
+    const double row_offset = camera.y.offset, per_scale = 1 / camera.y.scale;
+    Rows rows;
+    for (std::uint32_t begin = run.begin; begin < run.end; begin += lanes) {
+        const std::uint32_t used = run.end - begin < lanes ? run.end - begin : lanes;
+        const unsigned known = rows.find(camera, lights, begin, used);
+        for (std::uint32_t i = 0; i < used; ++i) {
+            const unsigned x0 = lights.x0[begin + i], x1 = lights.x1[begin + i], y0 = lights.y0[begin + i],
+                           y1 = lights.y1[begin + i];
+            std::uint32_t& first = lights.span_begin[begin + i];
+            first = FootprintArrays::whole_rectangle;
+            if ((known >> i & 1) == 0 || x0 == x1 || y0 == y1 || place + (y1 - y0) >= first) continue;
+            first = static_cast<std::uint32_t>(place);
+            const Doubles leftmost = all(static_cast<double>(x0)), rightmost = all(static_cast<double>(x1));
+            for (unsigned row = y0; row <= y1; row += double_lanes) {
+                const Doubles edge = lane + (static_cast<double>(row) - row_offset);
+                rows.store(i, edge * per_scale, (edge + 1.0) * per_scale, leftmost, rightmost,
+                           spans + place + (row - y0));
+            }
+            place += y1 - y0 + 1;
+        }
+    }
+}

@@ -28,7 +28,7 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
-// See project.inl, project_spots.inl, row_spans.inl, depth_columns.inl; bin.inl, bits.inl and scatter.hpp.
+// See project.inl, project_spots.inl, silhouette.inl, depth_columns.inl; bin.inl, bits.inl and scatter.hpp.
 using ProjectKernel = void (*)(const Camera& camera, const LightSource& source, std::uint32_t first,
                                std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts);
 using RowSpanKernel = void (*)(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
