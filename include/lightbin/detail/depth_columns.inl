@@ -8,8 +8,8 @@
 /// by_split  Of column i, upper[i] is of those samples alone that are no larger than split[i], lower[i] of those that are.
 ///           NaN does not count.
 template <bool by_split>
-LIGHTBIN_TARGET inline void column_extremes(const DepthRows& depth, float skipped, const float* split, float* lower,
-                                            float* upper) {
+LIGHTBIN_TARGET inline void column_extremes(const DepthRows& depth, float skipped, const float* split,
+                                            float* lower, float* upper) {
     const Floats infinite = all(infinity);
     for (std::size_t column = 0; column < depth.columns; column += lanes) {
         // The last vector may overlap the one before it.

@@ -36,7 +36,8 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void move_carefully(const WorldToView& 
 }
 
 /// A row of A p.
-LIGHTBIN_TARGET inline Floats moved_direction(const MoveLanes& move, unsigned row, Floats x, Floats y, Floats z) {
+LIGHTBIN_TARGET inline Floats moved_direction(const MoveLanes& move, unsigned row, Floats x, Floats y,
+                                              Floats z) {
     return mul(x, move.columns[0][row]) + mul(y, move.columns[1][row]) + mul(z, move.columns[2][row]);
 }
 
@@ -45,8 +46,8 @@ LIGHTBIN_TARGET LIGHTBIN_INLINE void move_spheres(const MoveLanes& move, Floats&
                                                   Floats& radius) {
     const Floats dx = x - move.origin[0], dy = y - move.origin[1], dz = z - move.origin[2];
     const Floats away = abs(dx) + abs(dy) + abs(dz);
-    const auto plain =
-        both(less_equal(away, move.most), both(less_equal(all(least_plain), radius), less_equal(radius, all(most_plain))));
+    const auto plain = both(less_equal(away, move.most),
+                            both(less_equal(all(least_plain), radius), less_equal(radius, all(most_plain))));
     const Floats given[] = {x, y, z, radius};
     x = moved_direction(move, 0, dx, dy, dz) + move.at_origin[0];
     y = moved_direction(move, 1, dx, dy, dz) + move.at_origin[1];

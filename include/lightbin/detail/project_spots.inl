@@ -163,8 +163,8 @@ LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const LightSourc
             if (camera.orthographic) {
                 find_coordinates(spots, bounds);
             } else {
-                plain = both(plain,
-                             both(less(all(camera.near_fast), spots.z - spots.radius), less(size * 0x1p-16f, nearest)));
+                plain = both(plain, both(less(all(camera.near_fast), spots.z - spots.radius),
+                                         less(size * 0x1p-16f, nearest)));
                 find_slopes(spots, size, nearest, across_z, bounds);
             }
             unsigned rest = ~bits(either(plain, culled)) & valid;

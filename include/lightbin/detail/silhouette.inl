@@ -109,7 +109,8 @@ struct SphereRows {
                                                Doubles rightmost, RowSpan* to) const {
         Doubles begin, end;
         silhouette_ends(terms, i, v0, v1, begin, end);
-        store_spans(to, lesser(greater(begin, leftmost), rightmost), lesser(greater(end, leftmost), rightmost));
+        store_spans(to, lesser(greater(begin, leftmost), rightmost),
+                    lesser(greater(end, leftmost), rightmost));
     }
 
     RowTerms terms;

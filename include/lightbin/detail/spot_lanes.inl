@@ -43,7 +43,8 @@ LIGHTBIN_TARGET LIGHTBIN_INLINE void shape_spots(const Camera& camera, const Mov
                  long_axis = abs(axis[0]) + abs(axis[1]) + abs(axis[2]);
     // What floats can make a ViewSpot of; others are binned as their least spheres.
     auto plain = both(less_equal(away, all(most_plain)), less_equal(abs(cosine), all(1.0f)));
-    plain = both(plain, both(less_equal(all(least_plain), given_radius), less_equal(given_radius, all(most_plain))));
+    plain = both(plain,
+                 both(less_equal(all(least_plain), given_radius), less_equal(given_radius, all(most_plain))));
     plain = both(plain, both(less_equal(all(0x1p-20f), long_axis), less_equal(long_axis, all(0x1p20f))));
     Floats blur = mul(spots.radius, all(0x1p-18f));
     if (move.to_view != nullptr) {
