@@ -55,7 +55,7 @@ list() {
     mutant cells detail/project.inl 's/const auto whole = less(all(near_depth), nearest);/const auto whole = less(all(0.0), nearest);/'
     mutant families detail/project.inl 's/const Doubles h = sqrt(greater(h2, zero) + h2_error);/const Doubles h = sqrt(greater(h2, zero)) * 0.999;/'
     # Silhouettes.
-    mutant families detail/silhouette.inl 's/+ mul(reach, right_s) + high;/+ mul(reach, right_s) * all(0.999) + high;/'
+    mutant families detail/silhouette.inl 's/+ mul(reach, right_s) + terms.high/+ mul(reach, right_s) * all(0.999) + terms.high/'
     mutant families detail/silhouette.inl 's/right_v = select(negative, inner_v, outer_v);/right_v = select(negative, outer_v, inner_v);/'
     # Depth.
     mutant families detail/depth_columns.inl 's/store_floats(upper + column, select(numbers, most, infinite));/store_floats(upper + column, most);/'
