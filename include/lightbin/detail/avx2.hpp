@@ -20,35 +20,17 @@ using FloatRegister = __m256;
 using DoubleRegister = __m256d;
 inline constexpr std::uint32_t lanes = 8, double_lanes = 4;
 
-LIGHTBIN_TARGET inline __m256 less_lanes(__m256 a, __m256 b) {
-    return _mm256_cmp_ps(a, b, _CMP_LT_OQ);
-}
-LIGHTBIN_TARGET inline __m256 less_equal_lanes(__m256 a, __m256 b) {
-    return _mm256_cmp_ps(a, b, _CMP_LE_OQ);
-}
-LIGHTBIN_TARGET inline __m256 select_lanes(__m256 mask, __m256 a, __m256 b) {
-    return _mm256_blendv_ps(b, a, mask);
-}
+#define LIGHTBIN_LESS(a, b) LIGHTBIN_OP(cmp)(a, b, _CMP_LT_OQ)
+#define LIGHTBIN_LESS_EQUAL(a, b) LIGHTBIN_OP(cmp)(a, b, _CMP_LE_OQ)
+#define LIGHTBIN_SELECT(mask, a, b) LIGHTBIN_OP(blendv)(b, a, mask)
 
 #define LIGHTBIN_VECTOR Floats
-#define LIGHTBIN_MASK Mask
 #define LIGHTBIN_ELEMENT float
 #define LIGHTBIN_REGISTER __m256
 #define LIGHTBIN_OP(name) _mm256_##name##_ps
 #include <lightbin/detail/vector.inl>
 
-LIGHTBIN_TARGET inline __m256d less_lanes(__m256d a, __m256d b) {
-    return _mm256_cmp_pd(a, b, _CMP_LT_OQ);
-}
-LIGHTBIN_TARGET inline __m256d less_equal_lanes(__m256d a, __m256d b) {
-    return _mm256_cmp_pd(a, b, _CMP_LE_OQ);
-}
-LIGHTBIN_TARGET inline __m256d select_lanes(__m256d mask, __m256d a, __m256d b) {
-    return _mm256_blendv_pd(b, a, mask);
-}
-
 #define LIGHTBIN_VECTOR Doubles
-#define LIGHTBIN_MASK DoubleMask
 #define LIGHTBIN_ELEMENT double
 #define LIGHTBIN_REGISTER __m256d
 #define LIGHTBIN_OP(name) _mm256_##name##_pd
@@ -66,7 +48,7 @@ LIGHTBIN_TARGET inline std::uint32_t bits_of_4(__m256 a, __m256 b, __m256 c, __m
 LIGHTBIN_TARGET inline std::uint64_t bits_of_8_less(Floats a, const float* eight) {
     __m256 lesser[8];
     for (unsigned i = 0; i < 8; ++i)
-        lesser[i] = less_lanes(a.v, _mm256_loadu_ps(eight + 8 * i));
+        lesser[i] = less(a, _mm256_loadu_ps(eight + 8 * i));
     return bits_of_4(lesser[0], lesser[1], lesser[2], lesser[3]) |
            std::uint64_t{bits_of_4(lesser[4], lesser[5], lesser[6], lesser[7])} << 32;
 }

@@ -27,78 +27,34 @@
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace avx512 {
 
-using Mask = __mmask16;
-using DoubleMask = __mmask8;
 using FloatRegister = __m512;
 using DoubleRegister = __m512d;
 inline constexpr std::uint32_t lanes = 16, double_lanes = 8;
 
-LIGHTBIN_TARGET inline __m512 all_lanes(float each) {
-    return _mm512_set1_ps(each);
+template <int how> LIGHTBIN_TARGET inline __mmask16 compared(__m512 a, __m512 b) {
+    return _mm512_cmp_ps_mask(a, b, how);
 }
-LIGHTBIN_TARGET inline __m512 negated(__m512 a) {
-    return _mm512_xor_ps(a, _mm512_set1_ps(-0.0f));
+template <int how> LIGHTBIN_TARGET inline __mmask8 compared(__m512d a, __m512d b) {
+    return _mm512_cmp_pd_mask(a, b, how);
 }
+#define LIGHTBIN_LESS(a, b) compared<_CMP_LT_OQ>(a, b)
+#define LIGHTBIN_LESS_EQUAL(a, b) compared<_CMP_LE_OQ>(a, b)
+#define LIGHTBIN_SELECT(mask, a, b) LIGHTBIN_OP(mask_mov)(b, mask, a)
 
 #define LIGHTBIN_VECTOR Floats
 #define LIGHTBIN_ELEMENT float
 #define LIGHTBIN_REGISTER __m512
+#define LIGHTBIN_MASK __mmask16
 #define LIGHTBIN_OP(name) _mm512_##name##_ps
 #include <lightbin/detail/vector.inl>
-
-LIGHTBIN_TARGET inline __m512d all_lanes(double each) {
-    return _mm512_set1_pd(each);
-}
-LIGHTBIN_TARGET inline __m512d negated(__m512d a) {
-    return _mm512_xor_pd(a, _mm512_set1_pd(-0.0));
-}
 
 #define LIGHTBIN_VECTOR Doubles
 #define LIGHTBIN_ELEMENT double
 #define LIGHTBIN_REGISTER __m512d
+#define LIGHTBIN_MASK __mmask8
 #define LIGHTBIN_OP(name) _mm512_##name##_pd
 #include <lightbin/detail/vector.inl>
 
-LIGHTBIN_TARGET inline Mask less(Floats a, Floats b) {
-    return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
-}
-LIGHTBIN_TARGET inline DoubleMask less(Doubles a, Doubles b) {
-    return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ);
-}
-LIGHTBIN_TARGET inline Mask less_equal(Floats a, Floats b) {
-    return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ);
-}
-LIGHTBIN_TARGET inline DoubleMask less_equal(Doubles a, Doubles b) {
-    return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ);
-}
-LIGHTBIN_TARGET inline Floats select(Mask mask, Floats a, Floats b) {
-    return _mm512_mask_mov_ps(b, mask, a);
-}
-LIGHTBIN_TARGET inline Doubles select(DoubleMask mask, Doubles a, Doubles b) {
-    return _mm512_mask_mov_pd(b, mask, a);
-}
-LIGHTBIN_TARGET inline Floats lesser(Floats a, Floats b) {
-    return _mm512_min_ps(a, b);
-}
-LIGHTBIN_TARGET inline Doubles lesser(Doubles a, Doubles b) {
-    return _mm512_min_pd(a, b);
-}
-LIGHTBIN_TARGET inline Floats greater(Floats a, Floats b) {
-    return _mm512_max_ps(a, b);
-}
-LIGHTBIN_TARGET inline Doubles greater(Doubles a, Doubles b) {
-    return _mm512_max_pd(a, b);
-}
-/// Of either type of mask.
-template <class AnyMask> LIGHTBIN_TARGET inline AnyMask both(AnyMask a, AnyMask b) {
-    return static_cast<AnyMask>(a & b);
-}
-template <class AnyMask> LIGHTBIN_TARGET inline AnyMask either(AnyMask a, AnyMask b) {
-    return static_cast<AnyMask>(a | b);
-}
-template <class AnyMask> LIGHTBIN_TARGET inline AnyMask and_not(AnyMask a, AnyMask b) {
-    return static_cast<AnyMask>(a & ~b);
-}
 LIGHTBIN_TARGET inline unsigned bits(unsigned mask) {
     return mask;
 }
@@ -170,7 +126,7 @@ LIGHTBIN_TARGET inline void store_spans(RowSpan* spans, Doubles first, Doubles l
 LIGHTBIN_TARGET inline void append_visible(const FootprintArrays& out, ProjectCounts& counts,
                                            std::uint32_t first_id, unsigned visible, const ChunkRects& rects,
                                            std::uint32_t first) {
-    const Mask kept = static_cast<Mask>(visible);
+    const __mmask16 kept = static_cast<__mmask16>(visible);
     const __m256i x0 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.x0 + first));
     const __m256i y0 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.y0 + first));
     const __m256i x1 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.x1 + first));

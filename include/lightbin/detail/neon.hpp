@@ -14,101 +14,33 @@
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 namespace neon {
 
-using FloatRegister = float32x4_t;
-using DoubleRegister = float64x2_t;
+using Floats = float32x4_t;
+using Doubles = float64x2_t;
+using FloatRegister = Floats;
+using DoubleRegister = Doubles;
 using ListId = std::uint32_t;
 inline constexpr std::uint32_t lanes = 4, double_lanes = 2;
 
-inline float32x4_t all_lanes(float each) {
+#include <lightbin/detail/numbers.inl>
+
+inline Floats all(float each) {
     return vdupq_n_f32(each);
 }
-inline float32x4_t negated(float32x4_t a) {
-    return vnegq_f32(a);
-}
-
-#define LIGHTBIN_VECTOR Floats
-#define LIGHTBIN_ELEMENT float
-#define LIGHTBIN_REGISTER float32x4_t
-#define LIGHTBIN_OP(name) v##name##q_f32
-#include <lightbin/detail/vector.inl>
-
-/// All ones or all zeros a lane.
-struct Mask {
-    uint32x4_t v;
-};
-inline Mask less(Floats a, Floats b) {
-    return {vcltq_f32(a, b)};
-}
-inline Mask less_equal(Floats a, Floats b) {
-    return {vcleq_f32(a, b)};
-}
-inline Mask both(Mask a, Mask b) {
-    return {vandq_u32(a.v, b.v)};
-}
-inline Mask either(Mask a, Mask b) {
-    return {vorrq_u32(a.v, b.v)};
-}
-inline Mask and_not(Mask a, Mask b) {
-    return {vbicq_u32(a.v, b.v)};
-}
-inline Floats select(Mask mask, Floats a, Floats b) {
-    return vbslq_f32(mask.v, a, b);
-}
-// With NaN in `a`, b: the instructions for it give NaN.
-inline Floats lesser(Floats a, Floats b) {
-    return select(less(a, b), a, b);
-}
-inline Floats greater(Floats a, Floats b) {
-    return select(less(b, a), a, b);
-}
-inline float64x2_t all_lanes(double each) {
+inline Doubles all(double each) {
     return vdupq_n_f64(each);
 }
-inline float64x2_t negated(float64x2_t a) {
-    return vnegq_f64(a);
+inline Floats sqrt(Floats a) {
+    return vsqrtq_f32(a);
 }
-
-#define LIGHTBIN_VECTOR Doubles
-#define LIGHTBIN_ELEMENT double
-#define LIGHTBIN_REGISTER float64x2_t
-#define LIGHTBIN_OP(name) v##name##q_f64
-#include <lightbin/detail/vector.inl>
-
-/// All ones or all zeros a lane.
-struct DoubleMask {
-    uint64x2_t v;
-};
-inline DoubleMask less(Doubles a, Doubles b) {
-    return {vcltq_f64(a, b)};
+inline Doubles sqrt(Doubles a) {
+    return vsqrtq_f64(a);
 }
-inline DoubleMask less_equal(Doubles a, Doubles b) {
-    return {vcleq_f64(a, b)};
-}
-inline DoubleMask both(DoubleMask a, DoubleMask b) {
-    return {vandq_u64(a.v, b.v)};
-}
-inline DoubleMask either(DoubleMask a, DoubleMask b) {
-    return {vorrq_u64(a.v, b.v)};
-}
-inline DoubleMask and_not(DoubleMask a, DoubleMask b) {
-    return {vbicq_u64(a.v, b.v)};
-}
-inline Doubles select(DoubleMask mask, Doubles a, Doubles b) {
-    return vbslq_f64(mask.v, a, b);
-}
-// With NaN in `a`, b: the instructions for it give NaN.
-inline Doubles lesser(Doubles a, Doubles b) {
-    return select(less(a, b), a, b);
-}
-inline Doubles greater(Doubles a, Doubles b) {
-    return select(less(b, a), a, b);
-}
-inline unsigned bits(Mask mask) {
+inline unsigned bits(decltype(Floats{} < Floats{}) mask) {
     static constexpr std::uint32_t each[] = {1, 2, 4, 8};
-    return vaddvq_u32(vandq_u32(mask.v, vld1q_u32(each)));
+    return vaddvq_u32(vandq_u32(reinterpret_cast<uint32x4_t>(mask), vld1q_u32(each)));
 }
-inline unsigned bits(DoubleMask mask) {
-    return static_cast<unsigned>((vgetq_lane_u64(mask.v, 0) & 1) | (vgetq_lane_u64(mask.v, 1) & 2));
+inline unsigned bits(decltype(Doubles{} < Doubles{}) mask) {
+    return static_cast<unsigned>((mask[0] & 1) | (mask[1] & 2));
 }
 
 /// Counts of a column's tiles, and tiles: for scatter.inl.
@@ -153,7 +85,8 @@ inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z,
     radius = columns.val[3];
 }
 inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
-    vst4q_f32(&spheres->x, {{x.v, y.v, z.v, radius.v}});
+    const float32x4x4_t columns = {{x, y, z, radius}};  // by name: for clang vst4q_f32 is a macro
+    vst4q_f32(&spheres->x, columns);
 }
 
 inline Floats ascending_bits(Floats values) {

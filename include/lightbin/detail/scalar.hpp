@@ -18,47 +18,22 @@ using DoubleRegister = double;
 using ListId = std::uint32_t;
 inline constexpr std::uint32_t lanes = 1, double_lanes = 1;
 
-// One lane: numbers are their own vectors, and a mask is a bool. Of floats and of doubles.
+#include <lightbin/detail/numbers.inl>
+
+template <class Real> Real all(Real each) {
+    return each;
+}
 template <class Real> Real sqrt(Real a) {
     return root_of(a);
 }
-template <class Real> Real mul(Real a, Real b) {
-    return rounded(a * b);
-}
-template <class Real> bool less(Real a, Real b) {
-    return a < b;
-}
-template <class Real> bool less_equal(Real a, Real b) {
-    return a <= b;
-}
-inline bool both(bool a, bool b) {
-    return a & b;
-}
-inline bool either(bool a, bool b) {
-    return a | b;
-}
-inline bool and_not(bool a, bool b) {
-    return a & !b;
-}
 inline unsigned bits(bool mask) {
     return mask;
-}
-template <class Real> Real select(bool mask, Real a, Real b) {
-    return mask ? a : b;
 }
 // By bits, as of an array of both clang 14 reads another call's where it makes vectors for WebAssembly.
 inline float select_unpredicted(bool mask, float a, float b) {
     const std::uint32_t if_set = 0u - std::uint32_t{mask};
     return bit_cast<float>((bit_cast<std::uint32_t>(a) & if_set) | (bit_cast<std::uint32_t>(b) & ~if_set));
 }
-// With NaN in `a`, b.
-template <class Real> Real lesser(Real a, Real b) {
-    return a < b ? a : b;
-}
-template <class Real> Real greater(Real a, Real b) {
-    return a > b ? a : b;
-}
-
 inline double widened(float a, unsigned) {
     return static_cast<double>(a);
 }

@@ -47,35 +47,17 @@ using DoubleRegister = __m128d;
 using ListId = std::uint32_t;
 inline constexpr std::uint32_t lanes = 4, double_lanes = 2;
 
-LIGHTBIN_TARGET inline __m128 less_lanes(__m128 a, __m128 b) {
-    return _mm_cmplt_ps(a, b);
-}
-LIGHTBIN_TARGET inline __m128 less_equal_lanes(__m128 a, __m128 b) {
-    return _mm_cmple_ps(a, b);
-}
-LIGHTBIN_TARGET inline __m128 select_lanes(__m128 mask, __m128 a, __m128 b) {
-    return _mm_or_ps(_mm_and_ps(mask, a), _mm_andnot_ps(mask, b));
-}
+#define LIGHTBIN_LESS(a, b) LIGHTBIN_OP(cmplt)(a, b)
+#define LIGHTBIN_LESS_EQUAL(a, b) LIGHTBIN_OP(cmple)(a, b)
+#define LIGHTBIN_SELECT(mask, a, b) LIGHTBIN_OP(or)(LIGHTBIN_OP(and)(mask, a), LIGHTBIN_OP(andnot)(mask, b))
 
 #define LIGHTBIN_VECTOR Floats
-#define LIGHTBIN_MASK Mask
 #define LIGHTBIN_ELEMENT float
 #define LIGHTBIN_REGISTER __m128
 #define LIGHTBIN_OP(name) _mm_##name##_ps
 #include <lightbin/detail/vector.inl>
 
-LIGHTBIN_TARGET inline __m128d less_lanes(__m128d a, __m128d b) {
-    return _mm_cmplt_pd(a, b);
-}
-LIGHTBIN_TARGET inline __m128d less_equal_lanes(__m128d a, __m128d b) {
-    return _mm_cmple_pd(a, b);
-}
-LIGHTBIN_TARGET inline __m128d select_lanes(__m128d mask, __m128d a, __m128d b) {
-    return _mm_or_pd(_mm_and_pd(mask, a), _mm_andnot_pd(mask, b));
-}
-
 #define LIGHTBIN_VECTOR Doubles
-#define LIGHTBIN_MASK DoubleMask
 #define LIGHTBIN_ELEMENT double
 #define LIGHTBIN_REGISTER __m128d
 #define LIGHTBIN_OP(name) _mm_##name##_pd

@@ -1,36 +1,43 @@
 // SPDX-License-Identifier: MIT
-// A class of vectors with the operators of its elements. Included twice a tier, for floats and for doubles, which give
+// A class of vectors with the operators of its elements, of x86's registers. Included twice a tier, for floats and for
+// doubles, which give
 //
-//   LIGHTBIN_VECTOR      the class's name
-//   LIGHTBIN_ELEMENT     float or double
-//   LIGHTBIN_REGISTER    the compiler's type for the register
-//   LIGHTBIN_OP(name)    the intrinsic of add, sub, mul, div, sqrt
+//   LIGHTBIN_VECTOR            the class's name
+//   LIGHTBIN_ELEMENT           float or double
+//   LIGHTBIN_REGISTER          the compiler's type for the register
+//   LIGHTBIN_MASK              the type of masks, if that is a bit a lane, and not another register
+//   LIGHTBIN_OP(name)          the intrinsic of add, sub, mul, div, sqrt, min, max, set1, xor, andnot; and, or, movemask
 //
-// and functions all_lanes(element) and negated(register), or where masks lie in such registers too, all ones or all
-// zeros a lane,
-//
-//   LIGHTBIN_MASK        the name of their class; LIGHTBIN_OP then has set1, xor, min, max, and, or, andnot, movemask, too
-//
-// and functions less_lanes, less_equal_lanes and select_lanes of registers.
+// and, of either, LIGHTBIN_LESS(a, b), LIGHTBIN_LESS_EQUAL(a, b) and LIGHTBIN_SELECT(mask, a, b).
 
-#if defined(LIGHTBIN_MASK)
-LIGHTBIN_TARGET inline LIGHTBIN_REGISTER all_lanes(LIGHTBIN_ELEMENT each) {
-    return LIGHTBIN_OP(set1)(each);
+#if !defined(LIGHTBIN_MASK)
+#define LIGHTBIN_MASK LIGHTBIN_REGISTER  // all ones or all zeros a lane
+LIGHTBIN_TARGET inline LIGHTBIN_MASK both(LIGHTBIN_MASK a, LIGHTBIN_MASK b) {
+    return LIGHTBIN_OP(and)(a, b);
 }
-LIGHTBIN_TARGET inline LIGHTBIN_REGISTER negated(LIGHTBIN_REGISTER a) {
-    return LIGHTBIN_OP(xor)(a, all_lanes(LIGHTBIN_ELEMENT(-0.0)));
+LIGHTBIN_TARGET inline LIGHTBIN_MASK either(LIGHTBIN_MASK a, LIGHTBIN_MASK b) {
+    return LIGHTBIN_OP(or)(a, b);
+}
+LIGHTBIN_TARGET inline LIGHTBIN_MASK and_not(LIGHTBIN_MASK a, LIGHTBIN_MASK b) {
+    return LIGHTBIN_OP(andnot)(b, a);
+}
+LIGHTBIN_TARGET inline unsigned bits(LIGHTBIN_MASK mask) {
+    return static_cast<unsigned>(LIGHTBIN_OP(movemask)(mask));
 }
 #endif
 
 struct LIGHTBIN_VECTOR {
     LIGHTBIN_VECTOR() = default;
     LIGHTBIN_TARGET LIGHTBIN_VECTOR(LIGHTBIN_REGISTER value) : v(value) {}
-    LIGHTBIN_TARGET LIGHTBIN_VECTOR(LIGHTBIN_ELEMENT each) : v(all_lanes(each)) {}
+    LIGHTBIN_TARGET LIGHTBIN_VECTOR(LIGHTBIN_ELEMENT each) : v(LIGHTBIN_OP(set1)(each)) {}
     LIGHTBIN_TARGET operator LIGHTBIN_REGISTER() const { return v; }
 
     LIGHTBIN_REGISTER v;
 };
 
+LIGHTBIN_TARGET inline LIGHTBIN_VECTOR all(LIGHTBIN_ELEMENT each) {
+    return each;
+}
 LIGHTBIN_TARGET inline LIGHTBIN_VECTOR operator+(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
     return LIGHTBIN_OP(add)(a.v, b.v);
 }
@@ -44,7 +51,7 @@ LIGHTBIN_TARGET inline LIGHTBIN_VECTOR operator/(LIGHTBIN_VECTOR a, LIGHTBIN_VEC
     return LIGHTBIN_OP(div)(a.v, b.v);
 }
 LIGHTBIN_TARGET inline LIGHTBIN_VECTOR operator-(LIGHTBIN_VECTOR a) {
-    return negated(a.v);
+    return LIGHTBIN_OP(xor)(a.v, all(LIGHTBIN_ELEMENT(-0.0)));
 }
 LIGHTBIN_TARGET inline LIGHTBIN_VECTOR sqrt(LIGHTBIN_VECTOR a) {
     return LIGHTBIN_OP(sqrt)(a.v);
@@ -57,34 +64,8 @@ LIGHTBIN_TARGET inline LIGHTBIN_VECTOR mul(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b)
     return product;
 }
 
-#if defined(LIGHTBIN_MASK)
 LIGHTBIN_TARGET inline LIGHTBIN_VECTOR abs(LIGHTBIN_VECTOR a) {
-    return LIGHTBIN_OP(andnot)(all_lanes(LIGHTBIN_ELEMENT(-0.0)), a.v);
-}
-
-struct LIGHTBIN_MASK {
-    LIGHTBIN_REGISTER v;
-};
-LIGHTBIN_TARGET inline LIGHTBIN_MASK less(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
-    return {less_lanes(a.v, b.v)};
-}
-LIGHTBIN_TARGET inline LIGHTBIN_MASK less_equal(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
-    return {less_equal_lanes(a.v, b.v)};
-}
-LIGHTBIN_TARGET inline LIGHTBIN_MASK both(LIGHTBIN_MASK a, LIGHTBIN_MASK b) {
-    return {LIGHTBIN_OP(and)(a.v, b.v)};
-}
-LIGHTBIN_TARGET inline LIGHTBIN_MASK either(LIGHTBIN_MASK a, LIGHTBIN_MASK b) {
-    return {LIGHTBIN_OP(or)(a.v, b.v)};
-}
-LIGHTBIN_TARGET inline LIGHTBIN_MASK and_not(LIGHTBIN_MASK a, LIGHTBIN_MASK b) {
-    return {LIGHTBIN_OP(andnot)(b.v, a.v)};
-}
-LIGHTBIN_TARGET inline unsigned bits(LIGHTBIN_MASK mask) {
-    return static_cast<unsigned>(LIGHTBIN_OP(movemask)(mask.v));
-}
-LIGHTBIN_TARGET inline LIGHTBIN_VECTOR select(LIGHTBIN_MASK mask, LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
-    return select_lanes(mask.v, a.v, b.v);
+    return LIGHTBIN_OP(andnot)(all(LIGHTBIN_ELEMENT(-0.0)), a.v);
 }
 LIGHTBIN_TARGET inline LIGHTBIN_VECTOR lesser(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
     return LIGHTBIN_OP(min)(a.v, b.v);
@@ -92,10 +73,18 @@ LIGHTBIN_TARGET inline LIGHTBIN_VECTOR lesser(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR
 LIGHTBIN_TARGET inline LIGHTBIN_VECTOR greater(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
     return LIGHTBIN_OP(max)(a.v, b.v);
 }
-#undef LIGHTBIN_MASK
-#endif
+LIGHTBIN_TARGET inline LIGHTBIN_MASK less(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
+    return LIGHTBIN_LESS(a.v, b.v);
+}
+LIGHTBIN_TARGET inline LIGHTBIN_MASK less_equal(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
+    return LIGHTBIN_LESS_EQUAL(a.v, b.v);
+}
+LIGHTBIN_TARGET inline LIGHTBIN_VECTOR select(LIGHTBIN_MASK mask, LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
+    return LIGHTBIN_SELECT(mask, a.v, b.v);
+}
 
 #undef LIGHTBIN_VECTOR
 #undef LIGHTBIN_ELEMENT
 #undef LIGHTBIN_REGISTER
+#undef LIGHTBIN_MASK
 #undef LIGHTBIN_OP

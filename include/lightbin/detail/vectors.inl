@@ -2,16 +2,8 @@
 // What the vectors of all tiers have in common, written once. Included once a tier, after its vectors and masks.
 // Reals is either type of vector.
 
-template <class Real> struct VectorOf { using Type = Floats; };
-template <> struct VectorOf<double> { using Type = Doubles; };
-
 /// A bit a lane.
 inline constexpr std::uint64_t every_lane = (std::uint64_t{1} << lanes) - 1;
-
-/// Every lane the same.
-template <class Real> LIGHTBIN_TARGET inline typename VectorOf<Real>::Type all(Real value) {
-    return typename VectorOf<Real>::Type(value);
-}
 
 // By way of registers: gcc 12 copies a class that holds one in halves, for which the next load has to wait.
 LIGHTBIN_TARGET inline Floats load_floats(const float* from) {
@@ -31,8 +23,15 @@ LIGHTBIN_TARGET inline void store_doubles(double* to, DoubleRegister values) {
     std::memcpy(to, &values, sizeof values);
 }
 
-template <class Reals> LIGHTBIN_TARGET inline Reals abs(Reals a) {
-    return greater(-a, a);
+// Masks, where a tier has no other way.
+template <class Mask> LIGHTBIN_TARGET inline Mask both(Mask a, Mask b) {
+    return static_cast<Mask>(a & b);
+}
+template <class Mask> LIGHTBIN_TARGET inline Mask either(Mask a, Mask b) {
+    return static_cast<Mask>(a | b);
+}
+template <class Mask> LIGHTBIN_TARGET inline Mask and_not(Mask a, Mask b) {
+    return static_cast<Mask>(a & (a ^ b));
 }
 
 /// As select, of what no processor predicts: the scalar tier has its own of floats, without a branch.
