@@ -9,7 +9,6 @@
 #include <lightbin/detail/footprint.hpp>
 #include <lightbin/detail/neon.hpp>
 #include <lightbin/detail/scalar.hpp>
-#include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/sse2.hpp>
 #include <lightbin/isa.hpp>

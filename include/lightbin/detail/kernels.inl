@@ -34,8 +34,8 @@
 //   coordinates                    how far as many numbers of 16 bits, plus `more`, are beyond `begin`: 0 to 255
 //   ByteIds, load_ids, count_ids   as many list entries: of ids, of list entries; `first`, first + 1 ...
 //   append_chosen                  stores the chosen bytes or entries side by side, and then what means nothing
-// for scatter.hpp
-//   LIGHTBIN_TIER_HAS_ROWS         defined: has Rows and Tiles, for scatter.inl; else lay_out_rows and fill_empty
+// for scatter.inl, where it has vectors of counts,
+//   LIGHTBIN_TIER_HAS_ROWS         defined: has Rows and Tiles
 
 #include <lightbin/detail/vectors.inl>
 
@@ -53,10 +53,6 @@
 
 #include <lightbin/detail/wedge.inl>
 
-#if defined(LIGHTBIN_TIER_HAS_ROWS)
-#include <lightbin/detail/scatter.inl>
-#endif
-
 #if defined(LIGHTBIN_TIER_HAS_BYTES)
 #include <lightbin/detail/lists_scan.inl>
 #else
@@ -68,6 +64,8 @@
 
 #include <lightbin/detail/emit_compress.inl>
 #else
+#include <lightbin/detail/scatter.inl>
+
 #include <lightbin/detail/cells.inl>
 
 #include <lightbin/detail/slab.inl>
@@ -121,7 +119,7 @@ struct Tier {
 #if defined(LIGHTBIN_TIER_COMPRESSES)
         return avx2::Tier::scatter_kernel<Id>();
 #else
-        return bin_scatter<Id, lay_out_rows<Id>, fill_empty>;
+        return bin_scatter<Id>;
 #endif
     }
 };

@@ -59,37 +59,6 @@ inline void store_spans(RowSpan* spans, double first, double last) {
     *spans = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(last)};
 }
 
-/// See LayOutRows.
-template <class Id>
-std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end, const ListRange*,
-                           std::uint32_t at) {
-    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles), pitch = width + 1;
-    std::uint32_t* steps = scratch.corners.reserve(pitch * (end - begin));
-    std::memset(steps, 0, pitch * (end - begin) * sizeof *steps);
-    for (const FootprintRun& run : job.runs)
-        for (std::uint32_t i = run.begin; i < run.end; ++i)
-            for (unsigned y = max_of<unsigned>(job.lights.y0[i], begin); y < end && y <= job.lights.y1[i];
-                 ++y) {
-                ++steps[(y - begin) * pitch + job.lights.x0[i]];
-                --steps[(y - begin) * pitch + job.lights.x1[i] + 1];
-            }
-    ListRange* tile = job.tiles + begin * width;
-    for (unsigned y = begin; y < end; ++y, steps += pitch)
-        for (std::uint32_t x = 0, count = 0; x < width; ++x) {
-            count += steps[x];
-            at += count;
-            *tile++ = {at, count};
-        }
-    return at;
-}
-
-inline void fill_empty(ListRange* tiles, std::size_t count, std::uint32_t at) {
-    if (at == 0)
-        std::memset(static_cast<void*>(tiles), 0, count * sizeof *tiles);
-    else
-        fill_items(tiles, count, {at, 0});
-}
-
 inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
                            unsigned visible, const ChunkRects& rects, std::uint32_t first) {
     portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);

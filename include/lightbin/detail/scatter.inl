@@ -1,10 +1,24 @@
 // SPDX-License-Identifier: MIT
-// The counts and prefix sums of scatter.hpp. A vector is a column of a band, a lane a tile row: sums along rows are
-// then plain additions, where lanes along a row would have to be shuffled up for each. What is shuffled instead is
-// the result, a square of tiles at a time. Also the stores of empty tiles. Included once a tier of vectors, after
-// its Rows: a vector of counts with + and -; all_rows(count); last_row(rows), the last one in all; low_pairs and
-// high_pairs(ends, counts), half of the rows as Tiles each, see BandTiles; and transpose(Tiles*), of a square of
-// tiles.
+// Binning by count, prefix and fill (Tiled Shading, section 3): small lights, nearly empty grids. A rectangle costs four
+// corners of a difference array, whose sums along both axes are the counts. Included once a tier that scatters; where it
+// has Rows, for the sums, it defines: a vector of counts with + and -; all_rows(count); last_row(rows), the last one in
+// all; low_pairs and high_pairs(ends, counts), half of the rows as Tiles each, see BandTiles; and transpose(Tiles*), of a
+// square of tiles.
+
+/// Writes `count` tiles without lights, at a place in the index list: whole cache lines, if the table's address allows.
+LIGHTBIN_TARGET inline void fill_empty(ListRange* tiles, std::size_t count, std::uint32_t at) {
+    const ListRange empty = {at, 0};
+    for (; count > 0 && reinterpret_cast<std::uintptr_t>(tiles) % 64 != 0; --count)
+        *tiles++ = empty;
+    for (; count >= 16; count -= 16, tiles += 16)
+        fill_items(tiles, 16, empty);
+    fill_items(tiles, count, empty);
+}
+
+#if defined(LIGHTBIN_TIER_HAS_ROWS)
+
+// A vector is a column of a band, a lane a tile row: sums along rows are then plain additions, where lanes along a row
+// would have to be shuffled up for each. What is shuffled instead is the result, a square of tiles at a time.
 
 inline constexpr unsigned band_rows = sizeof(Rows) / 4, tiles_stored = band_rows / 2;
 using EachRow = std::make_integer_sequence<int, band_rows>;
@@ -83,7 +97,7 @@ LIGHTBIN_TARGET inline void lay_out(const std::uint32_t* steps, std::uint32_t* a
     }
 }
 
-/// See LayOutRows.
+/// As the general lay_out_rows. May write more tiles, up to `writable`.
 template <class Id>
 LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned begin,
                                            unsigned end, const ListRange* writable, std::uint32_t at) {
@@ -134,25 +148,108 @@ LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scrat
     return at;
 }
 
-/// Stores sixteen tiles, two cache lines if aligned: with one a loop, what the loop itself takes would show.
-LIGHTBIN_TARGET inline void fill_lines(ListRange* tiles, const Tiles& value) {
-    for (std::size_t i = 0; i < 16; i += tiles_stored)
-        std::memcpy(static_cast<void*>(tiles + i), &value, sizeof value);
+#else
+
+/// Writes the tile rows begin..end-1, each tile with how many lights it has and where its list ends, the first one at
+/// `at`. Returns where the last one ends.
+template <class Id>
+LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end,
+                                           const ListRange*, std::uint32_t at) {
+    const FootprintArrays lights = job.lights;  // a copy, that no store can change
+    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles), pitch = width + 1,
+                      size = pitch * (end - begin + 1);
+    std::uint32_t* steps = scratch.corners.reserve(size);
+    std::memset(steps, 0, size * sizeof *steps);
+    for (const FootprintRun& run : job.runs)
+        for (std::uint32_t i = run.begin; i < run.end; ++i) {
+            const unsigned y0 = max_of<unsigned>(lights.y0[i], begin), y1 = min_of(lights.y1[i] + 1u, end);
+            if (y0 >= y1) continue;
+            const std::uint32_t reach = lights.x1[i] - lights.x0[i] + 1u;
+            std::uint32_t *const first = steps + (y0 - begin) * pitch + lights.x0[i],
+                          *const last = steps + (y1 - begin) * pitch + lights.x0[i];
+            ++first[0];
+            --first[reach];
+            --last[0];
+            ++last[reach];
+        }
+    ListRange* tile = job.tiles + begin * width;
+    for (unsigned y = begin; y < end; ++y, steps += pitch)
+        for (std::uint32_t x = 0, count = 0; x < width; ++x) {
+            const std::uint32_t step = steps[x];
+            steps[x + pitch] += step;
+            count += step;
+            at += count;
+            *tile++ = {at, count};
+        }
+    return at;
 }
 
-/// Tiles without lights, at a place in the index list. Narrow vectors are slower than memset, which can write place
-/// 0 alone; others are faster. The lines between the first and the last, which may overlap others, are aligned as
-/// far as the table's address allows.
-LIGHTBIN_TARGET inline void fill_empty(ListRange* tiles, std::size_t count, std::uint32_t at) {
-    if constexpr (tiles_stored == 2)
-        if (at == 0)
-            return static_cast<void>(std::memset(static_cast<void*>(tiles), 0, count * sizeof *tiles));
-    if (count < 16) return fill_items(tiles, count, {at, 0});
-    const Tiles empty = low_pairs(all_rows(at), Rows{});
-    ListRange* const last = tiles + count - 16;
-    fill_lines(tiles, empty);
-    tiles += 8 - reinterpret_cast<std::uintptr_t>(tiles) / sizeof *tiles % 8;
-    for (; tiles < last; tiles += 16)
-        fill_lines(tiles, empty);
-    fill_lines(last, empty);
+#endif
+
+/// Puts the ids in the lists of the tile rows begin..end-1. Not inline: within another loop it is a tenth slower.
+template <class Id>
+LIGHTBIN_TARGET LIGHTBIN_NOINLINE void put_ids(const BinJob<Id>& job, Id* list, std::size_t begin, std::size_t end) {
+    const FootprintArrays lights = job.lights;  // a copy, that no store can change
+    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
+    // Backward, so that each offset walks from its list's end to its begin.
+    for (std::size_t run = job.runs.size(); run-- > 0;)
+        for (std::uint32_t i = job.runs[run].end; i-- > job.runs[run].begin;) {
+            const std::size_t y0 = max_of<std::size_t>(lights.y0[i], begin),
+                              y1 = min_of<std::size_t>(lights.y1[i] + 1u, end);
+            const std::size_t columns = lights.x1[i] - lights.x0[i] + std::size_t{1};
+            const Id id = static_cast<Id>(lights.ids[i]);
+            ListRange* row = job.tiles + y0 * width + lights.x0[i];
+            for (std::size_t y = y0; y < y1; ++y, row += width)
+                for (std::size_t x = 0; x < columns; ++x)
+                    list[--row[x].offset] = id;
+        }
+}
+
+/// The same of any number of lights.
+template <class Id>
+LIGHTBIN_TARGET std::uint64_t scatter_lights(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands) {
+    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
+    const bool to_the_end = bands.end == static_cast<unsigned>(job.camera->y.tiles);
+    const ListRange* const writable = job.tiles + bands.end * width + (to_the_end ? job.spare_tiles : 0);
+    std::uint32_t at = bands.at;
+    for (unsigned begin = bands.begin; begin < bands.end; begin += rows_laid_out)
+        at = lay_out_rows(job, scratch, begin, min_of(begin + rows_laid_out, bands.end), writable, at);
+
+    if (at == bands.at) return 0;  // the rows may have no tiles, too
+
+    const std::uint64_t entries = at - bands.at;
+    const std::size_t step = rows_scattered(bands.end - bands.begin, width, job.visible, entries);
+    Id* const list = bands.out - bands.at;  // the whole list
+    for (std::size_t begin = bands.begin; begin < bands.end; begin += step)
+        put_ids(job, list, begin, min_of<std::size_t>(begin + step, bands.end));
+    return entries;
+}
+
+/// The same of no light or one: it needs no sums, and its list is only its id.
+template <class Id>
+LIGHTBIN_TARGET std::uint64_t scatter_one(const BinJob<Id>& job, const FootprintRun& run, const BandJob<Id>& bands) {
+    const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
+    ListRange *tile = job.tiles + bands.begin * width, *const end = job.tiles + bands.end * width;
+    std::uint32_t at = bands.at;
+    if (run.begin < run.end) {
+        const std::size_t x0 = job.lights.x0[run.begin], x1 = job.lights.x1[run.begin] + std::size_t{1};
+        const unsigned y1 = min_of(job.lights.y1[run.begin] + 1u, bands.end);
+        for (unsigned y = max_of<unsigned>(job.lights.y0[run.begin], bands.begin); y < y1; ++y) {
+            ListRange* const row = job.tiles + y * width;
+            fill_empty(tile, static_cast<std::size_t>(row + x0 - tile), at);
+            for (tile = row + x0; tile < row + x1; ++tile)
+                *tile = {at++, 1};
+        }
+        fill_items(bands.out, at - bands.at, static_cast<Id>(job.lights.ids[run.begin]));
+    }
+    fill_empty(tile, static_cast<std::size_t>(end - tile), at);
+    return at - bands.at;
+}
+
+/// Bins the tile rows of `bands`. Returns the number of entries. Never writes past them.
+template <class Id>
+LIGHTBIN_TARGET std::uint64_t bin_scatter(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands) {
+    const FootprintRun run = job.runs[0];
+    if (job.runs.size() == 1 && run.end - run.begin <= 1) return scatter_one(job, run, bands);
+    return scatter_lights(job, scratch, bands);
 }

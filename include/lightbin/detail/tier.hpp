@@ -9,7 +9,6 @@
 #include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/platform.hpp>
 #include <lightbin/detail/portable.hpp>
-#include <lightbin/detail/scatter.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/slice_table.hpp>
 #include <lightbin/detail/supertile.hpp>
@@ -28,7 +27,7 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR::detail {
 
-// See project.inl, project_spots.inl, silhouette.inl, depth_columns.inl; bin.inl, bits.inl and scatter.hpp.
+// See project.inl, project_spots.inl, silhouette.inl, depth_columns.inl; bin.inl, bits.inl and scatter.inl.
 using ProjectKernel = void (*)(const Camera& camera, const LightSource& source, std::uint32_t first,
                                std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts);
 using RowSpanKernel = void (*)(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
