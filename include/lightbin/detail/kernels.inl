@@ -16,7 +16,7 @@
 //   load_spheres, store_spheres    `lanes` spheres as four vectors, and back
 //   store_tiles, store_spans       numbers of tiles, cut off to 16 bits
 //   ascending_bits                 floats' bits as numbers that ascend with them, rounded to floats
-//   append_visible, split_bits     as in portable.hpp, or that
+//   split_bits                     as in portable.hpp, or that
 //   ListId                         of what the lists are made: std::uint32_t, or std::uint16_t where ids are in blocks
 // for step 3, emit.inl,
 //   transpose_words                as in portable.hpp, or that
@@ -33,6 +33,7 @@
 //   look_up, not_zero              in a table of 16 bytes; which bytes are not 0
 //   coordinates                    how far as many numbers of 16 bits, plus `more`, are beyond `begin`: 0 to 255
 //   ByteIds, load_ids, count_ids   as many list entries: of ids, of list entries; `first`, first + 1 ...
+//   append_visible                 as the general one of vectors.inl
 //   append_chosen                  stores the chosen bytes or entries side by side, and then what means nothing
 // for scatter.inl, where it has vectors of counts,
 //   LIGHTBIN_TIER_HAS_ROWS         defined: has Rows and Tiles

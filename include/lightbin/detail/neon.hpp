@@ -49,13 +49,10 @@ struct Rows {
 };
 using Tiles = uint64x2_t;
 inline Rows operator+(Rows a, Rows b) {
-    return {vaddq_u32(a.v, b.v)};
+    return {a.v + b.v};
 }
 inline Rows operator-(Rows a, Rows b) {
-    return {vsubq_u32(a.v, b.v)};
-}
-inline Rows all_rows(std::uint32_t count) {
-    return {vdupq_n_u32(count)};
+    return {a.v - b.v};
 }
 inline Rows last_row(Rows rows) {
     return {vdupq_laneq_u32(rows.v, 3)};
@@ -107,10 +104,6 @@ inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
     std::memcpy(spans, &narrow, sizeof narrow);
 }
 
-inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
-                           unsigned visible, const ChunkRects& rects, std::uint32_t first) {
-    portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);
-}
 using portable::append;
 using portable::Packed;
 using portable::packs_ids;

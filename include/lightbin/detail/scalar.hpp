@@ -59,10 +59,6 @@ inline void store_spans(RowSpan* spans, double first, double last) {
     *spans = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(last)};
 }
 
-inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
-                           unsigned visible, const ChunkRects& rects, std::uint32_t first) {
-    portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);
-}
 using portable::append;
 using portable::Packed;
 using portable::packs_ids;

@@ -74,9 +74,6 @@ inline Rows operator+(Rows a, Rows b) {
 inline Rows operator-(Rows a, Rows b) {
     return {_mm_sub_epi32(a.v, b.v)};
 }
-inline Rows all_rows(std::uint32_t count) {
-    return {_mm_set1_epi32(static_cast<int>(count))};
-}
 inline Rows last_row(Rows rows) {
     return {_mm_shuffle_epi32(rows.v, 0xff)};
 }
@@ -198,10 +195,6 @@ template <class Id> std::uint32_t append(Id* out, const Packed<Id>* ids, unsigne
     return set[low] + std::uint32_t{set[high]};
 }
 
-inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
-                           unsigned visible, const ChunkRects& rects, std::uint32_t first) {
-    portable::append_visible<lanes>(out, counts, first_id, visible, rects, first);
-}
 #include <lightbin/detail/transpose_x86.inl>
 
 #define LIGHTBIN_TIER_HAS_ROWS
