@@ -74,7 +74,7 @@ public:
             }
         if (capacity > most) return Error{ErrorCode::too_many_entries, capacity, most};
 
-        all.tiles = tiles_.reserve(std::uint64_t{tiles} * slices + all.spare_tiles);
+        all.tiles = tiles_.reserve(std::uint64_t{tiles} * slices);
         Id* const list = indices_.reserve(capacity + slack);
         tile_count_ = tiles * slices;
         const auto build_slices = [&](std::size_t begin, std::size_t end, Id* out, detail::Scratch& memory) {
@@ -82,9 +82,6 @@ public:
             for (std::size_t slice = begin; slice < end; ++slice) {
                 Job job = job_of(all, lit, slice);
                 job.tiles += slice * tiles;
-                // What is behind the last of these slices may be another thread's.
-                if (end < slices)
-                    job.spare_tiles = detail::min_of(job.spare_tiles, (end - slice - 1) * tiles);
                 const auto kernel = kernel_of<spots>(isa, view, job);
                 at += static_cast<std::uint32_t>(kernel(job, memory, {0, rows, out + at, at}));
             }
@@ -165,7 +162,6 @@ private:
     detail::Maybe<Error> prepare(const View& view, const ZBounds& bounds, Job& all) {
         const std::size_t tiles = view.tile_count();
         all.camera = &detail::camera_of(view);
-        all.spare_tiles = Job::slack(static_cast<std::size_t>(view.tiles_x()));
         const std::span<const float> sides[] = {bounds.min, bounds.max, bounds.gap_min, bounds.gap_max};
         for (std::size_t side = 0; side < 4; ++side) {
             if (sides[side].empty()) continue;

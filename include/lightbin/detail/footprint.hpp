@@ -125,11 +125,6 @@ template <class Id> struct BinJob : LitSlice {
     const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one
     const float* edges[4];  ///< of the tiles, for boxes: low x, high x, low y, high y; see cell_boxes.hpp
     ListRange* tiles;       ///< the table to write
-    std::size_t
-        spare_tiles;  ///< behind it, that may be written too: slack(), or 0 where they are another thread's
-
-    /// Whole vectors of columns are stored, of up to 8 rows.
-    static constexpr std::size_t slack(std::size_t width) { return 8 * width + 4; }
 };
 
 /// The part of it that one call of a kernel does: the tile rows begin..end-1. Bands of 8 are counted from begin.

@@ -97,10 +97,11 @@ LIGHTBIN_TARGET inline void lay_out(const std::uint32_t* steps, std::uint32_t* a
     }
 }
 
-/// As the general lay_out_rows. May write more tiles, up to `writable`.
+/// Writes the tile rows begin..end-1, each tile with how many lights it has and where its list ends, the first one at
+/// `at`. Returns where the last one ends.
 template <class Id>
 LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned begin,
-                                           unsigned end, const ListRange* writable, std::uint32_t at) {
+                                           unsigned end, std::uint32_t at) {
     const FootprintArrays lights = job.lights;  // a copy, that no store can change
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
     const std::size_t columns = (width + 3) / 4 * 4;  // in whole vectors
@@ -139,8 +140,8 @@ LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scrat
 
     ListRange* tile = job.tiles + begin * width;
     for (std::size_t row = 0; row < height; row += band_rows, steps += pitch, tile += band_rows * width) {
-        // Beyond a band's tiles there are others still to be written, or another thread's.
-        const std::size_t own = static_cast<std::size_t>(writable - tile), stored = band_rows * width + 4;
+        // Beyond a band's tiles there are others still to be written, but beyond the last row perhaps another thread's.
+        const std::size_t own = (height - row) * width, stored = band_rows * width + 4;
         ListRange* rows = own < stored ? scratch.last_rows.reserve(stored) : tile;
         lay_out(steps + band_rows, above, row_ends + row, columns, width, rows, EachTile{});
         if (rows != tile) copy_items(rows, min_of(own, band_rows * width), tile);
@@ -150,11 +151,10 @@ LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scrat
 
 #else
 
-/// Writes the tile rows begin..end-1, each tile with how many lights it has and where its list ends, the first one at
-/// `at`. Returns where the last one ends.
+/// The same by numbers.
 template <class Id>
 LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end,
-                                           const ListRange*, std::uint32_t at) {
+                                           std::uint32_t at) {
     const FootprintArrays lights = job.lights;  // a copy, that no store can change
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles), pitch = width + 1,
                       size = pitch * (end - begin + 1);
@@ -209,11 +209,9 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE void put_ids(const BinJob<Id>& job, Id* list, 
 template <class Id>
 LIGHTBIN_TARGET std::uint64_t scatter_lights(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands) {
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
-    const bool to_the_end = bands.end == static_cast<unsigned>(job.camera->y.tiles);
-    const ListRange* const writable = job.tiles + bands.end * width + (to_the_end ? job.spare_tiles : 0);
     std::uint32_t at = bands.at;
     for (unsigned begin = bands.begin; begin < bands.end; begin += rows_laid_out)
-        at = lay_out_rows(job, scratch, begin, min_of(begin + rows_laid_out, bands.end), writable, at);
+        at = lay_out_rows(job, scratch, begin, min_of(begin + rows_laid_out, bands.end), at);
 
     if (at == bands.at) return 0;  // the rows may have no tiles, too
 
