@@ -36,6 +36,23 @@ inline constexpr std::uint32_t lanes = 8, double_lanes = 4;
 #define LIGHTBIN_OP(name) _mm256_##name##_pd
 #include <lightbin/detail/vector.inl>
 
+/// Of four masks the bits, a byte each.
+LIGHTBIN_TARGET inline std::uint32_t bits_of_4(__m256 a, __m256 b, __m256 c, __m256 d) {
+    const __m256i ab = _mm256_packs_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b)),
+                  cd = _mm256_packs_epi32(_mm256_castps_si256(c), _mm256_castps_si256(d));
+    return static_cast<std::uint32_t>(_mm256_movemask_epi8(
+        _mm256_permutevar8x32_epi32(_mm256_packs_epi16(ab, cd), _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7))));
+}
+
+/// As the general bits_of_8_less, with fewer instructions.
+LIGHTBIN_TARGET inline std::uint64_t bits_of_8_less(Floats a, const float* eight) {
+    __m256 lesser[8];
+    for (unsigned i = 0; i < 8; ++i)
+        lesser[i] = less(a, _mm256_loadu_ps(eight + 8 * i));
+    return bits_of_4(lesser[0], lesser[1], lesser[2], lesser[3]) |
+           std::uint64_t{bits_of_4(lesser[4], lesser[5], lesser[6], lesser[7])} << 32;
+}
+
 /// Counts of a column's tiles, and tiles: for scatter.inl.
 struct Rows {
     __m256i v;

@@ -40,7 +40,7 @@ LIGHTBIN_TARGET inline Reals select_unpredicted(Mask mask, Reals a, Reals b) {
     return select(mask, a, b);
 }
 
-/// less() of a vector and each of 8, a byte each of bits.
+/// less() of a vector and each of 8, a byte each of bits. The AVX2 tier has its own.
 template <class Vector> LIGHTBIN_TARGET inline std::uint64_t bits_of_8_less(Vector a, const float* eight) {
     std::uint64_t all_bits = 0;
     for (unsigned i = 0; i < 8; ++i)
