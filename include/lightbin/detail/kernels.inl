@@ -7,10 +7,10 @@
 //   LIGHTBIN_TARGET                what its functions are declared with: their instructions
 //   lanes, double_lanes            floats and doubles in a vector
 //   FloatRegister, DoubleRegister  the compiler's types for what they lie in
-//   Floats, Doubles                vectors with + - * / and a sign, made of one number for all lanes (vector.inl);
-//                                  sqrt, mul
+//   Floats, Doubles                vectors with + - * / and a sign (vector.inl, numbers.inl);
+//   all, sqrt, abs, mul            all: of one number for all lanes; mul: a product that is rounded
 //   less, less_equal               of two vectors: a mask
-//   both, either, and_not, bits    of masks; bits: a bit a lane
+//   bits                           of a mask, a bit a lane; and if masks have no & | ^, both, either, and_not
 //   select, lesser, greater        a where the mask is set, else b; with NaN in a, b
 //   widened                        half 0 or 1 of Floats as Doubles
 //   load_spheres, store_spheres    `lanes` spheres as four vectors, and back
