@@ -4,11 +4,10 @@
 
 #include <lightbin/detail/flavour.hpp>
 #include <lightbin/detail/names.hpp>
-#include <lightbin/detail/wgsl.hpp>
+#include <lightbin/detail/translate.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/texel_format.hpp>
 
-#include <cctype>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -95,57 +94,6 @@ inline Dialect dialect(ShaderLanguage language) {
             .storage_buffers = language != glsl_330 && language != essl_300};
 }
 
-/// The word of HLSL for a word of GLSL.
-inline std::string_view hlsl_word(std::string_view word) {
-    static constexpr std::string_view words[][2] = {
-        {"uvec2", "uint2"},
-        {"uvec4", "uint4"},
-        {"ivec2", "int2"},
-        {"vec2", "float2"},
-        {"vec3", "float3"},
-        {"vec4", "float4"},
-        {"findLSB", "firstbitlow"},
-        {"bitCount", "countbits"},
-        {"floatBitsToUint", "asuint"},
-        {"uintBitsToFloat", "asfloat"},
-        {"shared", "groupshared"},
-        {"atomicMin", "InterlockedMin"},
-        {"atomicMax", "InterlockedMax"},
-        {"atomicOr", "InterlockedOr"},
-        {"subgroupMin", "WaveActiveMin"},
-        {"sync_group", "GroupMemoryBarrierWithGroupSync"},
-    };
-    for (const auto& [glsl, hlsl] : words)
-        if (word == glsl) return hlsl;
-    return word;
-}
-
-/// Returns a text in GLSL or HLSL, but for the prefix. `&` before a name is WGSL's. Types are declared highp in ES: a
-/// fragment shader's integers have 16 bits there otherwise, and no default precision is set, as it would reach the
-/// user's code.
-inline std::string translate(const Dialect& dialect, std::string_view glsl) {
-    constexpr std::string_view types[] = {"uint", "uvec2", "uvec4", "ivec2",      "int",       "float",
-                                          "vec2", "vec3",  "vec4",  "usampler2D", "sampler2D", "sampler2DMS"};
-    std::string text;
-    for (std::size_t at = 0; at < glsl.size();) {
-        const std::string_view word = word_at(glsl, at);
-        at += word.size();
-        if (word.empty()) {
-            const char sign = glsl[at++];
-            if (sign != '&' || word_at(glsl, at).empty()) text += sign;
-            continue;
-        }
-        const bool declares = at < glsl.size() && glsl[at] != '(';
-        if (dialect.es && declares)
-            for (const std::string_view type : types)
-                if (word == type) text += "highp ";
-        text += dialect.hlsl           ? hlsl_word(word)
-                : word == "sync_group" ? std::string_view("memoryBarrierShared();\n    barrier")
-                                       : word;
-    }
-    return text;
-}
-
 /// Puts the prefix where `$` stands.
 inline std::string with_prefix(std::string_view text, std::string_view prefix) {
     std::string result;
@@ -186,7 +134,7 @@ public:
 
     const Dialect& dialect() const { return dialect_; }
 
-    /// Adds text in GLSL, see detail/wgsl.hpp; `$` stands for the prefix, `&` before a name for a variable that is handed
+    /// Adds text in GLSL, see detail/translate.hpp; `$` stands for the prefix, `&` before a name for a variable that is handed
     /// over to be written.
     void add(std::string_view glsl) { shader_.text += glsl; }
 
@@ -219,7 +167,7 @@ public:
         const std::string name = " $" + binding.name;
         add((dialect_.hlsl   ? type.hlsl + name + hlsl_register(binding.slot, 't')
              : dialect_.wgsl ? layout("", binding.slot) + "var" + name + " : " + type.wgsl
-                             : layout("", binding.slot) + "uniform " + type.glsl + name) +
+                             : layout("", binding.slot) + "uniform " + (dialect_.es ? "highp " : "") + type.glsl + name) +
             ";\n");
         bind(std::move(binding));
     }
@@ -329,7 +277,7 @@ public:
     /// Returns the text, or an Error if two of its resources are bound to one slot.
     Result<ShaderText> finish() {
         shader_.text = with_prefix(dialect_.wgsl ? WgslTranslation(shader_.text, members_).text()
-                                                 : translate(dialect_, shader_.text),
+                                                 : translate(shader_.text, dialect_.hlsl, dialect_.es),
                                    prefix_);
         for (const ShaderBinding& a : shader_.bindings)
             for (const ShaderBinding& b : shader_.bindings)

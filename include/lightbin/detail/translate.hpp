@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// From the GLSL that the shader texts are written in to WGSL. It knows what they need, not all of GLSL: a declaration
-// holds one name, every branch and loop has braces, nothing is assigned to a parameter but through `inout`, no `?:`.
+// From the GLSL that the shader texts are written in to each language. It knows what they need, not all of GLSL: a
+// declaration holds one name, every branch and loop has braces, nothing is assigned to a parameter but through `inout`,
+// no `?:`. `$` stands for the prefix, `&` before a name for a variable that is handed over to be written.
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
@@ -28,27 +29,59 @@ inline std::string_view word_at(std::string_view text, std::size_t at) {
     return text.substr(at, end - at);
 }
 
-/// The type of WGSL for one of GLSL, or nothing where the word is none.
-inline std::string_view wgsl_type(std::string_view word) {
-    static constexpr std::string_view types[][2] = {
-        {"bool", "bool"},   {"int", "i32"},     {"uint", "u32"},   {"float", "f32"},  {"ivec2", "vec2i"},
-        {"uvec2", "vec2u"}, {"uvec4", "vec4u"}, {"vec2", "vec2f"}, {"vec3", "vec3f"}, {"vec4", "vec4f"},
+/// A word of the texts in each language.
+struct ShaderWord {
+    std::string_view glsl, hlsl, wgsl;
+    bool is_type = false;
+};
+
+/// The row of a word. What is in no row is the same in all languages.
+inline ShaderWord shader_word(std::string_view word) {
+    static constexpr ShaderWord words[] = {
+        {"bool", "bool", "bool", true},
+        {"int", "int", "i32", true},
+        {"uint", "uint", "u32", true},
+        {"float", "float", "f32", true},
+        {"ivec2", "int2", "vec2i", true},
+        {"uvec2", "uint2", "vec2u", true},
+        {"uvec4", "uint4", "vec4u", true},
+        {"vec2", "float2", "vec2f", true},
+        {"vec3", "float3", "vec3f", true},
+        {"vec4", "float4", "vec4f", true},
+        {"findLSB", "firstbitlow", "firstTrailingBit"},
+        {"bitCount", "countbits", "countOneBits"},
+        {"floatBitsToUint", "asuint", "bitcast<u32>"},
+        {"uintBitsToFloat", "asfloat", "bitcast<f32>"},
+        {"shared", "groupshared", ""},
+        {"atomicMin", "InterlockedMin", "atomicMin"},
+        {"atomicMax", "InterlockedMax", "atomicMax"},
+        {"atomicOr", "InterlockedOr", "atomicOr"},
+        {"subgroupMin", "WaveActiveMin", "subgroupMin"},
+        {"sync_group", "GroupMemoryBarrierWithGroupSync", "workgroupBarrier"},
     };
-    for (const auto& [glsl, wgsl] : types)
-        if (word == glsl) return wgsl;
-    return {};
+    for (const ShaderWord& row : words)
+        if (word == row.glsl) return row;
+    return {word, word, word};
 }
 
-/// The word of WGSL for any other one.
-inline std::string_view wgsl_word(std::string_view word) {
-    static constexpr std::string_view words[][2] = {
-        {"findLSB", "firstTrailingBit"},     {"bitCount", "countOneBits"},
-        {"floatBitsToUint", "bitcast<u32>"}, {"uintBitsToFloat", "bitcast<f32>"},
-        {"sync_group", "workgroupBarrier"},
-    };
-    for (const auto& [glsl, wgsl] : words)
-        if (word == glsl) return wgsl;
-    return word;
+/// Returns a text in GLSL or HLSL. Types are declared highp in ES: a fragment shader's integers have 16 bits there
+/// otherwise, and no default precision is set, as it would reach the user's code.
+inline std::string translate(std::string_view glsl, bool hlsl, bool es) {
+    std::string text;
+    for (std::size_t at = 0; at < glsl.size();) {
+        const std::string_view word = word_at(glsl, at);
+        at += word.size();
+        if (word.empty()) {
+            const char sign = glsl[at++];
+            if (sign != '&' || word_at(glsl, at).empty()) text += sign;
+            continue;
+        }
+        const ShaderWord row = shader_word(word);
+        const bool declares = row.is_type && word != "bool" && at < glsl.size() && glsl[at] != '(';
+        if (es && declares) text += "highp ";
+        text += hlsl ? row.hlsl : word == "sync_group" ? "memoryBarrierShared();\n    barrier" : word;
+    }
+    return text;
 }
 
 /// A name of the text that WGSL reads in another way: a constant is a member of its block.
@@ -102,15 +135,15 @@ private:
             return;
         }
         // A type, a space and a name declare something. Types of the text's own begin with the prefix.
-        const std::string_view type = wgsl_type(word);
+        const ShaderWord row = shader_word(word);
         const std::string_view name = at_ < glsl_.size() && glsl_[at_] == ' ' ? word_at(glsl_, at_ + 1) : "";
-        if ((!type.empty() || word == "void" || word.starts_with('$')) && !name.empty()) {
+        if ((row.is_type || word == "void" || word.starts_with('$')) && !name.empty()) {
             at_ += 1 + name.size();
-            declare(type.empty() && word != "void" ? word : type, name);
+            declare(word == "void" ? "" : row.wgsl, name);
         } else if (is_pointer(word) && !wgsl_.ends_with('.')) {
             wgsl_ += "(*" + std::string(word) + ")";
         } else {
-            wgsl_ += type.empty() ? wgsl_word(renamed(word)) : type;
+            wgsl_ += renamed(row.wgsl);
         }
     }
 
