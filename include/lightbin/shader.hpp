@@ -112,6 +112,38 @@ inline std::optional<Error> refuse_names(const Dialect& dialect, std::string_vie
     return std::nullopt;
 }
 
+/// The texels of the lists: as wide as the ids where texels are read.
+inline TexelFormat list_texels(const ShaderOptions& options) {
+    const bool typed =
+        !options.packed_ids && options.format.encoding != ListEncoding::bitmask &&
+        (options.storage == ListStorage::texel_buffer || options.storage == ListStorage::texture_2d);
+    return typed && options.format.ids == IdWidth::u8    ? TexelFormat::r8ui
+           : typed && options.format.ids == IdWidth::u16 ? TexelFormat::r16ui
+                                                         : TexelFormat::r32ui;
+}
+
+/// What a text reads.
+inline std::vector<ShaderBuffer> list_buffers(const ShaderOptions& options) {
+    using enum ShaderResource;
+    constexpr ShaderResource by_storage[] = {storage_buffer, texel_buffer, texture_2d, uniform_block,
+                                             byte_address};
+    const ShaderResource there = by_storage[static_cast<std::size_t>(options.storage)];
+    const std::uint32_t width = there == texture_2d ? options.texture_width : 0;
+    std::vector<ShaderBuffer> buffers;
+    if (options.format.encoding == ListEncoding::offset_count)
+        buffers.push_back({"tiles", options.tiles_in_uniform_block ? uniform_block : there, options.tiles,
+                           TexelFormat::rg32ui, 8ull * options.max_tiles, 0});
+    buffers.push_back({"lists", there, options.lists, list_texels(options),
+                       encoded_bytes(options.format, options.max_tiles, options.max_entries), width});
+    if (options.slicing != Slicing::none)
+        buffers.push_back(
+            {"slices", there, options.slices, TexelFormat::r32ui, slice_bytes(options.max_slices), width});
+    if (options.slicing == Slicing::z_bins)
+        buffers.push_back(
+            {"bins", there, options.bins, TexelFormat::rg32ui, 8ull * options.max_slices, width});
+    return buffers;
+}
+
 inline std::optional<Error> refuse(const ShaderOptions& options) {
     const Dialect dialect = detail::dialect(options.language);
     if (auto error = refuse_names(
@@ -133,39 +165,18 @@ inline std::optional<Error> refuse(const ShaderOptions& options) {
         (options.texture_width < 1 || options.texture_width > 16384))
         return Error{ErrorCode::texture_width_out_of_range, options.texture_width, 16384};
 
-    const ListFormat& format = options.format;
-    if (const auto error = refuse(format)) return error;
-
-    const bool table = format.encoding == ListEncoding::offset_count;
-    const bool tiles_in_block =
-                   options.storage == ListStorage::uniform_block || (table && options.tiles_in_uniform_block),
-               lists_in_block = options.storage == ListStorage::uniform_block;
-    const bool slices_in_block = lists_in_block && options.slicing != Slicing::none;
-    if ((tiles_in_block && options.max_tiles == 0) || (lists_in_block && table && options.max_entries == 0) ||
-        (slices_in_block && options.max_slices == 0))
-        return Error{ErrorCode::block_size_unknown};
+    if (const auto error = refuse(options.format)) return error;
     // Blocks are made of whole vectors of 16 bytes.
-    const std::uint64_t most = options.uniform_block_bytes > 65536 && dialect.hlsl
-                                   ? 65536
-                                   : options.uniform_block_bytes / 16 * 16,
-                        tile_bytes = table && tiles_in_block ? 8ull * options.max_tiles : 0,
-                        list_bytes = lists_in_block
-                                         ? encoded_bytes(format, options.max_tiles, options.max_entries)
-                                         : 0,
-                        slice_bytes = slices_in_block ? slice_words(options.max_slices) * 4 : 0,
-                        bin_bytes = slices_in_block && options.slicing == Slicing::z_bins
-                                        ? 8ull * options.max_slices
-                                        : 0;
-    for (const std::uint64_t bytes : {tile_bytes, list_bytes, slice_bytes, bin_bytes})
-        if (bytes > most) return Error{ErrorCode::uniform_block_too_small, bytes, most};
+    const std::uint64_t most =
+        options.uniform_block_bytes > 65536 && dialect.hlsl ? 65536 : options.uniform_block_bytes / 16 * 16;
+    const std::vector<ShaderBuffer> buffers = list_buffers(options);
+    for (const ShaderBuffer& buffer : buffers)
+        if (buffer.resource == ShaderResource::uniform_block && buffer.bytes == 0)
+            return Error{ErrorCode::block_size_unknown};
+    for (const ShaderBuffer& buffer : buffers)
+        if (buffer.resource == ShaderResource::uniform_block && buffer.bytes > most)
+            return Error{ErrorCode::uniform_block_too_small, buffer.bytes, most};
     return std::nullopt;
-}
-
-inline ShaderResource resource(ListStorage storage) {
-    using enum ShaderResource;
-    constexpr ShaderResource by_storage[] = {storage_buffer, texel_buffer, texture_2d, uniform_block,
-                                             byte_address};
-    return by_storage[static_cast<std::size_t>(storage)];
 }
 
 inline std::string number_text(std::uint64_t number) {
@@ -192,53 +203,28 @@ inline void add_tile(ShaderWriter& writer, const ShaderOptions& options) {
 }
 
 /// `id_at`: the id at a place of the lists.
-inline void add_id_at(ShaderWriter& writer, const ShaderBuffer& lists, IdWidth ids) {
-    const bool whole = ids == IdWidth::u32 || lists.format != TexelFormat::r32ui;
+inline void add_id_at(ShaderWriter& writer, const ShaderOptions& options) {
+    const IdWidth ids = options.format.ids;
+    const bool whole = ids == IdWidth::u32 || list_texels(options) != TexelFormat::r32ui;
     writer.add("\nuint $id_at(uint at) {\n    return " +
-               (whole ? writer.read(lists, "at")
+               (whole ? writer.read("lists", "at")
                 : ids == IdWidth::u16
-                    ? "(" + writer.read(lists, "at >> 1u") + " >> ((at & 1u) * 16u)) & 0xffffu"
-                    : "(" + writer.read(lists, "at >> 2u") + " >> ((at & 3u) * 8u)) & 0xffu") +
+                    ? "(" + writer.read("lists", "at >> 1u") + " >> ((at & 1u) * 16u)) & 0xffffu"
+                    : "(" + writer.read("lists", "at >> 2u") + " >> ((at & 3u) * 8u)) & 0xffu") +
                ";\n}\n");
 }
 
-/// What a text reads.
-struct ListBuffers {
-    ShaderBuffer tiles, lists, slices, bins;
-};
-
-inline ListBuffers list_buffers(const ShaderOptions& options) {
-    const bool typed =
-        !options.packed_ids && options.format.encoding != ListEncoding::bitmask &&
-        (options.storage == ListStorage::texel_buffer || options.storage == ListStorage::texture_2d);
-    const TexelFormat texels = typed && options.format.ids == IdWidth::u8    ? TexelFormat::r8ui
-                               : typed && options.format.ids == IdWidth::u16 ? TexelFormat::r16ui
-                                                                             : TexelFormat::r32ui;
-    const auto vectors = [](std::uint64_t bytes) { return static_cast<std::uint32_t>((bytes + 15) / 16); };
-    const ShaderResource there = resource(options.storage);
-    return {.tiles = {"tiles", options.tiles_in_uniform_block ? ShaderResource::uniform_block : there,
-                      options.tiles, TexelFormat::rg32ui, vectors(8ull * options.max_tiles), 0},
-            .lists = {"lists", there, options.lists, texels,
-                      vectors(encoded_bytes(options.format, options.max_tiles, options.max_entries)),
-                      options.texture_width},
-            .slices = {"slices", there, options.slices, TexelFormat::r32ui,
-                       vectors(4 * slice_words(options.max_slices)), options.texture_width},
-            .bins = {"bins", there, options.bins, TexelFormat::rg32ui, vectors(8ull * options.max_slices),
-                     options.texture_width}};
-}
-
-/// `cursor` and `begin`, their names led by `own`. Nothing is read and nothing divided for a pixel that the grid has no
-/// tile for: its constants are unset, or those of a smaller picture or of other tiles.
-inline void add_begin(ShaderWriter& writer, const ShaderOptions& options, const ListBuffers& buffers,
-                      const std::string& own) {
+/// `cursor` and `begin`. Nothing is read and nothing divided for a pixel that the grid has no tile for: its constants are
+/// unset, or those of a smaller picture or of other tiles.
+inline void add_begin(ShaderWriter& writer, const ShaderOptions& options) {
     const ListFormat& format = options.format;
     const bool table = format.encoding == ListEncoding::offset_count,
                bits = format.encoding == ListEncoding::bitmask, binned = options.slicing == Slicing::z_bins;
-    writer.add("\nstruct $" + own + "cursor {\n    uint id;\n    uint at;\n    uint end;\n");
+    writer.add("\nstruct $own_cursor {\n    uint id;\n    uint at;\n    uint end;\n");
     if (bits) writer.add("    uint bits;\n");
     if (binned) writer.add("    uint last;\n");
-    writer.add("};\n\n$" + own + "cursor $" + own + "begin(uvec2 pixel, float view_depth) {\n" +
-               to_grid_lines(options) + "    $" + own + "cursor c;\n    c.at = 0u;\n    c.end = 0u;\n" +
+    writer.add("};\n\n$own_cursor $own_begin(uvec2 pixel, float view_depth) {\n" + to_grid_lines(options) +
+               "    $own_cursor c;\n    c.at = 0u;\n    c.end = 0u;\n" +
                (bits && !binned ? "    c.id = 0xffffffe0u;  // 32 before the first\n" : "    c.id = 0u;\n"));
     if (bits) writer.add("    c.bits = 0u;\n");
     if (binned) writer.add("    c.last = 0u;\n");
@@ -250,15 +236,14 @@ inline void add_begin(ShaderWriter& writer, const ShaderOptions& options, const 
     if (options.slicing == Slicing::clusters)
         writer.add("        tile.y += slice * (($grid.w - 1u) / " + tile_size + " + 1u);\n");
     if (binned)
-        writer.add("        uvec2 bin = " + writer.read(buffers.bins, "slice") +
-                   ";\n        c.last = bin.y;\n");
+        writer.add("        uvec2 bin = " + writer.read("bins", "slice") + ";\n        c.last = bin.y;\n");
     writer.add("        uint place = tile.y * $grid.y + tile.x;\n");
     const std::string each = number_text(places_a_tile(format));
     if (table)
         writer.add("        uvec2 list = " +
-                   (buffers.tiles.resource == ShaderResource::texture_2d
-                        ? writer.read_texel(buffers.tiles, "int(tile.x), int(tile.y)")
-                        : writer.read(buffers.tiles, "place")) +
+                   (options.storage == ListStorage::texture_2d && !options.tiles_in_uniform_block
+                        ? writer.read_texel("$tiles", "ivec2(int(tile.x), int(tile.y))") + ".xy"
+                        : writer.read("tiles", "place")) +
                    ";\n        c.at = list.x;\n        c.end = list.x + list.y;\n");
     else
         writer.add("        c.at = place * " + each + ";\n        c.end = c.at + " +
@@ -266,7 +251,7 @@ inline void add_begin(ShaderWriter& writer, const ShaderOptions& options, const 
     // The list is entered at the bin's first light. Words end with that of the bin's last one.
     if (binned && bits)
         writer.add("        c.at += bin.x >> 5u;\n        c.id = bin.x & ~31u;\n        c.bits = " +
-                   writer.read(buffers.lists, "c.at") +
+                   writer.read("lists", "c.at") +
                    " & (0xffffffffu << (bin.x & 31u));\n        c.at += 1u;\n");
     else if (binned && table)
         writer.add(R"(        uint end = c.end;
@@ -281,14 +266,13 @@ inline void add_begin(ShaderWriter& writer, const ShaderOptions& options, const 
     writer.add("    }\n    return c;\n}\n");
 }
 
-/// `next`, its name led by `own`. One return: fxc's shader model 5.1 takes a second one for a value that was not set.
-inline void add_next(ShaderWriter& writer, const ShaderOptions& options, const ListBuffers& buffers,
-                     const std::string& own) {
-    writer.add("\nbool $" + own + "next(inout $" + own + "cursor c) {\n");
+/// `next`. One return: fxc's shader model 5.1 takes a second one for a value that was not set.
+inline void add_next(ShaderWriter& writer, const ShaderOptions& options) {
+    writer.add("\nbool $own_next(inout $own_cursor c) {\n");
     if (options.format.encoding == ListEncoding::bitmask) {
         // id is that of the word's bit 0, less what was passed: kept in its upper 27 bits.
         writer.add("    c.id &= ~31u;\n    while (c.bits == 0u && c.at < c.end) {\n        c.bits = " +
-                   writer.read(buffers.lists, "c.at") +
+                   writer.read("lists", "c.at") +
                    ";\n        c.at += 1u;\n        c.id += 32u;\n    }\n"
                    "    bool more = c.bits != 0u;\n    if (more) {\n        c.id += " +
                    (writer.dialect().storage_buffers
@@ -339,15 +323,15 @@ bool $next(inout $cursor c) {
 }
 
 /// `count` and `heat`.
-inline void add_heat_map(ShaderWriter& writer, const ShaderOptions& options, const std::string& own) {
+inline void add_heat_map(ShaderWriter& writer, const ShaderOptions& options) {
     const bool counted =
         options.format.encoding == ListEncoding::offset_count && options.slicing != Slicing::z_bins;
-    writer.add("\nuint $count(uvec2 pixel, float view_depth) {\n    $" + own + "cursor c = $" + own +
-               "begin(pixel, view_depth);\n" +
-               (counted ? "    return c.end - c.at;\n"
-                        : "    uint count = 0u;\n    while ($" + own +
-                              "next(&c)) { count += 1u; }\n    return count;\n") +
-               R"(}
+    writer.add("\nuint $count(uvec2 pixel, float view_depth) {\n"
+               "    $own_cursor c = $own_begin(pixel, view_depth);\n");
+    writer.add(counted
+                   ? "    return c.end - c.at;\n"
+                   : "    uint count = 0u;\n    while ($own_next(&c)) { count += 1u; }\n    return count;\n");
+    writer.add(R"(}
 
 vec3 $heat(uvec2 pixel, float view_depth, float most) {
     float heat = float($count(pixel, view_depth)) / most;
@@ -423,7 +407,6 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
     using namespace detail;
     if (const auto error = refuse(options)) return *error;
     ShaderWriter writer(options.language, options.prefix);
-    const ListBuffers buffers = list_buffers(options);
     // A wave's loop ends for all of its lanes at once, which no compiler of WGSL sees.
     if (options.wave_loop && writer.dialect().wgsl)
         writer.add("enable subgroups;\ndiagnostic(off, subgroup_uniformity);\n");
@@ -434,26 +417,24 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
     writer.declare_constants(constants, options.grid, options.push_constants);
     if (options.view_check)
         writer.declare_constants({{"vec4", "image"}, {"vec4", "depths"}}, options.view, false);
-    if (options.format.encoding == ListEncoding::offset_count) writer.declare(buffers.tiles);
-    writer.declare(buffers.lists);
-    if (options.slicing != Slicing::none) writer.declare(buffers.slices);
-    if (options.slicing == Slicing::z_bins) writer.declare(buffers.bins);
+    for (const ShaderBuffer& buffer : list_buffers(options))
+        writer.declare(buffer);
 
     add_tile(writer, options);
-    if (options.slicing != Slicing::none) add_slice(writer, buffers.slices);
-    if (options.format.encoding != ListEncoding::bitmask)
-        add_id_at(writer, buffers.lists, options.format.ids);
-    const std::string own = options.wave_loop ? "own_" : "";
-    add_begin(writer, options, buffers, own);
-    add_next(writer, options, buffers, own);
+    if (options.slicing != Slicing::none) add_slice(writer);
+    if (options.format.encoding != ListEncoding::bitmask) add_id_at(writer, options);
+    add_begin(writer, options);
+    add_next(writer, options);
     if (options.wave_loop) add_wave_cursor(writer);
     writer.add_macro("for_each_light(cursor, pixel, view_depth)",
                      std::string("for ($cursor cursor = $begin(pixel, view_depth); $next(cursor);)") +
                          (options.wave_loop ? " if (cursor.own)" : ""));
-    if (options.heat_map) add_heat_map(writer, options, own);
+    if (options.heat_map) add_heat_map(writer, options);
     if (options.window) add_window(writer);
     if (options.view_check) add_view_check(writer, to_grid_lines(options));
-    if (options.list_check) add_list_check(writer, own);
+    if (options.list_check) add_list_check(writer);
+    // `own_`: what a lane of a wave has beside the wave's.
+    if (!options.wave_loop) writer.replace("$own_", "$");
     return writer.finish();
 }
 

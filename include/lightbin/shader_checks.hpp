@@ -59,21 +59,35 @@ inline void add_view_check(ShaderWriter& writer, const std::string& to_grid) {
 }
 
 /// `missing`, `begin_missing`, `next_missing` and their loop. As ids ascend, list and numbers are walked side by side.
-inline void add_list_check(ShaderWriter& writer, const std::string& own) {
-    const std::string cursor = "$" + own + "cursor", begin = "$" + own + "begin", next = "$" + own + "next";
-    writer.add("\n// A light, and whether the pixel's list lacks it.\nstruct $missing {\n    uint id;\n    "
-               "bool lacked;\n    bool more;\n    " +
-               cursor + " listed;\n};\n\n$missing $begin_missing(uvec2 pixel, float view_depth) {\n    " +
-               cursor + " listed = " + begin +
-               "(pixel, view_depth);\n    $missing m;\n    m.id = 0xffffffffu;\n    "
-               "m.lacked = false;\n    m.more = " +
-               next +
-               "(&listed);\n    m.listed = listed;\n    return m;\n}\n"
-               "\nbool $next_missing(inout $missing m, uint lights) {\n    m.id += 1u;\n    " +
-               cursor +
-               " listed = m.listed;\n    m.lacked = !(m.more && listed.id == m.id);\n    if (!m.lacked) { "
-               "m.more = " +
-               next + "(&listed); }\n    m.listed = listed;\n    return m.id < lights;\n}\n");
+inline void add_list_check(ShaderWriter& writer) {
+    writer.add(R"(
+// A light, and whether the pixel's list lacks it.
+struct $missing {
+    uint id;
+    bool lacked;
+    bool more;
+    $own_cursor listed;
+};
+
+$missing $begin_missing(uvec2 pixel, float view_depth) {
+    $own_cursor listed = $own_begin(pixel, view_depth);
+    $missing m;
+    m.id = 0xffffffffu;
+    m.lacked = false;
+    m.more = $own_next(&listed);
+    m.listed = listed;
+    return m;
+}
+
+bool $next_missing(inout $missing m, uint lights) {
+    m.id += 1u;
+    $own_cursor listed = m.listed;
+    m.lacked = !(m.more && listed.id == m.id);
+    if (!m.lacked) { m.more = $own_next(&listed); }
+    m.listed = listed;
+    return m.id < lights;
+}
+)");
     writer.add_macro(
         "for_each_missing(cursor, lights, pixel, view_depth)",
         "for ($missing cursor = $begin_missing(pixel, view_depth); $next_missing(cursor, lights);) "

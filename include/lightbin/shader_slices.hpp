@@ -69,15 +69,15 @@ inline std::vector<std::uint32_t> shader_slices(const Slices& slices) {
 
 namespace detail {
 
-/// The words of shader_slices().
-inline std::uint64_t slice_words(std::uint32_t slices) {
-    return slices + std::uint64_t{3};
+/// The bytes of shader_slices() for so many slices, 0 for none.
+inline std::uint64_t slice_bytes(std::uint64_t slices) {
+    return slices == 0 ? 0 : 4 * (slices + 3);
 }
 
 /// `slice`: the slice of a view depth. A guess, by a logarithm that a device may round as it likes, and from there to
 /// where the boundaries have it. They and the depth are compared as words: devices may take tiny floats for zero.
-inline void add_slice(ShaderWriter& writer, const ShaderBuffer& slices) {
-    const auto word = [&](const std::string& index) { return writer.read(slices, index); };
+inline void add_slice(ShaderWriter& writer) {
+    const auto word = [&](const std::string& index) { return writer.read("slices", index); };
     const auto number = [&](const std::string& index) { return "uintBitsToFloat(" + word(index) + ")"; };
     writer.add(
         "\n// The slice that a view depth lies in.\nuint $slice(float view_depth) {\n    float guess = " +

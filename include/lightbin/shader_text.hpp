@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <lightbin/detail/warnings_off.inl>
@@ -94,15 +95,11 @@ inline Dialect dialect(ShaderLanguage language) {
             .storage_buffers = language != glsl_330 && language != essl_300};
 }
 
-/// Puts the prefix where `$` stands.
-inline std::string with_prefix(std::string_view text, std::string_view prefix) {
-    std::string result;
-    for (const char c : text)
-        if (c == '$')
-            result += prefix;
-        else
-            result += c;
-    return result;
+/// Puts `to` wherever `from` stands.
+inline std::string replaced(std::string text, std::string_view from, std::string_view to) {
+    for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+        text.replace(at, from.size(), to);
+    return text;
 }
 
 /// A buffer of uint or uvec2 that a shader reads.
@@ -110,9 +107,9 @@ struct ShaderBuffer {
     std::string name;
     ShaderResource resource;
     ShaderSlot slot;
-    TexelFormat format;     ///< rg32ui: elements are uvec2
-    std::uint32_t vectors;  ///< uniform_block: its size in uvec4
-    std::uint32_t width;    ///< texture_2d
+    TexelFormat format;   ///< rg32ui: elements are uvec2
+    std::uint64_t bytes;  ///< uniform_block: what it has room for
+    std::uint32_t width;  ///< texture_2d
 };
 
 /// A vector that the CPU sets.
@@ -134,9 +131,13 @@ public:
 
     const Dialect& dialect() const { return dialect_; }
 
-    /// Adds text in GLSL, see detail/translate.hpp; `$` stands for the prefix, `&` before a name for a variable that is handed
-    /// over to be written.
+    /// Adds text in GLSL, see detail/translate.hpp.
     void add(std::string_view glsl) { shader_.text += glsl; }
+
+    /// Puts `to` wherever `from` stands in what was added.
+    void replace(std::string_view from, std::string_view to) {
+        shader_.text = replaced(std::move(shader_.text), from, to);
+    }
 
     /// A macro, where the language has them.
     void add_macro(const std::string& call, const std::string& text) {
@@ -145,66 +146,59 @@ public:
 
     /// Declares a read-only buffer and lists it among the bindings.
     void declare(const ShaderBuffer& buffer) {
-        const bool pairs = buffer.format == TexelFormat::rg32ui;
-        const std::string name = "$" + buffer.name, type = pairs ? "uvec2" : "uint";
-        const std::uint32_t stride = pairs ? 8 : 4;
+        buffers_.push_back(buffer);
         if (buffer.resource == ShaderResource::uniform_block) return declare_vectors(buffer);
+        const std::string type = buffer.format == TexelFormat::rg32ui ? "uvec2" : "uint";
+        const std::uint32_t stride = texel_bytes(buffer.format);
         if (buffer.resource == ShaderResource::storage_buffer)
             return declare_storage(buffer.name, type, "readonly", buffer.slot, stride);
-        if (buffer.resource == ShaderResource::byte_address)
-            return declare_opaque({buffer.name, buffer.resource, buffer.slot, TexelFormat::none, stride},
-                                  {.hlsl = "ByteAddressBuffer"});
-        const bool texture = buffer.resource == ShaderResource::texture_2d;
-        declare_opaque({buffer.name, buffer.resource, buffer.slot, buffer.format, texel_bytes(buffer.format),
-                        0, texture ? buffer.width : 0},
-                       {.glsl = texture ? "usampler2D" : "usamplerBuffer",
-                        .hlsl = (texture ? "Texture2D<" : "Buffer<") + type + ">",
-                        .wgsl = "texture_2d<u32>"});
+        const bool texture = buffer.resource == ShaderResource::texture_2d,
+                   untyped = buffer.resource == ShaderResource::byte_address;
+        declare_opaque(
+            {buffer.name, buffer.resource, buffer.slot, untyped ? TexelFormat::none : buffer.format, stride,
+             0, buffer.width},
+            {.glsl = texture ? "usampler2D" : "usamplerBuffer",
+             .hlsl = untyped ? "ByteAddressBuffer" : (texture ? "Texture2D<" : "Buffer<") + type + ">",
+             .wgsl = "texture_2d<u32>"});
     }
 
     /// Declares a read-only resource. `binding` has its name without the prefix.
     void declare_opaque(ShaderBinding binding, const OpaqueType& type) {
         const std::string name = " $" + binding.name;
-        add((dialect_.hlsl   ? type.hlsl + name + hlsl_register(binding.slot, 't')
-             : dialect_.wgsl ? layout("", binding.slot) + "var" + name + " : " + type.wgsl
-                             : layout("", binding.slot) + "uniform " + (dialect_.es ? "highp " : "") + type.glsl + name) +
+        add((dialect_.hlsl ? type.hlsl + name + hlsl_register(binding.slot, 't')
+             : dialect_.wgsl
+                 ? layout("", binding.slot) + "var" + name + " : " + type.wgsl
+                 : layout("", binding.slot) + "uniform " + (dialect_.es ? "highp " : "") + type.glsl + name) +
             ";\n");
         bind(std::move(binding));
     }
 
-    /// Returns the expression that reads an element: of a uvec2 buffer a uvec2, otherwise a uint.
-    std::string read(const ShaderBuffer& buffer, const std::string& index) const {
+    /// Returns the expression that reads an element of a buffer that was declared: of a uvec2 buffer a uvec2, otherwise a
+    /// uint.
+    std::string read(std::string_view of, const std::string& index) const {
+        const ShaderBuffer* found = buffers_.data();
+        while (found->name != of)
+            ++found;
+        const ShaderBuffer& buffer = *found;
         const bool pairs = buffer.format == TexelFormat::rg32ui;
         const std::string name = "$" + buffer.name;
         const auto word = [&](const std::string& i) {
             return name + "[(" + i + ") >> 2u][(" + i + ") & 3u]";
         };
-        switch (buffer.resource) {
-        case ShaderResource::uniform_block:
-            if (!pairs) return word(index);
-            return "uvec2(" + word("2u * " + index) + ", " + word("2u * " + index + " + 1u") + ")";
-        case ShaderResource::byte_address:
+        if (buffer.resource == ShaderResource::uniform_block)
+            return pairs ? "uvec2(" + word("2u * " + index) + ", " + word("2u * " + index + " + 1u") + ")"
+                         : word(index);
+        if (buffer.resource == ShaderResource::byte_address)
             return name + (pairs ? ".Load2(8u * (" : ".Load(4u * (") + index + "))";
-        case ShaderResource::texel_buffer:
-            if (dialect_.hlsl) break;
-            return "texelFetch(" + name + ", int(" + index + "))" + (pairs ? ".xy" : ".x");
-        case ShaderResource::texture_2d: {
+        if (buffer.resource == ShaderResource::texture_2d) {
             const std::string width = std::to_string(buffer.width) + "u)";
-            return read_texel(buffer, "int((" + index + ") % " + width + ", int((" + index + ") / " + width);
+            return read_texel(name, "ivec2(int((" + index + ") % " + width + ", int((" + index + ") / " +
+                                        width + ")") +
+                   (pairs ? ".xy" : ".x");
         }
-        case ShaderResource::uniform_vector:
-        case ShaderResource::push_constants:
-        case ShaderResource::storage_buffer:
-        case ShaderResource::writable_buffer:
-            break;
-        }
+        if (buffer.resource == ShaderResource::texel_buffer && !dialect_.hlsl)
+            return "texelFetch(" + name + ", int(" + index + "))" + (pairs ? ".xy" : ".x");
         return name + "[" + index + "]";
-    }
-
-    /// The same of a texture_2d, at "x, y".
-    std::string read_texel(const ShaderBuffer& buffer, const std::string& texel) const {
-        return read_texel("$" + buffer.name, "ivec2(" + texel + ")") +
-               (buffer.format == TexelFormat::rg32ui ? ".xy" : ".x");
     }
 
     /// The expression that reads a texel of a texture, at an ivec2.
@@ -276,9 +270,9 @@ public:
 
     /// Returns the text, or an Error if two of its resources are bound to one slot.
     Result<ShaderText> finish() {
-        shader_.text = with_prefix(dialect_.wgsl ? WgslTranslation(shader_.text, members_).text()
-                                                 : translate(shader_.text, dialect_.hlsl, dialect_.es),
-                                   prefix_);
+        shader_.text = replaced(dialect_.wgsl ? WgslTranslation(shader_.text, members_).text()
+                                              : translate(shader_.text, dialect_.hlsl, dialect_.es),
+                                "$", prefix_);
         for (const ShaderBinding& a : shader_.bindings)
             for (const ShaderBinding& b : shader_.bindings)
                 if (&a < &b && same_place(a, b))
@@ -290,8 +284,9 @@ public:
 private:
     /// A buffer in a block: as vectors, since elements of arrays take 16 bytes there.
     void declare_vectors(const ShaderBuffer& buffer) {
-        const std::string name = "$" + buffer.name, count = std::to_string(buffer.vectors);
-        const std::uint32_t bytes = 16 * buffer.vectors;
+        const auto vectors = static_cast<std::uint32_t>((buffer.bytes + 15) / 16);
+        const std::string name = "$" + buffer.name, count = std::to_string(vectors);
+        const std::uint32_t bytes = 16 * vectors;
         if (!dialect_.wgsl)
             return add_block(buffer.name + "_block", "    uvec4 " + name + "[" + count + "];\n", buffer.slot,
                              false, bytes);
@@ -322,13 +317,6 @@ private:
         shader_.bindings.push_back(std::move(binding));
     }
 
-    static std::uint32_t texel_bytes(TexelFormat format) {
-        return format == TexelFormat::r8ui    ? 1
-               : format == TexelFormat::r16ui ? 2
-               : format == TexelFormat::r32ui ? 4
-                                              : 8;
-    }
-
     void add_block(const std::string& name, const std::string& lines, ShaderSlot slot, bool push,
                    std::uint32_t bytes) {
         if (dialect_.wgsl)
@@ -343,36 +331,22 @@ private:
               TexelFormat::none, bytes, bytes});
     }
 
-    /// Vulkan has one row of bindings a set, WebGPU a group; elsewhere each kind has its own, and a text without bindings
-    /// has none to clash.
+    /// Resources whose bindings are counted together have one letter: those of HLSL's registers, and in OpenGL textures
+    /// apart from buffers; Vulkan has one row of bindings a set, WebGPU a group. '-' has no binding, and a text without
+    /// bindings has none to clash.
     bool same_place(const ShaderBinding& a, const ShaderBinding& b) const {
-        const auto kind = [&](const ShaderBinding& binding) {
-            switch (binding.resource) {
-            case ShaderResource::uniform_vector:
-            case ShaderResource::push_constants:
-                return 0;
-            case ShaderResource::uniform_block:
-                return 1;
-            case ShaderResource::writable_buffer:
-                return dialect_.hlsl ? 3 : 2;
-            case ShaderResource::storage_buffer:
-                return 2;
-            case ShaderResource::byte_address:
-            case ShaderResource::texel_buffer:
-            case ShaderResource::texture_2d:
-                break;
-            }
-            return dialect_.hlsl ? 2 : 4;
-        };
-        const int kind_a = kind(a), kind_b = kind(b);
-        return dialect_.storage_buffers && kind_a != 0 && kind_b != 0 &&
-               (dialect_.vulkan || dialect_.wgsl || kind_a == kind_b) && a.slot.binding == b.slot.binding &&
-               a.slot.set == b.slot.set;
+        const char* const rows = dialect_.hlsl                      ? "-b-ttttu"
+                                 : dialect_.vulkan || dialect_.wgsl ? "-b-bbbbb"
+                                                                    : "-b-s-tts";
+        const char row = rows[static_cast<std::size_t>(a.resource)];
+        return dialect_.storage_buffers && row != '-' && row == rows[static_cast<std::size_t>(b.resource)] &&
+               a.slot.binding == b.slot.binding && a.slot.set == b.slot.set;
     }
 
     Dialect dialect_;
     std::string prefix_;
     ShaderText shader_;  // its text in GLSL until finish()
+    std::vector<ShaderBuffer> buffers_;
     std::vector<WgslName> members_;
 };
 

@@ -54,6 +54,13 @@ constexpr const char* webgpu_format(TexelFormat format) {
     return formats[static_cast<std::size_t>(format)];
 }
 
+namespace detail {
+constexpr std::uint32_t texel_bytes(TexelFormat format) {
+    constexpr std::uint32_t bytes[] = {0, 1, 2, 4, 8, 4};
+    return bytes[static_cast<std::size_t>(format)];
+}
+}  // namespace detail
+
 /// Returns how many rows a 2D texture of `width` texels a row has where it holds `count`: at least 1. The last one may
 /// be partly filled.
 constexpr std::size_t texture_rows(std::size_t count, std::size_t width) {

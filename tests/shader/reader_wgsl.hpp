@@ -104,5 +104,5 @@ fn main(@builtin(global_invocation_id) id : vec3u) {
 fn main(@builtin(position) position : vec4f) -> @location(0) vec4u {
     return read_list(vec2u(position.xy))" +
                 std::string(options.viewport_corner ? "" : " - corner") + ");\n}\n";
-    return snippet.text + lightbin::detail::with_prefix(text, options.prefix);
+    return snippet.text + lightbin::detail::replaced(text, "$", options.prefix);
 }
