@@ -118,8 +118,8 @@ struct ShaderConstant {
     const char* name;
 };
 
-/// A type that each language has its own name for.
-struct OpaqueType {
+/// What each language says in its own way.
+struct ByLanguage {
     std::string glsl = {}, hlsl = {}, wgsl = {};
 };
 
@@ -144,14 +144,52 @@ public:
         if (!dialect_.wgsl) add("\n#define $" + call + " " + text + "\n");
     }
 
-    /// Declares a read-only buffer and lists it among the bindings.
+    /// Declares a resource and lists it among the bindings. `binding` has its name without the prefix; `@` in the text
+    /// stands for where it is bound.
+    void declare(ShaderBinding binding, const ByLanguage& text) {
+        const std::string& own = dialect_.hlsl ? text.hlsl : dialect_.wgsl ? text.wgsl : text.glsl;
+        add(replaced(own, "@", place_of(binding)) + ";\n");
+        binding.name.insert(0, prefix_);
+        shader_.bindings.push_back(std::move(binding));
+    }
+
+    /// The same of one with a type of its own: a texture or the like.
+    void declare_opaque(ShaderBinding binding, const ByLanguage& type) {
+        const std::string name = " $" + binding.name, highp = dialect_.es ? "highp " : "";
+        declare(std::move(binding), {.glsl = "@uniform " + highp + type.glsl + name,
+                                     .hlsl = type.hlsl + name + "@",
+                                     .wgsl = "@var" + name + " : " + type.wgsl});
+    }
+
+    /// The same of a storage buffer of any element type: `access` is readonly, writeonly or nothing (both).
+    void declare_storage(const std::string& name, const std::string& type, const std::string& access,
+                         ShaderSlot slot, std::uint32_t stride) {
+        const bool writable = access != "readonly", block = !dialect_.hlsl && !dialect_.wgsl;
+        const ShaderResource resource =
+            writable ? ShaderResource::writable_buffer : ShaderResource::storage_buffer;
+        declare({name + (block ? "_block" : ""), resource, slot, TexelFormat::none, stride},
+                {.glsl = "@" + access + (access.empty() ? "" : " ") + "buffer $" + name + "_block {\n    " +
+                         type + " $" + name + "[];\n}",
+                 .hlsl = (writable ? "RWStructuredBuffer<" : "StructuredBuffer<") + type + "> $" + name + "@",
+                 .wgsl = std::string("@var<storage, ") + (writable ? "read_write" : "read") + "> $" + name +
+                         " : array<" + type + ">"});
+    }
+
+    /// The same of a read-only buffer.
     void declare(const ShaderBuffer& buffer) {
         buffers_.push_back(buffer);
-        if (buffer.resource == ShaderResource::uniform_block) return declare_vectors(buffer);
         const std::string type = buffer.format == TexelFormat::rg32ui ? "uvec2" : "uint";
         const std::uint32_t stride = texel_bytes(buffer.format);
         if (buffer.resource == ShaderResource::storage_buffer)
             return declare_storage(buffer.name, type, "readonly", buffer.slot, stride);
+        if (buffer.resource == ShaderResource::uniform_block) {
+            // As vectors, since elements of arrays take 16 bytes there.
+            const auto vectors = static_cast<std::uint32_t>((buffer.bytes + 15) / 16);
+            const std::string name = "$" + buffer.name, count = std::to_string(vectors);
+            return declare_block(buffer.name + (dialect_.wgsl ? "" : "_block"), buffer.slot, false,
+                                 16 * vectors, "    uvec4 " + name + "[" + count + "];\n",
+                                 "@var<uniform> " + name + " : array<vec4u, " + count + ">");
+        }
         const bool texture = buffer.resource == ShaderResource::texture_2d,
                    untyped = buffer.resource == ShaderResource::byte_address;
         declare_opaque(
@@ -162,15 +200,25 @@ public:
              .wgsl = "texture_2d<u32>"});
     }
 
-    /// Declares a read-only resource. `binding` has its name without the prefix.
-    void declare_opaque(ShaderBinding binding, const OpaqueType& type) {
-        const std::string name = " $" + binding.name;
-        add((dialect_.hlsl ? type.hlsl + name + hlsl_register(binding.slot, 't')
-             : dialect_.wgsl
-                 ? layout("", binding.slot) + "var" + name + " : " + type.wgsl
-                 : layout("", binding.slot) + "uniform " + (dialect_.es ? "highp " : "") + type.glsl + name) +
-            ";\n");
-        bind(std::move(binding));
+    /// The same of constants that the CPU sets, each at the next multiple of 16 bytes: uniforms in OpenGL, one block
+    /// named after the first elsewhere.
+    void declare_constants(const std::vector<ShaderConstant>& constants, ShaderSlot slot, bool push) {
+        const bool loose = !dialect_.hlsl && !dialect_.vulkan && !dialect_.wgsl;
+        const std::string name = std::string(constants.front().name) + "_block";
+        std::string lines;
+        for (const ShaderConstant& constant : constants) {
+            const std::string own = constant.name, type = constant.type;
+            lines += "    " + type + (dialect_.wgsl ? " " : " $") + own + ";\n";
+            members_.push_back({"$" + own, "$" + name + "." + own});
+            const std::uint32_t bytes = type == "ivec2" ? 8 : 16;
+            if (loose)
+                declare({.name = own, .stride = bytes, .bytes = bytes},
+                        {.glsl = "uniform " + type + " $" + own});
+        }
+        if (!loose)
+            declare_block(name, slot, push, static_cast<std::uint32_t>(16 * constants.size()), lines,
+                          "struct $" + name + "_members {\n" + lines + "}\n@var<uniform> $" + name + " : $" +
+                              name + "_members");
     }
 
     /// Returns the expression that reads an element of a buffer that was declared: of a uvec2 buffer a uvec2, otherwise a
@@ -208,47 +256,6 @@ public:
                                : "texelFetch(" + texture + ", " + at + ", 0)";
     }
 
-    /// Declares constants that the CPU sets, each at the next multiple of 16 bytes: uniforms in OpenGL, one
-    /// block named after the first elsewhere.
-    void declare_constants(const std::vector<ShaderConstant>& constants, ShaderSlot slot, bool push) {
-        const bool block = dialect_.hlsl || dialect_.vulkan || dialect_.wgsl;
-        const std::string name = std::string(constants.front().name) + "_block";
-        std::string lines;
-        for (const ShaderConstant& constant : constants) {
-            const std::string own = constant.name,
-                              line = std::string(constant.type) + (dialect_.wgsl ? " " : " $") + own + ";";
-            if (block) {
-                lines += "    " + line + "\n";
-                members_.push_back({"$" + own, "$" + name + "." + own});
-                continue;
-            }
-            add("uniform " + line + "\n");
-            const std::uint32_t bytes = constant.type == std::string_view("ivec2") ? 8 : 16;
-            bind({.name = constant.name, .stride = bytes, .bytes = bytes});
-        }
-        if (!block) return;
-        const auto bytes = static_cast<std::uint32_t>(16 * constants.size());
-        add_block(name, lines, slot, push, bytes);
-    }
-
-    /// Declares a storage buffer of any element type: `access` is readonly, writeonly or nothing (both).
-    void declare_storage(const std::string& name, const std::string& type, std::string_view access,
-                         ShaderSlot slot, std::uint32_t stride) {
-        const bool writable = access != "readonly";
-        if (dialect_.wgsl)
-            add(layout("", slot) + "var<storage, " + (writable ? "read_write" : "read") + "> $" + name +
-                " : array<" + type + ">;\n");
-        else if (dialect_.hlsl)
-            add((writable ? "RWStructuredBuffer<" : "StructuredBuffer<") + type + "> $" + name +
-                hlsl_register(slot, writable ? 'u' : 't') + ";\n");
-        else
-            add(layout("std430", slot) + std::string(access) + (access.empty() ? "" : " ") + "buffer $" +
-                name + "_block {\n    " + type + " $" + name + "[];\n};\n");
-        bind({name + (dialect_.hlsl || dialect_.wgsl ? "" : "_block"),
-              writable ? ShaderResource::writable_buffer : ShaderResource::storage_buffer, slot,
-              TexelFormat::none, stride});
-    }
-
     /// Declares what the threads of a group share: a uint, or `count` of them. What is atomic is read and written by the
     /// functions below, and by GLSL's.
     void declare_shared(const std::string& name, int count, bool atomic) {
@@ -282,64 +289,45 @@ public:
     }
 
 private:
-    /// A buffer in a block: as vectors, since elements of arrays take 16 bytes there.
-    void declare_vectors(const ShaderBuffer& buffer) {
-        const auto vectors = static_cast<std::uint32_t>((buffer.bytes + 15) / 16);
-        const std::string name = "$" + buffer.name, count = std::to_string(vectors);
-        const std::uint32_t bytes = 16 * vectors;
-        if (!dialect_.wgsl)
-            return add_block(buffer.name + "_block", "    uvec4 " + name + "[" + count + "];\n", buffer.slot,
-                             false, bytes);
-        add(layout("", buffer.slot) + "var<uniform> " + name + " : array<vec4u, " + count + ">;\n");
-        bind({buffer.name, ShaderResource::uniform_block, buffer.slot, TexelFormat::none, bytes, bytes});
+    void declare_block(const std::string& name, ShaderSlot slot, bool push, std::uint32_t bytes,
+                       const std::string& lines, const std::string& wgsl) {
+        declare({name, push ? ShaderResource::push_constants : ShaderResource::uniform_block, slot,
+                 TexelFormat::none, bytes, bytes},
+                {.glsl = "@uniform $" + name + " {\n" + lines + "}",
+                 .hlsl = "cbuffer $" + name + "@ {\n" + lines + "}",
+                 .wgsl = wgsl});
     }
 
-    std::string layout(const std::string& packing, ShaderSlot slot) const {
-        if (dialect_.wgsl)
-            return "@group(" + std::to_string(slot.set) + ") @binding(" + std::to_string(slot.binding) + ") ";
-        std::string inside = packing;
-        const auto item = [&](const char* key, int value) {
-            inside += (inside.empty() ? "" : ", ") + std::string(key) + " = " + std::to_string(value);
-        };
-        if (dialect_.spaces) item("set", slot.set);
-        if (dialect_.storage_buffers) item("binding", slot.binding);
-        return inside.empty() ? "" : "layout(" + inside + ") ";
-    }
-
-    std::string hlsl_register(ShaderSlot slot, char kind) const {
-        return " : register(" + std::string(1, kind) + std::to_string(slot.binding) +
-               (dialect_.spaces ? ", space" + std::to_string(slot.set) : "") + ")";
-    }
-
-    /// Lists a resource that add() declared; its name is given without the prefix.
-    void bind(ShaderBinding binding) {
-        binding.name.insert(0, prefix_);
-        shader_.bindings.push_back(std::move(binding));
-    }
-
-    void add_block(const std::string& name, const std::string& lines, ShaderSlot slot, bool push,
-                   std::uint32_t bytes) {
-        if (dialect_.wgsl)
-            add("struct $" + name + "_members {\n" + lines + "}\n" + layout("", slot) + "var<uniform> $" +
-                name + " : $" + name + "_members;\n");
-        else
-            add((push            ? "layout(push_constant) uniform $" + name
-                 : dialect_.hlsl ? "cbuffer $" + name + hlsl_register(slot, 'b')
-                                 : layout("std140", slot) + "uniform $" + name) +
-                " {\n" + lines + "};\n");
-        bind({name, push ? ShaderResource::push_constants : ShaderResource::uniform_block, slot,
-              TexelFormat::none, bytes, bytes});
+    /// Where a resource is bound, in the words of its declaration.
+    std::string place_of(const ShaderBinding& binding) const {
+        const std::string number = std::to_string(binding.slot.binding),
+                          set = std::to_string(binding.slot.set);
+        if (dialect_.wgsl) return "@group(" + set + ") @binding(" + number + ") ";
+        if (dialect_.hlsl)
+            return std::string(" : register(") + row_of(binding) + number +
+                   (dialect_.spaces ? ", space" + set : "") + ")";
+        if (binding.resource == ShaderResource::push_constants) return "layout(push_constant) ";
+        std::string inside = binding.resource == ShaderResource::uniform_block ? "std140, "
+                             : binding.resource == ShaderResource::storage_buffer ||
+                                     binding.resource == ShaderResource::writable_buffer
+                                 ? "std430, "
+                                 : "";
+        if (dialect_.spaces) inside += "set = " + set + ", ";
+        if (dialect_.storage_buffers) inside += "binding = " + number + ", ";
+        return inside.empty() ? "" : "layout(" + inside.substr(0, inside.size() - 2) + ") ";
     }
 
     /// Resources whose bindings are counted together have one letter: those of HLSL's registers, and in OpenGL textures
-    /// apart from buffers; Vulkan has one row of bindings a set, WebGPU a group. '-' has no binding, and a text without
-    /// bindings has none to clash.
+    /// apart from buffers; Vulkan has one row of bindings a set, WebGPU a group. '-' has no binding.
+    char row_of(const ShaderBinding& binding) const {
+        return (dialect_.hlsl                      ? "-b-ttttu"
+                : dialect_.vulkan || dialect_.wgsl ? "-b-bbbbb"
+                                                   : "-b-s-tts")[static_cast<std::size_t>(binding.resource)];
+    }
+
+    /// A text without bindings has none to clash.
     bool same_place(const ShaderBinding& a, const ShaderBinding& b) const {
-        const char* const rows = dialect_.hlsl                      ? "-b-ttttu"
-                                 : dialect_.vulkan || dialect_.wgsl ? "-b-bbbbb"
-                                                                    : "-b-s-tts";
-        const char row = rows[static_cast<std::size_t>(a.resource)];
-        return dialect_.storage_buffers && row != '-' && row == rows[static_cast<std::size_t>(b.resource)] &&
+        return dialect_.storage_buffers && row_of(a) != '-' && row_of(a) == row_of(b) &&
                a.slot.binding == b.slot.binding && a.slot.set == b.slot.set;
     }
 
