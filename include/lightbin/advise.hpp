@@ -176,21 +176,16 @@ struct WeighedGrid {
         for_each_drawn([&](std::size_t tile, std::size_t from, float low, float high, double) {
             const float middle = 0.5f * std::clamp(lowest[tile], -FLT_MAX, FLT_MAX) +
                                  0.5f * std::clamp(highest[tile], -FLT_MAX, FLT_MAX);
-            // What is drawn lies from low to end, and from begin to high.
-            float end = read(of_fine.gap_min, from, infinity),
-                  begin = read(of_fine.gap_max, from, -infinity);
-            if (!(end < begin)) {
-                end = high;
-                begin = low;
-            }
-            const float nearer = begin <= middle ? high
-                                 : low <= middle ? end
-                                                 : -infinity,
-                        farther = middle <= end    ? low
-                                  : middle <= high ? begin
-                                                   : infinity;
-            gap_begin[tile] = (std::max)(gap_begin[tile], (std::min)(nearer, middle));
-            gap_end[tile] = (std::min)(gap_end[tile], (std::max)(farther, middle));
+            const auto draw = [&](float nearest, float farthest) {
+                if (nearest <= middle)
+                    gap_begin[tile] = (std::max)(gap_begin[tile], (std::min)(farthest, middle));
+                if (farthest >= middle)
+                    gap_end[tile] = (std::min)(gap_end[tile], (std::max)(nearest, middle));
+            };
+            const float end = read(of_fine.gap_min, from, infinity),
+                        begin = read(of_fine.gap_max, from, -infinity);
+            draw(low, end < begin ? end : high);
+            draw(end < begin ? begin : low, high);
         });
         const auto merged = [](std::span<const float> given, const std::vector<float>& side) {
             return given.empty() ? given : std::span<const float>(side);

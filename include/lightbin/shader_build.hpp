@@ -19,6 +19,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
@@ -313,20 +314,6 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {})
     return writer.finish();
 }
 
-namespace detail {
-
-/// Light `id` in view space: of a spot the least sphere.
-template <class Light, class ToLight>
-Sphere footprints_sphere(const Lights<Light, ToLight>& lights, const FootprintArrays& footprints,
-                         std::uint32_t id) {
-    if constexpr (Lights<Light, ToLight>::spots)
-        return lights.view_sphere(lights.array[id]);
-    else
-        return load_sphere(footprints.spheres + id);
-}
-
-}  // namespace detail
-
 /// Returns the footprints of the lights in view, in ascending order of id: the input of build_shader().
 /// `lights` as for Binner::bin(). Errors as there.
 template <class LightRange>
@@ -339,7 +326,11 @@ Result<std::vector<ShaderFootprint>> shader_footprints(const View& view, const L
     const detail::Camera& camera = detail::camera_of(view);
     std::vector<ShaderFootprint> out;
     for (std::uint32_t i = 0; i < footprints.visible(); ++i) {
-        const Sphere sphere = detail::footprints_sphere(source, in, in.ids[i]);
+        Sphere sphere;
+        if constexpr (std::remove_cvref_t<decltype(source)>::spots)
+            sphere = source.view_sphere(source.array[in.ids[i]]);  // the least one
+        else
+            sphere = detail::load_sphere(in.spheres + in.ids[i]);
         const detail::TestedLight light(camera, sphere);
         out.push_back({in.ids[i], in.x0[i], in.y0[i], in.x1[i], in.y1[i], light.reach2, light.x, light.y,
                        light.z, sphere.radius});
