@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Is advise() right? For each scene every plan is measured (build time on rotating light sets, evaluations of
-// the first one counted over the drawn pixels), and what the chosen one costs is held against the cheapest: with
-// Z bounds; without any against those that need none; and of advise_slices() against those with slices, too. They see
-// the first light set alone, advise_slices() the depth of one pixel in 64.
+// the first one counted over the drawn pixels), and what the chosen one costs is held against the cheapest with the same
+// ids: with Z bounds; without any against those that need none, told how much of the picture is drawn; and of
+// advise_slices() against those with slices, too. They see the first light set alone, advise_slices() the depth of one
+// pixel in 64.
 //
 //   advise_plans.csv   a row a plan that was weighed: build time and evaluations by advise(), and by the sweep
 //   advise.csv         a row for each scene and cost of an evaluation: the choice, the best plan, and the regret, their
@@ -49,7 +50,7 @@ struct Candidate {
     double total_us(double evaluation_ns) const { return build_us + evaluations * evaluation_ns * 1e-3; }
 };
 
-/// Every method, id width and tile size; those with slices have wide ids.
+/// Every method and tile size: with narrow ids, as advise() is asked, and as advise_slices() is, with wide ones.
 template <Isa isa> std::vector<Candidate> candidates() {
     std::vector<Candidate> all;
     const auto add = [&]<lightbin::Options options> {
@@ -73,11 +74,12 @@ template <Isa isa> std::vector<Candidate> candidates() {
                                      .isa = isa};
         };
         add.template operator()<with(IdWidth::u16, Slicing::none)>();
-        add.template operator()<with(IdWidth::u32, Slicing::none)>();
         if constexpr (method.depth_test == DepthTest::none || method.depth_test == DepthTest::box)
             add.template operator()<with(IdWidth::u32, Slicing::clusters)>();
-        if constexpr (method.depth_test == DepthTest::none)
+        if constexpr (method.depth_test == DepthTest::none) {
+            add.template operator()<with(IdWidth::u32, Slicing::none)>();
             add.template operator()<with(IdWidth::u32, Slicing::z_bins)>();
+        }
     };
     [&]<std::size_t... method>(std::index_sequence<method...>) {
         (add_method.template operator()<ladder[method]>(), ...);
@@ -123,7 +125,7 @@ void time(std::vector<Candidate>& candidates, const Views& views, std::span<cons
             }
             build();  // finds no memory
             const double time = std::min({own_seconds(build), own_seconds(build), own_seconds(build)});
-            together[i] = time < 20e-6 ? 8 : 1;
+            together[i] = static_cast<int>(std::clamp(100e-6 / time, 1.0, 64.0));
         }
     for (std::size_t i = 0; i < candidates.size(); ++i)
         if (candidates[i].plan.tiled) candidates[i].build_us = 1e6 * median(times[i]);
@@ -146,13 +148,13 @@ IdWidth ids_of(Known known) {
     return known == Known::samples ? IdWidth::u32 : IdWidth::u16;
 }
 
-/// Whether a plan is within what is known.
+/// Whether a plan is within what is asked.
 bool allowed(Known known, const Candidate& candidate) {
+    if (candidate.ids != ids_of(known)) return false;
     if (known == Known::bounds) return candidate.plan.slicing == Slicing::none;
     const bool needs_bounds =
         candidate.plan.depth_test != DepthTest::none && candidate.plan.slicing != Slicing::clusters;
-    if (known == Known::samples) return !needs_bounds && candidate.ids == IdWidth::u32;
-    return !needs_bounds && candidate.plan.slicing == Slicing::none;
+    return !needs_bounds && (known == Known::samples || candidate.plan.slicing == Slicing::none);
 }
 
 /// The depth of the middle pixel of each 8 x 8.
@@ -175,7 +177,7 @@ struct Report {
 template <Isa isa>
 lightbin::Advice ask(const TiledView& view, const Picture& picture, const Lights& lights, double cost,
                      Known known) {
-    const lightbin::Costs costs = {.evaluation_ns = cost};
+    lightbin::Costs costs = {.evaluation_ns = cost};
     if (known == Known::samples) {
         const std::vector<float> samples = sampled(picture);
         return *lightbin::advise_slices<lightbin::Options{.isa = isa}, ThreadClock>(
@@ -183,6 +185,8 @@ lightbin::Advice ask(const TiledView& view, const Picture& picture, const Lights
             {.depths = samples, .size = {picture.size.width / 8, picture.size.height / 8}}, costs);
     }
     const lightbin::ZBounds bounds = known == Known::bounds ? view.bounds() : lightbin::ZBounds{};
+    if (known == Known::nothing)
+        costs.evaluation_ns *= static_cast<double>(view.all_drawn) / (1.0 * screen.width * screen.height);
     return *lightbin::advise<lightbin::Options{.ids = IdWidth::u16, .isa = isa}, ThreadClock>(
         view.view, lights, costs, bounds);
 }
