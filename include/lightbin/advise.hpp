@@ -326,7 +326,8 @@ decltype(auto) with_sliced_options(const Plan& plan, Visit&& visit) {
 /// Allocates; keeps nothing.
 ///
 /// lights  as for Binner::bin
-/// bounds  of the view's own tiles; larger tiles' bounds are merged from them. None: no depth test is weighed
+/// bounds  of the view's own tiles; larger tiles' bounds are merged from them. None: no depth test is weighed, and every
+///         pixel is taken to have something to light; where a third of them is sky, make Costs::evaluation_ns two thirds
 /// base    the options that a plan leaves to you: ids, isa
 /// Clock   as those of <chrono>: where other work keeps the cores busy, better one of this thread's own time
 template <Options base = Options{}, class Clock = std::chrono::steady_clock, class LightRange>
