@@ -86,20 +86,16 @@ void encode_ids(const LightGrid<Id>& grid, const ListFormat& format, std::byte* 
 }
 
 template <class Id> void encode_bits(const LightGrid<Id>& grid, std::size_t bytes_a_tile, std::byte* out) {
-    // Cleared some tiles at a time, so that they are still at hand when their bits are set.
-    constexpr std::size_t at_hand = 1024;
-    const std::span<const ListRange> ranges = grid.ranges();
-    const std::size_t some = at_hand / bytes_a_tile + 1;
-    for (std::size_t tile = 0; tile < ranges.size(); ++tile, out += bytes_a_tile) {
-        if (tile % some == 0)
-            std::memset(out, 0, bytes_a_tile * (std::min)(some, ranges.size() - tile));
-        for (const Id id : grid.ids().subspan(ranges[tile].offset, ranges[tile].count)) {
+    std::fill_n(out, bytes_a_tile * grid.ranges().size(), std::byte{0});
+    for (const ListRange range : grid.ranges()) {
+        for (const Id id : grid.ids().subspan(range.offset, range.count)) {
             std::byte* const place = out + id / 32u * 4;
             std::uint32_t word = 0;
             std::memcpy(&word, place, 4);
             word |= std::uint32_t{1} << id % 32u;
             std::memcpy(place, &word, 4);
         }
+        out += bytes_a_tile;
     }
 }
 
