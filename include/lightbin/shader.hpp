@@ -91,21 +91,18 @@ inline ShaderGrid shader_grid(const View& view, int corner_x = 0, int corner_y =
 namespace detail {
 
 inline bool is_prefix(std::string_view prefix) {
-    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-    char before = '_';
-    if (prefix.empty() || !letter(prefix.front()) || prefix.starts_with("gl_")) return false;
-    for (const char c : prefix) {
-        if (!letter(c) && !(c >= '0' && c <= '9') && (c != '_' || before == '_')) return false;
-        before = c;
-    }
-    return true;
+    constexpr std::string_view signs = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+    return !prefix.empty() && prefix.find_first_not_of(signs) == prefix.npos &&
+           prefix.find_first_of("0123456789_") != 0 && prefix.find("__") == prefix.npos &&
+           !prefix.starts_with("gl_");
 }
 
 /// What holds for every text: the name prefix, the slots and the constants.
-inline std::optional<Error> refuse_names(const Dialect& dialect, std::string_view prefix,
-                                         std::initializer_list<ShaderSlot> slots, bool push_constants) {
-    if (!is_prefix(prefix)) return Error{ErrorCode::not_a_prefix};
-    if (push_constants && !dialect.vulkan) return Error{ErrorCode::no_push_constants};
+template <class ShaderOptions>
+std::optional<Error> refuse_names(const ShaderOptions& options, std::initializer_list<ShaderSlot> slots) {
+    const Dialect dialect = detail::dialect(options.language);
+    if (!is_prefix(options.prefix)) return Error{ErrorCode::not_a_prefix};
+    if (options.push_constants && !dialect.vulkan) return Error{ErrorCode::no_push_constants};
     for (const ShaderSlot& slot : slots)
         if (slot.set != 0 && !dialect.spaces)
             return Error{ErrorCode::no_sets, static_cast<std::uint64_t>(slot.set)};
@@ -146,10 +143,8 @@ inline std::vector<ShaderBuffer> list_buffers(const ShaderOptions& options) {
 
 inline std::optional<Error> refuse(const ShaderOptions& options) {
     const Dialect dialect = detail::dialect(options.language);
-    if (auto error = refuse_names(
-            dialect, options.prefix,
-            {options.tiles, options.lists, options.grid, options.slices, options.bins, options.view},
-            options.push_constants))
+    if (auto error = refuse_names(options, {options.tiles, options.lists, options.grid, options.slices,
+                                            options.bins, options.view}))
         return error;
     if (options.storage == ListStorage::storage_buffer && !dialect.storage_buffers)
         return Error{ErrorCode::no_storage_buffers};

@@ -153,9 +153,7 @@ inline void add_compute_main(ShaderWriter& writer, unsigned threads) {
 
 inline std::optional<Error> refuse(const ReduceShaderOptions& options) {
     const Dialect dialect = detail::dialect(options.language);
-    if (auto error = refuse_names(dialect, options.prefix, {options.depth, options.z_bounds, options.grid},
-                                  options.push_constants))
-        return error;
+    if (auto error = refuse_names(options, {options.depth, options.z_bounds, options.grid})) return error;
     if (options.stage == ShaderStage::compute && !dialect.storage_buffers)
         return Error{ErrorCode::no_storage_buffers};
     if (options.samples < 1 || options.samples > 8)
@@ -166,13 +164,10 @@ inline std::optional<Error> refuse(const ReduceShaderOptions& options) {
 }
 
 inline std::optional<Error> refuse(const BuildShaderOptions& options) {
-    const Dialect dialect = detail::dialect(options.language);
-    if (auto error = refuse_names(dialect, options.prefix,
-                                  {options.footprints, options.z_bounds, options.edges, options.tiles,
-                                   options.lists, options.total, options.grid},
-                                  options.push_constants))
+    if (auto error = refuse_names(options, {options.footprints, options.z_bounds, options.edges,
+                                            options.tiles, options.lists, options.total, options.grid}))
         return error;
-    if (!dialect.storage_buffers) return Error{ErrorCode::no_storage_buffers};
+    if (!detail::dialect(options.language).storage_buffers) return Error{ErrorCode::no_storage_buffers};
     if (options.depth_test == DepthTest::split_box) return Error{ErrorCode::no_split_box_shader};
     if (options.slicing == Slicing::z_bins ||
         (options.slicing == Slicing::clusters && options.depth_test == DepthTest::interval))

@@ -84,7 +84,8 @@ inline std::string translate(std::string_view glsl, bool hlsl, bool es) {
     return text;
 }
 
-/// A name of the text that WGSL reads in another way: a constant is a member of its block.
+/// A name of the text that WGSL has in another way: a constant is a member of its block, what is handed over to be written
+/// is where a pointer points.
 struct WgslName {
     std::string glsl, wgsl;
 };
@@ -92,7 +93,8 @@ struct WgslName {
 /// Goes through a text once, sign by sign and word by word; text() is what came out.
 class WgslTranslation {
 public:
-    WgslTranslation(std::string_view glsl, const std::vector<WgslName>& names) : glsl_(glsl), names_(names) {
+    WgslTranslation(std::string_view glsl, const std::vector<WgslName>& constants)
+        : glsl_(glsl), names_(constants), constants_(constants.size()) {
         while (at_ < glsl_.size())
             if (const std::string_view word = word_at(glsl_, at_); word.empty())
                 take_sign(glsl_[at_++]);
@@ -113,8 +115,7 @@ private:
         if (sign == '{') ++depth_;
         if (sign == '}') in_struct_ = --depth_ > 0 && in_struct_;
         // A pointer is handed on as it is.
-        if (sign == '&' && is_pointer(word_at(glsl_, at_))) {
-            const std::string_view word = word_at(glsl_, at_);
+        if (const std::string_view word = word_at(glsl_, at_); sign == '&' && renamed(word) != word) {
             wgsl_ += word;
             at_ += word.size();
             return;
@@ -140,10 +141,8 @@ private:
         if ((row.is_type || word == "void" || word.starts_with('$')) && !name.empty()) {
             at_ += 1 + name.size();
             declare(word == "void" ? "" : row.wgsl, name);
-        } else if (is_pointer(word) && !wgsl_.ends_with('.')) {
-            wgsl_ += "(*" + std::string(word) + ")";
         } else {
-            wgsl_ += renamed(row.wgsl);
+            wgsl_ += wgsl_.ends_with('.') ? row.wgsl : renamed(row.wgsl);
         }
     }
 
@@ -153,22 +152,16 @@ private:
             wgsl_ += std::string(name) + " : " + what;
         } else if (in_parameters_) {
             wgsl_ += std::string(name) + " : " + (by_pointer_ ? "ptr<function, " + what + ">" : what);
-            if (by_pointer_) pointers_.push_back(name);
+            if (by_pointer_) names_.push_back({std::string(name), "(*" + std::string(name) + ")"});
             by_pointer_ = false;
         } else if (depth_ == 0) {
             wgsl_ += "fn " + std::string(name);
             result_ = what;
             in_parameters_ = true;
-            pointers_.clear();
+            names_.resize(constants_);
         } else {
             wgsl_ += "var " + std::string(name) + " : " + what;
         }
-    }
-
-    bool is_pointer(std::string_view word) const {
-        for (const std::string_view pointer : pointers_)
-            if (word == pointer) return true;
-        return false;
     }
 
     std::string_view renamed(std::string_view word) const {
@@ -178,10 +171,9 @@ private:
     }
 
     std::string_view glsl_;
-    const std::vector<WgslName>& names_;
+    std::vector<WgslName> names_;  // the constants and the function's inout parameters
     std::string wgsl_, result_;
-    std::vector<std::string_view> pointers_;  // the inout parameters of the function
-    std::size_t at_ = 0;
+    std::size_t constants_, at_ = 0;
     int depth_ = 0;
     bool in_struct_ = false, in_parameters_ = false, by_pointer_ = false;
 };
