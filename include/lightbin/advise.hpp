@@ -92,6 +92,20 @@ private:
     std::vector<Plan> plans_;
 };
 
+/// The view depths of what is lit, at points evenly spread over the viewport: of the frame before, or of a few that
+/// tell what the scene is like.
+struct DepthSamples {
+    /// Row by row from the view's window origin. Where one is NaN or infinite there is nothing to light.
+    std::span<const float> depths;
+    Extent size;  ///< columns and rows, such as those of the depth buffer of an eighth of the size
+};
+
+/// The slices that are weighed.
+struct WeighedSlices {
+    const Slices& clusters;  ///< some dozens
+    const Slices& z_bins;    ///< some hundreds
+};
+
 namespace detail {
 
 /// What is weighed. Silhouettes beside a depth test were the cheapest in no scene that was measured with AVX-512, and
@@ -138,42 +152,49 @@ decltype(auto) with_options_from(const Plan& plan, Visit& visit) {
 template <const auto& table, Options base, std::size_t... i>
 auto weighed_binners(std::index_sequence<i...>) -> std::tuple<Binner<weighed_options<table, base, i>>...>;
 
+/// The bound of a tile, or where there is none, an endless one.
+inline float bound(std::span<const float> side, std::size_t tile, float endless) {
+    return side.empty() || std::isnan(side[tile]) ? endless : side[tile];
+}
+
+/// Calls visit(x, y, tile, low, high) for the tiles with something to light, as far as the bounds tell: a tile's first
+/// pixel and its depths.
+template <class Visit> void for_each_drawn(const View& view, const ZBounds& bounds, Visit visit) {
+    const auto [width, height] = view.viewport();
+    const int size = view.tile_size();
+    std::size_t tile = 0;
+    for (int y = 0; y < height; y += size)
+        for (int x = 0; x < width; x += size, ++tile) {
+            const float low = bound(bounds.min, tile, -infinity), high = bound(bounds.max, tile, infinity);
+            if (!(low > high)) visit(x, y, tile, low, high);
+        }
+}
+
 /// A grid that is weighed: the view's own, or one whose tiles are made of whole ones of the view's.
 struct WeighedGrid {
     View view;
-    ZBounds bounds;              ///< the caller's, or those below as far as the caller has them
-    std::vector<double> pixels;  ///< by tile: those with something to light, as far as the bounds tell
+    ZBounds bounds;  ///< the caller's, or those below as far as the caller has them
     std::vector<float> lowest, highest, gap_begin, gap_end;
 
     /// What lies before or behind a fine tile's gap counts as drawn all over, so the gaps around the middle of the
     /// depths are at most as wide as reduce_depth() would find.
     WeighedGrid(const View& fine, const ZBounds& of_fine, int tile_size)
-        : view(*fine.with_tile_size(tile_size)), bounds(of_fine), pixels(view.tile_count()),
-          lowest(view.tile_count(), infinity), highest(view.tile_count(), -infinity), gap_begin(highest),
-          gap_end(lowest) {
-        const auto read = [](std::span<const float> side, std::size_t tile, float endless) {
-            return side.empty() || std::isnan(side[tile]) ? endless : side[tile];
+        : view(*fine.with_tile_size(tile_size)), bounds(of_fine) {
+        if (tile_size == fine.tile_size()) return;
+        lowest.assign(view.tile_count(), infinity);
+        highest.assign(view.tile_count(), -infinity);
+        gap_begin = highest;
+        gap_end = lowest;
+        const auto tile_at = [&](int x, int y) {
+            return static_cast<std::size_t>(y / tile_size * view.tiles_x() + x / tile_size);
         };
-        const auto for_each_drawn = [&](auto merge) {
-            const auto [width, height] = view.viewport();
-            const int size = fine.tile_size();
-            std::size_t from = 0;
-            for (int y = 0; y < height; y += size)
-                for (int x = 0; x < width; x += size, ++from) {
-                    const float low = read(of_fine.min, from, -infinity),
-                                high = read(of_fine.max, from, infinity);
-                    const int tile = y / tile_size * view.tiles_x() + x / tile_size;
-                    const double area = 1.0 * (std::min)(size, width - x) * (std::min)(size, height - y);
-                    if (!(low > high)) merge(static_cast<std::size_t>(tile), from, low, high, area);
-                }
-        };
-        for_each_drawn([&](std::size_t tile, std::size_t, float low, float high, double area) {
-            pixels[tile] += area;
+        for_each_drawn(fine, of_fine, [&](int x, int y, std::size_t, float low, float high) {
+            const std::size_t tile = tile_at(x, y);
             lowest[tile] = (std::min)(lowest[tile], low);
             highest[tile] = (std::max)(highest[tile], high);
         });
-        if (tile_size == fine.tile_size()) return;
-        for_each_drawn([&](std::size_t tile, std::size_t from, float low, float high, double) {
+        for_each_drawn(fine, of_fine, [&](int x, int y, std::size_t from, float low, float high) {
+            const std::size_t tile = tile_at(x, y);
             const float middle = 0.5f * std::clamp(lowest[tile], -FLT_MAX, FLT_MAX) +
                                  0.5f * std::clamp(highest[tile], -FLT_MAX, FLT_MAX);
             const auto draw = [&](float nearest, float farthest) {
@@ -182,8 +203,8 @@ struct WeighedGrid {
                 if (farthest >= middle)
                     gap_end[tile] = (std::min)(gap_end[tile], (std::max)(nearest, middle));
             };
-            const float end = read(of_fine.gap_min, from, infinity),
-                        begin = read(of_fine.gap_max, from, -infinity);
+            const float end = bound(of_fine.gap_min, from, infinity),
+                        begin = bound(of_fine.gap_max, from, -infinity);
             draw(low, end < begin ? end : high);
             draw(end < begin ? begin : low, high);
         });
@@ -220,13 +241,14 @@ inline std::vector<WeighedGrid> weighed_grids(const View& view, const ZBounds& b
 
 /// Weighs each of a table's options on each of the grids, by advise()'s turns.
 ///
-/// pixels       with something to light
-/// inputs       inputs.operator()<options>(grid) returns what a Binner needs beside the lights
-/// evaluations  evaluations.operator()<options>(grid, built) returns what the pixels evaluate of a light grid
-template <const auto& table, Options base, class Clock, class LightRange, class Inputs, class Evaluations>
-Result<Advice> weigh(const std::vector<WeighedGrid>& grids, const LightRange& lights, const Costs& costs,
-                     double pixels, Inputs inputs, Evaluations evaluations) {
+/// slices        null where no options of the table need them
+/// for_each_lit  for_each_lit(visit) calls visit(x, y, depth, pixels) for what is lit: a pixel, how many it stands for, and
+///               with slices their depth
+template <const auto& table, Options base, class Clock, class LightRange, class ForEachLit>
+Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlices* slices,
+                     const LightRange& lights, const Costs& costs, ForEachLit for_each_lit) {
     using Id = typename Binner<base>::Id;
+    const std::vector<WeighedGrid> grids = weighed_grids(view, bounds);
     decltype(weighed_binners<table, base>(std::make_index_sequence<std::size(table)>())) binners;
     const auto build = [&](Plan& plan, const auto& seen, bool first) -> std::optional<Error> {
         const WeighedGrid* grid = grids.data();
@@ -236,24 +258,40 @@ Result<Advice> weigh(const std::vector<WeighedGrid>& grids, const LightRange& li
             Binner<options>& binner = std::get<Binner<options>>(binners);
             constexpr bool with_bounds =
                 options.depth_test != DepthTest::none && options.slicing == Slicing::none;
+            const Slices* const by = options.slicing == Slicing::none       ? nullptr
+                                     : options.slicing == Slicing::clusters ? &slices->clusters
+                                                                            : &slices->z_bins;
+            const auto inputs = [&] {
+                if constexpr (options.slicing == Slicing::none)
+                    return inputs_for<options>(grid->bounds);
+                else
+                    return inputs_for<options>({}, *by);
+            };
             const auto start = Clock::now();
-            const Result<LightGrid<Id>> built =
-                binner.bin(grid->view, seen, inputs.template operator()<options>(*grid));
+            const Result<LightGrid<Id>> built = binner.bin(grid->view, seen, inputs());
             const std::chrono::duration<double, std::nano> time = Clock::now() - start;
             if (!built) return built.error();
             plan.build_ns = (std::min)(plan.build_ns, time.count() + (with_bounds ? costs.z_bounds_ns : 0));
             if (!first) return std::nullopt;
             plan.entries = built->ids().size();
-            plan.evaluations = evaluations.template operator()<options>(*grid, *built);
+            for_each_lit([&](int x, int y, float depth, double pixels) {
+                const int slice = by != nullptr ? by->slice_at(depth) : 0,
+                          layer = options.slicing == Slicing::clusters ? slice : 0;
+                auto met = built->lights_in(x / plan.tile_size, y / plan.tile_size, layer);
+                if constexpr (options.slicing == Slicing::z_bins)
+                    met = lights_of_bin(met, built->ranks().bins[static_cast<std::size_t>(slice)]);
+                plan.evaluations += pixels * static_cast<double>(met.size());
+            });
             return std::nullopt;
         };
         return with_options_from<table, base, 0>(plan, with);
     };
 
-    const View& view = grids[0].view;
     const auto& source = as_lights(lights);
-    std::vector<Plan> plans = {
-        {.tiled = false, .evaluations = pixels * static_cast<double>(source.array.size())}};
+    std::vector<Plan> plans = {{.tiled = false}};
+    for_each_lit([&](int, int, float, double pixels) {
+        plans[0].evaluations += pixels * static_cast<double>(source.array.size());
+    });
     for (const WeighedGrid& grid : grids)
         for (const Options& options : table) {
             if (!allowed(options, grid.bounds)) continue;
@@ -337,65 +375,14 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
         if (!side.empty() && side.size() < view.tile_count())
             return Error{ErrorCode::z_bounds_too_small, view.tile_count(), side.size()};
 
-    const std::vector<detail::WeighedGrid> grids = detail::weighed_grids(view, bounds);
-    double pixels = 0;
-    for (const double of_tile : grids[0].pixels)
-        pixels += of_tile;
-    return detail::weigh<detail::weighed, base, Clock>(
-        grids, lights, costs, pixels,
-        []<Options options>(const detail::WeighedGrid& grid) { return inputs_for<options>(grid.bounds); },
-        []<Options options>(const detail::WeighedGrid& grid, const auto& built) {
-            double sum = 0;
-            for (std::size_t tile = 0; tile < grid.pixels.size(); ++tile)
-                sum += grid.pixels[tile] * built.ranges()[tile].count;
-            return sum;
+    const Extent window = view.viewport();
+    const int size = view.tile_size();
+    return detail::weigh<detail::weighed, base, Clock>(view, bounds, nullptr, lights, costs, [&](auto visit) {
+        detail::for_each_drawn(view, bounds, [&](int x, int y, std::size_t, float low, float) {
+            visit(x, y, low, 1.0 * (std::min)(size, window.width - x) * (std::min)(size, window.height - y));
         });
+    });
 }
-
-/// The view depths of what is lit, at points evenly spread over the viewport: of the frame before, or of a few that
-/// tell what the scene is like.
-struct DepthSamples {
-    /// Row by row from the view's window origin. Where one is NaN or infinite there is nothing to light.
-    std::span<const float> depths;
-    Extent size;  ///< columns and rows, such as those of the depth buffer of an eighth of the size
-};
-
-/// The slices that are weighed.
-struct WeighedSlices {
-    const Slices& clusters;  ///< some dozens
-    const Slices& z_bins;    ///< some hundreds
-};
-
-namespace detail {
-
-/// How many lights what lies at a depth evaluates of a tile.
-template <Slicing slicing, class Id>
-std::size_t evaluated(const LightGrid<Id>& grid, int x, int y, const WeighedSlices& slices, float depth) {
-    if constexpr (slicing == Slicing::none) {
-        return grid.lights_in(x, y).size();
-    } else if constexpr (slicing == Slicing::clusters) {
-        return grid.lights_in(x, y, slices.clusters.slice_at(depth)).size();
-    } else {
-        const BinRange bin = grid.ranks().bins[static_cast<std::size_t>(slices.z_bins.slice_at(depth))];
-        return lights_of_bin(grid.lights_in(x, y), bin).size();
-    }
-}
-
-/// Calls visit(x, y, depth) for the samples with something to light, by the pixel in which they are.
-template <class Visit> void for_each_sample(const View& view, const DepthSamples& samples, Visit visit) {
-    const auto pixel = [](int i, int count, int pixels) {
-        return static_cast<int>((2 * std::int64_t{i} + 1) * pixels / (2 * std::int64_t{count}));
-    };
-    const auto [width, height] = view.viewport();
-    const auto [columns, rows] = samples.size;
-    if (view.tile_count() == 0) return;
-    const float* depth = samples.depths.data();
-    for (int y = 0; y < rows; ++y)
-        for (int x = 0; x < columns; ++x, ++depth)
-            if (std::isfinite(*depth)) visit(pixel(x, columns, width), pixel(y, rows, height), *depth);
-}
-
-}  // namespace detail
 
 /// The same where there is no depth pre-pass: no tiling; tiles with rectangles or silhouettes; with rectangles and
 /// z-bins; clusters with rectangles, `none` and `box`, and with silhouettes and `box`; all on the same tile sizes. Each
@@ -408,32 +395,26 @@ template <class Visit> void for_each_sample(const View& view, const DepthSamples
 template <Options base = Options{}, class Clock = std::chrono::steady_clock, class LightRange>
 Result<Advice> advise_slices(const View& view, const LightRange& lights, const WeighedSlices& slices,
                              const DepthSamples& samples, const Costs& costs = {}) {
-    const auto [columns, rows] = samples.size;
-    const std::uint64_t count = columns > 0 && rows > 0 ? std::uint64_t{1} * static_cast<unsigned>(columns) *
-                                                              static_cast<unsigned>(rows)
-                                                        : 0;
+    const Extent window = view.viewport(), grid = samples.size;
+    const auto side = [](int n) { return static_cast<std::uint64_t>((std::max)(n, 0)); };
+    const std::uint64_t count = side(grid.width) * side(grid.height);
     if (samples.depths.size() < count)
         return Error{ErrorCode::depth_buffer_too_small, count, samples.depths.size()};
-    const auto [width, height] = view.viewport();
-    const double area = 1.0 * width * height / (std::max)(static_cast<double>(count), 1.0);
-    double lit = 0;
-    detail::for_each_sample(view, samples, [&](int, int, float) { ++lit; });
+    const double pixels =
+        1.0 * window.width * window.height / static_cast<double>((std::max)(count, std::uint64_t{1}));
+    const auto pixel = [](int i, int samples_across, int pixels_across) {
+        return static_cast<int>((2 * std::int64_t{i} + 1) * pixels_across /
+                                (2 * std::int64_t{samples_across}));
+    };
     return detail::weigh<detail::weighed_sliced, base, Clock>(
-        detail::weighed_grids(view, {}), lights, costs, lit * area,
-        [&]<Options options>(const detail::WeighedGrid&) {
-            if constexpr (options.slicing == Slicing::z_bins)
-                return inputs_for<options>({}, slices.z_bins);
-            else
-                return inputs_for<options>({}, slices.clusters);
-        },
-        [&]<Options options>(const detail::WeighedGrid& grid, const auto& built) {
-            const int size = grid.view.tile_size();
-            double sum = 0;
-            detail::for_each_sample(view, samples, [&](int x, int y, float depth) {
-                sum += static_cast<double>(
-                    detail::evaluated<options.slicing>(built, x / size, y / size, slices, depth));
-            });
-            return sum * area;
+        view, {}, &slices, lights, costs, [&](auto visit) {
+            if (view.tile_count() == 0) return;
+            const float* depth = samples.depths.data();
+            for (int y = 0; y < grid.height; ++y)
+                for (int x = 0; x < grid.width; ++x, ++depth)
+                    if (std::isfinite(*depth))
+                        visit(pixel(x, grid.width, window.width), pixel(y, grid.height, window.height),
+                              *depth, pixels);
         });
 }
 
