@@ -264,34 +264,28 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {})
     if (options.flip_y) writer.add("    pixel.y = $grid.w - 1u - pixel.y;\n");
     writer.add(std::string("    ivec2 at = ivec2(int(pixel.x), int(pixel.y))") +
                (options.viewport_corner ? " + $corner;\n" : ";\n"));
-    if (many)
-        writer.add("    for (int s = 0; s < " + samples + "; s += 1) { $sample(&range, " +
-                   (dialect.hlsl   ? "$depth.Load(at, s)"
-                    : dialect.wgsl ? "textureLoad($depth, at, s).x"
-                                   : "texelFetch($depth, at, s).x") +
-                   "); }\n}\n");
-    else
-        writer.add("    $sample(&range, " + writer.read_texel("$depth", "at") + ".x);\n}\n");
+    if (many) writer.add("    for (int s = 0; s < " + samples + "; s += 1)");
+    writer.add("    { $sample(&range, " + writer.read_texel("$depth", "at", many ? "s" : "0") +
+               ".x); }\n}\n");
 
     const std::string area = "    uvec2 first = tile * $grid.x;\n"
                              "    uvec2 size = min(uvec2($grid.x, $grid.x), $grid.zw - first);\n"
                              "    uvec2 range = uvec2(0xffffffffu, 0u);\n";
     if (compute) {
         writer.add("\n");
-        writer.declare_shared("low", 1, true);
-        writer.declare_shared("high", 1, true);
+        writer.declare_shared("ends", 2, true);
         writer.add("\nvoid $run(uvec2 tile, uint thread) {\n" + area + "    if (thread == 0u) {\n        " +
-                   writer.store_atomic("$low", "range.x") + ";\n        " +
-                   writer.store_atomic("$high", "range.y") +
+                   writer.store_atomic("$ends[0]", "range.x") + ";\n        " +
+                   writer.store_atomic("$ends[1]", "range.y") +
                    R"(;
     }
     sync_group();
     for (uint i = thread; i < size.x * size.y; i += 64u) { $pixel(&range, first, size, i); }
-    atomicMin(&$low, range.x);
-    atomicMax(&$high, range.y);
+    atomicMin(&$ends[0], range.x);
+    atomicMax(&$ends[1], range.y);
     sync_group();
     if (thread == 0u) { $z_bounds[tile.y * $grid.y + tile.x] = $view_depths(uvec2()" +
-                   writer.load_atomic("$low") + ", " + writer.load_atomic("$high") + ")); }\n}\n");
+                   writer.load_atomic("$ends[0]") + ", " + writer.load_atomic("$ends[1]") + ")); }\n}\n");
         add_compute_main(writer, 64);
     } else {
         writer.add("\nvec2 $reduce(uvec2 tile) {\n" + area +

@@ -249,22 +249,21 @@ public:
         return name + "[" + index + "]";
     }
 
-    /// The expression that reads a texel of a texture, at an ivec2.
-    std::string read_texel(const std::string& texture, const std::string& at) const {
-        return dialect_.hlsl   ? texture + ".Load(int3(" + at + ", 0))"
-               : dialect_.wgsl ? "textureLoad(" + texture + ", " + at + ", 0)"
-                               : "texelFetch(" + texture + ", " + at + ", 0)";
+    /// The expression that reads a texel of a texture, at an ivec2: of one with samples, the sample's.
+    std::string read_texel(const std::string& texture, const std::string& at,
+                           const std::string& sample = "0") const {
+        return dialect_.hlsl
+                   ? texture + ".Load(" + (sample == "0" ? "int3(" + at + ", 0)" : at + ", " + sample) + ")"
+               : dialect_.wgsl ? "textureLoad(" + texture + ", " + at + ", " + sample + ")"
+                               : "texelFetch(" + texture + ", " + at + ", " + sample + ")";
     }
 
-    /// Declares what the threads of a group share: a uint, or `count` of them. What is atomic is read and written by the
-    /// functions below, and by GLSL's.
+    /// Declares uints that the threads of a group share. What is atomic is read and written by the functions below, and by
+    /// GLSL's.
     void declare_shared(const std::string& name, int count, bool atomic) {
         const std::string places = std::to_string(count), type = atomic ? "atomic<uint>" : "uint";
-        if (dialect_.wgsl)
-            add("var<workgroup> $" + name + " : " +
-                (count == 1 ? type : "array<" + type + ", " + places + ">") + ";\n");
-        else
-            add("shared uint $" + name + (count == 1 ? "" : "[" + places + "]") + ";\n");
+        add(dialect_.wgsl ? "var<workgroup> $" + name + " : array<" + type + ", " + places + ">;\n"
+                          : "shared uint $" + name + "[" + places + "];\n");
     }
 
     std::string load_atomic(const std::string& place) const {
