@@ -127,18 +127,16 @@ inline constexpr Options weighed_sliced[] = {
     {.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::clusters}};
 
 /// A Binner's options for what is weighed, with the rest from `base`.
-template <const auto& table, Options base, std::size_t i>
-inline constexpr Options weighed_options = [] {
-    Options options = base;
-    options.footprint = table[i].footprint;
-    options.depth_test = table[i].depth_test;
-    options.slicing = table[i].slicing;
-    return options;
-}();
+constexpr Options weighed_options(Options base, const Options& way) {
+    base.footprint = way.footprint;
+    base.depth_test = way.depth_test;
+    base.slicing = way.slicing;
+    return base;
+}
 
 template <const auto& table, Options base, std::size_t i, class Visit>
 decltype(auto) with_options_from(const Plan& plan, Visit& visit) {
-    constexpr Options options = weighed_options<table, base, i>;
+    constexpr Options options = weighed_options(base, table[i]);
     const bool found = plan.footprint == options.footprint && plan.depth_test == options.depth_test &&
                        plan.slicing == options.slicing;
     if constexpr (i + 1 < std::size(table)) {
@@ -150,7 +148,7 @@ decltype(auto) with_options_from(const Plan& plan, Visit& visit) {
 }
 
 template <const auto& table, Options base, std::size_t... i>
-auto weighed_binners(std::index_sequence<i...>) -> std::tuple<Binner<weighed_options<table, base, i>>...>;
+auto weighed_binners(std::index_sequence<i...>) -> std::tuple<Binner<weighed_options(base, table[i])>...>;
 
 /// The bound of a tile, or where there is none, an endless one.
 inline float bound(std::span<const float> side, std::size_t tile, float endless) {
