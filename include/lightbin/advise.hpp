@@ -240,8 +240,8 @@ inline std::vector<WeighedGrid> weighed_grids(const View& view, const ZBounds& b
 /// Weighs each of a table's options on each of the grids, by advise()'s turns.
 ///
 /// slices        null where no options of the table need them
-/// for_each_lit  for_each_lit(visit) calls visit(x, y, depth, pixels) for what is lit: a pixel, how many it stands for, and
-///               with slices their depth
+/// for_each_lit  for_each_lit(visit) calls visit(x, y, depth, pixels) for what is lit: a pixel, how many it stands for,
+///               and with slices their depth
 template <const auto& table, Options base, class Clock, class LightRange, class ForEachLit>
 Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlices* slices,
                      const LightRange& lights, const Costs& costs, ForEachLit for_each_lit) {

@@ -209,8 +209,8 @@ inline void add_id_at(ShaderWriter& writer, const ShaderOptions& options) {
                ";\n}\n");
 }
 
-/// `cursor` and `begin`. Nothing is read and nothing divided for a pixel that the grid has no tile for: its constants are
-/// unset, or those of a smaller picture or of other tiles.
+/// `cursor` and `begin`. Nothing is read and nothing divided for a pixel that the grid has no tile for: its constants
+/// are unset, or those of a smaller picture or of other tiles.
 inline void add_begin(ShaderWriter& writer, const ShaderOptions& options) {
     const ListFormat& format = options.format;
     const bool table = format.encoding == ListEncoding::offset_count,

@@ -221,8 +221,8 @@ public:
                               name + "_members");
     }
 
-    /// Returns the expression that reads an element of a buffer that was declared: of a uvec2 buffer a uvec2, otherwise a
-    /// uint.
+    /// Returns the expression that reads an element of a buffer that was declared: of a uvec2 buffer a uvec2, otherwise
+    /// a uint.
     std::string read(std::string_view of, const std::string& index) const {
         const ShaderBuffer* found = buffers_.data();
         while (found->name != of)
@@ -258,8 +258,8 @@ public:
                                : "texelFetch(" + texture + ", " + at + ", " + sample + ")";
     }
 
-    /// Declares uints that the threads of a group share. What is atomic is read and written by the functions below, and by
-    /// GLSL's.
+    /// Declares uints that the threads of a group share. What is atomic is read and written by the functions below, and
+    /// by GLSL's.
     void declare_shared(const std::string& name, int count, bool atomic) {
         const std::string places = std::to_string(count), type = atomic ? "atomic<uint>" : "uint";
         add(dialect_.wgsl ? "var<workgroup> $" + name + " : array<" + type + ", " + places + ">;\n"

@@ -84,8 +84,8 @@ inline std::string translate(std::string_view glsl, bool hlsl, bool es) {
     return text;
 }
 
-/// A name of the text that WGSL has in another way: a constant is a member of its block, what is handed over to be written
-/// is where a pointer points.
+/// A name of the text that WGSL has in another way: a constant is a member of its block, what is handed over to be
+/// written is where a pointer points.
 struct WgslName {
     std::string glsl, wgsl;
 };
