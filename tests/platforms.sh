@@ -218,6 +218,8 @@ platform windows "Windows (Wine), MinGW g++ 12" "g++-mingw-w64-x86-64-posix wine
 
 with aarch64-linux-gnu-g++ "-std=c++20" "-static"
 platform aarch64 "64-bit ARM (qemu), g++ 12" "g++-aarch64-linux-gnu qemu-user-static" "scalar neon" qemu-aarch64-static
+with clang++-19 "--target=aarch64-linux-gnu -std=c++20" "-static"
+platform aarch64-clang "64-bit ARM (qemu), clang 19" "clang-19 g++-aarch64-linux-gnu qemu-user-static" "scalar neon" qemu-aarch64-static
 with arm-linux-gnueabihf-g++ "-std=c++20 -mfpu=neon-vfpv4 -Wno-psabi" "-static"
 platform arm-32 "32-bit ARM (qemu), g++ 12" "g++-arm-linux-gnueabihf qemu-user-static" scalar qemu-arm-static
 with s390x-linux-gnu-g++ "-std=c++20" "-static"
