@@ -4,7 +4,7 @@
 //
 // - Lists of up to 8, 16 or 31 lights: a compress does 8, 4 or 2 tiles of a row at once. For each row its 8 tiles'
 //   bits, a bit a light, 1, 2 or 4 words a row; before them the running numbers of set bits.
-// - Longer ones: as in emit.inl, a column's, row's or tile's words, 64 lights each, side by side.
+// - Longer ones: a word a tile, a bit a light, for each 64 lights.
 
 /// A vector's worth of place(0), place(1) ...
 template <class T, class Place> constexpr std::array<T, 64 / sizeof(T)> table_of(Place place) {
@@ -182,17 +182,15 @@ LIGHTBIN_TARGET inline void store_short_words(const std::uint64_t* masks, const 
     store_short_words(lights, to);
 }
 
-/// For each of 8 bits, which of 64 bytes have it: words[bit * stride], one bit a byte.
-LIGHTBIN_TARGET inline void split_bits(__m512i bytes, __mmask64 valid, std::uint64_t* words,
-                                       std::size_t stride) {
+/// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
+LIGHTBIN_TARGET inline void split_bits(__m512i bytes, std::uint64_t* words) {
     for (unsigned bit = 0; bit < 8; ++bit)
-        words[bit * stride] =
-            _mm512_mask_test_epi8_mask(valid, bytes, _mm512_set1_epi8(static_cast<char>(1 << bit)));
+        words[bit] = _mm512_test_epi8_mask(bytes, _mm512_set1_epi8(static_cast<char>(1 << bit)));
 }
 
 /// Transposes the words of 64 lights, a bit per tile, to a word per tile, a bit a light.
 LIGHTBIN_TARGET inline void transpose_64_words(const std::uint64_t* lights, std::uint32_t count,
-                                               std::uint64_t* tiles, std::size_t stride) {
+                                               std::uint64_t* tiles) {
     // Bytes first: in each vector of 8 lights, the bytes of one tile row side by side ...
     __m512i v[8], w[8];
     const __m512i by_row = load(byte_transpose.data());
@@ -212,25 +210,24 @@ LIGHTBIN_TARGET inline void transpose_64_words(const std::uint64_t* lights, std:
             v[i + odd + 2] = _mm512_shuffle_i64x2(w[i + odd], w[i + odd + 2], 0xdd);
         }
     for (unsigned i = 0; i < 4; ++i) {
-        split_bits(_mm512_shuffle_i64x2(v[i], v[i + 4], 0x88), ~__mmask64{0}, tiles + 8 * i * stride, stride);
-        split_bits(_mm512_shuffle_i64x2(v[i], v[i + 4], 0xdd), ~__mmask64{0}, tiles + 8 * (i + 4) * stride,
-                   stride);
+        split_bits(_mm512_shuffle_i64x2(v[i], v[i + 4], 0x88), tiles + 8 * i);
+        split_bits(_mm512_shuffle_i64x2(v[i], v[i + 4], 0xdd), tiles + 8 * (i + 4));
     }
 }
 
-/// The words of a list of 32 lights or more: a column's, row's or tile's lie side by side.
+/// The words of 64 lights, or `count` if those are fewer, for longer lists: a word a tile, a bit a light.
 template <bool with_words>
-LIGHTBIN_TARGET inline void store_long_words(const std::uint64_t* masks, const std::uint8_t* columns,
-                                             const std::uint8_t* rows, std::uint32_t count,
-                                             std::uint64_t* words) {
-    const std::uint32_t groups = (count + 63) / 64;
-    for (std::uint32_t i = 0; i < count; i += 64, ++words) {
-        if constexpr (with_words) {
-            transpose_64_words(masks + i, count - i, words, groups);
-        } else {
-            split_bits(load(columns + i), first_bytes(count - i), words, groups);
-            split_bits(load(rows + i), first_bytes(count - i), words + 8 * groups, groups);
-        }
+LIGHTBIN_TARGET inline void store_64_words(const std::uint64_t* masks, const std::uint8_t* columns,
+                                           const std::uint8_t* rows, std::uint32_t count, std::uint64_t* tiles) {
+    if constexpr (with_words) {
+        transpose_64_words(masks, count, tiles);
+    } else {
+        std::uint64_t in_column[8], in_row[8];
+        split_bits(_mm512_maskz_loadu_epi8(first_bytes(count), columns), in_column);
+        split_bits(load(rows), in_row);
+        for (unsigned row = 0; row < 8; ++row)
+            store(tiles + 8 * row,
+                  _mm512_and_si512(load(in_column), _mm512_set1_epi64(static_cast<long long>(in_row[row]))));
     }
 }
 
@@ -280,30 +277,29 @@ LIGHTBIN_TARGET inline std::uint32_t store_no_words(Scratch& scratch) {
     return size;
 }
 
-/// How many lights a list of the first form has at most. Where most are longer, it has none: it would be one more
-/// form to mispredict.
-LIGHTBIN_TARGET inline std::uint32_t up_to_8(const BandLists<ListId>& band) {
-    return band.few ? 8 : 0;
+/// How many words a list of `count` lights takes.
+inline std::uint32_t words_of(std::uint32_t count) {
+    return count < 32 ? 40 : (count + 63) / 64 * 64;
 }
 
 /// Stores the words of a list at list.words of scratch.words. Returns where they end.
 template <bool with_words, class Id>
 LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLists<ListId>& band,
                                                  const SupertileList& list) {
-    const std::uint32_t count = list.count, groups = (count + 63) / 64;
-    const std::uint32_t end = list.words + (count < 32 ? 40 : (with_words ? 64 : 16) * groups);
-    std::uint64_t* words = scratch.words.reserve(end, list.words) + list.words;
+    const std::uint32_t count = list.count, end = list.words + words_of(count);
+    std::uint64_t* const words = scratch.words.reserve(end, list.words) + list.words;
     const std::uint64_t* masks = scratch.masks.data();
     const std::uint8_t* columns = scratch.list_columns.data() + list.begin;
     const std::uint8_t* rows = scratch.list_rows.data() + list.begin;
-    if (count <= up_to_8(band))
+    if (count <= 8)
         store_short_words<with_words, 1>(masks, columns, rows, count, words);
     else if (count <= 16)
         store_short_words<with_words, 2>(masks, columns, rows, count, words);
     else if (count < 32)
         store_short_words<with_words, 4>(masks, columns, rows, count, words);
     else
-        store_long_words<with_words>(masks, columns, rows, count, words);
+        for (std::uint32_t i = 0; i < count; i += 64)
+            store_64_words<with_words>(masks + i, columns + i, rows + i, count - i, words + i);
     return end;
 }
 
@@ -313,39 +309,32 @@ template <bool spots, class Id>
 LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scratch& scratch, unsigned x,
                                                       unsigned top, const BandLists<ListId>& band,
                                                       const SupertileList& list) {
-    const std::uint32_t count = list.count, groups = (count + 63) / 64;
-    const std::uint32_t end = list.words + (count < 32 ? 40 : 64 * groups);
+    const std::uint32_t count = list.count, end = list.words + words_of(count);
     std::uint64_t* const words = scratch.words.reserve(end, list.words) + list.words;
     const unsigned height = min_of(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
     SlabBoxes slab = scratch.slab;
     for (unsigned side = 0; side < 4; ++side)
         slab.ends[side] += side < 2 ? 8 * x : top;
-    for (std::uint32_t group = 0; group < groups; ++group) {
-        const std::uint32_t begin = list.begin + 64 * group, left = count - 64 * group;
+    for (std::uint32_t i = 0; i < count; i += 64) {
+        const std::uint32_t begin = list.begin + i, left = count - i;
         const IdBlock& block = scratch.blocks.data()[scratch.group_blocks.data()[begin / 64]];
-        const auto* const lights = lights_of<spots>(job) + block.upper;
         std::uint16_t missed[4 * 64];
-        for (std::uint32_t i = 0; i < 64 && i < left; i += 16)
-            store_missed(*job.camera, slab, lights, band.ids + begin + i, left - i, height, missed + i / 16);
-        std::uint64_t in_column[8], in_row[8];
-        split_bits(load(scratch.list_columns.data() + begin), first_bytes(left), in_column, 1);
-        split_bits(load(scratch.list_rows.data() + begin), first_bytes(left), in_row, 1);
+        for (std::uint32_t j = 0; j < 64 && j < left; j += 16)
+            store_missed(*job.camera, slab, lights_of<spots>(job) + block.upper, band.ids + begin + j, left - j,
+                         height, missed + j / 16);
+        std::uint64_t of_tiles[64];
+        store_64_words<false>(nullptr, scratch.list_columns.data() + begin, scratch.list_rows.data() + begin, left,
+                              of_tiles);
         for (unsigned row = 0; row < height; ++row) {
-            const __m512i in = _mm512_and_si512(load(in_column),
-                                                _mm512_set1_epi64(static_cast<long long>(in_row[row]))),
-                          tiles = _mm512_andnot_si512(load(missed + 32 * row), in);
-            if (count <= up_to_8(band)) {
+            const __m512i tiles = _mm512_andnot_si512(load(missed + 32 * row), load(of_tiles + 8 * row));
+            if (count <= 8)
                 store_short_row<1>(tiles, row, words);
-            } else if (count <= 16) {
+            else if (count <= 16)
                 store_short_row<2>(tiles, row, words);
-            } else if (count < 32) {
+            else if (count < 32)
                 store_short_row<4>(tiles, row, words);
-            } else {
-                std::uint64_t of_tile[8];
-                store(of_tile, tiles);
-                for (unsigned column = 0; column < 8; ++column)
-                    words[(8 * row + column) * groups + group] = of_tile[column];
-            }
+            else
+                store(words + i + 8 * row, tiles);
         }
     }
     return end;
@@ -369,37 +358,20 @@ LIGHTBIN_TARGET inline std::uint32_t append_row(Id* to, ListRange* tiles, __mmas
     return static_cast<std::uint32_t>(sums >> 56);
 }
 
-/// Appends the tiles of a row of a supertile with a list of 32 to 64 lights. Returns how many ids.
-template <bool with_words, bool wide, class Id>
-LIGHTBIN_TARGET inline std::uint32_t append_64(Id* to, ListRange* tiles, unsigned columns, std::uint32_t at,
-                                               const std::uint64_t* words, unsigned row,
-                                               const IdTable<wide>& table) {
+/// Appends the tiles of a row of a supertile with a longer list: `words` has those of its first tile. Returns how many
+/// ids. With 64 lights or less their ids stay in registers.
+template <bool wide, bool up_to_64, class Id>
+LIGHTBIN_TARGET inline std::uint32_t append_tiles(Id* to, ListRange* tiles, unsigned columns, std::uint32_t at,
+                                                  const std::uint64_t* words, const GroupedIds& ids,
+                                                  std::uint32_t lights) {
     const Id* const begin = to;
-    for (unsigned column = 0; column < columns; ++column) {
-        const std::uint64_t lit = with_words ? words[row * 8 + column] : words[column] & words[8 + row];
-        const std::uint32_t count = append<64>(to, lit, table);
-        tiles[column] = {at, count};
-        to += count;
-        at += count;
-    }
-    return static_cast<std::uint32_t>(to - begin);
-}
-
-/// The same of a longer list.
-template <bool with_words, bool wide, class Id>
-LIGHTBIN_TARGET inline std::uint32_t append_more(Id* to, ListRange* tiles, unsigned columns, std::uint32_t at,
-                                                 const std::uint64_t* words, unsigned row,
-                                                 const GroupedIds& ids, std::size_t lights) {
-    const Id* const begin = to;
-    const std::size_t groups = (lights + 63) / 64;
+    const std::size_t groups = up_to_64 ? 1 : (lights + std::size_t{63}) / 64;
+    const IdTable<wide> first = load_table<wide>(ids, 0);
     for (unsigned column = 0; column < columns; ++column) {
         const Id* const from = to;
-        for (std::size_t group = 0; group < groups; ++group) {
-            const std::uint64_t* w = words + group;
-            const std::uint64_t lit =
-                with_words ? w[(row * 8 + column) * groups] : w[column * groups] & w[(8 + row) * groups];
-            to += append<64>(to, lit, load_table<wide>(ids, group));
-        }
+        for (std::size_t group = 0; group < groups; ++group)
+            to += append<64>(to, words[64 * group + column],
+                             up_to_64 ? first : load_table<wide>(ids, group));
         const std::uint32_t count = static_cast<std::uint32_t>(to - from);
         tiles[column] = {at, count};
         at += count;
@@ -409,12 +381,11 @@ LIGHTBIN_TARGET inline std::uint32_t append_more(Id* to, ListRange* tiles, unsig
 
 /// Emits a row of tiles as emit_row() does. Not inline, as in a longer function compilers keep what it needs on the
 /// stack.
-template <bool with_words, bool wide, class Id>
+template <bool wide, class Id>
 LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t at,
                                                  const Scratch& scratch, const BandLists<ListId>& band,
                                                  unsigned row) {
     const GroupedIds all_ids = {band.ids, scratch.group_blocks.data(), scratch.blocks.data()};
-    const std::uint32_t eight = up_to_8(band);
     const SupertileList* list = band.lists;
     const std::uint64_t* const all_words = scratch.words.data();
     for (const ListRange* const end = tiles + tiles_x; tiles < end; tiles += 8, ++list) {
@@ -424,19 +395,16 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsi
         const unsigned columns = static_cast<unsigned>(min_of<std::ptrdiff_t>(end - tiles, 8));
         const __mmask8 stored = static_cast<__mmask8>(0xff >> (8 - columns));
         std::uint32_t count;
-        if (lights > 64) {
-            count = append_more<with_words, wide>(out, tiles, columns, at, words, row, ids, lights);
-        } else {
-            const IdTable<wide> table = load_table<wide>(ids, 0);
-            if (lights <= eight)
-                count = append_row<1>(out, tiles, stored, at, words, row, table);
-            else if (lights <= 16)
-                count = append_row<2>(out, tiles, stored, at, words, row, table);
-            else if (lights < 32)
-                count = append_row<4>(out, tiles, stored, at, words, row, table);
-            else
-                count = append_64<with_words>(out, tiles, columns, at, words, row, table);
-        }
+        if (lights <= 8)
+            count = append_row<1>(out, tiles, stored, at, words, row, load_table<wide>(ids, 0));
+        else if (lights <= 16)
+            count = append_row<2>(out, tiles, stored, at, words, row, load_table<wide>(ids, 0));
+        else if (lights < 32)
+            count = append_row<4>(out, tiles, stored, at, words, row, load_table<wide>(ids, 0));
+        else if (lights <= 64)
+            count = append_tiles<wide, true>(out, tiles, columns, at, words + 8 * row, ids, lights);
+        else
+            count = append_tiles<wide, false>(out, tiles, columns, at, words + 8 * row, ids, lights);
         out += count;
         at += count;
     }
@@ -448,6 +416,6 @@ template <bool with_words, class Id>
 LIGHTBIN_TARGET Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t at, const Scratch& scratch,
                              const BandLists<ListId>& band, unsigned row) {
     if constexpr (sizeof(Id) > 2)
-        if (band.wide) return emit_tiles<with_words, true>(out, tiles, tiles_x, at, scratch, band, row);
-    return emit_tiles<with_words, false>(out, tiles, tiles_x, at, scratch, band, row);
+        if (band.wide) return emit_tiles<true>(out, tiles, tiles_x, at, scratch, band, row);
+    return emit_tiles<false>(out, tiles, tiles_x, at, scratch, band, row);
 }

@@ -205,17 +205,17 @@ LIGHTBIN_TARGET BandLists<ListId> make_lists(const BinJob<Id>& job, Scratch& scr
                                              ListedBands& listed) {
     if (top >= listed.end) list_bands<with_words>(job, scratch, top, bands.end, width, listed);
     const std::size_t band = (top - listed.begin) / 8 * listed.panels;
-    std::uint32_t longest = 0;
+    bool any = false;
     for (std::size_t block = 0; block < listed.block_count; ++block)
         for (std::size_t panel = 0; panel < listed.panels; ++panel)
-            longest = max_of(longest, listed.size[block * listed.count + band + panel]);
-    if (longest == 0) return {};
+            any |= listed.size[block * listed.count + band + panel] > 0;
+    if (!any) return {};
     SupertileList* const lists = scratch.supertile_lists.reserve(width);
     std::uint32_t used = 0;
     for (unsigned x = 0; x < width; ++x) {
         lists[x] = {used, list_supertile(scratch, listed, band, x, used), 0};
         used += (lists[x].count + 63) & ~63u;
     }
-    return {lists, scratch.list_ids.template reserve<ListId>(used, used), longest <= 64,
+    return {lists, scratch.list_ids.template reserve<ListId>(used, used),
             listed.blocks[listed.block_count - 1].upper != 0};
 }

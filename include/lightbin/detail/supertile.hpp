@@ -38,7 +38,6 @@ inline constexpr unsigned next_box = 64 * cell_planes<DepthTest::box>;  ///< flo
 template <class ListId> struct BandLists {
     SupertileList* lists;  ///< null: no light meets the band
     ListId* ids;
-    bool few;   ///< most lists are of up to 8 lights, as far as is known
     bool wide;  ///< some ids have more than 16 bits
 };
 
