@@ -115,10 +115,6 @@ LIGHTBIN_TARGET inline Id* append_16(Id* out, const Ids* ids, std::uint64_t chos
     out += append(out, ids, static_cast<unsigned>(chosen & 0xff));
     return out + append(out, ids + 8, static_cast<unsigned>(chosen >> 8 & 0xff));
 }
-template <class Id, class Ids>
-LIGHTBIN_TARGET inline Id* append_32(Id* out, const Ids* ids, std::uint64_t chosen) {
-    return append_16(append_16(out, ids, chosen), ids + 16, chosen >> 16);
-}
 
 /// Appends those of `count` ids, up to 64, whose bit is set. Returns the end. No loop, whose end is predicted worse
 /// than these branches.
@@ -133,55 +129,38 @@ LIGHTBIN_TARGET inline Id* append_64(Id* out, const Ids* ids, std::uint64_t chos
     return append_16(out, ids + 48, chosen >> 48);
 }
 
-/// How the lists of tiles are appended, by the length of the supertile's list.
-enum class Length { up_to_16, up_to_64, any };
-
-/// Appends the lights of a tile by its words: bytes[0], bytes[64] ... have 8 lights each. Returns the end. The usual
-/// lengths of a list have no loop to predict.
-template <Length length, class Id, class Ids>
+/// Appends the lights of a tile by its words: bytes[0], bytes[64] ... have 8 lights each. Returns the end.
+template <class Id, class Ids>
 LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count,
                                        const std::uint8_t* bytes) {
-    if constexpr (length == Length::up_to_16) {
-        out += append(out, ids, bytes[0]);
-        if (count > 8) out += append(out, ids + 8, bytes[64]);
-        return out;
-    }
     for (std::size_t i = 0; i < count; i += 8)
         out += append(out, ids + i, bytes[i * 8]);
     return out;
 }
 
 /// The same by the words of its column and its row: [0], [16] ... have 64 lights each.
-template <Length length, class Id, class Ids>
+template <bool up_to_64, class Id, class Ids>
 LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count,
                                        const std::uint64_t* column, const std::uint64_t* row) {
-    if constexpr (length == Length::up_to_16) {
-        const std::uint64_t chosen = *column & *row;
-        out += append(out, ids, static_cast<unsigned>(chosen & 0xff));
-        if (count > 8) out += append(out, ids + 8, static_cast<unsigned>(chosen >> 8));
-        return out;
-    }
-    if constexpr (length == Length::any)
-        for (; count > 64; count -= 64, ids += 64, column += 16, row += 16) {
-            const std::uint64_t chosen = *column & *row;
-            out = append_32(append_32(out, ids, chosen), ids + 32, chosen >> 32);
-        }
+    if constexpr (!up_to_64)
+        for (; count > 64; count -= 64, ids += 64, column += 16, row += 16)
+            out = append_64(out, ids, *column & *row, 64);
     return append_64(out, ids, *column & *row, count);
 }
 
 /// Appends a row of a supertile's tiles. Returns the end. Not inline, as in a longer function compilers keep what it
 /// needs on the stack.
-template <bool with_words, Length length, class Id>
+template <bool with_words, bool up_to_64, class Id>
 LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id*
 append_tiles(Id* out, ListRange* tiles, std::ptrdiff_t columns, std::uint32_t at, const Packed<Id>* ids,
              std::uint32_t count, const std::uint64_t* words, unsigned row) {
     for (std::ptrdiff_t column = 0; column < columns; ++column) {
         Id* const from = out;
         if constexpr (with_words)
-            out = append_tile<length>(out, ids, count,
+            out = append_tile(out, ids, count,
                                       reinterpret_cast<const std::uint8_t*>(words) + 8 * row + byte_place(column));
         else
-            out = append_tile<length>(out, ids, count, words + column, words + 8 + row);
+            out = append_tile<up_to_64>(out, ids, count, words + column, words + 8 + row);
         const std::uint32_t lights = static_cast<std::uint32_t>(out - from);
         tiles[column] = {at, lights};
         at += lights;
@@ -205,12 +184,10 @@ LIGHTBIN_TARGET Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::u
         Id* const from = out;
         if (count == 0)
             fill_items(tiles, static_cast<std::size_t>(columns), {at, 0});
-        else if (count <= 16)
-            out = append_tiles<with_words, Length::up_to_16>(out, tiles, columns, at, ids, count, words, row);
-        else if (count <= 64)
-            out = append_tiles<with_words, Length::up_to_64>(out, tiles, columns, at, ids, count, words, row);
+        else if (with_words || count <= 64)
+            out = append_tiles<with_words, true>(out, tiles, columns, at, ids, count, words, row);
         else
-            out = append_tiles<with_words, Length::any>(out, tiles, columns, at, ids, count, words, row);
+            out = append_tiles<with_words, false>(out, tiles, columns, at, ids, count, words, row);
         at += static_cast<std::uint32_t>(out - from);
     }
     return out;
