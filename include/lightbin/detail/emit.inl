@@ -60,49 +60,40 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
     return end;
 }
 
-/// Of 8 lights at most, those that miss the boxes of a supertile's first `rows` rows: a byte per tile, a bit a light.
-/// slab  its ends are those from the supertile on
-template <class Light>
-LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SlabBoxes& slab, const Light* lights_by_id,
-                                         const ListId* ids, std::uint32_t count, unsigned rows,
-                                         std::uint64_t* words) {
+/// Of 8 lights at most, those that miss the boxes of a supertile: a byte per tile, a bit a light.
+LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SupertileBoxes& boxes, const Sphere* spheres,
+                                         const ListId* ids, std::uint32_t count, std::uint64_t* words) {
+    const float* const(&ends)[4] = boxes.slab.ends;
     fill_items(words, 8, 0);
     for (std::uint32_t first = 0; first < 8 && first < count; first += lanes) {
-        const auto lights = load_slab_lights(camera, slab, lights_by_id, ids + first, count - first);
-        for (unsigned test = 0; test < lights.tests; ++test) {
-            float by_column[8][lanes];
-            for (unsigned column = 0; column < 8; ++column)
-                store_floats(by_column[column],
-                             lights.by_column(test, slab.ends[0][column], slab.ends[1][column]));
-            for (unsigned row = 0; row < rows; ++row)
-                words[row] |= bits_of_8_less(lights.left_by_row(test, slab.ends[2][row], slab.ends[3][row]),
-                                             by_column[0])
-                              << first;
-        }
+        const SlabLights lights = load_slab_lights(camera, boxes.slab, spheres, ids + first, count - first);
+        float by_column[8][lanes];
+        for (unsigned column = 0; column < 8; ++column)
+            store_floats(by_column[column], distance2(lights.x, ends[0][column], ends[1][column]));
+        for (unsigned row = 0; row < boxes.rows; ++row)
+            words[row] |= bits_of_8_less(lights.left - distance2(lights.y, ends[2][row], ends[3][row]), by_column[0])
+                          << first;
     }
 }
 
 /// Makes the words of a list, by the boxes of the supertile from column 8 x and row `top` on, and stores them as
 /// store_words() does.
-template <bool spots, class Id>
+template <class Id>
 LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scratch& scratch, unsigned x,
                                                       unsigned top, const BandLists<ListId>& band,
                                                       const SupertileList& list) {
-    const std::uint32_t end = list.words + (list.count + 7) / 8 * 8;
+    const std::uint32_t eights = (list.count + 7) / 8, end = list.words + 8 * eights;
     std::uint64_t* words = scratch.words.reserve(end, list.words) + list.words;
     std::uint8_t* const columns = scratch.list_columns.data() + list.begin;
     const std::uint8_t* const rows = scratch.list_rows.data() + list.begin;
-    std::memset(columns + list.count, 0, end - list.words - list.count);
     const ListId* const ids = band.ids + list.begin;
-    const unsigned height = min_of(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
-    SlabBoxes slab = scratch.slab;
-    for (unsigned side = 0; side < 4; ++side)
-        slab.ends[side] += side < 2 ? 8 * x : top;
+    std::memset(columns + list.count, 0, 8 * eights - list.count);
+    const SupertileBoxes boxes = boxes_at(job, scratch, x, top);
     for (std::uint32_t i = 0; i < list.count; i += 8, words += 8) {
-        store_missed(*job.camera, slab, lights_of<spots>(job), ids + i, list.count - i, height, words);
+        store_missed(*job.camera, boxes, job.lights.spheres, ids + i, list.count - i, words);
         const std::uint64_t in_columns = transpose_bits(load_8_bytes(columns + i)),
                             in_rows = transpose_bits(load_8_bytes(rows + i));
-        for (unsigned row = 0; row < height; ++row)
+        for (unsigned row = 0; row < boxes.rows; ++row)
             words[row] = ~words[row] & in_columns & (in_rows >> 8 * row & 0xff) * 0x0101010101010101;
     }
     pack_ids<Id>(scratch, band, list);
@@ -133,8 +124,10 @@ LIGHTBIN_TARGET inline Id* append_64(Id* out, const Ids* ids, std::uint64_t chos
 template <class Id, class Ids>
 LIGHTBIN_TARGET inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count,
                                        const std::uint8_t* bytes) {
-    for (std::size_t i = 0; i < count; i += 8)
+    std::size_t i = 0;
+    do
         out += append(out, ids + i, bytes[i * 8]);
+    while ((i += 8) < count);
     return out;
 }
 

@@ -215,6 +215,20 @@ LIGHTBIN_TARGET inline void transpose_64_words(const std::uint64_t* lights, std:
     }
 }
 
+/// The columns and rows of 64 lights, or `count` if those are fewer.
+struct Rectangles {
+    LIGHTBIN_TARGET Rectangles(const std::uint8_t* columns, const std::uint8_t* rows, std::uint32_t count) {
+        split_bits(_mm512_maskz_loadu_epi8(first_bytes(count), columns), in_column);
+        split_bits(load(rows), in_row);
+    }
+    /// The words of the tiles of a row, a bit a light.
+    LIGHTBIN_TARGET __m512i row_words(unsigned row) const {
+        return _mm512_and_si512(load(in_column), _mm512_set1_epi64(static_cast<long long>(in_row[row])));
+    }
+
+    std::uint64_t in_column[8], in_row[8];
+};
+
 /// The words of 64 lights, or `count` if those are fewer, for longer lists: a word a tile, a bit a light.
 template <bool with_words>
 LIGHTBIN_TARGET inline void store_64_words(const std::uint64_t* masks, const std::uint8_t* columns,
@@ -222,36 +236,24 @@ LIGHTBIN_TARGET inline void store_64_words(const std::uint64_t* masks, const std
     if constexpr (with_words) {
         transpose_64_words(masks, count, tiles);
     } else {
-        std::uint64_t in_column[8], in_row[8];
-        split_bits(_mm512_maskz_loadu_epi8(first_bytes(count), columns), in_column);
-        split_bits(load(rows), in_row);
+        const Rectangles lights(columns, rows, count);
         for (unsigned row = 0; row < 8; ++row)
-            store(tiles + 8 * row,
-                  _mm512_and_si512(load(in_column), _mm512_set1_epi64(static_cast<long long>(in_row[row]))));
+            store(tiles + 8 * row, lights.row_words(row));
     }
 }
 
-/// Of 16 lights at most, those that miss the boxes of a supertile's first `rows` rows: missed[4 * tile], a bit a light.
-/// slab  its ends are those from the supertile on
-template <class Light>
-LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SlabBoxes& slab, const Light* lights_by_id,
-                                         const ListId* places, std::uint32_t count, unsigned rows,
-                                         std::uint16_t* missed) {
-    const auto lights = load_slab_lights(camera, slab, lights_by_id, places, count);
-    constexpr unsigned tests = decltype(lights)::tests;
-    Floats by_column[tests][8];
-    for (unsigned test = 0; test < tests; ++test)
-        for (unsigned column = 0; column < 8; ++column)
-            by_column[test][column] = lights.by_column(test, slab.ends[0][column], slab.ends[1][column]);
-    for (unsigned row = 0; row < rows; ++row) {
-        Floats left[tests];
-        for (unsigned test = 0; test < tests; ++test)
-            left[test] = lights.left_by_row(test, slab.ends[2][row], slab.ends[3][row]);
-        for (unsigned column = 0; column < 8; ++column, missed += 4) {
-            *missed = less(left[0], by_column[0][column]);
-            for (unsigned test = 1; test < tests; ++test)
-                *missed = either(*missed, less(left[test], by_column[test][column]));
-        }
+/// Of 16 lights at most, those that miss the boxes of a supertile: missed[4 * tile], a bit a light.
+LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SupertileBoxes& boxes, const Sphere* spheres,
+                                         const ListId* places, std::uint32_t count, std::uint16_t* missed) {
+    const float* const(&ends)[4] = boxes.slab.ends;
+    const SlabLights lights = load_slab_lights(camera, boxes.slab, spheres, places, count);
+    Floats by_column[8];
+    for (unsigned column = 0; column < 8; ++column)
+        by_column[column] = distance2(lights.x, ends[0][column], ends[1][column]);
+    for (unsigned row = 0; row < boxes.rows; ++row) {
+        const Floats left = lights.left - distance2(lights.y, ends[2][row], ends[3][row]);
+        for (unsigned column = 0; column < 8; ++column, missed += 4)
+            *missed = less(left, by_column[column]);
     }
 }
 
@@ -305,28 +307,22 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
 
 /// Makes the words of a list, by the boxes of the supertile from column 8 x and row `top` on, and stores them as
 /// store_words() does.
-template <bool spots, class Id>
+template <class Id>
 LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scratch& scratch, unsigned x,
                                                       unsigned top, const BandLists<ListId>& band,
                                                       const SupertileList& list) {
     const std::uint32_t count = list.count, end = list.words + words_of(count);
     std::uint64_t* const words = scratch.words.reserve(end, list.words) + list.words;
-    const unsigned height = min_of(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
-    SlabBoxes slab = scratch.slab;
-    for (unsigned side = 0; side < 4; ++side)
-        slab.ends[side] += side < 2 ? 8 * x : top;
+    const SupertileBoxes boxes = boxes_at(job, scratch, x, top);
     for (std::uint32_t i = 0; i < count; i += 64) {
-        const std::uint32_t begin = list.begin + i, left = count - i;
+        const std::uint32_t begin = list.begin + i, left = min_of(count - i, 64u);
         const IdBlock& block = scratch.blocks.data()[scratch.group_blocks.data()[begin / 64]];
         std::uint16_t missed[4 * 64];
-        for (std::uint32_t j = 0; j < 64 && j < left; j += 16)
-            store_missed(*job.camera, slab, lights_of<spots>(job) + block.upper, band.ids + begin + j, left - j,
-                         height, missed + j / 16);
-        std::uint64_t of_tiles[64];
-        store_64_words<false>(nullptr, scratch.list_columns.data() + begin, scratch.list_rows.data() + begin, left,
-                              of_tiles);
-        for (unsigned row = 0; row < height; ++row) {
-            const __m512i tiles = _mm512_andnot_si512(load(missed + 32 * row), load(of_tiles + 8 * row));
+        for (std::uint32_t j = 0; j < left; j += lanes)
+            store_missed(*job.camera, boxes, job.lights.spheres + block.upper, band.ids + begin + j, left - j, missed + j / 16);
+        const Rectangles lights(scratch.list_columns.data() + begin, scratch.list_rows.data() + begin, left);
+        for (unsigned row = 0; row < boxes.rows; ++row) {
+            const __m512i tiles = _mm512_andnot_si512(load(missed + 32 * row), lights.row_words(row));
             if (count <= 8)
                 store_short_row<1>(tiles, row, words);
             else if (count <= 16)

@@ -10,35 +10,24 @@
 //         56 57 .. 63      . . # # # # . .      Each pair of a light and a tile is tested once.
 //                          . . . . . . . .
 
-/// The distance of a coordinate from an interval.
-LIGHTBIN_TARGET inline Floats distance(Floats c, const float* ends) {
-    return greater(greater(load_floats(ends) - c, c - load_floats(ends + 64)), all(0.0f));
+/// The squared distances of a point from `lanes` boxes.
+LIGHTBIN_TARGET inline Floats distance2(const float* cell, float x, float y, float z) {
+    const Floats along_z = distance(all(z), load_floats(cell), load_floats(cell + 64)),
+                 along_x = distance(all(x), load_floats(cell + 128), load_floats(cell + 192)),
+                 along_y = distance(all(y), load_floats(cell + 256), load_floats(cell + 320));
+    return mul(along_x, along_x) + mul(along_y, along_y) + mul(along_z, along_z);
 }
 
-/// Of the first `lanes` tiles of `cells`, those whose Z bounds or boxes the light meets. NaN tests nothing.
-template <DepthTest depth_test>
-LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedLight& light) {
-    const Floats nearest = all(light.nearest), farthest = all(light.farthest);
-    std::uint64_t met = 0;
-    for (const float* cell = cells; cell < cells + 64 * cell_planes<depth_test>; cell += next_box) {
-        auto missed = either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest));
-        if constexpr (depth_test != DepthTest::interval) {
-            const Floats z = distance(all(light.z), cell), x = distance(all(light.x), cell + 128),
-                         y = distance(all(light.y), cell + 256);
-            const Floats distance2 = mul(x, x) + mul(y, y) + mul(z, z);
-            missed = either(missed, less(all(light.reach2), distance2));
-        }
-        met |= ~bits(missed) & every_lane;
-    }
-    return met;
+/// Of `lanes` boxes, those that a sphere misses. Inline, as GCC 12 returns half of such a mask.
+LIGHTBIN_TARGET LIGHTBIN_INLINE auto boxes_missed(const float* cell, const TestedLight& light) {
+    return less(all(light.reach2), distance2(cell, light.x, light.y, light.z));
 }
 
-/// Of `lanes` boxes, those beyond the ball or beside the cone of a spot: a box is if its corner that is deepest in one of
-/// the half spaces around the cone is not in it. (Unreal tests one such plane, chosen for each box.)
-LIGHTBIN_TARGET inline unsigned boxes_missed(const float* cell, const ViewSpot& spot) {
-    const Floats z = distance(all(spot.ball.z), cell), x = distance(all(spot.ball.x), cell + 128),
-                 y = distance(all(spot.ball.y), cell + 256);
-    auto missed = less(reach2_of(all(spot.ball.radius)), mul(x, x) + mul(y, y) + mul(z, z));
+/// Those beyond the ball or beside the cone of a spot: a box is if its corner that is deepest in one of the half spaces
+/// around the cone is not in it. (Unreal tests one such plane, chosen for each box.)
+LIGHTBIN_TARGET LIGHTBIN_INLINE auto boxes_missed(const float* cell, const TestedSpot& light) {
+    const ViewSpot& spot = *light.spot;
+    auto missed = less(reach2_of(all(spot.ball.radius)), distance2(cell, spot.ball.x, spot.ball.y, spot.ball.z));
     for (unsigned i = 0; i < 4; ++i) {
         const SpotPlane& plane = spot.planes[i];
         const Floats deepest = mul(load_floats(cell + spot.corners[i][0]), all(plane.x)) +
@@ -46,30 +35,25 @@ LIGHTBIN_TARGET inline unsigned boxes_missed(const float* cell, const ViewSpot& 
                                mul(load_floats(cell + spot.corners[i][2]), all(plane.z));
         missed = either(missed, less(all(plane.most), deepest));
     }
-    return bits(missed);
+    return missed;
 }
 
-/// As for spheres, for spots.
-template <DepthTest depth_test>
-LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const TestedSpot& light) {
+/// Of the first `lanes` tiles of `cells`, those whose Z bounds or boxes the light meets. NaN tests nothing.
+template <DepthTest depth_test, class Light>
+LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const Light& light) {
     const Floats nearest = all(light.nearest), farthest = all(light.farthest);
     std::uint64_t met = 0;
     for (const float* cell = cells; cell < cells + 64 * cell_planes<depth_test>; cell += next_box) {
-        unsigned missed = bits(either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest)));
-        if constexpr (depth_test != DepthTest::interval) missed |= boxes_missed(cell, *light.spot);
-        met |= ~std::uint64_t{missed} & every_lane;
+        auto missed = either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest));
+        if constexpr (depth_test != DepthTest::interval) missed = either(missed, boxes_missed(cell, light));
+        met |= ~bits(missed) & every_lane;
     }
     return met;
 }
 
-/// The depths of all boxes of some tiles of a supertile.
-struct DepthRange {
-    float min, max;
-};
-
-/// Those of the vectors of tiles of which any is `lit`. Boxes have no NaN.
+/// The depths of all boxes of the vectors of tiles of which any is `lit`. Boxes have no NaN.
 template <DepthTest depth_test>
-LIGHTBIN_TARGET inline DepthRange depth_range(const float* cells, std::uint64_t lit) {
+LIGHTBIN_TARGET inline DepthInterval depth_range(const float* cells, std::uint64_t lit) {
     float min[lanes], max[lanes];
     Floats least = all(infinity), most = all(-infinity);
     for (unsigned place = 0; place < 64; place += lanes)
@@ -80,7 +64,7 @@ LIGHTBIN_TARGET inline DepthRange depth_range(const float* cells, std::uint64_t 
             }
     store_floats(min, least);
     store_floats(max, most);
-    DepthRange range = {min[0], max[0]};
+    DepthInterval range = {min[0], max[0]};
     for (std::uint32_t lane = 1; lane < lanes; ++lane)
         range = {min_of(range.min, min[lane]), max_of(range.max, max[lane])};
     return range;
@@ -142,7 +126,7 @@ LIGHTBIN_TARGET inline void make_tested(Light* to, const Camera& camera, const F
 template <Footprint footprint, DepthTest depth_test, bool spots, class Id>
 LIGHTBIN_TARGET inline std::uint32_t
 mask_64_lights(const BinJob<Id>& job, unsigned x, unsigned top, const float* cells, std::uint64_t lit,
-               const DepthRange& range, const ListId* lights, std::uint32_t first, const std::uint8_t* columns,
+               const DepthInterval& range, const ListId* lights, std::uint32_t first, const std::uint8_t* columns,
                const std::uint8_t* rows, std::uint32_t count, ListId* ids, std::uint64_t* words) {
     std::uint64_t met[64];
     if constexpr (depth_test != DepthTest::none) {
@@ -192,7 +176,7 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
     [[maybe_unused]] float arranged[cell_planes<depth_test> * 64];
     const float* cells = nullptr;
     std::uint64_t lit = ~std::uint64_t{0};
-    DepthRange range = {-infinity, infinity};
+    DepthInterval range = {-infinity, infinity};
     if constexpr (depth_test != DepthTest::none) {
         lit = arrange_cells<depth_test>(job, x, top, arranged);
         cells = arranged;
@@ -216,9 +200,9 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
 }
 
 /// Makes the words of a band's supertiles, in the form that step 3 takes. Lights in no tile of a list are taken out of
-/// it, where that is known of each by itself: by mask_lights(). Returns whether any is left.
+/// it, where that is known of each by itself: by mask_lights(). Returns where the words end, 0 if no light is left.
 template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>
-LIGHTBIN_TARGET bool make_words(const BinJob<Id>& job, Scratch& scratch, unsigned top,
+LIGHTBIN_TARGET std::uint32_t make_words(const BinJob<Id>& job, Scratch& scratch, unsigned top,
                                 const BandLists<ListId>& band, unsigned width) {
     constexpr bool worded = with_words<footprint, depth_test>;
     const std::uint32_t begin = store_no_words(scratch);
@@ -234,9 +218,9 @@ LIGHTBIN_TARGET bool make_words(const BinJob<Id>& job, Scratch& scratch, unsigne
         }
         list.words = used;
         if constexpr (by_slab)
-            used = store_slab_words<spots>(job, scratch, x, top, band, list);
+            used = store_slab_words(job, scratch, x, top, band, list);
         else
             used = store_words<worded, Id>(scratch, band, list);
     }
-    return used > begin;
+    return used > begin ? used : 0;
 }
