@@ -6,22 +6,21 @@
 //   bits, a bit a light, 1, 2 or 4 words a row; before them the running numbers of set bits.
 // - Longer ones: a word a tile, a bit a light, for each 64 lights.
 
-/// A vector's worth of place(0), place(1) ...
-template <class T, class Place> constexpr std::array<T, 64 / sizeof(T)> table_of(Place place) {
-    std::array<T, 64 / sizeof(T)> table = {};
+/// A vector's bytes: place(0), place(1) ...
+template <class Place> constexpr std::array<std::uint8_t, 64> table_of(Place place) {
+    std::array<std::uint8_t, 64> table = {};
     for (unsigned i = 0; i < table.size(); ++i)
-        table[i] = static_cast<T>(place(i));
+        table[i] = static_cast<std::uint8_t>(place(i));
     return table;
 }
 /// 0, 1, 2 ...
-inline constexpr auto byte_places = table_of<std::uint8_t>([](unsigned i) { return i; });
+inline constexpr auto byte_places = table_of([](unsigned i) { return i; });
 /// 0 eight times, 1 eight times ...
-inline constexpr auto eight_each = table_of<std::uint8_t>([](unsigned i) { return i / 8; });
+inline constexpr auto eight_each = table_of([](unsigned i) { return i / 8; });
 /// Permutation of 64 bytes that transposes 8x8 of them.
-inline constexpr auto byte_transpose = table_of<std::uint8_t>([](unsigned i) { return i % 8 * 8 + i / 8; });
-/// Permutation of two vectors that takes an element of each in turn, from the first half of both.
-template <class T>
-inline constexpr auto interleave = table_of<T>([](unsigned i) { return i / 2 + i % 2 * (64 / sizeof(T)); });
+inline constexpr auto byte_transpose = table_of([](unsigned i) { return i % 8 * 8 + i / 8; });
+/// Permutation of two vectors that takes a byte of each in turn, from the first half of both.
+inline constexpr auto interleave = table_of([](unsigned i) { return i / 2 + i % 2 * 64; });
 
 LIGHTBIN_TARGET inline __m512i load(const void* p) {
     return _mm512_loadu_si512(p);
@@ -29,15 +28,10 @@ LIGHTBIN_TARGET inline __m512i load(const void* p) {
 LIGHTBIN_TARGET inline void store(void* p, __m512i v) {
     _mm512_storeu_si512(p, v);
 }
-LIGHTBIN_TARGET inline __m512i halves(__m256i low, __m256i high) {
-    return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
-}
 
-/// Up to 64 ids of a list: the lower 16 bits of each in two vectors, and the upper ones that they share.
-///
-/// wide  some in the grid have upper bits
-template <bool wide> struct IdTable { __m512i low, high; };
-template <> struct IdTable<true> {
+/// Up to 64 ids of a list: the lower 16 bits of each in two vectors, and the upper ones that they share, read only where
+/// kernels are `wide`: some in the grid have upper bits.
+struct IdTable {
     __m512i low, high;
     std::uint32_t upper;
 };
@@ -52,18 +46,14 @@ struct GroupedIds {
 };
 
 /// Those of a group of 64.
-template <bool wide>
-LIGHTBIN_TARGET inline IdTable<wide> load_table(const GroupedIds& list, std::size_t group) {
+LIGHTBIN_TARGET inline IdTable load_table(const GroupedIds& list, std::size_t group) {
     const std::uint16_t* const ids = list.ids + 64 * group;
-    if constexpr (wide)
-        return {load(ids), load(ids + 32), list.blocks[list.group_blocks[group]].upper};
-    else
-        return {load(ids), load(ids + 32)};
+    return {load(ids), load(ids + 32), list.blocks[list.group_blocks[group]].upper};
 }
 
 /// The lower 16 bits of the ids at 32 places of a table with up to `lights`.
-template <unsigned lights, bool wide>
-LIGHTBIN_TARGET inline __m512i look_up(const IdTable<wide>& table, __m256i places) {
+template <unsigned lights>
+LIGHTBIN_TARGET inline __m512i look_up(const IdTable& table, __m256i places) {
     const __m512i at = _mm512_cvtepu8_epi16(places);
     return lights <= 32 ? _mm512_permutexvar_epi16(at, table.low)
                         : _mm512_permutex2var_epi16(table.low, at, table.high);
@@ -71,7 +61,7 @@ LIGHTBIN_TARGET inline __m512i look_up(const IdTable<wide>& table, __m256i place
 
 /// Stores the ids at 32 places of a table with up to `lights`.
 template <unsigned lights, bool wide, class Id>
-LIGHTBIN_TARGET inline void store_32(Id* to, const IdTable<wide>& table, __m256i places) {
+LIGHTBIN_TARGET inline void store_32(Id* to, const IdTable& table, __m256i places) {
     const __m512i ids = look_up<lights>(table, places);
     if constexpr (sizeof(Id) == 2) {
         store(to, ids);
@@ -91,13 +81,13 @@ LIGHTBIN_TARGET inline void store_32(Id* to, const IdTable<wide>& table, __m256i
 /// Appends the ids of a table with up to `lights` whose bit is set, of one tile after another, `lights` bits each;
 /// then more that mean nothing. Returns how many.
 template <unsigned lights, bool wide, class Id>
-LIGHTBIN_TARGET inline std::uint32_t append(Id* to, std::uint64_t lit, const IdTable<wide>& table) {
+LIGHTBIN_TARGET inline std::uint32_t append(Id* to, std::uint64_t lit, const IdTable& table) {
     const std::uint32_t count = static_cast<std::uint32_t>(std::popcount(lit));
     const __m512i numbers =
         _mm512_and_si512(load(byte_places.data()), _mm512_set1_epi8(static_cast<char>(lights - 1)));
     const __m512i places = compressed_bytes(lit, numbers);
-    store_32<lights>(to, table, _mm512_castsi512_si256(places));
-    if (count > 32) store_32<lights>(to + 32, table, _mm512_extracti64x4_epi64(places, 1));
+    store_32<lights, wide>(to, table, _mm512_castsi512_si256(places));
+    if (count > 32) store_32<lights, wide>(to + 32, table, _mm512_extracti64x4_epi64(places, 1));
     return count;
 }
 
@@ -115,9 +105,9 @@ LIGHTBIN_TARGET inline __m512i transpose_bits(__m512i x) {
     return swap_bits<28>(x, 0x00000000f0f0f0f0);
 }
 
-/// Short lists: `eights` = 1, 2 or 4 vectors of 8 lights' words, a bit per tile. For each row of the supertile stores,
-/// after one another, the 8 tiles' bits, a bit a light: `eights` words a row. Before them, for each row, 8 bytes: the
-/// running number of set bits up to and with each tile, at most 248.
+/// Short lists: one or two vectors of 8 lights' words, a bit per tile. For each row of the supertile stores, after one
+/// another, the 8 tiles' bits, a bit a light: `eights` words a row. Before them, for each row, 8 bytes: the running number
+/// of set bits up to and with each tile, at most 248.
 template <unsigned eights>
 LIGHTBIN_TARGET inline void store_short_words(__m512i (&lights)[eights], std::uint64_t* to) {
     for (__m512i& v : lights)  // a word a row, a byte per tile
@@ -127,31 +117,15 @@ LIGHTBIN_TARGET inline void store_short_words(__m512i (&lights)[eights], std::ui
         store(to + 8, lights[0]);
         sums = _mm512_popcnt_epi8(lights[0]);
     } else {
-        const __m512i bytes = load(interleave<std::uint8_t>.data()),
-                      more_bytes = _mm512_add_epi8(bytes, _mm512_set1_epi8(32));
+        const __m512i bytes = load(interleave.data());
         const __m512i low = _mm512_permutex2var_epi8(lights[0], bytes, lights[1]),
-                      high = _mm512_permutex2var_epi8(lights[0], more_bytes, lights[1]);
-        if constexpr (eights == 2) {
-            store(to + 8, low);
-            store(to + 16, high);
-            sums = halves(_mm512_cvtepi16_epi8(_mm512_popcnt_epi16(low)),
-                          _mm512_cvtepi16_epi8(_mm512_popcnt_epi16(high)));
-        } else {
-            const __m512i low2 = _mm512_permutex2var_epi8(lights[2], bytes, lights[3]),
-                          high2 = _mm512_permutex2var_epi8(lights[2], more_bytes, lights[3]);
-            const __m512i pairs = load(interleave<std::uint16_t>.data()),
-                          more_pairs = _mm512_add_epi16(pairs, _mm512_set1_epi16(16));
-            const __m512i rows[] = {_mm512_permutex2var_epi16(low, pairs, low2),
-                                    _mm512_permutex2var_epi16(low, more_pairs, low2),
-                                    _mm512_permutex2var_epi16(high, pairs, high2),
-                                    _mm512_permutex2var_epi16(high, more_pairs, high2)};
-            __m128i sum[4];
-            for (unsigned i = 0; i < 4; ++i) {
-                store(to + 8 + 8 * i, rows[i]);
-                sum[i] = _mm512_cvtepi32_epi8(_mm512_popcnt_epi32(rows[i]));
-            }
-            sums = halves(_mm256_set_m128i(sum[1], sum[0]), _mm256_set_m128i(sum[3], sum[2]));
-        }
+                      high = _mm512_permutex2var_epi8(lights[0], _mm512_add_epi8(bytes, _mm512_set1_epi8(32)),
+                                                      lights[1]);
+        store(to + 8, low);
+        store(to + 16, high);
+        sums = _mm512_inserti64x4(
+            _mm512_castsi256_si512(_mm512_cvtepi16_epi8(_mm512_popcnt_epi16(low))),
+            _mm512_cvtepi16_epi8(_mm512_popcnt_epi16(high)), 1);
     }
     sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 8));
     sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 16));
@@ -293,15 +267,19 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
     const std::uint64_t* masks = scratch.masks.data();
     const std::uint8_t* columns = scratch.list_columns.data() + list.begin;
     const std::uint8_t* rows = scratch.list_rows.data() + list.begin;
-    if (count <= 8)
+    if (count <= 8) {
         store_short_words<with_words, 1>(masks, columns, rows, count, words);
-    else if (count <= 16)
+    } else if (count <= 16) {
         store_short_words<with_words, 2>(masks, columns, rows, count, words);
-    else if (count < 32)
-        store_short_words<with_words, 4>(masks, columns, rows, count, words);
-    else
+    } else if (count < 32) {
+        std::uint64_t tiles[64];
+        store_64_words<with_words>(masks, columns, rows, count, tiles);
+        for (unsigned row = 0; row < 8; ++row)
+            store_short_row<4>(load(tiles + 8 * row), row, words);
+    } else {
         for (std::uint32_t i = 0; i < count; i += 64)
             store_64_words<with_words>(masks + i, columns + i, rows + i, count - i, words + i);
+    }
     return end;
 }
 
@@ -341,7 +319,7 @@ LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scr
 template <unsigned eights, bool wide, class Id>
 LIGHTBIN_TARGET inline std::uint32_t append_row(Id* to, ListRange* tiles, __mmask8 columns, std::uint32_t at,
                                                 const std::uint64_t* words, unsigned row,
-                                                const IdTable<wide>& table) {
+                                                const IdTable& table) {
     // Tiles are pairs of 32 bits, offset and count: the difference of running sums.
     const std::uint64_t sums = words[row];
     const __m512i ends = _mm512_cvtepu8_epi64(_mm_cvtsi64_si128(static_cast<long long>(sums))),
@@ -350,7 +328,7 @@ LIGHTBIN_TARGET inline std::uint32_t append_row(Id* to, ListRange* tiles, __mmas
                              _mm512_or_si512(_mm512_add_epi32(begins, _mm512_set1_epi64(at)),
                                              _mm512_slli_epi64(_mm512_sub_epi64(ends, begins), 32)));
     for (unsigned i = 0; i < eights; ++i)  // a word has 8 / eights tiles
-        to += append<8 * eights>(to, words[8 + eights * row + i], table);
+        to += append<8 * eights, wide>(to, words[8 + eights * row + i], table);
     return static_cast<std::uint32_t>(sums >> 56);
 }
 
@@ -362,12 +340,12 @@ LIGHTBIN_TARGET inline std::uint32_t append_tiles(Id* to, ListRange* tiles, unsi
                                                   std::uint32_t lights) {
     const Id* const begin = to;
     const std::size_t groups = up_to_64 ? 1 : (lights + std::size_t{63}) / 64;
-    const IdTable<wide> first = load_table<wide>(ids, 0);
+    const IdTable first = load_table(ids, 0);
     for (unsigned column = 0; column < columns; ++column) {
         const Id* const from = to;
         for (std::size_t group = 0; group < groups; ++group)
-            to += append<64>(to, words[64 * group + column],
-                             up_to_64 ? first : load_table<wide>(ids, group));
+            to += append<64, wide>(to, words[64 * group + column],
+                             up_to_64 ? first : load_table(ids, group));
         const std::uint32_t count = static_cast<std::uint32_t>(to - from);
         tiles[column] = {at, count};
         at += count;
@@ -392,11 +370,11 @@ LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsi
         const __mmask8 stored = static_cast<__mmask8>(0xff >> (8 - columns));
         std::uint32_t count;
         if (lights <= 8)
-            count = append_row<1>(out, tiles, stored, at, words, row, load_table<wide>(ids, 0));
+            count = append_row<1, wide>(out, tiles, stored, at, words, row, load_table(ids, 0));
         else if (lights <= 16)
-            count = append_row<2>(out, tiles, stored, at, words, row, load_table<wide>(ids, 0));
+            count = append_row<2, wide>(out, tiles, stored, at, words, row, load_table(ids, 0));
         else if (lights < 32)
-            count = append_row<4>(out, tiles, stored, at, words, row, load_table<wide>(ids, 0));
+            count = append_row<4, wide>(out, tiles, stored, at, words, row, load_table(ids, 0));
         else if (lights <= 64)
             count = append_tiles<wide, true>(out, tiles, columns, at, words + 8 * row, ids, lights);
         else
