@@ -74,8 +74,8 @@ LIGHTBIN_TARGET std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, u
             const Floats min = load_floats(sides[0] + column), max = load_floats(sides[1] + column);
             lit |= (~std::uint64_t{bits(less(max, min))} & ((1u << lanes) - 1)) << place;
             if constexpr (depth_test == DepthTest::interval) {
-                store_floats(cells + place, min);
-                store_floats(cells + 64 + place, max);
+                store_floats(cells + place, greater(min, all(-infinity)));  // NaN tests nothing
+                store_floats(cells + 64 + place, lesser(max, all(infinity)));
             } else {
                 const unsigned at_x = 8 * x + column, at_y = top + row;
                 store_boxes<depth_test>(*job.camera, cells + place, load_floats(job.edges[0] + at_x),

@@ -21,7 +21,7 @@
 // for step 3, emit.inl,
 //   transpose_words                as in portable.hpp, or that
 //   Packed, packs_ids, append      ids in the form that append() takes, see portable.hpp and sse2.hpp
-//   append_lights                  with vectors of bytes: the same of ids and columns, for pick_rows.inl
+//   append_lights                  with vectors of bytes: the same of ids and columns
 // or
 //   LIGHTBIN_TIER_COMPRESSES       defined: emits by emit_compress.inl; scatters, arranges cells and
 //                                  writes bits as AVX2 does; load_listed_spheres as in cells.inl
@@ -70,10 +70,6 @@
 #include <lightbin/detail/cells.inl>
 
 #include <lightbin/detail/slab.inl>
-
-#if defined(LIGHTBIN_TIER_HAS_BYTES)
-#include <lightbin/detail/pick_rows.inl>
-#endif
 
 #include <lightbin/detail/emit.inl>
 #endif

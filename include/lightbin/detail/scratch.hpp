@@ -57,7 +57,7 @@ struct Scratch {
     SlabBoxes slab;
     Buffer<float> slab_ends;
 
-    // Of a list, those picked for a row, see pick_rows.inl.
+    // Of a list, those picked for a row, see emit.inl.
     Buffer<std::uint32_t> row_ids;
     Buffer<std::uint8_t> row_columns;
     Buffer<std::uint64_t> row_words;

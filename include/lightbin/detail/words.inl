@@ -38,7 +38,7 @@ LIGHTBIN_TARGET LIGHTBIN_INLINE auto boxes_missed(const float* cell, const Teste
     return missed;
 }
 
-/// Of the first `lanes` tiles of `cells`, those whose Z bounds or boxes the light meets. NaN tests nothing.
+/// Of the first `lanes` tiles of `cells`, those whose Z bounds or boxes the light meets.
 template <DepthTest depth_test, class Light>
 LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const Light& light) {
     const Floats nearest = all(light.nearest), farthest = all(light.farthest);
@@ -51,7 +51,14 @@ LIGHTBIN_TARGET inline std::uint64_t tiles_met(const float* cells, const Light& 
     return met;
 }
 
-/// The depths of all boxes of the vectors of tiles of which any is `lit`. Boxes have no NaN.
+/// What a depth test has to know of a supertile's tiles, see arrange_cells().
+template <DepthTest depth_test> struct TestedTiles {
+    float cells[64 * cell_planes<depth_test>];
+    std::uint64_t lit;     ///< a bit for each tile that has anything to light
+    DepthInterval depths;  ///< of all boxes
+};
+
+/// The depths of all boxes of the vectors of tiles of which any is `lit`.
 template <DepthTest depth_test>
 LIGHTBIN_TARGET inline DepthInterval depth_range(const float* cells, std::uint64_t lit) {
     float min[lanes], max[lanes];
@@ -74,14 +81,14 @@ LIGHTBIN_TARGET inline DepthInterval depth_range(const float* cells, std::uint64
 /// a vector count if any of them is in the rectangle. A vector of tiles stays in registers while its lights pass: loops
 /// over a light's few vectors would be mispredicted once a light.
 template <DepthTest depth_test, class Light>
-LIGHTBIN_TARGET inline void meet_tiles(const float* cells, std::uint64_t lit, const Light* lights,
+LIGHTBIN_TARGET inline void meet_tiles(const TestedTiles<depth_test>& tiles, const Light* lights,
                                        const std::uint8_t* columns, const std::uint8_t* rows,
                                        std::uint64_t some, std::uint64_t* met) {
     std::uint64_t in_column[8], in_row[8];
     split_bits(columns, in_column);
     split_bits(rows, in_row);
     for (unsigned place = 0; place < 64; place += lanes) {
-        if ((lit >> place & every_lane) == 0) continue;
+        if ((tiles.lit >> place & every_lane) == 0) continue;
         std::uint64_t in_rows = 0, in_columns = 0;
         for (unsigned lane = 0; lane < lanes; lane += 8)
             in_rows |= in_row[(place + lane) / 8];
@@ -89,7 +96,7 @@ LIGHTBIN_TARGET inline void meet_tiles(const float* cells, std::uint64_t lit, co
             in_columns |= in_column[place % 8 + lane];
         for (std::uint64_t rest = in_rows & in_columns & some; rest != 0; rest &= rest - 1) {
             const unsigned light = static_cast<unsigned>(std::countr_zero(rest));
-            met[light] |= tiles_met<depth_test>(cells + place, lights[light]) << place;
+            met[light] |= tiles_met<depth_test>(tiles.cells + place, lights[light]) << place;
         }
     }
 }
@@ -109,42 +116,39 @@ LIGHTBIN_TARGET inline std::uint64_t silhouette_tiles(const FootprintArrays& lig
     return tiles & spanned;
 }
 
-/// Makes at `to` the light `id` as a depth test sees it: in its place, as a copy of what was written in parts has to wait
-/// for them.
-template <class Light>
-LIGHTBIN_TARGET inline void make_tested(Light* to, const Camera& camera, const FootprintArrays& lights,
-                                        std::uint32_t id) {
-    if constexpr (std::is_same_v<Light, TestedLight>)
-        std::construct_at(to, camera, load_sphere(lights.spheres + id));
-    else
-        std::construct_at(to, camera, lights.spots[id]);
-}
-
 /// Makes the words of up to 64 lights of a supertile, given by visible index, counted from `first`, with the columns
 /// and rows that they cover; and ids of their indices. Lights that are in none of the tiles are dropped. Returns how
 /// many are left. `ids` may be `lights`, or before it.
 template <Footprint footprint, DepthTest depth_test, bool spots, class Id>
 LIGHTBIN_TARGET inline std::uint32_t
-mask_64_lights(const BinJob<Id>& job, unsigned x, unsigned top, const float* cells, std::uint64_t lit,
-               const DepthInterval& range, const ListId* lights, std::uint32_t first, const std::uint8_t* columns,
-               const std::uint8_t* rows, std::uint32_t count, ListId* ids, std::uint64_t* words) {
+mask_64_lights(const BinJob<Id>& job, unsigned x, unsigned top,
+               [[maybe_unused]] const TestedTiles<depth_test>& cells, const ListId* lights, std::uint32_t first,
+               const std::uint8_t* columns, const std::uint8_t* rows, std::uint32_t count, ListId* ids,
+               std::uint64_t* words) {
     std::uint64_t met[64];
     if constexpr (depth_test != DepthTest::none) {
         Tested<spots> tested[64];
         std::uint64_t in_range = 0;
         for (std::uint32_t j = 0; j < count; ++j) {
-            make_tested(tested + j, *job.camera, job.lights, job.lights.ids[first + lights[j]]);
+            const std::uint32_t id = job.lights.ids[first + lights[j]];
+            // In its place, as a copy of what was written in parts has to wait for them.
+            if constexpr (spots)
+                std::construct_at(tested + j, *job.camera, job.lights.spots[id]);
+            else
+                std::construct_at(tested + j, *job.camera, load_sphere(job.lights.spheres + id));
             met[j] = 0;
-            const bool missed = (tested[j].farthest < range.min) | (range.max < tested[j].nearest);
+            // Most lights that miss all tiles are beyond all of them.
+            const bool missed =
+                (tested[j].farthest < cells.depths.min) | (cells.depths.max < tested[j].nearest);
             in_range |= std::uint64_t{!missed} << j;
         }
-        if (in_range != 0) meet_tiles<depth_test>(cells, lit, tested, columns, rows, in_range, met);
+        if (in_range != 0) meet_tiles(cells, tested, columns, rows, in_range, met);
     }
     std::uint32_t left = 0;
     for (std::uint32_t j = 0; j < count; ++j) {
         const std::uint32_t light = first + lights[j];
         std::uint64_t tiles = spread_rows(rows[j]) & columns[j] * std::uint64_t{0x0101010101010101};
-        if constexpr (depth_test != DepthTest::none) tiles &= met[j] & lit;
+        if constexpr (depth_test != DepthTest::none) tiles &= met[j] & cells.lit;
         if constexpr (footprint == Footprint::silhouette)
             tiles = silhouette_tiles(job.lights, light, x, top, tiles);
         ids[left] = static_cast<ListId>(job.lights.ids[light]);
@@ -173,15 +177,10 @@ inline std::uint32_t begin_group(const Scratch& scratch, const SupertileList& li
 template <Footprint footprint, DepthTest depth_test, bool spots, class Id>
 LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratch, unsigned x, unsigned top,
                                           const SupertileList& list, ListId* all_lights) {
-    [[maybe_unused]] float arranged[cell_planes<depth_test> * 64];
-    const float* cells = nullptr;
-    std::uint64_t lit = ~std::uint64_t{0};
-    DepthInterval range = {-infinity, infinity};
+    TestedTiles<depth_test> cells;
     if constexpr (depth_test != DepthTest::none) {
-        lit = arrange_cells<depth_test>(job, x, top, arranged);
-        cells = arranged;
-        // Most lights that miss all tiles are beyond all of them. The interval test is itself not more than this.
-        if constexpr (depth_test != DepthTest::interval) range = depth_range<depth_test>(cells, lit);
+        cells.lit = arrange_cells<depth_test>(job, x, top, cells.cells);
+        cells.depths = depth_range<depth_test>(cells.cells, cells.lit);
     }
     const std::uint8_t* columns = scratch.list_columns.data() + list.begin;
     const std::uint8_t* rows = scratch.list_rows.data() + list.begin;
@@ -192,9 +191,8 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
         const std::uint32_t count = min_of(list.count - begin, 64u);
         std::uint32_t first = 0;
         if constexpr (sizeof(ListId) == 2) first = begin_group(scratch, list, begin, left, masks);
-        left += mask_64_lights<footprint, depth_test, spots>(job, x, top, cells, lit, range, lights + begin, first,
-                                                      columns + begin, rows + begin, count, lights + left,
-                                                      masks + left);
+        left += mask_64_lights<footprint, depth_test, spots>(job, x, top, cells, lights + begin, first, columns + begin,
+                                                             rows + begin, count, lights + left, masks + left);
     }
     return left;
 }
@@ -203,7 +201,7 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
 /// it, where that is known of each by itself: by mask_lights(). Returns where the words end, 0 if no light is left.
 template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>
 LIGHTBIN_TARGET std::uint32_t make_words(const BinJob<Id>& job, Scratch& scratch, unsigned top,
-                                const BandLists<ListId>& band, unsigned width) {
+                                         const BandLists<ListId>& band, unsigned width) {
     constexpr bool worded = with_words<footprint, depth_test>;
     const std::uint32_t begin = store_no_words(scratch);
     std::uint32_t used = begin;
