@@ -43,7 +43,7 @@ list() {
     mutant spots detail/spot_lanes.inl 's/(off + mul(spots.radius, move.bend))/off/'
     mutant spots detail/wedge.inl 's/radius \* 0x1p-19 \/ widened(cosine, half)/all(0.0)/'
     mutant spots detail/wedge.inl 's/: -aside\[i\]) - back\[i\];/: -aside[i]) + back[i];/'
-    mutant spots detail/slab.inl 's/select(less(normal, all(0.0f)), all(high), all(low))/select(less(normal, all(0.0f)), all(low), all(high))/'
+    mutant spots detail/words.inl 's/spot.corners\[i\]\[1\]), all(plane.y))/spot.corners[i][1]), all(plane.x))/'
     mutant spots detail/world_to_view.hpp 's/least = min_of(least, 2 \* diagonal - row_sum);/least = max_of(square, row_sum);/'
     mutant least_spheres spot.hpp 's/axis_length;/(axis_length * (1 + 0x1p-18));/'
     # Projection.
@@ -62,6 +62,7 @@ list() {
     mutant families detail/cells.inl 's/select(less(edges, all(0.0f)), back, front)/select(less(all(0.0f), edges), back, front)/'
     mutant families detail/cells.inl 's/select(both(gap, less(z0, gap_max)), gap_max, z0)/select(both(gap, less(z0, gap_max)), gap_max, z1)/'
     mutant families detail/words.inl 's/either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest))/either(less(nearest, load_floats(cell)), less(load_floats(cell + 64), nearest))/'
+    mutant families detail/cells.inl 's/greater(min, all(-infinity))/min/'
     # Lists.
     mutant families detail/lists_insert.inl 's/(rows.last \/ 8 + 1) \* pitch/(rows.last \/ 8) * pitch/'
     mutant families detail/lists_insert.inl 's/to.put(list\[1\], id, column_bits >> 8, row_bits);/to.put(list[1], id, column_bits >> 7, row_bits);/'
@@ -70,7 +71,7 @@ list() {
     mutant families detail/lists_scan.inl 's/const ByteMask chosen = not_zero(here) & first_bytes(end - at);/const ByteMask chosen = not_zero(here);/'
     # Words and entries.
     mutant families detail/words.inl 's/span.first < 8 \* x + 8 \&\& span.last >= 8 \* x;/span.first < 8 * x + 8 \&\& span.last > 8 * x;/'
-    mutant families detail/emit.inl 's/if (count > 8) out += append(out, ids + 8, bytes\[64\]);/if (count > 9) out += append(out, ids + 8, bytes[64]);/'
+    mutant families detail/emit.inl 's/if (count <= 16) return out;/if (count <= 17) return out;/'
     mutant families detail/emit_compress.inl 's/if (count > 32) store_32/if (count > 33) store_32/'
     mutant families detail/emit_compress.inl 's/else if (count < 32)/else if (count <= 32)/'
     # Scattering, and the caller's threads.
@@ -82,7 +83,7 @@ list() {
     mutant clusters detail/slice_table.hpp 's/return boundary < nearest;/return boundary <= nearest;/'
     mutant clusters detail/slice_places.inl 's/all(to.begin), all(to.scale))/all(to.begin), all(to.scale)) + all(1.0f)/'
     mutant clusters detail/slab.inl 's/all(1 + 0x1p-20f)) + all(0x1p-125f)/all(1 - 0x1p-20f))/'
-    mutant clusters detail/slab.inl 's/z - all(slab.z1)), all(0.0f))/all(slab.z1) - z), all(0.0f))/'
+    mutant clusters detail/slab.inl 's/slab.z0, slab.z1)}/slab.z0, slab.z0)}/'
     mutant clusters sliced_footprints.hpp 's/slice = met->first + 2; slice <= met->last/slice = met->first + 2; slice < met->last/'
 }
 

@@ -209,7 +209,7 @@ TEST_CASE("interval: minimum, maximum, both, each as [z - r, z + r] against the 
 }
 
 TEST_CASE("a NaN bound tests nothing; infinite bounds mean what they say") {
-    const View view = test::view({320, 200}, 32);
+    const View view = test::view({320, 256}, 32);
     const std::size_t tiles = view.tile_count();
     const std::vector<glm::vec4> lights = {{0, 0, -5, 1}, {0, 0, 0, HUGE_VALF}};
     const auto everywhere = test::lists(view, lights);
@@ -220,6 +220,17 @@ TEST_CASE("a NaN bound tests nothing; infinite bounds mean what they say") {
           0);  // empty tiles
     CHECK(test::entries(test::lists<by_interval>(view, lights, ZBounds{.min = inf, .max = inf})) ==
           tiles);  // the infinite one
+
+    // A tile of NaN among others of which all are in front of the light, or behind it.
+    const std::size_t middle = 45;  // of 10 x 8
+    REQUIRE(everywhere[middle].size() == 2);
+    for (const float depth : {2.0f, 8.0f}) {
+        std::vector<float> min(tiles, depth), max(tiles, depth + 1);
+        min[middle] = max[middle] = std::nanf("");
+        const auto lists = test::lists<by_interval>(view, std::vector(1, lights[0]), ZBounds{.min = min, .max = max});
+        CHECK(lists[middle].size() == 1);
+        CHECK(test::entries(lists) == 1);
+    }
 }
 
 TEST_CASE("transparency lists: one call gives what two Binners give") {

@@ -260,7 +260,7 @@ inline std::uint32_t words_of(std::uint32_t count) {
 
 /// Stores the words of a list at list.words of scratch.words. Returns where they end.
 template <bool with_words, class Id>
-LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLists<ListId>& band,
+LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLists<ListId>&,
                                                  const SupertileList& list) {
     const std::uint32_t count = list.count, end = list.words + words_of(count);
     std::uint64_t* const words = scratch.words.reserve(end, list.words) + list.words;
