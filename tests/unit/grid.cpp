@@ -227,7 +227,8 @@ TEST_CASE("a NaN bound tests nothing; infinite bounds mean what they say") {
     for (const float depth : {2.0f, 8.0f}) {
         std::vector<float> min(tiles, depth), max(tiles, depth + 1);
         min[middle] = max[middle] = std::nanf("");
-        const auto lists = test::lists<by_interval>(view, std::vector(1, lights[0]), ZBounds{.min = min, .max = max});
+        const auto lists =
+            test::lists<by_interval>(view, std::vector(1, lights[0]), ZBounds{.min = min, .max = max});
         CHECK(lists[middle].size() == 1);
         CHECK(test::entries(lists) == 1);
     }

@@ -19,10 +19,11 @@ LIGHTBIN_TARGET std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scra
     ListedBands listed;
     std::uint64_t entries = 0;
     for (unsigned top = bands.begin; top < bands.end; top += 8) {
-        const BandLists<ListId> band =
-            make_lists < with_words<footprint, depth_test> && !slab > (job, scratch, bands, top, width, listed);
+        const BandLists<ListId> band = make_lists < with_words<footprint, depth_test> &&
+                                       !slab > (job, scratch, bands, top, width, listed);
         if (band.lists == nullptr) continue;
-        const std::uint32_t end = make_words<footprint, depth_test, slab, spots>(job, scratch, top, band, width);
+        const std::uint32_t end =
+            make_words<footprint, depth_test, slab, spots>(job, scratch, top, band, width);
         for (std::uint32_t i = 0; i < end; ++i)
             entries += static_cast<unsigned>(std::popcount(scratch.words.data()[i]));
     }

@@ -61,8 +61,9 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
 }
 
 /// Of 8 lights at most, those that miss the boxes of a supertile: a byte per tile, a bit a light.
-LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SupertileBoxes& boxes, const Sphere* spheres,
-                                         const ListId* ids, std::uint32_t count, std::uint64_t* words) {
+LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SupertileBoxes& boxes,
+                                         const Sphere* spheres, const ListId* ids, std::uint32_t count,
+                                         std::uint64_t* words) {
     const float* const(&ends)[4] = boxes.slab.ends;
     fill_items(words, 8, 0);
     for (std::uint32_t first = 0; first < 8 && first < count; first += lanes) {
@@ -71,8 +72,9 @@ LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SupertileBo
         for (unsigned column = 0; column < 8; ++column)
             store_floats(by_column[column], distance2(lights.x, ends[0][column], ends[1][column]));
         for (unsigned row = 0; row < boxes.rows; ++row)
-            words[row] |= bits_of_8_less(lights.left - distance2(lights.y, ends[2][row], ends[3][row]), by_column[0])
-                          << first;
+            words[row] |=
+                bits_of_8_less(lights.left - distance2(lights.y, ends[2][row], ends[3][row]), by_column[0])
+                << first;
     }
 }
 
@@ -151,7 +153,7 @@ append_tiles(Id* out, ListRange* tiles, std::ptrdiff_t columns, std::uint32_t at
         Id* const from = out;
         if constexpr (with_words)
             out = append_tile(out, ids, count,
-                                      reinterpret_cast<const std::uint8_t*>(words) + 8 * row + byte_place(column));
+                              reinterpret_cast<const std::uint8_t*>(words) + 8 * row + byte_place(column));
         else
             out = append_tile<up_to_64>(out, ids, count, words + column, words + 8 + row);
         const std::uint32_t lights = static_cast<std::uint32_t>(out - from);
@@ -162,9 +164,9 @@ append_tiles(Id* out, ListRange* tiles, std::ptrdiff_t columns, std::uint32_t at
 }
 
 #if defined(LIGHTBIN_TIER_HAS_BYTES)
-/// Of a long list whose lights cover few of its rows, those of a row are picked first, and the row's 8 tiles are made of
-/// them: where that is faster, replaces a supertile's list, its ids and words by those of its lights in a row. In their
-/// words that row has all of them.
+/// Of a long list whose lights cover few of its rows, those of a row are picked first, and the row's 8 tiles are made
+/// of them: where that is faster, replaces a supertile's list, its ids and words by those of its lights in a row. In
+/// their words that row has all of them.
 LIGHTBIN_TARGET LIGHTBIN_NOINLINE inline void pick_row(Scratch& scratch, const SupertileList& list,
                                                        unsigned row, const std::uint32_t*& ids,
                                                        const std::uint64_t*& words, std::uint32_t& count) {

@@ -29,8 +29,8 @@ LIGHTBIN_TARGET inline void store(void* p, __m512i v) {
     _mm512_storeu_si512(p, v);
 }
 
-/// Up to 64 ids of a list: the lower 16 bits of each in two vectors, and the upper ones that they share, read only where
-/// kernels are `wide`: some in the grid have upper bits.
+/// Up to 64 ids of a list: the lower 16 bits of each in two vectors, and the upper ones that they share. These are
+/// read only by functions that are `wide`: some ids of the grid have upper bits.
 struct IdTable {
     __m512i low, high;
     std::uint32_t upper;
@@ -41,8 +41,6 @@ struct GroupedIds {
     const std::uint16_t* ids;
     const std::uint32_t* group_blocks;
     const IdBlock* blocks;
-
-    GroupedIds from(std::uint32_t place) const { return {ids + place, group_blocks + place / 64, blocks}; }
 };
 
 /// Those of a group of 64.
@@ -51,18 +49,12 @@ LIGHTBIN_TARGET inline IdTable load_table(const GroupedIds& list, std::size_t gr
     return {load(ids), load(ids + 32), list.blocks[list.group_blocks[group]].upper};
 }
 
-/// The lower 16 bits of the ids at 32 places of a table with up to `lights`.
-template <unsigned lights>
-LIGHTBIN_TARGET inline __m512i look_up(const IdTable& table, __m256i places) {
-    const __m512i at = _mm512_cvtepu8_epi16(places);
-    return lights <= 32 ? _mm512_permutexvar_epi16(at, table.low)
-                        : _mm512_permutex2var_epi16(table.low, at, table.high);
-}
-
 /// Stores the ids at 32 places of a table with up to `lights`.
 template <unsigned lights, bool wide, class Id>
 LIGHTBIN_TARGET inline void store_32(Id* to, const IdTable& table, __m256i places) {
-    const __m512i ids = look_up<lights>(table, places);
+    const __m512i at = _mm512_cvtepu8_epi16(places);
+    const __m512i ids = lights <= 32 ? _mm512_permutexvar_epi16(at, table.low)
+                                     : _mm512_permutex2var_epi16(table.low, at, table.high);
     if constexpr (sizeof(Id) == 2) {
         store(to, ids);
     } else {
@@ -105,35 +97,9 @@ LIGHTBIN_TARGET inline __m512i transpose_bits(__m512i x) {
     return swap_bits<28>(x, 0x00000000f0f0f0f0);
 }
 
-/// Short lists: one or two vectors of 8 lights' words, a bit per tile. For each row of the supertile stores, after one
-/// another, the 8 tiles' bits, a bit a light: `eights` words a row. Before them, for each row, 8 bytes: the running number
-/// of set bits up to and with each tile, at most 248.
-template <unsigned eights>
-LIGHTBIN_TARGET inline void store_short_words(__m512i (&lights)[eights], std::uint64_t* to) {
-    for (__m512i& v : lights)  // a word a row, a byte per tile
-        v = transpose_bits(_mm512_permutexvar_epi8(load(byte_transpose.data()), v));
-    __m512i sums;
-    if constexpr (eights == 1) {
-        store(to + 8, lights[0]);
-        sums = _mm512_popcnt_epi8(lights[0]);
-    } else {
-        const __m512i bytes = load(interleave.data());
-        const __m512i low = _mm512_permutex2var_epi8(lights[0], bytes, lights[1]),
-                      high = _mm512_permutex2var_epi8(lights[0], _mm512_add_epi8(bytes, _mm512_set1_epi8(32)),
-                                                      lights[1]);
-        store(to + 8, low);
-        store(to + 16, high);
-        sums = _mm512_inserti64x4(
-            _mm512_castsi256_si512(_mm512_cvtepi16_epi8(_mm512_popcnt_epi16(low))),
-            _mm512_cvtepi16_epi8(_mm512_popcnt_epi16(high)), 1);
-    }
-    sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 8));
-    sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 16));
-    sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 32));
-    store(to, sums);
-}
-
-/// The same for a list given by the words of its lights, or by their columns and rows.
+/// The words of a list of up to 8 or 16 lights, given by the words of its lights or by their columns and rows. For each
+/// row of the supertile stores, after one another, the 8 tiles' bits, a bit a light: `eights` words a row. Before them,
+/// for each row, 8 bytes: the running number of set bits up to and with each tile, at most 248.
 template <bool with_words, unsigned eights>
 LIGHTBIN_TARGET inline void store_short_words(const std::uint64_t* masks, const std::uint8_t* columns,
                                               const std::uint8_t* rows, std::uint32_t count,
@@ -152,8 +118,26 @@ LIGHTBIN_TARGET inline void store_short_words(const std::uint64_t* masks, const 
                 _mm512_add_epi8(load(eight_each.data()), _mm512_set1_epi8(static_cast<char>(8 * i))),
                 load(columns));
         }
+        // From a word a light, a bit per tile, to a word a row, a byte per tile.
+        lights[i] = transpose_bits(_mm512_permutexvar_epi8(load(byte_transpose.data()), lights[i]));
     }
-    store_short_words(lights, to);
+    __m512i sums;
+    if constexpr (eights == 1) {
+        store(to + 8, lights[0]);
+        sums = _mm512_popcnt_epi8(lights[0]);
+    } else {
+        const __m512i bytes = load(interleave.data()), more = _mm512_add_epi8(bytes, _mm512_set1_epi8(32));
+        const __m512i low = _mm512_permutex2var_epi8(lights[0], bytes, lights[1]),
+                      high = _mm512_permutex2var_epi8(lights[0], more, lights[1]);
+        store(to + 8, low);
+        store(to + 16, high);
+        sums = _mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtepi16_epi8(_mm512_popcnt_epi16(low))),
+                                  _mm512_cvtepi16_epi8(_mm512_popcnt_epi16(high)), 1);
+    }
+    sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 8));
+    sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 16));
+    sums = _mm512_add_epi8(sums, _mm512_slli_epi64(sums, 32));
+    store(to, sums);
 }
 
 /// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
@@ -203,22 +187,24 @@ struct Rectangles {
     std::uint64_t in_column[8], in_row[8];
 };
 
-/// The words of 64 lights, or `count` if those are fewer, for longer lists: a word a tile, a bit a light.
+/// The words of 64 lights of a list, from `first` on or as many as it has: a word a tile, a bit a light. For long lists.
 template <bool with_words>
 LIGHTBIN_TARGET inline void store_64_words(const std::uint64_t* masks, const std::uint8_t* columns,
-                                           const std::uint8_t* rows, std::uint32_t count, std::uint64_t* tiles) {
+                                           const std::uint8_t* rows, std::uint32_t first, std::uint32_t count,
+                                           std::uint64_t* tiles) {
     if constexpr (with_words) {
-        transpose_64_words(masks, count, tiles);
+        transpose_64_words(masks + first, count - first, tiles);
     } else {
-        const Rectangles lights(columns, rows, count);
+        const Rectangles lights(columns + first, rows + first, count - first);
         for (unsigned row = 0; row < 8; ++row)
             store(tiles + 8 * row, lights.row_words(row));
     }
 }
 
 /// Of 16 lights at most, those that miss the boxes of a supertile: missed[4 * tile], a bit a light.
-LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SupertileBoxes& boxes, const Sphere* spheres,
-                                         const ListId* places, std::uint32_t count, std::uint16_t* missed) {
+LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SupertileBoxes& boxes,
+                                         const Sphere* spheres, const ListId* places, std::uint32_t count,
+                                         std::uint16_t* missed) {
     const float* const(&ends)[4] = boxes.slab.ends;
     const SlabLights lights = load_slab_lights(camera, boxes.slab, spheres, places, count);
     Floats by_column[8];
@@ -231,7 +217,7 @@ LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SupertileBo
     }
 }
 
-/// Stores a row's words of a short list, see store_short_words(): `tiles` has the bits of each.
+/// Stores a row of a short list in the form of store_short_words(), out of a word a tile.
 template <unsigned eights>
 LIGHTBIN_TARGET inline void store_short_row(__m512i tiles, unsigned row, std::uint64_t* to) {
     const __m128i sizes = _mm512_cvtepi64_epi8(_mm512_popcnt_epi64(tiles));
@@ -273,12 +259,12 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
         store_short_words<with_words, 2>(masks, columns, rows, count, words);
     } else if (count < 32) {
         std::uint64_t tiles[64];
-        store_64_words<with_words>(masks, columns, rows, count, tiles);
+        store_64_words<with_words>(masks, columns, rows, 0, count, tiles);
         for (unsigned row = 0; row < 8; ++row)
             store_short_row<4>(load(tiles + 8 * row), row, words);
     } else {
         for (std::uint32_t i = 0; i < count; i += 64)
-            store_64_words<with_words>(masks + i, columns + i, rows + i, count - i, words + i);
+            store_64_words<with_words>(masks, columns, rows, i, count, words + i);
     }
     return end;
 }
@@ -297,7 +283,8 @@ LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scr
         const IdBlock& block = scratch.blocks.data()[scratch.group_blocks.data()[begin / 64]];
         std::uint16_t missed[4 * 64];
         for (std::uint32_t j = 0; j < left; j += lanes)
-            store_missed(*job.camera, boxes, job.lights.spheres + block.upper, band.ids + begin + j, left - j, missed + j / 16);
+            store_missed(*job.camera, boxes, job.lights.spheres + block.upper, band.ids + begin + j, left - j,
+                         missed + j / 16);
         const Rectangles lights(scratch.list_columns.data() + begin, scratch.list_rows.data() + begin, left);
         for (unsigned row = 0; row < boxes.rows; ++row) {
             const __m512i tiles = _mm512_andnot_si512(load(missed + 32 * row), lights.row_words(row));
@@ -335,17 +322,16 @@ LIGHTBIN_TARGET inline std::uint32_t append_row(Id* to, ListRange* tiles, __mmas
 /// Appends the tiles of a row of a supertile with a longer list: `words` has those of its first tile. Returns how many
 /// ids. With 64 lights or less their ids stay in registers.
 template <bool wide, bool up_to_64, class Id>
-LIGHTBIN_TARGET inline std::uint32_t append_tiles(Id* to, ListRange* tiles, unsigned columns, std::uint32_t at,
-                                                  const std::uint64_t* words, const GroupedIds& ids,
-                                                  std::uint32_t lights) {
+LIGHTBIN_TARGET inline std::uint32_t append_tiles(Id* to, ListRange* tiles, unsigned columns,
+                                                  std::uint32_t at, const std::uint64_t* words,
+                                                  const GroupedIds& ids, std::uint32_t lights) {
     const Id* const begin = to;
     const std::size_t groups = up_to_64 ? 1 : (lights + std::size_t{63}) / 64;
     const IdTable first = load_table(ids, 0);
     for (unsigned column = 0; column < columns; ++column) {
         const Id* const from = to;
         for (std::size_t group = 0; group < groups; ++group)
-            to += append<64, wide>(to, words[64 * group + column],
-                             up_to_64 ? first : load_table(ids, group));
+            to += append<64, wide>(to, words[64 * group + column], up_to_64 ? first : load_table(ids, group));
         const std::uint32_t count = static_cast<std::uint32_t>(to - from);
         tiles[column] = {at, count};
         at += count;
@@ -356,16 +342,17 @@ LIGHTBIN_TARGET inline std::uint32_t append_tiles(Id* to, ListRange* tiles, unsi
 /// Emits a row of tiles as emit_row() does. Not inline, as in a longer function compilers keep what it needs on the
 /// stack.
 template <bool wide, class Id>
-LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t at,
-                                                 const Scratch& scratch, const BandLists<ListId>& band,
-                                                 unsigned row) {
-    const GroupedIds all_ids = {band.ids, scratch.group_blocks.data(), scratch.blocks.data()};
+LIGHTBIN_TARGET LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned tiles_x,
+                                                 std::uint32_t at, const Scratch& scratch,
+                                                 const BandLists<ListId>& band, unsigned row) {
+    const std::uint32_t* const group_blocks = scratch.group_blocks.data();
+    const IdBlock* const blocks = scratch.blocks.data();
     const SupertileList* list = band.lists;
     const std::uint64_t* const all_words = scratch.words.data();
     for (const ListRange* const end = tiles + tiles_x; tiles < end; tiles += 8, ++list) {
         const std::uint32_t lights = list->count;
         const std::uint64_t* words = all_words + list->words;
-        const GroupedIds ids = all_ids.from(list->begin);
+        const GroupedIds ids = {band.ids + list->begin, group_blocks + list->begin / 64, blocks};
         const unsigned columns = static_cast<unsigned>(min_of<std::ptrdiff_t>(end - tiles, 8));
         const __mmask8 stored = static_cast<__mmask8>(0xff >> (8 - columns));
         std::uint32_t count;

@@ -105,5 +105,6 @@ LIGHTBIN_TARGET BandLists<ListId> make_lists(const BinJob<Id>& job, Scratch& scr
                               job.lights.x1[i], rows.first, rows.last);
             }
     }
-    return {scratch.supertile_lists.data() + (top - bands.begin) / 8 * pitch, scratch.list_ids.whole.data(), true};
+    return {scratch.supertile_lists.data() + (top - bands.begin) / 8 * pitch, scratch.list_ids.whole.data(),
+            true};
 }

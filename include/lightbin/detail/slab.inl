@@ -4,8 +4,10 @@
 // numbers, and one comparison a tile. Lights lie side by side, as step 3 takes them: words need not be transposed.
 //
 // A light is too far from a box if  less(reach2 - z2 - y2, x2),  see cell_boxes.hpp on rounding; NaN, where reach2 and
-// a distance are infinite, is not. There is no test of depths, which are those of the slice and in view. Spots have more
-// tests, of which most are spared where only the tiles of a light's rectangle are asked for: words.inl has theirs.
+// a distance are infinite, is not. There is no test of depths, which are those of the slice and in view.
+//
+// Of spheres alone: spots have five tests in place of one, and mostly take less where the tiles outside of their rectangles
+// are not tested, as words.inl does it.
 
 /// The distances of coordinates from intervals.
 LIGHTBIN_TARGET inline Floats distance(Floats c, Floats low, Floats high) {
@@ -41,7 +43,8 @@ struct SupertileBoxes {
     SlabBoxes slab;
     unsigned rows;
 };
-template <class Id> SupertileBoxes boxes_at(const BinJob<Id>& job, const Scratch& scratch, unsigned x, unsigned top) {
+template <class Id>
+SupertileBoxes boxes_at(const BinJob<Id>& job, const Scratch& scratch, unsigned x, unsigned top) {
     SlabBoxes slab = scratch.slab;
     for (unsigned side = 0; side < 4; ++side)
         slab.ends[side] += side < 2 ? 8 * x : top;

@@ -18,7 +18,7 @@ LIGHTBIN_TARGET inline Floats distance2(const float* cell, float x, float y, flo
     return mul(along_x, along_x) + mul(along_y, along_y) + mul(along_z, along_z);
 }
 
-/// Of `lanes` boxes, those that a sphere misses. Inline, as GCC 12 returns half of such a mask.
+/// Of `lanes` boxes, those that a sphere misses. Always inline: returned by a call, GCC 12 drops half of such a mask.
 LIGHTBIN_TARGET LIGHTBIN_INLINE auto boxes_missed(const float* cell, const TestedLight& light) {
     return less(all(light.reach2), distance2(cell, light.x, light.y, light.z));
 }
@@ -27,7 +27,8 @@ LIGHTBIN_TARGET LIGHTBIN_INLINE auto boxes_missed(const float* cell, const Teste
 /// around the cone is not in it. (Unreal tests one such plane, chosen for each box.)
 LIGHTBIN_TARGET LIGHTBIN_INLINE auto boxes_missed(const float* cell, const TestedSpot& light) {
     const ViewSpot& spot = *light.spot;
-    auto missed = less(reach2_of(all(spot.ball.radius)), distance2(cell, spot.ball.x, spot.ball.y, spot.ball.z));
+    auto missed =
+        less(reach2_of(all(spot.ball.radius)), distance2(cell, spot.ball.x, spot.ball.y, spot.ball.z));
     for (unsigned i = 0; i < 4; ++i) {
         const SpotPlane& plane = spot.planes[i];
         const Floats deepest = mul(load_floats(cell + spot.corners[i][0]), all(plane.x)) +
@@ -120,11 +121,11 @@ LIGHTBIN_TARGET inline std::uint64_t silhouette_tiles(const FootprintArrays& lig
 /// and rows that they cover; and ids of their indices. Lights that are in none of the tiles are dropped. Returns how
 /// many are left. `ids` may be `lights`, or before it.
 template <Footprint footprint, DepthTest depth_test, bool spots, class Id>
-LIGHTBIN_TARGET inline std::uint32_t
-mask_64_lights(const BinJob<Id>& job, unsigned x, unsigned top,
-               [[maybe_unused]] const TestedTiles<depth_test>& cells, const ListId* lights, std::uint32_t first,
-               const std::uint8_t* columns, const std::uint8_t* rows, std::uint32_t count, ListId* ids,
-               std::uint64_t* words) {
+LIGHTBIN_TARGET inline std::uint32_t mask_64_lights(const BinJob<Id>& job, unsigned x, unsigned top,
+                                                    [[maybe_unused]] const TestedTiles<depth_test>& cells,
+                                                    const ListId* lights, std::uint32_t first,
+                                                    const std::uint8_t* columns, const std::uint8_t* rows,
+                                                    std::uint32_t count, ListId* ids, std::uint64_t* words) {
     std::uint64_t met[64];
     if constexpr (depth_test != DepthTest::none) {
         Tested<spots> tested[64];
@@ -191,8 +192,9 @@ LIGHTBIN_TARGET std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratc
         const std::uint32_t count = min_of(list.count - begin, 64u);
         std::uint32_t first = 0;
         if constexpr (sizeof(ListId) == 2) first = begin_group(scratch, list, begin, left, masks);
-        left += mask_64_lights<footprint, depth_test, spots>(job, x, top, cells, lights + begin, first, columns + begin,
-                                                             rows + begin, count, lights + left, masks + left);
+        left += mask_64_lights<footprint, depth_test, spots>(job, x, top, cells, lights + begin, first,
+                                                             columns + begin, rows + begin, count,
+                                                             lights + left, masks + left);
     }
     return left;
 }
