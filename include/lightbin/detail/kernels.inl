@@ -44,6 +44,8 @@
 
 #include <lightbin/detail/move.inl>
 
+#include <lightbin/detail/eights.inl>
+
 #include <lightbin/detail/project.inl>
 
 #include <lightbin/detail/spot_lanes.inl>

@@ -139,17 +139,28 @@ LIGHTBIN_TARGET inline void project_carefully(const Camera& camera, const Sphere
     }
 }
 
+/// What each vector of lights is asked first, in every lane: broadcasting it again would take narrow vectors as long as
+/// asking.
+struct ViewLanes {
+    LIGHTBIN_TARGET explicit ViewLanes(const Camera& camera)
+        : sign_x(all(camera.x.sign)), sign_y(all(camera.y.sign)), sign_z(all(camera.z_sign)),
+          side_x(all(camera.x.side)), side_xz(all(camera.x.side_z)), side_y(all(camera.y.side)),
+          side_yz(all(camera.y.side_z)), front(all(camera.near_depth)), back(all(camera.far_depth)) {}
+
+    Floats sign_x, sign_y, sign_z, side_x, side_xz, side_y, side_yz, front, back;
+};
+
 /// Which of a vector's lights are out of view beyond doubt, if floats hold them; x and y are as in an ImageAxis and z is
 /// the view depth, of their balls, whose `size` is |x| + |y| + |z| + r.
 ///
 /// Rounding is monotone and near and far are floats, so comparing rounded sums with them is exact. The distance to a side
 /// plane is within 4u of the sizes that it is made of.
-LIGHTBIN_TARGET LIGHTBIN_INLINE auto out_of_view(const Camera& camera, Floats x, Floats y, Floats z, Floats r,
+LIGHTBIN_TARGET LIGHTBIN_INLINE auto out_of_view(const ViewLanes& view, Floats x, Floats y, Floats z, Floats r,
                                                  Floats nearest, Floats farthest, Floats size) {
-    const Floats aside_x = mul(abs(x), all(camera.x.side)) + mul(z, all(camera.x.side_z)),
-                 aside_y = mul(abs(y), all(camera.y.side)) + mul(z, all(camera.y.side_z));
-    return either(either(less(farthest, all(camera.near_depth)), less(all(camera.far_depth), nearest)),
-                  less(size * 0x1p-21f, greater(aside_x, aside_y) - r));
+    const Floats aside = greater(mul(abs(x), view.side_x) + mul(z, view.side_xz),
+                                 mul(abs(y), view.side_y) + mul(z, view.side_yz));
+    return either(either(less(farthest, view.front), less(view.back, nearest)),
+                  less(size * 0x1p-21f, aside - r));
 }
 
 /// Appends the footprints of those of the lights first..first + count - 1 that are in view.
@@ -163,18 +174,33 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
     std::uint8_t careful[ChunkRects::size];
     Sphere chunk[ChunkRects::size], padded[lanes];
     const MoveLanes move(source.to_view);
+    const ViewLanes view(camera);
+    const bool by_vectors =
+        lanes > 1 && source.to_view != nullptr;  // the scalar tier moves them before, see take()
     // Copies are made a few at a time, so that the next lights are fetched while these are projected.
-    const std::uint32_t most = source.copy != nullptr ? 32 : ChunkRects::size;
+    const std::uint32_t usual = source.copy != nullptr ? 32 : ChunkRects::size;
+    std::uint32_t most = lanes == 1 ? 8 : usual;
     for (std::uint32_t here; count > 0; count -= here, first += here) {
         here = min_of(count, most);
         // Where spheres come from, and where they are in view space.
         Sphere* const own = source.kept != nullptr ? source.kept + first : chunk;
         const Sphere* const given = source.spheres != nullptr ? source.spheres + first : own;
         const Sphere* const spheres = source.to_view != nullptr ? own : given;
-        if (source.copy != nullptr) source.copy(source.lights, first, here, own, nullptr);
+        if constexpr (lanes == 1) {
+            const std::uint32_t eight = min_of(here, 8u);
+            take(source, first, eight, given, own);
+            if (eight == 8 && eight_out_of_view(camera, spheres)) {
+                here = most = 8;
+                continue;
+            }
+            take(source, first + eight, here - eight, given + eight, own + eight);
+            if (most < usual) most *= 2;  // ask less often where the answer is no
+        } else if (source.copy != nullptr) {
+            source.copy(source.lights, first, here, own, nullptr);
+        }
         std::uint32_t careful_count = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
-            const Sphere* from = given + i;
+            const Sphere* from = (lanes == 1 ? spheres : given) + i;
             const std::uint32_t used = min_of(lanes, here - i);
             if (used < lanes) {
                 for (std::uint32_t lane = 0; lane < lanes; ++lane)
@@ -183,14 +209,14 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
             }
             Floats x, y, z, r;
             load_spheres(from, x, y, z, r);
-            if (source.to_view != nullptr) move_spheres(move, x, y, z, r);
+            if (by_vectors) move_spheres(move, x, y, z, r);
             const Floats at[] = {x, y, z};
-            x = x * camera.x.sign;
-            y = y * camera.y.sign;
-            z = z * camera.z_sign;
+            x = x * view.sign_x;
+            y = y * view.sign_y;
+            z = z * view.sign_z;
             const Floats nearest = z - r, farthest = z + r, size = abs(x) + abs(y) + abs(z) + r;
             const auto usable = both(less_equal(size, all(most_plain)), less_equal(all(least_plain), r));
-            const auto culled = both(usable, out_of_view(camera, x, y, z, r, nearest, farthest, size));
+            const auto culled = both(usable, out_of_view(view, x, y, z, r, nearest, farthest, size));
             const unsigned valid = used < 32 ? (1u << used) - 1 : ~0u;
             unsigned& in_view = visible[i / lanes] = 0;
             if ((~bits(culled) & valid) == 0) continue;
@@ -203,7 +229,7 @@ LIGHTBIN_TARGET inline void project(const Camera& camera, const LightSource& sou
                 tangent_slopes(y, z, r, e, per_e, bottom, top);
             }
             unsigned rest = ~bits(either(plain, culled)) & valid;
-            if (source.to_view != nullptr && (source.kept != nullptr || rest != 0))
+            if (by_vectors && (source.kept != nullptr || rest != 0))
                 store_spheres(own + i, at[0], at[1], at[2], r);
             for (; rest != 0; rest &= rest - 1)
                 careful[careful_count++] =

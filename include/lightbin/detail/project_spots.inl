@@ -132,6 +132,7 @@ LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const LightSourc
     Sphere balls[ChunkRects::size],
         cones[ChunkRects::size];  // as given, then of careful ones balls and least spheres
     const MoveLanes move(source.to_view);
+    const ViewLanes view(camera);
     for (std::uint32_t here; count > 0; count -= here, first += here) {
         here = min_of(count, ChunkRects::size);
         source.copy(source.lights, first, here, balls, cones);
@@ -151,7 +152,7 @@ LIGHTBIN_TARGET inline void project_spots(const Camera& camera, const LightSourc
             const Floats size = abs(spots.x) + abs(spots.y) + abs(spots.z) + spots.radius;
             const auto usable =
                 both(less_equal(size, all(most_plain)), less_equal(all(least_plain), spots.radius));
-            const auto culled = both(usable, out_of_view(camera, spots.x, spots.y, spots.z, spots.radius,
+            const auto culled = both(usable, out_of_view(view, spots.x, spots.y, spots.z, spots.radius,
                                                          nearest, farthest, size));
             const unsigned used = min_of(lanes, here - i), valid = used < 32 ? (1u << used) - 1 : ~0u;
             unsigned& in_view = visible[i / lanes] = 0;

@@ -5,16 +5,6 @@
 // all; low_pairs and high_pairs(ends, counts), half of the rows as Tiles each, see BandTiles; and transpose(Tiles*), of a
 // square of tiles.
 
-/// Writes `count` tiles without lights, at a place in the index list: whole cache lines, if the table's address allows.
-LIGHTBIN_TARGET inline void fill_empty(ListRange* tiles, std::size_t count, std::uint32_t at) {
-    const ListRange empty = {at, 0};
-    for (; count > 0 && reinterpret_cast<std::uintptr_t>(tiles) % 64 != 0; --count)
-        *tiles++ = empty;
-    for (; count >= 16; count -= 16, tiles += 16)
-        fill_items(tiles, 16, empty);
-    fill_items(tiles, count, empty);
-}
-
 #if defined(LIGHTBIN_TIER_HAS_ROWS)
 
 // A vector is a column of a band, a lane a tile row: sums along rows are then plain additions, where lanes along a row
@@ -149,7 +139,41 @@ LIGHTBIN_TARGET std::uint32_t lay_out_rows(const BinJob<Id>& job, Scratch& scrat
     return at;
 }
 
+/// Stores sixteen tiles, two cache lines if aligned: with one a loop, what the loop itself takes would show.
+LIGHTBIN_TARGET inline void fill_lines(ListRange* tiles, const Tiles& value) {
+    for (std::size_t i = 0; i < 16; i += tiles_stored)
+        std::memcpy(static_cast<void*>(tiles + i), &value, sizeof value);
+}
+
+/// Writes `count` tiles without lights, at a place in the index list. Narrow vectors are slower than memset, which can
+/// write place 0 alone; others are faster. The lines between the first and the last, which may overlap others, are
+/// aligned as far as the table's address allows.
+LIGHTBIN_TARGET inline void fill_empty(ListRange* tiles, std::size_t count, std::uint32_t at) {
+    if constexpr (tiles_stored == 2)
+        if (at == 0)
+            return static_cast<void>(std::memset(static_cast<void*>(tiles), 0, count * sizeof *tiles));
+    if (count < 16) return fill_items(tiles, count, {at, 0});
+    ListRange some[tiles_stored];
+    fill_items(some, tiles_stored, {at, 0});
+    Tiles empty;
+    std::memcpy(&empty, some, sizeof empty);
+    ListRange* const last = tiles + count - 16;
+    fill_lines(tiles, empty);
+    tiles += 8 - reinterpret_cast<std::uintptr_t>(tiles) / sizeof *tiles % 8;
+    for (; tiles < last; tiles += 16)
+        fill_lines(tiles, empty);
+    fill_lines(last, empty);
+}
+
 #else
+
+/// Writes `count` tiles without lights, at a place in the index list.
+LIGHTBIN_TARGET inline void fill_empty(ListRange* tiles, std::size_t count, std::uint32_t at) {
+    if (at == 0)
+        std::memset(static_cast<void*>(tiles), 0, count * sizeof *tiles);
+    else
+        fill_items(tiles, count, {at, 0});
+}
 
 /// The same by numbers.
 template <class Id>
