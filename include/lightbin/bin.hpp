@@ -58,10 +58,11 @@ public:
         const unsigned rows = static_cast<unsigned>(view.tiles_y());
         std::uint64_t lights = 0, area = 0;
         for (std::size_t slice = 0; slice < slices; ++slice) {
-            const Job job = job_of(all, lit, slice);
-            if (const auto error = check_places(job)) return error;
-            lights += job.visible;
-            area += job.area;
+            const detail::LitSlice part = lit.slice(slice);
+            lights += part.visible;
+            area += part.area;
+            if (part.area <= detail::surely_listed_area) continue;
+            if (const auto error = check_places(job_of(all, lit, slice))) return error;
         }
         std::uint64_t capacity = area;
         // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.

@@ -64,6 +64,9 @@ LIGHTBIN_TARGET inline Rows operator+(Rows a, Rows b) {
 LIGHTBIN_TARGET inline Rows operator-(Rows a, Rows b) {
     return {_mm256_sub_epi32(a.v, b.v)};
 }
+LIGHTBIN_TARGET inline Rows all_rows(std::uint32_t count) {
+    return {_mm256_set1_epi32(static_cast<int>(count))};
+}
 LIGHTBIN_TARGET inline Rows last_row(Rows rows) {
     return {_mm256_permutevar8x32_epi32(rows.v, _mm256_set1_epi32(7))};
 }

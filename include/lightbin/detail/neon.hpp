@@ -54,6 +54,9 @@ inline Rows operator+(Rows a, Rows b) {
 inline Rows operator-(Rows a, Rows b) {
     return {a.v - b.v};
 }
+inline Rows all_rows(std::uint32_t count) {
+    return {vdupq_n_u32(count)};
+}
 inline Rows last_row(Rows rows) {
     return {vdupq_laneq_u32(rows.v, 3)};
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Binning by count, prefix and fill (Tiled Shading, section 3): small lights, nearly empty grids. A rectangle costs four
 // corners of a difference array, whose sums along both axes are the counts. Included once a tier that scatters; where it
-// has Rows, for the sums, it defines: a vector of counts with + and -; last_row(rows), the last one in
+// has Rows, for the sums, it defines: a vector of counts with + and -; all_rows(count); last_row(rows), the last one in
 // all; low_pairs and high_pairs(ends, counts), half of the rows as Tiles each, see BandTiles; and transpose(Tiles*), of a
 // square of tiles.
 
@@ -153,10 +153,7 @@ LIGHTBIN_TARGET inline void fill_empty(ListRange* tiles, std::size_t count, std:
         if (at == 0)
             return static_cast<void>(std::memset(static_cast<void*>(tiles), 0, count * sizeof *tiles));
     if (count < 16) return fill_items(tiles, count, {at, 0});
-    ListRange some[tiles_stored];
-    fill_items(some, tiles_stored, {at, 0});
-    Tiles empty;
-    std::memcpy(&empty, some, sizeof empty);
+    const Tiles empty = low_pairs(all_rows(at), Rows{});
     ListRange* const last = tiles + count - 16;
     fill_lines(tiles, empty);
     tiles += 8 - reinterpret_cast<std::uintptr_t>(tiles) / sizeof *tiles % 8;

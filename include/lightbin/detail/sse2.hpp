@@ -74,6 +74,9 @@ inline Rows operator+(Rows a, Rows b) {
 inline Rows operator-(Rows a, Rows b) {
     return {_mm_sub_epi32(a.v, b.v)};
 }
+inline Rows all_rows(std::uint32_t count) {
+    return {_mm_set1_epi32(static_cast<int>(count))};
+}
 inline Rows last_row(Rows rows) {
     return {_mm_shuffle_epi32(rows.v, 0xff)};
 }
