@@ -43,6 +43,7 @@ list() {
     mutant spots detail/spot_lanes.inl 's/(off + mul(spots.radius, move.bend))/off/'
     mutant spots detail/wedge.inl 's/radius \* 0x1p-19 \/ widened(cosine, half)/all(0.0)/'
     mutant spots detail/wedge.inl 's/: -aside\[i\]) - back\[i\];/: -aside[i]) + back[i];/'
+    mutant spots detail/slab.inl 's/select(less(normal, all(0.0f)), all(high), all(low))/select(less(normal, all(0.0f)), all(low), all(high))/'
     mutant spots detail/words.inl 's/spot.corners\[i\]\[1\]), all(plane.y))/spot.corners[i][1]), all(plane.x))/'
     mutant spots detail/world_to_view.hpp 's/least = min_of(least, 2 \* diagonal - row_sum);/least = max_of(square, row_sum);/'
     mutant least_spheres spot.hpp 's/axis_length;/(axis_length * (1 + 0x1p-18));/'

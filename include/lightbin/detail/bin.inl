@@ -12,18 +12,17 @@
 /// The number of entries of the grid. For tiers without a compress instruction, whose words have a bit each.
 template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>
 LIGHTBIN_TARGET std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scratch) {
-    constexpr bool slab = by_slab && !spots;
     const BandJob<Id> bands = {0, static_cast<unsigned>(job.camera->y.tiles), nullptr, 0};
     const unsigned width = (static_cast<unsigned>(job.camera->x.tiles) + 7) / 8;
-    if constexpr (slab) arrange_slab(job, scratch);
+    if constexpr (by_slab) arrange_slab(job, scratch);
     ListedBands listed;
     std::uint64_t entries = 0;
     for (unsigned top = bands.begin; top < bands.end; top += 8) {
         const BandLists<ListId> band = make_lists < with_words<footprint, depth_test> &&
-                                       !slab > (job, scratch, bands, top, width, listed);
+                                       !by_slab > (job, scratch, bands, top, width, listed);
         if (band.lists == nullptr) continue;
         const std::uint32_t end =
-            make_words<footprint, depth_test, slab, spots>(job, scratch, top, band, width);
+            make_words<footprint, depth_test, by_slab, spots>(job, scratch, top, band, width);
         for (std::uint32_t i = 0; i < end; ++i)
             entries += static_cast<unsigned>(std::popcount(scratch.words.data()[i]));
     }
@@ -34,9 +33,9 @@ LIGHTBIN_TARGET std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scra
 template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>
 LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scratch,
                                              const BandJob<Id>& bands) {
-    constexpr bool worded = with_words<footprint, depth_test>, slab = by_slab && !spots;
+    constexpr bool worded = with_words<footprint, depth_test>;
     const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles), width = (tiles_x + 7) / 8;
-    if constexpr (slab) {
+    if constexpr (by_slab) {
         if (job.visible == 0) {
             fill_empty(job.tiles + bands.begin * std::size_t{tiles_x},
                        (bands.end - bands.begin) * std::size_t{tiles_x}, bands.at);
@@ -49,10 +48,10 @@ LIGHTBIN_TARGET std::uint64_t bin_supertiles(const BinJob<Id>& job, Scratch& scr
     std::uint32_t at = bands.at;
     for (unsigned top = bands.begin; top < bands.end; top += 8) {
         const BandLists<ListId> band =
-            make_lists < worded && !slab > (job, scratch, bands, top, width, listed);
+            make_lists < worded && !by_slab > (job, scratch, bands, top, width, listed);
         const unsigned end_row = min_of(top + 8, bands.end);
         if (band.lists == nullptr ||
-            make_words<footprint, depth_test, slab, spots>(job, scratch, top, band, width) == 0) {
+            make_words<footprint, depth_test, by_slab, spots>(job, scratch, top, band, width) == 0) {
             fill_empty(job.tiles + top * std::size_t{tiles_x}, (end_row - top) * std::size_t{tiles_x}, at);
             if (bands.spare_row >= top && bands.spare_row < end_row) out = bands.spare;
             continue;

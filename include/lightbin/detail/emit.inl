@@ -61,26 +61,29 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
 }
 
 /// Of 8 lights at most, those that miss the boxes of a supertile: a byte per tile, a bit a light.
+template <class Light>
 LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SupertileBoxes& boxes,
-                                         const Sphere* spheres, const ListId* ids, std::uint32_t count,
+                                         const Light* lights_by_id, const ListId* ids, std::uint32_t count,
                                          std::uint64_t* words) {
     const float* const(&ends)[4] = boxes.slab.ends;
     fill_items(words, 8, 0);
     for (std::uint32_t first = 0; first < 8 && first < count; first += lanes) {
-        const SlabLights lights = load_slab_lights(camera, boxes.slab, spheres, ids + first, count - first);
-        float by_column[8][lanes];
-        for (unsigned column = 0; column < 8; ++column)
-            store_floats(by_column[column], distance2(lights.x, ends[0][column], ends[1][column]));
-        for (unsigned row = 0; row < boxes.rows; ++row)
-            words[row] |=
-                bits_of_8_less(lights.left - distance2(lights.y, ends[2][row], ends[3][row]), by_column[0])
-                << first;
+        const auto lights = load_slab_lights(camera, boxes.slab, lights_by_id, ids + first, count - first);
+        for (unsigned test = 0; test < lights.tests; ++test) {
+            float by_column[8][lanes];
+            for (unsigned column = 0; column < 8; ++column)
+                store_floats(by_column[column], lights.by_column(test, ends[0][column], ends[1][column]));
+            for (unsigned row = 0; row < boxes.rows; ++row)
+                words[row] |=
+                    bits_of_8_less(lights.left_by_row(test, ends[2][row], ends[3][row]), by_column[0])
+                    << first;
+        }
     }
 }
 
 /// Makes the words of a list, by the boxes of the supertile from column 8 x and row `top` on, and stores them as
 /// store_words() does.
-template <class Id>
+template <bool spots, class Id>
 LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scratch& scratch, unsigned x,
                                                       unsigned top, const BandLists<ListId>& band,
                                                       const SupertileList& list) {
@@ -92,7 +95,7 @@ LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scr
     std::memset(columns + list.count, 0, 8 * eights - list.count);
     const SupertileBoxes boxes = boxes_at(job, scratch, x, top);
     for (std::uint32_t i = 0; i < list.count; i += 8, words += 8) {
-        store_missed(*job.camera, boxes, job.lights.spheres, ids + i, list.count - i, words);
+        store_missed(*job.camera, boxes, lights_of<spots>(job), ids + i, list.count - i, words);
         const std::uint64_t in_columns = transpose_bits(load_8_bytes(columns + i)),
                             in_rows = transpose_bits(load_8_bytes(rows + i));
         for (unsigned row = 0; row < boxes.rows; ++row)

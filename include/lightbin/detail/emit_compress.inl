@@ -202,18 +202,26 @@ LIGHTBIN_TARGET inline void store_64_words(const std::uint64_t* masks, const std
 }
 
 /// Of 16 lights at most, those that miss the boxes of a supertile: missed[4 * tile], a bit a light.
+template <class Light>
 LIGHTBIN_TARGET inline void store_missed(const Camera& camera, const SupertileBoxes& boxes,
-                                         const Sphere* spheres, const ListId* places, std::uint32_t count,
+                                         const Light* lights_by_id, const ListId* places, std::uint32_t count,
                                          std::uint16_t* missed) {
     const float* const(&ends)[4] = boxes.slab.ends;
-    const SlabLights lights = load_slab_lights(camera, boxes.slab, spheres, places, count);
-    Floats by_column[8];
-    for (unsigned column = 0; column < 8; ++column)
-        by_column[column] = distance2(lights.x, ends[0][column], ends[1][column]);
+    const auto lights = load_slab_lights(camera, boxes.slab, lights_by_id, places, count);
+    constexpr unsigned tests = decltype(lights)::tests;
+    Floats by_column[tests][8];
+    for (unsigned test = 0; test < tests; ++test)
+        for (unsigned column = 0; column < 8; ++column)
+            by_column[test][column] = lights.by_column(test, ends[0][column], ends[1][column]);
     for (unsigned row = 0; row < boxes.rows; ++row) {
-        const Floats left = lights.left - distance2(lights.y, ends[2][row], ends[3][row]);
-        for (unsigned column = 0; column < 8; ++column, missed += 4)
-            *missed = less(left, by_column[column]);
+        Floats left[tests];
+        for (unsigned test = 0; test < tests; ++test)
+            left[test] = lights.left_by_row(test, ends[2][row], ends[3][row]);
+        for (unsigned column = 0; column < 8; ++column, missed += 4) {
+            *missed = less(left[0], by_column[0][column]);
+            for (unsigned test = 1; test < tests; ++test)
+                *missed = either(*missed, less(left[test], by_column[test][column]));
+        }
     }
 }
 
@@ -271,7 +279,7 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
 
 /// Makes the words of a list, by the boxes of the supertile from column 8 x and row `top` on, and stores them as
 /// store_words() does.
-template <class Id>
+template <bool spots, class Id>
 LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scratch& scratch, unsigned x,
                                                       unsigned top, const BandLists<ListId>& band,
                                                       const SupertileList& list) {
@@ -283,8 +291,8 @@ LIGHTBIN_TARGET inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scr
         const IdBlock& block = scratch.blocks.data()[scratch.group_blocks.data()[begin / 64]];
         std::uint16_t missed[4 * 64];
         for (std::uint32_t j = 0; j < left; j += lanes)
-            store_missed(*job.camera, boxes, job.lights.spheres + block.upper, band.ids + begin + j, left - j,
-                         missed + j / 16);
+            store_missed(*job.camera, boxes, lights_of<spots>(job) + block.upper, band.ids + begin + j,
+                         left - j, missed + j / 16);
         const Rectangles lights(scratch.list_columns.data() + begin, scratch.list_rows.data() + begin, left);
         for (unsigned row = 0; row < boxes.rows; ++row) {
             const __m512i tiles = _mm512_andnot_si512(load(missed + 32 * row), lights.row_words(row));

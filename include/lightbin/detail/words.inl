@@ -218,7 +218,7 @@ LIGHTBIN_TARGET std::uint32_t make_words(const BinJob<Id>& job, Scratch& scratch
         }
         list.words = used;
         if constexpr (by_slab)
-            used = store_slab_words(job, scratch, x, top, band, list);
+            used = store_slab_words<spots>(job, scratch, x, top, band, list);
         else
             used = store_words<worded, Id>(scratch, band, list);
     }
