@@ -177,12 +177,9 @@ struct WeighedGrid {
     /// What lies before or behind a fine tile's gap counts as drawn all over, so the gaps around the middle of the
     /// depths are at most as wide as reduce_depth() would find.
     WeighedGrid(const View& fine, const ZBounds& of_fine, int tile_size)
-        : view(*fine.with_tile_size(tile_size)), bounds(of_fine) {
+        : view(*fine.with_tile_size(tile_size)), bounds(of_fine), lowest(view.tile_count(), infinity),
+          highest(view.tile_count(), -infinity), gap_begin(highest), gap_end(lowest) {
         if (tile_size == fine.tile_size()) return;
-        lowest.assign(view.tile_count(), infinity);
-        highest.assign(view.tile_count(), -infinity);
-        gap_begin = highest;
-        gap_end = lowest;
         const auto tile_at = [&](int x, int y) {
             return static_cast<std::size_t>(y / tile_size * view.tiles_x() + x / tile_size);
         };
