@@ -48,8 +48,8 @@ list() {
     mutant spots detail/world_to_view.hpp 's/least = min_of(least, 2 \* diagonal - row_sum);/least = max_of(square, row_sum);/'
     mutant least_spheres spot.hpp 's/axis_length;/(axis_length * (1 + 0x1p-18));/'
     # Projection.
-    mutant families detail/project.inl 's/either(either(less(farthest, all(/either(either(less(nearest, all(/'
-    mutant families detail/project.inl 's/less(size \* 0x1p-21f, greater/less(size * -0x1p-19f, greater/'
+    mutant families detail/project.inl 's/either(either(less(farthest, view.front)/either(either(less(nearest, view.front)/'
+    mutant families detail/project.inl 's/less(size \* 0x1p-21f, aside - r)/less(size * -0x1p-19f, aside - r)/'
     mutant families detail/project.inl 's/+ offset - margin;/+ offset + margin;/'
     mutant families detail/project.inl 's/less_equal(size, all(most_plain))/less_equal(size, all(0x1p100f))/'
     mutant families detail/project.inl 's/const auto behind = less(z, zero);/const auto behind = less(zero, z);/'
