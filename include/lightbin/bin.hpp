@@ -61,8 +61,7 @@ public:
             const detail::LitSlice part = lit.slice(slice);
             lights += part.visible;
             area += part.area;
-            if (part.area <= detail::surely_listed_area) continue;
-            if (const auto error = check_places(job_of(all, lit, slice))) return error;
+            if (const auto error = check_places(view, part)) return error;
         }
         std::uint64_t capacity = area;
         // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.
@@ -129,7 +128,7 @@ public:
         Job all = {};
         if (const auto error = prepare(view, bounds, all)) return error;
         const Job job = job_of(all, lit, 0);
-        if (const auto error = check_places(job)) return error;
+        if (const auto error = check_places(view, job)) return error;
         const auto kernel = detail::bits_kernel<footprint, depth_test, Id, spots>(isa);
         const std::size_t rows = static_cast<std::size_t>(view.tiles_y()), bands = (rows + 7) / 8;
         const bool share =
@@ -193,9 +192,9 @@ private:
         return job;
     }
 
-    static detail::Maybe<Error> check_places(const Job& job) {
-        if (job.area > detail::surely_listed_area)
-            if (const std::uint64_t places = detail::list_places(job); places > most)
+    static detail::Maybe<Error> check_places(const View& view, const detail::LitSlice& lit) {
+        if (lit.area > detail::surely_listed_area)
+            if (const std::uint64_t places = detail::list_places(detail::camera_of(view), lit); places > most)
                 return Error{ErrorCode::too_many_list_places, places, most};
         return {};
     }

@@ -46,9 +46,8 @@ LIGHTBIN_TARGET inline std::uint32_t store_words(Scratch& scratch, const BandLis
         for (std::uint32_t i = 0; i < list.count; i += 8, words += 8)
             transpose_words(masks + i, words);
     } else {
-        std::uint8_t *const columns = scratch.list_columns.data() + list.begin, *const rows =
-                                                                                    scratch.list_rows.data() +
-                                                                                    list.begin;
+        std::uint8_t* const columns = scratch.list_columns.data() + list.begin;
+        std::uint8_t* const rows = scratch.list_rows.data() + list.begin;
         std::memset(columns + list.count, 0, 64 * groups - list.count);
         std::memset(rows + list.count, 0, 64 * groups - list.count);
         for (std::uint32_t i = 0; i < list.count; i += 64, words += 16) {

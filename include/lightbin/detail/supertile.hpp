@@ -43,14 +43,14 @@ template <class ListId> struct BandLists {
 
 /// The most places that a kernel's lists can take, which it counts in 32 bits: one for each light and supertile that
 /// its rectangle meets, wherever the supertiles begin, and what fills up a list.
-template <class Id> std::uint64_t list_places(const BinJob<Id>& job) {
-    const std::uint64_t width = static_cast<std::uint64_t>(job.camera->x.tiles) / 8 + 3,
-                        height = static_cast<std::uint64_t>(job.camera->y.tiles) / 8 + 3;
+inline std::uint64_t list_places(const Camera& camera, const LitSlice& lit) {
+    const std::uint64_t width = static_cast<std::uint64_t>(camera.x.tiles) / 8 + 3,
+                        height = static_cast<std::uint64_t>(camera.y.tiles) / 8 + 3;
     std::uint64_t places = 64 * width * height;
-    for (const FootprintRun& run : job.runs)
+    for (const FootprintRun& run : lit.runs)
         for (std::uint32_t i = run.begin; i < run.end; ++i)
-            places += (job.lights.x1[i] / 8u - job.lights.x0[i] / 8u + std::uint64_t{1}) *
-                      ((job.lights.y1[i] - job.lights.y0[i] + 7u) / 8 + 1);
+            places += (lit.lights.x1[i] / 8u - lit.lights.x0[i] / 8u + std::uint64_t{1}) *
+                      ((lit.lights.y1[i] - lit.lights.y0[i] + 7u) / 8 + 1);
     return places;
 }
 
