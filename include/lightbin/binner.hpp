@@ -4,6 +4,7 @@
 
 #include <lightbin/bin.hpp>
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/float_environment.hpp>
 #include <lightbin/detail/maybe.hpp>
 #include <lightbin/detail/scratch.hpp>
 #include <lightbin/detail/sizes.hpp>
@@ -107,6 +108,9 @@ template <class Id> struct TransparencyGrids { LightGrid<Id> opaque, transparent
 /// Bins lights into screen tiles. Keeps its memory: the same input again allocates nothing, another one only where
 /// it outgrows the earlier ones, or where another kernel or number of threads takes it. After an exception in a call,
 /// there is no grid, and the next call is as any other. Not thread-safe: one Binner a thread.
+///
+/// A call computes, and has the caller's callables compute, in the floating-point environment that threads start with
+/// (rounding to nearest, no traps, denormal numbers kept), and leaves the caller's as it was.
 template <Options options = Options{}> class Binner {
     static_assert(options.ids != IdWidth::u8,
                   "lightbin: a Binner's ids have 16 or 32 bits: take Options{.ids = IdWidth::u16} and have "
@@ -144,6 +148,7 @@ public:
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     Result<LightGrid<Id>> bin(const View& view, const LightRange& lights, const Inputs& inputs = {},
                               const Threads& threads = {}) {
+        const detail::DefaultFloatEnvironment environment;
         if (const auto error = project(view, lights, inputs, threads)) return *error;
         return build<spots<LightRange>>(lists_, view, bounds_of(inputs), threads);
     }
@@ -158,6 +163,7 @@ public:
                                                                         const LightRange& lights,
                                                                         const Inputs& inputs,
                                                                         const Threads& threads = {}) {
+        const detail::DefaultFloatEnvironment environment;
         const ZBounds& bounds = inputs.bounds;
         const bool own_max = !bounds.transparent_max.empty();
         if (bounds.background_skipped && !bounds.max.empty() && !own_max)
@@ -180,6 +186,7 @@ public:
     requires(!clusters) Result<LightBits> bin_bits(const View& view, const LightRange& lights,
                                                    std::uint32_t max_lights, std::span<std::uint32_t> bits,
                                                    const Inputs& inputs = {}, const Threads& threads = {}) {
+        const detail::DefaultFloatEnvironment environment;
         const std::uint64_t each = (max_lights + std::uint64_t{31}) / 32,
                             words = detail::product_of_sizes(view.tile_count(), each);
         if (bits.size() < words) return Error{ErrorCode::list_buffer_too_small, words, bits.size()};

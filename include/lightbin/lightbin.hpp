@@ -38,8 +38,8 @@
 // Building. No compiler flags are needed. With gcc or clang there are kernels for SSE2, AVX2 and AVX-512 on
 // x86-64, of which the machine's own is picked at run time, and for NEON on 64-bit ARM; elsewhere the scalar
 // ones run. All give the same bytes. Define LIGHTBIN_NO_SIMD to leave them out, LIGHTBIN_ASSERT to take over the
-// assertions. -ffast-math is refused where the compiler tells of it; clang does not tell of
-// -funsafe-math-optimizations alone: don't. So is x87 arithmetic, which 32-bit compilers may default to.
+// assertions. -ffast-math is refused where the compiler tells of it; docs/limits.md says where it does not. So is x87
+// arithmetic, which 32-bit compilers may default to. Rounding modes, traps and flushed denormal numbers change nothing.
 //
 // Files of one program may be compiled for different processors. They share none of this library's functions: its names
 // lie in an inline namespace that says what the file is compiled for. So its types can't be handed from one such file

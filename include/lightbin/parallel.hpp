@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/float_environment.hpp>
 
 #include <cstddef>
 #include <type_traits>
@@ -68,6 +69,7 @@ public:
     /// Calls body(i) for each 0 <= i < n.
     template <class Function> void run(std::size_t n, const Function& body) const {
         const auto call = [](const void* context, std::size_t i) {
+            const detail::DefaultFloatEnvironment environment;
             (*static_cast<const Function*>(context))(i);
         };
         if (start_ != nullptr && n > 1) return start_(run_, n, Body{&body, call});

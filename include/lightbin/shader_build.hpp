@@ -5,6 +5,7 @@
 
 #include <lightbin/detail/cell_boxes.hpp>
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/float_environment.hpp>
 #include <lightbin/detail/names.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/options.hpp>
@@ -307,6 +308,7 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {})
 /// `lights` as for Binner::bin(). Errors as there.
 template <class LightRange>
 Result<std::vector<ShaderFootprint>> shader_footprints(const View& view, const LightRange& lights) {
+    const detail::DefaultFloatEnvironment environment;
     const auto& source = detail::as_lights(lights);
     if (const auto error = detail::refuse(source)) return *error;
     Footprints<Footprint::rectangle, true> footprints;
@@ -334,6 +336,7 @@ struct ShaderEdges {
 
 /// Returns the sides of all columns and then of all rows: what build_shader() reads for box.
 inline std::vector<ShaderEdges> shader_edges(const View& view) {
+    const detail::DefaultFloatEnvironment environment;
     std::vector<ShaderEdges> edges;
     const detail::Camera& camera = detail::camera_of(view);
     for (const detail::ImageAxis* axis : {&camera.x, &camera.y})

@@ -5,6 +5,7 @@
 
 #include <lightbin/detail/buffer.hpp>
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/float_environment.hpp>
 #include <lightbin/detail/math.hpp>
 #include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/slice_table.hpp>
@@ -38,10 +39,9 @@ public:
     /// count  from 1 on. Errors: it is less; not 0 < first < last, where there are two slices or more
     static Result<Slices> exponential(int count, float first, float last) {
         if (count > 1 && !(0 < first && first < last)) return Error{ErrorCode::slices_do_not_ascend};
-        const double ratio = static_cast<double>(last) / static_cast<double>(first);
         return from_law(count, [=](std::size_t i) {
-            return static_cast<double>(first) *
-                   detail::power_of(ratio, static_cast<double>(i) / (count - 1.0));
+            const double begin = static_cast<double>(first), ratio = static_cast<double>(last) / begin;
+            return begin * detail::power_of(ratio, static_cast<double>(i) / (count - 1.0));
         });
     }
 
@@ -91,6 +91,7 @@ private:
     explicit Slices(detail::Items<const float> boundaries) : table_(boundaries) {}
 
     template <class Law> static Result<Slices> from_law(std::int64_t count, Law boundary) {
+        const detail::DefaultFloatEnvironment environment;
         if (count < 1) return Error{ErrorCode::no_slices, static_cast<std::uint64_t>(count)};
         detail::Buffer<float> memory;
         float* const boundaries = memory.reserve(static_cast<std::uint64_t>(count));

@@ -4,6 +4,7 @@
 
 #include <lightbin/detail/camera.hpp>
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/float_environment.hpp>
 #include <lightbin/detail/math.hpp>
 #include <lightbin/detail/maybe.hpp>
 #include <lightbin/detail/names.hpp>
@@ -226,7 +227,10 @@ private:
         return detail::abs_of(m[3][2]) == 1 && detail::abs_of(m[2][3]) != 1;
     }
 
-    static Result<View> from_columns(const Matrix& m, Extent viewport, const ViewOptions& options) {
+    /// Not inline, so that no operation of it moves out of the environment.
+    LIGHTBIN_NOINLINE static Result<View> from_columns(const Matrix& m, Extent viewport,
+                                                       const ViewOptions& options) {
+        const detail::DefaultFloatEnvironment environment;
         const auto error = [](ErrorCode code, int value = 0, int available = 0) {
             return Error{code, static_cast<std::uint64_t>(value), static_cast<std::uint64_t>(available)};
         };

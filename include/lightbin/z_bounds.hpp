@@ -3,6 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/float_environment.hpp>
 #include <lightbin/detail/kernels.hpp>
 #include <lightbin/detail/names.hpp>
 #include <lightbin/detail/plain.hpp>
@@ -166,6 +167,7 @@ void reduce_tile_row(Isa isa, const DepthRows& row, std::size_t tile_columns, fl
 template <class = void>
 Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer, const ZBoundsBuffers& out,
                              Isa isa = compiled_isa) {
+    const detail::DefaultFloatEnvironment environment;
     const Extent viewport = view.viewport();
     const std::size_t tiles = view.tile_count();
     if (buffer.samples < 1 || buffer.samples > 8)

@@ -4,6 +4,6 @@
 set -eu
 cd "$(dirname "$0")/../../include"
 includes=$(grep -rnE '^[[:space:]]*#[[:space:]]*(include|import)' lightbin)
-foreign=$(echo "$includes" | grep -vE '#include <([a-z_]+|([ei]mm)?intrin\.h|arm_neon\.h|wasm_simd128\.h|lightbin/[a-z_/0-9]+\.(hpp|inl))>$') || true
+foreign=$(echo "$includes" | grep -vE '#include <([a-z_]+|([eix]mm)?intrin\.h|arm_neon\.h|wasm_simd128\.h|lightbin/[a-z_/0-9]+\.(hpp|inl))>$') || true
 [ -z "$foreign" ] || { echo "$foreign"; exit 1; }
 echo "$(echo "$includes" | wc -l) includes, none foreign"

@@ -5,6 +5,7 @@
 
 #include <lightbin/detail/buffer.hpp>
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/float_environment.hpp>
 #include <lightbin/detail/math.hpp>
 #include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/platform.hpp>
@@ -46,6 +47,7 @@ struct PlacedDepths {
 class SliceTable {
 public:
     explicit SliceTable(Items<const float> boundaries) : count_(boundaries.size()) {
+        const DefaultFloatEnvironment environment;
         float* const to = boundaries_.reserve(count_ + std::uint64_t{1});
         copy_items(boundaries.first, count_, to);
         to[count_] = std::numeric_limits<float>::quiet_NaN();  // neither before nor behind anything

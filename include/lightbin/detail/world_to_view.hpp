@@ -14,6 +14,7 @@
 #pragma once
 
 #include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/float_environment.hpp>
 #include <lightbin/detail/math.hpp>
 #include <lightbin/detail/maybe.hpp>
 #include <lightbin/detail/plain.hpp>
@@ -43,7 +44,10 @@ struct FloatMove {
 
 class WorldToView {
 public:
-    explicit WorldToView(const Matrix& matrix) : m_(matrix), affine_(finite(m_) && last_row_is_plain(m_)) {
+    /// Not inline, so that no operation of it moves out of the environment.
+    LIGHTBIN_NOINLINE explicit WorldToView(const Matrix& matrix)
+        : m_(matrix), affine_(finite(m_) && last_row_is_plain(m_)) {
+        const DefaultFloatEnvironment environment;
         // The largest singular value is at most the root of the largest row sum of M^T M. Where a product overflows, sums
         // are infinite or NaN, which no comparison takes for the largest: then there is no bound.
         // In the same way the square of the smallest is at least the least diagonal element less what stands beside it.
