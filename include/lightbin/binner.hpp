@@ -189,7 +189,7 @@ public:
         const detail::DefaultFloatEnvironment environment;
         const std::uint64_t each = (max_lights + std::uint64_t{31}) / 32,
                             words = detail::product_of_sizes(view.tile_count(), each);
-        if (bits.size() < words) return Error{ErrorCode::list_buffer_too_small, words, bits.size()};
+        if (bits.size() < words) return Error{ErrorCode::bit_buffer_too_small, words, bits.size()};
         if (const auto error = project(view, lights, inputs, threads)) return *error;
         const std::uint64_t numbered = z_bins ? footprints_.visible() : footprints_.lights();
         if (numbered > max_lights) return Error{ErrorCode::ids_too_narrow, numbered, max_lights};

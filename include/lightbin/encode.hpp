@@ -117,15 +117,16 @@ Result<Encoded> encode(const LightGrid<Id>& grid, const ListFormat& format, std:
     const std::uint64_t limit = format.max_lights ? (std::min<std::uint64_t>)(format.max_lights, most) : most;
 
     Encoded encoded;
+    std::uint64_t needed = 0;  // to number the greatest id
     for (const ListRange range : grid.ranges()) {
         if (range.count > 0)  // ids ascend: the last one is the greatest
-            if (const Id last = grid.ids()[range.offset + range.count - 1]; last >= limit)
-                return Error{ErrorCode::ids_too_narrow, last + std::uint64_t{1}, limit};
+            needed = (std::max)(needed, grid.ids()[range.offset + range.count - 1] + std::uint64_t{1});
         encoded.capacity_needed = (std::max)(encoded.capacity_needed, range.count);
         if (format.encoding != ListEncoding::sentinel || range.count <= format.capacity) continue;
         encoded.entries_cut += range.count - format.capacity;
         ++encoded.tiles_cut;
     }
+    if (needed > limit) return Error{ErrorCode::ids_too_narrow, needed, limit};
     if (format.encoding == ListEncoding::bitmask)
         detail::encode_bits(grid, static_cast<std::size_t>(encoded_bytes(format, 1, 0)), out.data());
     else if (format.ids == IdWidth::u8)

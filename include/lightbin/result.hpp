@@ -27,7 +27,10 @@ enum class ErrorCode : std::uint8_t {
     image_axes_rotated,
     oblique_depth,
     no_near_plane,
+    near_plane_too_close,
+    depth_range_not_finite,
     degenerate_scale,
+    image_offset_out_of_range,
     viewport_out_of_range,
     tile_size_out_of_range,
     // lights
@@ -47,11 +50,13 @@ enum class ErrorCode : std::uint8_t {
     no_transparent_max,
     // slices
     no_slices,
+    slice_range_empty,
     slices_do_not_ascend,
     too_many_cells,
     // encodings and shader text
     ids_too_narrow,
     list_buffer_too_small,
+    bit_buffer_too_small,
     capacity_unknown,
     max_lights_unknown,
     block_size_unknown,
@@ -96,10 +101,19 @@ constexpr const char* to_string(ErrorCode code) {
         return "the projection has an oblique near plane (its z row reads x or y): pass the projection "
                "without it; its tiles are the same and its near plane misses no light";
     case ErrorCode::no_near_plane:
-        return "the projection has no near and far plane in front of the eye: check ViewOptions::clip_depth "
-               "and the matrix's z row";
+        return "the perspective projection has no near plane in front of the eye: was it made with a near "
+               "distance of 0 or less? Check the matrix's z row and ViewOptions::clip_depth";
+    case ErrorCode::near_plane_too_close:
+        return "the near plane is closer to the eye than 2^-126, the least normal float: move it away, or "
+               "use smaller units";
+    case ErrorCode::depth_range_not_finite:
+        return "the orthographic projection's near and far plane must be at depths that floats hold: check "
+               "the matrix's z row, which must read z";
     case ErrorCode::degenerate_scale:
         return "the projection scales x or y by zero, or by more than 2^80 or less than 2^-80 tiles a unit";
+    case ErrorCode::image_offset_out_of_range:
+        return "the projection moves the image by more than 2^80 tiles in x or y: check the x and y of "
+               "the matrix's third column, or of an orthographic one's fourth";
     case ErrorCode::viewport_out_of_range:
         return "the viewport's sides must be 0 to {available} pixels, and one is {given}";
     case ErrorCode::tile_size_out_of_range:
@@ -122,9 +136,9 @@ constexpr const char* to_string(ErrorCode code) {
         return "the lights may meet slices, or blocks of 8x8 tiles, {needed} times, and binning counts to "
                "{available}: use fewer slices, larger tiles or fewer lights";
     case ErrorCode::range_buffer_too_small:
-        return "the buffer for list ranges holds {available} and {needed} are needed";
+        return "the buffer for list ranges holds {available} ranges and {needed} are needed";
     case ErrorCode::id_buffer_too_small:
-        return "the buffer for light ids holds {available} and {needed} are needed";
+        return "the buffer for light ids holds {available} ids and {needed} are needed";
     case ErrorCode::z_bounds_too_small:
         return "a Z bounds buffer holds {available} tiles and {needed} are needed";
     case ErrorCode::depth_buffer_too_small:
@@ -138,16 +152,22 @@ constexpr const char* to_string(ErrorCode code) {
                "reduce_depth() write ZBoundsBuffers::transparent_max, or count the background";
     case ErrorCode::no_slices:
         return "there must be at least 1 slice, not {given}";
+    case ErrorCode::slice_range_empty:
+        return "two or more slices need a range of finite depths: 0 < first < last for exponential(), "
+               "begin < end for linear()";
     case ErrorCode::slices_do_not_ascend:
-        return "the boundaries of slices must be finite and ascend, and boundary {needed} does not";
+        return "the boundaries of slices must be finite and ascend, and boundary {needed}, counted from 0, "
+               "does not (of exponential() and linear(): too few floats in their range for so many slices)";
     case ErrorCode::too_many_cells:
         return "tiles times slices are {needed} cells, and 32-bit numbers reach {available}: use larger "
                "tiles or fewer slices";
     case ErrorCode::ids_too_narrow:
         return "the lists' format numbers {available} lights and {needed} are needed: use wider ids, or a "
-               "larger ListFormat::max_lights";
+               "larger max_lights";
     case ErrorCode::list_buffer_too_small:
         return "the buffer for the encoded lists holds {available} bytes and {needed} are needed";
+    case ErrorCode::bit_buffer_too_small:
+        return "the buffer for bitmasks holds {available} words of 32 bits and {needed} are needed";
     case ErrorCode::capacity_unknown:
         return "sentinel lists need ListFormat::capacity, the lights a tile can hold";
     case ErrorCode::max_lights_unknown:
@@ -160,7 +180,8 @@ constexpr const char* to_string(ErrorCode code) {
                "ids or another storage, or raise uniform_block_bytes to what the device has";
     case ErrorCode::no_storage_buffers:
         return "GLSL 3.30 and GLSL ES 3.00 have no storage buffers and no compute shaders: read the lists "
-               "from texel_buffer (not ES), texture_2d or uniform_block";
+               "from texel_buffer (not ES), texture_2d or uniform_block, reduce depth in a fragment shader, "
+               "and build grids with a Binner";
     case ErrorCode::no_texel_buffers:
         return "GLSL ES and WGSL have no buffer textures: use texture_2d, uniform_block or (not ES 3.00) "
                "storage_buffer";
@@ -168,8 +189,7 @@ constexpr const char* to_string(ErrorCode code) {
         return "byte_address buffers are HLSL's: use storage_buffer";
     case ErrorCode::no_sets:
         return "this language has no descriptor sets, register spaces or groups: ShaderSlot::set must be 0 "
-               "and is "
-               "{needed}";
+               "and is {given}";
     case ErrorCode::no_push_constants:
         return "push constants are Vulkan GLSL's: set ShaderOptions::push_constants to false";
     case ErrorCode::no_multisample_textures:

@@ -36,9 +36,11 @@ public:
     /// Returns slices of which the first ends at depth `first`, and each of the others is as many times as deep as the
     /// one before it as make the last one end at `last`; it is open all the same. So cells are about as deep as wide.
     ///
-    /// count  from 1 on. Errors: it is less; not 0 < first < last, where there are two slices or more
+    /// count  from 1 on. Errors: it is less; where there are two slices or more: not 0 < first < last, last is infinite,
+    ///        or no floats are left between two boundaries
     static Result<Slices> exponential(int count, float first, float last) {
-        if (count > 1 && !(0 < first && first < last)) return Error{ErrorCode::slices_do_not_ascend};
+        if (count > 1 && !(0 < first && first < last && detail::is_finite(last)))
+            return Error{ErrorCode::slice_range_empty};
         return from_law(count, [=](std::size_t i) {
             const double begin = static_cast<double>(first), ratio = static_cast<double>(last) / begin;
             return begin * detail::power_of(ratio, static_cast<double>(i) / (count - 1.0));
@@ -47,9 +49,11 @@ public:
 
     /// Returns slices that are equally deep from depth `begin` to `end`; the last one is open.
     ///
-    /// count  from 1 on. Errors: it is less; not begin < end, where there are two slices or more
+    /// count  from 1 on. Errors: it is less; where there are two slices or more: not begin < end, one of them is infinite,
+    ///        or no floats are left between two boundaries
     static Result<Slices> linear(int count, float begin, float end) {
-        if (count > 1 && !(begin < end)) return Error{ErrorCode::slices_do_not_ascend};
+        if (count > 1 && !(begin < end && detail::is_finite(begin) && detail::is_finite(end)))
+            return Error{ErrorCode::slice_range_empty};
         return from_law(count, [=](std::size_t i) {
             return static_cast<double>(begin) + (static_cast<double>(end) - static_cast<double>(begin)) *
                                                     static_cast<double>(i + 1) / count;

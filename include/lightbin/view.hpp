@@ -266,17 +266,20 @@ private:
         if (!view.set_axis(view.camera_.x, m[0][0], offset_x, w, viewport.width) ||
             !view.set_axis(view.camera_.y, up * m[1][1], up * offset_y, w, viewport.height))
             return error(ErrorCode::degenerate_scale);
+        if (detail::max_of(detail::abs_of(view.camera_.x.offset), detail::abs_of(view.camera_.y.offset)) >
+            0x1p80)
+            return error(ErrorCode::image_offset_out_of_range);
 
         view.z_scale_ = flip_z * m[2][2];
         view.z_offset_ = m[3][2];
         view.w_scale_ = orthographic ? 0 : w;
         view.w_offset_ = orthographic ? w : 0;
         view.reversed_ = orthographic ? options.reversed_z : view.z_offset_ > 0;
-        if (!view.set_depth_range()) return error(ErrorCode::no_near_plane);
+        if (const auto wrong = view.set_depth_range()) return error(*wrong);
         return view;
     }
 
-    /// ndc = (p / w) * c + q / w; pixels 0..side are ndc -1..1.
+    /// ndc = (p / w) * c + q / w; pixels 0..side are ndc -1..1. Returns whether the scale is one to compute with.
     bool set_axis(detail::ImageAxis& axis, double p, double q, double w, int side) const {
         const double tiles = static_cast<double>(side) / tile_size_;
         axis.tiles = side / tile_size_ + (side % tile_size_ != 0 ? 1 : 0);
@@ -301,7 +304,7 @@ private:
             axis.limit = -1;  // nothing is inside
             return p != 0;
         }
-        return axis.scale >= 0x1p-80 && axis.scale <= 0x1p80 && detail::abs_of(axis.offset) <= 0x1p80;
+        return axis.scale >= 0x1p-80 && axis.scale <= 0x1p80;
     }
 
     /// The pixel coordinate of a slope (orthographic: of a view-space coordinate), and back.
@@ -312,14 +315,19 @@ private:
         return static_cast<double>(axis.sign) * (pixels / tile_size_ - axis.offset) / axis.scale;
     }
 
-    bool set_depth_range() {
+    /// Returns what is wrong with the near and far plane.
+    detail::Maybe<ErrorCode> set_depth_range() {
         const DepthInterval range = view_depths(0, 1);
         camera_.near_depth = range.min;
         camera_.near_fast = detail::max_of(detail::least_plain, range.min);
         camera_.far_depth = range.max;
-        if (!(range.min < range.max)) return false;
-        if (camera_.orthographic) return detail::is_finite(range.min) && detail::is_finite(range.max);
-        return z_offset_ != 0 && range.min >= FLT_MIN;
+        if (camera_.orthographic) {
+            if (detail::is_finite(range.min) && detail::is_finite(range.max)) return {};
+            return ErrorCode::depth_range_not_finite;
+        }
+        if (range.min >= FLT_MIN && range.min < range.max) return {};
+        const bool in_front = depth_at(ndc(reversed_ ? 1 : 0), 0) > 0;
+        return in_front && range.min < FLT_MIN ? ErrorCode::near_plane_too_close : ErrorCode::no_near_plane;
     }
 
     double ndc(double window_depth) const {

@@ -48,11 +48,15 @@ struct ZBoundsBuffers {
     std::span<float> transparent_max = {};
 };
 
-/// How a depth buffer stores depth: how far the stored value can be from that of the fragment that wrote it.
+/// How a depth buffer stores depth, and so how far a sample may be from the window depth of the fragment that wrote it.
+/// Bounds hold for every rounding that graphics APIs allow: the stored value is either of the format's two values next to
+/// the fragment's, so the depth may be rounded to nearest, down or up; an integer that is read as a float is either of the
+/// two floats next to what it stands for. Bounds don't hold for what is further off, as where the buffer has fewer bits
+/// than the format that is named, or a polygon offset has moved its depths.
 enum class DepthFormat : std::uint8_t {
-    float32,  ///< one unit in the last place is allowed for
-    unorm24,  ///< one step of 1 / (2^24 - 1)
-    unorm16,  ///< one step of 1 / (2^16 - 1)
+    float32,  ///< a float, denormals possibly flushed to zero
+    unorm24,  ///< whole multiples of 1 / (2^24 - 1)
+    unorm16,  ///< whole multiples of 1 / (2^16 - 1)
 };
 
 constexpr const char* to_string(DepthFormat format) {
@@ -95,9 +99,10 @@ inline DepthInterval fragment_depths(const View& view, Extremes window, DepthFor
         low = low < least_normal ? 0 : low * (1 - 0x1p-23);
         high = max_of(high * (1 + 0x1p-23), least_normal);
     } else {
-        const double step = format == DepthFormat::unorm24 ? 0x1.000002p-24 : 0x1.0002p-16;
-        low = low - step;
-        high = high + step;
+        // A little more than a step of the format, and the largest one of floats up to 1.
+        const double reach = (format == DepthFormat::unorm24 ? 0x1.000002p-24 : 0x1.0002p-16) + 0x1p-24;
+        low = low - reach;
+        high = high + reach;
     }
     return view.view_depths(min_of(max_of(low, 0.0), 1.0), min_of(max_of(high, 0.0), 1.0));
 }
@@ -154,7 +159,7 @@ void reduce_tile_row(Isa isa, const DepthRows& row, std::size_t tile_columns, fl
 /// Reduces a depth buffer to Z bounds in the caller's buffers, which the result then refers to.
 ///
 /// After it, the view depth of every sample lies within its tile's bounds, which are rounded outward and
-/// widened by the format's step. A tile where nothing is drawn (see skip_background) has min = +inf, max =
+/// widened by what DepthFormat allows for. A tile where nothing is drawn (see skip_background) has min = +inf, max =
 /// -inf. Samples outside 0..1 are clamped; a NaN sample makes its tile reach from the near to the far plane.
 /// A tile's gap is the one between its samples on either side of its middle view depth.
 ///
