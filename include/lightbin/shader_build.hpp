@@ -209,9 +209,9 @@ inline void add_view_depths(ShaderWriter& writer, const ReduceShaderOptions& opt
     if (range.x >= 0x00800002u) { first = range.x - 2u; }
     vec2 ends = vec2(uintBitsToFloat(first), uintBitsToFloat(clamp(range.y + 2u, 0x00800000u, 0x3f800000u)));
 )");
-    else  // one step, 2^-24 for the texel's rounding, and 2^-25 for that of the sum here, which 24 bits don't need
+    else  // one step and 2^-24 for the texel's rounding, and 2^-25 for the sum's, which with steps of 24 bits is exact
         writer.add(std::string("    float step = ") +
-                   (options.format == DepthFormat::unorm24 ? "1.1920931e-7" : "1.5348451e-5") +
+                   (options.format == DepthFormat::unorm24 ? "1.1920931e-7" : "1.535e-5") +
                    ";\n    vec2 ends = vec2(max(uintBitsToFloat(range.x) - step, 0.0), "
                    "min(uintBitsToFloat(range.y) + step, 1.0));\n");
     writer.add(options.reversed_z ? "    vec2 e = ends.yx;\n"

@@ -31,7 +31,8 @@ float stored(Real depth, lightbin::DepthFormat format, Random& random) {
     const float value = value_of(way == 0   ? std::floor(exact * steps)
                                  : way == 1 ? std::ceil(exact * steps)
                                             : std::round(exact * steps));
-    return std::fabs(value - exact) + depth.error <= 1 / steps + 0x1p-24L ? value : value_of(std::round(exact * steps));
+    const Long reach = 1 / steps + 0x1p-24L;
+    return std::fabs(value - exact) + depth.error <= reach ? value : value_of(std::round(exact * steps));
 }
 
 std::string text(const char* what, std::size_t tile, Long is, Long least, Long most) {

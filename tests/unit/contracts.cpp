@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <set>
 #include <string>
 #include <type_traits>
@@ -116,6 +117,26 @@ template <class Enum> void check_words(Enum first, Enum last) {
 }
 
 }  // namespace
+
+TEST_CASE("an error's sentence has its numbers, with their sign where what was given may be negative") {
+    for (int code = 0; code <= static_cast<int>(ErrorCode::not_a_prefix); ++code) {
+        const std::string sentence = to_string(static_cast<ErrorCode>(code)),
+                          message = Error{static_cast<ErrorCode>(code), 1234, 5678}.message();
+        const auto has = [&](const char* part) { return sentence.find(part) != std::string::npos; };
+        CHECK(message.find_first_of("{}") == std::string::npos);
+        CHECK((message.find("1234") != std::string::npos) == (has("{needed}") || has("{given}")));
+        CHECK((message.find("5678") != std::string::npos) == has("{available}"));
+    }
+    for (const int given : {-1, -5, std::numeric_limits<int>::min()})
+        for (const ErrorCode code :
+             {ErrorCode::viewport_out_of_range, ErrorCode::tile_size_out_of_range,
+              ErrorCode::samples_out_of_range, ErrorCode::no_slices, ErrorCode::no_sets})
+            CHECK(Error{code, static_cast<std::uint64_t>(given)}.message().find(
+                      " " + std::to_string(given)) != std::string::npos);
+    const auto refused = shader_snippet({.language = ShaderLanguage::glsl_430, .tiles = {0, -1}});
+    REQUIRE(!refused);
+    CHECK(refused.error().message().find("18446744073709551615") == std::string::npos);
+}
 
 TEST_CASE("every enum has words") {
     check_words(Isa::scalar, Isa::neon);

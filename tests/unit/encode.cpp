@@ -132,6 +132,22 @@ TEST_CASE("what a format can't hold is an error, and nothing is written") {
                   .find("holds 16 bytes and 536870912") != std::string::npos);
 }
 
+TEST_CASE("ids that are too narrow are told how many lights there are, not the first that is too many") {
+    const std::vector<ListRange> tiles = {{0, 2}, {2, 1}, {3, 0}, {3, 1}};
+    const std::vector<std::uint32_t> ids = {0, 299, 999, 511};
+    std::vector<std::byte> bytes(4096);
+    const LightGrid<std::uint32_t> grid(4, 1, tiles, ids);
+    for (const ListFormat& format :
+         {ListFormat{.ids = IdWidth::u8}, ListFormat{ListEncoding::sentinel, IdWidth::u8, 4},
+          ListFormat{.encoding = ListEncoding::bitmask, .max_lights = 999}, ListFormat{.max_lights = 300}}) {
+        const auto result = encode(grid, format, bytes);
+        REQUIRE(!result);
+        CHECK(result.error().code == ErrorCode::ids_too_narrow);
+        CHECK(result.error().needed == 1000);
+    }
+    CHECK(encode(grid, {.encoding = ListEncoding::bitmask, .max_lights = 1000}, bytes));
+}
+
 TEST_CASE("a format that lacks its size, or has one that its ids can't number, is refused, and nothing is "
           "written") {
     const MadeGrid made(41, 12, 33);

@@ -142,7 +142,22 @@ TEST_CASE("matrices that are no projection of the promised kinds are refused by 
     CHECK(refusal(with(1, 1, 0.0f, good)) == ErrorCode::degenerate_scale);
     CHECK(refusal(with(1, 1, 1e30f, good)) == ErrorCode::degenerate_scale);
     CHECK(refusal(with(0, 0, 1e-30f, good)) == ErrorCode::degenerate_scale);
+    for (const float much : {1e30f, -1e30f}) {
+        CHECK(refusal(with(2, 0, much, good)) == ErrorCode::image_offset_out_of_range);
+        CHECK(refusal(with(2, 1, much, good)) == ErrorCode::image_offset_out_of_range);
+    }
     CHECK(refusal(with(3, 2, 0.0f, good)) == ErrorCode::no_near_plane);
+    CHECK(refusal(with(3, 2, -1e-39f, good)) == ErrorCode::near_plane_too_close);
+    glm::dmat4 closer(good);
+    for (const double offset : {-1e-60, -1e-320}) {
+        closer[3][2] = offset;
+        CHECK(refusal(closer) == ErrorCode::near_plane_too_close);
+    }
+    glm::mat4 reversed_infinite = with(2, 2, 0, good);
+    reversed_infinite[3][2] = 1e-39f;
+    CHECK(refusal(reversed_infinite, full_hd, {.clip_depth = ClipDepth::zero_to_one}) ==
+          ErrorCode::near_plane_too_close);
+    CHECK(refusal(with(3, 2, 0, reversed_infinite)) == ErrorCode::no_near_plane);  // its near plane is at 0
 
     glm::mat4 behind = good;  // all depths -1..1 lie behind the eye
     behind[2][2] = 5;
@@ -152,7 +167,10 @@ TEST_CASE("matrices that are no projection of the promised kinds are refused by 
     CHECK(refusal(with(2, 0, 0.1f, box)) == ErrorCode::image_axes_rotated);
     CHECK(refusal(with(2, 1, 0.1f, box)) == ErrorCode::image_axes_rotated);
     CHECK(refusal(with(0, 2, 0.1f, box)) == ErrorCode::oblique_depth);
-    CHECK(refusal(with(2, 2, 0.0f, box)) == ErrorCode::no_near_plane);
+    CHECK(refusal(with(3, 0, 1e30f, box)) == ErrorCode::image_offset_out_of_range);
+    CHECK(refusal(with(3, 1, -1e30f, box)) == ErrorCode::image_offset_out_of_range);
+    CHECK(refusal(with(2, 2, 0.0f, box)) == ErrorCode::depth_range_not_finite);
+    CHECK(refusal(with(2, 2, 1e-39f, box)) == ErrorCode::depth_range_not_finite);
 }
 
 TEST_CASE("a transposed matrix is refused as that, where it can be told") {

@@ -276,3 +276,153 @@ TEST_CASE("a denormal depth may be any near it") {
             }
         }
 }
+
+namespace {
+
+/// A window depth in units of 2^-40, exact as a double.
+using Window = std::uint64_t;
+constexpr Window one = Window{1} << 40;
+
+double number_of(Window depth) {
+    return static_cast<double>(depth) / static_cast<double>(one);
+}
+
+/// The float next to a number that a double holds: 0 the nearest, -1 not above, 1 not below.
+float float_next_to(double number, int direction) {
+    const float nearest = static_cast<float>(number);
+    const double excess = static_cast<double>(nearest) - number;
+    return excess * direction < 0 ? std::nextafter(nearest, static_cast<float>(direction) * infinite)
+                                  : nearest;
+}
+
+std::uint64_t steps_of(DepthFormat format) {
+    return format == DepthFormat::unorm24 ? 0xffffff : 0xffff;
+}
+
+/// What a buffer has of a depth, rounded to nearest (0), down (-1) or up (1), and then read as a float, rounded in any way.
+float stored(Window depth, DepthFormat format, int rounding, int float_rounding) {
+    if (format == DepthFormat::float32) return float_next_to(number_of(depth), rounding);
+    const std::uint64_t steps = steps_of(format);
+    const Window added = rounding == 0 ? one / 2 : rounding > 0 ? one - 1 : 0;
+    const std::uint64_t step = (depth * steps + added) / one;
+    // The quotient is a double's error off, and no float but 0 and 1, which are exact, is as close as that.
+    return float_next_to(static_cast<double>(step) / static_cast<double>(steps), float_rounding);
+}
+
+/// Depths that roundings move farthest, near both ends and where floats are coarsest, and any.
+std::vector<Window> depths_to_store(DepthFormat format) {
+    std::vector<Window> depths = {0, 1, one - 1, one};
+    const std::uint64_t steps = format == DepthFormat::float32 ? 0xffffff : steps_of(format);
+    std::mt19937_64 random(5);
+    const auto add_around = [&](std::uint64_t step) {
+        const Window at = step * one / steps, half = one / steps / 2;  // just below the step, or at it
+        for (const Window depth : {at, at + 1, at + half, at + half + 1, at - 1})
+            if (depth <= one) depths.push_back(depth);
+    };
+    for (const std::uint64_t step :
+         {std::uint64_t{1}, std::uint64_t{2}, steps / 2, steps / 2 + 1, steps / 2 + 7, steps - 2, steps - 1})
+        add_around(step);
+    for (int i = 0; i < 800; ++i) {
+        add_around(1 + random() % (steps - 1));
+        add_around(steps / 2 + random() % (steps / 2));
+        depths.push_back(random() % one);
+    }
+    return depths;
+}
+
+/// A view of one tile a sample, and its matrix in doubles.
+struct DepthCamera {
+    glm::dmat4 projection;
+    ViewOptions options;
+
+    View view(std::size_t samples) const {
+        ViewOptions with_tiles = options;
+        with_tiles.tile_size = 1;
+        return *View::from_projection(projection, {static_cast<int>(samples), 1}, with_tiles);
+    }
+    /// By the definition of clip space, in an arithmetic that is finer than a view's. All of them look down -z.
+    long double view_depth(Window window) const {
+        long double v = static_cast<long double>(window) / static_cast<long double>(one);
+        if (options.clip_depth == ClipDepth::minus_one_to_one) v = 2 * v - 1;
+        const auto& m = projection;
+        return (v * static_cast<long double>(m[3][3]) - static_cast<long double>(m[3][2])) /
+               (v * static_cast<long double>(m[2][3]) - static_cast<long double>(m[2][2]));
+    }
+};
+
+std::vector<DepthCamera> depth_cameras() {
+    constexpr ViewOptions gl = {}, zo = {.clip_depth = ClipDepth::zero_to_one};
+    ViewOptions gl_reversed = gl, zo_reversed = zo;
+    gl_reversed.reversed_z = zo_reversed.reversed_z = true;
+    return {{glm::perspectiveRH_NO(1.0, 1.5, 0.1, 1000.0), gl},
+            {glm::perspectiveRH_NO(1.0, 1.5, 1000.0, 0.1), gl},  // reversed
+            {glm::perspectiveRH_ZO(1.0, 1.5, 0.1, 1000.0), zo},
+            {glm::perspectiveRH_ZO(1.0, 1.5, 1000.0, 0.1), zo},
+            {glm::orthoRH_NO(-1.0, 1.0, -1.0, 1.0, -3.0, 500.0), gl},
+            {glm::orthoRH_NO(-1.0, 1.0, -1.0, 1.0, 500.0, -3.0), gl_reversed},
+            {glm::orthoRH_ZO(-1.0, 1.0, -1.0, 1.0, 0.1, 500.0), zo},
+            {glm::orthoRH_ZO(-1.0, 1.0, -1.0, 1.0, 500.0, 0.1), zo_reversed}};
+}
+
+/// How many of the depths' view depths lie outside of the bounds that their samples give.
+std::size_t outside(const DepthCamera& camera, const std::vector<Window>& depths,
+                    const std::vector<float>& samples, DepthFormat format) {
+    const Reduced reduced = reduce(camera.view(samples.size()), {.depth = samples, .format = format});
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+        const long double depth = camera.view_depth(depths[i]);
+        count += !(static_cast<long double>(reduced.min[i]) <= depth &&
+                   depth <= static_cast<long double>(reduced.max[i]));
+    }
+    return count;
+}
+
+}  // namespace
+
+TEST_CASE("bounds hold what was drawn, whichever way the buffer rounds it") {
+    for (const DepthFormat format : {DepthFormat::float32, DepthFormat::unorm24, DepthFormat::unorm16}) {
+        const std::vector<Window> depths = depths_to_store(format);
+        for (const int rounding : {-1, 0, 1})
+            for (const int float_rounding : {-1, 0, 1}) {
+                std::vector<float> samples;
+                for (const Window depth : depths)
+                    samples.push_back(stored(depth, format, rounding, float_rounding));
+                for (const DepthCamera& camera : depth_cameras()) {
+                    const std::string name = to_string(format);
+                    CAPTURE(name);
+                    CAPTURE(rounding);
+                    CAPTURE(float_rounding);
+                    CHECK(camera.view(1).reversed_z() == (camera.view_depth(0) > camera.view_depth(one)));
+                    CHECK(outside(camera, depths, samples, format) == 0);
+                }
+            }
+    }
+}
+
+TEST_CASE("bounds don't hold what was drawn further off than the format rounds") {
+    for (const DepthCamera& camera : depth_cameras()) {
+        // Four steps off: two are the most that are allowed for, and orthographic bounds are rounded by one.
+        for (const DepthFormat format : {DepthFormat::float32, DepthFormat::unorm24, DepthFormat::unorm16}) {
+            const std::uint64_t steps = format == DepthFormat::float32 ? 1 << 24 : steps_of(format);
+            std::vector<Window> depths;
+            std::vector<float> samples;
+            for (std::uint64_t step = steps * 3 / 4; step < steps * 3 / 4 + 20; ++step)
+                for (const int off : {-4, 4}) {
+                    depths.push_back(step * one / steps);
+                    const Window other = (step + static_cast<std::uint64_t>(off)) * one / steps;
+                    samples.push_back(stored(other, format, 0, 0));
+                }
+            CHECK(outside(camera, depths, samples, format) == depths.size());
+        }
+        // A buffer of 16 bits that is said to be a finer one.
+        std::vector<Window> depths;
+        std::vector<float> samples;
+        for (std::uint64_t step = 1; step < 0xffff; step += 99) {
+            depths.push_back(step * one / 0xffff + one / 0x40000);  // a quarter of a step beside
+            samples.push_back(stored(depths.back(), DepthFormat::unorm16, 0, 0));
+        }
+        CHECK(outside(camera, depths, samples, DepthFormat::unorm16) == 0);
+        CHECK(outside(camera, depths, samples, DepthFormat::unorm24) == depths.size());
+        CHECK(outside(camera, depths, samples, DepthFormat::float32) == depths.size());
+    }
+}
