@@ -37,7 +37,7 @@ public:
     /// one before it as make the last one end at `last`; it is open all the same. So cells are about as deep as wide.
     ///
     /// count  from 1 on. Errors: it is less; where there are two slices or more: not 0 < first < last, last is infinite,
-    ///        or no floats are left between two boundaries
+    ///        or two boundaries round to the same float
     static Result<Slices> exponential(int count, float first, float last) {
         if (count > 1 && !(0 < first && first < last && detail::is_finite(last)))
             return Error{ErrorCode::slice_range_empty};
@@ -50,7 +50,7 @@ public:
     /// Returns slices that are equally deep from depth `begin` to `end`; the last one is open.
     ///
     /// count  from 1 on. Errors: it is less; where there are two slices or more: not begin < end, one of them is infinite,
-    ///        or no floats are left between two boundaries
+    ///        or two boundaries round to the same float
     static Result<Slices> linear(int count, float begin, float end) {
         if (count > 1 && !(begin < end && detail::is_finite(begin) && detail::is_finite(end)))
             return Error{ErrorCode::slice_range_empty};
