@@ -13,6 +13,7 @@
 #include <concepts>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 #include <lightbin/detail/warnings_off.inl>
 
@@ -34,8 +35,8 @@ concept Vec4Of = requires(const Light& light) {
 /// Sphere of the x, y, z and w of a vec4 of floats, or of doubles, which are rounded outward.
 struct AsLight {
     template <class Light>
-    requires(std::convertible_to<const Light&, Sphere> || detail::Vec4Of<Light, float> ||
-             detail::Vec4Of<Light, double>) constexpr auto
+    requires(std::convertible_to<const Light&, Sphere> || std::convertible_to<const Light&, Spot> ||
+             detail::Vec4Of<Light, float> || detail::Vec4Of<Light, double>) constexpr auto
     operator()(const Light& light) const {
         if constexpr (std::convertible_to<const Light&, Spot>)
             return static_cast<Spot>(light);
@@ -54,12 +55,27 @@ template <class Range>
 concept Array = requires(const Range& range) {
     std::span(std::data(range), std::size(range));
 };
+template <class Made>
+concept MadeLight = std::convertible_to<Made, Sphere> || std::convertible_to<Made, Spot>;
+
+/// Whether `to_light` does not take an element itself, but what the element points or refers to, if anything.
 template <class ToLight, class Light>
-concept MakesLights = std::convertible_to<std::invoke_result_t<const ToLight&, const Light&>, Sphere>;
+inline constexpr bool by_reference =
+    std::same_as<decltype(call(std::declval<const ToLight&>(), std::declval<const Light&>())), NotCalled>;
+
+/// Calls `to_light` with an element, or with what that refers to. Returns NotCalled where it takes neither.
+template <class ToLight, class Light>
+constexpr decltype(auto) make_light(const ToLight& to_light, const Light& light) {
+    if constexpr (by_reference<ToLight, Light>)
+        return call(to_light, referred(light));
+    else
+        return call(to_light, light);
+}
 
 /// Returns `to_light`, or where it can't be one, the compiler's sentence and one that can, so that no other error follows.
 template <class Light, class ToLight> constexpr auto checked_to_light(const ToLight& to_light) {
-    constexpr bool can_be_called = std::invocable<const ToLight&, const Light&>;
+    using Made = decltype(make_light(to_light, std::declval<const Light&>()));
+    constexpr bool can_be_called = !std::same_as<Made, NotCalled>;
     if constexpr (std::same_as<ToLight, AsLight>)
         static_assert(
             can_be_called,
@@ -69,9 +85,9 @@ template <class Light, class ToLight> constexpr auto checked_to_light(const ToLi
     else
         static_assert(
             can_be_called,
-            "lightbin: to_light is called, as const, with a const reference to one of the lights, and "
-            "can't be called with it");
-    if constexpr (MakesLights<ToLight, Light>) {
+            "lightbin: to_light is called, as const, with a const reference to one of the lights, or with "
+            "what that points to, and can't be called with either");
+    if constexpr (MadeLight<Made>) {
         return to_light;
     } else {
         static_assert(!can_be_called,
@@ -105,19 +121,28 @@ template <class Light, class ToLight> struct Lights {
     detail::Maybe<detail::WorldToView> to_view;
 
     /// Whether the lights are Spots, of which some may be whole spheres.
-    static constexpr bool spots =
-        std::convertible_to<std::invoke_result_t<const ToLight&, const Light&>, Spot>;
+    static constexpr bool spots = std::convertible_to<
+        decltype(detail::make_light(std::declval<const ToLight&>(), std::declval<const Light&>())), Spot>;
+
+    /// Returns the Spot or Sphere that to_light makes of an element; of a null pointer that it would be called through, one
+    /// that is bad input.
+    auto made(const Light& light) const {
+        using Made = std::conditional_t<spots, Spot, Sphere>;
+        if constexpr (detail::by_reference<ToLight, Light> && requires { !light, *light; })
+            if (!light) return static_cast<Made>(Spot::whole(detail::bad_sphere));
+        return static_cast<Made>(detail::make_light(to_light, light));
+    }
 
     /// Returns a light of the array as a sphere in view space.
     Sphere view_sphere(const Light& light) const {
-        const Sphere sphere = detail::call(to_light, light);
+        const Sphere sphere = made(light);
         return to_view ? (*to_view)(sphere) : sphere;
     }
 
     /// Returns a light of the array in view space, a Spot with its axis rounded to nearest.
     auto view_light(const Light& light) const {
         if constexpr (spots) {
-            const Spot spot = detail::call(to_light, light);
+            const Spot spot = made(light);
             if (!to_view) return spot;
             const Sphere ball = (*to_view)(Sphere{spot.x, spot.y, spot.z, spot.radius});
             const Sphere axis = to_view->direction(spot.axis_x, spot.axis_y, spot.axis_z);
@@ -128,24 +153,45 @@ template <class Light, class ToLight> struct Lights {
     }
 };
 
+/// Lights that view_space() or world_space() made of a temporary array, such as a std::vector that a function returned,
+/// which they moved in here: it lives as long as they do. (A temporary std::span is copied; the array it views is not.)
+template <class Range, class ToLight> struct OwnedLights {
+    Range array;
+    ToLight to_light;
+    detail::Maybe<detail::WorldToView> to_view;
+};
+
 /// Returns lights in view space (the space that the projection matrix takes). The array is read in place: it
-/// must live until the Binner's call returns.
+/// must live until the Binner's call returns. A temporary one is moved into what is returned.
 ///
-/// to_light  a callable that makes a Sphere, or a Spot, of an element; it is copied, and called as const
+/// lights    a contiguous range of anything: of structs, of pointers or smart pointers to them, of std::reference_wrapper
+/// to_light  a callable or a pointer to a member that makes a Sphere, or a Spot, of an element or, where it does not take
+///           one, of what the element points to; it is copied, and called as const. A null pointer is bad input, as
+///           described at Sphere: that light is skipped and counted. A to_light that takes pointers is given null ones, too
 template <class Range, class ToLight = AsLight>
-auto view_space(const Range& lights, const ToLight& to_light = {}) {
+auto view_space(Range&& lights, const ToLight& to_light = {}) {
+    constexpr bool temporary = !std::is_lvalue_reference_v<Range>,
+                   movable = std::is_move_constructible_v<Range>;
+    static_assert(!temporary || movable,
+                  "lightbin: these lights are gone after the expression and can't be moved: give the array a "
+                  "name that lives on");
     const auto array = detail::checked_array(lights);
     const auto checked = detail::checked_to_light<typename decltype(array)::value_type>(to_light);
-    return Lights<typename decltype(array)::value_type, std::remove_const_t<decltype(checked)>>{
-        array, checked, {}};
+    using Checked = std::remove_const_t<decltype(checked)>;
+    if constexpr (temporary && movable)
+        return OwnedLights<std::remove_cv_t<Range>, Checked>{static_cast<Range&&>(lights), checked, {}};
+    else
+        return Lights<typename decltype(array)::value_type, Checked>{array, checked, {}};
 }
 
 /// Returns lights in world space, moved by `view_matrix` (any type that matrix.hpp lists; affine: rotation,
 /// translation, scale) as they are read. The rounding of the move is in the spheres and cones: no light is missed by
 /// it. A matrix that is far from a rotation and a scale bends cones out of shape: spots are moved as least spheres then.
+///
+/// lights, to_light  as for view_space()
 template <class Range, class ViewMatrix, class ToLight = AsLight>
-auto world_space(const Range& lights, const ViewMatrix& view_matrix, const ToLight& to_light = {}) {
-    auto result = view_space(lights, to_light);
+auto world_space(Range&& lights, const ViewMatrix& view_matrix, const ToLight& to_light = {}) {
+    auto result = view_space(static_cast<Range&&>(lights), to_light);
     result.to_view = detail::WorldToView(detail::to_matrix(view_matrix));
     return result;
 }
@@ -159,6 +205,11 @@ template <class Range> auto as_lights(const Range& lights) {
 template <class Light, class ToLight>
 const Lights<Light, ToLight>& as_lights(const Lights<Light, ToLight>& lights) {
     return lights;
+}
+template <class Range, class ToLight> auto as_lights(const OwnedLights<Range, ToLight>& lights) {
+    auto result = view_space(lights.array, lights.to_light);
+    result.to_view = lights.to_view;
+    return result;
 }
 
 /// The caller's array as spheres, if its elements are Spheres, or vec4s laid out like them; else null. Read it with

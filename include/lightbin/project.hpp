@@ -41,11 +41,11 @@ void copy_lights(const void* lights, std::size_t first, std::size_t count, Spher
     const auto& from = *static_cast<const Lights<Light, ToLight>*>(lights);
     for (std::size_t i = 0; i < count; ++i)
         if constexpr (Lights<Light, ToLight>::spots) {
-            const Spot spot = call(from.to_light, from.array[first + i]);
+            const Spot spot = from.made(from.array[first + i]);
             to[i] = {spot.x, spot.y, spot.z, spot.radius};
             cones[i] = {spot.axis_x, spot.axis_y, spot.axis_z, spot.cos_half_angle};
         } else {
-            to[i] = call(from.to_light, from.array[first + i]);
+            to[i] = from.made(from.array[first + i]);
         }
 }
 

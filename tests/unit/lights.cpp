@@ -9,6 +9,9 @@
 #include <cfloat>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <random>
 #include <type_traits>
 #include <vector>
@@ -97,6 +100,156 @@ TEST_CASE_TEMPLATE("what is a Sphere, or becomes one, is a light", Light, IsOne,
     const ZBounds bounds = {.min = low, .max = high};
     constexpr Options box = {.depth_test = DepthTest::box};
     CHECK(test::lists<box>(view, lights, bounds) == test::lists<box>(view, spheres, bounds));
+}
+
+namespace {
+
+struct Lamp {
+    Sphere sphere;
+    Spot spot;
+
+    Sphere made_sphere() const { return sphere; }
+    Sphere changed_sphere() { return sphere; }
+    const Spot& made_spot() const { return spot; }
+    operator Spot() const { return spot; }
+};
+Sphere sphere_of(const Lamp& lamp) {
+    return lamp.sphere;
+}
+Spot spot_of(const Lamp& lamp) {
+    return lamp.spot;
+}
+
+std::vector<Lamp> random_lamps(std::size_t count, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    std::vector<Lamp> lamps;
+    for (const glm::vec4& s : test::random_lights(count, seed))
+        lamps.push_back({{s.x, s.y, s.z, s.w},
+                         {s.x, s.y, s.z, s.w, unit(random), unit(random), unit(random), unit(random)}});
+    return lamps;
+}
+
+/// The ways to hold each of some lamps, which live elsewhere or are copied.
+template <class Holder> std::vector<Holder> held(std::vector<Lamp>& lamps) {
+    std::vector<Holder> result;
+    for (Lamp& lamp : lamps)
+        if constexpr (std::is_pointer_v<Holder>)
+            result.push_back(&lamp);
+        else if constexpr (std::is_same_v<Holder, std::unique_ptr<Lamp>>)
+            result.push_back(std::make_unique<Lamp>(lamp));
+        else if constexpr (std::is_same_v<Holder, std::shared_ptr<const Lamp>>)
+            result.push_back(std::make_shared<const Lamp>(lamp));
+        else
+            result.push_back(lamp);
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("lights may be held by pointers, smart pointers and references", Holder, Lamp, Lamp*,
+                   const Lamp*, std::unique_ptr<Lamp>, std::shared_ptr<const Lamp>,
+                   std::reference_wrapper<Lamp>, std::reference_wrapper<const Lamp>, std::optional<Lamp>) {
+    auto lamps = random_lamps(300, 10);
+    std::vector<Sphere> spheres;
+    std::vector<Spot> spots;
+    for (const Lamp& lamp : lamps) {
+        spheres.push_back(lamp.sphere);
+        spots.push_back(lamp.spot);
+    }
+    const std::vector<Holder> holders = held<Holder>(lamps);
+    const View view = test::view({641, 361}, 16);
+    const glm::mat4 to_view = glm::rotate(glm::mat4(1.0f), 0.3f, glm::normalize(glm::vec3(1, 2, 3)));
+    const auto check = [&](const auto& expected, const auto& to_light) {
+        CHECK(test::lists(view, view_space(holders, to_light)) == test::lists(view, expected));
+        CHECK(test::lists(view, world_space(holders, to_view, to_light)) ==
+              test::lists(view, world_space(expected, to_view)));
+    };
+    check(spheres, [](const Lamp& lamp) { return lamp.sphere; });
+    check(spheres, sphere_of);
+    check(spheres, &sphere_of);
+    check(spheres, std::function<Sphere(const Lamp&)>(sphere_of));
+    check(spheres, &Lamp::sphere);
+    check(spheres, &Lamp::made_sphere);
+    check(spots, [](const Lamp& lamp) -> const Spot& { return lamp.spot; });
+    check(spots, [](const Lamp& lamp) { return lamp; });  // converts to a Spot
+    check(spots, spot_of);
+    check(spots, &Lamp::spot);
+    check(spots, &Lamp::made_spot);
+    CHECK(test::lists(view, holders) == test::lists(view, spots));
+    CHECK(test::lists(view, world_space(holders, to_view)) == test::lists(view, world_space(spots, to_view)));
+    if constexpr (std::is_same_v<Holder, Lamp*> || std::is_same_v<Holder, std::unique_ptr<Lamp>> ||
+                  std::is_same_v<Holder, std::reference_wrapper<Lamp>>)
+        check(spheres, &Lamp::changed_sphere);
+}
+
+TEST_CASE("plain spheres and vec4s may be held by pointers, too") {
+    auto lights = test::random_lights(300, 11);
+    std::vector<const glm::vec4*> pointers;
+    std::vector<std::reference_wrapper<glm::vec4>> references;
+    std::vector<std::shared_ptr<Sphere>> shared;
+    for (glm::vec4& s : lights) {
+        pointers.push_back(&s);
+        references.push_back(s);
+        shared.push_back(std::make_shared<Sphere>(Sphere{s.x, s.y, s.z, s.w}));
+    }
+    const View view = test::view({641, 361}, 16);
+    const auto expected = test::lists(view, lights);
+    CHECK(test::lists(view, pointers) == expected);
+    CHECK(test::lists(view, references) == expected);
+    CHECK(test::lists(view, shared) == expected);
+}
+
+TEST_CASE("a null pointer is bad input: skipped and counted, the other lights keep their ids") {
+    auto lamps = random_lamps(300, 12);
+    std::vector<Lamp*> pointers = held<Lamp*>(lamps);
+    auto unique = held<std::unique_ptr<Lamp>>(lamps);
+    for (std::size_t i = 0; i < lamps.size(); i += 3) {
+        pointers[i] = nullptr;
+        unique[i] = nullptr;
+        lamps[i].sphere.radius = lamps[i].spot.radius = -1;
+    }
+    const View view = test::view({641, 361}, 16);
+    const glm::mat4 to_view = glm::rotate(glm::mat4(1.0f), 0.3f, glm::normalize(glm::vec3(1, 2, 3)));
+    Binner<> binner;
+    const auto check = [&](const auto& holders, const auto& to_light) {
+        CHECK(test::lists(view, view_space(holders, to_light)) ==
+              test::lists(view, view_space(lamps, to_light)));
+        const auto grid = binner.bin(view, world_space(holders, to_view, to_light));
+        REQUIRE(grid);
+        CHECK(grid->light_counts().rejected == 100);
+        CHECK(test::to_lists(*grid) == test::lists(view, world_space(lamps, to_view, to_light)));
+    };
+    check(pointers, sphere_of);
+    check(unique, sphere_of);
+    check(pointers, &Lamp::sphere);
+    check(unique, &Lamp::made_spot);
+    check(pointers, AsLight());
+    check(unique, AsLight());
+    // A callable that takes pointers is given null ones, too.
+    const auto whole = [](const Lamp* lamp) { return lamp != nullptr ? lamp->sphere : Sphere{0, 0, -5, 1}; };
+    CHECK(binner.bin(view, view_space(pointers, whole))->light_counts().rejected == 0);
+}
+
+TEST_CASE("a temporary array lives as long as the lights made of it") {
+    const auto spheres = test::random_lights(300, 13);
+    const View view = test::view({641, 361}, 16);
+    const glm::mat4 to_view = glm::rotate(glm::mat4(1.0f), 0.3f, glm::normalize(glm::vec3(1, 2, 3)));
+    const auto copy = [&] { return spheres; };
+    const auto stored = view_space(copy());
+    const auto moved = world_space(copy(), to_view);
+    const auto copied = stored;
+    CHECK(stored.array.data() != copied.array.data());
+    CHECK(test::lists(view, stored) == test::lists(view, spheres));
+    CHECK(test::lists(view, copied) == test::lists(view, spheres));
+    CHECK(test::lists(view, moved) == test::lists(view, world_space(spheres, to_view)));
+    const auto few = view_space(std::array<Sphere, 2>{Sphere{0, 0, -5, 1}, Sphere{1, 0, -9, 2}});
+    CHECK(test::entries(test::lists(view, few)) > 0);
+    // Moved, not copied; a view is not followed by what it shows.
+    auto given = copy();
+    const glm::vec4* const data = given.data();
+    CHECK(view_space(std::move(given)).array.data() == data);
+    CHECK(view_space(std::span<const glm::vec4>(spheres)).array.data() == spheres.data());
 }
 
 TEST_CASE("doubles become a sphere of floats that holds theirs, and is no larger than it must be") {
