@@ -54,8 +54,23 @@ template <bool read> auto bounds_left_out() {
                "what reduce_depth() returns or bounds of your own");
     return std::conditional_t<read, ZBounds, NotRead>();
 }
+/// The slices of an Inputs: a reference to the caller's, or a copy of temporary ones, which would be gone after the
+/// expression that makes the Inputs.
+class SlicesInput {
+public:
+    SlicesInput(const Slices& slices) : given_(&slices) {}
+    SlicesInput(const Slices&& slices) : own_(slices) {}
+    template <class Given>
+    SlicesInput(const Result<Given>& result) : own_(result) {}  // says that it is no Slices yet
+
+    operator const Slices&() const { return given_ != nullptr ? *given_ : *own_; }
+
+private:
+    const Slices* given_ = nullptr;
+    Maybe<Slices> own_;
+};
 struct NoSlices {
-    operator const Slices&() const;
+    operator SlicesInput() const;
 };
 template <bool read> auto slices_left_out() {
     static_assert(!read,
@@ -71,7 +86,8 @@ template <DepthTest depth_test, Slicing slicing = Slicing::none> struct Inputs {
     static constexpr bool reads_slices = slicing != Slicing::none,
                           reads_bounds = depth_test != DepthTest::none && slicing != Slicing::clusters;
 
-    std::conditional_t<reads_slices, const Slices&, detail::NotRead> slices =
+    /// Read where they are: they must live until the call. Temporary ones are copied.
+    std::conditional_t<reads_slices, detail::SlicesInput, detail::NotRead> slices =
         detail::slices_left_out<reads_slices>();
     /// Minimum, maximum or both. See ZBounds for what an empty side means.
     std::conditional_t<reads_bounds, ZBounds, detail::NotRead> bounds =
@@ -81,17 +97,19 @@ template <DepthTest depth_test, Slicing slicing = Slicing::none> struct Inputs {
 /// Returns the inputs of a Binner whose options vary, such as with_options() gives them: what they don't need is
 /// left out.
 template <Options options>
-requires(options.slicing == Slicing::none) Inputs<options.depth_test> inputs_for([[maybe_unused]] const ZBounds& bounds) {
+requires(options.slicing ==
+         Slicing::none) Inputs<options.depth_test> inputs_for([[maybe_unused]] const ZBounds& bounds) {
     if constexpr (options.depth_test == DepthTest::none)
         return {};
     else
         return {.bounds = bounds};
 }
 
-/// The same where slices are among the options that vary.
+/// The same where slices are among the options that vary. They are read where they are, temporary ones copied, as by an
+/// Inputs.
 template <Options options>
 Inputs<options.depth_test, options.slicing> inputs_for([[maybe_unused]] const ZBounds& bounds,
-                                                       [[maybe_unused]] const Slices& slices) {
+                                                       [[maybe_unused]] const detail::SlicesInput& slices) {
     using Read = Inputs<options.depth_test, options.slicing>;
     if constexpr (!Read::reads_slices)
         return inputs_for<options>(bounds);

@@ -254,8 +254,10 @@ public:
     bool has_value() const { return static_cast<bool>(value_); }
     explicit operator bool() const { return has_value(); }
 
-    T& operator*() { return *value(value_); }
-    const T& operator*() const { return *value(value_); }
+    T& operator*() & { return *value(value_); }
+    const T& operator*() const& { return *value(value_); }
+    /// By value, so that a reference to it keeps it alive.
+    T operator*() && { return std::move(*value(value_)); }
     T* operator->() { return &*value(value_); }
     const T* operator->() const { return &*value(value_); }
 

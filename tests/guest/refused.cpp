@@ -3,6 +3,7 @@
 
 #include <array>
 #include <list>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -101,5 +102,18 @@ void mistake() {
 #elif MISTAKE == 27  // lights are an array, a std::vector, a std::span or another range
     const auto to_sphere = [](const Lamp& lamp) { return lightbin::Sphere{0, 0, 0, lamp.range}; };
     (void)binner.bin(*view, lightbin::view_space(std::list<Lamp>(), to_sphere));
+#elif MISTAKE == 28  // to_light is called, .*, or with what that points to
+    const auto to_sphere = [](Lamp*) { return lightbin::Sphere(); };
+    (void)binner.bin(*view, lightbin::view_space(std::vector<std::unique_ptr<Lamp>>(), to_sphere));
+#elif MISTAKE == 29  // this light is no Sphere or Spot
+    (void)binner.bin(*view, std::vector<Lamp*>());
+#elif MISTAKE == 30  // these lights are gone after the expression and can't be moved: give the array a name
+    lightbin::Sphere array[2] = {};
+    [[maybe_unused]] const auto gone = lightbin::view_space(std::move(array));
+#elif MISTAKE == 31  // this is still a Result
+    constexpr lightbin::Options clusters = {.slicing = lightbin::Slicing::clusters};
+    [[maybe_unused]] const auto inputs = lightbin::inputs_for<clusters>({}, lightbin::Slices::linear(8, 0, 1));
+#elif MISTAKE == 32  // cannot bind|lvalue reference
+    [[maybe_unused]] lightbin::Slices& gone = *lightbin::Slices::linear(8, 0, 1);
 #endif
 }

@@ -126,6 +126,32 @@ TEST_CASE("slices that are none, or do not ascend, are refused by name") {
     CHECK(twice.error().message().find("boundary 2, counted from 0,") != std::string::npos);
 }
 
+TEST_CASE("temporary slices live as long as the inputs that were given them") {
+    constexpr Options options = {.slicing = Slicing::clusters};
+    const View view = test::view({640, 480}, 64);
+    const auto lights = test::random_lights(200, 32);
+    const Slices slices = *Slices::linear(9, -3, 40);
+    Binner<options> binner;
+    const auto expected = test::to_lists(*binner.bin(view, lights, {.slices = slices}));
+    const auto make = [] { return Slices::linear(9, -3, 40); };
+    const Binner<options>::Inputs made = {.slices = *make()};
+    const auto returned = inputs_for<options>({}, *make());
+    const auto copied = returned;
+    const Slices& referred = *make();
+    const std::vector<Slices> others(20, *Slices::linear(9, 100, 200));  // in the memory of what is gone
+    CHECK(test::to_lists(*binner.bin(view, lights, made)) == expected);
+    CHECK(test::to_lists(*binner.bin(view, lights, returned)) == expected);
+    CHECK(test::to_lists(*binner.bin(view, lights, copied)) == expected);
+    CHECK(test::to_lists(*binner.bin(view, lights, {.slices = referred})) == expected);
+    CHECK(test::to_lists(*binner.bin(view, lights, {.slices = *make()})) == expected);
+    // Others are referred to.
+    Slices named = slices;
+    const auto given = inputs_for<options>({}, named);
+    named = others[0];
+    CHECK(test::to_lists(*binner.bin(view, lights, given)) ==
+          test::to_lists(*binner.bin(view, lights, {.slices = others[0]})));
+}
+
 TEST_CASE("more cells than 32 bits number are refused") {
     const View view = test::view({16384, 16384}, 1);
     Binner<Options{.slicing = Slicing::clusters}> binner;
