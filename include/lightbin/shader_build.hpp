@@ -348,13 +348,15 @@ inline std::vector<ShaderEdges> shader_edges(const View& view) {
     return edges;
 }
 
-/// Returns the depths of the slices: with clusters, what build_shader() reads in place of the tiles' Z bounds.
+/// Returns the depths of the slices: with clusters, what build_shader() reads in place of the tiles' Z bounds. A margin of
+/// the slices is in them; a light that just reaches its end may then be listed by only one of the shader and the Binner.
 inline std::vector<ShaderEdges> shader_slabs(const Slices& slices) {
+    const detail::SliceTable& table = detail::table_of(slices);
     std::vector<ShaderEdges> slabs;
     float low = -detail::infinity;
-    for (const float boundary : slices.boundaries()) {
-        slabs.push_back({low, boundary});
-        low = boundary;
+    for (const float boundary : table.boundaries()) {
+        slabs.push_back({low, table.farther(boundary)});
+        low = table.nearer(boundary);
     }
     slabs.push_back({low, detail::infinity});
     return slabs;

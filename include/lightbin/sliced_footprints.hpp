@@ -71,8 +71,8 @@ public:
                 {&run, 1},
                 run.end - run.begin,
                 run.area,
-                {i == 0 ? -detail::infinity : table_->boundaries()[i - 1],
-                 i + 1 == run_count_ ? detail::infinity : table_->boundaries()[i]}};
+                {i == 0 ? -detail::infinity : table_->nearer(table_->boundaries()[i - 1]),
+                 i + 1 == run_count_ ? detail::infinity : table_->farther(table_->boundaries()[i])}};
     }
 
 private:

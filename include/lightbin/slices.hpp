@@ -8,6 +8,7 @@
 #include <lightbin/detail/float_environment.hpp>
 #include <lightbin/detail/math.hpp>
 #include <lightbin/detail/plain.hpp>
+#include <lightbin/detail/rounding.hpp>
 #include <lightbin/detail/slice_table.hpp>
 #include <lightbin/result.hpp>
 
@@ -66,7 +67,21 @@ public:
                         [=](std::size_t i) { return boundaries[i]; });
     }
 
-    Slices(const Slices& other) : table_(other.table_.boundaries()) {}
+    /// Returns the same slices for readers that may look up another depth than d in place of d, from d - margin |d| to
+    /// d + margin |d|: by a formula of their own, which rounds, or by a rounded depth. A light is then listed in every slice
+    /// that one of its depths may be looked up in. Readers that use slice_at() or shader_slices() need no margin.
+    ///
+    /// margin  from 0 to 1/2; docs/depth.md says which is enough
+    Slices with_margin(float margin) const {
+        LIGHTBIN_ASSERT(0 <= margin && margin <= 0.5f);
+        const double exact = static_cast<double>(margin);
+        Slices result(*this);
+        // What is looked up at a depth lies within margin / (1 - margin) of it. A little more is for rounding.
+        result.table_.margin = detail::float_above(exact / (1 - exact) * (1 + 0x1p-20));
+        return result;
+    }
+
+    Slices(const Slices& other) : Slices(other.table_.boundaries()) { table_.margin = other.table_.margin; }
     Slices& operator=(Slices other) noexcept {
         std::swap(table_, other.table_);
         return *this;

@@ -100,6 +100,116 @@ TEST_CASE("a depth is in the slice between its boundaries") {
     }
 }
 
+namespace {
+
+/// log2 in a shader at its worst, by the precision that Vulkan asks for: 2^-21 from 0.5 to 2, else 3 units in the last place.
+float rough_log2(float x, float sign) {
+    const double exact = std::log2(static_cast<double>(x));
+    const float nearest = static_cast<float>(exact);
+    const double unit = static_cast<double>(std::nextafter(std::fabs(nearest), endless) - std::fabs(nearest));
+    return static_cast<float>(exact + static_cast<double>(sign) * (0.5f <= x && x <= 2 ? 0x1p-21 : 3 * unit));
+}
+
+/// How a shader of one's own looks up slices: floor(place * scale + bias), place being the depth or its logarithm.
+struct OwnFormula {
+    bool by_log2;
+    float scale, bias;
+
+    static OwnFormula exponential(int count, float first, float last) {
+        const double begin = std::log2(static_cast<double>(first)),
+                     scale = (count - 1) / (std::log2(static_cast<double>(last)) - begin);
+        return {true, static_cast<float>(scale), static_cast<float>(1 - scale * begin)};
+    }
+    static OwnFormula linear(int count, float begin, float end) {
+        return {false, static_cast<float>(count) / (end - begin), -begin * static_cast<float>(count) / (end - begin)};
+    }
+    int slice_at(float depth, int count, float sign) const {
+        volatile float product = (by_log2 ? rough_log2(depth, sign) : depth) * scale;  // not fused
+        return static_cast<int>(std::min(std::max(std::floor(product + bias), 0.0f), static_cast<float>(count - 1)));
+    }
+};
+
+/// Of spheres that end at depths around each boundary, how many the slice lacks that such a shader looks up at that depth.
+template <Options options> int missed(const Slices& slices, const OwnFormula& formula) {
+    std::vector<Sphere> lights;
+    std::vector<float> depths;
+    for (const float boundary : slices.boundaries())
+        for (std::int32_t step = -40; step <= 40; ++step) {
+            float depth = boundary;
+            for (std::int32_t i = 0; i < std::abs(step); ++i)
+                depth = std::nextafter(depth, step < 0 ? 0.0f : endless);
+            lights.push_back({0, 0, -2 * depth, depth});  // begins there
+            lights.push_back({0, 0, -depth / 2, depth / 2});
+            depths.insert(depths.end(), 2, depth);
+        }
+    Binner<options> binner;
+    const glm::mat4 projection = glm::perspectiveRH_NO(1.0f, 1.0f, 0.05f, 1e6f);
+    const View view = *View::from_projection(projection, {640, 640}, {.tile_size = 128});
+    const auto grid = binner.bin(view, lights, {.slices = slices});
+    REQUIRE(grid);
+    const LightRanks ranks = grid->ranks();
+    std::vector<std::uint32_t> rank_of(lights.size());
+    for (std::uint32_t rank = 0; rank < ranks.order.size(); ++rank)
+        rank_of[ranks.order[rank]] = rank;
+    int count = 0;
+    for (std::uint32_t i = 0; i < lights.size(); ++i)
+        for (const float sign : {-1.0f, 1.0f}) {
+            const int slice = formula.slice_at(depths[i], slices.count(), sign);
+            if constexpr (options.slicing == Slicing::z_bins) {
+                const BinRange range = ranks.bins[static_cast<std::size_t>(slice)];
+                count += !(range.least <= rank_of[i] && rank_of[i] <= range.greatest);
+            } else {
+                const auto ids = grid->lights_in(2, 2, slice);
+                count += !std::binary_search(ids.begin(), ids.end(), i);
+            }
+        }
+    return count;
+}
+
+template <Options options> void check_margin() {
+    const auto check = [](const Slices& slices, const OwnFormula& formula) {
+        CHECK(missed<options>(slices.with_margin(0x1p-14f), formula) == 0);
+        // Bins are often given lights that end close by.
+        if (options.slicing == Slicing::clusters) CHECK(missed<options>(slices, formula) > 0);
+    };
+    check(*Slices::exponential(24, 5, 200), OwnFormula::exponential(24, 5, 200));
+    check(*Slices::exponential(24, 0.1f, 1000), OwnFormula::exponential(24, 0.1f, 1000));
+    check(*Slices::exponential(200, 0.5f, 90000), OwnFormula::exponential(200, 0.5f, 90000));
+    check(*Slices::linear(100, 0.7f, 60), OwnFormula::linear(100, 0.7f, 60));
+}
+
+}  // namespace
+
+TEST_CASE("with a margin, a light is where shaders look it up whose own formula rounds otherwise") {
+    check_margin<Options{.slicing = Slicing::clusters}>();
+    check_margin<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
+    check_margin<Options{.slicing = Slicing::z_bins}>();
+}
+
+TEST_CASE("a margin takes a light to no slice that is further off") {
+    const Slices slices = *Slices::from_boundaries(std::vector<float>{-8, 0, 8, 32}), wide = slices.with_margin(0.25f);
+    CHECK(std::equal(slices.boundaries().begin(), slices.boundaries().end(), wide.boundaries().begin()));
+    CHECK(wide.slice_at(7.9f) == 2);
+    const auto slices_of = [&](float depth, float radius) {
+        const std::vector<Sphere> light = {{0, 0, -depth, radius}};
+        Binner<Options{.slicing = Slicing::clusters}> binner;
+        const auto grid = binner.bin(test::view({64, 64}, 64), light, {.slices = wide});
+        std::vector<int> met;
+        for (int slice = 0; slice < wide.count(); ++slice)
+            if (!grid->lights_in(0, 0, slice).empty()) met.push_back(slice);
+        return met;
+    };
+    // A depth of 8 may be meant where 8 - 2 to 8 + 2 is looked up, and what is looked up as 8 be 8 / 1.25 to 8 / 0.75.
+    CHECK(slices_of(3, 2) == std::vector<int>{2});
+    CHECK(slices_of(4, 2.5f) == std::vector<int>{2, 3});
+    CHECK(slices_of(14, 1) == std::vector<int>{3});
+    CHECK(slices_of(14, 3.5f) == std::vector<int>{2, 3});
+    CHECK(slices_of(22, 4) == std::vector<int>{3, 4});
+    CHECK(slices_of(-2, 3) == std::vector<int>{1, 2});
+    CHECK(slices_of(-3, 4) == std::vector<int>{0, 1, 2});
+    CHECK(slices_of(5, endless).size() == 5);
+}
+
 TEST_CASE("slices that are none, or do not ascend, are refused by name") {
     const auto code = [](const Result<Slices>& slices) { return slices.error().code; };
     CHECK(code(Slices::linear(0, 1, 2)) == ErrorCode::no_slices);

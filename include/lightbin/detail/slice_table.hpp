@@ -9,6 +9,7 @@
 #include <lightbin/detail/math.hpp>
 #include <lightbin/detail/plain.hpp>
 #include <lightbin/detail/platform.hpp>
+#include <lightbin/detail/rounding.hpp>
 
 #include <bit>
 #include <cstddef>
@@ -60,6 +61,13 @@ public:
 
     Items<const float> boundaries() const { return {boundaries_.data(), count_}; }
 
+    /// How far the depths of lights and slices are widened, as a share of themselves: see Slices::with_margin().
+    float margin = 0;
+
+    /// Returns a depth less and plus the margin, rounded outward: what a first depth and a last one are widened to.
+    float nearer(float depth) const { return margin > 0 ? float_below(moved(depth, -margin)) : depth; }
+    float farther(float depth) const { return margin > 0 ? float_above(moved(depth, margin)) : depth; }
+
     /// Calls found(i, first, last) for each light i of the runs: its depths, ends included, meet the slices first..last.
     /// Where `roughly`, these may be one more at either end, if that is sooner known.
     ///
@@ -74,6 +82,7 @@ public:
                 const std::uint32_t count = min_of(run.end - i, PlacedDepths::size);
                 PlacedDepths at;
                 kernel(places_, z_sign, lights, lights.ids + i, count, at);
+                if (margin > 0) widen(at, count);
                 for (std::uint32_t j = 0; j < count && roughly; ++j)
                     found(i + j, before_.data()[at.first[j]], before_.data()[at.last[j] + 1u]);
                 for (std::uint32_t j = 0; j < count && !roughly; ++j) {
@@ -87,6 +96,20 @@ public:
 
 private:
     static constexpr std::size_t most_places = 0x8000;  // 15 bits number them
+
+    static double moved(float depth, float share) {
+        const double exact = static_cast<double>(depth);
+        return exact + abs_of(exact) * static_cast<double>(share);  // of floats, so the product is exact
+    }
+
+    void widen(PlacedDepths& at, std::uint32_t count) const {
+        for (std::uint32_t i = 0; i < count; ++i) {
+            at.nearest[i] = nearer(at.nearest[i]);
+            at.farthest[i] = farther(at.farthest[i]);
+            at.first[i] = static_cast<std::uint16_t>(places_.of(at.nearest[i]));
+            at.last[i] = static_cast<std::uint16_t>(places_.of(at.farthest[i]));
+        }
+    }
 
     /// Returns how many boundaries are before a depth, from its place on.
     template <class IsBefore> std::uint32_t before(std::size_t place, IsBefore is_before) const {
