@@ -55,10 +55,8 @@ template <class Range>
 concept Array = requires(const Range& range) {
     std::span(std::data(range), std::size(range));
 };
-template <class Made>
-concept MadeLight = std::convertible_to<Made, Sphere> || std::convertible_to<Made, Spot>;
 
-/// Whether `to_light` does not take an element itself, but what the element points or refers to, if anything.
+/// Whether `to_light` can't be called with an element itself, but at most with what that points or refers to.
 template <class ToLight, class Light>
 inline constexpr bool by_reference =
     std::same_as<decltype(call(std::declval<const ToLight&>(), std::declval<const Light&>())), NotCalled>;
@@ -87,7 +85,7 @@ template <class Light, class ToLight> constexpr auto checked_to_light(const ToLi
             can_be_called,
             "lightbin: to_light is called, as const, with a const reference to one of the lights, or with "
             "what that points to, and can't be called with either");
-    if constexpr (MadeLight<Made>) {
+    if constexpr (std::convertible_to<Made, Sphere> || std::convertible_to<Made, Spot>) {
         return to_light;
     } else {
         static_assert(!can_be_called,

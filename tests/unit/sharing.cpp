@@ -28,6 +28,50 @@ TEST_CASE("kinds that share one array have ranges of ids, in each list one after
     CHECK(test::lists(view, all) == together);
 }
 
+namespace {
+
+template <Options options> test::Lists sliced(const View& view, const auto& lights) {
+    Binner<options> binner;
+    const auto grid = binner.bin(view, lights, {.slices = *Slices::exponential(24, 5, 100)});
+    REQUIRE(grid);
+    return test::to_lists(*grid);
+}
+
+/// Points as whole spots against the same as spheres, and with spots in the same array against two grids.
+void check_points_and_spots(const auto& lists_of) {
+    constexpr std::size_t points = 300;
+    std::vector<Sphere> spheres;
+    std::vector<Spot> spots, all;
+    for (const glm::vec4& s : test::random_lights(2 * points, 6)) {
+        if (spheres.size() < points)
+            spheres.push_back({s.x, s.y, s.z, s.w});
+        else
+            spots.push_back({s.x, s.y, s.z, s.w, s.y, s.x, 1, 0.7f});
+    }
+    for (const Sphere& sphere : spheres)
+        all.push_back(Spot::whole(sphere));
+    const test::Lists of_points = lists_of(spheres), of_spots = lists_of(spots);
+    CHECK(lists_of(all) == of_points);
+    all.insert(all.end(), spots.begin(), spots.end());
+    test::Lists together = of_points;
+    for (std::size_t cell = 0; cell < together.size(); ++cell)
+        for (const std::uint32_t id : of_spots[cell])
+            together[cell].push_back(static_cast<std::uint32_t>(points) + id);
+    CHECK(lists_of(all) == together);
+    CHECK(test::entries(of_spots) > 0);
+}
+
+}  // namespace
+
+TEST_CASE("points that are whole spots are in the same cells, and two grids list what one does") {
+    const View view = test::view({640, 360}, 32);
+    constexpr Options boxes = {.depth_test = DepthTest::box, .slicing = Slicing::clusters},
+                      slabs = {.slicing = Slicing::clusters};
+    check_points_and_spots([&](const auto& lights) { return test::lists(view, lights); });
+    check_points_and_spots([&](const auto& lights) { return sliced<slabs>(view, lights); });
+    check_points_and_spots([&](const auto& lights) { return sliced<boxes>(view, lights); });
+}
+
 TEST_CASE("what to_light gives a negative radius is in no list, and is counted") {
     struct Lamp {
         glm::vec4 sphere;
