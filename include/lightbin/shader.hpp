@@ -99,11 +99,11 @@ inline bool is_prefix(std::string_view prefix) {
 
 /// What holds for every text: the name prefix, the slots and the constants.
 template <class ShaderOptions>
-std::optional<Error> refuse_names(const ShaderOptions& options, std::initializer_list<ShaderSlot> slots) {
+std::optional<Error> refuse_names(const ShaderOptions& options, std::initializer_list<ShaderSlot> places) {
     const Dialect dialect = detail::dialect(options.language);
     if (!is_prefix(options.prefix)) return Error{ErrorCode::not_a_prefix};
     if (options.push_constants && !dialect.vulkan) return Error{ErrorCode::no_push_constants};
-    for (const ShaderSlot& slot : slots)
+    for (const ShaderSlot& slot : places)
         if (slot.set != 0 && !dialect.spaces)
             return Error{ErrorCode::no_sets, static_cast<std::uint64_t>(slot.set)};
     return std::nullopt;
