@@ -365,8 +365,10 @@ inline std::vector<ShaderEdges> shader_slabs(const Slices& slices) {
 /// Returns one of the shaders that build the grid of the footprints, a group of 64 threads a tile testing
 /// every light, or an Error that names the limit that the options break. After the three passes, with a
 /// barrier between them, `tiles` and `lists` hold what Binner's grid has in ranges() and ids() (32-bit
-/// ids), and `total` the entries that there are. Where `room` is less than that, the tiles from the one that
-/// does not fit on have shorter lists or none: build again with more room.
+/// ids), and `total` the number of entries that there are; 2^32 - 1 stands for that many and more. Where `room` is
+/// less, the first `room` entries are listed and the other total - room are not: the tiles from the one that does not
+/// fit on have shorter lists or none, and nothing is written beyond `room`. Build again with more room, or where no
+/// buffer has as much, with larger tiles or fewer slices.
 ///
 /// interval  the same entries as the Binner's, the device's sums being correctly rounded
 /// box       the same but for the device's rounding of sums and products: no light of the exact set is
@@ -385,36 +387,38 @@ inline Result<ShaderText> build_shader(const BuildShaderOptions& options = {}) {
         writer.declare_storage("tiles", "uvec2", "", options.tiles, 8);
         writer.declare_storage("total", "uint", "writeonly", options.total, 4);
         writer.add("\n");
-        writer.declare_shared("sums", 256, false);
+        writer.declare_shared("sums", 128, false);
         writer.add(R"(
-// Each thread sums a run of tiles; the sums of the runs before it are added up (Hillis, Steele 1986).
+// Each thread sums a run of tiles; the sums of the runs before it are added up (Hillis, Steele 1986). A sum that 32 bits
+// don't hold stays at the greatest that they do: min(number, ~sum) is what can be added.
 void $run(uvec2 group, uint thread) {
     uint tiles = $grid.x * $grid.y;
-    uint each = (tiles + 255u) / 256u;
+    uint each = (tiles + 127u) / 128u;
     uint first = min(thread * each, tiles);
     uint last = min(first + each, tiles);
     uint sum = 0u;
-    for (uint i = first; i < last; i += 1u) { sum += $tiles[i].y; }
+    for (uint i = first; i < last; i += 1u) { sum += min($tiles[i].y, ~sum); }
     $sums[thread] = sum;
     sync_group();
-    for (uint distance = 1u; distance < 256u; distance *= 2u) {
+    for (uint distance = 1u; distance < 128u; distance *= 2u) {
         uint before = 0u;
         if (thread >= distance) { before = $sums[thread - distance]; }
         sync_group();
-        $sums[thread] += before;
+        $sums[thread] += min(before, ~$sums[thread]);
         sync_group();
     }
-    uint offset = $sums[thread] - sum;
+    uint offset = 0u;
+    if (thread > 0u) { offset = $sums[thread - 1u]; }
     for (uint tile = first; tile < last; tile += 1u) {
         uint count = $tiles[tile].y;
         uint begin = min(offset, $grid.w);
         $tiles[tile] = uvec2(begin, min(count, $grid.w - begin));
-        offset += count;
+        offset += min(count, ~offset);
     }
-    if (thread == 255u) { $total[0] = offset; }
+    if (thread == 127u) { $total[0] = offset; }
 }
 )");
-        add_compute_main(writer, 256);
+        add_compute_main(writer, 128);
         return writer.finish();
     }
 

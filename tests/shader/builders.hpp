@@ -252,11 +252,65 @@ inline std::vector<Job> build_jobs(lightbin::BuildShaderOptions options, int cam
     return jobs;
 }
 
+/// The offsets of counts that no scene of a test reaches, held against sums of 64 bits: more than 2^32 entries, in one
+/// thread's run of tiles and over several, and rooms up to the largest.
+inline std::vector<Job> sum_jobs(lightbin::ShaderLanguage language) {
+    using namespace lightbin;
+    constexpr std::uint32_t most = 0xffffffff;
+    std::vector<std::vector<std::uint32_t>> sets = {{1u << 31, 1u << 31, 5, 7},
+                                                    {most, most, most, most},
+                                                    {3, most - 3, 0, 1},
+                                                    {3, most - 4, 0, 1},
+                                                    std::vector<std::uint32_t>(1001, 1u << 26)};
+    std::vector<std::uint32_t>& mixed = sets.emplace_back();
+    std::mt19937 engine(7);
+    for (int i = 0; i < 700; ++i) {
+        const auto bits = static_cast<std::uint32_t>(engine());
+        mixed.push_back(bits % 5 == 0 ? bits : bits % 5 < 3 ? bits >> 26 : bits >> 9);
+    }
+    std::vector<Job> jobs;
+    for (const std::vector<std::uint32_t>& counts : sets)
+        for (const std::uint32_t room : {0u, 1u << 30, (1u << 31) + 6, most}) {
+            std::vector<ListRange> before, after;
+            std::uint64_t sum = 0;
+            for (const std::uint32_t count : counts) {
+                const std::uint64_t begin = (std::min)(sum, std::uint64_t{room});
+                before.push_back({0, count});
+                after.push_back({static_cast<std::uint32_t>(begin),
+                                 static_cast<std::uint32_t>((std::min)(room - begin, std::uint64_t{count}))});
+                sum += count;
+            }
+            const auto total = static_cast<std::uint32_t>((std::min)(sum, std::uint64_t{most}));
+            const ShaderBuild constants = {static_cast<std::uint32_t>(counts.size()), 1, 0, room, 0, 0, 1};
+            BuildShaderOptions options;
+            options.language = language;
+            options.pass = BuildPass::offsets;
+            BuilderData data;
+            constexpr const char* names[] = {"grid", "planes"};
+            data.put_constants(std::as_bytes(std::span(&constants, 1)), names);
+            data.put("tiles", before);
+            data.put("total", std::vector<std::uint32_t>(4, 0xeeeeeeee));
+            const auto add = [&](const char* result) {
+                jobs.push_back(builder_job(*build_shader(options), language, options.prefix, data, result));
+                jobs.back().name = "sums of " + std::to_string(counts.size()) + " counts from " +
+                                   std::to_string(counts[0]) + ", room " + std::to_string(room) + ", " +
+                                   result;
+            };
+            add("tiles");
+            jobs.back().expected.resize(2 * after.size());
+            std::memcpy(jobs.back().expected.data(), after.data(), 8 * after.size());
+            add("total");
+            jobs.back().expected = {total, 0xeeeeeeee, 0xeeeeeeee, 0xeeeeeeee};
+        }
+    return jobs;
+}
+
 /// What a language runs: nothing where it has no compute shaders.
 inline std::vector<Job> build_jobs(lightbin::ShaderLanguage language) {
     using namespace lightbin;
     std::vector<Job> jobs;
     if (!detail::dialect(language).storage_buffers) return jobs;
+    jobs = sum_jobs(language);
     struct Size {
         int width, height, tile_size;
         std::size_t lights;
