@@ -27,8 +27,8 @@ void reduce(Stage& stage, const lightbin::View& view) {
 }
 
 std::string text_of(lightbin::BuildPass pass) {
-    const auto text =
-        value_of(lightbin::build_shader({.pass = pass, .depth_test = lightbin::DepthTest::interval}));
+    const auto text = value_of(
+        lightbin::build_shader({.pass = pass, .depth_test = lightbin::DepthTest::interval, .total = {4}}));
     return "#version 430 core\n" + text.text;
 }
 
@@ -64,7 +64,6 @@ Technique tiled_deferred_passes(int g_buffer_bits) {
                     const std::size_t tiles = view.tile_count();
                     const GLuint buffers[] = {stage.memory.buffer("footprints", footprints),
                                               stage.memory.buffer("Z bounds", 8 * tiles, nullptr),
-                                              0,
                                               stage.memory.buffer("tiles", 8 * tiles, nullptr),
                                               stage.memory.buffer("lists", 4 * std::size_t{room}, nullptr),
                                               stage.memory.buffer("total", 4, nullptr)};
@@ -76,8 +75,8 @@ Technique tiled_deferred_passes(int g_buffer_bits) {
                     reduce(stage, view);
                     build(stage, view,
                           lightbin::shader_build(view, static_cast<std::uint32_t>(footprints.size()), room));
-                    stage.memory.read_texels(unit_tiles, GL_RG32UI, buffers[3]);
-                    stage.memory.read_texels(unit_lists, GL_R32UI, buffers[4]);
+                    stage.memory.read_texels(unit_tiles, GL_RG32UI, buffers[2]);
+                    stage.memory.read_texels(unit_lists, GL_R32UI, buffers[3]);
                     shade_deferred(stage, listed_lights());
                 },
             .tolerance = g_buffer_bits == 32 ? 1 : 3,

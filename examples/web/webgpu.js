@@ -155,7 +155,6 @@ export class WebGpu {
         this.#store('lights').write(frame.lights);
         if (programs.lists) {
             this.#store('footprints').write(frame.footprints);
-            this.#store('edges').write(frame.edges);
             this.#lists.upload(frame);
             this.#glass_lists.upload(frame);
         } else {
@@ -210,7 +209,6 @@ export class WebGpu {
         const inputs = {
             lightbin_depth: this.#depth.createView(),
             lightbin_footprints: this.#store('footprints'),
-            lightbin_edges: this.#store('edges'),
         };
         const pass = encoder.beginComputePass({timestampWrites: this.#times(2, 3)});
         this.#lists.encode(pass, programs.lists, inputs, tiles_x, tiles_y);

@@ -24,17 +24,17 @@ export class BuiltLists {
             .map(text => Program.for_compute(device, text)));
     }
 
-    upload({reduce, build, tiles_x, tiles_y}) {
+    upload({reduce, build, edges, tiles_x, tiles_y}) {
         const tiles = tiles_x * tiles_y;
         this.reduce.write(reduce);
         this.build.write(build);
         this.tiles.reserve(8 * tiles);
-        this.z_bounds.reserve(8 * tiles);
+        this.z_bounds.write(edges, 8 * tiles);  // the tiles' sides, which are read for box, behind their Z bounds
         this.lists.reserve(4 * build[3]);  // the most entries that there can be
         this.total.reserve(4);
     }
 
-    // `inputs`: lightbin_depth, lightbin_footprints, lightbin_edges
+    // `inputs`: lightbin_depth, lightbin_footprints
     encode(pass, [reduce, count, offsets, fill], inputs, tiles_x, tiles_y) {
         const own = {lightbin_tiles: this.tiles, lightbin_lists: this.lists, lightbin_total: this.total,
             lightbin_z_bounds: this.z_bounds};

@@ -83,7 +83,8 @@ constexpr const char* to_string(BuildPass value) {
     return detail::name_at(value, {"count", "offsets", "fill"});
 }
 
-/// What build_shader() makes. All passes take the same but for `pass`.
+/// What build_shader() makes. All passes take the same but for `pass`. Each has at most four storage buffers, at bindings
+/// below 4 unless told, and at most 128 threads a group: as many as every device with OpenGL ES 3.1, Vulkan or WebGPU has.
 struct BuildShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     BuildPass pass = BuildPass::count;
@@ -92,8 +93,9 @@ struct BuildShaderOptions {
     bool max_only = false;                   ///< Z bounds, not clusters: no minimum is tested (transparency)
     bool orthographic = false;               ///< box: as View::orthographic()
 
-    ShaderSlot footprints = {0}, z_bounds = {1}, edges = {2}, tiles = {3}, lists = {4}, total = {5};
-    ShaderSlot grid = {6};
+    ShaderSlot footprints = {0}, z_bounds = {1}, tiles = {2}, lists = {3};
+    ShaderSlot total = {3};  ///< no pass has both lists and total
+    ShaderSlot grid = {4};
     bool push_constants = false;
     std::string_view prefix = "lightbin_";
 };
@@ -165,8 +167,8 @@ inline std::optional<Error> refuse(const ReduceShaderOptions& options) {
 }
 
 inline std::optional<Error> refuse(const BuildShaderOptions& options) {
-    if (auto error = refuse_names(options, {options.footprints, options.z_bounds, options.edges,
-                                            options.tiles, options.lists, options.total, options.grid}))
+    if (auto error = refuse_names(options, {options.footprints, options.z_bounds, options.tiles,
+                                            options.lists, options.total, options.grid}))
         return error;
     if (!detail::dialect(options.language).storage_buffers) return Error{ErrorCode::no_storage_buffers};
     if (options.depth_test == DepthTest::split_box) return Error{ErrorCode::no_split_box_shader};
@@ -304,7 +306,8 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {})
     return writer.finish();
 }
 
-/// Returns the footprints of the lights in view, in ascending order of id: the input of build_shader().
+/// Returns the footprints of the lights in view, in ascending order of id: the input of build_shader(). A spot's has its
+/// own rectangle and its least sphere.
 /// `lights` as for Binner::bin(). Errors as there.
 template <class LightRange>
 Result<std::vector<ShaderFootprint>> shader_footprints(const View& view, const LightRange& lights) {
@@ -334,7 +337,8 @@ struct ShaderEdges {
     float low, high;
 };
 
-/// Returns the sides of all columns and then of all rows: what build_shader() reads for box.
+/// Returns the sides of all columns and then of all rows: what build_shader() reads for box, in the buffer `z_bounds`
+/// behind the bounds of all tiles, or with clusters behind the slices' depths.
 inline std::vector<ShaderEdges> shader_edges(const View& view) {
     const detail::DefaultFloatEnvironment environment;
     std::vector<ShaderEdges> edges;
@@ -374,6 +378,12 @@ inline std::vector<ShaderEdges> shader_slabs(const Slices& slices) {
 /// box       the same but for the device's rounding of sums and products: no light of the exact set is
 ///           missing, and none is listed whose distance from the box exceeds its radius by more than 2^-19 of it
 /// clusters  the same of cells of tiles and slices; `none` tests the slices' depths as interval does
+///
+/// Of spots the rectangles are the Binner's, but their depths, and boxes, are tested against the least sphere around each,
+/// see least_sphere(), where a Binner tests the cone. No spot that meets a cell is missing. Without depth test and
+/// clusters the entries are the Binner's. With interval, or clusters without box, they are the Binner's (but for those
+/// that its margins for rounding list) and more. With box they are more, too, and lack some of the Binner's: a box beyond
+/// the least sphere may still meet both of what the Binner tests, the ball and the half spaces around the cone.
 inline Result<ShaderText> build_shader(const BuildShaderOptions& options = {}) {
     using namespace detail;
     if (const auto error = refuse(options)) return *error;
@@ -429,7 +439,6 @@ void $run(uvec2 group, uint thread) {
         "sphere;\n};\n");
     writer.declare_storage("footprints", "$footprint", "readonly", options.footprints, 32);
     if (depths) writer.declare_storage("z_bounds", "vec2", "readonly", options.z_bounds, 8);
-    if (box) writer.declare_storage("edges", "vec2", "readonly", options.edges, 8);
     writer.declare_storage("tiles", "uvec2", fill ? "readonly" : "writeonly", options.tiles, 8);
     if (fill) writer.declare_storage("lists", "uint", "writeonly", options.lists, 4);
 
@@ -481,7 +490,10 @@ float $greatest(float side, vec2 z) {
     if (box) {  // see detail/cell_boxes.hpp
         writer.add(R"(    z.x = min(max(z.x, $planes.x), 3.4028234e38);
     z.y = min(z.y, $planes.y);
-    vec4 cell = vec4($edges[tile.x], $edges[$grid.x + tile.y]);
+    uint edges = )" +
+                   std::string(clusters ? "$grid.y / uint($planes.z)" : "$grid.x * $grid.y") +
+                   R"(;
+    vec4 cell = vec4($z_bounds[edges + tile.x], $z_bounds[edges + $grid.x + tile.y]);
 )");
         if (!options.orthographic)
             writer.add("    cell = vec4($least(cell.x, z), $greatest(cell.y, z), $least(cell.z, z), "

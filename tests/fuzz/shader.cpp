@@ -384,8 +384,8 @@ void fuzz_build(Bytes& bytes) {
     options.push_constants = (flags & 4) != 0;
     options.slicing = static_cast<Slicing>((flags >> 3) % 3);
     take_rest(bytes, options,
-              {&options.footprints, &options.z_bounds, &options.edges, &options.tiles, &options.lists,
-               &options.total, &options.grid},
+              {&options.footprints, &options.z_bounds, &options.tiles, &options.lists, &options.total,
+               &options.grid},
               question);
 
     if (Language(options.language).old) question.reasons.insert(ErrorCode::no_storage_buffers);
@@ -399,7 +399,6 @@ void fuzz_build(Bytes& bytes) {
     if (!offsets) question.wanted.push_back({"footprints", options.footprints});
     if (!offsets && (clusters || options.depth_test != DepthTest::none))
         question.wanted.push_back({"z_bounds", options.z_bounds});
-    if (box) question.wanted.push_back({"edges", options.edges});
     question.wanted.push_back({"tiles", options.tiles});
     if (offsets) question.wanted.push_back({"total", options.total});
     if (options.pass == BuildPass::fill) question.wanted.push_back({"lists", options.lists});

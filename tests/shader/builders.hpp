@@ -11,11 +11,14 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <random>
 #include <span>
+#include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 inline std::vector<lightbin::ReduceShaderOptions> every_reduction(lightbin::ShaderLanguage language) {
@@ -140,22 +143,109 @@ inline Job builder_job(const lightbin::ShaderText& shader, lightbin::ShaderLangu
     return job;
 }
 
+/// The lists of a build, of all slices.
+struct BuiltLists {
+    std::vector<lightbin::ListRange> tiles;
+    std::vector<std::uint32_t> ids;
+    int slices = 1;
+
+    std::span<const std::uint32_t> of(std::size_t tile) const {
+        return std::span(ids).subspan(tiles[tile].offset, tiles[tile].count);
+    }
+};
+
+/// What a scene has beside its lights.
+struct BuiltScene {
+    lightbin::View view;
+    lightbin::ZBounds bounds;
+    lightbin::Slices slices;
+};
+
+template <lightbin::Options options, class Light>
+BuiltLists binned(const BuiltScene& scene, const std::vector<Light>& lights) {
+    lightbin::Binner<options> binner;
+    const auto grid =
+        binner.bin(scene.view, lights, lightbin::inputs_for<options>(scene.bounds, scene.slices));
+    const auto ranges = grid->ranges();
+    const auto ids = grid->ids();
+    return {{ranges.begin(), ranges.end()}, {ids.begin(), ids.end()}, grid->slices()};
+}
+
+/// A Binner's lists.
+template <class Light>
+BuiltLists binned(const lightbin::BuildShaderOptions& options, const BuiltScene& scene,
+                  const std::vector<Light>& lights) {
+    using enum lightbin::DepthTest;
+    constexpr auto clusters = lightbin::Slicing::clusters;
+    const bool sliced = options.slicing == clusters;
+    return sliced && options.depth_test == none
+               ? binned<lightbin::Options{.slicing = clusters}>(scene, lights)
+           : sliced ? binned<lightbin::Options{.depth_test = box, .slicing = clusters}>(scene, lights)
+           : options.depth_test == none     ? binned<lightbin::Options{}>(scene, lights)
+           : options.depth_test == interval ? binned<lightbin::Options{.depth_test = interval}>(scene, lights)
+                                            : binned<lightbin::Options{.depth_test = box}>(scene, lights);
+}
+
+/// What build_shader() promises: the Binner's lists.
+inline BuiltLists promised(const lightbin::BuildShaderOptions& options, const BuiltScene& scene,
+                           const std::vector<lightbin::Sphere>& lights) {
+    return binned(options, scene, lights);
+}
+
+/// Of spots: in each tile those of its rectangles whose least spheres meet the cell. Without boxes none is missing that the
+/// Binner finds. With boxes some are: its tests are those of the whole balls and of half spaces around the cones.
+inline BuiltLists promised(const lightbin::BuildShaderOptions& options, const BuiltScene& scene,
+                           const std::vector<lightbin::Spot>& lights) {
+    const BuiltLists rectangles = binned<lightbin::Options{}>(scene, lights),
+                     spheres =
+                         binned(options, scene, std::vector<lightbin::Sphere>(lights.begin(), lights.end())),
+                     spots = binned(options, scene, lights);
+    BuiltLists lists;
+    lists.slices = spots.slices;
+    for (std::size_t cell = 0; cell < spots.tiles.size(); ++cell) {
+        const auto sphere = spheres.of(cell), rectangle = rectangles.of(cell % rectangles.tiles.size());
+        const std::size_t begin = lists.ids.size();
+        std::set_intersection(sphere.begin(), sphere.end(), rectangle.begin(), rectangle.end(),
+                              std::back_inserter(lists.ids));
+        lists.tiles.push_back(
+            {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(lists.ids.size() - begin)});
+        const auto spot = spots.of(cell), both = lists.of(cell);
+        if (options.depth_test != lightbin::DepthTest::box &&
+            !std::includes(both.begin(), both.end(), spot.begin(), spot.end()))
+            throw std::logic_error("a build of spots would lack one that the Binner finds");
+    }
+    return lists;
+}
+
+/// Some spots are wider than a half sphere, that is whole spheres.
+inline void add_light(std::vector<lightbin::Spot>& lights, const lightbin::Sphere& ball,
+                      BuilderNumbers& number) {
+    lights.push_back(
+        {ball.x, ball.y, ball.z, ball.radius, number(-1, 1), number(-1, 1), number(-1, 1), number(-0.3f, 1)});
+}
+inline void add_light(std::vector<lightbin::Sphere>& lights, const lightbin::Sphere& ball, BuilderNumbers&) {
+    lights.push_back(ball);
+}
+
 /// The three passes of a build, and the offsets where the room is short. Lights: in view, across the near
 /// plane, of no and of endless radius; Z bounds: some empty, infinite or NaN.
-inline std::vector<Job> build_jobs(lightbin::BuildShaderOptions options, int camera, int width, int height,
-                                   int tile_size, std::size_t light_count) {
+template <class Light>
+std::vector<Job> build_jobs(lightbin::BuildShaderOptions options, int camera, int width, int height,
+                            int tile_size, std::size_t light_count) {
     using namespace lightbin;
     const View view = builder_view(camera, width, height, tile_size, false);
     BuilderNumbers number(static_cast<unsigned>(width + tile_size));
-    std::vector<Sphere> lights;
+    std::vector<Light> lights;
     for (std::size_t i = 0; i < light_count; ++i) {
         const float z = number(0, 1) < 0.1f ? number(-3, 3) : -number(0.2f, 90);
         const float wide = camera == 2 ? 15 : z;
-        lights.push_back({number(-1, 1) * wide, number(-0.8f, 0.8f) * wide, z, number(0, 1) * number(0, 9)});
+        const Sphere ball = {number(-1, 1) * wide, number(-0.8f, 0.8f) * wide, z,
+                             number(0, 1) * number(0, 9)};
+        add_light(lights, ball, number);
     }
-    lights.push_back({1, 1, -9, std::numeric_limits<float>::infinity()});
-    lights.push_back({0, 0, -9, 0});
-    lights.push_back({0, 0, -9, -1});
+    add_light(lights, {1, 1, -9, std::numeric_limits<float>::infinity()}, number);
+    add_light(lights, {0, 0, -9, 0}, number);
+    add_light(lights, {0, 0, -9, -1}, number);
 
     std::vector<float> min(view.tile_count()), max(view.tile_count()), both;
     for (std::size_t tile = 0; tile < min.size(); ++tile) {
@@ -171,41 +261,38 @@ inline std::vector<Job> build_jobs(lightbin::BuildShaderOptions options, int cam
     ZBounds bounds;
     if (!options.max_only) bounds.min = min;
     bounds.max = max;
-    Binner<> none;
-    Binner<Options{.depth_test = DepthTest::interval}> interval;
-    Binner<Options{.depth_test = DepthTest::box}> box;
-    Binner<Options{.slicing = Slicing::clusters}> clusters;
-    Binner<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}> box_clusters;
     const Slices slices = *Slices::from_boundaries(std::vector<float>{0, 3.5f, 9, 20, 50});
     const bool sliced = options.slicing == Slicing::clusters;
-    const auto grid =
-        sliced && options.depth_test == DepthTest::none ? clusters.bin(view, lights, {.slices = slices})
-        : sliced                                        ? box_clusters.bin(view, lights, {.slices = slices})
-        : options.depth_test == DepthTest::none         ? none.bin(view, lights)
-        : options.depth_test == DepthTest::interval     ? interval.bin(view, lights, {.bounds = bounds})
-                                                        : box.bin(view, lights, {.bounds = bounds});
-    const std::vector<ListRange> tiles(grid->ranges().begin(), grid->ranges().end());
-    const auto entries = static_cast<std::uint32_t>(grid->ids().size());
+    const BuiltLists lists = promised(options, {view, bounds, slices}, lights);
+    const std::vector<ListRange>& tiles = lists.tiles;
+    const auto entries = static_cast<std::uint32_t>(lists.ids.size());
 
     options.orthographic = view.orthographic();
     const auto footprints = *shader_footprints(view, lights);
     BuilderData data;
     data.put("footprints", footprints);
-    if (sliced)
-        data.put("z_bounds", shader_slabs(slices));
-    else
-        data.put("z_bounds", both);
-    data.put("edges", shader_edges(view));
+    std::vector<float> z_bounds = both;
+    const auto append = [&](const std::vector<ShaderEdges>& pairs) {
+        for (const ShaderEdges& pair : pairs)
+            z_bounds.insert(z_bounds.end(), {pair.low, pair.high});
+    };
+    if (sliced) {
+        z_bounds.clear();
+        append(shader_slabs(slices));
+    }
+    if (options.depth_test == DepthTest::box) append(shader_edges(view));
+    data.put("z_bounds", z_bounds);
     std::vector<Job> jobs;
     const auto add = [&](BuildPass pass, std::string_view result, std::uint32_t room,
                          std::span<const std::byte> expected) {
         options.pass = pass;
         const ShaderBuild constants =
-            shader_build(view, static_cast<std::uint32_t>(footprints.size()), room, grid->slices());
+            shader_build(view, static_cast<std::uint32_t>(footprints.size()), room, lists.slices);
         constexpr const char* names[] = {"grid", "planes"};
         data.put_constants(std::as_bytes(std::span(&constants, 1)), names);
         Job job = builder_job(*build_shader(options), options.language, options.prefix, data, result);
-        job.name = "build, pass " + std::to_string(static_cast<int>(pass)) + ", test " +
+        job.name = std::string(std::is_same_v<Light, Spot> ? "build of spots" : "build") + ", pass " +
+                   std::to_string(static_cast<int>(pass)) + ", test " +
                    std::to_string(static_cast<int>(options.depth_test)) + ", camera " +
                    std::to_string(camera) +
                    (sliced             ? ", clusters"
@@ -215,7 +302,7 @@ inline std::vector<Job> build_jobs(lightbin::BuildShaderOptions options, int cam
                    ", tile " + std::to_string(tile_size);
         if (pass != BuildPass::offsets)
             job.groups = {static_cast<std::uint32_t>(view.tiles_x()),
-                          static_cast<std::uint32_t>(view.tiles_y() * grid->slices())};
+                          static_cast<std::uint32_t>(view.tiles_y() * lists.slices)};
         job.expected.resize((std::max)(expected.size(), std::size_t{16}) / 4);
         std::memset(job.expected.data(), 0xee, job.expected.size() * 4);
         std::memcpy(job.expected.data(), expected.data(), expected.size());
@@ -243,12 +330,12 @@ inline std::vector<Job> build_jobs(lightbin::BuildShaderOptions options, int cam
         add(BuildPass::offsets, "tiles", room, std::as_bytes(std::span(cut)));
         data.put("tiles", cut);
         data.put("lists", blank((std::max)(entries * std::size_t{4}, std::size_t{16})));
-        add(BuildPass::fill, "lists", room, std::as_bytes(grid->ids().first(room)));
+        add(BuildPass::fill, "lists", room, std::as_bytes(std::span(lists.ids).first(room)));
         jobs.back().expected.resize((std::max)(entries, 4u), 0xeeeeeeee);
     }
     data.put("tiles", tiles);
     data.put("lists", blank((std::max)(entries * std::size_t{4}, std::size_t{16})));
-    add(BuildPass::fill, "lists", entries, std::as_bytes(grid->ids()));
+    add(BuildPass::fill, "lists", entries, std::as_bytes(std::span(lists.ids)));
     return jobs;
 }
 
@@ -316,7 +403,12 @@ inline std::vector<Job> build_jobs(lightbin::ShaderLanguage language) {
         std::size_t lights;
     };
     const auto add = [&](int camera, const BuildShaderOptions& options, const Size& size) {
-        for (Job& job : build_jobs(options, camera, size.width, size.height, size.tile_size, size.lights))
+        for (Job& job :
+             build_jobs<Sphere>(options, camera, size.width, size.height, size.tile_size, size.lights))
+            jobs.push_back(std::move(job));
+    };
+    const auto add_spots = [&](int camera, const BuildShaderOptions& options) {
+        for (Job& job : build_jobs<Spot>(options, camera, 333, 217, 16, 150))
             jobs.push_back(std::move(job));
     };
     for (const DepthTest depth_test : {DepthTest::none, DepthTest::interval, DepthTest::box})
@@ -330,12 +422,14 @@ inline std::vector<Job> build_jobs(lightbin::ShaderLanguage language) {
                 for (const Size& size :
                      {Size{1, 1, 32, 0}, Size{33, 17, 1, 40}, Size{333, 217, 16, 300}, Size{640, 360, 8, 64}})
                     add(camera, options, size);
+                add_spots(camera, options);
             }
             options.max_only = false;
             options.slicing = Slicing::clusters;
             if (!build_shader(options)) continue;
             for (const Size& size : {Size{1, 1, 32, 0}, Size{33, 17, 7, 40}, Size{333, 217, 32, 300}})
                 add(camera, options, size);
+            add_spots(camera, options);
         }
     return jobs;
 }

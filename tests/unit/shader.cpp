@@ -252,6 +252,40 @@ TEST_CASE("reduction and build shaders: what is off leaves no line, what can't b
     CHECK(has(build_shader({.pass = BuildPass::fill, .lists = {0}}).error().message(), "binding 0"));
 }
 
+TEST_CASE("reduction and build shaders need no more than every device has") {
+    // Vulkan's and OpenGL ES 3.1's least limits: 128 invocations, 4 storage buffers; ES also has but bindings 0 to 3.
+    int texts = 0;
+    const auto check = [&](const Result<ShaderText>& made, ShaderLanguage language) {
+        if (!made) return;
+        ++texts;
+        int buffers = 0;
+        for (const ShaderBinding& binding : made->bindings) {
+            if (binding.resource != ShaderResource::storage_buffer &&
+                binding.resource != ShaderResource::writable_buffer)
+                continue;
+            ++buffers;
+            CHECK(binding.slot.binding < 4);
+        }
+        CHECK(buffers <= 4);
+        const char* const size = language == ShaderLanguage::wgsl  ? "@workgroup_size("
+                                 : has(made->text, "[numthreads(") ? "[numthreads("
+                                                                   : "local_size_x = ";
+        REQUIRE(has(made->text, size));
+        CHECK(std::stoi(made->text.substr(made->text.find(size) + std::string(size).size())) <= 128);
+    };
+    for (int i = 0; i <= static_cast<int>(ShaderLanguage::wgsl); ++i) {
+        const auto language = static_cast<ShaderLanguage>(i);
+        check(reduce_shader({.language = language}), language);
+        for (const BuildPass pass : {BuildPass::count, BuildPass::offsets, BuildPass::fill})
+            for (const DepthTest test : {DepthTest::none, DepthTest::interval, DepthTest::box})
+                for (const Slicing slicing : {Slicing::none, Slicing::clusters})
+                    check(build_shader(
+                              {.language = language, .pass = pass, .depth_test = test, .slicing = slicing}),
+                          language);
+    }
+    CHECK(texts == 6 * (1 + 3 * 5));
+}
+
 TEST_CASE("checks and window: a block of their own, and nothing of them in a text without") {
     const std::string plain = text_of({});
     for (const char* absent : {"image", "depths", "check", "missing", "window", "View"})
