@@ -64,6 +64,7 @@ enum class ErrorCode : std::uint8_t {
     no_storage_buffers,
     no_texel_buffers,
     no_byte_address_buffers,
+    slot_out_of_range,
     no_sets,
     no_push_constants,
     no_multisample_textures,
@@ -187,6 +188,8 @@ constexpr const char* to_string(ErrorCode code) {
                "storage_buffer";
     case ErrorCode::no_byte_address_buffers:
         return "byte_address buffers are HLSL's: use storage_buffer";
+    case ErrorCode::slot_out_of_range:
+        return "ShaderSlot::binding and set must be 0 or more, and one is {given}";
     case ErrorCode::no_sets:
         return "this language has no descriptor sets, register spaces or groups: ShaderSlot::set must be 0 "
                "and is {given}";
@@ -205,8 +208,8 @@ constexpr const char* to_string(ErrorCode code) {
     case ErrorCode::bindings_overlap:
         return "two resources of the shader are bound to binding {needed} of set {available}";
     case ErrorCode::not_a_prefix:
-        return "ShaderOptions::prefix must begin a name in every language: letters, digits and single "
-               "underscores, no digit first, not gl_";
+        return "ShaderOptions::prefix must begin a name in every language: a letter, then letters, digits and "
+               "single underscores, 1000 at most, not gl_ or GL_, and not vola, which would make volatile";
     }
     return "unknown error";
 }

@@ -90,11 +90,14 @@ inline ShaderGrid shader_grid(const View& view, int corner_x = 0, int corner_y =
 
 namespace detail {
 
+/// Whether every name that begins so can be declared in every language. The longest has 1024 signs in ES; macros of GLSL
+/// can't begin with GL_. Of all reserved words of the languages one alone ends as a name of the texts does: volatile, as
+/// `tile`.
 inline bool is_prefix(std::string_view prefix) {
     constexpr std::string_view signs = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
-    return !prefix.empty() && prefix.find_first_not_of(signs) == prefix.npos &&
+    return !prefix.empty() && prefix.size() <= 1000 && prefix.find_first_not_of(signs) == prefix.npos &&
            prefix.find_first_of("0123456789_") != 0 && prefix.find("__") == prefix.npos &&
-           !prefix.starts_with("gl_");
+           !prefix.starts_with("gl_") && !prefix.starts_with("GL_") && prefix != "vola";
 }
 
 /// What holds for every text: the name prefix, the slots and the constants.
@@ -103,6 +106,9 @@ std::optional<Error> refuse_names(const ShaderOptions& options, std::initializer
     const Dialect dialect = detail::dialect(options.language);
     if (!is_prefix(options.prefix)) return Error{ErrorCode::not_a_prefix};
     if (options.push_constants && !dialect.vulkan) return Error{ErrorCode::no_push_constants};
+    for (const ShaderSlot& slot : places)
+        for (const int number : {slot.binding, slot.set})
+            if (number < 0) return Error{ErrorCode::slot_out_of_range, static_cast<std::uint64_t>(number)};
     for (const ShaderSlot& slot : places)
         if (slot.set != 0 && !dialect.spaces)
             return Error{ErrorCode::no_sets, static_cast<std::uint64_t>(slot.set)};

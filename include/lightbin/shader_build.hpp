@@ -276,19 +276,19 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {})
                              "    uvec2 range = uvec2(0xffffffffu, 0u);\n";
     if (compute) {
         writer.add("\n");
-        writer.declare_shared("ends", 2, true);
+        writer.declare_shared("range_ends", 2, true);
         writer.add("\nvoid $run(uvec2 tile, uint thread) {\n" + area + "    if (thread == 0u) {\n        " +
-                   writer.store_atomic("$ends[0]", "range.x") + ";\n        " +
-                   writer.store_atomic("$ends[1]", "range.y") +
+                   writer.store_atomic("$range_ends[0]", "range.x") + ";\n        " +
+                   writer.store_atomic("$range_ends[1]", "range.y") +
                    R"(;
     }
     sync_group();
     for (uint i = thread; i < size.x * size.y; i += 64u) { $pixel(&range, first, size, i); }
-    atomicMin(&$ends[0], range.x);
-    atomicMax(&$ends[1], range.y);
+    atomicMin(&$range_ends[0], range.x);
+    atomicMax(&$range_ends[1], range.y);
     sync_group();
     if (thread == 0u) { $z_bounds[tile.y * $grid.y + tile.x] = $view_depths(uvec2()" +
-                   writer.load_atomic("$ends[0]") + ", " + writer.load_atomic("$ends[1]") + ")); }\n}\n");
+                   writer.load_atomic("$range_ends[0]") + ", " + writer.load_atomic("$range_ends[1]") + ")); }\n}\n");
         add_compute_main(writer, 64);
     } else {
         writer.add("\nvec2 $reduce(uvec2 tile) {\n" + area +

@@ -40,10 +40,13 @@ std::uint32_t take_size(Bytes& bytes) {
                              : bytes.take<std::uint32_t>();
 }
 
-/// 0 leaves a slot at its default, where no other is.
+/// 0 leaves a slot at its default, where no other is. Some are negative.
 void take_slot(Bytes& bytes, ShaderSlot& slot) {
     slot.binding ^= static_cast<int>(bytes.byte());
-    if (bytes.flag()) slot.set = static_cast<int>(bytes.byte());
+    const unsigned kind = bytes.byte();
+    if ((kind & 1) != 0) slot.set = static_cast<int>(bytes.byte());
+    if (kind >> 4 == 15) slot.binding = ~slot.binding;
+    if (kind >> 4 == 14) slot.set = ~slot.set;
 }
 
 std::string take_prefix(Bytes& bytes) {
@@ -227,11 +230,14 @@ void check_bindings(const ShaderText& made, const Question& question) {
 void check(const Result<ShaderText>& made, Question question) {
     static const std::regex name("[A-Za-z](_?[A-Za-z0-9])*_?");
     const Language language(question.language);
-    if (!std::regex_match(question.prefix, name) || question.prefix.starts_with("gl_"))
+    if (!std::regex_match(question.prefix, name) || question.prefix.starts_with("gl_") ||
+        question.prefix.starts_with("GL_") || question.prefix == "vola")
         question.reasons.insert(ErrorCode::not_a_prefix);
     if (question.push_constants && !language.vulkan) question.reasons.insert(ErrorCode::no_push_constants);
-    for (const ShaderSlot slot : question.slots)
+    for (const ShaderSlot slot : question.slots) {
+        if (slot.binding < 0 || slot.set < 0) question.reasons.insert(ErrorCode::slot_out_of_range);
         if (slot.set != 0 && !language.sets) question.reasons.insert(ErrorCode::no_sets);
+    }
     if (!made) {
         const ErrorCode code = made.error().code;
         const std::string message = made.error().message();

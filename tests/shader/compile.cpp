@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: MIT
 // Hands every text of the library, and the example's shaders, to glslang; what is for Vulkan or HLSL becomes
-// SPIR-V, which the validator of SPIRV-Tools then reads. Of WGSL the words are read.  compile PART PARTS: takes every
-// PARTS-th language.
+// SPIR-V, which the validator of SPIRV-Tools then reads. Of WGSL the words are read. And which prefixes names may have is
+// held against the compilers and the languages' reserved words.  compile PART PARTS: takes every PARTS-th language.
 #include "vulkan/compile.hpp"
 #include "builders.hpp"
 #include "readers.hpp"
+#include "reserved_words.hpp"
 #include "shaders.hpp"
 #include "wgsl_words.hpp"
 
 #include <spirv-tools/libspirv.hpp>
 
+#include <cctype>
 #include <cstdio>
 #include <cstdlib>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -43,20 +47,21 @@ public:
     }
 
     void compile(ShaderLanguage language, EShLanguage stage, const std::string& text) {
-        const lightbin::detail::Dialect dialect = lightbin::detail::dialect(language);
-        bool good;
-        if (dialect.hlsl || dialect.vulkan) {
-            good = is_valid(text, stage, dialect.hlsl);
-            ++valid;
-        } else if (dialect.wgsl) {
-            error_ = WgslWords::problem(text);
-            good = error_.empty();
-        } else {
-            good = compiles(text, stage, error_);
-        }
+        const bool good = takes(language, stage, text);
         ++texts;
         if (good) return;
         if (++refused <= 3) std::printf("refused: %s\n%s\n", error_.c_str(), text.c_str());
+    }
+
+    bool takes(ShaderLanguage language, EShLanguage stage, const std::string& text) {
+        const lightbin::detail::Dialect dialect = lightbin::detail::dialect(language);
+        if (dialect.hlsl || dialect.vulkan) {
+            ++valid;
+            return is_valid(text, stage, dialect.hlsl);
+        }
+        if (!dialect.wgsl) return compiles(text, stage, error_);
+        error_ = WgslWords::problem(text);
+        return error_.empty();
     }
 
     int texts = 0, valid = 0, refused = 0;
@@ -103,6 +108,117 @@ void compile_language(Compiler& compiler, ShaderLanguage language) {
         compile(EShLangCompute, version_line(language) + build_shader(options)->text);
 }
 
+/// A text of each generator for a language, with the same prefix; in `snippet` a whole shader.
+struct PrefixedTexts {
+    PrefixedTexts(ShaderLanguage language, std::string_view prefix) {
+        lightbin::ShaderOptions options =
+            with_switches(every_list(language, lightbin::Slicing::clusters)[0], 8);
+        lightbin::ReduceShaderOptions reduction = every_reduction(language)[0];
+        options.prefix = reduction.prefix = prefix;
+        if (const auto made = shader_snippet(options)) {
+            taken = true;
+            snippet = reader_text(options, *made, Stage::fragment, 9, 9);
+        }
+        if (const auto made = reduce_shader(reduction)) reduce = version_line(language) + made->text;
+        reduce_stage = reduction.stage == lightbin::ShaderStage::compute ? EShLangCompute : EShLangFragment;
+        using enum lightbin::BuildPass;
+        for (const lightbin::BuildPass pass : {count, offsets, fill}) {
+            lightbin::BuildShaderOptions build;
+            build.language = language;
+            build.pass = pass;
+            build.depth_test = lightbin::DepthTest::box;
+            build.prefix = prefix;
+            if (const auto made = build_shader(build)) builds.push_back(version_line(language) + made->text);
+        }
+    }
+
+    bool taken = false;
+    std::string snippet, reduce;
+    EShLanguage reduce_stage;
+    std::vector<std::string> builds;
+};
+
+/// The names of a text that begin with a prefix, without it.
+void take_names(std::set<std::string>& names, const std::string& text, const std::string& prefix) {
+    const auto in_name = [&](std::size_t at) {
+        return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) || text[at] == '_');
+    };
+    for (std::size_t at = text.find(prefix); at != text.npos; at = text.find(prefix, at)) {
+        const std::size_t begin = at += prefix.size();
+        while (in_name(at))
+            ++at;
+        names.insert(text.substr(begin, at - begin));
+    }
+}
+
+/// Returns what is wrong with the rule for prefixes, or nothing.
+std::string problem_of_prefixes(Compiler& compiler) {
+    constexpr int languages = 8;
+    // What is taken compiles in every language.
+    for (const std::string& prefix :
+         {std::string("vol"), std::string("volat"), std::string("Vola"), std::string("vola_"),
+          std::string("ext"), std::string("gl"), std::string("GL"), std::string("Gl_"), std::string("x9"),
+          std::string("a_"), std::string(1000, 'a')})
+        for (int i = 0; i < languages; ++i) {
+            const auto language = static_cast<ShaderLanguage>(i);
+            const PrefixedTexts texts(language, prefix);
+            if (!texts.taken) return prefix + " is refused as a prefix";
+            compiler.compile(language, EShLangFragment, texts.snippet);
+            compiler.compile(language, texts.reduce_stage, texts.reduce);
+            for (const std::string& text : texts.builds)
+                compiler.compile(language, EShLangCompute, text);
+        }
+    // What is refused would not, in one at least.
+    for (const std::string& prefix : {std::string("vola"), std::string("GL_"), std::string("gl_a"),
+                                      std::string("9"), std::string(1020, 'a')}) {
+        if (PrefixedTexts(ShaderLanguage::glsl_430, prefix).taken) return prefix + " is taken as a prefix";
+        int refused = 0;
+        for (int i = 0; i < languages; ++i) {
+            const auto language = static_cast<ShaderLanguage>(i);
+            const std::string text =
+                lightbin::detail::replaced(PrefixedTexts(language, "zzq_").snippet, "zzq_", prefix);
+            refused += !compiler.takes(language, EShLangFragment, text);
+        }
+        if (refused == 0) return prefix + " is refused as a prefix for no reason";
+    }
+    // Reserved words that end as a name does.
+    std::set<std::string> names;
+    for (int i = 0; i < languages; ++i) {
+        const auto language = static_cast<ShaderLanguage>(i);
+        for (lightbin::ShaderOptions options : every_reader(language)) {
+            options.prefix = "zzq_";
+            take_names(names, shader_snippet(options)->text, "zzq_");
+        }
+        for (lightbin::ReduceShaderOptions options : every_reduction(language)) {
+            options.prefix = "zzq_";
+            take_names(names, reduce_shader(options)->text, "zzq_");
+        }
+        for (lightbin::BuildShaderOptions options : every_build(language)) {
+            options.prefix = "zzq_";
+            take_names(names, build_shader(options)->text, "zzq_");
+        }
+    }
+    int words = 0, made = 0;
+    for (std::size_t at = 1; at < reserved_words.size(); ++words) {
+        const std::string word(reserved_words.substr(at, reserved_words.find(' ', at) - at));
+        at += word.size() + 1;
+        for (const std::string& name : names)
+            if (word.size() > name.size() && word.ends_with(name)) {
+                ++made;
+                const std::string prefix = word.substr(0, word.size() - name.size());
+                if (lightbin::shader_snippet({.prefix = prefix}))
+                    return prefix + " is taken, and makes " + word;
+            }
+    }
+    for (const std::string& name : names)
+        if (name[0] == '_' || std::isdigit(static_cast<unsigned char>(name.back())) ||
+            name.starts_with("l_") || name.starts_with("L_") || name.find("__") != name.npos)
+            return "the rule for prefixes does not allow for the name " + name;
+    std::printf("%d names, %d reserved words, of which prefixes make %d\n", static_cast<int>(names.size()),
+                words, made);
+    return made == 0 ? "volatile is not found" : "";
+}
+
 void compile_example(Compiler& compiler, int glsl) {
     const auto compile = [&](EShLanguage stage, const std::string& text) {
         compiler.compile(glsl_language(glsl), stage, text);
@@ -138,6 +254,11 @@ int main(int count, char** arguments) {
     if (part == 0)
         for (const int glsl : {330, 430, 300, 310})
             compile_example(compiler, glsl);
+    if (part == parts - 1)
+        if (const std::string problem = problem_of_prefixes(compiler); !problem.empty()) {
+            std::printf("%s\n", problem.c_str());
+            return 1;
+        }
     std::printf("%d texts, %d of them SPIR-V; %d refused\n", compiler.texts, compiler.valid,
                 compiler.refused);
     return compiler.texts == 0 || compiler.refused > 0;

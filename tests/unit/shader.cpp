@@ -139,8 +139,22 @@ TEST_CASE("a wrong option set is refused with a sentence that names the limit") 
     CHECK(has(refusal({.tile_size = -1}), "-1"));
     CHECK(has(refusal({.storage = ListStorage::uniform_block, .slicing = Slicing::clusters, .max_tiles = 9, .max_entries = 9}),
               "max_slices"));
-    for (const char* prefix : {"", "1a", "gl_a", "a__", "a-b", "_a"})
+    for (const char* prefix : {"", "1a", "gl_a", "GL_", "a__", "a-b", "_a", "vola"})
         CHECK(has(refusal({.prefix = prefix}), "prefix"));
+    CHECK(has(refusal({.prefix = std::string(1001, 'a')}), "1000"));
+}
+
+TEST_CASE("a negative slot is refused with its sign, in every language and by every generator") {
+    const auto sentence = [](const Result<ShaderText>& made) {
+        return made ? std::string("taken") : made.error().message();
+    };
+    for (int i = 0; i <= static_cast<int>(ShaderLanguage::wgsl); ++i) {
+        const auto language = static_cast<ShaderLanguage>(i);
+        CHECK(has(sentence(shader_snippet({.language = language, .tiles = {-1}})), "is -1"));
+        CHECK(has(sentence(shader_snippet({.language = language, .view = {1, -3}})), "is -3"));
+        CHECK(has(sentence(reduce_shader({.language = language, .grid = {-2147483647 - 1}})), "is -2147483648"));
+        CHECK(has(sentence(build_shader({.language = language, .total = {3, -2}})), "is -2"));
+    }
 }
 
 TEST_CASE("every name declared carries the prefix") {
