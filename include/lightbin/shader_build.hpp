@@ -288,7 +288,8 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {})
     atomicMax(&$range_ends[1], range.y);
     sync_group();
     if (thread == 0u) { $z_bounds[tile.y * $grid.y + tile.x] = $view_depths(uvec2()" +
-                   writer.load_atomic("$range_ends[0]") + ", " + writer.load_atomic("$range_ends[1]") + ")); }\n}\n");
+                   writer.load_atomic("$range_ends[0]") + ", " + writer.load_atomic("$range_ends[1]") +
+                   ")); }\n}\n");
         add_compute_main(writer, 64);
     } else {
         writer.add("\nvec2 $reduce(uvec2 tile) {\n" + area +
@@ -374,16 +375,17 @@ inline std::vector<ShaderEdges> shader_slabs(const Slices& slices) {
 /// fit on have shorter lists or none, and nothing is written beyond `room`. Build again with more room, or where no
 /// buffer has as much, with larger tiles or fewer slices.
 ///
-/// interval  the same entries as the Binner's, the device's sums being correctly rounded
+/// none      the same entries as the Binner's
+/// interval  the same, the device's sums being correctly rounded
 /// box       the same but for the device's rounding of sums and products: no light of the exact set is
 ///           missing, and none is listed whose distance from the box exceeds its radius by more than 2^-19 of it
 /// clusters  the same of cells of tiles and slices; `none` tests the slices' depths as interval does
 ///
-/// Of spots the rectangles are the Binner's, but their depths, and boxes, are tested against the least sphere around each,
-/// see least_sphere(), where a Binner tests the cone. No spot that meets a cell is missing. Without depth test and
-/// clusters the entries are the Binner's. With interval, or clusters without box, they are the Binner's (but for those
-/// that its margins for rounding list) and more. With box they are more, too, and lack some of the Binner's: a box beyond
-/// the least sphere may still meet both of what the Binner tests, the ball and the half spaces around the cone.
+/// That is of spheres. Spots have the Binner's rectangles, but in these the least sphere around each is tested, see
+/// least_sphere(), where a Binner tests the cone. No spot that meets a cell is missing. Without depth test and clusters
+/// the entries are the Binner's. With interval, or clusters without box, they are the Binner's (but for those that only
+/// its margins for rounding list) and more. With box neither has all of the other's: a box beyond the least sphere, which
+/// is not listed here, may meet both the ball and the half spaces around the cone, which is what a Binner tests.
 inline Result<ShaderText> build_shader(const BuildShaderOptions& options = {}) {
     using namespace detail;
     if (const auto error = refuse(options)) return *error;
