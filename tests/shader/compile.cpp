@@ -147,7 +147,7 @@ void take_names(std::set<std::string>& names, const std::string& text, const std
         const std::size_t begin = at += prefix.size();
         while (in_name(at))
             ++at;
-        names.insert(text.substr(begin, at - begin));
+        if (at > begin) names.insert(text.substr(begin, at - begin));
     }
 }
 
