@@ -2,6 +2,8 @@
 // A report's command line: options, and the .glb files to run on.
 #pragma once
 
+#include <algorithm>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +14,16 @@ public:
 
     /// Whether an option is there. Takes it away.
     bool take(std::string_view option) { return std::erase(words_, option) > 0; }
+
+    /// The word after an option, or `otherwise`. Takes both away.
+    std::string take(std::string_view option, std::string otherwise) {
+        const auto at = std::find(words_.begin(), words_.end(), option);
+        if (at == words_.end()) return otherwise;
+        if (at + 1 == words_.end()) throw std::runtime_error(std::string(option) + " needs a value");
+        otherwise = at[1];
+        words_.erase(at, at + 2);
+        return otherwise;
+    }
 
     /// What is left when all options are taken.
     const std::vector<std::string>& scenes() const { return words_; }

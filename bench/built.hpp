@@ -20,8 +20,9 @@ struct Built {
     std::span<const lightbin::ListRange> ranges;
     std::size_t bytes;  ///< of all that a shader reads, but the lights: tiles or cells, ids, bins
     const lightbin::Slices* slices = nullptr;       ///< with slices
-    std::span<const std::uint32_t> ids = {};        ///< with z-bins
+    std::span<const std::uint32_t> ids = {};        ///< where they are of 32 bits; with z-bins ranks
     std::span<const lightbin::BinRange> bins = {};  ///< with z-bins
+    std::span<const std::uint32_t> order = {};      ///< with z-bins, the light of each rank
 };
 
 /// Builds with the slices that the view has for them.
@@ -33,9 +34,10 @@ Built build(lightbin::Binner<options>& binner, const TiledView& view, const std:
     const auto grid = *binner.bin(view.view, lights, lightbin::inputs_for<options>(bounds, slices), threads);
     Built built = {grid.ranges(), grid.ranges().size_bytes() + grid.ids().size_bytes()};
     if constexpr (options.slicing != lightbin::Slicing::none) built.slices = &slices;
+    if constexpr (options.ids == lightbin::IdWidth::u32) built.ids = grid.ids();
     if constexpr (z_bins) {
-        built.ids = grid.ids();
         built.bins = grid.ranks().bins;
+        built.order = grid.ranks().order;
         built.bytes += built.bins.size_bytes();
     }
     return built;

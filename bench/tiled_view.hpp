@@ -43,15 +43,21 @@ struct TiledView {
           flat(lens_of(Frustum(scene.projection), picture.size).flat_view(tile_size)), min(view.tile_count()),
           max(min), gap_min(min), gap_max(min), drawn(view.tile_count()),
           clusters(cluster_slices(reach_of(scene))), z_bins(z_bin_slices(reach_of(scene))) {
-        const lightbin::DepthBuffer buffer = {.depth = picture.depth, .skip_background = true};
-        if (!lightbin::reduce_depth(view, buffer, {min, max, gap_min, gap_max})) std::abort();
-        std::vector<float> again_min(min), again_max(max);
+        (void)reduce(picture, true);
         std::vector<double> times;
         for (int turn = 0; turn < 5; ++turn)
-            times.push_back(seconds(
-                [&] { (void)lightbin::reduce_depth(view, buffer, {.min = again_min, .max = again_max}); }));
+            times.push_back(reduce(picture, false));
         reduce_seconds = median(times);
         count_drawn(picture);
+    }
+
+    /// Makes minimum and maximum anew, or the gap too, and returns what it took.
+    double reduce(const Picture& picture, bool with_gap) {
+        lightbin::ZBoundsBuffers to = {.min = min, .max = max};
+        if (with_gap) to.gap_min = gap_min, to.gap_max = gap_max;
+        return seconds([&] {
+            if (!lightbin::reduce_depth(view, {.depth = picture.depth, .skip_background = true}, to)) std::abort();
+        });
     }
 
     /// Light evaluations of all drawn pixels.
@@ -102,10 +108,11 @@ public:
             views_.emplace_back(scene, picture, tile_size);
     }
 
-    const TiledView& of(int tile_size) const {
+    TiledView& of(int tile_size) {
         return *std::ranges::find_if(views_,
                                      [&](const TiledView& v) { return v.view.tile_size() == tile_size; });
     }
+    const TiledView& of(int tile_size) const { return const_cast<Views*>(this)->of(tile_size); }
 
 private:
     std::vector<TiledView> views_;

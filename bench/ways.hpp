@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// All ways to make lists that the report holds against each other.
+#pragma once
+
+#include "built.hpp"
+#include "flat.hpp"
+#include "planes.hpp"
+#include "tiled_view.hpp"
+
+#include <lightbin/lightbin.hpp>
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <vector>
+
+/// What lights are handed over as.
+enum class Form { as_they_are, least_spheres, whole_spheres };
+
+/// A method at a tile size.
+struct Way {
+    const char* method;
+    int tile_size;
+    lightbin::DepthTest bounds;  ///< the Z bounds that are made for it first
+    bool ours;                   ///< or as engines do it
+    Form form;
+    std::function<Built(const TiledView&, const LightSet&)> build;
+
+    bool needs_bounds() const { return bounds != lightbin::DepthTest::none; }
+};
+
+inline LightSet lights_of(const BenchScene& scene, Form form, std::uint32_t seed) {
+    if (form == Form::as_they_are) return scene.light_set(seed);
+    return form == Form::whole_spheres ? scene.lights(seed) : least_spheres(scene.spots(seed));
+}
+
+class Ways {
+public:
+    /// Of scenes with spots also those of spheres around them.
+    static std::vector<Way> all(bool with_spots) {
+        using lightbin::DepthTest, lightbin::Footprint, lightbin::Options, lightbin::Slicing;
+        constexpr Options box = {.depth_test = DepthTest::box};
+        Ways ways;
+        ways.add<Options{}>("plain");
+        ways.add<Options{.footprint = Footprint::silhouette}>("silhouette");
+        ways.add<Options{.depth_test = DepthTest::interval}>("interval");
+        ways.add<box>("box");
+        ways.add<Options{.depth_test = DepthTest::split_box}>("split_box");
+        ways.add<Options{.slicing = Slicing::clusters}>("clusters");
+        ways.add<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>("clusters+box");
+        ways.add<Options{.slicing = Slicing::z_bins}>("z-bins");
+        if (with_spots) {
+            ways.add<box>("box, least spheres", Form::least_spheres);
+            ways.add<box>("box, whole spheres", Form::whole_spheres);
+        }
+        ways.add_engines<Flat<float>, false>("flat loop");
+        ways.add_engines<Flat<float>, true>("flat loop+Z");
+        ways.add_engines<Planes, false>("planes a tile");
+        ways.add_engines<Planes, true>("planes a tile+Z");
+        return std::move(ways.all_);
+    }
+
+private:
+    template <lightbin::Options options> void add(const char* method, Form form = Form::as_they_are) {
+        constexpr bool clusters = options.slicing == lightbin::Slicing::clusters;
+        const auto binner = std::make_shared<lightbin::Binner<options>>();
+        for (const int tile_size : {8, 16, 32, 64})
+            if (tile_size > 8 || !clusters)  // of 8 pixels they would be 777,600 cells
+                all_.push_back({method, tile_size, clusters ? lightbin::DepthTest::none : options.depth_test, true, form,
+                                [=](const TiledView& view, const LightSet& lights) {
+                                    return ::build<options>(*binner, view, lights, view.bounds());
+                                }});
+    }
+
+    template <class Loop, bool with_bounds> void add_engines(const char* method) {
+        const auto loop = std::make_shared<Loop>();
+        const auto ranges = std::make_shared<std::vector<lightbin::ListRange>>();
+        for (const int tile_size : {8, 16, 32, 64})
+            all_.push_back({method, tile_size,
+                            with_bounds ? lightbin::DepthTest::interval : lightbin::DepthTest::none, false,
+                            Form::whole_spheres, [=](const TiledView& view, const LightSet& lights) -> Built {
+                                loop->template build<with_bounds>(view.flat, std::get<Lights>(lights),
+                                                                  view.min.data(), view.max.data());
+                                ranges->resize(loop->offsets.size() - 1);  // as shaders read them
+                                for (std::size_t i = 0; i < ranges->size(); ++i)
+                                    (*ranges)[i] = {loop->offsets[i], loop->offsets[i + 1] - loop->offsets[i]};
+                                return {*ranges, 8 * ranges->size() + 4 * loop->indices.size(), nullptr, loop->indices};
+                            }});
+    }
+
+    std::vector<Way> all_;
+};
