@@ -52,7 +52,9 @@ public:
 
     /// The lights, ended where they still give this part of white.
     LightSet ended(LightSet lights, double part) const {
-        const auto range = [&](float own) { return lightbin::light_range(own * own, static_cast<float>(part * white_)); };
+        const auto range = [&](float own) {
+            return lightbin::light_range(own * own, static_cast<float>(part * white_));
+        };
         if (auto* const spots = std::get_if<Spots>(&lights))
             for (lightbin::Spot& spot : *spots)
                 spot.radius = range(spot.radius);
@@ -81,7 +83,8 @@ private:
                     if (picture.triangle[at] == Picture::nothing) continue;
                     const glm::vec3* const corner = &scene.triangles[3 * std::size_t{picture.triangle[at]}];
                     const glm::vec3 seen = point_at(frustum, picture.size, px, py, picture.view_depth[at]),
-                                    up = glm::normalize(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
+                                    up = glm::normalize(
+                                        glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
                     pixel.push_back(i);
                     point.push_back(seen);
                     normal.push_back(glm::dot(up, seen) > 0 ? -up : up);  // both sides are drawn
@@ -91,7 +94,8 @@ private:
     };
 
     /// What one light gives pixel i of the surface.
-    template <Window window> float light_at(std::size_t i, const lightbin::Spot& light, float intensity) const {
+    template <Window window>
+    float light_at(std::size_t i, const lightbin::Spot& light, float intensity) const {
         const glm::vec3 d = glm::vec3(light.x, light.y, light.z) - surface_.point[i];
         const float squared = std::max(glm::dot(d, d), 1e-4f), distance = std::sqrt(squared);
         if (light.cos_half_angle > -1) {
@@ -112,7 +116,8 @@ private:
         const int t = view_.view.tile_size(), width = picture_.size.width;
         Difference d;
         for (std::size_t i = 0; i < truth_.size(); ++i) {
-            const int tile = surface_.pixel[i] / width / t * view_.view.tiles_x() + surface_.pixel[i] % width / t;
+            const int tile =
+                surface_.pixel[i] / width / t * view_.view.tiles_x() + surface_.pixel[i] % width / t;
             const lightbin::ListRange list = built.ranges[static_cast<std::size_t>(tile)];
             float light = 0;
             for (const std::uint32_t id : built.ids.subspan(list.offset, list.count))

@@ -28,7 +28,8 @@ inline Spots spots_of(const LightSet& lights) {
 /// By how much a point lies within a light, in view-space units; negative outside. Of a cone not the distance to it, but
 /// of its sign.
 inline double depth_within(const lightbin::Spot& spot, const glm::dvec3& point) {
-    const glm::dvec3 axis(spot.axis_x, spot.axis_y, spot.axis_z), d = point - glm::dvec3(spot.x, spot.y, spot.z);
+    const glm::dvec3 axis(spot.axis_x, spot.axis_y, spot.axis_z),
+        d = point - glm::dvec3(spot.x, spot.y, spot.z);
     const double distance = glm::length(d), in_sphere = static_cast<double>(spot.radius) - distance;
     if (!(spot.cos_half_angle > 0)) return in_sphere;
     const double along = glm::dot(d, axis) / glm::length(axis);
@@ -82,9 +83,11 @@ private:
         candidates_.clear();
         for (std::size_t id = 0; id < lights.size() && !points_.empty(); ++id) {
             const lightbin::Spot& light = lights[id];
-            const glm::dvec3 centre(light.x, light.y, light.z), beside = glm::clamp(centre, low, high) - centre;
+            const glm::dvec3 centre(light.x, light.y, light.z),
+                beside = glm::clamp(centre, low, high) - centre;
             const double reach = static_cast<double>(light.radius);
-            if (glm::dot(beside, beside) <= reach * reach) candidates_.push_back(static_cast<std::uint32_t>(id));
+            if (glm::dot(beside, beside) <= reach * reach)
+                candidates_.push_back(static_cast<std::uint32_t>(id));
         }
         for (std::size_t i = 0; i < points_.size(); ++i) {
             for (const std::uint32_t id : candidates_) {
@@ -108,11 +111,12 @@ private:
 /// What a build's lists give the pixels of a reference.
 struct Reading {
     std::uint64_t evaluations = 0;
-    std::uint64_t misses = 0;           ///< lights that reach a pixel and are not in its list
-    std::uint32_t pixel = 0, light = 0; ///< the last of them
+    std::uint64_t misses = 0;            ///< lights that reach a pixel and are not in its list
+    std::uint32_t pixel = 0, light = 0;  ///< the last of them
 };
 
-inline Reading read_lists(const TiledView& view, const Picture& picture, const Built& built, const Needed& needed) {
+inline Reading read_lists(const TiledView& view, const Picture& picture, const Built& built,
+                          const Needed& needed) {
     const std::uint32_t width = static_cast<std::uint32_t>(picture.size.width),
                         t = static_cast<std::uint32_t>(view.view.tile_size()),
                         tiles_x = static_cast<std::uint32_t>(view.view.tiles_x());
@@ -125,7 +129,8 @@ inline Reading read_lists(const TiledView& view, const Picture& picture, const B
         const std::size_t slice =
             built.slices == nullptr ? 0 : static_cast<std::size_t>(built.slices->slice_at(pixel.view_depth));
         if (built.bins.empty()) cell += slice * view.view.tile_count();
-        std::span<const std::uint32_t> list = built.ids.subspan(built.ranges[cell].offset, built.ranges[cell].count);
+        std::span<const std::uint32_t> list =
+            built.ids.subspan(built.ranges[cell].offset, built.ranges[cell].count);
         if (!built.bins.empty()) list = lightbin::lights_of_bin(list, built.bins[slice]);
         reading.evaluations += list.size();
         if (list.data() != before.data() || list.size() != before.size() || list_number == 0) {

@@ -16,7 +16,8 @@
 class Planes {
 public:
     template <bool with_depth>
-    void build(const FlatView view, std::span<const glm::vec4> lights, const float* tile_min, const float* tile_max) {
+    void build(const FlatView view, std::span<const glm::vec4> lights, const float* tile_min,
+               const float* tile_max) {
         const std::size_t count = lights.size();
         for (std::vector<float>* side : {&x_, &y_, &depth_, &radius_})
             side->resize(count);
@@ -27,16 +28,16 @@ public:
         indices.clear();
         for (int y = 0; y < view.tiles_y; ++y)
             for (int x = 0; x < view.tiles_x; ++x) {
-                const Plane left(view, x, view.width), right(view, x + 1, view.width), below(view, y, view.height),
-                    above(view, y + 1, view.height);
+                const Plane left(view, x, view.width), right(view, x + 1, view.width),
+                    below(view, y, view.height), above(view, y + 1, view.height);
                 const std::size_t tile = offsets.size() - 1;
                 const float near_depth = with_depth ? tile_min[tile] : static_cast<float>(view.near_depth),
                             far_depth = with_depth ? tile_max[tile] : static_cast<float>(view.far_depth);
                 for (std::size_t i = 0; i < count; ++i) {
                     const float r = radius_[i], z = depth_[i];
                     inside_[i] = (left.side(x_[i], z) >= -r) & (right.side(x_[i], z) <= r) &
-                                 (below.side(y_[i], z) >= -r) & (above.side(y_[i], z) <= r) & (z + r >= near_depth) &
-                                 (z - r <= far_depth);
+                                 (below.side(y_[i], z) >= -r) & (above.side(y_[i], z) <= r) &
+                                 (z + r >= near_depth) & (z - r <= far_depth);
                 }
                 for (std::size_t i = 0; i < count; ++i)
                     if (inside_[i]) indices.push_back(static_cast<std::uint32_t>(i));

@@ -12,19 +12,20 @@
 #       binning_slices.csv: ratios of clusters to the baseline, of z-bins to the build without, of `encode`, to
 #       bitmasks, to the build. And binning_sources.csv: `source` is what the lights were; loop_... was moved to view
 #       space by a loop of the bench's own before it was binned. And binning_spots.csv, the times that `spots` takes.
+#   report [--quick] [--evaluation-ns NUMBER] [SCENE.glb ...]
+#       Error against run time: of every method and tile size what a frame pays (Z bounds, build, upload, light evaluations
+#       of so many nanoseconds: .02, about a GPU's, if none are given) and how many light evaluations it makes over those
+#       needed, on made scenes and those of the tests, or on the named ones; and what the picture loses by where lights
+#       end. A table with verdicts and a sentence a scene. Four minutes, --quick less than one. Writes
+#       build/bench/report.html and report.csv.
 #   error [--quick] [SCENE.glb ...]
-#       What each rung of the ladder lists too much, against the exact set, and what it takes to build, on made scenes
-#       and real ones (those of the tests, or the named ones); writes build/bench/error_vs_time.csv, .svg and .png. Of
-#       grids that need no depth buffer, evaluations, bytes and times: no_pre_pass.csv. What clusters list too much, of
-#       made lights: cluster_error.csv. Of scenes of spots, binned as spots, least and whole spheres: spot_error.csv.
+#       What each footprint and depth test lists beyond the exact set, and what it misses, each pair of a tile and a light
+#       decided in exact arithmetic; of clusters, too. Writes build/bench/error.csv and cluster_error.csv.
 #   spots [--quick] [--tightness | --time] [WORD ...]
 #       What each rung lists of spots beside the exact pairs, as the sphere of their range, as their least sphere and as
 #       spots, by half angle; and what building them takes, as a ratio to as many spheres whose lists are as long: of the
 #       cases with all of the WORDs in their names, as in `spots --time spots20/10000 box avx2`. A minute and a half, --quick
 #       ten seconds. Writes build/bench/spots_tightness.csv and spots_time.csv.
-#   cutoff [--quick] [SCENE.glb ...]
-#       What ending lights at a finite range does to the picture, and what it saves; writes build/bench/cutoff.csv, .svg
-#       and .png.
 #   ablation [--quick] [SCENE.glb ...]
 #       What each part of the library costs and saves, by kind of scene; writes build/bench/ablation.csv.
 #   advise [--quick] [--avx2 | --sse2 | --scalar] [SCENE.glb ...]
@@ -44,7 +45,7 @@ cd "$(dirname "$0")/.."
 
 program=binning
 case ${1-} in
-binning | error | cutoff | ablation | advise | frames | spots)
+binning | report | error | ablation | advise | frames | spots)
     program=$1
     shift
     ;;
@@ -75,13 +76,15 @@ for word; do
     esac
 done
 cd build/bench
+"./bench/$([ $program != frames ] || echo frames/)$program" "$@"
 case $program in
-error) report=error_vs_time plot=plot.gp ;;
-cutoff) report=cutoff plot=plot.gp ;;
-frames) report=frames_paths plot=plot_frames.gp folder=frames/ ;;
-*) report= ;;
+report)
+    sh ../../bench/page.sh report
+    echo "$me: wrote build/bench/report.html and report.csv"
+    ;;
+frames)
+    [ "$(wc -l <frames_paths.csv)" -gt 1 ] || exit 0
+    gnuplot -e 'report="frames_paths"' ../../bench/plot_frames.gp
+    echo "$me: wrote build/bench/frames_paths.csv, .svg and .png"
+    ;;
 esac
-"./bench/${folder-}$program" "$@"
-[ -n "$report" ] && [ "$(wc -l <$report.csv)" -gt 1 ] || exit 0
-gnuplot -e "report=\"$report\"" ../../bench/$plot
-echo "$me: wrote build/bench/$report.csv, .svg and .png"

@@ -23,6 +23,7 @@ struct Way {
     int tile_size;
     lightbin::DepthTest bounds;  ///< the Z bounds that are made for it first
     bool ours;                   ///< or as engines do it
+    bool variant;                ///< of another, to tell what a part of it pays; in no table
     Form form;
     std::function<Built(const TiledView&, const LightSet&)> build;
 
@@ -39,19 +40,28 @@ public:
     /// Of scenes with spots also those of spheres around them.
     static std::vector<Way> all(bool with_spots) {
         using lightbin::DepthTest, lightbin::Footprint, lightbin::Options, lightbin::Slicing;
-        constexpr Options box = {.depth_test = DepthTest::box};
+        constexpr Options box = {.depth_test = DepthTest::box},
+                          boxes = {.depth_test = DepthTest::box, .slicing = Slicing::clusters};
+        constexpr auto with_silhouettes = [](Options options) {
+            options.footprint = Footprint::silhouette;
+            return options;
+        };
         Ways ways;
         ways.add<Options{}>("plain");
-        ways.add<Options{.footprint = Footprint::silhouette}>("silhouette");
+        ways.add<with_silhouettes({})>("silhouette");
         ways.add<Options{.depth_test = DepthTest::interval}>("interval");
         ways.add<box>("box");
         ways.add<Options{.depth_test = DepthTest::split_box}>("split_box");
         ways.add<Options{.slicing = Slicing::clusters}>("clusters");
-        ways.add<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>("clusters+box");
+        ways.add<boxes>("clusters+box");
         ways.add<Options{.slicing = Slicing::z_bins}>("z-bins");
+        ways.add<with_silhouettes(box)>("box+silhouettes", true);
+        ways.add<with_silhouettes(boxes)>("clusters+box+silhouettes", true);
         if (with_spots) {
-            ways.add<box>("box, least spheres", Form::least_spheres);
-            ways.add<box>("box, whole spheres", Form::whole_spheres);
+            ways.add<box>("box of least spheres", true, Form::least_spheres);
+            ways.add<box>("box of whole spheres", true, Form::whole_spheres);
+            ways.add<boxes>("clusters+box of least spheres", true, Form::least_spheres);
+            ways.add<boxes>("clusters+box of whole spheres", true, Form::whole_spheres);
         }
         ways.add_engines<Flat<float>, false>("flat loop");
         ways.add_engines<Flat<float>, true>("flat loop+Z");
@@ -61,13 +71,14 @@ public:
     }
 
 private:
-    template <lightbin::Options options> void add(const char* method, Form form = Form::as_they_are) {
+    template <lightbin::Options options>
+    void add(const char* method, bool variant = false, Form form = Form::as_they_are) {
         constexpr bool clusters = options.slicing == lightbin::Slicing::clusters;
         const auto binner = std::make_shared<lightbin::Binner<options>>();
         for (const int tile_size : {8, 16, 32, 64})
             if (tile_size > 8 || !clusters)  // of 8 pixels they would be 777,600 cells
-                all_.push_back({method, tile_size, clusters ? lightbin::DepthTest::none : options.depth_test, true, form,
-                                [=](const TiledView& view, const LightSet& lights) {
+                all_.push_back({method, tile_size, clusters ? lightbin::DepthTest::none : options.depth_test,
+                                true, variant, form, [=](const TiledView& view, const LightSet& lights) {
                                     return ::build<options>(*binner, view, lights, view.bounds());
                                 }});
     }
@@ -76,16 +87,17 @@ private:
         const auto loop = std::make_shared<Loop>();
         const auto ranges = std::make_shared<std::vector<lightbin::ListRange>>();
         for (const int tile_size : {8, 16, 32, 64})
-            all_.push_back({method, tile_size,
-                            with_bounds ? lightbin::DepthTest::interval : lightbin::DepthTest::none, false,
-                            Form::whole_spheres, [=](const TiledView& view, const LightSet& lights) -> Built {
-                                loop->template build<with_bounds>(view.flat, std::get<Lights>(lights),
-                                                                  view.min.data(), view.max.data());
-                                ranges->resize(loop->offsets.size() - 1);  // as shaders read them
-                                for (std::size_t i = 0; i < ranges->size(); ++i)
-                                    (*ranges)[i] = {loop->offsets[i], loop->offsets[i + 1] - loop->offsets[i]};
-                                return {*ranges, 8 * ranges->size() + 4 * loop->indices.size(), nullptr, loop->indices};
-                            }});
+            all_.push_back(
+                {method, tile_size, with_bounds ? lightbin::DepthTest::interval : lightbin::DepthTest::none,
+                 false, false, Form::whole_spheres,
+                 [=](const TiledView& view, const LightSet& lights) -> Built {
+                     loop->template build<with_bounds>(view.flat, std::get<Lights>(lights), view.min.data(),
+                                                       view.max.data());
+                     ranges->resize(loop->offsets.size() - 1);  // as shaders read them
+                     for (std::size_t i = 0; i < ranges->size(); ++i)
+                         (*ranges)[i] = {loop->offsets[i], loop->offsets[i + 1] - loop->offsets[i]};
+                     return {*ranges, 8 * ranges->size() + 4 * loop->indices.size(), nullptr, loop->indices};
+                 }});
     }
 
     std::vector<Way> all_;
