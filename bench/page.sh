@@ -3,7 +3,7 @@
 # in the current folder and writes NAME.html. Needs gnuplot. Lines of a .page, in Markdown's manner:
 #   # TEXT, ## TEXT            headings; below the first stand the machine, the commit and the date
 #   > TEXT                     a verdict
-#   | CELL | CELL |            a row of a table; the first of several is its head
+#   | CELL | CELL |            a row of a table; the first of several is its head; columns of numbers are set to the right
 #   - TEXT                     an item of a list
 #   ![TEXT](FILE.gp ARG ...)   a plot, TEXT below it: a script of this folder, by page.gp; plots of lines in a row stand
 #                              beside each other where there is room
@@ -56,12 +56,19 @@ function plot(line,    end, label, command, svg, inside) {
 /^> / { within(""); print "<p class=\"verdict\">" text(substr($0, 3)) "</p>"; next }
 /^- / { within("ul", "<ul>", "</ul>"); print "<li>" text(substr($0, 3)) "</li>"; next }
 /^\|/ {
-    cell = open == "table" ? "td" : "th"
+    first = open != "table"  # the head waits for the row below it, which says where its words stand
     within("table", "<div class=\"wide\"><table>", "</table></div>")
     count = split($0, cells, /[ \t]*\|[ \t]*/)
-    row = ""
-    for (i = 2; i < count; ++i) row = row "<" cell ">" text(cells[i]) "</" cell ">"
-    print "<tr>" row "</tr>"
+    row = names = ""
+    for (i = 2; i < count; ++i) {
+        if (first) heads[i] = text(cells[i])
+        kind = cells[i] ~ /^[-+.]?[0-9][^ ]*$/ ? " class=\"number\">" : ">"
+        names = names "<th" kind heads[i] "</th>"
+        row = row "<td" kind text(cells[i]) "</td>"
+    }
+    if (second) print "<tr>" names "</tr>"
+    if (!first) print "<tr>" row "</tr>"
+    second = first
     next
 }
 /^!\[/ { within("plots", "<div class=\"plots\">", "</div>"); plot($0); next }
