@@ -1,0 +1,54 @@
+#!/bin/sh
+# The light evaluations that the docs state are those of the committed report. A range is from the least to the greatest of
+# its scenes; those of more than twice the median stand behind it by name.
+set -eu
+export LC_ALL=C
+cd "$(dirname "$0")/../.."
+report=bench/results/zen4/report.csv
+
+# of METHOD TILE COLUMN: each scene's value, in the report's order
+of() {
+    awk -F, -v method="$1" -v tile="$2" -v name="$3" '
+        NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) column = i }
+        $4 == method && $5 == tile { print $column, $1 }' $report
+}
+
+failed=
+# has FILE LINE WORDS: the line of the file that has LINE has WORDS, too
+has() {
+    grep -F -- "$2" "$1" | grep -qF -- "$3" && return
+    echo "$1: where it says \"$2\", $report has \"$3\""
+    failed=yes
+}
+
+# ratio FILE LINE METHOD TILE
+ratio() {
+    has "$1" "$2" "$(of "$3" "$4" ratio | sort -g | awk '
+        function short(x) { return sprintf(x < 9.95 ? "%.1f" : "%.0f", x) }
+        { value[NR] = $1; scene[NR] = $2 }
+        END {
+            for (most = NR; value[most] > 2 * value[int((NR + 1) / 2)]; --most)
+                names = " " scene[most] " " short(value[most]) (names == "" ? "" : "," names)
+            print short(value[1]) " to " short(value[most]) (names == "" ? "" : " (" substr(names, 2) ")")
+        }')"
+}
+ratio docs/depth.md '`DepthTest::box`, 16-pixel tiles' box 16
+ratio docs/depth.md '`DepthTest::split_box` |' split_box 16
+ratio docs/depth.md '`Slicing::clusters` with `DepthTest::box`' clusters+box 64
+ratio docs/depth.md '`Slicing::z_bins`, 1,024 bins' z-bins 32
+ratio README.md '`Options{.depth_test = DepthTest::box}`' box 16
+ratio README.md '`Slicing::clusters`' clusters+box 64
+ratio README.md '  `z_bins`' z-bins 32
+has docs/depth.md '`Footprint::silhouette`' "$(of silhouette 16 ratio | awk '$2 == "top-down" { printf "%.1f (%s)", $1, $2 }')"
+
+# row LINE METHOD TILE COLUMN: a row of the table in bench/README.md
+row() {
+    has bench/README.md "| $1 | " "| $1 | $(of "$2" "$3" "$4" |
+        awk '{ printf "%s%.*f", NR == 1 ? "" : " | ", $1 < 99.95 ? 1 : 0, $1 }') |"
+}
+for way in plain:16 silhouette:16 interval:16 box:16 split_box:16 clusters:64 clusters+box:64 z-bins:32; do
+    row "${way%:*}, ${way#*:} px" "${way%:*}" "${way#*:}" evals
+done
+row needed plain 16 needed
+[ -z "$failed" ] || exit 1
+echo "the docs say what $report has"
