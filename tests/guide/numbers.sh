@@ -14,9 +14,9 @@ of() {
 }
 
 failed=
-# has FILE LINE WORDS: the line of the file that has LINE has WORDS, too
+# has FILE LINE WORDS: the line of the file that has LINE has WORDS, too, and no brackets behind them
 has() {
-    grep -F -- "$2" "$1" | grep -qF -- "$3" && return
+    grep -F -- "$2" "$1" | grep -F -- "$3" | grep -qvF -- "$3 (" && return
     echo "$1: where it says \"$2\", $report has \"$3\""
     failed=yes
 }
@@ -32,14 +32,17 @@ ratio() {
             print short(value[1]) " to " short(value[most]) (names == "" ? "" : " (" substr(names, 2) ")")
         }')"
 }
-ratio docs/depth.md '`DepthTest::box`, 16-pixel tiles' box 16
-ratio docs/depth.md '`DepthTest::split_box` |' split_box 16
-ratio docs/depth.md '`Slicing::clusters` with `DepthTest::box`' clusters+box 64
-ratio docs/depth.md '`Slicing::z_bins`, 1,024 bins' z-bins 32
-ratio README.md '`Options{.depth_test = DepthTest::box}`' box 16
-ratio README.md '`Slicing::clusters`' clusters+box 64
-ratio README.md '  `z_bins`' z-bins 32
-has docs/depth.md '`Footprint::silhouette`' "$(of silhouette 16 ratio | awk '$2 == "top-down" { printf "%.1f (%s)", $1, $2 }')"
+# shellcheck disable=SC2016  # Markdown's backquotes
+{
+    ratio docs/depth.md '`DepthTest::box`, 16-pixel tiles' box 16
+    ratio docs/depth.md '`DepthTest::split_box` |' split_box 16
+    ratio docs/depth.md '`Slicing::clusters` with `DepthTest::box`' clusters+box 64
+    ratio docs/depth.md '`Slicing::z_bins`, 1,024 bins' z-bins 32
+    ratio README.md '`Options{.depth_test = DepthTest::box}`' box 16
+    ratio README.md '`Slicing::clusters`' clusters+box 64
+    ratio README.md '  `z_bins`' z-bins 32
+    has docs/depth.md '`Footprint::silhouette`' "$(of silhouette 16 ratio | awk '$2 == "top-down" { printf "%.1f (%s)", $1, $2 }')"
+}
 
 # row LINE METHOD TILE COLUMN: a row of the table in bench/README.md
 row() {
