@@ -1,6 +1,7 @@
 #!/bin/sh
 # Makes a page of HTML that stands alone, for screens of all widths, light and dark: `sh bench/page.sh NAME` reads NAME.page
-# in the current folder and writes NAME.html. Needs gnuplot. Lines of a .page, in Markdown's manner:
+# in the current folder, and below it that of this folder, if there is one, and writes NAME.html. Needs
+# gnuplot. Lines of a .page, in Markdown's manner:
 #   # TEXT, ## TEXT            headings; below the first stand the machine, the commit and the date
 #   > TEXT                     a verdict
 #   | CELL | CELL |            a row of a table; the first of several is its head; columns of numbers are set to the right
@@ -11,6 +12,8 @@
 set -eu
 bench=$(cd "$(dirname "$0")" && pwd)
 name=$1
+below=$bench/$name.page
+[ -e "$below" ] || below=
 processor=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
 commit=$(git -C "$bench" describe --always --dirty 2>/dev/null || echo unknown)
 machine="${processor:-$(uname -m)}, $(nproc) cores; $(c++ --version | head -n 1); commit $commit; $(date -u '+%Y-%m-%d %H:%M UTC')"
@@ -74,5 +77,5 @@ function plot(line,    end, label, command, svg, inside) {
 /^!\[/ { within("plots", "<div class=\"plots\">", "</div>"); plot($0); next }
 { within("") }
 NF { print "<p>" text($0) "</p>" }
-END { if (failed) exit 1; within(""); print "</body></html>" }' "$name.page" >"$name.html"
+END { if (failed) exit 1; within(""); print "</body></html>" }' "$name.page" ${below:+"$below"} >"$name.html"
 rm -f "$name.svg"

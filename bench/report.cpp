@@ -25,12 +25,16 @@
 #include <lightbin/advise.hpp>
 
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <exception>
 #include <map>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 #include <unistd.h>
+#include <vector>
 
 namespace {
 
@@ -126,15 +130,20 @@ void count(const std::vector<PreparedView>& views, const Way& way, const std::st
     }
 }
 
+/// Milliseconds of copying what a shader reads.
+double upload_ms(const Built& built) {
+    static std::vector<std::byte> memory;
+    memory.resize(std::max(memory.size(), built.bytes));
+    return 1e3 * seconds([&] {
+               std::byte* to = memory.data();
+               for (const auto bytes :
+                    {std::as_bytes(built.ranges), std::as_bytes(built.ids), std::as_bytes(built.bins)})
+                   to = std::ranges::copy(bytes, to).out;
+           });
+}
+
 /// Times all in turns, each turn on another light set.
 void time(std::vector<PreparedView>& views, const std::vector<Way>& ways, std::vector<Measured>& measured) {
-    std::vector<std::byte> memory;
-    const auto copy = [&](const Built& built) {
-        std::byte* to = memory.data();
-        for (const auto bytes :
-             {std::as_bytes(built.ranges), std::as_bytes(built.ids), std::as_bytes(built.bins)})
-            to = std::ranges::copy(bytes, to).out;
-    };
     for (std::uint32_t turn = 0; turn < (quick ? 12 : 100); ++turn) {
         PreparedView& view = views[turn % views.size()];
         std::map<Form, LightSet> sets;
@@ -153,10 +162,9 @@ void time(std::vector<PreparedView>& views, const std::vector<Way>& ways, std::v
                     1e3 * tiled.reduce(view.seen.picture, way.bounds == lightbin::DepthTest::split_box);
             Built built;
             const double seconds_to_build = seconds([&] { built = way.build(tiled, sets[way.form]); });
-            memory.resize(std::max(memory.size(), built.bytes));
             times.bounds.push_back(known->second);
             times.build.push_back(1e3 * seconds_to_build);
-            times.upload.push_back(1e3 * seconds([&] { copy(built); }));
+            times.upload.push_back(upload_ms(built));
         }
     }
 }
@@ -185,7 +193,7 @@ std::vector<Ending> study_endings(const PreparedView& view) {
             build(binner, tiled, study.ended(view.seen.scene.light_set(0), 1.0 / k), tiled.bounds());
         const double evaluations = tiled.evaluations(built.ranges),
                      shade = tiled.all_evaluations(built.ranges) * evaluation_ns * 1e-6,
-                     total = 1e3 * (tiled.reduce_seconds + median(builds)) + shade;
+                     total = 1e3 * (tiled.reduce_seconds + median(builds)) + upload_ms(built) + shade;
         endings.push_back({"hard", 1.0 / k, total, evaluations, study.hard(1.0 / k)});
         endings.push_back({"smooth", 1.0 / k, total, evaluations, study.smooth(1.0 / k)});
     }
@@ -281,22 +289,18 @@ std::string sentence(const SceneReport& report) {
         else
             s += "Z bounds don't pay";
     }
-    // Of the best method or another: what is left without the part.
-    const auto pays = [&](const char* what, const char* part) {
-        const Result& with =
-            report.best([&](const Way& way) { return std::string(way.method).ends_with(part); });
-        return with.total * as_good < best.total ? text("; %s pay, ", what) + more(with, best)
-                                                 : text("; %s don't pay", what);
-    };
-    s += pays("silhouettes", "silhouettes");
+    const Result& outlined =
+        report.best([](const Way& way) { return std::string_view(way.method).ends_with("silhouettes"); });
+    s += "; silhouettes " +
+         (outlined.total * as_good < best.total ? "pay, " + more(outlined, best) : std::string("don't pay"));
     const auto whole = [](const Way& way) { return way.ours && way.form == Form::whole_spheres; };
     if (std::ranges::any_of(report.results, [&](const Result& r) { return whole(r.way); }))
         s += "; cones save " + text("%.0f %%", 100 * (1 - best.total / report.best(whole).total));
     return s;
 }
 
-constexpr const char* row_head[] = {"method", "px", "frame", "at worst", "evaluations", "verdict"};
-using Row = std::array<std::string, std::size(row_head)>;
+using Row = std::array<std::string, 6>;
+const Row row_head = {"method", "px", "frame", "at worst", "evaluations", "verdict"};
 
 /// In which scenes a method is as good as any, at its best tile size: of which, and by what cost.
 struct Question {
@@ -310,7 +314,7 @@ constexpr Question questions[] = {{"take it", ours, total_of},
 
 std::string verdict_of(const std::vector<SceneReport>& reports, const std::string& method) {
     const auto this_one = [&](const Way& way) { return way.method == method; };
-    std::string in_some, least_behind;
+    std::string in_some;
     for (const Question& question : questions) {
         if (!question.wanted(reports[0].best(this_one).way)) continue;
         std::vector<std::string> names;
@@ -367,14 +371,12 @@ std::vector<Row> table(const std::vector<SceneReport>& reports) {
 }
 
 void print(const std::vector<SceneReport>& reports) {
-    std::printf("\nA frame is Z bounds, build, upload and light evaluations of %g ns; 1 is the best of its "
-                "scene, at the "
-                "best tile\nsize: median and worst of the scenes. Evaluations are over those needed, least "
-                "to greatest.\n",
-                evaluation_ns);
+    std::printf(
+        "\nA frame is Z bounds, build, upload and light evaluations of %g ns; 1 is the best of its scene.\n"
+        "Median and worst of the scenes; evaluations over those needed, least to greatest.\n",
+        evaluation_ns);
     std::vector<Row> rows = table(reports);
-    rows.insert(rows.begin(),
-                Row{row_head[0], row_head[1], row_head[2], row_head[3], row_head[4], row_head[5]});
+    rows.insert(rows.begin(), row_head);
     for (const Row& row : rows)
         std::printf("%-15s %2s %6s  %-16s %-24s %s\n", row[0].c_str(), row[1].c_str(), row[2].c_str(),
                     row[3].c_str(), row[4].c_str(), row[5].c_str());
@@ -392,9 +394,8 @@ void write_page(const std::vector<SceneReport>& reports) {
             words.append(" ").append(cell).append(" |");
         line(words);
     };
-    line(text("What a frame pays to light %dx%d pixels from lists, and how many light evaluations it makes "
-              "over those "
-              "needed: %g ns an evaluation, one core builds (`%s`).",
+    line(text("What a frame of %dx%d pixels pays for its lists and lights, and how many light evaluations it "
+              "makes over those needed: %g ns an evaluation, one core builds (`%s`).",
               screen.width, screen.height, evaluation_ns, to_string(lightbin::machine_isa())));
     const std::vector<Row> rows = table(reports);
     for (const Question& question : questions)
@@ -403,15 +404,15 @@ void write_page(const std::vector<SceneReport>& reports) {
                 line("> " + cells[0] + ": " + cells.back());
     for (const SceneReport& report : reports)
         line("- " + sentence(report));
-    line("\n## Methods\nEach at its best tile size; a frame as a ratio to the best of its scene, median and "
-         "worst of "
-         "all scenes; light evaluations over those needed, from the least to the greatest.\n");
+    line("\n## Methods\nEach at its best tile size: a frame's time over the best of its scene, median and "
+         "worst, "
+         "and light evaluations over those needed, from the least to the greatest.\n");
     row(row_head);
     for (const Row& cells : rows)
         row(cells);
-    line("\n## What an evaluation costs\nThe best method by nanoseconds a light evaluation, with the same "
-         "measurements: "
-         "about .005 to .05 on a GPU, 1 on a core.\n");
+    line("\n## What an evaluation costs\nThe best method by what a light evaluation costs: about .005 to .05 "
+         "ns on "
+         "a GPU, 1 ns on a core.\n");
     constexpr double costs[] = {0.005, 0.02, 0.05, 0.2, 1};
     std::vector<std::string> cells = {"scene"};
     for (const double ns : costs)
@@ -430,46 +431,25 @@ void write_page(const std::vector<SceneReport>& reports) {
         line("\n## " + report.name +
              text("\n%zu lights, %zu view%s; %.2f evaluations a pixel are needed.\n", report.lights,
                   report.views, report.views > 1 ? "s" : "", report.needed));
-        line("![Each method by tile size; bars from the 10th to the 90th percentile of frames; through the "
-             "black line's "
-             "points the Pareto front.](report.gp methods " +
+        line("![Each method by tile size. Bars: 10th to 90th percentile of frames. Black: the Pareto front.]"
+             "(report.gp methods " +
              report.name + ")");
         if (!report.endings.empty())
             line("![What the picture loses where lights end at white / 4 to white / 1024.](report.gp "
                  "endings " +
                  report.name + ")");
     }
-    line("\n## How it was measured\n"
-         "- A frame: Z bounds, where the method takes them (`reduce_depth` on the CPU; drawing the depth is "
-         "not counted), "
-         "the build, the copy of the lists to memory that a shader can read (over a bus it takes longer), "
-         "and the light "
-         "evaluations of all pixels.\n"
-         "- Needed are the lights that reach the point of the pixel: one reference for all points of a plot. "
-         "A light that "
-         "reaches a pixel and is missing in its list would have ended the run.\n"
-         "- Build times are of rotating light sets, which no branch predictor learns.\n"
-         "- `flat loop` is the plain two-pass loop of a renderer's author, `planes a tile` holds each light "
-         "against the "
-         "planes of each tile's frustum, `+Z` between the tile's depths. Both bin spots as whole spheres. "
-         "Planes are a "
-         "compute shader's method: their time is of one core here.\n"
-         "- Clusters: 24 exponential slices; z-bins: 1,024 linear ones; both end where the lights do.\n"
-         "- Where lights end: white surfaces, 480x270 pixels, against endless inverse-square lights; white "
-         "is what 95 % "
-         "of the pixels do not exceed. `mean restored`: the lost light's mean added to every pixel.");
     std::fclose(page);
 }
 
-std::vector<Case> cases(const std::vector<std::string>& paths) {
+std::vector<Case> made_scenes() {
     std::vector<Case> all;
-    if (paths.empty())
-        for (BenchScene& scene :
-             std::vector{scenes::field_with_depth(), scenes::top_down(), scenes::street(), scenes::corridor(),
-                         scenes::foliage(), scenes::street_lamps(), scenes::stage(), scenes::car_park()}) {
-            const std::string name = scene.name;
-            all.push_back({name, {std::move(scene)}});
-        }
+    for (BenchScene& scene :
+         std::vector{scenes::field_with_depth(), scenes::top_down(), scenes::street(), scenes::corridor(),
+                     scenes::foliage(), scenes::street_lamps(), scenes::stage(), scenes::car_park()}) {
+        const std::string name = scene.name;
+        all.push_back({name, {std::move(scene)}});
+    }
     return all;
 }
 
@@ -478,15 +458,22 @@ std::vector<Case> cases(const std::vector<std::string>& paths) {
 int main(int argc, char** argv) try {
     Arguments arguments(argc, argv);
     quick = arguments.take("--quick");
-    const std::string ns = arguments.take("--evaluation-ns", text("%g", evaluation_ns));
-    evaluation_ns = std::stod(ns);
-    if (!(evaluation_ns > 0)) throw std::runtime_error("--evaluation-ns must be greater than 0");
+    evaluation_ns =
+        std::strtod(arguments.take("--evaluation-ns", text("%g", evaluation_ns)).c_str(), nullptr);
+    if (!(evaluation_ns > 0)) throw std::runtime_error("--evaluation-ns must be a number greater than 0");
 
-    std::vector<Case> all = cases(arguments.scenes());
+    std::vector<Case> all;
+    if (arguments.scenes().empty()) all = made_scenes();
     for (const std::string& path : arguments.scenes_or_fixtures()) {
         std::vector<BenchScene> views = glb_scenes(path), some;
         if (views[0].lights(0).empty()) throw std::runtime_error(path + ": has no lights");
-        const std::string name = views[0].name.substr(0, views[0].name.find(':'));
+        std::string name = views[0].name.substr(0, views[0].name.find(':'));
+        for (char& c : name)  // it goes to CSV and to a shell
+            if (std::string_view("-_.").find(c) == std::string_view::npos &&
+                !std::isalnum(static_cast<unsigned char>(c)))
+                c = '_';
+        while (std::ranges::any_of(all, [&](const Case& other) { return other.name == name; }))
+            name += '_';
         const std::size_t most = quick ? 2 : 4, step = (views.size() + most - 1) / most;
         for (std::size_t i = 0; i < views.size(); i += step)
             some.push_back(std::move(views[i]));
