@@ -32,6 +32,11 @@
 #       What the plan that advise() chooses costs beside the best of all, with Z bounds and without, the same of
 #       advise_slices(), and how long asking takes beside a plain build; on the machine's widest instruction set or the
 #       named one. Writes build/bench/advise.csv and advise_plans.csv.
+#   stability [--quick]
+#       How far off the screen bounds of lights are under stiff and extreme conditions, by decade, in pixels: ours and the
+#       textbooks', in float and in double, against exact ones; what that misses, lists too much and takes. A miss by ours is
+#       an error. A table and a sentence a family; build/bench/stability.html is a page with plots. Writes stability.csv, too.
+#       Some minutes, --quick half a one.
 #   frames [--quick] [--pictures] [SCENE.glb ...]
 #       Whole frames in OpenGL by every technique of the papers, on the made scene and the named ones (or those of the
 #       tests): light evaluations, times of passes, memory, and the difference to every light in every fragment. Ten minutes
@@ -45,7 +50,7 @@ cd "$(dirname "$0")/.."
 
 program=binning
 case ${1-} in
-binning | report | error | ablation | advise | frames | spots)
+binning | report | error | ablation | advise | frames | spots | stability)
     program=$1
     shift
     ;;
@@ -78,9 +83,9 @@ done
 cd build/bench
 "./bench/$([ $program != frames ] || echo frames/)$program" "$@"
 case $program in
-report)
-    sh ../../bench/page.sh report
-    echo "$me: wrote build/bench/report.html and report.csv"
+report | stability)
+    sh ../../bench/page.sh $program
+    echo "$me: wrote build/bench/$program.html and $program.csv"
     ;;
 frames)
     [ "$(wc -l <frames_paths.csv)" -gt 1 ] || exit 0

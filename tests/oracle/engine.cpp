@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "engine.hpp"
+#include "flush.hpp"
 #include "library_view.hpp"
 
 #include <lightbin/binner.hpp>
@@ -9,42 +10,9 @@
 #include <string>
 #include <vector>
 
-#if defined(__x86_64__)
-#include <xmmintrin.h>
-#endif
-
 namespace oracle {
 
 namespace {
-
-/// Sets FTZ and DAZ for its life.
-class Flush {
-public:
-    explicit Flush(bool on) : before_(get()) {
-        if (on) set(before_ | flags);
-    }
-    ~Flush() { set(before_); }
-    Flush(const Flush&) = delete;
-    Flush& operator=(const Flush&) = delete;
-
-private:
-#if defined(__x86_64__)
-    static constexpr unsigned flags = 0x8040;
-    static unsigned get() {
-        return _mm_getcsr();
-    }
-    static void set(unsigned value) {
-        _mm_setcsr(value);
-    }
-#else
-    static constexpr unsigned flags = 0;
-    static unsigned get() {
-        return 0;
-    }
-    static void set(unsigned) {}
-#endif
-    unsigned before_;
-};
 
 template <lightbin::Options options>
 Lists built(const lightbin::View& view, const Scene& scene, bool flush, std::size_t workers = 1) {

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// The textbooks' formulas, as they are printed, in the precision of `Real`: the bounds of spheres in slopes along one image
+// axis, of spots by what lies around them, and the slice of a depth.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace textbook {
+
+template <class Real> struct Slopes { Real low, high; };
+
+// In the (c, z) plane, c being x or y: a disc of centre (c, z) and radius r, and the near plane z = n.
+
+/// Mara and McGuire, "2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D Sphere", JCGT 2(2), 2013: the
+/// centre turned by the tangent's angle, cut at the near plane.
+struct MaraMcGuire {
+    static constexpr const char* name = "Mara-McGuire";
+    static constexpr bool knows_near_plane = true;
+    template <class Real> static Slopes<Real> slopes(Real c, Real z, Real r, Real n) {
+        const Real d2 = c * c + z * z, t2 = d2 - r * r;
+        const bool inside = !(t2 > 0), cut = z - r <= n;
+        const Real cosine = std::sqrt(t2) / std::sqrt(d2), sine = r / std::sqrt(d2);
+        const Real h = std::sqrt(std::max(r * r - (n - z) * (n - z), Real(0)));
+        const auto bound = [&](Real sign) {
+            const Real x = cosine * (cosine * c + sign * sine * z),
+                       y = cosine * (cosine * z - sign * sine * c);
+            return cut && (inside || y < n) ? (c + sign * h) / n : x / y;
+        };
+        return {bound(-1), bound(1)};
+    }
+};
+
+/// The roots of  (z^2 - r^2) s^2 - 2 c z s + c^2 - r^2 = 0,  the slopes of the tangents.
+struct Quadratic {
+    static constexpr const char* name = "quadratic";
+    static constexpr bool knows_near_plane = false;
+    template <class Real> static Slopes<Real> slopes(Real c, Real z, Real r, Real) {
+        const Real root = r * std::sqrt(c * c + z * z - r * r), e = z * z - r * r;
+        return {(c * z - root) / e, (c * z + root) / e};
+    }
+};
+
+/// The tangent planes' normals: Lengyel, "Mathematics for 3D Game Programming", 2002; Lauritzen, "Deferred Rendering for
+/// Current and Future Rendering Pipelines", SIGGRAPH 2010.
+struct LengyelLauritzen {
+    static constexpr const char* name = "Lengyel-Lauritzen";
+    static constexpr bool knows_near_plane = false;
+    template <class Real> static Slopes<Real> slopes(Real c, Real z, Real r, Real) {
+        const Real d2 = c * c + z * z, root = std::sqrt(r * r * c * c - d2 * (r * r - z * z));
+        const auto bound = [&](Real sign) {
+            const Real nx = (r * c + sign * root) / d2, nz = (r - nx * c) / z;
+            return -nz / nx;
+        };
+        const Real a = bound(-1), b = bound(1);
+        return {std::min(a, b), std::max(a, b)};
+    }
+};
+
+/// A spot in the camera's axes: apex, range, unit axis, cosine of the half angle.
+template <class Real> struct SpotOf { Real c[3], r, axis[3], cosine; };
+
+/// The least sphere around it, as Wronski has it ("Cull that cone! Improved cone/spotlight visibility tests for tiled and
+/// clustered lighting", 2017), then Mara and McGuire.
+struct LeastSphere {
+    static constexpr const char* name = "least sphere";
+    template <class Real> static Slopes<Real> slopes(const SpotOf<Real>& spot, int i, Real n) {
+        const bool wide = spot.cosine < std::sqrt(Real(0.5));
+        const Real along = wide ? spot.r * spot.cosine : spot.r / (2 * spot.cosine),
+                   radius = wide ? spot.r * std::sqrt(1 - spot.cosine * spot.cosine) : along;
+        return MaraMcGuire::slopes(spot.c[i] + along * spot.axis[i], spot.c[2] + along * spot.axis[2], radius,
+                                   n);
+    }
+};
+
+/// The box along the axes of view space around the cone of the same side with a flat end (Quilez, "Disk bounding
+/// box", iquilezles.org), and the slopes of its corners. The flat end has the cap's depth, so that the cap is within.
+struct ConeBox {
+    static constexpr const char* name = "cone box";
+    template <class Real> static Slopes<Real> slopes(const SpotOf<Real>& spot, int i, Real) {
+        const Real rim = spot.r * std::sqrt(1 - spot.cosine * spot.cosine) / spot.cosine;
+        const auto end = [&](int axis, Real sign) {
+            const Real reach = rim * std::sqrt(1 - spot.axis[axis] * spot.axis[axis]);
+            const Real flat = spot.c[axis] + spot.r * spot.axis[axis] + sign * reach;
+            return sign < 0 ? std::min(spot.c[axis], flat) : std::max(spot.c[axis], flat);
+        };
+        const Real low = end(i, -1), high = end(i, 1), nearest = end(2, -1), farthest = end(2, 1);
+        if (!(nearest > 0)) return {-HUGE_VALF, HUGE_VALF};  // no slopes: the whole picture
+        return {low / (low < 0 ? nearest : farthest), high / (high > 0 ? nearest : farthest)};
+    }
+};
+
+// The slice of a depth, of `count` from near to far, each as many times as deep as the one before it.
+
+/// Sousa and Geffroy, "The devil is in the details: idTech 666", SIGGRAPH 2016: a logarithm, a product, a sum.
+struct LogScaleBias {
+    static constexpr const char* name = "log z * a + b";
+    template <class Real> static Real slice(Real z, Real near_depth, Real far_depth, int count) {
+        const Real scale = Real(count) / std::log2(far_depth / near_depth),
+                   bias = -std::log2(near_depth) * scale;
+        return std::log2(z) * scale + bias;
+    }
+};
+
+/// Olsson, Billeter and Assarsson, "Clustered Deferred and Forward Shading", HPG 2012.
+struct LogRatio {
+    static constexpr const char* name = "log(z / near)";
+    template <class Real> static Real slice(Real z, Real near_depth, Real far_depth, int count) {
+        return std::log(z / near_depth) / std::log(far_depth / near_depth) * Real(count);
+    }
+};
+
+}  // namespace textbook

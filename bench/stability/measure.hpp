@@ -1,0 +1,610 @@
+// SPDX-License-Identifier: MIT
+// A condition measured: errors of each formula against exact bounds, tiles missed, excess, times.
+#pragma once
+
+#include "../exact/screen_bounds.hpp"
+#include "../measure.hpp"
+#include "conditions.hpp"
+#include "formulas.hpp"
+#include "ours.hpp"
+
+#include "../../tests/oracle/flush.hpp"
+#include "../../tests/oracle/library_view.hpp"
+
+#include <lightbin/binner.hpp>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace stability {
+
+/// What one formula, in one precision, did under one condition. Errors are in pixels, or slices.
+struct Tally {
+    std::string formula, precision;
+    std::uint64_t lights = 0;       ///< that the formula is for: most know no sphere that the near plane cuts
+    double error = 0;               ///< the largest, of a bound within the picture
+    double inward = 0;              ///< the largest on the side that misses: the margin that it needs
+    std::uint64_t exact = 0;        ///< tiles, or slices, of the exact rectangles
+    std::uint64_t missed_bare = 0;  ///< of those, without a margin
+    std::uint64_t missed_same = 0;  ///< with the library's margin
+    std::uint64_t extra = 0;        ///< tiles beside the exact ones: ours with its margin, others without
+    double ns = 0;                  ///< a light
+
+    bool used() const { return lights > 0; }
+    double excess() const { return exact > 0 ? double(extra) / double(exact) : 0; }
+};
+
+struct Result {
+    std::vector<Tally> textbooks;
+    Tally ours;
+    std::uint64_t careful = 0, asked = 0;  ///< lights on the careful path, of those in view
+    double margin = 0;                     ///< the library's, in pixels, the largest
+    std::uint64_t checked = 0;             ///< exact bounds that rational arithmetic was asked about
+    std::uint64_t denied = 0;              ///< and those it denied
+    std::uint64_t unlike = 0;              ///< lights whose rectangle behind() does not explain
+
+    std::vector<const Tally*> all() const {
+        std::vector<const Tally*> list;
+        for (const Tally& tally : textbooks)
+            list.push_back(&tally);
+        list.push_back(&ours);
+        return list;
+    }
+};
+
+/// How much is asked of a condition.
+struct Effort {
+    std::size_t scenes, lights;  ///< lights a scene
+    std::size_t check_every;     ///< one light in so many is checked by rationals
+    std::size_t lights_in_turn;  ///< that are timed
+    double seconds;              ///< for each time, at least
+};
+
+/// Pixels along both image axes, as a formula has them: anywhere, or NaN.
+struct Bounds {
+    double low[2], high[2];
+};
+
+class Measure {
+public:
+    Measure(const Family& family, const Condition& condition, const Effort& effort)
+        : family_(family), value_(condition.value), effort_(effort),
+          random_(oracle::seed_of(family.name + condition.label)) {}
+
+    Result run() {
+        if (family_.make_depths)
+            depths();
+        else
+            screens();
+        return result_;
+    }
+
+private:
+    //--------------------------------------------------------------------------------------------------------
+    // Screen bounds.
+
+    /// A light in the camera's axes.
+    template <class Real> struct InCamera { Real c[2], z, r; };
+
+    void screens() {
+        result_.ours.formula = "lightbin", result_.ours.precision = "mixed";
+        std::vector<Scene> scenes, turns;
+        for (std::size_t i = 0; i < effort_.scenes; ++i)
+            scenes.push_back(family_.make(random_, value_, effort_.lights));
+        // Many lights in turn, so that no branch predictor learns them.
+        for (std::size_t i = 0; i < 16; ++i)
+            turns.push_back(family_.make(random_, value_, effort_.lights_in_turn / 16));
+        // Exact numbers are made of integers: they don't feel it.
+        const oracle::Flush flushing(family_.flush);
+        for (const Scene& scene : scenes)
+            screen(scene);
+        time_ours(turns);
+        if (family_.spots) {
+            time_textbook<textbook::LeastSphere>(turns), time_textbook<textbook::ConeBox>(turns);
+        } else {
+            time_textbook<textbook::MaraMcGuire>(turns), time_textbook<textbook::Quadratic>(turns),
+                time_textbook<textbook::LengyelLauritzen>(turns);
+        }
+    }
+
+    static lightbin::View view_of(const Scene& scene) {
+        const auto view = oracle::library_view(scene.camera);
+        if (!view) throw std::logic_error("the camera was refused: " + view.error().message());
+        return *view;
+    }
+
+    /// A scene's lights in view space: exactly, but that the radius is made smaller by what a matrix of doubles may not be a
+    /// rotation by, so that what is asked for is no more than the library promises.
+    static oracle::CameraBall exact_ball(const oracle::Oracle& oracle, const Scene& scene,
+                                         const Light& light) {
+        oracle::Ball ball = oracle::exact_ball(light.x, light.y, light.z, light.w);
+        if (scene.world) {
+            oracle::Rational moved[3];
+            for (int row = 0; row < 3; ++row) {
+                moved[row] = oracle::exact((*scene.world)[3][row]);
+                const oracle::Rational* const from[] = {&ball.centre.x, &ball.centre.y, &ball.centre.z};
+                for (int column = 0; column < 3; ++column)
+                    moved[row] += oracle::exact((*scene.world)[column][row]) * *from[column];
+            }
+            ball.centre = {moved[0], moved[1], moved[2]};
+            ball.radius *= 1 - oracle::exact(0x1p-46);
+        }
+        return oracle.in_camera(ball);
+    }
+
+    static float flushed(float value) {
+        return std::abs(value) < FLT_MIN ? std::copysign(0.0f, value) : value;
+    }
+
+    void screen(Scene scene) {
+        if (family_.flush)
+            for (Light& light : scene.lights)
+                light = {flushed(light.x), flushed(light.y), flushed(light.z), flushed(light.w)};
+        const lightbin::View view = view_of(scene);
+        const auto& constants = lightbin::detail::camera_of(view);
+        const oracle::Oracle oracle(scene.camera);
+        const oracle::ScreenBounds bounds(oracle);
+        const Projected projected = project(view, scene);
+        std::vector<Behind> reasons(scene.lights.size());
+        if (!family_.spots)
+            for (std::size_t i = 0; i < scene.lights.size(); ++i)
+                reasons[i] = behind(constants, projected.in_view[i]);
+        const double tile = scene.camera.tile;
+        const double margins[] = {static_cast<double>(constants.x.margin) * tile,
+                                  static_cast<double>(constants.y.margin) * tile};
+        result_.margin = std::max({result_.margin, margins[0], margins[1]});
+        for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+            const oracle::CameraBall ball = exact_ball(oracle, scene, scene.lights[i]);
+            std::optional<oracle::ExactSpot> spot;
+            if (family_.spots) {
+                const Light &at = scene.lights[i], &cone = scene.cones[i];
+                spot = oracle::exact_spot(at.x, at.y, at.z, at.w, cone.x, cone.y, cone.z, cone.w);
+            }
+            oracle::AxisExtent truth[2];
+            for (const int axis : {0, 1}) {
+                truth[axis] = spot ? bounds.extent(axis, ball, *spot) : bounds.extent(axis, ball);
+                if (asked_ % effort_.check_every == 0) {
+                    ++result_.checked;
+                    result_.denied += !(spot ? bounds.agrees(axis, truth[axis], *spot)
+                                             : bounds.agrees(axis, truth[axis], ball));
+                }
+            }
+            ++asked_;
+            const bool beyond = ball.depth + ball.radius < *oracle.range().min ||
+                                (oracle.range().max && ball.depth - ball.radius > *oracle.range().max);
+            const bool in_view = truth[0].first <= truth[0].last && truth[1].first <= truth[1].last;
+            count_ours(scene, truth, in_view, projected.rects[i], reasons[i]);
+            if (beyond) continue;
+            std::size_t place = 0;
+            if (spot) {
+                compare_spot<textbook::LeastSphere>(place, scene, i, bounds, truth, in_view, margins);
+                compare_spot<textbook::ConeBox>(place, scene, i, bounds, truth, in_view, margins);
+            } else {
+                const bool cut = ball.depth - ball.radius <= *oracle.range().min;
+                compare<textbook::MaraMcGuire>(place, scene, i, bounds, cut, truth, in_view, margins);
+                compare<textbook::Quadratic>(place, scene, i, bounds, cut, truth, in_view, margins);
+                compare<textbook::LengyelLauritzen>(place, scene, i, bounds, cut, truth, in_view, margins);
+            }
+        }
+    }
+
+    /// How far apart two bounds are within the picture. One that is NaN is off by all of it.
+    static void add_error(Tally& tally, const oracle::AxisExtent& truth, double low, double high, int side) {
+        const auto within = [&](double at) { return std::clamp(at, 0.0, double(side)); };
+        const double low_inward = std::isnan(low) ? side : within(low) - truth.low,
+                     high_inward = std::isnan(high) ? side : truth.high - within(high);
+        tally.error = std::max({tally.error, std::abs(low_inward), std::abs(high_inward)});
+        tally.inward = std::max({tally.inward, low_inward, high_inward});
+    }
+
+    /// The tiles of bounds, in the viewport.
+    static TileRect tiles(const Camera& camera, const Bounds& bounds, const double* margins) {
+        TileRect rect;
+        const int sides[] = {camera.width, camera.height};
+        for (const int axis : {0, 1}) {
+            const double margin = margins ? margins[axis] : 0, last = (sides[axis] - 1) / camera.tile;
+            const double low = bounds.low[axis] - margin, high = bounds.high[axis] + margin;
+            if (!(high >= 0 && low <= sides[axis])) return {};
+            rect.first[axis] = static_cast<int>(std::clamp(std::floor(low / camera.tile), 0.0, last));
+            rect.last[axis] = static_cast<int>(std::clamp(std::floor(high / camera.tile), 0.0, last));
+        }
+        return rect;
+    }
+
+    static std::uint64_t area(const TileRect& rect) {
+        std::uint64_t product = 1;
+        for (const int axis : {0, 1})
+            product *= static_cast<std::uint64_t>(std::max(0, rect.last[axis] - rect.first[axis] + 1));
+        return product;
+    }
+    static TileRect common(const TileRect& a, const TileRect& b) {
+        TileRect both;
+        for (const int axis : {0, 1}) {
+            both.first[axis] = std::max(a.first[axis], b.first[axis]);
+            both.last[axis] = std::min(a.last[axis], b.last[axis]);
+        }
+        return both;
+    }
+    static TileRect rect_of(const oracle::AxisExtent* truth, bool in_view) {
+        if (!in_view) return {};
+        return {{truth[0].first, truth[1].first}, {truth[0].last, truth[1].last}};
+    }
+
+    void count_ours(const Scene& scene, const oracle::AxisExtent* truth, bool in_view,
+                    const TileRect& emitted, const Behind& reason) {
+        Tally& tally = result_.ours;
+        const TileRect exact = rect_of(truth, in_view);
+        const std::uint64_t whole = area(exact), met = area(common(exact, emitted));
+        ++tally.lights;
+        tally.exact += whole;
+        tally.missed_same += whole - met;
+        tally.extra += area(emitted) - met;
+        const int sides[] = {scene.camera.width, scene.camera.height};
+        if (family_.spots) {
+            // Tiles are pixels.
+            tally.missed_bare = tally.missed_same;
+            for (const int axis : {0, 1})
+                if (in_view && area(emitted) > 0) {
+                    const double low = truth[axis].first - emitted.first[axis],
+                                 high = emitted.last[axis] - truth[axis].last;
+                    tally.error = std::max({tally.error, std::abs(low), std::abs(high)});
+                    tally.inward = std::max({tally.inward, -low, -high});
+                }
+            return;
+        }
+        result_.unlike += !(reason.rect == emitted);
+        if (!in_view) return;
+        ++result_.asked;
+        result_.careful += reason.careful;
+        Bounds bare;
+        for (const int axis : {0, 1}) {
+            bare.low[axis] = reason.low[axis] * scene.camera.tile,
+            bare.high[axis] = reason.high[axis] * scene.camera.tile;
+            add_error(tally, truth[axis], bare.low[axis], bare.high[axis], sides[axis]);
+        }
+        tally.missed_bare += whole - area(common(exact, tiles(scene.camera, bare, nullptr)));
+    }
+
+    Tally& textbook_tally(std::size_t& place, const char* name, const char* precision) {
+        if (place == result_.textbooks.size()) {
+            result_.textbooks.emplace_back();
+            result_.textbooks.back().formula = name, result_.textbooks.back().precision = precision;
+        }
+        return result_.textbooks[place++];
+    }
+
+    /// A light as a renderer that computes in Real has it in the camera's axes.
+    template <class Real> static InCamera<Real> in_camera(const Scene& scene, const Light& light) {
+        Real p[3] = {Real(light.x), Real(light.y), Real(light.z)};
+        if (scene.world) {
+            Real moved[3];
+            for (int row = 0; row < 3; ++row) {
+                const auto m = [&](int column) { return static_cast<Real>((*scene.world)[column][row]); };
+                moved[row] = m(0) * p[0] + m(1) * p[1] + m(2) * p[2] + m(3);
+            }
+            std::copy(moved, moved + 3, p);
+        }
+        return {{p[0], p[1]}, -p[2], Real(light.w)};  // all cameras here look down -z
+    }
+
+    template <class Real, class SlopesOf>
+    void add_textbook(Tally& tally, const Scene& scene, const oracle::ScreenBounds& exact,
+                      const oracle::AxisExtent* truth, bool in_view, const double* margins,
+                      SlopesOf slopes_of) {
+        Bounds bounds;
+        for (const int axis : {0, 1}) {
+            const textbook::Slopes<Real> slopes = slopes_of(axis);
+            const Real scale = static_cast<Real>(exact.scale(axis)),
+                       offset = static_cast<Real>(exact.offset(axis));
+            bounds.low[axis] = static_cast<double>(slopes.low * scale + offset);
+            bounds.high[axis] = static_cast<double>(slopes.high * scale + offset);
+        }
+        const TileRect rect = rect_of(truth, in_view), bare = tiles(scene.camera, bounds, nullptr);
+        const std::uint64_t whole = area(rect), met = area(common(rect, bare));
+        ++tally.lights;
+        tally.exact += whole;
+        tally.missed_bare += whole - met;
+        tally.missed_same += whole - area(common(rect, tiles(scene.camera, bounds, margins)));
+        tally.extra += area(bare) - met;
+        const int sides[] = {scene.camera.width, scene.camera.height};
+        if (in_view)
+            for (const int axis : {0, 1})
+                add_error(tally, truth[axis], bounds.low[axis], bounds.high[axis], sides[axis]);
+    }
+
+    template <class Formula, class Real>
+    void compare_in(std::size_t& place, const char* precision, const Scene& scene, std::size_t i,
+                    const oracle::ScreenBounds& exact, bool cut, const oracle::AxisExtent* truth,
+                    bool in_view, const double* margins) {
+        Tally& tally = textbook_tally(place, Formula::name, precision);
+        if (cut && !Formula::knows_near_plane) return;
+        const InCamera<Real> light = in_camera<Real>(scene, scene.lights[i]);
+        const Real n = exact.near_depth().convert_to<Real>();
+        add_textbook<Real>(tally, scene, exact, truth, in_view, margins,
+                           [&](int axis) { return Formula::slopes(light.c[axis], light.z, light.r, n); });
+    }
+    template <class Formula, class... Rest> void compare(std::size_t& place, const Rest&... rest) {
+        compare_in<Formula, float>(place, "float", rest...);
+        compare_in<Formula, double>(place, "double", rest...);
+    }
+
+    template <class Real> static textbook::SpotOf<Real> spot_in(const Scene& scene, std::size_t i) {
+        const Light &at = scene.lights[i], &cone = scene.cones[i];
+        return {{Real(at.x), Real(at.y), -Real(at.z)},
+                Real(at.w),
+                {Real(cone.x), Real(cone.y), -Real(cone.z)},
+                Real(cone.w)};
+    }
+    template <class Formula, class Real>
+    void compare_spot_in(std::size_t& place, const char* precision, const Scene& scene, std::size_t i,
+                         const oracle::ScreenBounds& exact, const oracle::AxisExtent* truth, bool in_view,
+                         const double* margins) {
+        const textbook::SpotOf<Real> spot = spot_in<Real>(scene, i);
+        const Real n = exact.near_depth().convert_to<Real>();
+        add_textbook<Real>(textbook_tally(place, Formula::name, precision), scene, exact, truth, in_view,
+                           margins, [&](int axis) { return Formula::slopes(spot, axis, n); });
+    }
+    template <class Formula, class... Rest> void compare_spot(std::size_t& place, const Rest&... rest) {
+        compare_spot_in<Formula, float>(place, "float", rest...);
+        compare_spot_in<Formula, double>(place, "double", rest...);
+    }
+
+    //--------------------------------------------------------------------------------------------------------
+    // Times.
+
+    /// Nanoseconds a light: visit(scene) of each in turn, until there is time enough.
+    template <class AnyScene, class Visit>
+    double time(const std::vector<AnyScene>& scenes, Visit visit) const {
+        for (const AnyScene& scene : scenes)
+            visit(scene);
+        std::vector<double> rounds;
+        const double start = time_now();
+        std::size_t lights = 0;
+        for (const AnyScene& scene : scenes)
+            lights += scene.lights.size();
+        do
+            rounds.push_back(seconds([&] {
+                for (const AnyScene& scene : scenes)
+                    visit(scene);
+            }));
+        while (time_now() - start < effort_.seconds || rounds.size() < effort_.lights_in_turn / 4096);
+        return median(rounds) / double(lights) * 1e9;
+    }
+
+    void time_ours(const std::vector<Scene>& scenes) {
+        struct Turn {
+            const Scene& scene;
+            lightbin::View view;
+            const std::vector<Light>& lights;
+        };
+        std::vector<Turn> turns;
+        for (const Scene& scene : scenes)
+            turns.push_back({scene, view_of(scene), scene.lights});
+        lightbin::Footprints<lightbin::Footprint::rectangle, false> footprints;
+        const lightbin::Isa isa = lightbin::machine_isa();
+        result_.ours.ns = time(turns, [&](const Turn& turn) {
+            with_lights(turn.scene,
+                        [&](const auto& lights) { footprints.project(isa, turn.view, lights, {}); });
+        });
+    }
+
+    template <class Formula> void time_textbook(const std::vector<Scene>& scenes) {
+        time_textbook_in<Formula, float>(scenes, "float");
+        time_textbook_in<Formula, double>(scenes, "double");
+    }
+    /// Both axes of each light, from floats in memory to the sum of four bounds.
+    template <class Formula, class Real>
+    void time_textbook_in(const std::vector<Scene>& scenes, const char* precision) {
+        const auto tally =
+            std::find_if(result_.textbooks.begin(), result_.textbooks.end(), [&](const Tally& t) {
+                return t.formula == Formula::name && t.precision == precision;
+            });
+        if (tally == result_.textbooks.end() || !tally->used()) return;
+        tally->ns = time(scenes, [&](const Scene& scene) {
+            const Real n = static_cast<Real>(view_near(scene));
+            Real sum = 0;
+            for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+                const auto add = [&](auto slopes_of) {
+                    for (const int axis : {0, 1}) {
+                        const textbook::Slopes<Real> slopes = slopes_of(axis);
+                        sum += slopes.low + slopes.high;
+                    }
+                };
+                if constexpr (requires { Formula::knows_near_plane; }) {
+                    const InCamera<Real> light = in_camera<Real>(scene, scene.lights[i]);
+                    add([&](int axis) { return Formula::slopes(light.c[axis], light.z, light.r, n); });
+                } else {
+                    const textbook::SpotOf<Real> spot = spot_in<Real>(scene, i);
+                    add([&](int axis) { return Formula::slopes(spot, axis, n); });
+                }
+            }
+            volatile Real kept = sum;
+            static_cast<void>(kept);
+        });
+    }
+    static double view_near(const Scene& scene) { return std::abs(scene.camera.m[3][2]) / 2; }
+
+    //--------------------------------------------------------------------------------------------------------
+    // Slices.
+
+    void depths() {
+        result_.ours.formula = "lightbin", result_.ours.precision = "float";
+        std::vector<DepthScene> scenes;
+        for (std::size_t i = 0; i < effort_.scenes; ++i) {
+            scenes.push_back(family_.make_depths(random_, value_, effort_.lights));
+            depth_scene(scenes.back());
+        }
+        time_slices<textbook::LogScaleBias, float>(scenes, 0);
+        time_slices<textbook::LogScaleBias, double>(scenes, 1);
+        time_slices<textbook::LogRatio, float>(scenes, 2);
+        time_slices<textbook::LogRatio, double>(scenes, 3);
+        Clusters clusters;
+        std::vector<std::pair<lightbin::View, lightbin::Slices>> made;
+        for (const DepthScene& scene : scenes)
+            made.emplace_back(depth_view(scene), slices_of(scene));
+        result_.ours.ns = time(scenes, [&](const DepthScene& scene) {
+            const auto& [view, slices] = made[static_cast<std::size_t>(&scene - scenes.data())];
+            if (!clusters.bin(view, scene.lights, {.slices = slices}))
+                throw std::logic_error("lights were refused");
+        });
+    }
+
+    using Clusters = lightbin::Binner<lightbin::Options{.slicing = lightbin::Slicing::clusters}>;
+
+    static lightbin::View depth_view(const DepthScene& scene) {
+        Lens lens = oracle::symmetric_lens(1, 60);
+        lens.near_plane = static_cast<double>(scene.near_depth) / 2, lens.far_plane = scene.far_plane;
+        lens.doubles = true;
+        return view_of(scene_of(lens, {64, 64, 64, false}));
+    }
+    /// The boundaries that the textbooks' law has, as floats: what the cells are.
+    static lightbin::Slices slices_of(const DepthScene& scene) {
+        const double ratio = static_cast<double>(scene.last) / static_cast<double>(scene.near_depth);
+        const auto slices = lightbin::Slices::exponential(
+            scene.slices,
+            static_cast<float>(static_cast<double>(scene.near_depth) * std::pow(ratio, 1.0 / scene.slices)),
+            scene.last);
+        if (!slices) throw std::logic_error("the slices were refused: " + slices.error().message());
+        return *slices;
+    }
+
+    /// The nearest and the farthest slice, or where in them a light's depths are.
+    struct SliceRange {
+        int first, last;
+    };
+    struct SlicePlaces {
+        double first, last;
+    };
+
+    /// `needed` are the slices of depths within the light, where a boundary's slice is the one behind it, as a shader finds
+    /// it; `touched` also has the one that a light ends at. Either serves.
+    static void add_slices(Tally& tally, const SliceRange& needed, const SliceRange& touched,
+                           const SliceRange& found) {
+        const auto size = [](const SliceRange& range) {
+            return static_cast<std::uint64_t>(std::max(0, range.last - range.first + 1));
+        };
+        const auto common = [&](const SliceRange& other) {
+            return size({std::max(found.first, other.first), std::min(found.last, other.last)});
+        };
+        ++tally.lights;
+        tally.exact += size(needed);
+        const std::uint64_t missed = size(needed) - common(needed);
+        tally.missed_bare += missed;
+        tally.missed_same += missed;
+        tally.extra += size(found) - common(touched);
+    }
+    static void add_error(Tally& tally, double first_inward, double last_inward) {
+        tally.inward = std::max({tally.inward, first_inward, last_inward});
+        tally.error = std::max({tally.error, std::abs(first_inward), std::abs(last_inward)});
+    }
+
+    static SliceRange within(const DepthScene& scene, const SlicePlaces& places) {
+        const auto slice = [&](double place) {
+            return static_cast<int>(std::clamp(std::floor(place), 0.0, scene.slices - 1.0));
+        };
+        return {slice(places.first), slice(places.last)};
+    }
+
+    template <class Formula, class Real>
+    static SlicePlaces textbook_places(const DepthScene& scene, const Light& light) {
+        const Real z = -Real(light.z), r = Real(light.w);
+        const auto place = [&](Real depth) {
+            return static_cast<double>(
+                Formula::slice(depth, Real(scene.near_depth), Real(scene.last), scene.slices));
+        };
+        return {place(z - r), place(z + r)};
+    }
+
+    /// The textbooks' law, with 64 bits: the logarithm of 1 + x loses nothing where x is small.
+    static double exact_place(const DepthScene& scene, double depth) {
+        const double near_depth = static_cast<double>(scene.near_depth);
+        using Long = long double;
+        return static_cast<double>(
+            std::log1p(Long(depth - near_depth) / Long(near_depth)) /
+            std::log1p(Long(static_cast<double>(scene.last) - near_depth) / Long(near_depth)) * scene.slices);
+    }
+
+    void depth_scene(const DepthScene& scene) {
+        const lightbin::Slices slices = slices_of(scene);
+        Clusters clusters;
+        const auto grid = clusters.bin(depth_view(scene), scene.lights, {.slices = slices});
+        if (!grid) throw std::logic_error("lights were refused");
+        std::vector<SliceRange> found(scene.lights.size(), {scene.slices, -1});
+        for (int slice = 0; slice < scene.slices; ++slice)
+            for (const std::uint32_t id : grid->lights_in(0, 0, slice)) {
+                const bool gap = found[id].last >= 0 && found[id].last != slice - 1;
+                result_.ours.missed_same += gap;
+                found[id] = {std::min(found[id].first, slice), slice};
+            }
+        const std::span<const float> boundaries = slices.boundaries();
+        for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+            // Exact: doubles hold the sums of floats of which neither is 2^29 times the other.
+            const double z = -static_cast<double>(scene.lights[i].z),
+                         r = static_cast<double>(scene.lights[i].w);
+            const auto before = [&](double depth, bool itself) {
+                const auto place =
+                    std::partition_point(boundaries.begin(), boundaries.end(), [&](float boundary) {
+                        return itself ? static_cast<double>(boundary) <= depth
+                                      : static_cast<double>(boundary) < depth;
+                    });
+                return static_cast<int>(place - boundaries.begin());
+            };
+            // Ours against the boundaries that the cells have, which are floats; the others against the law itself.
+            const SliceRange needed = {before(z - r, true), before(z + r, true)},
+                             touched = {before(z - r, false), needed.last};
+            add_slices(result_.ours, needed, touched, found[i]);
+            const int beside = touched.first - found[i].first;  // nothing, between the two
+            add_error(result_.ours, beside > 0 ? -beside : std::max(0, found[i].first - needed.first),
+                      needed.last - found[i].last);
+            std::size_t place = 0;
+            const SlicePlaces exact = {exact_place(scene, z - r), exact_place(scene, z + r)};
+            compare_slices<textbook::LogScaleBias, float>(place, "float", scene, scene.lights[i], exact);
+            compare_slices<textbook::LogScaleBias, double>(place, "double", scene, scene.lights[i], exact);
+            compare_slices<textbook::LogRatio, float>(place, "float", scene, scene.lights[i], exact);
+            compare_slices<textbook::LogRatio, double>(place, "double", scene, scene.lights[i], exact);
+        }
+    }
+
+    template <class Formula, class Real>
+    void compare_slices(std::size_t& place, const char* precision, const DepthScene& scene,
+                        const Light& light, const SlicePlaces& exact) {
+        Tally& tally = textbook_tally(place, Formula::name, precision);
+        if (std::isinf(scene.far_plane)) return;  // there is no such law
+        const SlicePlaces places = textbook_places<Formula, Real>(scene, light);
+        add_slices(tally, within(scene, exact), within(scene, exact), within(scene, places));
+        add_error(tally, places.first - exact.first, exact.last - places.last);
+    }
+
+    template <class Formula, class Real>
+    void time_slices(const std::vector<DepthScene>& scenes, std::size_t place) {
+        Tally& tally = result_.textbooks[place];
+        if (!tally.used()) return;
+        tally.ns = time(scenes, [&](const DepthScene& scene) {
+            int sum = 0;
+            for (const Light& light : scene.lights) {
+                const SliceRange range = within(scene, textbook_places<Formula, Real>(scene, light));
+                sum += range.first + range.last;
+            }
+            volatile int kept = sum;
+            static_cast<void>(kept);
+        });
+    }
+
+    const Family& family_;
+    double value_;
+    Effort effort_;
+    Random random_;
+    std::uint64_t asked_ = 0;
+    Result result_;
+};
+
+}  // namespace stability

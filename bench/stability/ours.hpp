@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+// The library's rectangles, from its own projection on every instruction set; and what lies behind them, which it does not
+// hand out: where the bounds are before the margin, and which lights go the careful path.
+#pragma once
+
+#include "conditions.hpp"
+
+#include <lightbin/project.hpp>
+#include <lightbin/view.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace stability {
+
+/// Tiles of a light, ends included; none if first > last.
+struct TileRect {
+    int first[2] = {0, 0}, last[2] = {-1, -1};
+    bool operator==(const TileRect&) const = default;
+};
+
+/// What the widest instruction set makes of a scene.
+struct Projected {
+    std::vector<TileRect> rects;            ///< a light
+    std::vector<lightbin::Sphere> in_view;  ///< a light, in view space
+};
+
+/// Calls use(Lights) with a scene's lights as the library takes them.
+template <class Use> auto with_lights(const Scene& scene, Use use) {
+    if (!scene.cones.empty()) {
+        const Light* const cones = scene.cones.data();
+        const Light* const first = scene.lights.data();
+        return use(lightbin::view_space(scene.lights, [cones, first](const Light& light) {
+            const Light& cone = cones[&light - first];
+            return lightbin::Spot{light.x, light.y, light.z, light.w, cone.x, cone.y, cone.z, cone.w};
+        }));
+    }
+    if (scene.world) return use(lightbin::world_space(scene.lights, scene.world->entry));
+    return use(lightbin::view_space(scene.lights));
+}
+
+inline Projected project_with(lightbin::Isa isa, const lightbin::View& view, const Scene& scene) {
+    return with_lights(scene, [&](const auto& lights) {
+        lightbin::Footprints<lightbin::Footprint::rectangle, true> footprints;
+        footprints.project(isa, view, lights, {});
+        const auto& arrays = footprints.arrays();
+        Projected all;
+        all.rects.resize(scene.lights.size());
+        for (const auto& run : footprints.runs())
+            for (std::uint32_t i = run.begin; i < run.end; ++i)
+                all.rects[arrays.ids[i]] = {{arrays.x0[i], arrays.y0[i]}, {arrays.x1[i], arrays.y1[i]}};
+        if (scene.cones.empty())
+            for (std::size_t i = 0; i < scene.lights.size(); ++i)
+                all.in_view.push_back(lightbin::detail::load_sphere(arrays.spheres + i));
+        return all;
+    });
+}
+
+/// By the machine's widest instruction set, and the same by all others, or an exception.
+inline Projected project(const lightbin::View& view, const Scene& scene) {
+    const lightbin::Isa widest = lightbin::machine_isa();
+    const Projected all = project_with(widest, view, scene);
+    for (int i = 0; i < static_cast<int>(widest); ++i) {
+        const auto isa = static_cast<lightbin::Isa>(i);
+        if (lightbin::machine_isa(isa) == isa && project_with(isa, view, scene).rects != all.rects)
+            throw std::logic_error(std::string(to_string(isa)) + " and " + to_string(widest) + " differ");
+    }
+    return all;
+}
+
+/// How the library comes to a sphere's rectangle.
+struct Behind {
+    bool careful = false;
+    double low[2] = {0, 0},
+           high[2] = {0, 0};  ///< in tiles, without the margin; of a light that is not culled
+    TileRect rect;
+};
+
+/// As project() in detail/project.inl, with its own functions; that the rectangle comes out as the library's own is for the
+/// caller to check.
+inline Behind behind(const lightbin::detail::Camera& camera, const lightbin::Sphere& sphere) {
+    namespace scalar = lightbin::detail::scalar;
+    const float x = sphere.x * camera.x.sign, y = sphere.y * camera.y.sign, z = sphere.z * camera.z_sign,
+                r = sphere.radius;
+    const float nearest = z - r, farthest = z + r, size = std::abs(x) + std::abs(y) + std::abs(z) + r;
+    const bool usable = size <= lightbin::detail::most_plain && lightbin::detail::least_plain <= r;
+    Behind result;
+    if (usable && scalar::out_of_view(scalar::ViewLanes(camera), x, y, z, r, nearest, farthest, size))
+        return result;
+    const lightbin::detail::ImageAxis* const axes[] = {&camera.x, &camera.y};
+    bool seen = true;
+    std::uint16_t first[2], last[2];
+    if (usable && camera.near_fast < nearest) {
+        const float e = nearest * farthest, per_e = 1 / e;
+        for (const std::size_t i : {0u, 1u}) {
+            float low, high;
+            scalar::tangent_slopes(i == 0 ? x : y, z, r, e, per_e, low, high);
+            const float scale = static_cast<float>(axes[i]->scale),
+                        offset = static_cast<float>(axes[i]->offset);
+            result.low[i] = static_cast<double>(low * scale + offset);
+            result.high[i] = static_cast<double>(high * scale + offset);
+            seen = scalar::tile_span<float>(*axes[i], low, high, seen, first + i, last + i);
+        }
+    } else {
+        result.careful = true;
+        const double c[] = {static_cast<double>(x), static_cast<double>(y)}, depth = static_cast<double>(z),
+                     radius = std::max(static_cast<double>(r), 0x1p-400),
+                     near_depth = static_cast<double>(camera.near_depth);
+        const double e = (depth - radius) * (depth + radius);
+        seen = depth + static_cast<double>(r) >= near_depth &&
+               depth - static_cast<double>(r) <= static_cast<double>(camera.far_depth);
+        for (const std::size_t i : {0u, 1u}) {
+            double low, high;
+            if (depth - static_cast<double>(r) > near_depth)
+                scalar::tangent_slopes(c[i], depth, radius, e, 1 / e, low, high);
+            else
+                scalar::clipped_slopes(c[i], depth, radius, near_depth, low, high);
+            result.low[i] = low * axes[i]->scale + axes[i]->offset;
+            result.high[i] = high * axes[i]->scale + axes[i]->offset;
+            seen = scalar::tile_span<double>(*axes[i], low, high, seen, first + i, last + i);
+        }
+    }
+    if (seen) result.rect = {{first[0], first[1]}, {last[0], last[1]}};
+    return result;
+}
+
+}  // namespace stability
