@@ -28,11 +28,12 @@ public:
     /// What is left when all options are taken.
     const std::vector<std::string>& scenes() const { return words_; }
 
-    /// The same, or those of the tests where none is named.
+    /// The same, or those of bench/scenes where none is named.
     std::vector<std::string> scenes_or_fixtures() const {
-        return words_.empty() ? std::vector<std::string>{LIGHTBIN_FIXTURES "/nova.glb",
-                                                         LIGHTBIN_FIXTURES "/darkness.glb"}
-                              : words_;
+        return words_.empty()
+                   ? std::vector<std::string>{LIGHTBIN_SCENES "/nova.glb", LIGHTBIN_SCENES "/darkness.glb",
+                                              LIGHTBIN_SCENES "/bart-robots-924.glb"}
+                   : words_;
     }
 
 private:

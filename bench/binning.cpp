@@ -424,7 +424,7 @@ Lights away(std::size_t count, std::uint32_t seed) {
 
 int run(int argc, char** argv) {
     bool quick = false;
-    std::vector<std::string> paths = {LIGHTBIN_FIXTURES "/nova.glb", LIGHTBIN_FIXTURES "/darkness.glb"};
+    std::vector<std::string> paths = {LIGHTBIN_SCENES "/nova.glb", LIGHTBIN_SCENES "/darkness.glb"};
     std::vector<char*> rest = {argv[0]};
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];

@@ -15,6 +15,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -39,6 +40,7 @@ struct Elements {
     std::size_t count;
     std::size_t stride;
     int component_type;
+    bool normalized;
 
     template <class T> T get(std::size_t i) const {
         T value;
@@ -55,6 +57,28 @@ struct Elements {
         default:
             return get<std::uint32_t>(i);
         }
+    }
+
+    // Three numbers: floats, or the integers of KHR_mesh_quantization.
+    glm::dvec3 vector(std::size_t i) const {
+        switch (component_type) {
+        case TINYGLTF_COMPONENT_TYPE_BYTE:
+            return of_integers<std::int8_t>(i);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return of_integers<std::uint8_t>(i);
+        case TINYGLTF_COMPONENT_TYPE_SHORT:
+            return of_integers<std::int16_t>(i);
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return of_integers<std::uint16_t>(i);
+        default:
+            return glm::dvec3(get<glm::vec3>(i));
+        }
+    }
+
+private:
+    template <class T> glm::dvec3 of_integers(std::size_t i) const {
+        const glm::dvec3 v(get<glm::vec<3, T>>(i));
+        return normalized ? glm::max(v / static_cast<double>(std::numeric_limits<T>::max()), -1.0) : v;
     }
 };
 
@@ -83,7 +107,14 @@ Elements elements(const tinygltf::Model& model, int accessor_index, int type,
     }
     if (!inside) fail(name + " reaches past the end of its buffer");
     return {bytes.data() + view.byteOffset + accessor.byteOffset, accessor.count,
-            static_cast<std::size_t>(stride), accessor.componentType};
+            static_cast<std::size_t>(stride), accessor.componentType, accessor.normalized};
+}
+
+Elements vectors(const tinygltf::Model& model, int accessor_index) {
+    return elements(model, accessor_index, TINYGLTF_TYPE_VEC3,
+                    {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_COMPONENT_TYPE_BYTE,
+                     TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_COMPONENT_TYPE_SHORT,
+                     TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT});
 }
 
 // Vertex numbers of the primitive's triangles, whatever its mode and indices; empty for points and lines.
@@ -222,13 +253,12 @@ private:
     void add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& to_world) {
         const auto position = primitive.attributes.find("POSITION");
         if (position == primitive.attributes.end()) return;  // the specification: draw nothing
-        const Elements positions =
-            elements(model_, position->second, TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT});
+        const Elements positions = vectors(model_, position->second);
         const auto normal = primitive.attributes.find("NORMAL");
         const bool flat = normal == primitive.attributes.end();
         Elements normals{};
         if (!flat) {
-            normals = elements(model_, normal->second, TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT});
+            normals = vectors(model_, normal->second);
             if (normals.count < positions.count) fail("a mesh has fewer normals than positions");
         }
         auto corners = triangle_corners(model_, primitive, positions.count);
@@ -250,14 +280,13 @@ private:
             if (mirrored) std::swap(corners[i + 1], corners[i + 2]);
             std::array<glm::dvec3, 3> p;
             for (std::size_t k = 0; k < 3; ++k)
-                p[k] = glm::dvec3(to_world * glm::dvec4(positions.get<glm::vec3>(corners[i + k]), 1.0));
+                p[k] = glm::dvec3(to_world * glm::dvec4(positions.vector(corners[i + k]), 1.0));
             const glm::dvec3 face = glm::cross(p[1] - p[0], p[2] - p[0]);
             if (!(glm::length(face) > 0)) continue;  // no area, no normal, no pixel
             for (std::size_t k = 0; k < 3; ++k) {
                 glm::dvec3 n = face;
                 if (!flat) {
-                    const glm::dvec3 given =
-                        normals_to_world * glm::dvec3(normals.get<glm::vec3>(corners[i + k]));
+                    const glm::dvec3 given = normals_to_world * normals.vector(corners[i + k]);
                     if (glm::length(given) > 0) n = given;
                 }
                 scene_.triangles.push_back({glm::vec3(p[k]), glm::vec3(glm::normalize(n)), colour});
@@ -336,7 +365,7 @@ Scene read_glb(std::span<const unsigned char> bytes, const std::string& path, fl
                                        static_cast<unsigned>(bytes.size()), folder))
             fail("not a readable glTF binary: " + first_line(error));
         for (const auto& extension : model.extensionsRequired)
-            if (extension != "KHR_lights_punctual")
+            if (extension != "KHR_lights_punctual" && extension != "KHR_mesh_quantization")
                 fail("it needs " + extension + ", which this program does not read");
         Scene scene = Loader(model, cutoff).load();
         scene.name = path.substr(path.rfind('/') + 1);
