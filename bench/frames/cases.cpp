@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -37,12 +38,49 @@ Camera look(const std::string& name, glm::dvec3 from, glm::dvec3 to, glm::dvec3 
     return camera;
 }
 
+// How far it is from a place straight up (or down: -1) to the first surface. Infinity: there is none.
+double room(const std::vector<Vertex>& triangles, const glm::dvec3& from, double up) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < triangles.size(); i += 3) {
+        const glm::dvec3 a = glm::dvec3(triangles[i].position) - from,
+                         b = glm::dvec3(triangles[i + 1].position) - from,
+                         c = glm::dvec3(triangles[i + 2].position) - from;
+        const double u = b.x * c.z - b.z * c.x, v = c.x * a.z - c.z * a.x, w = a.x * b.z - a.z * b.x;
+        if (std::min({u, v, w}) < 0 && std::max({u, v, w}) > 0) continue;  // not over it
+        const double away = up * (u * a.y + v * b.y + w * c.y) / (u + v + w);
+        if (away > 0 && away < nearest) nearest = away;  // no, if that is no number
+    }
+    return nearest;
+}
+
+// Looks straight down from under the ceiling, where that is highest over the floor of all the places that have both, and of
+// equals nearest to the middle.
+std::optional<Camera> under_a_ceiling(const Scene& scene, const std::vector<Camera>& places,
+                                      const glm::dvec3& middle) {
+    double highest = 0, nearest = 0;
+    std::optional<Camera> camera;
+    for (const Camera& place : places) {
+        const glm::dvec3 at(place.to_world[3]);
+        const double above = room(scene.triangles, at, 1), height = above + room(scene.triangles, at, -1);
+        const double away = glm::distance(glm::dvec2(at.x, at.z), glm::dvec2(middle.x, middle.z));
+        if (std::isinf(height) || height < 0.99 * highest) continue;
+        if (height < 1.01 * highest && away > nearest) continue;
+        highest = height;
+        nearest = away;
+        const glm::dvec3 eye = at + glm::dvec3(0, above - 0.01 * height, 0);
+        camera = look("from above, under the ceiling", eye, at - glm::dvec3(0, 1, 0), {0, 0, -1}, height);
+        camera->height = glm::radians(90.0);
+    }
+    return camera;
+}
+
 }  // namespace
 
-Camera camera_from_above(const Scene& scene) {
+Camera camera_from_above(const Scene& scene, const std::vector<Camera>& places) {
     const Box lights = box_of(scene.lights), surfaces = box_of(scene.triangles);
     const glm::dvec3 middle = glm::dvec3(lights.low + lights.high) / 2.0,
                      half = glm::dvec3(lights.high - lights.low) / 2.0;
+    if (const auto camera = under_a_ceiling(scene, places, middle)) return *camera;
     const auto size = static_cast<double>(glm::distance(surfaces.low, surfaces.high));
     const double height =  // lights may be in one place
         std::max({half.z, half.x * 9 / 16, 0.1 * half.y, 0.01 * size}) / std::tan(glm::radians(27.5));

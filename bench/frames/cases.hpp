@@ -7,8 +7,9 @@
 #include <cstddef>
 #include <vector>
 
-/// Returns a camera that looks straight down on all lights. Roofs above them are before its near plane, and not seen.
-Camera camera_from_above(const Scene& scene);
+/// Returns a camera that looks straight down: from under the ceiling over one of the places, the highest over its floor, so
+/// that no roof is between it and what is lit; 90 degrees high. Where none has a ceiling, from above all lights.
+Camera camera_from_above(const Scene& scene, const std::vector<Camera>& places);
 
 /// Returns a flight over the made scene's roofs and down into its streets.
 std::vector<Camera> made_flight(std::size_t views);

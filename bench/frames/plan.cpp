@@ -51,7 +51,7 @@ void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Cam
     } else {
         add(own, "from within", some, all);
     }
-    add(own, "from above", {camera_from_above(scene)}, all);
+    add(own, "from above", {camera_from_above(scene, views)}, all);
     const std::vector<Camera> one = {views[std::min<std::size_t>(1, views.size() - 1)]};
     add(own, "one shader", one, material_techniques());
     add(own, "three shaders", one, material_techniques(), {.three_shaders = true});

@@ -87,7 +87,7 @@ std::vector<Seen> seen_scenes() {
     for (Light& light : endless.lights)
         light.range = std::numeric_limits<float>::infinity();
     return {{"made scene, a street", made, made.cameras[1], 1},
-            {"made scene, from above", made, camera_from_above(made), 1},
+            {"made scene, from above", made, camera_from_above(made, {}), 1},
             {"few lights", few, made_flight(15)[3], 1},
             {"random lights", random, made.cameras[0], 1},
             {"lights without an end", endless, made.cameras[1], 0.02f},
@@ -400,7 +400,7 @@ TEST_CASE("all lights are seen from above") {
     for (const Scene& scene : {make_scene(1), make_scene(20), below}) {
         const OffscreenContext context(0);
         Stage stage(scene, context.glsl());
-        const Camera camera = camera_from_above(scene);
+        const Camera camera = camera_from_above(scene, {});
         stage.begin(camera, small_frame(1));
         const auto footprints = value_of(lightbin::shader_footprints(stage.view(), stage.lights()));
         CHECK(footprints.size() == scene.lights.size());
