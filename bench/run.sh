@@ -37,11 +37,14 @@
 #       textbooks', in float and in double, against exact ones; what that misses, lists too much and takes. A miss by ours is
 #       an error. A table and a sentence a family; build/bench/stability.html is a page with plots. Writes stability.csv, too.
 #       Some minutes, --quick half a one.
-#   frames [--quick] [--pictures] [SCENE.glb ...]
-#       Whole frames in OpenGL by every technique of the papers, on the made scene and the named ones (or those of the
-#       tests): light evaluations, times of passes, memory, and the difference to every light in every fragment. Ten minutes
-#       at most with a software renderer, --quick two. A scene of ten views or more is taken for a camera's path. Writes
-#       build/bench/frames.csv, and of the paths frames_paths.csv, .svg and .png; --pictures: a PNG a view, too.
+#   frames [--quick] [--counts] [--pictures] [--into=FOLDER] [SCENE.glb ...]
+#       Whole frames in OpenGL by every technique of the papers, on the made scene and the named ones (or those of
+#       bench/scenes): light evaluations, times of passes, memory, and the difference to every light in every fragment. Ten
+#       minutes at most with a software renderer, --quick two; --counts leaves the times out, for a machine that is at work. A
+#       scene of ten views or more is taken for a camera's path. Writes to build/bench, or to FOLDER, which it makes: its
+#       tables, frames.txt; all rows, frames.csv; of the paths frames_paths.csv and the plots frames_times and
+#       frames_evaluations, .svg and .png. --pictures: a PNG a view in build/bench, too. What the repository has of a
+#       machine is made by `sh bench/run.sh frames --into=bench/results/llvmpipe-zen4`, or what its processor is.
 set -eu
 me=bench/run.sh
 here=$(pwd)
@@ -71,25 +74,38 @@ echo "$me: building in build/bench"
     { cat build/bench.log; fail "the build failed"; }
 echo "$me: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores; $(c++ --version | head -n 1)"
 
-# Scenes are named from where the caller stands.
+# Scenes and folders are named from where the caller stands.
+into=
 for word; do
     shift
     case $word in
+    --into=/*) into=${word#--into=} ;;
+    --into=*) into=$here/${word#--into=} ;;
     -* | /*) set -- "$@" "$word" ;;
     *.glb) set -- "$@" "$here/$word" ;;
     *) set -- "$@" "$word" ;;
     esac
 done
 cd build/bench
-"./bench/$([ $program != frames ] || echo frames/)$program" "$@"
 case $program in
 report | stability)
+    "./bench/$program" "$@"
     sh ../../bench/page.sh $program
     echo "$me: wrote build/bench/$program.html and $program.csv"
     ;;
 frames)
-    [ "$(wc -l <frames_paths.csv)" -gt 1 ] || exit 0
-    gnuplot -e 'report="frames_paths"' ../../bench/plot_frames.gp
-    echo "$me: wrote build/bench/frames_paths.csv, .svg and .png"
+    [ -z "$into" ] || mkdir -p "$into"
+    failed=
+    ./bench/frames/frames "$@" >frames.txt || failed=yes
+    cat frames.txt
+    rm -f frames_times.* frames_evaluations.*
+    [ "$(wc -l <frames_paths.csv)" -lt 2 ] || gnuplot ../../bench/plot_frames.gp
+    for file in frames.txt frames.csv frames_paths.csv frames_times.png frames_evaluations.png; do
+        [ -z "$into" ] || [ ! -e $file ] || cp $file "$into"
+    done
+    echo "$me: wrote frames.txt, frames.csv, frames_paths.csv and the plots to ${into:-build/bench}"
+    [ -z "$failed" ]
+    exit
     ;;
+*) "./bench/$program" "$@" ;;
 esac

@@ -11,7 +11,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 
 namespace {
 
@@ -54,23 +53,27 @@ double room(const std::vector<Vertex>& triangles, const glm::dvec3& from, double
 }
 
 // Looks straight down from under the ceiling, where that is highest over the floor of all the places that have both, and of
-// equals nearest to the middle.
+// equals nearest to the middle. Nothing, if most places have no ceiling.
 std::optional<Camera> under_a_ceiling(const Scene& scene, const std::vector<Camera>& places,
                                       const glm::dvec3& middle) {
     double highest = 0, nearest = 0;
+    std::size_t ceilings = 0;
     std::optional<Camera> camera;
     for (const Camera& place : places) {
         const glm::dvec3 at(place.to_world[3]);
         const double above = room(scene.triangles, at, 1), height = above + room(scene.triangles, at, -1);
         const double away = glm::distance(glm::dvec2(at.x, at.z), glm::dvec2(middle.x, middle.z));
-        if (std::isinf(height) || height < 0.99 * highest) continue;
+        if (std::isinf(height)) continue;
+        ++ceilings;
+        if (height < 0.99 * highest) continue;
         if (height < 1.01 * highest && away > nearest) continue;
         highest = height;
         nearest = away;
         const glm::dvec3 eye = at + glm::dvec3(0, above - 0.01 * height, 0);
-        camera = look("from above, under the ceiling", eye, at - glm::dvec3(0, 1, 0), {0, 0, -1}, height);
+        camera = look("under the ceiling", eye, at - glm::dvec3(0, 1, 0), {0, 0, -1}, height);
         camera->height = glm::radians(90.0);
     }
+    if (2 * ceilings <= places.size()) camera.reset();
     return camera;
 }
 
@@ -121,15 +124,25 @@ Scene with_random_lights(Scene scene, std::size_t count) {
     return scene;
 }
 
-Scene with_few_lights(Scene scene) {
-    const std::vector<Light> all = std::exchange(scene.lights, {});
-    for (std::size_t i = 0; i < 11; ++i) {
-        Light light = all[i * all.size() / 11];
+std::vector<Light> few_lights(const std::vector<Light>& lights, double time) {
+    constexpr std::size_t count = 11;
+    const auto of = [&](std::size_t i) { return i * lights.size() / count; };
+    std::vector<Light> few;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double last =
+            static_cast<double>(of(i + 1) - of(i)) - 1;  // below 0: there are fewer than eleven
+        Light light = lights[of(i) + static_cast<std::size_t>(std::lround(time * std::max(last, 0.0)))];
         light.range *= 3.2f;
         light.intensity *= 3.2f * 3.2f;
-        scene.lights.push_back(light);
+        few.push_back(light);
     }
-    return scene;
+    return few;
+}
+
+int frame_of(const std::string& name) {
+    const std::size_t last = name.find_last_not_of("0123456789");
+    const std::string digits = name.substr(last + 1);  // all of it, if there is nothing else
+    return digits.empty() || digits.size() > 9 ? -1 : std::stoi(digits);
 }
 
 Scene with_panes(Scene scene, std::size_t count) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Deferred (Tiled Shading, section 5): one light after another, a rectangle of pixels each, added up in a target; every
+// Deferred (Tiled Shading): one light after another, a rectangle of pixels each, added up in a target; every
 // light reads the whole G-buffer again.
 #include "deferred.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// DeferredStencil (Tiled Shading, section 5; Arvo, Aila 2003): as Deferred, but a light's ball first marks the pixels
+// DeferredStencil (Tiled Shading, section 6.3; Arvo, Aila 2003): as Deferred, but a light's ball first marks the pixels
 // whose surface is in it, and only those are lit.
 #include "deferred.hpp"
 #include "technique.hpp"

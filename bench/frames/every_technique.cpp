@@ -11,8 +11,8 @@ std::vector<Technique> every_technique() {
         all.push_back(light_indexed(bits));
     all.push_back(clustered_forward());
     all.push_back(z_binned_forward());
-    for (const auto technique :
-         {tiled_deferred, tiled_deferred_passes, tiled_deferred_kernel, deferred, deferred_stencil})
+    for (const auto technique : {tiled_deferred, tiled_deferred_passes, tiled_deferred_kernel,
+                                 tiled_deferred_planes, deferred, deferred_stencil})
         for (const int bits : {16, 32})
             all.push_back(technique(bits));
     return all;

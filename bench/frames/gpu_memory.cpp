@@ -94,6 +94,13 @@ std::size_t GpuMemory::bytes() const {
     return sum;
 }
 
+std::size_t GpuMemory::multisampled_bytes() const {
+    std::size_t sum = 0;
+    for (const auto& [name, target] : targets_)
+        if (target.multisampled) sum += target.bytes;
+    return sum;
+}
+
 GLuint GpuMemory::target(const std::string& name, GLenum format, int width, int height, int samples) {
     Target& target = targets_[name];
     if (target.texture != 0) return target.texture;

@@ -35,6 +35,7 @@ public:
     /// Frees everything.
     void clear();
     std::size_t bytes() const;
+    std::size_t multisampled_bytes() const;  ///< of them, those of targets of several samples
 
     /// A texture to draw to and read from; made if there is none of that name since clear(). Of more than one sample, it
     /// is a multisampled one.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// frames [--quick] [--pictures] [SCENE.glb ...]: whole frames by every technique of the papers, on the made scene and on the
-// named ones, or those of the tests.
+// frames [--quick] [--counts] [--pictures] [SCENE.glb ...]: whole frames by every technique of the papers, on the made scene
+// and on the named ones, or those of bench/scenes.
 #include "plan.hpp"
 #include "report.hpp"
 #include "runner.hpp"
@@ -48,18 +48,18 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-std::vector<Row> draw_all(const std::vector<SceneJobs>& plan, RunSettings run, bool pictures,
-                          LeftOut& left_out) {
+std::vector<Row> draw_all(std::vector<SceneJobs> plan, RunSettings run, bool pictures, LeftOut& left_out) {
     std::size_t views = 0;
     for (const SceneJobs& scene : plan)
         views += scene.jobs.size();
     Progress progress(views);
     std::vector<Row> rows;
-    for (const SceneJobs& jobs : plan) {
+    for (SceneJobs& jobs : plan) {
         const OffscreenContext context(0);  // each scene's goes with all that is in it
         Runner runner(jobs.scene, run, context.glsl(), left_out);
         for (const Job& job : jobs.jobs) {
             progress.say(jobs.scene.name + ", " + job.table + ", " + job.camera.name);
+            if (!job.lights.empty()) jobs.scene.lights = job.lights;
             const std::vector<Row> made = runner.run(job.table, job.camera, job.techniques, job.settings);
             rows.insert(rows.end(), made.begin(), made.end());
             if (pictures && !made.empty()) write_picture(job, jobs.scene, run, runner);
@@ -92,18 +92,22 @@ bool pictures_are_as_stated(const std::vector<Row>& rows) {
 }
 
 int run(Arguments arguments) {
-    const bool quick = arguments.take("--quick"), pictures = arguments.take("--pictures");
+    const bool quick = arguments.take("--quick"), pictures = arguments.take("--pictures"),
+               only_counts = arguments.take("--counts");
     RunSettings run;
     {
         const OffscreenContext context(0);
         const bool software = is_software_renderer();
-        run.width = !software ? 1920 : quick ? 320 : 384;
+        // Tiles have the share of the picture that 32 pixels have of 1920: what lies between a tile's nearest and farthest
+        // surface grows with it.
+        run.width = !software ? 1920 : quick ? 240 : 480;
         run.height = run.width * 9 / 16;
-        run.tile_size = software ? 16 : 32;
-        run.timed_frames = !software ? 25 : quick ? 1 : 3;
-        std::printf("OpenGL: %s, GLSL %d; %d x %d pixels, tiles of %d\n",
-                    reinterpret_cast<const char*>(glGetString(GL_RENDERER)), context.glsl(), run.width,
-                    run.height, run.tile_size);
+        run.tile_size = run.width / 60;
+        run.timed_frames = only_counts ? 0 : !software ? 25 : quick ? 1 : 3;
+        std::printf(
+            "OpenGL: %s, GLSL %d; %d x %d pixels, tiles of %d: a sixtieth of the width, as 32 are of 1920\n",
+            reinterpret_cast<const char*>(glGetString(GL_RENDERER)), context.glsl(), run.width, run.height,
+            run.tile_size);
         if (software)
             std::printf(
                 "This OpenGL draws on the CPU: its times say little about a GPU's. Compare evaluations and "
@@ -114,7 +118,8 @@ int run(Arguments arguments) {
     const std::vector<SceneJobs> plan = make_plan(arguments.scenes_or_fixtures(), quick);
     write_csv("frames", {});  // or a folder that can't be written to is noticed in the end
     LeftOut left_out;
-    const std::vector<Row> rows = draw_all(plan, run, pictures, left_out);
+    const std::vector<Row> rows =
+        with_computed_memory(draw_all(plan, run, pictures, left_out), sample_counts);
     print(rows);
     if (!left_out.lines().empty()) std::printf("\n");
     for (const std::string& line : left_out.lines())

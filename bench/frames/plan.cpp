@@ -39,15 +39,26 @@ template <class T> std::vector<T> every(std::size_t step, const std::vector<T>& 
 
 constexpr std::size_t views_of_a_path = 10;  // a file of so many views or more is a camera's path
 
-void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Camera> views, bool quick) {
+enum class FewLights { stand, move };
+
+void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Camera> views,
+               FewLights few_lights_do, bool quick) {
     const bool is_path = views.size() >= views_of_a_path;
+    if (is_path) std::ranges::stable_sort(views, {}, [](const Camera& c) { return frame_of(c.name); });
     const std::vector<Camera> some = every(is_path ? (quick ? 5 : 1) : 2, views);
     const std::vector<Technique> all = every_technique();
-    SceneJobs own{scene, {}}, few{with_few_lights(scene), {}}, panes{with_panes(scene, 60), {}};
+    SceneJobs own{scene, {}}, few{scene, {}}, panes{with_panes(scene, 60), {}};
     own.scene.transparent.clear();
+    few.scene.transparent.clear();
     if (is_path) {
         add(own, "path", some, all);
-        add(few, "path with few lights", some, all);
+        const double first = frame_of(views.front().name), last = frame_of(views.back().name);
+        for (const Camera& camera : some) {
+            const double time = few_lights_do == FewLights::move && last > first
+                                    ? (frame_of(camera.name) - first) / (last - first)
+                                    : 0;
+            few.jobs.push_back({"path with few lights", camera, all, {}, few_lights(scene.lights, time)});
+        }
     } else {
         add(own, "from within", some, all);
     }
@@ -71,7 +82,8 @@ void add_file(std::vector<SceneJobs>& plan, const std::string& file, bool quick)
         std::printf("%s: %s left out\n", scene.name.c_str(),
                     counted(orthographic, "orthographic view").c_str());
     if (scene.cameras.empty()) scene.cameras = {framing_camera(scene.triangles)};
-    add_scene(plan, scene, scene.cameras, quick);
+    // The robots' lights are in the order of the robots' paths.
+    add_scene(plan, scene, scene.cameras, FewLights::move, quick);
 }
 
 }  // namespace
@@ -80,13 +92,13 @@ std::vector<SceneJobs> make_plan(const std::vector<std::string>& files, bool qui
     std::vector<SceneJobs> plan;
     Scene made = make_scene(1024);
     const std::vector<Camera> flight = made_flight(15), still = {made.cameras[0], made.cameras[1]};
-    add_scene(plan, made, flight, quick);
+    add_scene(plan, made, flight, FewLights::stand, quick);
     made.transparent.clear();
     for (const std::size_t lights : {128u, 256u, 512u, 1024u}) {
         SceneJobs random{with_random_lights(made, lights), {}};
         if (lights == 1024) add(random, "random lights", still, every_technique());
         if (!quick || lights == 128 || lights == 1024)
-            for (const int samples : {1, 2, 4, 8})
+            for (const int samples : sample_counts)
                 add(random, "MSAA", {still[0]}, sample_techniques(), {.samples = samples});
         plan.push_back(std::move(random));
     }

@@ -16,7 +16,11 @@ struct Job {
     Camera camera;
     std::vector<Technique> techniques;
     Settings settings;
+    std::vector<Light> lights = {};  ///< in place of the scene's, where there are any
 };
+
+/// The numbers of samples a pixel that are compared.
+constexpr int sample_counts[] = {1, 2, 4, 8, 16};
 
 struct SceneJobs {
     Scene scene;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "report.hpp"
 
+#include "cases.hpp"
+
 #include <algorithm>
 #include <cstdio>
 #include <stdexcept>
@@ -91,7 +93,7 @@ void print_techniques(const std::string& title, const std::vector<Row>& rows) {
     }
 }
 
-void print_samples(const std::string& title, const std::vector<Row>& rows) {
+void print_samples(const std::string& title, std::vector<Row> rows) {
     if (rows.empty()) return;
     std::printf("\n%s\n%-14s", title.c_str(), "lights, MSAA");
     const auto columns = grouped(rows, [](const Row& row) { return row.technique; });
@@ -101,6 +103,7 @@ void print_samples(const std::string& title, const std::vector<Row>& rows) {
     for (std::size_t i = 0; i < columns.size(); ++i)
         std::printf(" | %8s %8s %6s %9s", "ms", "million", "MB", "differs");
     std::printf("\n");
+    std::ranges::stable_sort(rows, {}, [](const Row& r) { return std::pair(r.lights, r.samples); });
     for (const auto& [key, line] :
          grouped(rows, [](const Row& r) { return std::pair(r.lights, r.samples); })) {
         std::printf("%8zu, %4d", key.first, key.second);
@@ -108,6 +111,9 @@ void print_samples(const std::string& title, const std::vector<Row>& rows) {
             const auto row = std::ranges::find(line, name, &Row::technique);
             if (row == line.end())
                 std::printf(" | %34s", "left out");
+            else if (row->computed)
+                std::printf(" | %8s %8s %6.1f %9s", "", "", static_cast<double>(row->bytes) * 1e-6,
+                            "computed");
             else
                 std::printf(" | %8.1f %8.3f %6.1f %7.2f %%", row->frame.median, millions(*row),
                             static_cast<double>(row->bytes) * 1e-6,
@@ -115,18 +121,25 @@ void print_samples(const std::string& title, const std::vector<Row>& rows) {
         }
         std::printf("\n");
     }
+    for (const Row& row : rows)
+        for (const auto& [pass, times] : row.passes)
+            if (pass == "reduce" && row.technique == "TiledForward-PreZ box (GPU)" &&
+                row.lights == rows.back().lights)
+                std::printf("Z bounds of depths of %s a pixel: %.2f ms (%.2f to %.2f)\n",
+                            counted(static_cast<std::size_t>(row.samples), "sample").c_str(), times.median,
+                            times.least, times.most);
 }
 
 void write_csv(const std::string& name, const std::vector<Row>& rows) {
     const File file(name + ".csv");
-    std::fprintf(file,
-                 "table,scene,view,lights,technique,samples,evaluations,ms,least_ms,most_ms,bytes,pixels,"
-                 "different_pixels,largest_difference,passes\n");
+    std::fprintf(file, "table,scene,view,lights,technique,samples,evaluations,ms,least_ms,most_ms,bytes,"
+                       "bytes_are,pixels,different_pixels,largest_difference,passes\n");
     for (const Row& row : rows) {
-        std::fprintf(file, "%s,%s,%s,%zu,%s,%d,%llu,%.3f,%.3f,%.3f,%zu,%zu,%zu,%d,", row.table.c_str(),
+        std::fprintf(file, "%s,%s,%s,%zu,%s,%d,%llu,%.3f,%.3f,%.3f,%zu,%s,%zu,%zu,%d,", row.table.c_str(),
                      quoted(row.scene).c_str(), quoted(row.view).c_str(), row.lights, row.technique.c_str(),
                      row.samples, static_cast<unsigned long long>(row.evaluations), row.frame.median,
-                     row.frame.least, row.frame.most, row.bytes, row.pixels, row.different, row.difference);
+                     row.frame.least, row.frame.most, row.bytes, row.computed ? "computed" : "measured",
+                     row.pixels, row.different, row.difference);
         for (const auto& [pass, times] : row.passes)
             std::fprintf(file, "%s%s %.3f (%.3f to %.3f)", &pass == &row.passes.front().first ? "" : "; ",
                          pass.c_str(), times.median, times.least, times.most);
@@ -136,18 +149,20 @@ void write_csv(const std::string& name, const std::vector<Row>& rows) {
 
 void write_paths(const std::string& name, const std::vector<Row>& rows) {
     const File file(name + ".csv");
-    std::fprintf(file, "panel,view,technique,million_evaluations\n");
+    std::fprintf(file, "panel,frame,technique,million_evaluations,ms\n");
     std::string panel, first;
     int view = 0;
     for (const Row& row : rows) {
-        if (!row.table.starts_with("path") || row.evaluations == 0) continue;
-        std::string its = row.scene + ": " + std::to_string(row.lights) + " lights";
+        if (!row.table.starts_with("path")) continue;
+        std::string its = row.scene.substr(0, row.scene.rfind(".glb")) + ": " + counted(row.lights, "light");
         std::erase_if(its, [](char c) { return c == '"' || c == '\''; });  // which the plot cannot take
         if (its != std::exchange(panel, its)) {
             view = -1;
             first = row.technique;
         }
         if (row.technique == first) ++view;
-        std::fprintf(file, "\"%s\",%d,%s,%.6f\n", its.c_str(), view, row.technique.c_str(), millions(row));
+        const int frame = frame_of(row.view);
+        std::fprintf(file, "\"%s\",%d,%s,%.6f,%.3f\n", its.c_str(), frame < 0 ? view : frame,
+                     row.technique.c_str(), millions(row), row.frame.median);
     }
 }

@@ -21,6 +21,35 @@ std::string full_name(const Technique& technique) {
 
 }  // namespace
 
+std::vector<Row> with_computed_memory(const std::vector<Row>& rows, std::span<const int> wanted) {
+    std::vector<Row> all = rows;
+    for (const Row& row : rows) {
+        if (row.samples == 1) continue;
+        const auto is_drawn = [&](int samples) {
+            return std::ranges::any_of(all, [&](const Row& r) {
+                return r.samples == samples && r.table == row.table && r.scene == row.scene &&
+                       r.view == row.view && r.lights == row.lights && r.technique == row.technique;
+            });
+        };
+        for (const int samples : wanted) {
+            if (is_drawn(samples)) continue;
+            Row more;
+            more.table = row.table;
+            more.scene = row.scene;
+            more.view = row.view;
+            more.technique = row.technique;
+            more.samples = samples;
+            more.lights = row.lights;
+            more.bytes_a_sample = row.bytes_a_sample;
+            more.bytes = row.bytes + static_cast<std::size_t>(samples) * row.bytes_a_sample -
+                         static_cast<std::size_t>(row.samples) * row.bytes_a_sample;
+            more.computed = true;
+            all.push_back(more);
+        }
+    }
+    return all;
+}
+
 void LeftOut::say(const std::string& who, const std::string& why) {
     const std::string line = who + " is left out: " + why;
     if (std::ranges::find(lines_, line) != lines_.end()) return;
@@ -94,6 +123,7 @@ Row Runner::draw(const Technique& technique, const Camera& camera, Settings want
     picture_ = stage_.read_picture();
     row.pixels = picture_.size() / 4;
     row.bytes = stage_.memory.bytes();
+    row.bytes_a_sample = stage_.memory.multisampled_bytes() / static_cast<std::size_t>(row.samples);
 
     if (frames.empty()) return row;
 

@@ -8,6 +8,7 @@
 #include <renderer.hpp>
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,11 +27,17 @@ struct Row {
     Times frame;
     std::vector<std::pair<std::string, Times>> passes;
     std::size_t bytes = 0;
+    std::size_t bytes_a_sample = 0;  ///< of them, where a pixel has several
+    bool computed = false;           ///< the bytes are, and nothing was drawn
     std::size_t pixels = 0;
     std::size_t different = 0;  ///< pixels that are not the reference's
     int difference = 0;         ///< the largest of a colour, of 255
     bool as_stated = true;      ///< it is no larger than the technique's tolerance
 };
+
+/// Returns the rows and, of each technique that drew several samples a pixel, one for each of these numbers of samples that
+/// this OpenGL has not: the bytes that it would take. The lists' bytes are those of the samples that were drawn.
+std::vector<Row> with_computed_memory(const std::vector<Row>& rows, std::span<const int> wanted);
 
 /// What the run asks of all frames.
 struct RunSettings {

@@ -29,6 +29,7 @@ Technique tiled_forward_box();  ///< both, and the library's box test
 Technique tiled_deferred(int g_buffer_bits);         ///< the grid made on the CPU
 Technique tiled_deferred_passes(int g_buffer_bits);  ///< by compute passes
 Technique tiled_deferred_kernel(int g_buffer_bits);  ///< in the kernel that shades
+Technique tiled_deferred_planes(int g_buffer_bits);  ///< the same as the paper has it, without footprints
 Technique deferred(int g_buffer_bits);
 Technique deferred_stencil(int g_buffer_bits);
 

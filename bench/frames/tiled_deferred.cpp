@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// TiledDeferred (Tiled Shading, section 2): surfaces to a G-buffer, then each pixel once, with the list of its tile. The
+// TiledDeferred (Tiled Shading, sections 6.1 and 6.3): surfaces to a G-buffer, then each pixel once, with the list of its tile. The
 // grid is made on the CPU, from Z bounds that the GPU made.
 #include "passes.hpp"
 #include "technique.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// TiledFwd-PreZ (Tiled Shading, section 3; Tiled Forward Shading, section 4.3): depth first, so that each pixel is shaded
+// TiledFwd-PreZ (Tiled Shading, section 6.3; Tiled Forward Shading, section 4.4): depth first, so that each pixel is shaded
 // once, and lights out of what a tile has in depth are not in its list.
 #include "passes.hpp"
 #include "technique.hpp"

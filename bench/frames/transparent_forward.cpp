@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Transparent geometry (Tiled Forward Shading, section 4.4 and Listing 4.2): drawn from the farthest to the nearest over
+// Transparent geometry (Tiled Forward Shading, section 4.5 and Listing 4.2): drawn from the farthest to the nearest over
 // the opaque picture, with lists that begin at the eye, as it may stand anywhere before opaque surfaces.
 #include "passes.hpp"
 #include "technique.hpp"

@@ -82,7 +82,9 @@ struct Seen {
 };
 std::vector<Seen> seen_scenes() {
     const Scene made = make_scene(250), nova = load_glb(LIGHTBIN_FIXTURES "/nova.glb", 0.05f);
-    const Scene few = with_few_lights(made), random = with_random_lights(made, 200);
+    Scene few = made;
+    few.lights = few_lights(made.lights);
+    const Scene random = with_random_lights(made, 200);
     Scene endless = made;
     for (Light& light : endless.lights)
         light.range = std::numeric_limits<float>::infinity();
@@ -294,6 +296,11 @@ TEST_CASE("evaluations are those of the lists") {
     std::vector<float> depth(static_cast<std::size_t>(settings.width * settings.height));
     glReadPixels(0, 0, settings.width, settings.height, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
     std::uint64_t listed = 0, pixels = 0, reached = 0, nearly_reached = 0;
+    struct Drawn {
+        std::uint64_t pixels = 0;
+        double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+    };
+    std::vector<Drawn> tiles(view.tile_count());
     for (int y = 0; y < settings.height; ++y)
         for (int x = 0; x < settings.width; ++x) {
             const float d = depth[static_cast<std::size_t>(y * settings.width + x)];
@@ -303,6 +310,11 @@ TEST_CASE("evaluations are those of the lists") {
             const auto p = view.view_point(
                 {x + 0.5, y + 0.5,
                  static_cast<double>(view.view_depths(static_cast<double>(d), static_cast<double>(d)).min)});
+            Drawn& tile = tiles[static_cast<std::size_t>(y / settings.tile_size * view.tiles_x() +
+                                                         x / settings.tile_size)];
+            ++tile.pixels;
+            tile.nearest = std::min(tile.nearest, -p.z);
+            tile.farthest = std::max(tile.farthest, -p.z);
             for (const lightbin::Sphere& light : stage.lights()) {
                 const double dx = p.x - static_cast<double>(light.x), dy = p.y - static_cast<double>(light.y),
                              dz = p.z - static_cast<double>(light.z);
@@ -319,6 +331,36 @@ TEST_CASE("evaluations are those of the lists") {
     // Its bounds are not rounded outward.
     CHECK(counted(tiled_deferred_kernel(32)) <= listed);
     CHECK(counted(tiled_deferred_kernel(32)) > listed * 99 / 100);
+    // Spheres against the planes through the eye and the sides of each tile, and against its depths.
+    std::uint64_t within_planes = 0;
+    for (int ty = 0; ty < view.tiles_y(); ++ty)
+        for (int tx = 0; tx < view.tiles_x(); ++tx) {
+            const Drawn& tile = tiles[static_cast<std::size_t>(ty * view.tiles_x() + tx)];
+            const auto corner = [&](int x, int y) {
+                const auto p = view.view_point(
+                    {static_cast<double>(std::min(x * settings.tile_size, settings.width)),
+                     static_cast<double>(std::min(y * settings.tile_size, settings.height)), 1});
+                return glm::dvec3(p.x, p.y, p.z);
+            };
+            const glm::dvec3 a = corner(tx, ty), b = corner(tx + 1, ty), c = corner(tx + 1, ty + 1),
+                             d = corner(tx, ty + 1);
+            for (const lightbin::Sphere& light : stage.lights()) {
+                const glm::dvec3 centre(light.x, light.y, light.z);
+                const double radius = static_cast<double>(light.radius);
+                const auto beyond = [&](glm::dvec3 p,
+                                        glm::dvec3 q) {  // the tile is on the left of the way from p to q
+                    const double away = glm::dot(glm::normalize(glm::cross(q, p)), centre);
+                    return away > radius;
+                };
+                within_planes += (beyond(a, b) || beyond(b, c) || beyond(c, d) || beyond(d, a) ||
+                                  -centre.z - radius > tile.farthest || -centre.z + radius < tile.nearest)
+                                     ? 0
+                                     : tile.pixels;
+            }
+        }
+    CHECK(within_planes > listed * 99 / 100);
+    CHECK(counted(tiled_deferred_planes(32)) > within_planes * 999 / 1000);
+    CHECK(counted(tiled_deferred_planes(32)) < within_planes * 1001 / 1000);
     // Of surfaces in one place both are lit.
     CHECK(counted(tiled_forward_pre_z(ZEnds::both, Reduction::cpu)) >= listed);
     CHECK(counted(tiled_forward_pre_z(ZEnds::both, Reduction::cpu)) < listed * 11 / 10);
@@ -411,6 +453,79 @@ TEST_CASE("all lights are seen from above") {
     }
 }
 
+TEST_CASE("the memory of samples that this OpenGL has not is computed") {
+    const Scene scene = make_scene(100);
+    const RunSettings run{.width = 131, .height = 77, .tile_size = 13, .timed_frames = 0};
+    const OffscreenContext context(0);
+    LeftOut left_out;
+    Runner runner(scene, run, context.glsl(), left_out);
+    std::vector<Row> rows;
+    for (const int samples : {1, 2, 4, 8})
+        for (const Row& row : runner.run("MSAA", scene.cameras[0], {tiled_forward(), tiled_deferred(16)},
+                                         {.samples = samples}))
+            rows.push_back(row);
+    REQUIRE(rows.size() == 6);  // of 1 and 4
+    const std::vector<int> wanted = {1, 2, 4, 8};
+    std::size_t computed = 0;
+    for (const Row& row : with_computed_memory(rows, wanted)) {
+        if (!row.computed) continue;
+        ++computed;
+        CAPTURE(row.technique);
+        const auto drawn = std::ranges::find_if(
+            rows, [&](const Row& r) { return r.samples == 4 && r.technique == row.technique; });
+        REQUIRE(drawn != rows.end());
+        // A depth and a colour of each sample; deferred has four surfaces of 8 bytes, and no colours of samples.
+        const std::size_t a_sample = 131 * 77 * (row.technique == "TiledDeferred 16 bit" ? 4 + 32 : 4 + 4);
+        CHECK(row.bytes + 4 * a_sample == drawn->bytes + static_cast<std::size_t>(row.samples) * a_sample);
+        CHECK(row.evaluations == 0);
+    }
+    CHECK(computed == 6);
+}
+
+TEST_CASE("from above is under a ceiling where most places have one") {
+    Scene scene = make_scene(20);
+    const double top = 30;  // a ceiling over the middle, and a floor below it
+    const glm::vec3 up(0, 1, 0), white(1);
+    for (const float height : {30.0f, 0.0f})
+        for (const glm::vec3& corner : {glm::vec3(-20, 0, -20), glm::vec3(20, 0, -20), glm::vec3(0, 0, 30)})
+            scene.triangles.push_back({corner + height * up, up, white});
+    const auto at = [](double x, double y, double z) {
+        Camera camera;
+        camera.to_world[3] = glm::dvec4(x, y, z, 1);
+        return camera;
+    };
+    const std::vector<Camera> within = {at(1, 25, 2), at(0, 26, 15), at(100, 25, 0)};
+    const Camera camera = camera_from_above(scene, within);
+    const glm::dvec3 eye(camera.to_world[3]);
+    CHECK(eye.x == 1);
+    CHECK(eye.z == 2);
+    CHECK(eye.y < top);
+    CHECK(eye.y > top - 1);
+    CHECK(glm::distance(glm::dvec3(camera.to_world[2]), glm::dvec3(0, 1, 0)) < 1e-9);
+    CHECK(glm::dvec3(camera_from_above(scene, {at(1, 25, 2), at(100, 25, 0)}).to_world[3]).y > top);
+    CHECK(glm::dvec3(camera_from_above(scene, {}).to_world[3]).y > top);
+}
+
+TEST_CASE("few lights go along the order of the many") {
+    std::vector<Light> many(924);
+    for (std::size_t i = 0; i < many.size(); ++i)
+        many[i] = {.position = glm::vec3(i, 0, 0), .range = 10, .intensity = glm::vec3(1)};
+    for (const double time : {0.0, 0.5, 1.0}) {
+        const std::vector<Light> few = few_lights(many, time);
+        REQUIRE(few.size() == 11);
+        for (std::size_t i = 0; i < few.size(); ++i) {
+            CHECK(static_cast<double>(few[i].position.x) ==
+                  84.0 * static_cast<double>(i) + std::round(83 * time));
+            CHECK(few[i].range == 32);
+        }
+    }
+    CHECK(few_lights({many.begin(), many.begin() + 3}, 1).size() == 11);  // some in one place
+    CHECK(frame_of("frame 259") == 259);
+    CHECK(frame_of("7") == 7);
+    CHECK(frame_of("front") == -1);
+    CHECK(frame_of("") == -1);
+}
+
 TEST_CASE("each view is as bright as if it were the first") {
     const Scene scene = make_scene(100);
     const RunSettings run{.width = 131, .height = 77, .tile_size = 13, .timed_frames = 1};
@@ -488,6 +603,11 @@ TEST_CASE("what this OpenGL lacks is named") {
     settings.tile_size = 64;
     CHECK_THROWS_WITH_AS(draw(stage, tiled_deferred_kernel(32), scene.cameras[0], settings),
                          doctest::Contains("a thread a pixel"), std::runtime_error);
+    settings.tile_size = 8;
+    const Scene many = make_scene(20000);
+    Stage stage_of_many(many, context.glsl());
+    CHECK_THROWS_WITH_AS(draw(stage_of_many, tiled_deferred_planes(32), many.cameras[0], settings),
+                         doctest::Contains("and 20000 are in the scene"), std::runtime_error);
     settings.width = 30000;
     CHECK_THROWS_WITH_AS(draw(stage, tiled_forward(), scene.cameras[0], settings),
                          doctest::Contains("no target of 30000 x 77 pixels"), std::runtime_error);
@@ -520,9 +640,9 @@ TEST_CASE("a view that cannot be drawn is left out, and no more") {
     LeftOut left_out;
     Runner runner(many, run, context.glsl(), left_out);
     CHECK(runner.run("", many.cameras[0], {tiled_forward()}, {}).empty());
-    CHECK(left_out.lines() ==
-          std::vector<std::string>{"every technique is left out: frames of orthographic cameras are not drawn "
-                                   "here"});
+    CHECK(left_out.lines() == std::vector<std::string>{
+                                  "every technique is left out: frames of orthographic cameras are not drawn "
+                                  "here"});
     CHECK(runner.run("", many.cameras[1], {tiled_forward()}, {}).size() == 2);
 }
 
