@@ -113,13 +113,15 @@ Row Runner::draw(const Technique& technique, const Camera& camera, Settings want
         technique.draw(stage_);
         return stage_.end();
     };
+    // The first frame makes the targets, and the first of a technique the programs, too.
     const bool can_count = stage_.glsl() >= 430;
+    draw_once(can_count);
+    if (can_count) row.evaluations = stage_.evaluations();
+    const bool is_first = has_programs_.insert({row.technique, wanted.samples, wanted.three_shaders}).second;
+    if (can_count && timed_frames > 0 && is_first) draw_once(false);
     std::vector<std::vector<Pass>> frames;
-    if (timed_frames > 0) draw_once(false);  // makes what is made once
     for (int i = 0; i < timed_frames; ++i)
         frames.push_back(draw_once(false));
-    if (can_count || timed_frames == 0) draw_once(can_count);
-    if (can_count) row.evaluations = stage_.evaluations();
     picture_ = stage_.read_picture();
     row.pixels = picture_.size() / 4;
     row.bytes = stage_.memory.bytes();

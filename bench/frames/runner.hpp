@@ -8,8 +8,10 @@
 #include <renderer.hpp>
 
 #include <cstdint>
+#include <set>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -76,5 +78,6 @@ private:
     Renderer meter_;
     LeftOut& left_out_;
     Technique every_light_;
+    std::set<std::tuple<std::string, int, bool>> has_programs_;  // techniques, samples, three shaders
     std::vector<std::uint8_t> reference_, picture_;
 };

@@ -275,7 +275,6 @@ private:
         const glm::dmat3 normals_to_world = glm::transpose(glm::inverse(turn));
         const bool mirrored =
             glm::determinant(turn) < 0;  // turns the triangles inside out, so turn them back
-        scene_.triangles.reserve(scene_.triangles.size() + corners.size());
         for (std::size_t i = 0; i < corners.size(); i += 3) {
             if (mirrored) std::swap(corners[i + 1], corners[i + 2]);
             std::array<glm::dvec3, 3> p;
