@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Draws a scene lit by hundreds of lights: as a PNG file, then in a window where there is a display.
+#include "advise_scene.hpp"
 #include "gl_context.hpp"
 #include "renderer.hpp"
 #include "window.hpp"
@@ -28,6 +29,7 @@ struct Options {
     bool check_in_shader = false;
     bool stale_size = false;
     bool heat_map = false;
+    bool advise = false;
     int view = 0;
     int lights = 0;
     int glsl = 0;
@@ -52,9 +54,9 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
     app.add_option("--cutoff", options.cutoff, "Lux at which a light without a range ends; 0: never")
         ->check(CLI::Range(0.0, 1e6))
         ->capture_default_str();
-    app.add_option("--view", options.view, "Which camera")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
+    const CLI::Option* const view = app.add_option("--view", options.view, "Which camera")
+                                        ->check(CLI::NonNegativeNumber)
+                                        ->capture_default_str();
     app.add_option("--tile", options.frame.tile_size, "Side of a tile in pixels")
         ->check(CLI::Range(1, 32768))
         ->capture_default_str();
@@ -94,6 +96,10 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
         "light that reaches it; no window");
     app.add_flag("--stale-size", options.stale_size,
                  "Make the lists for a picture of half the size, to see --check-in-shader fail");
+    app.add_flag(
+        "--advise", options.advise,
+        "Draw no picture, but measure what each part of binning saves in this scene on this machine, and say "
+        "what to leave out, and the code; of --view, or else of the view that shades most");
     app.add_option("--drop-light", options.frame.dropped_light,
                    "Leave this light out of the lists, to see --check and --check-in-shader fail")
         ->check(CLI::NonNegativeNumber);
@@ -111,6 +117,7 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
         if (bounds_option->count() > 0 && options.frame.depth != DepthUse::pre_pass)
             throw CLI::ValidationError("--z-bounds",
                                        "they come from the pre-pass, so not with --depth " + depth);
+        if (options.advise && view->count() == 0) options.view = -1;
         int end = -1;
         if (!size.empty() &&
             (std::sscanf(size.c_str(), "%5dx%5d%n", &options.frame.width, &options.frame.height, &end) != 2 ||
@@ -201,14 +208,16 @@ bool check_in_shader(Renderer& renderer, const Camera& camera, FrameSettings fra
     if (misplaced > 0)
         std::printf(
             "view check   MAGENTA: in %zu of %d x %d pixels something is not where the View has it, or "
-            "before its near plane: is the View made of the projection, size and origin that are drawn with?\n",
+            "before its near plane: is the View made of the projection, size and origin that are drawn "
+            "with?\n",
             misplaced, frame.width, frame.height);
     else
         std::printf("view check   right: all that is drawn is where the View has it\n");
     if (unlit > 0)
-        std::printf("list check   MAGENTA: in %zu of %d x %d pixels a light is missing that reaches them: "
-                    "have Binner and shader the same lights, in the same order, space and range, and ids as wide?\n",
-                    unlit, frame.width, frame.height);
+        std::printf(
+            "list check   MAGENTA: in %zu of %d x %d pixels a light is missing that reaches them: "
+            "have Binner and shader the same lights, in the same order, space and range, and ids as wide?\n",
+            unlit, frame.width, frame.height);
     else
         std::printf("list check   right: no list lacks a light that reaches a pixel\n");
     if (misplaced + unlit > 0) std::printf("             docs/troubleshooting.md has the usual mistakes\n");
@@ -243,7 +252,7 @@ int draw_picture(const Options& options, const Scene& scene) {
 
 int run(const Options& options) {
     Scene scene = open_scene(options);
-    if (static_cast<std::size_t>(options.view) >= scene.cameras.size())
+    if (options.view >= static_cast<int>(scene.cameras.size()))
         throw std::runtime_error("there is no view " + std::to_string(options.view) + ": the scene has " +
                                  counted(scene.cameras.size(), "view") + ", numbered from 0");
     const std::string glass =
@@ -259,6 +268,13 @@ int run(const Options& options) {
         std::printf("note         %s\n", note.c_str());
     std::fflush(stdout);
 
+    if (options.advise) {
+        const FrameSettings& frame = options.frame;
+        const AdviseSettings settings = {
+            .width = frame.width, .height = frame.height, .glsl = options.glsl, .view = options.view};
+        std::fputs(advise_scene(scene, settings).c_str(), stdout);
+        return EXIT_SUCCESS;
+    }
     const int exit_code = draw_picture(options, scene);
     if (!options.headless && !options.check && !options.check_in_shader)
         show_in_window(std::move(scene), options.glsl, options.view, options.frame, options.stops,

@@ -39,6 +39,11 @@ struct Costs {
     double evaluation_ns = 0.02;
     /// The depth pre-pass and the reduction to Z bounds, unless the renderer has them anyway.
     double z_bounds_ns = 0;
+    /// One byte of the lists on its way to where the shader reads it: 0.1 at 10 GB/s.
+    double upload_byte_ns = 0;
+    /// Fragments that are shaded for each pixel that is seen, where no depth pre-pass comes first: a number of them, not
+    /// a time, 1 or more. Plans without Z bounds evaluate the lights of all of them.
+    double overdraw = 1;
 };
 
 /// One way to light a view, and what it costs a frame. with_options() or with_sliced_options() applies its options, and
@@ -49,11 +54,50 @@ struct Plan {
     DepthTest depth_test = DepthTest::none;
     Slicing slicing = Slicing::none;  ///< advise_slices(): with the slices that it was given for this
     int tile_size = 0;
-    double build_ns = 0;        ///< with Costs::z_bounds_ns where there are Z bounds
+    double build_ns = 0;        ///< with the upload, and with Costs::z_bounds_ns where there are Z bounds
     std::uint64_t entries = 0;  ///< length of the light index list
-    double evaluations = 0;     ///< sum over the pixels with something to light of their lists' lengths
-    double total_ns = 0;        ///< build_ns + evaluations * Costs::evaluation_ns
+    /// Sum over the pixels with something to light of their lists' lengths; without Z bounds times Costs::overdraw.
+    double evaluations = 0;
+    double total_ns = 0;  ///< build_ns + evaluations * Costs::evaluation_ns
+
+    bool has_z_bounds() const {
+        return tiled && depth_test != DepthTest::none && slicing != Slicing::clusters;
+    }
 };
+
+/// Returns a plan in words, such as "16 px, rectangle, box".
+inline std::string to_string(const Plan& plan) {
+    if (!plan.tiled) return "every light in every pixel";
+    std::string words = std::to_string(plan.tile_size) + " px, " + to_string(plan.footprint);
+    if (plan.depth_test != DepthTest::none) words += std::string(", ") + to_string(plan.depth_test);
+    if (plan.slicing != Slicing::none) words += std::string(", ") + to_string(plan.slicing);
+    return words;
+}
+
+/// What a part that a plan has is worth, or what one that it lacks would cost.
+struct Verdict {
+    std::string part;     ///< such as "box"
+    bool keep = false;    ///< the plan has the part
+    Plan other = {};      ///< the cheapest that differs in the part
+    std::string instead;  ///< that in words; empty where none was weighed
+    double saved_ns = 0;  ///< what a frame takes longer by the other
+};
+
+/// Returns a line such as "box          keep: saves 1.20 ms                instead: 16 px, rectangle, interval".
+inline std::string to_string(const Verdict& verdict) {
+    const bool weighed = !verdict.instead.empty();
+    char text[80], line[100];
+    std::snprintf(text, sizeof text, "%s %.3f ms",
+                  verdict.keep            ? "keep: saves"
+                  : verdict.saved_ns >= 0 ? "leave out: would cost"
+                                          : "leave out: would save only",
+                  std::fabs(verdict.saved_ns) * 1e-6);
+    std::snprintf(line, sizeof line, "%-12s %-36s", verdict.part.c_str(),
+                  weighed        ? text
+                  : verdict.keep ? "keep: no other was weighed"
+                                 : "leave out: was not weighed");
+    return line + (weighed ? "instead: " + verdict.instead : std::string()) + "\n";
+}
 
 /// Every plan that was weighed, the cheapest first.
 class Advice {
@@ -88,9 +132,47 @@ public:
         return lines;
     }
 
+    /// Returns a verdict on each part that a plan has or lacks. What it is held against is the cheapest plan that differs
+    /// in the part, and may differ in others, too, as it would for whoever did without this one. Allocates.
+    std::vector<Verdict> verdicts(const Plan& plan) const {
+        using Has = bool (*)(const Plan&);
+        constexpr std::pair<const char*, Has> parts[] = {
+            {"tiles", [](const Plan& p) { return p.tiled; }},
+            {"pre-pass", [](const Plan& p) { return p.has_z_bounds(); }},
+            {"box", [](const Plan& p) { return p.tiled && p.depth_test >= DepthTest::box; }},
+            {"split boxes", [](const Plan& p) { return p.tiled && p.depth_test == DepthTest::split_box; }},
+            {"clusters", [](const Plan& p) { return p.tiled && p.slicing == Slicing::clusters; }},
+            {"z-bins", [](const Plan& p) { return p.tiled && p.slicing == Slicing::z_bins; }},
+            {"silhouettes", [](const Plan& p) { return p.tiled && p.footprint == Footprint::silhouette; }}};
+        std::vector<Verdict> all;
+        for (const auto& [part, has] : parts) {
+            Verdict verdict = {.part = part, .keep = has(plan), .instead = {}};
+            for (const Plan& other : plans()) {
+                if (has(other) == verdict.keep) continue;
+                verdict.other = other;
+                verdict.instead = to_string(other);
+                verdict.saved_ns = other.total_ns - plan.total_ns;
+                break;
+            }
+            all.push_back(std::move(verdict));
+        }
+        return all;
+    }
+
 private:
     std::vector<Plan> plans_;
 };
+
+/// Returns for a person what was found: the cheapest plan, and a line for each part, which it saves or would cost.
+inline std::string to_string(const Advice& advice) {
+    char line[160];
+    std::snprintf(line, sizeof line, "%.3f ms a frame: %s; the cheapest of %zu plans\n",
+                  advice.best().total_ns * 1e-6, to_string(advice.best()).c_str(), advice.plans().size());
+    std::string lines = line;
+    for (const Verdict& verdict : advice.verdicts(advice.best()))
+        lines += to_string(verdict);
+    return lines;
+}
 
 /// The view depths of what is lit, at points evenly spread over the viewport: of the frame before, or of a few that
 /// tell what the scene is like.
@@ -217,8 +299,7 @@ struct WeighedGrid {
 /// Whether Z bounds allow a depth test. That of clusters needs none.
 inline bool allowed(const Options& options, const ZBounds& bounds) {
     if (options.depth_test == DepthTest::none || options.slicing == Slicing::clusters) return true;
-    if (options.depth_test == DepthTest::split_box)
-        return !bounds.gap_min.empty() && !bounds.gap_max.empty();
+    if (options.depth_test == DepthTest::split_box) return !bounds.gap_min.empty() && !bounds.gap_max.empty();
     return !bounds.min.empty() || !bounds.max.empty();
 }
 
@@ -266,7 +347,12 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
             const Result<LightGrid<Id>> built = binner.bin(grid->view, seen, inputs());
             const std::chrono::duration<double, std::nano> time = Clock::now() - start;
             if (!built) return built.error();
-            plan.build_ns = (std::min)(plan.build_ns, time.count() + (with_bounds ? costs.z_bounds_ns : 0));
+            const LightRanks& ranks = built->ranks();
+            const double bytes =
+                static_cast<double>(built->ranges().size_bytes() + built->ids().size_bytes() +
+                                    ranks.order.size_bytes() + ranks.bins.size_bytes());
+            plan.build_ns = (std::min)(plan.build_ns, time.count() + bytes * costs.upload_byte_ns +
+                                                          (with_bounds ? costs.z_bounds_ns : 0));
             if (!first) return std::nullopt;
             plan.entries = built->ids().size();
             for_each_lit([&](int x, int y, float depth, double pixels) {
@@ -277,6 +363,7 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
                     met = lights_of_bin(met, built->ranks().bins[static_cast<std::size_t>(slice)]);
                 plan.evaluations += pixels * static_cast<double>(met.size());
             });
+            if (!with_bounds) plan.evaluations *= costs.overdraw;
             return std::nullopt;
         };
         return with_options_from<table, base, 0>(plan, with);
@@ -285,7 +372,7 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
     const auto& source = as_lights(lights);
     std::vector<Plan> plans = {{.tiled = false}};
     for_each_lit([&](int, int, float, double pixels) {
-        plans[0].evaluations += pixels * static_cast<double>(source.array.size());
+        plans[0].evaluations += costs.overdraw * pixels * static_cast<double>(source.array.size());
     });
     for (const WeighedGrid& grid : grids)
         for (const Options& options : table) {

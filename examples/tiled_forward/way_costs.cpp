@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT
+#include "way_costs.hpp"
+
+#include "../../bench/pool.hpp"
+#include "binned_lights.hpp"
+#include "value_of.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <iterator>
+#include <limits>
+#include <thread>
+#include <utility>
+
+using lightbin::DepthTest;
+using lightbin::Footprint;
+using lightbin::IdWidth;
+using lightbin::Options;
+using lightbin::Slicing;
+
+namespace {
+
+constexpr std::size_t turns = 12;
+
+double now_ns() {
+    return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+template <class Work> double ns_of(Work work) {
+    const double start = now_ns();
+    work();
+    return now_ns() - start;
+}
+
+double median(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+// Branch predictors learn a scene that is built again and again, so each turn has the lights elsewhere, up to a 32nd of
+// the picture to the side, as lightbin::advise() has them.
+std::vector<ViewLights> sets_of(std::span<const GpuLight> lights, const lightbin::View& view,
+                                const glm::mat4& projection) {
+    std::vector<ViewLights> sets(1);
+    const bool cones = std::any_of(lights.begin(), lights.end(), [](const GpuLight& light) {
+        return glm::vec3(light.cone) != glm::vec3(0);
+    });
+    for (const GpuLight& light : lights) {
+        const lightbin::Spot spot = spot_of(light);
+        if (cones)
+            sets[0].spots.push_back(spot);
+        else
+            sets[0].spheres.push_back({spot.x, spot.y, spot.z, spot.radius});
+    }
+    for (std::size_t turn = 0; turn < turns; ++turn) {
+        const float aside =
+            (2 * static_cast<float>(turn) / static_cast<float>(turns - 1) - 1) / 32 * 2 / projection[0][0];
+        ViewLights set = sets[0];
+        const auto move = [&](auto& light) { light.x += aside * (view.orthographic() ? 1 : light.z); };
+        std::for_each(set.spots.begin(), set.spots.end(), move);
+        std::for_each(set.spheres.begin(), set.spheres.end(), move);
+        sets.push_back(std::move(set));
+    }
+    return sets;
+}
+
+lightbin::Slices slices_of(DepthMethod method, const lightbin::View& view, std::span<const GpuLight> lights) {
+    return slices_for({.method = method}, view.orthographic(), lights);
+}
+
+// The options of ways, but for the width of ids.
+constexpr Options ways[] = {
+    {.footprint = Footprint::rectangle},
+    {.footprint = Footprint::rectangle, .depth_test = DepthTest::interval},
+    {.footprint = Footprint::rectangle, .depth_test = DepthTest::box},
+    {.footprint = Footprint::rectangle, .depth_test = DepthTest::split_box},
+    {.footprint = Footprint::rectangle, .slicing = Slicing::z_bins},
+    {.footprint = Footprint::rectangle, .slicing = Slicing::clusters},
+    {.footprint = Footprint::rectangle, .depth_test = DepthTest::box, .slicing = Slicing::clusters},
+    {.footprint = Footprint::silhouette},
+    {.footprint = Footprint::silhouette, .depth_test = DepthTest::box},
+    {.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box},
+    {.footprint = Footprint::silhouette, .slicing = Slicing::z_bins},
+    {.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::clusters}};
+
+bool is(const lightbin::Plan& plan, const Options& way) {
+    return plan.tiled && plan.footprint == way.footprint && plan.depth_test == way.depth_test &&
+           plan.slicing == way.slicing;
+}
+
+constexpr Options with_ids(Options way, IdWidth ids) {
+    way.ids = ids;
+    return way;
+}
+
+}  // namespace
+
+WayCosts::WayCosts(const lightbin::View& view, const glm::mat4& projection, std::span<const GpuLight> lights,
+                   CpuDepth depth)
+    : view_(view), depth_(std::move(depth)), sets_(sets_of(lights, view, projection)),
+      clusters_(slices_of(DepthMethod::clusters, view, lights)),
+      z_bins_(slices_of(DepthMethod::z_bins, view, lights)),
+      workers_(std::max(std::thread::hardware_concurrency(), 1u)), pool_(std::make_unique<Pool>(workers_)) {
+    clusters_ns_ = ns_of([&] { clusters_ = slices_of(DepthMethod::clusters, view, lights); });
+    z_bins_ns_ = ns_of([&] { z_bins_ = slices_of(DepthMethod::z_bins, view, lights); });
+    for (const float window : depth_.depth) {
+        const double z = static_cast<double>(window);
+        view_depth_.push_back(window < 1 ? view.view_depths(z, z).min
+                                         : std::numeric_limits<float>::infinity());
+    }
+}
+
+WayCosts::~WayCosts() = default;
+
+bool WayCosts::can_measure(const lightbin::Plan& plan) {
+    return !plan.tiled ||
+           std::any_of(std::begin(ways), std::end(ways), [&](const Options& way) { return is(plan, way); });
+}
+
+// From their boundaries, as slices_for() lays them.
+std::string WayCosts::slices_in_words(Slicing slicing) const {
+    const lightbin::Slices& slices = slicing == Slicing::z_bins ? z_bins_ : clusters_;
+    const auto boundary = [&](std::size_t i) { return static_cast<double>(slices.boundaries()[i]); };
+    const int count = slices.count();
+    char words[80];
+    if (slicing == Slicing::z_bins || view_.orthographic())
+        std::snprintf(words, sizeof words, "linear(%d, 0, %#.4gf)", count, boundary(0) * count);
+    else
+        std::snprintf(words, sizeof words, "exponential(%d, %#.4gf, %#.4gf)", count, boundary(0),
+                      boundary(0) * std::pow(boundary(1) / boundary(0), count - 1));
+    return words;
+}
+
+const WayCosts::Reduced& WayCosts::reduced(int tile_size, bool gaps, bool minimum, bool maximum) {
+    const auto [place, is_new] = reduced_.try_emplace({tile_size, gaps, minimum, maximum});
+    Reduced& reduced = place->second;
+    if (!is_new) return reduced;
+    const lightbin::View view = value_of(view_.with_tile_size(tile_size));
+    reduced.min.resize(minimum ? view.tile_count() : 0);
+    reduced.max.resize(maximum ? view.tile_count() : 0);
+    reduced.gap_min.resize(gaps ? view.tile_count() : 0);
+    reduced.gap_max.resize(gaps ? view.tile_count() : 0);
+    std::vector<double> times;
+    for (int turn = 0; turn < 5; ++turn)
+        times.push_back(ns_of([&] {
+            reduced.bounds = value_of(
+                lightbin::reduce_depth(view, {.depth = depth_.depth, .skip_background = true},
+                                       {reduced.min, reduced.max, reduced.gap_min, reduced.gap_max}));
+        }));
+    reduced.ns = median(times);
+    return reduced;
+}
+
+// The shader that reduces depth finds no gaps.
+double WayCosts::z_bounds_ns(const Reduced& reduced, bool gaps) const {
+    const double here = prices_.read_back_ns + reduced.ns;
+    return prices_.depth_pass_ns + (gaps ? here : std::min(here, prices_.gpu_reduction_ns));
+}
+
+lightbin::Advice WayCosts::advise() {
+    const lightbin::Costs costs = {.evaluation_ns = prices_.evaluation_ns,
+                                   .z_bounds_ns = z_bounds_ns(reduced(16, false, true, true), false),
+                                   .upload_byte_ns = prices_.upload_byte_ns,
+                                   .overdraw = depth_.overdraw};
+    // A pixel of 16, where that leaves some.
+    const auto [width, height] = view_.viewport();
+    const int step = std::min(width, height) < 64 ? 1 : 4;
+    std::vector<float> samples;
+    const lightbin::Extent size = {width / step, height / step};
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+            samples.push_back(
+                view_depth_[static_cast<std::size_t>((y * step + step / 2) * width + x * step + step / 2)]);
+
+    const auto advised = [&](const auto& lights) {
+        const lightbin::Advice bounded = value_of(
+            lightbin::advise(view_, lights, costs, reduced(view_.tile_size(), true, true, true).bounds));
+        const lightbin::Advice sliced =
+            value_of(lightbin::advise_slices(view_, lights, {.clusters = clusters_, .z_bins = z_bins_},
+                                             {.depths = samples, .size = size}, costs));
+        std::vector<lightbin::Plan> plans(bounded.plans().begin(), bounded.plans().end());
+        for (const lightbin::Plan& plan : sliced.plans())
+            if (plan.slicing != Slicing::none) plans.push_back(plan);
+        return lightbin::Advice(std::move(plans));
+    };
+    return has_cones() ? advised(sets_[0].spots) : advised(sets_[0].spheres);
+}
+
+template <Options options> WayCosts::Build WayCosts::build_with(const Way& way) {
+    const lightbin::View view = value_of(view_.with_tile_size(way.plan.tile_size));
+    const lightbin::Slices& slices = options.slicing == Slicing::z_bins ? z_bins_ : clusters_;
+    const auto binner = std::make_shared<lightbin::Binner<options>>();
+    const auto least = std::make_shared<std::vector<lightbin::Sphere>>();
+    lightbin::ZBounds bounds;
+    if (way.plan.has_z_bounds())
+        bounds =
+            reduced(way.plan.tile_size, options.depth_test == DepthTest::split_box, way.minimum, way.maximum)
+                .bounds;
+    return [=, this, &slices](const ViewLights& lights, Counts* counts) {
+        const auto parallel = way.threads ? lightbin::Parallel(workers_, *pool_) : lightbin::Parallel();
+        const auto bin = [&](const auto& taken) {
+            return value_of(
+                binner->bin(view, taken, lightbin::inputs_for<options>(bounds, slices), parallel));
+        };
+        const double start = now_ns();
+        const bool cones = way.cones && !lights.spots.empty();
+        if (!cones) least->assign(lights.spots.begin(), lights.spots.end());
+        const auto grid = cones ? bin(lights.spots) : bin(lights.spots.empty() ? lights.spheres : *least);
+        const double ns = now_ns() - start;
+        if (counts == nullptr) return ns;
+
+        counts->bytes = static_cast<double>(grid.ranges().size_bytes() + grid.ids().size_bytes() +
+                                            grid.ranks().order.size_bytes() + grid.ranks().bins.size_bytes());
+        const float* depth = view_depth_.data();
+        for (int y = 0; y < view.viewport().height; ++y)
+            for (int x = 0; x < view.viewport().width; ++x, ++depth) {
+                if (std::isinf(*depth)) continue;
+                const int slice = options.slicing == Slicing::none ? 0 : slices.slice_at(*depth);
+                auto met = grid.lights_in(x / view.tile_size(), y / view.tile_size(),
+                                          options.slicing == Slicing::clusters ? slice : 0);
+                if constexpr (options.slicing == Slicing::z_bins)
+                    met = lightbin::lights_of_bin(met, grid.ranks().bins[static_cast<std::size_t>(slice)]);
+                counts->evaluations += static_cast<double>(met.size());
+            }
+        return ns;
+    };
+}
+
+WayCosts::Build WayCosts::build_of(const Way& way) {
+    if (!way.plan.tiled)
+        return [this](const ViewLights& lights, Counts* counts) {
+            const auto drawn = std::count_if(view_depth_.begin(), view_depth_.end(),
+                                             [](float depth) { return std::isfinite(depth); });
+            if (counts != nullptr)
+                counts->evaluations = static_cast<double>(drawn) * static_cast<double>(lights.size());
+            return 0.0;
+        };
+    Build build;
+    [&]<std::size_t... i>(std::index_sequence<i...>) {
+        const auto take = [&]<std::size_t at> {
+            if (!is(way.plan, ways[at])) return;
+            build = way.narrow_ids ? build_with<with_ids(ways[at], IdWidth::u16)>(way)
+                                   : build_with<with_ids(ways[at], IdWidth::u32)>(way);
+        };
+        (take.template operator()<i>(), ...);
+    }
+    (std::make_index_sequence<std::size(ways)>{});
+    return build;
+}
+
+std::vector<WayCost> WayCosts::measure(std::span<const Way> all) {
+    std::vector<Build> builds;
+    std::vector<WayCost> costs;
+    for (const Way& way : all) {
+        builds.push_back(build_of(way));
+        WayCost& cost = costs.emplace_back();
+        if (!builds.back()) {
+            cost.shade = HUGE_VAL;
+            continue;
+        }
+        Counts counts;
+        builds.back()(sets_[0], &counts);
+        const bool bounded = way.plan.has_z_bounds(), gaps = way.plan.depth_test == DepthTest::split_box;
+        if (bounded)
+            cost.depth = z_bounds_ns(reduced(way.plan.tile_size, gaps, way.minimum, way.maximum), gaps);
+        else if (way.plan.tiled && way.plan.slicing != Slicing::none)
+            cost.depth = way.plan.slicing == Slicing::clusters ? clusters_ns_ : z_bins_ns_;
+        cost.upload = counts.bytes * prices_.upload_byte_ns;
+        cost.shade = counts.evaluations * prices_.evaluation_ns * (bounded ? 1 : depth_.overdraw);
+    }
+    std::vector<std::vector<double>> times(all.size());
+    for (std::size_t turn = 0; turn < turns; ++turn)
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (builds[i]) times[i].push_back(builds[i](sets_[1 + turn], nullptr));
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (builds[i]) costs[i].build = median(times[i]);
+    return costs;
+}
