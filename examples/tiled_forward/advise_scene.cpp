@@ -47,6 +47,7 @@ Way with(Way way, bool Way::*part, bool value) {
     return way;
 }
 
+// Every part of a way; one twice where it could be had in two ways, of which the cheaper is to be taken.
 std::vector<Part> parts_of(const Way& way, const lightbin::Advice& advice, const WayCosts& costs) {
     std::vector<Part> parts;
     const auto add_switch = [&](const char* name, bool Way::*part, const std::string& on, const char* off) {
@@ -56,14 +57,28 @@ std::vector<Part> parts_of(const Way& way, const lightbin::Advice& advice, const
     };
     for (const Verdict& verdict : advice.verdicts(way.plan)) {
         Part part = {verdict, way};
-        part.other.plan = verdict.other;
+        const auto take = [&](const lightbin::Plan& plan) {
+            part.other.plan = plan;
+            part.verdict.instead = to_string(plan);
+            part.by_itself = plan.tiled && (plan.footprint != way.plan.footprint) +
+                                                   (plan.depth_test != way.plan.depth_test) +
+                                                   (plan.slicing != way.plan.slicing) ==
+                                               1;
+        };
+        if (!verdict.instead.empty()) take(verdict.other);
+        if (!way.plan.has_z_bounds()) part.other.minimum = part.other.maximum = true;
+        // lightbin::advise() doesn't weigh silhouettes with everything: the same plan but for them, and the other plan
+        // with the same footprint.
+        lightbin::Plan same = part.other.plan;
         if (verdict.part == "silhouettes") {
-            lightbin::Plan same = way.plan;
+            same = way.plan;
             same.footprint = verdict.keep ? Footprint::rectangle : Footprint::silhouette;
-            if (WayCosts::can_measure(same)) {
-                part.other.plan = same;
-                part.verdict.instead = to_string(same);
-                part.by_itself = true;
+            if (same.tiled && costs.can_measure(same)) take(same);
+        } else if (same.tiled && same.footprint != way.plan.footprint) {
+            same.footprint = way.plan.footprint;
+            if (costs.can_measure(same)) {
+                parts.push_back(part);
+                take(same);
             }
         }
         parts.push_back(part);
@@ -113,7 +128,7 @@ Found find(WayCosts& costs) {
     for (int round = 1;; ++round) {
         found.parts = parts_of(found.way, advice, costs);
         found.everything_plan = {.footprint = Footprint::silhouette,
-                                 .depth_test = DepthTest::split_box,
+                                 .depth_test = costs.has_gaps() ? DepthTest::split_box : DepthTest::box,
                                  .tile_size =
                                      found.way.plan.tiled ? found.way.plan.tile_size : plain->tile_size};
         std::vector<Way> ways = {
@@ -129,12 +144,18 @@ Found find(WayCosts& costs) {
         found.untiled = measured[2];
         found.everything = measured[3];
         const double total = found.cost.total();
+        for (std::size_t i = 0; i < found.parts.size(); ++i) {
+            found.parts[i].gain = total - measured[4 + i].total();
+            found.parts[i].verdict.saved_ns = -found.parts[i].gain;
+        }
+        std::erase_if(found.parts, [all = found.parts](const Part& part) {
+            return std::any_of(all.begin(), all.end(), [&](const Part& other) {
+                return other.verdict.part == part.verdict.part && other.gain > part.gain;
+            });
+        });
         const Part* best = nullptr;
         double most = 0;
-        for (std::size_t i = 0; i < found.parts.size(); ++i) {
-            Part& part = found.parts[i];
-            part.gain = total - measured[4 + i].total();
-            part.verdict.saved_ns = -part.gain;
+        for (const Part& part : found.parts) {
             const bool removes = part.by_itself && part.verdict.keep;
             const double worth = part.gain + (removes ? least_gain : -least_gain) * total;
             if (worth > most && !part.verdict.instead.empty()) most = worth, best = &part;
@@ -230,31 +251,32 @@ std::unique_ptr<WayCosts> worst_view(const Scene& scene, const AdviseSettings& s
     return worst;
 }
 
-// What is spent on this machine's OpenGL, or without one what is taken for it, in words, too.
+// What this machine's OpenGL takes, or without one what is assumed of it, in words, too.
 Prices prices_of(const Scene& scene, const Camera& camera, const AdviseSettings& settings,
                  std::string& words) {
     Prices prices;
-    std::string missing;
     try {
         const DrawTimes times = draw_times(scene, camera, settings.width, settings.height, settings.glsl);
-        words = text("OpenGL       %s, GLSL %d\n", times.renderer.c_str(), times.glsl);
-        if (times.evaluation_ns > 0) prices.evaluation_ns = times.evaluation_ns;
+        const bool told = times.evaluation_ns > 0, reads_back = times.glsl >= 330;
+        if (told) prices.evaluation_ns = times.evaluation_ns;
         if (times.upload_byte_ns > 0) prices.upload_byte_ns = times.upload_byte_ns;
         prices.depth_pass_ns = times.depth_pass_ns;
-        prices.read_back_ns = times.glsl >= 330 ? times.read_back_ns : HUGE_VAL;
+        prices.read_back_ns = reads_back ? times.read_back_ns : HUGE_VAL;
         prices.gpu_reduction_ns = times.gpu_reduction_ns;
-        words += text(
-            "costs        %.4g ns a light evaluation%s, %.3g ns a byte of the lists; the pre-pass %.3f ms,\n"
-            "             its depth %.3f ms to read back, or %.3f ms to reduce to Z bounds there\n",
-            prices.evaluation_ns, times.evaluation_ns > 0 ? "" : " (assumed: too few here to be timed)",
-            prices.upload_byte_ns, 1e-6 * prices.depth_pass_ns, 1e-6 * times.read_back_ns,
-            1e-6 * times.gpu_reduction_ns);
+        words = text("OpenGL       %.60s, GLSL %d\n", times.renderer.c_str(), times.glsl);
+        words += text("costs        %.4g ns a light evaluation%s, %.3g ns a byte of the lists;\n",
+                      prices.evaluation_ns, told ? "" : " (assumed: there are too few to time)",
+                      prices.upload_byte_ns);
+        words += text("             the pre-pass %.3f ms, its depth %.3f ms to reduce to Z bounds there",
+                      1e-6 * times.depth_pass_ns, 1e-6 * times.gpu_reduction_ns);
+        words +=
+            reads_back ? text(" or %.3f ms to read back\n", 1e-6 * times.read_back_ns) : std::string("\n");
     } catch (const std::runtime_error& problem) {
-        words = text("OpenGL       none (%s)\n"
-                     "costs        assumed: %.4g ns a light evaluation, as on a small GPU, %.3g ns a byte of "
-                     "the lists;\n"
-                     "             the pre-pass and its read-back are left out\n",
-                     problem.what(), prices.evaluation_ns, prices.upload_byte_ns);
+        words = text("OpenGL       none: %.80s\n", problem.what());
+        words += text(
+            "costs        assumed: %.4g ns a light evaluation, as on a GPU, %.3g ns a byte of the lists;\n"
+            "             the draw of the pre-pass is left out\n",
+            prices.evaluation_ns, prices.upload_byte_ns);
     }
     return prices;
 }

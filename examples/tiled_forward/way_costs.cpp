@@ -115,7 +115,8 @@ WayCosts::WayCosts(const lightbin::View& view, const glm::mat4& projection, std:
 
 WayCosts::~WayCosts() = default;
 
-bool WayCosts::can_measure(const lightbin::Plan& plan) {
+bool WayCosts::can_measure(const lightbin::Plan& plan) const {
+    if (plan.depth_test == DepthTest::split_box && !has_gaps()) return false;
     return !plan.tiled ||
            std::any_of(std::begin(ways), std::end(ways), [&](const Options& way) { return is(plan, way); });
 }
@@ -154,7 +155,6 @@ const WayCosts::Reduced& WayCosts::reduced(int tile_size, bool gaps, bool minimu
     return reduced;
 }
 
-// The shader that reduces depth finds no gaps.
 double WayCosts::z_bounds_ns(const Reduced& reduced, bool gaps) const {
     const double here = prices_.read_back_ns + reduced.ns;
     return prices_.depth_pass_ns + (gaps ? here : std::min(here, prices_.gpu_reduction_ns));
@@ -177,7 +177,7 @@ lightbin::Advice WayCosts::advise() {
 
     const auto advised = [&](const auto& lights) {
         const lightbin::Advice bounded = value_of(
-            lightbin::advise(view_, lights, costs, reduced(view_.tile_size(), true, true, true).bounds));
+            lightbin::advise(view_, lights, costs, reduced(view_.tile_size(), has_gaps(), true, true).bounds));
         const lightbin::Advice sliced =
             value_of(lightbin::advise_slices(view_, lights, {.clusters = clusters_, .z_bins = z_bins_},
                                              {.depths = samples, .size = size}, costs));

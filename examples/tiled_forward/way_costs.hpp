@@ -37,7 +37,8 @@ struct WayCost {
 // What the processor can't tell.
 struct Prices {
     double evaluation_ns = 0.02, upload_byte_ns = 0.1;
-    double depth_pass_ns = 0, read_back_ns = 0;
+    double depth_pass_ns = 0;
+    double read_back_ns = 0;             // of the depth buffer; infinite where it can't be
     double gpu_reduction_ns = HUGE_VAL;  // in place of the read-back and the reduction here
 };
 
@@ -61,7 +62,7 @@ public:
 
     void set(const Prices& prices) { prices_ = prices; }
 
-    // Every plan of lightbin::advise(), with Z bounds of both sides and gaps, and of advise_slices().
+    // Every plan of lightbin::advise(), with all Z bounds that can be had, and of advise_slices().
     lightbin::Advice advise();
 
     // Builds each way's lists a dozen times, by turns, each time with the lights a little aside, and takes the medians.
@@ -69,7 +70,9 @@ public:
     std::vector<WayCost> measure(std::span<const Way> ways);
 
     // Whether measure() knows the plan's options.
-    static bool can_measure(const lightbin::Plan& plan);
+    bool can_measure(const lightbin::Plan& plan) const;
+    // Gaps are found on the processor alone, so not where depth is not read back.
+    bool has_gaps() const { return std::isfinite(prices_.read_back_ns); }
 
     const lightbin::View& view() const { return view_; }
     std::string slices_in_words(lightbin::Slicing slicing) const;  // the call that makes them
