@@ -166,7 +166,7 @@ Found find(WayCosts& costs) {
 }
 
 // The lines of C++ that do as is advised.
-std::string code(const Found& found, const WayCosts& costs) {
+std::string code(const Found& found, WayCosts& costs) {
     const Way& way = found.way;
     const lightbin::Plan& plan = way.plan;
     if (!plan.tiled) return "// No lists: the shader goes through all lights.\n";
@@ -202,12 +202,17 @@ std::string code(const Found& found, const WayCosts& costs) {
                        (vectors.empty() ? "(view->tile_count())" : "(" + sides[0] + ")");
             spans += (spans.empty() ? "." : ", .") + side + " = " + side;
         }
-        lines += "std::vector<float> " + vectors + ";\n";
-        lines +=
-            "auto bounds = lightbin::reduce_depth(*view, {.depth = depth_buffer, .skip_background = true},\n"
-            "                                     {" +
-            spans + "});\n";
+        lines += "std::vector<float> " + vectors + ";";
         inputs = "{.bounds = *bounds}";
+        if (costs.reduces_on_gpu(way)) {
+            lines += "  // as lightbin::reduce_shader() writes them\n";
+            inputs = "{.bounds = {" + spans + ", .background_skipped = true}}";
+        } else {
+            lines += "\nauto bounds = lightbin::reduce_depth(*view, {.depth = depth_buffer, .skip_background "
+                     "= true},\n"
+                     "                                     {" +
+                     spans + "});\n";
+        }
     }
     if (way.threads)
         inputs += ", lightbin::Parallel(pool.size(), run)";
@@ -267,10 +272,10 @@ Prices prices_of(const Scene& scene, const Camera& camera, const AdviseSettings&
         words += text("costs        %.4g ns a light evaluation%s, %.3g ns a byte of the lists;\n",
                       prices.evaluation_ns, told ? "" : " (assumed: there are too few to time)",
                       prices.upload_byte_ns);
-        words += text("             the pre-pass %.3f ms, its depth %.3f ms to reduce to Z bounds there",
+        words += text("             the pre-pass %.3f ms; Z bounds of it %.3f ms there",
                       1e-6 * times.depth_pass_ns, 1e-6 * times.gpu_reduction_ns);
-        words +=
-            reads_back ? text(" or %.3f ms to read back\n", 1e-6 * times.read_back_ns) : std::string("\n");
+        words += reads_back ? text(", or %.3f ms to read it back\n", 1e-6 * times.read_back_ns)
+                            : std::string("\n");
     } catch (const std::runtime_error& problem) {
         words = text("OpenGL       none: %.80s\n", problem.what());
         words += text(

@@ -42,25 +42,23 @@ CpuDepth draw_depth_on_cpu(const Scene& scene, const glm::dmat4& projection_time
         if (!(area > 0) || !std::isfinite(area)) return;
         const glm::dvec2 slope = {((b.z - a.z) * (c.y - a.y) - (c.z - a.z) * (b.y - a.y)) / area,
                                   ((c.z - a.z) * (b.x - a.x) - (b.z - a.z) * (c.x - a.x)) / area};
-        // The first and the last pixel whose centres, at halves, are between two numbers.
-        const auto first = [](double low, int end) {
-            return static_cast<int>(std::ceil(std::clamp(low, 0.0, end + 1.0) - 0.5));
+        // The first pixel whose centre, at a half, is at a number or beyond it: a pixel whose centre is on the edge of
+        // two triangles is of one of them.
+        const auto first = [](double number, int end) {
+            return static_cast<int>(std::ceil(std::clamp(number, 0.0, end + 0.5) - 0.5));
         };
-        const auto last = [](double high, int end) {
-            return static_cast<int>(std::floor(std::clamp(high, -1.0, end + 0.0) - 0.5));
-        };
-        const int last_row = last(std::max({a.y, b.y, c.y}), size.height);
-        for (int y = first(std::min({a.y, b.y, c.y}), size.height); y <= last_row; ++y) {
+        const int rows_end = first(std::max({a.y, b.y, c.y}), size.height);
+        for (int y = first(std::min({a.y, b.y, c.y}), size.height); y < rows_end; ++y) {
             double left = std::min({a.x, b.x, c.x}), right = std::max({a.x, b.x, c.x});
             for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
-                // Inside is where  (q - p) x (centre - p) >= 0,  which is linear in x.
-                const double at_0 = (q.x - p.x) * (y + 0.5 - p.y) + (q.y - p.y) * p.x, step = p.y - q.y;
-                if (step > 0) left = std::max(left, -at_0 / step);
-                if (step < 0) right = std::min(right, -at_0 / step);
-                if (step == 0 && at_0 < 0) right = -1;
+                // From the lower end, so that it is the same number for the triangle on the other side.
+                const glm::dvec4 &low = p.y < q.y ? p : q, &high = p.y < q.y ? q : p;
+                const double crossing = low.x + (y + 0.5 - low.y) * ((high.x - low.x) / (high.y - low.y));
+                if (p.y > q.y) left = std::max(left, crossing);
+                if (p.y < q.y) right = std::min(right, crossing);
             }
-            const int last_column = last(right, size.width);
-            for (int x = first(left, size.width); x <= last_column; ++x) {
+            const int columns_end = first(right, size.width);
+            for (int x = first(left, size.width); x < columns_end; ++x) {
                 const double z = a.z + slope.x * (x + 0.5 - a.x) + slope.y * (y + 0.5 - a.y);
                 float& nearest =
                     picture.depth[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)];

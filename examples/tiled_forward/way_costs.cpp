@@ -155,14 +155,19 @@ const WayCosts::Reduced& WayCosts::reduced(int tile_size, bool gaps, bool minimu
     return reduced;
 }
 
-double WayCosts::z_bounds_ns(const Reduced& reduced, bool gaps) const {
-    const double here = prices_.read_back_ns + reduced.ns;
+double WayCosts::z_bounds_ns(const Way& way) {
+    const bool gaps = way.plan.depth_test == DepthTest::split_box;
+    const double here = prices_.read_back_ns + reduced(way.plan.tile_size, gaps, way.minimum, way.maximum).ns;
     return prices_.depth_pass_ns + (gaps ? here : std::min(here, prices_.gpu_reduction_ns));
+}
+
+bool WayCosts::reduces_on_gpu(const Way& way) {
+    return z_bounds_ns(way) == prices_.depth_pass_ns + prices_.gpu_reduction_ns;
 }
 
 lightbin::Advice WayCosts::advise() {
     const lightbin::Costs costs = {.evaluation_ns = prices_.evaluation_ns,
-                                   .z_bounds_ns = z_bounds_ns(reduced(16, false, true, true), false),
+                                   .z_bounds_ns = z_bounds_ns({.plan = {.tile_size = 16}}),
                                    .upload_byte_ns = prices_.upload_byte_ns,
                                    .overdraw = depth_.overdraw};
     // A pixel of 16, where that leaves some.
@@ -176,8 +181,8 @@ lightbin::Advice WayCosts::advise() {
                 view_depth_[static_cast<std::size_t>((y * step + step / 2) * width + x * step + step / 2)]);
 
     const auto advised = [&](const auto& lights) {
-        const lightbin::Advice bounded = value_of(
-            lightbin::advise(view_, lights, costs, reduced(view_.tile_size(), has_gaps(), true, true).bounds));
+        const lightbin::Advice bounded = value_of(lightbin::advise(
+            view_, lights, costs, reduced(view_.tile_size(), has_gaps(), true, true).bounds));
         const lightbin::Advice sliced =
             value_of(lightbin::advise_slices(view_, lights, {.clusters = clusters_, .z_bins = z_bins_},
                                              {.depths = samples, .size = size}, costs));
@@ -263,9 +268,9 @@ std::vector<WayCost> WayCosts::measure(std::span<const Way> all) {
         }
         Counts counts;
         builds.back()(sets_[0], &counts);
-        const bool bounded = way.plan.has_z_bounds(), gaps = way.plan.depth_test == DepthTest::split_box;
+        const bool bounded = way.plan.has_z_bounds();
         if (bounded)
-            cost.depth = z_bounds_ns(reduced(way.plan.tile_size, gaps, way.minimum, way.maximum), gaps);
+            cost.depth = z_bounds_ns(way);
         else if (way.plan.tiled && way.plan.slicing != Slicing::none)
             cost.depth = way.plan.slicing == Slicing::clusters ? clusters_ns_ : z_bins_ns_;
         cost.upload = counts.bytes * prices_.upload_byte_ns;

@@ -74,6 +74,9 @@ public:
     // Gaps are found on the processor alone, so not where depth is not read back.
     bool has_gaps() const { return std::isfinite(prices_.read_back_ns); }
 
+    // Whether Z bounds of the way cost less where the depth buffer lies. measure() takes the cheaper.
+    bool reduces_on_gpu(const Way& way);
+
     const lightbin::View& view() const { return view_; }
     std::string slices_in_words(lightbin::Slicing slicing) const;  // the call that makes them
     std::size_t light_count() const { return sets_[0].size(); }
@@ -95,7 +98,7 @@ private:
     using Build = std::function<double(const ViewLights& lights, Counts* counts)>;
 
     const Reduced& reduced(int tile_size, bool gaps, bool minimum, bool maximum);
-    double z_bounds_ns(const Reduced& reduced, bool gaps) const;
+    double z_bounds_ns(const Way& way);
     Build build_of(const Way& way);
     template <lightbin::Options options> Build build_with(const Way& way);
 

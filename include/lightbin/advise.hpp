@@ -83,20 +83,22 @@ struct Verdict {
     double saved_ns = 0;  ///< what a frame takes longer by the other
 };
 
-/// Returns a line such as "box          keep: saves 1.20 ms                instead: 16 px, rectangle, interval".
+/// Returns a line such as "box          keep: saves 1.200 ms                instead: 16 px, rectangle, interval".
 inline std::string to_string(const Verdict& verdict) {
-    const bool weighed = !verdict.instead.empty();
-    char text[80], line[100];
-    std::snprintf(text, sizeof text, "%s %.3f ms",
-                  verdict.keep            ? "keep: saves"
-                  : verdict.saved_ns >= 0 ? "leave out: would cost"
-                                          : "leave out: would save only",
-                  std::fabs(verdict.saved_ns) * 1e-6);
-    std::snprintf(line, sizeof line, "%-12s %-36s", verdict.part.c_str(),
-                  weighed        ? text
-                  : verdict.keep ? "keep: no other was weighed"
-                                 : "leave out: was not weighed");
-    return line + (weighed ? "instead: " + verdict.instead : std::string()) + "\n";
+    char line[100];
+    if (verdict.instead.empty())
+        std::snprintf(line, sizeof line, "%-12s %s", verdict.part.c_str(),
+                      verdict.keep ? "keep: no other was weighed" : "leave out: was not weighed");
+    else
+        std::snprintf(line, sizeof line, "%-12s %s %.3f ms", verdict.part.c_str(),
+                      verdict.keep            ? "keep: saves"
+                      : verdict.saved_ns >= 0 ? "leave out: would cost"
+                                              : "leave out: would save only",
+                      std::fabs(verdict.saved_ns) * 1e-6);
+    std::string words = line;
+    if (verdict.instead.empty()) return words + "\n";
+    words.resize((std::max)(words.size() + 1, std::size_t{50}), ' ');
+    return words + "instead: " + verdict.instead + "\n";
 }
 
 /// Every plan that was weighed, the cheapest first.

@@ -1,0 +1,243 @@
+// What --advise measures with, held against ray casting and against what the renderer draws and counts. No test asks how
+// long anything takes.
+#include <advise_scene.hpp>
+#include <binned_lights.hpp>
+#include <cpu_depth.hpp>
+#include <draw_times.hpp>
+#include <gl_context.hpp>
+#include <projection.hpp>
+#include <renderer.hpp>
+#include <value_of.hpp>
+#include <way_costs.hpp>
+
+#include <doctest/doctest.h>
+
+#include <glm/ext/matrix_clip_space.hpp>
+#include <glm/ext/matrix_transform.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <vector>
+
+using lightbin::DepthTest;
+using lightbin::Slicing;
+
+namespace {
+
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+const std::string fixtures = LIGHTBIN_FIXTURES;
+
+Scene of_triangles(const std::vector<glm::vec3>& corners) {
+    Scene scene;
+    for (const glm::vec3& corner : corners)
+        scene.triangles.push_back({corner, {}, {}});
+    return scene;
+}
+
+// A square in front of the eye, which looks down -z.
+std::vector<glm::vec3> square(float depth, float half_side) {
+    const float s = half_side, z = -depth;
+    return {{-s, -s, z}, {s, -s, z}, {s, s, z}, {-s, -s, z}, {s, s, z}, {-s, s, z}};
+}
+
+// The least part of the way from `near` to `far` at which a triangle is met, infinity where none is; NaN where one is met
+// or passed so close to an edge, or lies so much along the ray, that rounding may decide.
+double first_hit(const Scene& scene, const glm::dvec3& near, const glm::dvec3& far) {
+    double first = unbounded;
+    for (std::size_t i = 0; i < scene.triangles.size(); i += 3) {
+        const glm::dvec3 a(scene.triangles[i].position), b(scene.triangles[i + 1].position),
+            c(scene.triangles[i + 2].position), u = b - a, v = c - a, way = far - near;
+        const glm::dvec3 normal = glm::cross(u, v), p = glm::cross(way, v), q = glm::cross(near - a, u);
+        const double det = glm::dot(u, p);
+        if (std::fabs(det) < 1e-9 * glm::length(normal) * glm::length(way)) return std::nan("");
+        const double at_u = glm::dot(near - a, p) / det, at_v = glm::dot(way, q) / det,
+                     t = glm::dot(v, q) / det, inside = std::min({at_u, at_v, 1 - at_u - at_v});
+        if (t < -1e-6 || t > 1 + 1e-6) continue;
+        if (std::fabs(inside) < 1e-6 || std::fabs(t) < 1e-6) return std::nan("");
+        if (inside > 0) first = std::min(first, t);
+    }
+    return first;
+}
+
+}  // namespace
+
+TEST_CASE("the processor's depth is that of cast rays, in either projection, with triangles through the near "
+          "plane") {
+    const lightbin::Extent size = {61, 47};
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> place(-3, 3);
+    for (const bool orthographic : {false, true}) {
+        const glm::dmat4 projection = orthographic ? glm::orthoRH_NO(-2.0, 3.0, -2.5, 2.0, 0.5, 9.0)
+                                                   : glm::frustumRH_NO(-0.4, 0.5, -0.3, 0.35, 0.5, 9.0),
+                         inverse = glm::inverse(projection);
+        std::size_t hits = 0, decided = 0, wrong = 0;
+        for (int round = 0; round < 20; ++round) {
+            std::vector<glm::vec3> corners;
+            for (int corner = 0; corner < 3 * 8; ++corner)
+                corners.push_back({place(random), place(random), place(random) - 2.5f});
+            const Scene scene = of_triangles(corners);
+            const CpuDepth picture = draw_depth_on_cpu(scene, projection, size);
+            REQUIRE(picture.depth.size() == 61 * 47);
+            for (int y = 0; y < size.height; ++y)
+                for (int x = 0; x < size.width; ++x) {
+                    const double ndc_x = (2 * x + 1.0) / size.width - 1,
+                                 ndc_y = (2 * y + 1.0) / size.height - 1;
+                    const auto at = [&](double z) {
+                        const glm::dvec4 point = inverse * glm::dvec4(ndc_x, ndc_y, z, 1);
+                        return glm::dvec3(point) / point.w;
+                    };
+                    const double hit = first_hit(scene, at(-1), at(1));
+                    if (std::isnan(hit)) continue;
+                    ++decided;
+                    double wanted = 1;
+                    if (hit <= 1) {
+                        const glm::dvec4 clip = projection * glm::dvec4(glm::mix(at(-1), at(1), hit), 1);
+                        wanted = 0.5 + 0.5 * clip.z / clip.w;
+                        ++hits;
+                    }
+                    wrong +=
+                        std::fabs(static_cast<double>(picture.depth[static_cast<std::size_t>(y * 61 + x)]) -
+                                  wanted) > 1e-5;
+                }
+        }
+        CHECK(wrong == 0);
+        CHECK(hits > 5000);
+        CHECK(decided - hits > 5000);
+    }
+}
+
+TEST_CASE("overdraw counts what is drawn over") {
+    const glm::dmat4 projection = glm::perspectiveRH_NO(1.0, 1.0, 0.1, 100.0);
+    const auto overdraw = [&](std::vector<glm::vec3> first, const std::vector<glm::vec3>& second) {
+        first.insert(first.end(), second.begin(), second.end());
+        return draw_depth_on_cpu(of_triangles(first), projection, {33, 33}).overdraw;
+    };
+    CHECK(overdraw(square(5, 9), {}) == 1);
+    CHECK(overdraw(square(5, 9), square(9, 20)) == 1);
+    CHECK(overdraw(square(9, 20), square(5, 9)) == 2);
+    CHECK(overdraw(square(200, 500), {}) == 1);  // beyond the far plane
+    CHECK(overdraw({}, {}) == 1);
+}
+
+TEST_CASE("evaluations are those that the renderer counts of the picture that it draws") {
+    const OffscreenContext context(430);
+    for (const std::string& scene_file : {fixtures + "/nova.glb", std::string("nova_spots.glb")}) {
+        CAPTURE(scene_file);
+        const Scene scene = load_glb(scene_file, 0.05f);
+        const Camera& camera = scene.cameras[0];
+        FrameSettings frame;
+        frame.width = 320;
+        frame.height = 200;
+        frame.count_evaluations = true;
+        Renderer renderer(scene, context.glsl());
+
+        const glm::mat4 projection = projection_of(camera, 1.6);
+        const glm::dmat4 world_to_view = glm::inverse(camera.to_world);
+        const lightbin::View view =
+            value_of(lightbin::View::from_projection(projection, {320, 200}, {.tile_size = 8}));
+        BinnedLights lights(scene);
+        lights.place(world_to_view);
+        WayCosts costs(view, projection, lights.lights(),
+                       draw_depth_on_cpu(scene, glm::dmat4(projection) * world_to_view, {320, 200}));
+        costs.set({.evaluation_ns = 1, .upload_byte_ns = 0});
+
+        const auto plan = [](DepthTest test, Slicing slicing) {
+            return Way{.plan = {.depth_test = test, .slicing = slicing, .tile_size = 16}};
+        };
+        const Way plain = plan(DepthTest::none, Slicing::none),
+                  interval = plan(DepthTest::interval, Slicing::none),
+                  z_bins = plan(DepthTest::none, Slicing::z_bins),
+                  clusters = plan(DepthTest::box, Slicing::clusters);
+        Way narrow = plain, threads = plain, spheres = plain, minimum = interval, maximum = interval;
+        narrow.narrow_ids = threads.threads = true;
+        spheres.cones = minimum.maximum = maximum.minimum = false;
+        const std::vector<Way> ways = {plain,   interval, z_bins,  clusters, narrow,
+                                       threads, spheres,  minimum, maximum,  {.plan = {.tiled = false}}};
+        const std::vector<WayCost> measured = costs.measure(ways);
+        REQUIRE(measured.size() == ways.size());
+        for (const WayCost& cost : measured) {
+            CHECK(cost.upload == 0);
+            CHECK(cost.depth >= 0);
+            CHECK(cost.build >= 0);
+            CHECK(cost.total() == cost.depth + cost.build + cost.upload + cost.shade);
+        }
+
+        const DepthUse uses[] = {DepthUse::none, DepthUse::pre_pass, DepthUse::z_bins, DepthUse::clusters};
+        for (std::size_t i = 0; i < std::size(uses); ++i) {
+            frame.depth = uses[i];
+            const double drawn = renderer.draw(camera, frame).evaluations_per_pixel * 320 * 200,
+                         shaded = measured[i].shade / (uses[i] == DepthUse::pre_pass ? 1 : costs.overdraw());
+            CAPTURE(i);
+            CHECK(drawn > 10000);
+            CHECK(std::fabs(shaded / drawn - 1) < 0.01);  // edges of triangles are not rounded alike
+        }
+        CHECK(measured[4].shade == measured[0].shade);
+        CHECK(measured[5].shade == measured[0].shade);
+        CHECK((measured[6].shade > measured[0].shade) == costs.has_cones());
+        for (const std::size_t side : {7u, 8u})
+            CHECK(measured[side].shade > measured[1].shade);
+        CHECK(measured[9].build == 0);
+        CHECK(measured[9].shade > measured[0].shade);
+
+        // The advice is of the same counts, from a pixel of 16 where it is of slices.
+        const lightbin::Advice advice = costs.advise();
+        for (const lightbin::Plan& advised : advice.plans()) {
+            if (!advised.tiled || advised.tile_size != 16 || advised.has_z_bounds()) continue;
+            for (std::size_t i = 0; i < 4; ++i)
+                if (advised.slicing == ways[i].plan.slicing &&
+                    advised.depth_test == ways[i].plan.depth_test &&
+                    advised.footprint == lightbin::Footprint::rectangle)
+                    CHECK(std::fabs(advised.evaluations / measured[i].shade - 1) < 0.1);
+        }
+    }
+}
+
+TEST_CASE("overdraw is that of the fragments that OpenGL shades without a pre-pass") {
+    const OffscreenContext context(430);
+    Scene scene = load_glb(fixtures + "/nova.glb", 0.05f);
+    const Camera camera = scene.cameras[0];
+    Renderer renderer(scene, context.glsl());
+    FrameSettings frame;
+    frame.width = 320;
+    frame.height = 200;
+    GLuint query = 0;
+    glGenQueries(1, &query);
+    const auto fragments = [&](DepthUse depth) {
+        frame.depth = depth;
+        frame.z_bounds = ZBoundsUse::none;
+        glBeginQuery(GL_SAMPLES_PASSED, query);
+        renderer.draw(camera, frame);
+        glEndQuery(GL_SAMPLES_PASSED);
+        GLuint count = 0;
+        glGetQueryObjectuiv(query, GL_QUERY_RESULT, &count);
+        return static_cast<double>(count);
+    };
+    // With a pre-pass: all of its own, and those that are seen.
+    const double without = fragments(DepthUse::none), seen = fragments(DepthUse::pre_pass) - without;
+    const glm::mat4 projection = projection_of(camera, 1.6);
+    const double overdraw =
+        draw_depth_on_cpu(scene, glm::dmat4(projection) * glm::inverse(camera.to_world), {320, 200}).overdraw;
+    CHECK(overdraw > 1.02);
+    CHECK(std::fabs(without / seen / overdraw - 1) < 0.02);
+}
+
+TEST_CASE("OpenGL's times are there, and none is negative") {
+    const Scene scene = load_glb(fixtures + "/darkness.glb", 0.05f);
+    for (const int glsl : {430, 300}) {
+        const DrawTimes times = draw_times(scene, scene.cameras[0], 96, 64, glsl);
+        CHECK(!times.renderer.empty());
+        CHECK(times.glsl == glsl);
+        for (const double ns : {times.evaluation_ns, times.depth_pass_ns, times.read_back_ns,
+                                times.gpu_reduction_ns, times.upload_byte_ns}) {
+            CHECK(ns >= 0);
+            CHECK(std::isfinite(ns));
+        }
+    }
+    Scene dark = scene;  // of the lights none can be told from the clock's noise: no division by nothing
+    dark.lights.resize(1);
+    dark.lights[0].position = glm::vec3(1e6f);
+    CHECK(draw_times(dark, dark.cameras[0], 16, 16, 430).evaluation_ns == 0);
+}

@@ -1,0 +1,86 @@
+#!/bin/sh
+# advise.sh TILED_FORWARD COMPILER [ARGUMENT...]: runs it with --advise, and sees that what it prints fits on a screen, has
+# a verdict on each part, adds up, and ends with lines of C++ that compile and do as is advised.
+set -eu
+program=$1
+compiler=$2
+shift 2
+root=$(cd "$(dirname "$0")/../.." && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+"$program" --advise "$@" >"$work/said" 2>"$work/errors"
+cat "$work/said"
+[ ! -s "$work/errors" ] || { cat "$work/errors"; exit 1; }
+
+awk '
+function complain(what) { print "WRONG: " what; bad = 1 }
+length($0) > 100 { complain("more than 100 columns: " $0) }
+BEGIN {
+    count = split("tiles,pre-pass,minimum,maximum,box,split boxes,clusters,z-bins,silhouettes,16-bit ids,threads,cones",
+                  parts, ",")
+}
+in_code { code = code $0 "\n"; next }
+/^code$/ { in_code = 1; next }
+/^(OpenGL|costs|overdraw|view) / { ++heads[$1] }
+/^frame / {
+    total = $2
+    match($0, /depth .*/)
+    split(substr($0, RSTART), sums, /[ ,]+/)
+    sum = sums[2] + sums[4] + sums[6] + sums[9]
+    if (total <= 0 || total - sum > 0.0025 || sum - total > 0.0025) complain("it does not add up: " sum)
+}
+/^advised / { advised = substr($0, 14) }
+{
+    for (i = 1; i <= count; ++i)
+        if (substr($0, 1, 13) == sprintf("%-13s", parts[i])) {
+            ++rows[i]
+            verdict = substr($0, 14)
+            if (verdict !~ /^(keep: saves [0-9.]+ ms|leave out: would (cost|save only) [0-9.]+ ms) +instead: ./ &&
+                verdict !~ /^leave out: (was not weighed|no light has one|there are more)/)
+                complain("no verdict: " $0)
+            kept[parts[i]] = verdict ~ /^keep/
+        }
+}
+function has(name, word, where) {
+    if (kept[name] != (index(where, word) > 0)) complain(name " is not as the verdict has it in: " where)
+}
+END {
+    if (NR > 40) complain(NR " lines")
+    for (i = 1; i <= count; ++i)
+        if (rows[i] != 1) complain(parts[i] " is there " rows[i] + 0 " times")
+    for (i = split("OpenGL,costs,overdraw,view", names, ","); i > 0; --i)
+        if (heads[names[i]] != 1) complain("no line of " names[i])
+    if (total == "" || advised == "" || code == "") complain("something is missing")
+    if (kept["pre-pass"] && kept["clusters"]) complain("a pre-pass and clusters")
+    has("tiles", " px, ", advised)
+    has("silhouettes", "silhouette", advised)
+    has("box", "box", advised)
+    has("split boxes", "split_box", advised)
+    has("clusters", "clusters", advised)
+    has("z-bins", "z_bins", advised)
+    has("tiles", "{.tile_size = " advised + 0 "}", code)
+    has("tiles", ", .tile_size = " advised + 0 "}", code)
+    has("silhouettes", "Footprint::silhouette", code)
+    has("split boxes", "DepthTest::split_box", code)
+    has("clusters", "Slicing::clusters", code)
+    has("z-bins", "Slicing::z_bins", code)
+    has("pre-pass", ".bounds = ", code)
+    has("minimum", " min", code)
+    has("maximum", "max = max", code)
+    has("16-bit ids", "IdWidth::u16", code)
+    has("threads", "lightbin::Parallel", code)
+    has("cones", "to_spot", code)
+    exit bad
+}' "$work/said"
+
+{
+    echo '#include "given.hpp"'
+    echo 'lightbin::Sphere to_sphere(const Lamp&);'
+    echo 'lightbin::Spot to_spot(const Lamp&);'
+    echo 'void advised() {'
+    echo 'const auto run = [&](std::size_t n, const auto& body) { pool.parallel_for(n, body); };'
+    sed '1,/^code$/d' "$work/said"
+    echo '}'
+} >"$work/advised.cpp"
+"$compiler" -std=c++20 -fsyntax-only -DLIGHTBIN_NO_SIMD -Wall -Wextra -Wconversion -Werror -Wno-unused -I "$root/include" \
+    -I "$root/tests/guide" "$work/advised.cpp"
