@@ -165,35 +165,6 @@ bool WayCosts::reduces_on_gpu(const Way& way) {
     return z_bounds_ns(way) == prices_.depth_pass_ns + prices_.gpu_reduction_ns;
 }
 
-lightbin::Advice WayCosts::advise() {
-    const lightbin::Costs costs = {.evaluation_ns = prices_.evaluation_ns,
-                                   .z_bounds_ns = z_bounds_ns({.plan = {.tile_size = 16}}),
-                                   .upload_byte_ns = prices_.upload_byte_ns,
-                                   .overdraw = depth_.overdraw};
-    // A pixel of 16, where that leaves some.
-    const auto [width, height] = view_.viewport();
-    const int step = std::min(width, height) < 64 ? 1 : 4;
-    std::vector<float> samples;
-    const lightbin::Extent size = {width / step, height / step};
-    for (int y = 0; y < size.height; ++y)
-        for (int x = 0; x < size.width; ++x)
-            samples.push_back(
-                view_depth_[static_cast<std::size_t>((y * step + step / 2) * width + x * step + step / 2)]);
-
-    const auto advised = [&](const auto& lights) {
-        const lightbin::Advice bounded = value_of(lightbin::advise(
-            view_, lights, costs, reduced(view_.tile_size(), has_gaps(), true, true).bounds));
-        const lightbin::Advice sliced =
-            value_of(lightbin::advise_slices(view_, lights, {.clusters = clusters_, .z_bins = z_bins_},
-                                             {.depths = samples, .size = size}, costs));
-        std::vector<lightbin::Plan> plans(bounded.plans().begin(), bounded.plans().end());
-        for (const lightbin::Plan& plan : sliced.plans())
-            if (plan.slicing != Slicing::none) plans.push_back(plan);
-        return lightbin::Advice(std::move(plans));
-    };
-    return has_cones() ? advised(sets_[0].spots) : advised(sets_[0].spheres);
-}
-
 template <Options options> WayCosts::Build WayCosts::build_with(const Way& way) {
     const lightbin::View view = value_of(view_.with_tile_size(way.plan.tile_size));
     const lightbin::Slices& slices = options.slicing == Slicing::z_bins ? z_bins_ : clusters_;

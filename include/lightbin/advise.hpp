@@ -54,11 +54,12 @@ struct Plan {
     DepthTest depth_test = DepthTest::none;
     Slicing slicing = Slicing::none;  ///< advise_slices(): with the slices that it was given for this
     int tile_size = 0;
-    double build_ns = 0;        ///< with the upload, and with Costs::z_bounds_ns where there are Z bounds
+    double build_ns = 0;        ///< with Costs::z_bounds_ns where there are Z bounds
+    double upload_ns = 0;       ///< of the lists
     std::uint64_t entries = 0;  ///< length of the light index list
     /// Sum over the pixels with something to light of their lists' lengths; without Z bounds times Costs::overdraw.
     double evaluations = 0;
-    double total_ns = 0;  ///< build_ns + evaluations * Costs::evaluation_ns
+    double total_ns = 0;  ///< build_ns + upload_ns + evaluations * Costs::evaluation_ns
 
     bool has_z_bounds() const {
         return tiled && depth_test != DepthTest::none && slicing != Slicing::clusters;
@@ -349,13 +350,12 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
             const Result<LightGrid<Id>> built = binner.bin(grid->view, seen, inputs());
             const std::chrono::duration<double, std::nano> time = Clock::now() - start;
             if (!built) return built.error();
-            const LightRanks& ranks = built->ranks();
-            const double bytes =
-                static_cast<double>(built->ranges().size_bytes() + built->ids().size_bytes() +
-                                    ranks.order.size_bytes() + ranks.bins.size_bytes());
-            plan.build_ns = (std::min)(plan.build_ns, time.count() + bytes * costs.upload_byte_ns +
-                                                          (with_bounds ? costs.z_bounds_ns : 0));
+            plan.build_ns = (std::min)(plan.build_ns, time.count() + (with_bounds ? costs.z_bounds_ns : 0));
             if (!first) return std::nullopt;
+            const LightRanks& ranks = built->ranks();
+            plan.upload_ns = costs.upload_byte_ns *
+                             static_cast<double>(built->ranges().size_bytes() + built->ids().size_bytes() +
+                                                 ranks.order.size_bytes() + ranks.bins.size_bytes());
             plan.entries = built->ids().size();
             for_each_lit([&](int x, int y, float depth, double pixels) {
                 const int slice = by != nullptr ? by->slice_at(depth) : 0,
@@ -395,7 +395,7 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
     for (int turn = 0;; ++turn) {
         double least = HUGE_VAL;
         for (Plan& plan : plans) {
-            plan.total_ns = plan.build_ns + plan.evaluations * costs.evaluation_ns;
+            plan.total_ns = plan.build_ns + plan.upload_ns + plan.evaluations * costs.evaluation_ns;
             least = (std::min)(least, plan.total_ns);
         }
         if (turn == turns) return Advice(std::move(plans));

@@ -64,7 +64,7 @@ Advice checked(const Result<Advice>& advice, const Costs& costs) {
     for (const Plan& plan : advice->plans()) {
         CHECK(plan.build_ns >= (plan.depth_test == DepthTest::none ? 0 : costs.z_bounds_ns));
         CHECK(plan.build_ns < 1e12);
-        CHECK(plan.total_ns == plan.build_ns + plan.evaluations * costs.evaluation_ns);
+        CHECK(plan.total_ns == plan.build_ns + plan.upload_ns + plan.evaluations * costs.evaluation_ns);
         CHECK(plan.total_ns >= before);
         before = plan.total_ns;
         if (!plan.tiled) CHECK(plan.build_ns == 0);
@@ -471,6 +471,198 @@ TEST_CASE("a plan's options reach a Binner, with the rest from the caller's") {
     auto visit = [&seen]<Options options>() mutable -> int& { return ++seen; };
     static_cast<void>(++with_options(advice.best(), visit));
     CHECK(seen == 2);
+}
+
+TEST_CASE("without Z bounds the fragments of all layers count, and a byte of the lists costs what is said") {
+    const View view = test::view({640, 360}, 8);
+    const Bounds bounds(view, ground_depth({640, 360}));
+    const std::vector<float> depths = view_depths(view, {640, 360});
+    const auto lights = test::random_lights(200, 5);
+    const auto each_100 = [](std::size_t) { return std::int64_t{100}; };
+    const Costs plain = {.evaluation_ns = 1, .z_bounds_ns = 3},
+                dear = {.evaluation_ns = 1, .z_bounds_ns = 3, .upload_byte_ns = 16, .overdraw = 2.5};
+    const auto sliced = [&](const Costs& costs) {
+        WoundClock::build_ns = each_100;
+        WoundClock::calls = 0;
+        return checked(advise_slices<narrow, WoundClock>(view, lights,
+                                                         {.clusters = a_dozen, .z_bins = hundred},
+                                                         {.depths = depths, .size = {640, 360}}, costs),
+                       costs);
+    };
+    const auto compare = [&](const Advice& without, const Advice& with, auto bytes_of) {
+        REQUIRE(with.plans().size() == without.plans().size());
+        for (const Plan& plan : without.plans()) {
+            const auto same = std::ranges::find_if(
+                with.plans(), [&](const Plan& other) { return to_string(other) == to_string(plan); });
+            REQUIRE(same != with.plans().end());
+            const bool bounded = plan.depth_test != DepthTest::none && plan.slicing == Slicing::none;
+            CHECK(plan.has_z_bounds() == bounded);
+            CHECK(same->evaluations == plan.evaluations * (bounded ? 1 : 2.5));
+            CHECK(plan.build_ns == (plan.tiled ? 100 : 0) + (bounded ? 3 : 0));
+            CHECK(same->build_ns == plan.build_ns);
+            CHECK(plan.upload_ns == 0);
+            CHECK(same->upload_ns == 16 * static_cast<double>(bytes_of(plan)));
+        }
+    };
+    const auto tiles = [&](const Plan& plan) { return view.with_tile_size(plan.tile_size)->tile_count(); };
+    compare(advised_on(each_100, view, lights, plain, bounds.reduced),
+            advised_on(each_100, view, lights, dear, bounds.reduced), [&](const Plan& plan) {
+                return plan.tiled ? 8 * tiles(plan) + 2 * std::size_t{plan.entries} : 0;
+            });
+    const std::size_t in_view = [&] {
+        Binner<Options{.slicing = Slicing::z_bins}> binner;
+        return binner.bin(view, lights, {.slices = hundred})->ranks().order.size();
+    }();
+    compare(sliced(plain), sliced(dear), [&](const Plan& plan) -> std::size_t {
+        if (!plan.tiled) return 0;
+        const std::size_t slices = plan.slicing == Slicing::clusters ? 12 : 1,
+                          ranks = plan.slicing == Slicing::z_bins ? 8 * 100 + 4 * in_view : 0;
+        return 8 * tiles(plan) * slices + 2 * std::size_t{plan.entries} + ranks;
+    });
+}
+
+namespace {
+
+/// The parts of a plan, by its words alone.
+bool has_part(const Plan& plan, const std::string& part) {
+    const std::string words = "," + to_string(plan) + ",";
+    const auto says = [&](const char* word) {
+        return words.find(std::string(" ") + word + ",") != words.npos;
+    };
+    const bool box = says("box"), split = says("split_box"), clusters = says("clusters");
+    return part == "tiles"         ? says("rectangle") || says("silhouette")
+           : part == "pre-pass"    ? (box || split || says("interval")) && !clusters
+           : part == "box"         ? box || split
+           : part == "split boxes" ? split
+           : part == "clusters"    ? clusters
+           : part == "z-bins"      ? says("z_bins")
+                                   : says("silhouette");
+}
+
+const char* const all_parts[] = {"tiles",    "pre-pass", "box",        "split boxes",
+                                 "clusters", "z-bins",   "silhouettes"};
+
+/// Each part's verdict on each plan is that of the costs of the plans; the text has a line for each of the best one's.
+void check_verdicts(const Advice& advice) {
+    for (const Plan& plan : advice.plans()) {
+        const std::vector<Verdict> verdicts = advice.verdicts(plan);
+        REQUIRE(verdicts.size() == std::size(all_parts));
+        for (std::size_t i = 0; i < verdicts.size(); ++i) {
+            const Verdict& verdict = verdicts[i];
+            CAPTURE(verdict.part);
+            CAPTURE(to_string(plan));
+            CHECK(verdict.part == all_parts[i]);
+            CHECK(verdict.keep == has_part(plan, verdict.part));
+            double least = HUGE_VAL;
+            for (const Plan& other : advice.plans())
+                if (has_part(other, verdict.part) != verdict.keep) least = std::min(least, other.total_ns);
+            CHECK(verdict.instead.empty() == (least == HUGE_VAL));
+            if (verdict.instead.empty()) continue;
+            CHECK(has_part(verdict.other, verdict.part) != verdict.keep);
+            CHECK(verdict.instead == to_string(verdict.other));
+            CHECK(verdict.other.total_ns == least);
+            CHECK(verdict.saved_ns == least - plan.total_ns);
+        }
+    }
+
+    std::string lines = to_string(advice);
+    CHECK(lines.substr(0, lines.find('\n')).find(to_string(advice.best())) != lines.npos);
+    lines.erase(0, lines.find('\n') + 1);
+    for (const Verdict& verdict : advice.verdicts(advice.best())) {
+        const std::string line = lines.substr(0, lines.find('\n'));
+        CAPTURE(line);
+        lines.erase(0, line.size() + 1);
+        CHECK(line.substr(0, 13) == verdict.part + std::string(13 - verdict.part.size(), ' '));
+        CHECK(line.size() <= 100);
+        const bool weighed = !verdict.instead.empty();
+        CHECK(line.find(verdict.keep && weighed ? "keep: saves "
+                        : verdict.keep          ? "keep: no other was weighed"
+                        : weighed               ? "leave out: would cost "
+                                                : "leave out: was not weighed") == 13);
+        CHECK(line.ends_with("instead: " + verdict.instead) == weighed);
+        CHECK(line.back() != ' ');
+    }
+    CHECK(lines.empty());
+}
+
+bool keeps(const Advice& advice, const std::string& part) {
+    const std::vector<Verdict> verdicts = advice.verdicts(advice.best());
+    return std::ranges::find(verdicts, part, &Verdict::part)->keep;
+}
+
+}  // namespace
+
+TEST_CASE("verdicts: a box is kept where it saves evaluations, and what it saves is said") {
+    const View view = test::view({640, 360}, 8);
+    const Bounds bounds(view, ground_depth({640, 360}));
+    const auto lights = test::random_lights(200, 5);
+    const auto each_100 = [](std::size_t) { return std::int64_t{100}; };
+    const Advice advice = advised_on(each_100, view, lights, {.evaluation_ns = 1},
+                                     {.min = bounds.min, .max = bounds.max});  // no gaps
+    check_verdicts(advice);
+    CHECK(keeps(advice, "box"));
+    CHECK(keeps(advice, "pre-pass"));
+    const Verdict box = advice.verdicts(advice.best())[2];
+    CHECK(box.part == "box");
+    CHECK(box.saved_ns > 0);
+    CHECK(to_string(box).starts_with("box          keep: saves 0.") == (box.saved_ns < 1e6));
+    CHECK(advice.verdicts(advice.best())[3].instead.empty());  // split boxes need gaps
+
+    check_verdicts(advised_on(each_100, view, lights, {.evaluation_ns = 1}, bounds.reduced));
+    check_verdicts(advised(view, lights));
+    check_verdicts(advised(view, std::vector<Sphere>{}));
+}
+
+TEST_CASE("verdicts: from above, where all lights reach the ground, depth is of no use") {
+    const Extent size = {640, 360};
+    const View view = test::view(size, 8);
+    // Flat ground at depth 50, with a light on it each 4 units.
+    std::vector<Sphere> lights;
+    for (int y = -8; y <= 8; ++y)
+        for (int x = -14; x <= 14; ++x)
+            lights.push_back({4.0f * static_cast<float>(x), 4.0f * static_cast<float>(y), -50, 3});
+    const float window = (1000 * (50 - 0.1f)) / (999.9f * 50);
+    const std::vector<float> depth(640 * 360, window);
+    const Bounds bounds(view, depth);
+    const auto each_100 = [](std::size_t) { return std::int64_t{100}; };
+    // Evaluations are what is paid for, of which a depth test saves less than the fifth that the pre-pass costs.
+    const double evaluations = advised_on(each_100, view, lights, {.evaluation_ns = 1}).best().evaluations;
+    const Advice advice = advised_on(each_100, view, lights,
+                                     {.evaluation_ns = 1, .z_bounds_ns = evaluations / 5}, bounds.reduced);
+    check_verdicts(advice);
+    CHECK(advice.best().tiled);
+    CHECK(!keeps(advice, "pre-pass"));
+    CHECK(!keeps(advice, "box"));
+    CHECK(!keeps(advice, "split boxes"));
+    // Under a roof that is drawn over five times it is worth having.
+    const Advice drawn_over =
+        advised_on(each_100, view, lights,
+                   {.evaluation_ns = 1, .z_bounds_ns = evaluations / 5, .overdraw = 5}, bounds.reduced);
+    check_verdicts(drawn_over);
+    CHECK(keeps(drawn_over, "pre-pass"));
+
+    std::vector<float> samples(40 * 20, 50.0f);
+    const Advice sliced = advised_in_slices(view, lights, {.depths = samples, .size = {40, 20}});
+    check_verdicts(sliced);
+    CHECK(sliced.verdicts(sliced.best())[1].instead.empty());  // it weighs no pre-pass
+}
+
+TEST_CASE("verdicts: spots have the same, and fewer evaluations than their spheres") {
+    const View view = test::view({640, 360}, 8);
+    const Bounds bounds(view, ground_depth({640, 360}));
+    std::vector<Spot> spots;
+    std::vector<Sphere> least;
+    for (const glm::vec4& light : test::random_lights(200, 5)) {
+        spots.push_back({light.x, light.y, light.z, 2 * light.w, 0, -1, 0.2f, 0.9f});
+        least.push_back(spots.back());
+    }
+    const auto each_100 = [](std::size_t) { return std::int64_t{100}; };
+    const Advice as_spots = advised_on(each_100, view, spots, {.evaluation_ns = 1}, bounds.reduced),
+                 as_spheres = advised_on(each_100, view, least, {.evaluation_ns = 1}, bounds.reduced);
+    check_verdicts(as_spots);
+    CHECK(keeps(as_spots, "tiles"));
+    CHECK(keeps(as_spots, "box"));
+    CHECK(as_spots.best().evaluations < as_spheres.best().evaluations);
 }
 
 TEST_CASE("scenes that need no grid get none") {
