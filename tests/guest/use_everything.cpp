@@ -122,6 +122,7 @@ void add_plans(Hash& hash, const Advice& advice, const auto& of_plan) {
     }
     hash.add(static_cast<std::uint64_t>(evaluations));
     hash.value += advice.text().empty();
+    hash.value += to_string(advice).empty();
 }
 
 void use_advice(Hash& hash, const View& view, const auto& lights, const ZBounds& bounds) {

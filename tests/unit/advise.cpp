@@ -634,7 +634,7 @@ TEST_CASE("verdicts: from above, where all lights reach the ground, depth is of 
     CHECK(!keeps(advice, "pre-pass"));
     CHECK(!keeps(advice, "box"));
     CHECK(!keeps(advice, "split boxes"));
-    // Under a roof that is drawn over five times it is worth having.
+    // Where five layers are drawn over each other it is worth having.
     const Advice drawn_over =
         advised_on(each_100, view, lights,
                    {.evaluation_ns = 1, .z_bounds_ns = evaluations / 5, .overdraw = 5}, bounds.reduced);
