@@ -36,6 +36,16 @@ install_packages() {
     rm -f "$log"
 }
 
+# unpack_packages FOLDER PACKAGE...: the files of Debian packages, but not what they depend on, unpacked in FOLDER.
+unpack_packages() {
+    unpacked=$1
+    shift
+    [ ! -e "$unpacked/done" ] || return 0
+    mkdir -p "$unpacked"
+    (cd "$unpacked" && apt-get -q download "$@" >download.log 2>&1 &&
+        for package in *.deb; do dpkg -x "$package" . || exit 1; done && touch done)
+}
+
 apt_get() {
     $root env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"
 }

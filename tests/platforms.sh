@@ -141,12 +141,6 @@ platform() {
 host="g++-12 make doctest-dev libglm-dev libboost-dev"
 # Debian's libc++ 14 and 19 cannot be installed side by side: the older one is unpacked here.
 libcxx=$out/libc++-14.files/usr/lib/llvm-14
-unpack_libcxx_14() {
-    [ ! -e "$libcxx/lib/libc++.a" ] || return 0
-    mkdir -p "$out/libc++-14.files"
-    (cd "$out/libc++-14.files" && apt-get -q download libc++-14-dev libc++abi-14-dev >download.log 2>&1 &&
-        for package in *.deb; do dpkg -x "$package" . || exit 1; done)
-}
 start_wine() {
     wine_prefix=$out/wine
     export WINEPREFIX="$wine_prefix" WINEDEBUG=-all WINEDLLOVERRIDES="mscoree=;mshtml=;winemenubuilder.exe="
@@ -158,7 +152,7 @@ get() {
     shift
     (install_packages "$@") || return 1
     case $name in
-    libc++-14) unpack_libcxx_14 ;;
+    libc++-14) unpack_packages "$out/libc++-14.files" libc++-14-dev libc++abi-14-dev ;;
     windows) start_wine ;;
     esac
 }

@@ -28,10 +28,15 @@ libraries="doctest-dev libglm-dev libeigen3-dev"
 oracle="libboost-dev libgmp-dev"
 examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
 renderers="libopenscenegraph-dev xvfb" # somebody else's, and a display that nobody sees, for a window
+macros="libx11-dev" # that others' headers define
 opengl="libgl1-mesa-dri libgles2" # Mesa draws where there is no GPU
 shaders="glslang-dev glslang-tools spirv-tools" # the first names files of the second
 # shellcheck disable=SC2086  # one word a package
-install_packages $compilers $tools $emulators $x86_32 $microsoft $libraries $oracle $examples $renderers $opengl $shaders
+install_packages $compilers $tools $emulators $x86_32 $microsoft $libraries $oracle $examples $renderers $macros $opengl $shaders
+
+# Of Qt the headers alone are read.
+make_build_folder
+unpack_packages build/qt qtbase5-dev || fail "qtbase5-dev could not be fetched, see build/qt/download.log"
 
 # follow COMMAND...: waits for the last process in the background. Until then says what COMMAND prints: every 20 seconds,
 # or on a terminal every second on the same line.
@@ -64,7 +69,6 @@ say_tested() {
 }
 
 jobs=$(nproc)
-make_build_folder
 echo "$me: configuring and building in build/dev"
 cmake --preset dev -DLIGHTBIN_ALL_TESTS=ON >build/dev.log 2>&1 || { cat build/dev.log; fail "the configuration failed"; }
 cmake --build --preset dev -j "$jobs" ${quick:+--target quick} >build/dev-build.log 2>&1 &

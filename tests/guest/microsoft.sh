@@ -25,6 +25,19 @@ for registers in xmm ymm zmm; do
     [ "$used" -gt 500 ]
 done
 
+# Behind Windows' own header, which defines many words as macros.
+sh "$here/../../packaging/single_header.sh" "$work/single.hpp" >/dev/null
+for library in single.hpp "$(cd "$here/../../include" && echo lightbin/*.hpp)"; do
+    # shellcheck disable=SC2086  # a line a header
+    {
+        echo '#include <windows.h>'
+        printf '#if !defined(near)\n#error "near is no macro"\n#endif\n'
+        printf '#include <%s>\n' $library
+        echo 'lightbin::Binner<> binner;'
+    } >"$work/behind.cpp"
+    compile -std=c++20 -I "$work" -fsyntax-only "$work/behind.cpp"
+done
+
 [ "${2-}" = alone ] || exit 0
 count=0
 for header in $(cd "$here/../../include" && find lightbin -maxdepth 1 -name '*.hpp'); do

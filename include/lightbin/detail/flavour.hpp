@@ -5,7 +5,14 @@
 // by the linker.
 //
 // What a compiler takes for granted is a rung of a ladder, each with all below it, and some single extensions.
+//
+// All other headers read this one before anything else, so it also refuses what is not C++20. After #error gcc and clang
+// would go on to hundreds of errors; a file that does not exist ends every compiler, by one error that shows its name.
 #pragma once
+
+#if (defined(_MSVC_LANG) ? _MSVC_LANG : __cplusplus) <= 201703L
+#include "lightbin wants C++20, which the flag -std=c++20 gives (Microsoft's: /std:c++20)"
+#endif
 
 #if defined(__AVX512F__)
 #define LIGHTBIN_FLAVOUR_RUNG _avx512
