@@ -120,20 +120,24 @@ public:
     /// Returns what was read from the matrix, and what looks like a mistake: std::puts(to_string(view.summary()).c_str()).
     ViewSummary summary() const {
         const bool flat = orthographic();
-        const auto size = [&](const detail::ImageAxis& axis, int side) {
-            const double low = slope(axis, 0), high = slope(axis, side);
+        const Matrix& m = projection_;
+        // From NDC -1 to 1, as an empty viewport has no two sides.
+        const auto size = [&](int axis) {
+            const double w = flat ? w_offset_ : w_scale_,
+                         offset = flat ? m[3][axis] : static_cast<double>(camera_.z_sign) * m[2][axis];
+            const double low = (-w - offset) / m[axis][axis], high = (w - offset) / m[axis][axis];
             return detail::abs_of(flat ? high - low
                                        : (detail::arctan_of(high) - detail::arctan_of(low)) *
                                              (180 / 3.14159265358979324));
         };
-        const Matrix& m = projection_;
         // At a view depth of 1, or anywhere: w by scale is half of the image's width or height.
-        const double aspect = detail::abs_of(m[1][1] / m[0][0]),
-                     pixel_aspect = aspect * viewport_.height / viewport_.width;
+        const double aspect = detail::abs_of(m[1][1] / m[0][0]);
         const auto is_one = [](double x) { return detail::abs_of(x) == 1; };
+        const bool never_minus_one = !flat && reversed_ && ndc(0) < 0 && z_scale_ + 0.999 * w_scale_ > 0;
+        const double wider = detail::abs_of(aspect * viewport_.height - viewport_.width);
         return {flat,
-                size(camera_.x, viewport_.width),
-                size(camera_.y, viewport_.height),
+                size(0),
+                size(1),
                 aspect,
                 depth_at(ndc(reversed_ ? 1 : 0), 0),
                 depth_at(ndc(reversed_ ? 0 : 1), 0),
@@ -148,7 +152,8 @@ public:
                 flat && is_one(m[0][0]) && is_one(m[1][1]) && is_one(m[2][2]),
                 m[0][0] < 0 && m[1][1] < 0,
                 flat && far_depth() <= 0,
-                tile_count() > 0 && !(detail::abs_of(pixel_aspect - 1) <= 0.02)};
+                never_minus_one,
+                tile_count() > 0 && !(wider <= 0.02 * viewport_.width)};
     }
 
     /// View depth of the near plane, rounded down, and of the far plane, rounded up (+inf where there is

@@ -33,6 +33,9 @@ struct ViewSummary {
     bool looks_turned;
     /// An orthographic one, all of whose depths are behind the eye, as with reversed Z that ViewOptions does not say.
     bool looks_behind;
+    /// A perspective one with reversed Z whose depths end before -1 however far away, as with depths from 0 to 1 that
+    /// ViewOptions does not say. The far plane is taken to be at infinity then.
+    bool looks_zero_to_one;
     /// The viewport's pixels are not as wide as high, by more than 2 %: its size is stale, or the aspect is inverted.
     bool pixels_not_square;
 };
@@ -58,6 +61,7 @@ template <class Text = std::string> Text to_string(const ViewSummary& view) {
         line += "; is this the view matrix, or an identity, in place of the projection?";
     if (view.looks_turned) line += "; upside down: degrees where radians are wanted?";
     if (view.looks_behind) line += "; all of it is behind the eye: is ViewOptions::reversed_z right?";
+    if (view.looks_zero_to_one) line += "; no depth reaches -1: is ViewOptions::clip_depth right?";
     if (view.pixels_not_square)
         line += "; pixels are not square: is the viewport's size stale, or the aspect inverted?";
     return line;

@@ -227,29 +227,113 @@ TEST_CASE("a view says what it read, and what is seldom meant") {
         const std::string line = to_string(of);
         CHECK(std::count(line.begin(), line.end(), '?') == of.looks_transposed + of.looks_like_view_matrix +
                                                                of.looks_turned + of.looks_behind +
-                                                               of.pixels_not_square);
+                                                               of.looks_zero_to_one + of.pixels_not_square);
         return std::vector<bool>{of.looks_transposed, of.looks_like_view_matrix, of.looks_turned,
-                                 of.looks_behind, of.pixels_not_square};
+                                 of.looks_behind,     of.looks_zero_to_one,      of.pixels_not_square};
     };
     using Doubts = std::vector<bool>;
     for (const auto& fine : {read, vulkan, flat, summary(3.0f * good), summary(good, {1366, 768}),
                              summary(glm::infinitePerspective(1.0f, 16.0f / 9, 0.1f)), summary(good, {})})
-        CHECK(doubts(fine) == Doubts{false, false, false, false, false});
+        CHECK(doubts(fine) == Doubts{false, false, false, false, false, false});
     for (const float z_near : {0.1f, 0.2f, 0.4f, 1.0f, 3.0f})
         CHECK(doubts(summary(glm::transpose(glm::perspective(1.0f, 16.0f / 9, z_near, 512.0f)))) ==
-              Doubts{true, false, false, false, false});
-    CHECK(doubts(summary(glm::mat4(1.0f), {100, 100})) == Doubts{false, true, false, false, false});
+              Doubts{true, false, false, false, false, false});
+    CHECK(doubts(summary(glm::mat4(1.0f), {100, 100})) == Doubts{false, true, false, false, false, false});
     CHECK(doubts(summary(glm::translate(glm::mat4(1.0f), {1.0f, 2.0f, 3.0f}), {100, 100})) ==
-          Doubts{false, true, false, true, false});
+          Doubts{false, true, false, true, false, false});
     CHECK(doubts(summary(glm::perspective(60.0f, 16.0f / 9, 0.25f, 512.0f))) ==
-          Doubts{false, false, true, false, false});
-    CHECK(doubts(summary(good, {1080, 1920})) == Doubts{false, false, false, false, true});
-    CHECK(doubts(summary(good, {1280, 1024})) == Doubts{false, false, false, false, true});
+          Doubts{false, false, true, false, false, false});
+    CHECK(doubts(summary(good, {1080, 1920})) == Doubts{false, false, false, false, false, true});
+    CHECK(doubts(summary(good, {1280, 1024})) == Doubts{false, false, false, false, false, true});
     const glm::mat4 reversed = glm::orthoRH_ZO(-4.0f, 4.0f, -4.0f, 4.0f, 100.0f, 0.1f);
     CHECK(doubts(summary(reversed, {100, 100}, {.clip_depth = ClipDepth::zero_to_one})) ==
-          Doubts{false, false, false, true, false});
+          Doubts{false, false, false, true, false, false});
     CHECK(doubts(summary(reversed, {100, 100}, {.clip_depth = ClipDepth::zero_to_one, .reversed_z = true})) ==
-          Doubts{false, false, false, false, false});
+          Doubts{false, false, false, false, false, false});
+    for (const float z_far : {1.0f, 512.0f, 1e9f}) {
+        const glm::mat4 zero_to_one = glm::perspectiveRH_ZO(1.0f, 16.0f / 9, z_far, 0.25f);
+        CHECK(doubts(summary(zero_to_one)) == Doubts{false, false, false, false, true, false});
+        CHECK(doubts(summary(zero_to_one, full_hd, {.clip_depth = ClipDepth::zero_to_one})) ==
+              Doubts{false, false, false, false, false, false});
+        CHECK(doubts(summary(glm::perspectiveRH_NO(1.0f, 16.0f / 9, z_far, 0.25f))) ==
+              Doubts{false, false, false, false, false, false});
+    }
+}
+
+namespace {
+
+/// What a projection matrix is made of.
+struct Made {
+    bool flat;
+    ClipDepth clip;
+    bool reversed;
+    double forward, far;
+    int flip_x, flip_y;
+};
+
+void check_summary(const Made& made, lightbin::Extent viewport) {
+    const auto [flat, clip, reversed, forward, far, flip_x, flip_y] = made;
+    const double left = -0.3, right = 0.5, low = -0.2,
+                 high = 0.7;  // where depth is 1; orthographic: anywhere
+    // z_clip = a depth + b, so that z_ndc is `first` on the near plane and `last` on the far one.
+    const double near = 0.25, lower = clip == ClipDepth::zero_to_one ? 0 : -1, first = reversed ? 1 : lower,
+                 last = reversed ? lower : 1;
+    double a = (last - first) / (far - near), b = first - a * near;
+    if (!flat) {
+        b = std::isinf(far) ? (first - last) * near : (first - last) * near * far / (far - near);
+        a = std::isinf(far) ? last : first - b / near;
+    }
+    double m[4][4] = {};
+    double* const shift = m[flat ? 3 : 2];
+    m[0][0] = flip_x * 2 / (right - left);
+    m[1][1] = flip_y * 2 / (high - low);
+    shift[0] = flip_x * (right + left) / (left - right) * (flat ? 1 : forward);
+    shift[1] = flip_y * (high + low) / (low - high) * (flat ? 1 : forward);
+    m[2][2] = forward * a;
+    m[3][2] = b;
+    shift[3] = flat ? 1 : forward;
+    const auto view = View::from_projection(m, viewport, {.clip_depth = clip, .reversed_z = reversed});
+    REQUIRE(view);
+
+    const auto read = view->summary();
+    const auto is = [](double value) { return doctest::Approx(value).epsilon(1e-9); };
+    const auto degrees = [](double from, double to) { return glm::degrees(std::atan(to) - std::atan(from)); };
+    CHECK(read.orthographic == flat);
+    CHECK(read.x_size == is(flat ? right - left : degrees(left, right)));
+    CHECK(read.y_size == is(flat ? high - low : degrees(low, high)));
+    CHECK(read.aspect == is((right - left) / (high - low)));
+    CHECK(read.near_depth == is(near));
+    if (std::isinf(far))
+        CHECK(read.far_depth == far);
+    else
+        CHECK(read.far_depth == is(far));
+    CHECK(read.looks_down_negative_z == (forward < 0));
+    CHECK(read.reversed_z == reversed);
+    CHECK(read.x_flipped == (flip_x < 0));
+    CHECK(read.y_flipped == (flip_y < 0));
+    CHECK(!read.looks_zero_to_one);
+    CHECK(read.pixels_not_square == (viewport.width > 0 && viewport.height > 0));
+    CHECK(to_string(read).find("nan") == std::string::npos);
+}
+
+}  // namespace
+
+TEST_CASE("a summary has the numbers that the matrix was made of") {
+    const double inf = std::numeric_limits<double>::infinity();
+    for (const bool flat : {false, true})
+        for (const ClipDepth clip : {ClipDepth::minus_one_to_one, ClipDepth::zero_to_one})
+            for (const bool reversed : {false, true})
+                for (const double forward : {-1.0, 1.0})
+                    for (const double far : {3.0, 100.0, 1e5, flat ? 7.0 : inf})
+                        for (const auto& [flip_x, flip_y] : {std::pair(1, 1), {-1, 1}, {1, -1}})
+                            for (const lightbin::Extent viewport : {full_hd, {0, 0}, {640, 0}, {0, 480}}) {
+                                CAPTURE(flat);
+                                CAPTURE(to_string(clip));
+                                CAPTURE(reversed);
+                                CAPTURE(far);
+                                CAPTURE(viewport.width);
+                                check_summary({flat, clip, reversed, forward, far, flip_x, flip_y}, viewport);
+                            }
 }
 
 TEST_CASE("a view's grid can be made anew with other tiles") {
