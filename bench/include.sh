@@ -10,10 +10,7 @@ cd "$(dirname "$0")/.."
 rounds=9
 while [ $# -gt 0 ]; do
     case $1 in
-    -h | --help)
-        sed -n '2,/^set/s/^# \{0,1\}//p' $me
-        exit
-        ;;
+    -h | --help) help ;;
     --rounds)
         [ $# -gt 1 ] || fail "--rounds needs a number"
         rounds=$2

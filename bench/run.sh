@@ -57,11 +57,15 @@ binning | report | error | ablation | advise | frames | spots | stability)
     program=$1
     shift
     ;;
--h | --help)
-    sed -n '2,/^set/s/^# \{0,1\}//p' bench/run.sh
-    exit
-    ;;
 esac
+options="--quick" words="scenes (.glb)" pattern='.*\.glb'
+case $program in
+binning) options="--quick --benchmark_..." ;;
+spots) options="--quick --tightness --time" words=words pattern='[^-].*' ;;
+advise) options="--quick --avx2 --sse2 --scalar" ;;
+frames) options="--quick --pictures" ;;
+esac
+takes "$program, $options, $words" "$(echo "$options" | sed 's/ /|/g; s/\.\.\./.*/')|$pattern" "$@"
 
 packages="g++ cmake ninja-build gnuplot-nox libglm-dev libbenchmark-dev libboost-dev libgmp-dev libtbb-dev libtinygltf-dev"
 [ $program != frames ] || packages="$packages libstb-dev libepoxy-dev libegl-dev libgl-dev libgl1-mesa-dri"

@@ -8,16 +8,8 @@ me=bench/web.sh
 cd "$(dirname "$0")/.."
 . tests/packages.sh
 
-quick=
-case ${1-} in
-'') ;;
---quick) quick=--quick ;;
--h | --help)
-    sed -n '2,/^set/s/^# \{0,1\}//p' $me
-    exit
-    ;;
-*) fail "cannot do '$1': it takes --quick or --help" ;;
-esac
+takes --quick --quick "$@"
+quick=${1-}
 
 install_packages clang-14 libglm-dev emscripten node-acorn nodejs
 make_build_folder

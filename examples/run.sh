@@ -1,12 +1,33 @@
 #!/bin/sh
 # Draws a scene: `sh examples/run.sh [SCENE.glb] [options]` on Debian 12, as root or with sudo. Installs the
-# packages that are missing, builds the example programs in build/examples, hands everything to tiled_forward
-# (--help lists its options), which writes a picture and names it.
+# packages that are missing, builds the example programs in build/examples, hands everything to tiled_forward, which
+# writes a picture and names it.
 set -eu
 me=examples/run.sh
 here=$(pwd)
 cd "$(dirname "$0")/.."
 . tests/packages.sh
+
+# The program's options, a line each, as its source has them.
+options() {
+    awk '/app\.add_(option|flag)\(/ { inside = 1; name = text = "" }
+        inside {
+            ends = sub(/"\).*/, "\"")
+            while (match($0, /"[^"]*"/)) {
+                word = substr($0, RSTART + 1, RLENGTH - 2)
+                $0 = substr($0, RSTART + RLENGTH)
+                if (name == "") name = word
+                else text = text word
+            }
+            if (ends) printf "  %-18s %s\n", name, text
+            if (ends) inside = 0
+        }' examples/tiled_forward/main.cpp
+}
+case " $* " in
+*" -h "* | *" --help "*) (help) && options && exit ;;
+esac
+names=$(options | sed -n 's/^  \(-[^ ]*\).*/\1/p' | tr ',\n' '||')
+takes "a scene, the options of a list" "(${names%|})(=.*)?|-[0-9.].*|-o.*|[^-].*" "$@"
 
 build="g++ cmake ninja-build"
 libraries="libglm-dev libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"

@@ -18,10 +18,7 @@ while [ $# -gt 0 ]; do
         port=$2
         shift
         ;;
-    -h | --help)
-        sed -n '2,/^set/s/^# \{0,1\}//p' $me
-        exit
-        ;;
+    -h | --help) help ;;
     *) fail "cannot do '$1': it takes --build, --port N or --help" ;;
     esac
     shift

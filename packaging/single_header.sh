@@ -3,7 +3,10 @@
 # named, is seen from the top folder. The same sources give the same bytes.
 set -eu
 export LC_ALL=C
+me=packaging/single_header.sh
 cd "$(dirname "$0")/.."
+. tests/packages.sh
+takes "a file" "[^-].*" "$@"
 file=${1:-build/single/lightbin.hpp}
 version=$(sed -n 's/^#define LIGHTBIN_VERSION_[A-Z]* //p' include/lightbin/version.hpp | paste -s -d .)
 mkdir -p "$(dirname "$file")"

@@ -10,6 +10,7 @@ set -eu
 me=tests/campaign.sh
 cd "$(dirname "$0")/.."
 . tests/packages.sh
+takes "numbers, spots" "[1-9][0-9]*|spots" "$@"
 install_packages g++ clang-14 clang-19 libboost-dev libgmp-dev doctest-dev libglm-dev
 
 work=build/campaign

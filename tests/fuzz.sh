@@ -6,6 +6,7 @@ set -eu
 me=tests/fuzz.sh
 cd "$(dirname "$0")/.."
 . tests/packages.sh
+takes "a number of seconds" "[1-9][0-9]*" "$@"
 install_packages clang-14 libclang-rt-14-dev libboost-dev libgmp-dev
 
 seconds=${1:-60}

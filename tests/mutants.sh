@@ -4,14 +4,9 @@
 # each proof said; with NUMBERs those mutants alone.
 set -eu
 me=tests/mutants.sh
-case ${1-} in
--h | --help)
-    sed -n '2,/^set/s/^# \{0,1\}//p' "$0"
-    exit
-    ;;
-esac
 cd "$(dirname "$0")/.."
 . tests/packages.sh
+takes "numbers of mutants" "[1-9][0-9]*|--one" "$@"
 work=build/mutants
 
 # mutant PROOF FILE EXPRESSION: sed's EXPRESSION breaks include/lightbin/FILE, and the PROOF must see it: families (every

@@ -1,8 +1,27 @@
-# Read by tests/run.sh and examples/run.sh, not run by itself.
+# What the scripts share that a person runs. They read it at the top folder, after naming themselves in $me.
 
 fail() {
     echo "$me: $*" >&2
     exit 1
+}
+
+# Prints the comment at the script's head and ends.
+help() {
+    sed -n '2,/^set/s/^# \{0,1\}//p' "$me"
+    exit
+}
+
+# takes WHAT PATTERN WORD...: sees to a script's WORDs before anything is installed: prints the help where one asks for it, and
+# refuses what does not fit the PATTERN, an extended one of grep's. WHAT names what does.
+takes() {
+    what=$1 pattern=$2
+    shift 2
+    for word; do
+        case $word in
+        -h | --help) help ;;
+        esac
+        printf '%s\n' "$word" | grep -qxE -e "$pattern" || fail "cannot do '$word': it takes ${what:+$what or }--help"
+    done
 }
 
 # Installs those of the named Debian packages that are not there yet, and says so first. Where all are there,
@@ -40,10 +59,10 @@ install_packages() {
 unpack_packages() {
     unpacked=$1
     shift
-    [ ! -e "$unpacked/done" ] || return 0
+    [ ! -e "$unpacked/unpacked" ] || return 0
     mkdir -p "$unpacked"
     (cd "$unpacked" && apt-get -q download "$@" >download.log 2>&1 &&
-        for package in *.deb; do dpkg -x "$package" . || exit 1; done && touch done)
+        for package in *.deb; do dpkg -x "$package" . || exit 1; done && touch unpacked)
 }
 
 apt_get() {

@@ -23,10 +23,7 @@ for word in "$@"; do
     case $word in
     --list) listing=yes ;;
     --quick) all=lists ;;
-    -h | --help)
-        sed -n '2,/^set/s/^# \{0,1\}//p' $me
-        exit
-        ;;
+    -h | --help) help ;;
     -*) fail "cannot do '$word': it takes names of platforms, --quick, --list or --help" ;;
     *) wanted="$wanted $word" ;;
     esac

@@ -8,16 +8,8 @@ me=tests/run.sh
 cd "$(dirname "$0")/.."
 . tests/packages.sh
 
-quick=
-case $#:${1-} in
-0:) ;;
-1:--quick) quick=yes ;;
-1:-h | 1:--help)
-    sed -n '2,/^set/s/^# \{0,1\}//p' $me
-    exit
-    ;;
-*) fail "cannot do '$*': it takes nothing, --quick or --help" ;;
-esac
+takes "nothing, --quick" --quick "$@"
+quick=${1-}
 
 compilers="g++ clang-14 clang-19" # the last two to see that they have no warning to give either
 tools="cmake ninja-build pkgconf"

@@ -12,10 +12,7 @@ commit=HEAD
 inputs=20000
 while [ $# -gt 0 ]; do
     case $1 in
-    -h | --help)
-        sed -n '2,/^set/s/^# \{0,1\}//p' $me
-        exit
-        ;;
+    -h | --help) help ;;
     --inputs)
         [ $# -gt 1 ] || fail "--inputs needs a number"
         inputs=$2

@@ -8,6 +8,7 @@ set -eu
 me=tests/shaders.sh
 cd "$(dirname "$0")/.."
 . tests/packages.sh
+takes "" "" "$@"
 
 jobs=$(nproc)
 make_build_folder

@@ -6,6 +6,7 @@ set -eu
 me=tests/web.sh
 cd "$(dirname "$0")/.."
 . tests/packages.sh
+takes "" "" "$@"
 
 install_packages chromium fonts-dejavu-core nodejs g++ libtinygltf-dev
 command -v npm >/dev/null || install_packages npm

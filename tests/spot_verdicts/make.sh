@@ -3,14 +3,9 @@
 # ten seconds. The same compiler and C library give the same bytes.
 set -eu
 me=tests/spot_verdicts/make.sh
-case ${1-} in
--h | --help)
-    sed -n '2,/^set/s/^# \{0,1\}//p' "$0"
-    exit
-    ;;
-esac
 cd "$(dirname "$0")/../.."
 . tests/packages.sh
+takes "" "" "$@"
 install_packages g++ libboost-dev libgmp-dev
 make_build_folder
 work=build/spot_verdicts
