@@ -27,7 +27,7 @@ case " $* " in
 *" -h "* | *" --help "*) (help) && options && exit ;;
 esac
 names=$(options | sed -n 's/^  \(-[^ ]*\).*/\1/p' | tr ',\n' '||')
-takes "a scene, the options of a list" "(${names%|})(=.*)?|-[0-9.].*|-o.*|[^-].*" "$@"
+takes "a scene, the options that --help lists" "(${names%|})(=.*)?|-[0-9.].*|-o.*|[^-].*" "$@"
 
 build="g++ cmake ninja-build"
 libraries="libglm-dev libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
