@@ -190,10 +190,11 @@ TEST_CASE("a margin takes a light to no slice that is further off") {
     const Slices slices = *Slices::from_boundaries(std::vector<float>{-8, 0, 8, 32}), wide = slices.with_margin(0.25f);
     CHECK(std::equal(slices.boundaries().begin(), slices.boundaries().end(), wide.boundaries().begin()));
     CHECK(wide.slice_at(7.9f) == 2);
+    const Slices copy = wide;
     const auto slices_of = [&](float depth, float radius) {
         const std::vector<Sphere> light = {{0, 0, -depth, radius}};
         Binner<Options{.slicing = Slicing::clusters}> binner;
-        const auto grid = binner.bin(test::view({64, 64}, 64), light, {.slices = wide});
+        const auto grid = binner.bin(test::view({64, 64}, 64), light, {.slices = copy});
         std::vector<int> met;
         for (int slice = 0; slice < wide.count(); ++slice)
             if (!grid->lights_in(0, 0, slice).empty()) met.push_back(slice);
@@ -208,6 +209,16 @@ TEST_CASE("a margin takes a light to no slice that is further off") {
     CHECK(slices_of(-2, 3) == std::vector<int>{1, 2});
     CHECK(slices_of(-3, 4) == std::vector<int>{0, 1, 2});
     CHECK(slices_of(5, endless).size() == 5);
+    // Bins, whose lights are found by the table alone.
+    const Slices even = *Slices::linear(100, 0, 100);
+    const std::vector<Sphere> light = {{0, 0, -42, 2}};
+    Binner<Options{.slicing = Slicing::z_bins}> binner;
+    const auto grid = binner.bin(test::view({64, 64}, 64), light, {.slices = even.with_margin(0.25f)});
+    for (std::size_t bin = 0; bin < 100; ++bin) {
+        const BinRange range = grid->ranks().bins[bin];
+        if (bin >= 30 && bin <= 55) CHECK(range.least <= range.greatest);
+        if (bin < 25 || bin > 60) CHECK(range.least > range.greatest);
+    }
 }
 
 TEST_CASE("slices that are none, or do not ascend, are refused by name") {
