@@ -97,8 +97,7 @@ template <DepthTest depth_test, Slicing slicing = Slicing::none> struct Inputs {
 /// Returns the inputs of a Binner whose options vary, such as with_options() gives them: what they don't need is
 /// left out.
 template <Options options>
-requires(options.slicing ==
-         Slicing::none) Inputs<options.depth_test> inputs_for([[maybe_unused]] const ZBounds& bounds) {
+requires(options.slicing == Slicing::none) Inputs<options.depth_test> inputs_for([[maybe_unused]] const ZBounds& bounds) {
     if constexpr (options.depth_test == DepthTest::none)
         return {};
     else

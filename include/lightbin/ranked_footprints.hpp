@@ -34,7 +34,7 @@ template <Footprint footprint, bool with_spheres> class RankedFootprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette;
 
 public:
-    /// Takes each light to the bins that its depths, z - r to z + r, meet, their ends included; also to the one before or
+    /// Takes each light to the bins that its depths, z - r to z + r and the margin, meet, ends included; also to the one before or
     /// behind them where they end close to the boundary.
     ///
     /// spots  the lights are spots

@@ -30,7 +30,7 @@ template <Footprint footprint> class SlicedFootprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette;
 
 public:
-    /// Takes each light to the slices that its depths, z - r to z + r, meet, their ends included. Errors: there are more
+    /// Takes each light to the slices that its depths, z - r to z + r and the margin, meet, ends included. Errors: there are more
     /// than 2^32 - 1 cells, or pairs of a light and a slice.
     ///
     /// spots  the lights are spots

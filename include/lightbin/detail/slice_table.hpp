@@ -64,7 +64,7 @@ public:
     /// How far the depths of lights and slices are widened, as a share of themselves: see Slices::with_margin().
     float margin = 0;
 
-    /// Returns a depth less and plus the margin, rounded outward: what a first depth and a last one are widened to.
+    /// Returns a depth lowered or raised by the margin and rounded outward: where a widened interval begins or ends.
     float nearer(float depth) const { return margin > 0 ? float_below(moved(depth, -margin)) : depth; }
     float farther(float depth) const { return margin > 0 ? float_above(moved(depth, margin)) : depth; }
 
