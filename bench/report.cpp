@@ -91,6 +91,9 @@ struct SceneReport {
 bool ours(const Way& way) {
     return way.ours && !way.variant;
 }
+bool with_bounds(const Way& way) {
+    return ours(way) && way.needs_bounds();
+}
 bool without_bounds(const Way& way) {
     return ours(way) && !way.needs_bounds();
 }
@@ -281,7 +284,7 @@ std::string sentence(const SceneReport& report) {
     if (best.way.needs_bounds())
         s += "without Z bounds " + words(bare.way) + ", " + more(bare, best);
     else {
-        const Result& bounded = report.best(ours, total_without_bounds);
+        const Result& bounded = report.best(with_bounds, total_without_bounds);
         const double worth = bare.total - total_without_bounds(bounded);
         if (worth > 0)
             s += words(bounded.way) +
