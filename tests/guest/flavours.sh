@@ -23,7 +23,8 @@ x86="
     AVX512(ER|PF|VP2INTERSECT) AVX5124(FMAPS|VNNIW)               want an intrinsic, as do all of these
     ADX LWP RTM HLE FSGSBASE RDRND RDSEED RDPID RDPRU INVPCID PKU PTWRITE PCONFIG SGX SERIALIZE TSXLDTRK UINTR USERMSR
     HRESET ENQCMD MOVDIRI MOVDIR64B CLDEMOTE CLFLUSHOPT CLWB CLZERO CLFLSH MWAIT MWAITX WAITPKG WBNOINVD AMX_?.* FXSR
-    XSAVE XSAVEC XSAVEOPT XSAVES LAHF_SAHF SAHF"
+    XSAVE XSAVEC XSAVEOPT XSAVES LAHF_SAHF SAHF
+    EGPR PPX PUSH2POP2 NDD CCMP NF CF ZU APX_INLINE.*             parts of APX, which no processor has alone"
 arm="
     ARM_FEATURE_(AES|CRYPTO|SHA2|SHA512|SM3|SM4|CRC32|SVE2?_(AES|SHA3|SM4|BITPERM))   ciphers and checksums
     ARM_FEATURE_(FP16_(FML|VECTOR.*)|BF16.*|SVE_BF16|SVE_B16B16|FP8.*|SSVE_FP8.*) ARM_BF16.* ARM_FP16.*   floats of 16 and 8 bits
@@ -89,8 +90,7 @@ flags=$("$gcc" --help=target -Q | sed -n 's/^  \(-m[^ =<]*\)[ \t].*/\1/p' |
 x86_64 "$gcc" -m64 "$flags" $("$gcc" --help=target -Q | sed -n '/valid arguments for -march=/{n;s/ native//;p}')
 # clang lists no flags of x86: those of gcc and what is newer
 newer="-mavx10.1-256 -mavx10.1-512 -mavx10.2 -mavxifma -mavxneconvert -mavxvnniint8 -mavxvnniint16 -mcmpccxadd -mevex512 -mapxf
-    -mapx-features=egpr -mapx-features=ppx -mapx-features=push2pop2 -mapx-features=ndd -mapx-features=ccmp
-    -mapx-features=nf -mapx-features=cf -mraoint -msha512 -msm3 -msm4 -mprefetchi -musermsr"
+    -mraoint -msha512 -msm3 -msm4 -mprefetchi -musermsr"
 # shellcheck disable=SC2046  # several words
 x86_64 "$clang" --target=x86_64-linux-gnu "$flags $newer" $(processors "$clang" --target=x86_64-linux-gnu)
 
