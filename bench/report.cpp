@@ -434,7 +434,7 @@ void write_page(const std::vector<SceneReport>& reports) {
         line("\n## " + report.name +
              text("\n%zu lights, %zu view%s; %.2f evaluations a pixel are needed.\n", report.lights,
                   report.views, report.views > 1 ? "s" : "", report.needed));
-        line("![Each method by tile size. Bars: 10th to 90th percentile of frames. Black: the Pareto front.]"
+        line("![Each method by tile size. Bars: 10th to 90th percentile of frames. Thick: the Pareto front.]"
              "(report.gp methods " +
              report.name + ")");
         if (!report.endings.empty())
