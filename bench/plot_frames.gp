@@ -8,6 +8,7 @@ count_of_curves = words(colours)
 panels = system("tail -n +2 frames_paths.csv | cut -d'\"' -f2 | uniq | tr ' ' '_'")
 rows_of(panel, curve) = sprintf("< tr ' ' '_' < frames_paths.csv | grep -F '\"%s\",' | grep -F ',%s,'", panel, system("echo '".curve."' | tr ' ' '_'"))
 do for [i = 1 : count_of_curves] { set linetype i linecolor rgb word(colours, i) linewidth 2.2 pointtype 7 pointsize 0.6 }
+title_of(curve, what) = curve.(curve eq "TiledForward-PreZ both (GPU)" && what == 4 ? " = TiledDeferred" : "")
 count = words(panels)
 columns = count > 1 ? 2 : 1
 rows = (count + columns - 1) / columns
@@ -29,7 +30,7 @@ do for [what = 4 : 5] {
         do for [i = 1 : count] {
             row = (i - 1) / columns
             column_ = (i - 1) % columns
-            set lmargin at screen (620.0 * column_ + 80) / width
+            set lmargin at screen (620.0 * column_ + 90) / width
             set rmargin at screen (620.0 * column_ + 600) / width
             set tmargin at screen 1 - (330.0 * row + 40) / height
             set bmargin at screen 1 - (330.0 * row + 275) / height
@@ -43,7 +44,7 @@ do for [what = 4 : 5] {
         unset border; unset tics; unset xlabel; unset ylabel; unset title; unset grid; unset logscale
         set xrange [0 : 1]; set yrange [0 : 1]
         set key center center horizontal maxrows 4 samplen 2 width -2 noenhanced
-        plot for [k = first : count_of_curves] NaN with linespoints linetype k title word(curves, k)
+        plot for [k = first : count_of_curves] NaN with linespoints linetype k title title_of(word(curves, k), what)
         unset multiplot
         set border; set tics; set autoscale
     }

@@ -117,8 +117,11 @@ GLuint GpuMemory::target(const std::string& name, GLenum format, int width, int 
         glTexImage2DMultisample(kind, samples, format, width, height, GL_TRUE);
         GLint given = 0;  // more samples than were asked for, if there is no such number
         glGetTexLevelParameteriv(kind, 0, GL_TEXTURE_SAMPLES, &given);
-        if (given != samples)
+        if (given != samples) {
+            while (glGetError() != GL_NO_ERROR) {  // or whoever draws next is told of it
+            }
             throw std::runtime_error("this OpenGL has no targets of " + std::to_string(samples) + " samples");
+        }
     } else {
         glTexImage2D(kind, 0, static_cast<GLint>(format), width, height, 0, texels.layout, texels.type,
                      nullptr);

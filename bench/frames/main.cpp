@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // frames [--quick] [--counts] [--pictures] [SCENE.glb ...]: whole frames by every technique of the papers, on the made scene
 // and on the named ones, or those of bench/scenes.
+#include "conclusions.hpp"
 #include "plan.hpp"
 #include "report.hpp"
 #include "runner.hpp"
@@ -121,6 +122,7 @@ int run(Arguments arguments) {
     const std::vector<Row> rows =
         with_computed_memory(draw_all(plan, run, pictures, left_out), sample_counts);
     print(rows);
+    print_conclusions(rows);
     if (!left_out.lines().empty()) std::printf("\n");
     for (const std::string& line : left_out.lines())
         std::printf("%s\n", line.c_str());

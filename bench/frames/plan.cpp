@@ -91,7 +91,8 @@ void add_file(std::vector<SceneJobs>& plan, const std::string& file, bool quick)
 std::vector<SceneJobs> make_plan(const std::vector<std::string>& files, bool quick) {
     std::vector<SceneJobs> plan;
     Scene made = make_scene(1024);
-    const std::vector<Camera> flight = made_flight(views_of_a_path), still = {made.cameras[0], made.cameras[1]};
+    const std::vector<Camera> flight = made_flight(views_of_a_path),
+                              still = {made.cameras[0], made.cameras[1]};
     add_scene(plan, made, flight, FewLights::stand, quick);
     made.transparent.clear();
     for (const std::size_t lights : {128u, 256u, 512u, 1024u}) {

@@ -121,13 +121,6 @@ void print_samples(const std::string& title, std::vector<Row> rows) {
         }
         std::printf("\n");
     }
-    for (const Row& row : rows)
-        for (const auto& [pass, times] : row.passes)
-            if (pass == "reduce" && row.technique == "TiledForward-PreZ box (GPU)" &&
-                row.lights == rows.back().lights)
-                std::printf("Z bounds of depths of %s a pixel: %.2f ms (%.2f to %.2f)\n",
-                            counted(static_cast<std::size_t>(row.samples), "sample").c_str(), times.median,
-                            times.least, times.most);
 }
 
 void write_csv(const std::string& name, const std::vector<Row>& rows) {

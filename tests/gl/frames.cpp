@@ -268,6 +268,7 @@ TEST_CASE("several samples a pixel") {
         CHECK_THROWS_WITH(draw(stage, tiled_forward(), camera, settings),
                           ("this OpenGL has no targets of " + std::to_string(none) + " samples").c_str());
     }
+    CHECK(glGetError() == GL_NO_ERROR);
     settings.samples = 1;
     // What is refused leaves no error behind.
     CHECK(draw(stage, forward_every_light(), camera, settings) == one);
@@ -349,7 +350,7 @@ TEST_CASE("evaluations are those of the lists") {
                 const double radius = static_cast<double>(light.radius);
                 const auto beyond = [&](glm::dvec3 p,
                                         glm::dvec3 q) {  // the tile is on the left of the way from p to q
-                    const double away = glm::dot(glm::normalize(glm::cross(q, p)), centre);
+                    const double away = glm::dot(glm::normalize(glm::cross(p, q)), centre);
                     return away > radius;
                 };
                 within_planes += (beyond(a, b) || beyond(b, c) || beyond(c, d) || beyond(d, a) ||
