@@ -47,7 +47,7 @@ Way with(Way way, bool Way::*part, bool value) {
     return way;
 }
 
-// Every part of a way; one twice where it could be had in two ways, of which the cheaper is to be taken.
+// Every part of a way; one twice, side by side, where it can be had in two ways, of which the cheaper counts.
 std::vector<Part> parts_of(const Way& way, const lightbin::Advice& advice, const WayCosts& costs) {
     std::vector<Part> parts;
     const auto add_switch = [&](const char* name, bool Way::*part, const std::string& on, const char* off) {
@@ -144,15 +144,18 @@ Found find(WayCosts& costs) {
         found.untiled = measured[2];
         found.everything = measured[3];
         const double total = found.cost.total();
+        std::vector<Part> parts;
         for (std::size_t i = 0; i < found.parts.size(); ++i) {
-            found.parts[i].gain = total - measured[4 + i].total();
-            found.parts[i].verdict.saved_ns = -found.parts[i].gain;
+            Part& part = found.parts[i];
+            part.gain = total - measured[4 + i].total();
+            part.verdict.saved_ns = -part.gain;
+            const bool again = !parts.empty() && parts.back().verdict.part == part.verdict.part;
+            if (!again)
+                parts.push_back(part);
+            else if (part.gain > parts.back().gain)
+                parts.back() = part;
         }
-        std::erase_if(found.parts, [all = found.parts](const Part& part) {
-            return std::any_of(all.begin(), all.end(), [&](const Part& other) {
-                return other.verdict.part == part.verdict.part && other.gain > part.gain;
-            });
-        });
+        found.parts = std::move(parts);
         const Part* best = nullptr;
         double most = 0;
         for (const Part& part : found.parts) {
@@ -272,10 +275,10 @@ Prices prices_of(const Scene& scene, const Camera& camera, const AdviseSettings&
         words += text("costs        %.4g ns a light evaluation%s, %.3g ns a byte of the lists;\n",
                       prices.evaluation_ns, told ? "" : " (assumed: there are too few to time)",
                       prices.upload_byte_ns);
-        words += text("             the pre-pass %.3f ms; Z bounds of it %.3f ms there",
+        words += text("             the pre-pass %.3f ms; its Z bounds %.3f ms by a shader",
                       1e-6 * times.depth_pass_ns, 1e-6 * times.gpu_reduction_ns);
-        words += reads_back ? text(", or %.3f ms to read it back\n", 1e-6 * times.read_back_ns)
-                            : std::string("\n");
+        words +=
+            reads_back ? text("; to read it back %.3f ms\n", 1e-6 * times.read_back_ns) : std::string("\n");
     } catch (const std::runtime_error& problem) {
         words = text("OpenGL       none: %.80s\n", problem.what());
         words += text(

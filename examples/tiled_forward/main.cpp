@@ -97,9 +97,13 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
     app.add_flag("--stale-size", options.stale_size,
                  "Make the lists for a picture of half the size, to see --check-in-shader fail");
     app.add_flag(
-        "--advise", options.advise,
-        "Draw no picture, but measure what each part of binning saves in this scene on this machine, and say "
-        "what to leave out, and the code; of --view, or else of the view that shades most");
+           "--advise", options.advise,
+           "No picture: measure what each part of binning saves a frame of this scene on this machine, and "
+           "say what to leave out, with the code; of --view, or else of the view that shades most")
+        ->excludes(app.get_option("--check"))
+        ->excludes(app.get_option("--check-in-shader"))
+        ->excludes(app.get_option("--heat-map"))
+        ->excludes(app.get_option("--msaa"));
     app.add_option("--drop-light", options.frame.dropped_light,
                    "Leave this light out of the lists, to see --check and --check-in-shader fail")
         ->check(CLI::NonNegativeNumber);

@@ -36,7 +36,7 @@ struct WayCost {
 
 // What the processor can't tell.
 struct Prices {
-    double evaluation_ns = 0.02, upload_byte_ns = 0.1;
+    double evaluation_ns = lightbin::Costs().evaluation_ns, upload_byte_ns = 0.1;
     double depth_pass_ns = 0;
     double read_back_ns = 0;             // of the depth buffer; infinite where it can't be
     double gpu_reduction_ns = HUGE_VAL;  // in place of the read-back and the reduction here

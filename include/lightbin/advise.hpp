@@ -86,18 +86,19 @@ struct Verdict {
 
 /// Returns a line such as "box          keep: saves 1.200 ms                instead: 16 px, rectangle, interval".
 inline std::string to_string(const Verdict& verdict) {
+    const bool weighed = !verdict.instead.empty(), gains = verdict.saved_ns >= 0;
+    const char* const keep = !weighed ? "keep: no other was weighed"
+                             : gains  ? "keep: saves"
+                                      : "keep: costs only";
+    const char* const leave_out = !weighed ? "leave out: was not weighed"
+                                  : gains  ? "leave out: would cost"
+                                           : "leave out: would save only";
     char line[100];
-    if (verdict.instead.empty())
-        std::snprintf(line, sizeof line, "%-12s %s", verdict.part.c_str(),
-                      verdict.keep ? "keep: no other was weighed" : "leave out: was not weighed");
-    else
-        std::snprintf(line, sizeof line, "%-12s %s %.3f ms", verdict.part.c_str(),
-                      verdict.keep            ? "keep: saves"
-                      : verdict.saved_ns >= 0 ? "leave out: would cost"
-                                              : "leave out: would save only",
-                      std::fabs(verdict.saved_ns) * 1e-6);
+    std::snprintf(line, sizeof line, "%-12s %s", verdict.part.c_str(), verdict.keep ? keep : leave_out);
     std::string words = line;
-    if (verdict.instead.empty()) return words + "\n";
+    if (!weighed) return words + "\n";
+    std::snprintf(line, sizeof line, " %.3f ms", std::fabs(verdict.saved_ns) * 1e-6);
+    words += line;
     words.resize((std::max)(words.size() + 1, std::size_t{50}), ' ');
     return words + "instead: " + verdict.instead + "\n";
 }

@@ -35,7 +35,7 @@ in_code { code = code $0 "\n"; next }
         if (substr($0, 1, 13) == sprintf("%-13s", parts[i])) {
             ++rows[i]
             verdict = substr($0, 14)
-            if (verdict !~ /^(keep: saves [0-9.]+ ms|leave out: would (cost|save only) [0-9.]+ ms) +instead: ./ &&
+            if (verdict !~ /^(keep: (saves|costs only) [0-9.]+ ms|leave out: would (cost|save only) [0-9.]+ ms) +instead: ./ &&
                 verdict !~ /^leave out: (was not weighed|no light has one|there are more)/)
                 complain("no verdict: " $0)
             kept[parts[i]] = verdict ~ /^keep/

@@ -562,6 +562,12 @@ void check_verdicts(const Advice& advice) {
             CHECK(verdict.instead == to_string(verdict.other));
             CHECK(verdict.other.total_ns == least);
             CHECK(verdict.saved_ns == least - plan.total_ns);
+            const std::string line = to_string(verdict);
+            CHECK((line.find("keep: saves ") != line.npos) == (verdict.keep && verdict.saved_ns >= 0));
+            CHECK((line.find("keep: costs only ") != line.npos) == (verdict.keep && verdict.saved_ns < 0));
+            CHECK((line.find("would cost ") != line.npos) == (!verdict.keep && verdict.saved_ns >= 0));
+            CHECK((line.find("would save only ") != line.npos) == (!verdict.keep && verdict.saved_ns < 0));
+            CHECK(line.find(" -") == line.npos);
         }
     }
 
