@@ -39,11 +39,7 @@ install_packages() {
     done
     [ -n "$missing" ] || return 0
 
-    root=
-    if [ "$(id -u)" -ne 0 ]; then
-        command -v sudo >/dev/null || fail "needs root, or sudo, to install these packages:$missing"
-        root=sudo
-    fi
+    [ -z "$root" ] || command -v sudo >/dev/null || fail "needs root, or sudo, to install these packages:$missing"
     echo "$me: installing these Debian packages${root:+ (with sudo)}:$missing"
 
     log=$(mktemp)
@@ -61,10 +57,12 @@ unpack_packages() {
     shift
     [ ! -e "$unpacked/unpacked" ] || return 0
     mkdir -p "$unpacked"
-    (cd "$unpacked" && apt-get -q download "$@" >download.log 2>&1 &&
+    (cd "$unpacked" && { apt-get -q download "$@" || { apt_get update && apt-get -q download "$@"; }; } >download.log 2>&1 &&
         for package in *.deb; do dpkg -x "$package" . || exit 1; done && touch unpacked)
 }
 
+root=
+[ "$(id -u)" -eq 0 ] || root=sudo
 apt_get() {
     $root env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"
 }

@@ -1,6 +1,5 @@
-// The names that the headers of other libraries define as macros, each as it is there or as badly as it could be. What is
-// a macro of no arguments anywhere is one here; those of arguments take any number. (neighbours.sh has the headers
-// themselves, as far as they are at hand.)
+// The names that the headers of other libraries define as macros, each as it is there, or so that no use of it could
+// compile. (neighbours.sh and microsoft.sh include the headers themselves, of those that are at hand.)
 #include <algorithm>
 #include <array>
 #include <bit>

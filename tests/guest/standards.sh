@@ -56,5 +56,8 @@ for flags in -std=c++2a -std=gnu++2a -std=c++20 -std=c++2b "-U__cplusplus -D__cp
     # shellcheck disable=SC2086  # several flags
     said $flags -w >"$work/said" || { cat "$work/said"; echo "$compiler $flags does not do" >&2; exit 1; }
 done
-! said -std=c++20 -D_MSVC_LANG=201703L >/dev/null
+if said -std=c++20 -D_MSVC_LANG=201703L -w >/dev/null; then
+    echo "$compiler accepts Microsoft's C++17" >&2
+    exit 1
+fi
 echo "$compiler: $count refusals in one sentence"
