@@ -12,8 +12,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <string>
-#include <utility>
+#include <span>
+#include <variant>
 #include <vector>
 
 /// The lights as spots, so that one test does for all.

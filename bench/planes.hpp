@@ -7,6 +7,7 @@
 
 #include <glm/vec4.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -35,9 +36,10 @@ public:
                             far_depth = with_depth ? tile_max[tile] : static_cast<float>(view.far_depth);
                 for (std::size_t i = 0; i < count; ++i) {
                     const float r = radius_[i], z = depth_[i];
-                    inside_[i] = (left.side(x_[i], z) >= -r) & (right.side(x_[i], z) <= r) &
-                                 (below.side(y_[i], z) >= -r) & (above.side(y_[i], z) <= r) &
-                                 (z + r >= near_depth) & (z - r <= far_depth);
+                    const float across = std::min(left.side(x_[i], z), -right.side(x_[i], z)),
+                                up = std::min(below.side(y_[i], z), -above.side(y_[i], z)),
+                                along = std::min(z - near_depth, far_depth - z);
+                    inside_[i] = std::min(std::min(across, up), along) >= -r;
                 }
                 for (std::size_t i = 0; i < count; ++i)
                     if (inside_[i]) indices.push_back(static_cast<std::uint32_t>(i));

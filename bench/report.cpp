@@ -48,6 +48,16 @@ struct Case {
     std::vector<BenchScene> views;
 };
 
+template <class... Values> std::string text(const char* format, Values... values) {
+    char buffer[400];
+    std::snprintf(buffer, sizeof buffer, format, values...);
+    return buffer;
+}
+
+std::string words(const Way& way) {
+    return text("%s at %d px", way.method, way.tile_size);
+}
+
 struct Result {
     Way way;
     double bounds, build, upload, shade;  ///< milliseconds a frame
@@ -121,15 +131,16 @@ void count(const std::vector<PreparedView>& views, const Way& way, const std::st
     for (const PreparedView& view : views) {
         const TiledView& tiled = view.tiled.of(way.tile_size);
         const Built built = way.build(tiled, lights_of(view.seen.scene, way.form, 0));
+        const auto width = static_cast<std::uint32_t>(view.seen.picture.size.width);
         const Reading reading = read_lists(tiled, view.seen.picture, built, view.needed);
         measured.evaluations += static_cast<double>(reading.evaluations);
         measured.bytes += static_cast<double>(built.bytes) / static_cast<double>(views.size());
         measured.misses += reading.misses;
         if (way.ours && reading.misses > 0)
-            throw std::runtime_error(scene + ": " + way.method + " of " + std::to_string(way.tile_size) +
-                                     "-pixel tiles misses light " + std::to_string(reading.light) +
-                                     " in pixel " + std::to_string(reading.pixel) + ", and " +
-                                     std::to_string(reading.misses - 1) + " more");
+            throw std::runtime_error(text("%s: %s misses light %u in pixel %u, %u, and %llu more",
+                                          scene.c_str(), words(way).c_str(), reading.light,
+                                          reading.pixel % width, reading.pixel / width,
+                                          static_cast<unsigned long long>(reading.misses - 1)));
     }
 }
 
@@ -259,16 +270,6 @@ void write_csv(const std::vector<SceneReport>& reports) {
                          e.difference.largest);
     }
     std::fclose(csv);
-}
-
-template <class... Values> std::string text(const char* format, Values... values) {
-    char buffer[400];
-    std::snprintf(buffer, sizeof buffer, format, values...);
-    return buffer;
-}
-
-std::string words(const Way& way) {
-    return text("%s at %d px", way.method, way.tile_size);
 }
 
 /// "+12 %", of a total to a lesser one.

@@ -16,7 +16,7 @@
 #       Error against run time: of every method and tile size what a frame pays (Z bounds, build, upload, light evaluations
 #       of so many nanoseconds: .02, about a GPU's, if none are given) and how many light evaluations it makes over those
 #       needed, on made scenes and those of the tests, or on the named ones; and what the picture loses by where lights
-#       end. A table with verdicts and a sentence a scene. Four minutes, --quick less than one. Writes
+#       end. A table with verdicts and a sentence a scene. Three minutes, --quick less than one. Writes
 #       build/bench/report.html and report.csv.
 #   error [--quick] [SCENE.glb ...]
 #       What each footprint and depth test lists beyond the exact set, and what it misses, each pair of a tile and a light

@@ -56,7 +56,8 @@ struct TiledView {
         lightbin::ZBoundsBuffers to = {.min = min, .max = max};
         if (with_gap) to.gap_min = gap_min, to.gap_max = gap_max;
         return seconds([&] {
-            if (!lightbin::reduce_depth(view, {.depth = picture.depth, .skip_background = true}, to)) std::abort();
+            if (!lightbin::reduce_depth(view, {.depth = picture.depth, .skip_background = true}, to))
+                std::abort();
         });
     }
 
