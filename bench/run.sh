@@ -14,10 +14,10 @@
 #       space by a loop of the bench's own before it was binned. And binning_spots.csv, the times that `spots` takes.
 #   report [--quick] [--evaluation-ns NUMBER] [SCENE.glb ...]
 #       Error against run time: of every method and tile size what a frame pays (Z bounds, build, upload, light evaluations
-#       of so many nanoseconds: .02, about a GPU's, if none are given) and how many light evaluations it makes over those
-#       needed, on made scenes and those of the tests, or on the named ones; and what the picture loses by where lights
-#       end. A table with verdicts and a sentence a scene. Three minutes, --quick less than one. Writes
-#       build/bench/report.html and report.csv.
+#       of so many nanoseconds: if none are given, what this machine's GPU takes, or .02 where there is none) and how many
+#       light evaluations it makes over those needed, on made scenes and those of bench/scenes, or on the named ones; and
+#       what the picture loses by where lights end. A table with verdicts and a sentence a scene. Three minutes, --quick
+#       less than one. Writes build/bench/report.html and report.csv.
 #   error [--quick] [SCENE.glb ...]
 #       What each footprint and depth test lists beyond the exact set, and what it misses, each pair of a tile and a light
 #       decided in exact arithmetic; of clusters, too. Writes build/bench/error.csv and cluster_error.csv.
@@ -63,18 +63,22 @@ case $program in
 binning) options="--quick --benchmark_..." ;;
 spots) options="--quick --tightness --time" words=words pattern='[^-].*' ;;
 advise) options="--quick --avx2 --sse2 --scalar" ;;
-frames) options="--quick --pictures" ;;
+frames) options="--quick --counts --pictures --into=..." ;;
+report) options="--quick --evaluation-ns" words="a number, scenes (.glb)" pattern='.*\.glb|[0-9.]+' ;;
 esac
 takes "$program, $options, $words" "$(echo "$options" | sed 's/ /|/g; s/\.\.\./.*/')|$pattern" "$@"
 
 packages="g++ cmake ninja-build gnuplot-nox libglm-dev libbenchmark-dev libboost-dev libgmp-dev libtbb-dev libtinygltf-dev"
-[ $program != frames ] || packages="$packages libstb-dev libepoxy-dev libegl-dev libgl-dev libgl1-mesa-dri"
+targets=$program
+[ $program != report ] || targets="report evaluation"
+case $program in frames | report) packages="$packages libstb-dev libepoxy-dev libegl-dev libgl-dev libgl1-mesa-dri" ;; esac
 # shellcheck disable=SC2086  # one word a package
 install_packages $packages
 
 make_build_folder
 echo "$me: building in build/bench"
-{ cmake --preset bench && cmake --build build/bench --target $program; } >build/bench.log 2>&1 ||
+# shellcheck disable=SC2086  # one word a target
+{ cmake --preset bench && cmake --build build/bench --target $targets; } >build/bench.log 2>&1 ||
     { cat build/bench.log; fail "the build failed"; }
 echo "$me: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores; $(c++ --version | head -n 1)"
 
@@ -93,6 +97,7 @@ done
 cd build/bench
 case $program in
 report | stability)
+    [ $program != report ] || set -- "$@" --measured "$(./bench/frames/evaluation 2>/dev/null || true)"
     "./bench/$program" "$@"
     sh ../../bench/page.sh $program
     echo "$me: wrote build/bench/$program.html and $program.csv"
