@@ -34,7 +34,7 @@ struct WayCost {
     double total() const { return depth + build + upload + shade; }
 };
 
-// What the processor can't tell.
+// What is told by drawing, see DrawTimes.
 struct Prices {
     double evaluation_ns = lightbin::Costs().evaluation_ns, upload_byte_ns = 0.1;
     double depth_pass_ns = 0;
@@ -66,7 +66,7 @@ public:
     lightbin::Advice advise();
 
     // Builds each way's lists a dozen times, by turns, each time with the lights a little aside, and takes the medians.
-    // What they are in the end is counted with the lights where they are.
+    // Bytes and evaluations are counted with the lights where they are. A way whose plan it can't measure costs infinity.
     std::vector<WayCost> measure(std::span<const Way> ways);
 
     // Whether measure() knows the plan's options.

@@ -32,7 +32,7 @@
 
 namespace lightbin::inline LIGHTBIN_FLAVOUR {
 
-/// What advise() can't measure. Times in nanoseconds a frame, 0 or more.
+/// What advise() can't measure. Times in nanoseconds, 0 or more.
 struct Costs {
     /// One light evaluated at one pixel, as the whole device does it: about 0.005 to 0.05 on a GPU, 1 on a
     /// core.
@@ -41,8 +41,8 @@ struct Costs {
     double z_bounds_ns = 0;
     /// One byte of the lists on its way to where the shader reads it: 0.1 at 10 GB/s.
     double upload_byte_ns = 0;
-    /// Fragments that are shaded for each pixel that is seen, where no depth pre-pass comes first: a number of them, not
-    /// a time, 1 or more. Plans without Z bounds evaluate the lights of all of them.
+    /// How many fragments are shaded for each pixel that is seen, where no depth pre-pass comes first: 1 or more. Plans
+    /// without Z bounds evaluate the lights of all of them.
     double overdraw = 1;
 };
 
@@ -139,8 +139,7 @@ public:
     /// Returns a verdict on each part that a plan has or lacks. What it is held against is the cheapest plan that differs
     /// in the part, and may differ in others, too, as it would for whoever did without this one. Allocates.
     std::vector<Verdict> verdicts(const Plan& plan) const {
-        using Has = bool (*)(const Plan&);
-        constexpr std::pair<const char*, Has> parts[] = {
+        constexpr std::pair<const char*, bool (*)(const Plan&)> parts[] = {
             {"tiles", [](const Plan& p) { return p.tiled; }},
             {"pre-pass", [](const Plan& p) { return p.has_z_bounds(); }},
             {"box", [](const Plan& p) { return p.tiled && p.depth_test >= DepthTest::box; }},
@@ -303,7 +302,8 @@ struct WeighedGrid {
 /// Whether Z bounds allow a depth test. That of clusters needs none.
 inline bool allowed(const Options& options, const ZBounds& bounds) {
     if (options.depth_test == DepthTest::none || options.slicing == Slicing::clusters) return true;
-    if (options.depth_test == DepthTest::split_box) return !bounds.gap_min.empty() && !bounds.gap_max.empty();
+    if (options.depth_test == DepthTest::split_box)
+        return !bounds.gap_min.empty() && !bounds.gap_max.empty();
     return !bounds.min.empty() || !bounds.max.empty();
 }
 
