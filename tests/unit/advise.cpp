@@ -529,12 +529,12 @@ bool has_part(const Plan& plan, const std::string& part) {
     const auto says = [&](const char* word) {
         return words.find(std::string(" ") + word + ",") != words.npos;
     };
-    const bool box = says("box"), split = says("split_box"), clusters = says("clusters");
+    const bool one_box = says("box"), two_boxes = says("split_box"), sliced = says("clusters");
     return part == "tiles"         ? says("rectangle") || says("silhouette")
-           : part == "pre-pass"    ? (box || split || says("interval")) && !clusters
-           : part == "box"         ? box || split
-           : part == "split boxes" ? split
-           : part == "clusters"    ? clusters
+           : part == "pre-pass"    ? (one_box || two_boxes || says("interval")) && !sliced
+           : part == "box"         ? one_box || two_boxes
+           : part == "split boxes" ? two_boxes
+           : part == "clusters"    ? sliced
            : part == "z-bins"      ? says("z_bins")
                                    : says("silhouette");
 }
