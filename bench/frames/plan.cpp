@@ -39,10 +39,11 @@ template <class T> std::vector<T> every(std::size_t step, const std::vector<T>& 
 
 constexpr std::size_t views_of_a_path = 10;  // a file of so many views or more is a camera's path
 
-enum class FewLights { stand, move };
+// Whether to draw a path with few lights, too, which go through the many in their order.
+enum class FewLights { no, along_a_path };
 
 void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Camera> views,
-               FewLights few_lights_do, bool quick) {
+               FewLights with_few_lights, bool quick) {
     const bool is_path = views.size() >= views_of_a_path;
     if (is_path) std::ranges::stable_sort(views, {}, [](const Camera& c) { return frame_of(c.name); });
     const std::vector<Camera> some = every(is_path ? (quick ? 5 : 1) : 2, views);
@@ -54,9 +55,8 @@ void add_scene(std::vector<SceneJobs>& plan, const Scene& scene, std::vector<Cam
         add(own, "path", some, all);
         const double first = frame_of(views.front().name), last = frame_of(views.back().name);
         for (const Camera& camera : some) {
-            const double time = few_lights_do == FewLights::move && last > first
-                                    ? (frame_of(camera.name) - first) / (last - first)
-                                    : 0;
+            if (with_few_lights == FewLights::no) break;
+            const double time = last > first ? (frame_of(camera.name) - first) / (last - first) : 0;
             few.jobs.push_back({"path with few lights", camera, all, {}, few_lights(scene.lights, time)});
         }
     } else {
@@ -83,7 +83,7 @@ void add_file(std::vector<SceneJobs>& plan, const std::string& file, bool quick)
                     counted(orthographic, "orthographic view").c_str());
     if (scene.cameras.empty()) scene.cameras = {framing_camera(scene.triangles)};
     // The robots' lights are in the order of the robots' paths.
-    add_scene(plan, scene, scene.cameras, FewLights::move, quick);
+    add_scene(plan, scene, scene.cameras, FewLights::along_a_path, quick);
 }
 
 }  // namespace
@@ -93,7 +93,7 @@ std::vector<SceneJobs> make_plan(const std::vector<std::string>& files, bool qui
     Scene made = make_scene(1024);
     const std::vector<Camera> flight = made_flight(views_of_a_path),
                               still = {made.cameras[0], made.cameras[1]};
-    add_scene(plan, made, flight, FewLights::stand, quick);
+    add_scene(plan, made, flight, FewLights::no, quick);
     made.transparent.clear();
     for (const std::size_t lights : {128u, 256u, 512u, 1024u}) {
         SceneJobs random{with_random_lights(made, lights), {}};
