@@ -40,65 +40,65 @@ private:
     const std::vector<Row>& rows_;
 };
 
-const std::string plain = "TiledForward", pre_z = "TiledForward-PreZ", both = "TiledForward-PreZ both (GPU)",
-                  box = "TiledForward-PreZ box (GPU)", clusters = "ClusteredForward",
-                  indexed = "LightIndexed 16 bit", kernel = "TiledDeferred in one kernel 16 bit",
-                  tiled = "TiledDeferred 16 bit", stencil = "DeferredStencil 16 bit";
+// The techniques' names, as their rows have them.
+namespace name {
+const char* const plain = "TiledForward";
+const char* const pre_z = "TiledForward-PreZ";
+const char* const both = "TiledForward-PreZ both (GPU)";
+const char* const box = "TiledForward-PreZ box (GPU)";
+const char* const clusters = "ClusteredForward";
+const char* const indexed = "LightIndexed 16 bit";
+const char* const tiled = "TiledDeferred 16 bit";
+const char* const kernel = "TiledDeferred in one kernel 16 bit";
+const char* const planes = "TiledDeferred six planes 16 bit";
+const char* const deferred = "Deferred 16 bit";
+const char* const stencil = "DeferredStencil 16 bit";
+}  // namespace name
 
-void of_scene(const Measured& measured, const std::string& scene) {
-    const bool is_path = measured.of(scene, "path", plain).views > 0;
-    const std::string within = is_path ? "path" : "from within";
-    const auto million = [&](const std::string& table, const std::string& technique) {
-        return measured.of(scene, table, technique).million;
+void of_evaluations(const Measured& measured, const std::string& scene, const std::string& within) {
+    const auto more = [&](const std::string& table, const char* technique) {
+        return measured.of(scene, table, technique).million / measured.of(scene, table, name::both).million;
     };
-    if (million(within, both) > 0) {
-        std::printf("%s, evaluations over those of pre-Z and both bounds: plain %.1f, pre-Z %.1f, box %.2f, "
-                    "clusters %.2f, six "
-                    "planes %.3f",
-                    scene.c_str(), million(within, plain) / million(within, both),
-                    million(within, pre_z) / million(within, both),
-                    million(within, box) / million(within, both),
-                    million(within, clusters) / million(within, both),
-                    million(within, "TiledDeferred six planes 16 bit") / million(within, both));
-        if (million("from above", both) > 0)
-            std::printf("; from above: plain %.1f, clusters %.2f",
-                        million("from above", plain) / million("from above", both),
-                        million("from above", clusters) / million("from above", both));
-        std::printf("\n");
-    }
-    if (is_path && measured.of(scene, "path", tiled).ms > 0) {
+    if (!(more(within, name::plain) > 0)) return;  // they were not counted
+    std::printf("%s, evaluations over those of pre-Z and both bounds: plain %.1f, pre-Z %.1f, box %.2f, ",
+                scene.c_str(), more(within, name::plain), more(within, name::pre_z), more(within, name::box));
+    std::printf("clusters %.2f, six planes %.3f", more(within, name::clusters), more(within, name::planes));
+    if (more("from above", name::plain) > 0)
+        std::printf("; from above: plain %.1f, clusters %.2f", more("from above", name::plain),
+                    more("from above", name::clusters));
+    std::printf("\n");
+}
+
+void of_times(const Measured& measured, const std::string& scene) {
+    const auto path = [&](const std::string& technique) { return measured.of(scene, "path", technique); };
+    if (path(name::tiled).ms > 0) {
         std::printf("%s, ms of the cheapest and of the dearest view:", scene.c_str());
-        for (const std::string& technique : {tiled, std::string("Deferred 16 bit"), stencil, plain, both}) {
-            const Measured::Of its = measured.of(scene, "path", technique);
-            std::printf(" %s %.0f to %.0f%s", technique.c_str(), its.least_ms, its.most_ms,
-                        technique == both ? "\n" : ",");
-        }
-        std::printf("%s, times of all views: TiledDeferred is %.0f %% below pre-Z with both bounds; with 32 "
-                    "bits instead of 16, "
-                    "Deferred takes %.2f times as long, TiledDeferred %.2f\n",
-                    scene.c_str(),
-                    100 - 100 * measured.of(scene, "path", tiled).ms / measured.of(scene, "path", both).ms,
-                    measured.of(scene, "path", "Deferred 32 bit").ms /
-                        measured.of(scene, "path", "Deferred 16 bit").ms,
-                    measured.of(scene, "path", "TiledDeferred 32 bit").ms /
-                        measured.of(scene, "path", tiled).ms);
+        for (const char* technique : {name::tiled, name::deferred, name::stencil, name::plain, name::both})
+            std::printf("%s %s %.0f to %.0f", technique == name::tiled ? "" : ",", technique,
+                        path(technique).least_ms, path(technique).most_ms);
+        std::printf("\n%s, ms of all views: TiledDeferred %.0f %% below pre-Z with both bounds; ",
+                    scene.c_str(), 100 - 100 * path(name::tiled).ms / path(name::both).ms);
+        std::printf("with 32 bits instead of 16 Deferred takes %.2f times as long, TiledDeferred %.2f\n",
+                    path("Deferred 32 bit").ms / path(name::deferred).ms,
+                    path("TiledDeferred 32 bit").ms / path(name::tiled).ms);
     }
-    const Measured::Of one_forward = measured.of(scene, "one shader", both),
-                       one_deferred = measured.of(scene, "one shader", tiled);
-    if (one_forward.ms > 0 && one_deferred.ms > 0)
+    const auto one = [&](const char* technique) { return measured.of(scene, "one shader", technique).ms; };
+    const auto three = [&](const char* technique) {
+        return measured.of(scene, "three shaders", technique).ms;
+    };
+    if (one(name::both) > 0 && one(name::tiled) > 0)
         std::printf(
             "%s, three shaders instead of one: forward %+.1f ms (of %.1f), deferred %+.1f ms (of %.1f)\n",
-            scene.c_str(), measured.of(scene, "three shaders", both).ms - one_forward.ms, one_forward.ms,
-            measured.of(scene, "three shaders", tiled).ms - one_deferred.ms, one_deferred.ms);
+            scene.c_str(), three(name::both) - one(name::both), one(name::both),
+            three(name::tiled) - one(name::tiled), one(name::tiled));
 }
 
 void of_samples(const Measured& measured, const std::string& scene, std::size_t lights) {
-    for (const std::string& technique : {indexed, box, kernel}) {
+    for (const char* technique : {name::indexed, name::box, name::kernel}) {
         const Measured::Of one = measured.of(scene, "MSAA", technique, lights, 1),
                            four = measured.of(scene, "MSAA", technique, lights, 4);
         if (one.views == 0 || four.views == 0) continue;
-        std::printf("%s, %zu lights, 4 samples instead of one, %s: ", scene.c_str(), lights,
-                    technique.c_str());
+        std::printf("%s, %zu lights, 4 samples instead of one, %s: ", scene.c_str(), lights, technique);
         if (one.million > 0) std::printf("evaluations %.2f times, ", four.million / one.million);
         std::printf("memory %.1f times", four.megabytes / one.megabytes);
         if (one.ms > 0) std::printf(", time %.1f times (%.1f to %.1f ms)", four.ms / one.ms, one.ms, four.ms);
@@ -118,8 +118,11 @@ void print_conclusions(const std::vector<Row>& rows) {
         if (row.table == "MSAA") most_lights = std::max(most_lights, row.lights);
     }
     std::printf("\nWhat the papers' sentences are here\n");
-    for (const std::string& scene : scenes)
-        of_scene(measured, scene);
+    for (const std::string& scene : scenes) {
+        of_evaluations(measured, scene,
+                       measured.of(scene, "path", name::plain).views > 0 ? "path" : "from within");
+        of_times(measured, scene);
+    }
     for (const std::string& scene : scenes)
         of_samples(measured, scene, most_lights);
 }

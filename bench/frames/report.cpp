@@ -103,7 +103,7 @@ void print_samples(const std::string& title, std::vector<Row> rows) {
     for (std::size_t i = 0; i < columns.size(); ++i)
         std::printf(" | %8s %8s %6s %9s", "ms", "million", "MB", "differs");
     std::printf("\n");
-    std::ranges::stable_sort(rows, {}, [](const Row& r) { return std::pair(r.lights, r.samples); });
+    std::ranges::sort(rows, {}, [](const Row& r) { return std::pair(r.lights, r.samples); });
     for (const auto& [key, line] :
          grouped(rows, [](const Row& r) { return std::pair(r.lights, r.samples); })) {
         std::printf("%8zu, %4d", key.first, key.second);

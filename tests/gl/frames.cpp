@@ -348,10 +348,9 @@ TEST_CASE("evaluations are those of the lists") {
             for (const lightbin::Sphere& light : stage.lights()) {
                 const glm::dvec3 centre(light.x, light.y, light.z);
                 const double radius = static_cast<double>(light.radius);
-                const auto beyond = [&](glm::dvec3 p,
-                                        glm::dvec3 q) {  // the tile is on the left of the way from p to q
-                    const double away = glm::dot(glm::normalize(glm::cross(p, q)), centre);
-                    return away > radius;
+                // The tile is on the left of the way from p to q.
+                const auto beyond = [&](const glm::dvec3& p, const glm::dvec3& q) {
+                    return glm::dot(glm::normalize(glm::cross(p, q)), centre) > radius;
                 };
                 within_planes += (beyond(a, b) || beyond(b, c) || beyond(c, d) || beyond(d, a) ||
                                   -centre.z - radius > tile.farthest || -centre.z + radius < tile.nearest)
