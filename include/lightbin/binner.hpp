@@ -118,7 +118,7 @@ Inputs<options.depth_test, options.slicing> inputs_for([[maybe_unused]] const ZB
         return {.slices = slices};
 }
 
-/// The two grids of Tiled Forward Shading, Listing 4.2: `opaque` is pruned by minimum and maximum depth;
+/// The two grids of Tiled Forward Shading, section 4.5, Listing 4.2: `opaque` is pruned by minimum and maximum depth;
 /// `transparent` by the maximum alone, as transparent geometry may lie anywhere in front of the opaque.
 template <class Id> struct TransparencyGrids { LightGrid<Id> opaque, transparent; };
 

@@ -20,7 +20,7 @@ enum class Footprint : std::uint8_t {
 /// What keeps a light out of a tile beside its footprint. All but `none` need Z bounds.
 enum class DepthTest : std::uint8_t {
     none,       ///< nothing
-    interval,   ///< its depths z - r to z + r must meet the tile's Z bounds (Tiled Shading, section 3)
+    interval,   ///< its depths z - r to z + r must meet the tile's Z bounds (Tiled Shading, section 6.3)
     box,        ///< its sphere must also meet the view-space box around the tile's cell
     split_box,  ///< the same with two boxes, before and behind the tile's gap (see ZBounds)
 };

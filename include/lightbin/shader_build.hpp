@@ -242,7 +242,7 @@ inline void add_view_depths(ShaderWriter& writer, const ReduceShaderOptions& opt
 /// fragment  one fragment a tile, a loop over its pixels: draw a triangle over a tiles_x by tiles_y target of
 ///           two 32-bit floats, whose row 0 is the tiles' row 0
 ///
-/// Source: Tiled Shading, section 3.
+/// Source: Tiled Shading, section 6.3.
 inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {}) {
     using namespace detail;
     if (const auto error = refuse(options)) return *error;

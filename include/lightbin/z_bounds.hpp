@@ -165,7 +165,7 @@ void reduce_tile_row(Isa isa, const DepthRows& row, std::size_t tile_columns, fl
 ///
 /// isa  use no wider instructions than these. The result is the same.
 ///
-/// Source: Tiled Shading, section 3 (minimum and maximum depth a tile); Harada, "A 2.5D Culling for Forward+",
+/// Source: Tiled Shading, section 6.3 (minimum and maximum depth a tile); Harada, "A 2.5D Culling for Forward+",
 /// SIGGRAPH Asia 2012 (depths with a gap).
 ///
 /// (A template as Error::message().)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Binning by count, prefix and fill (Tiled Shading, section 3): small lights, nearly empty grids. A rectangle costs four
+// Binning by count, prefix and fill (Tiled Shading, section 6.1): small lights, nearly empty grids. A rectangle costs four
 // corners of a difference array, whose sums along both axes are the counts. Included once a tier that scatters; where it
 // has Rows, for the sums, it defines: a vector of counts with + and -; all_rows(count); last_row(rows), the last one in
 // all; low_pairs and high_pairs(ends, counts), half of the rows as Tiles each, see BandTiles; and transpose(Tiles*), of a
