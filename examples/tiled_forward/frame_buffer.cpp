@@ -13,21 +13,6 @@ bool has_sample_shading() {
     return epoxy_gl_version() >= 32 || epoxy_has_gl_extension("GL_OES_sample_shading");
 }
 
-// Every sample is shaded, so that gl_FragCoord is the place and depth of a sample that is seen: the very
-// numbers that Z bounds are made of. Shaded once a pixel, as is usual, a surface has the depth of the pixel's
-// middle, where there may be none of it, and a light that reaches only this made-up point is rightly in no
-// list. A `centroid` varying is too little: its point is on the surface, but something nearer may hide it
-// there, and Z bounds know nothing of hidden depths.
-void shade_every_sample(int glsl) {
-    if (glsl == 300)
-        throw std::runtime_error(
-            "GLSL ES 3.00 has no multisampled textures, which --msaa needs for Z bounds");
-    if (!has_sample_shading())
-        throw std::runtime_error("this OpenGL has no sample shading, which --msaa needs");
-    glEnable(GL_SAMPLE_SHADING);
-    glMinSampleShading(1);
-}
-
 GLenum target_of(int samples) {
     return samples > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D;
 }
@@ -71,7 +56,8 @@ void FrameBuffer::resize(int width, int height, int samples, GLenum colour_forma
     if (std::max(width, height) > largest)
         throw std::runtime_error("this OpenGL draws at most " + std::to_string(largest) + " pixels a side");
     const bool many = samples > 1;
-    if (many) shade_every_sample(glsl_);
+    if (many && glsl_ == 300)
+        throw std::runtime_error("GLSL ES 3.00 has no multisampled textures, which --msaa needs for depths");
     glBindRenderbuffer(GL_RENDERBUFFER, colour_);
     glRenderbufferStorageMultisample(GL_RENDERBUFFER, many ? samples : 0, colour_format, width, height);
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
@@ -94,6 +80,18 @@ void FrameBuffer::resize(int width, int height, int samples, GLenum colour_forma
     samples_ = samples;
     colour_format_ = colour_format;
     bind();
+}
+
+void FrameBuffer::shade_samples(bool each) const {
+    if (!each) {
+        if (has_sample_shading()) glDisable(GL_SAMPLE_SHADING);
+        return;
+    }
+    if (!has_sample_shading())
+        throw std::runtime_error(
+            "this OpenGL has no sample shading, which --msaa needs with Z bounds or --shade-samples");
+    glEnable(GL_SAMPLE_SHADING);
+    glMinSampleShading(1);
 }
 
 void FrameBuffer::bind() const {

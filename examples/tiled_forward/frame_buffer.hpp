@@ -15,6 +15,9 @@ public:
     // what this OpenGL lacks.
     void resize(int width, int height, int samples, GLenum colour_format);
 
+    // Whether the fragment shader runs for each sample, gl_FragCoord being the sample's, or once a pixel. Throws as resize().
+    void shade_samples(bool each) const;
+
     // What is drawn goes here.
     void bind() const;
 

@@ -82,9 +82,11 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
         ->check(CLI::Range(-20.0, 20.0));
     std::string size;
     app.add_option("--size", size, "Width and height in pixels")->type_name("WxH")->default_str("1280x720");
-    app.add_option("--msaa", options.frame.samples, "Samples a pixel, each of them shaded")
+    app.add_option("--msaa", options.frame.samples, "Samples a pixel")
         ->check(CLI::IsMember({1, 2, 4, 8}))
         ->capture_default_str();
+    app.add_flag("--shade-samples", options.frame.shade_samples,
+                 "Light each of them, as is always done with Z bounds, and not each pixel once");
     app.add_flag("--heat-map", options.heat_map, "Lay the length of each tile's list over the picture");
     app.add_option("-o,--output", options.output, "The PNG file to write")->capture_default_str();
     app.add_flag("--headless", options.headless, "No window, although there is a display");
@@ -153,7 +155,7 @@ void print(const Scene& scene, const FrameSettings& frame, const Camera& camera,
     const auto unsigned_long = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
     const double every = static_cast<double>(scene.lights.size());
     const bool many = frame.samples > 1;
-    const char* const shaded = many ? "sample" : "pixel";
+    const char* const shaded = frame.shades_samples() ? "sample" : "pixel";
     std::printf("view         \"%s\", %d x %d pixels%s in %d x %d tiles of %d\n", camera.name.c_str(),
                 frame.width, frame.height,
                 many ? (" of " + std::to_string(frame.samples) + " samples").c_str() : "", report.tiles_x,

@@ -73,7 +73,7 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     // 2. Depth alone, and from it the depths between which each tile has anything to light.
     const bool pre_pass = settings.depth == DepthUse::pre_pass;
     if (pre_pass) draw_depth();
-    const bool bounded = pre_pass && settings.z_bounds != ZBoundsUse::none;
+    const bool bounded = settings.has_z_bounds();
     // OpenGL ES reads no depths back, and no OpenGL those of several samples.
     const bool on_gpu = settings.gpu_reduction || glsl_ < 330 || settings.samples > 1;
     if (bounded && !on_gpu) {
@@ -268,6 +268,7 @@ Renderer::Renderer(const Scene& scene, int glsl)
 void Renderer::start(const Camera& camera, const FrameSettings& settings) {
     frame_buffer_.resize(settings.width, settings.height, settings.samples,
                          settings.exposure == 0 ? GL_RGBA32F : GL_RGBA8);
+    frame_buffer_.shade_samples(settings.shades_samples());
     set_camera(camera);
     glBindVertexArray(vertex_array_);  // another's may be bound
     glEnable(GL_DEPTH_TEST);

@@ -33,7 +33,8 @@ enum class ZBoundsUse { none, max, both };
 struct FrameSettings {
     int width = 1280;
     int height = 720;
-    int samples = 1;  // a pixel, up to 8
+    int samples = 1;             // a pixel, up to 8
+    bool shade_samples = false;  // each of them, where once a pixel is right, too: see shades_samples()
     int tile_size = 16;
     bool gpu_reduction = false;  // Z bounds on the GPU; OpenGL ES has it so in any case
     DepthUse depth = DepthUse::pre_pass;
@@ -43,6 +44,10 @@ struct FrameSettings {
     ShaderChecks checks;
     int dropped_light = -1;   // left out of the lists, to see --check fail
     bool stale_size = false;  // lists for a smaller picture than is drawn, to see --check-in-shader fail
+
+    bool has_z_bounds() const { return depth == DepthUse::pre_pass && z_bounds != ZBoundsUse::none; }
+    // Z bounds are right for the depths of samples alone (docs/depth.md, several samples a pixel).
+    bool shades_samples() const { return samples > 1 && (shade_samples || has_z_bounds()); }
 };
 
 // What a frame cost and what its lists hold.
@@ -53,8 +58,8 @@ struct FrameReport {
     std::uint64_t entries = 0;
     std::uint32_t longest_list = 0;
     std::uint64_t transparent_entries = 0;  // 0: no lists are needed
-    // Of the opaque surfaces that are seen, if they were counted. With several samples: a sample's, by the
-    // deepest one of each pixel.
+    // Of the opaque surfaces that are seen, if they were counted. With several samples: of one shading of each pixel,
+    // by the deepest sample.
     double evaluations_per_pixel = 0;
     struct {
         double pre_pass, reduce, bin, upload, draw;

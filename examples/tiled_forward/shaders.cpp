@@ -72,9 +72,11 @@ uniform mat4 projection;
 uniform vec2 picture_size;
 
 // From gl_FragCoord, the very numbers that tiles and Z bounds are made of: an interpolated position differs
-// from the depth buffer's by the rasteriser's rounding, which can be much at a triangle seen edge-on.
+// from the depth buffer's by the rasteriser's rounding, which can be much at a triangle seen edge-on. With several
+// samples a pixel the triangle need not reach the pixel's middle, and its plane may there leave the depths that are drawn;
+// a depth of 1 may be infinitely far.
 vec3 view_position() {
-    vec3 ndc = 2.0 * vec3(gl_FragCoord.xy / picture_size, gl_FragCoord.z) - 1.0;
+    vec3 ndc = 2.0 * vec3(gl_FragCoord.xy / picture_size, clamp(gl_FragCoord.z, 0.0, 0.99999994)) - 1.0;
     float z = (projection[3][2] - ndc.z * projection[3][3]) / (ndc.z * projection[2][3] - projection[2][2]);
     float w = projection[2][3] * z + projection[3][3];
     vec2 offset = vec2(projection[2][0], projection[2][1]) * z + vec2(projection[3][0], projection[3][1]);

@@ -204,6 +204,14 @@ TEST_CASE("with MSAA a pixel is the mean of its samples, each lit where it lies"
         const std::vector<glm::dvec2> places = sample_places(4);
         CHECK(largest_difference(scene, renderer.read_picture(), 1.5, places, end) < 1.5);
         CHECK(largest_difference(scene, renderer.read_picture(), 1.5, {{0.5, 0.5}}, end) > 9);
+        settings.depth = DepthUse::none;  // and then it can be each pixel's middle
+        settings.shade_samples = true;
+        renderer.draw(scene.cameras[0], settings);
+        const Picture of_samples = renderer.read_picture();
+        CHECK(largest_difference(scene, of_samples, 1.5, places, end) < 1.5);
+        settings.shade_samples = false;
+        renderer.draw(scene.cameras[0], settings);
+        CHECK(compare(of_samples, renderer.read_picture()).pixels > 0);
     }
 }
 
@@ -215,18 +223,25 @@ TEST_CASE("with MSAA no light is missing where surfaces hide each other within p
     settings.width = width;
     settings.height = height;
     settings.samples = 4;
-    for (const DepthUse depth : {DepthUse::none, DepthUse::clusters, DepthUse::pre_pass}) {
-        CAPTURE(static_cast<int>(depth));
-        settings.depth = depth;
-        renderer.draw_every_light(scene.cameras[0], settings);
-        const Picture expected = renderer.read_picture();
-        for (const int tile : {1, 2, 5, 16}) {
-            CAPTURE(tile);
-            settings.tile_size = tile;
-            renderer.draw(scene.cameras[0], settings);
-            CHECK(compare(expected, renderer.read_picture()).pixels == 0);
+    Camera inside = scene.cameras[0];  // planes of splinters leave the drawn depths within a pixel
+    inside.to_world[3].z = -6;
+    inside.near = 0.5;
+    inside.far = 2;
+    for (const Camera& camera : {scene.cameras[0], inside})
+        for (const DepthUse depth :
+             {DepthUse::none, DepthUse::z_bins, DepthUse::clusters, DepthUse::pre_pass}) {
+            CAPTURE(camera.near);
+            CAPTURE(static_cast<int>(depth));
+            settings.depth = depth;
+            renderer.draw_every_light(camera, settings);
+            const Picture expected = renderer.read_picture();
+            for (const int tile : {1, 2, 5, 16}) {
+                CAPTURE(tile);
+                settings.tile_size = tile;
+                renderer.draw(camera, settings);
+                CHECK(compare(expected, renderer.read_picture()).pixels == 0);
+            }
         }
-    }
 }
 
 TEST_CASE("lights move, and stay near their places") {
