@@ -10,6 +10,7 @@
 //                      ratio: as swept, and, where that is over the limit, of the two timed again by themselves
 #include "arguments.hpp"
 #include "built.hpp"
+#include "console.hpp"
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
 
@@ -169,9 +170,19 @@ std::vector<float> sampled(const Picture& picture) {
     return samples;
 }
 
+/// What one choice cost over the best.
+struct Regret {
+    double regret;
+    std::string scene;
+    Known known;
+    double cost;  ///< ns an evaluation
+    std::string choice, best;
+};
+
 struct Report {
     std::FILE *plans_csv, *csv;
-    std::vector<double> regrets, asking;  ///< asking: over the plain build at the view's tile size
+    std::vector<Regret> regrets;
+    std::vector<double> asking;  ///< over the plain build at the view's tile size
 };
 
 template <Isa isa>
@@ -219,7 +230,6 @@ template <Isa isa> void judge(const BenchScene& scene, Report& report) {
     const TiledView& finest = views.of(tile_sizes[0]);
     const Plan plain = {.tile_size = tile_sizes[0]};
     const double plain_us = measured(plain, IdWidth::u16).build_us;
-    std::printf("\n%s: %zu lights, plain build %.1f us\n", scene.name.c_str(), sets[0].size(), plain_us);
     for (const Known known : {Known::bounds, Known::nothing, Known::samples})
         for (const double cost : evaluation_costs) {
             const double start = time_now();
@@ -237,15 +247,11 @@ template <Isa isa> void judge(const BenchScene& scene, Report& report) {
                 time(two, views, sets, 5 * turns);
                 regret = two[0].total_us(cost) / two[1].total_us(cost);
             }
-            report.regrets.push_back(regret);
             const std::string chosen = words(choice.plan, choice.ids), cheapest = words(best.plan, best.ids);
+            report.regrets.push_back({regret, scene.name, known, cost, chosen, cheapest});
             std::fprintf(report.csv, "%s,%s,%g,%s,%.2f,%s,%.2f,%.4f,%.4f,%.1f\n", scene.name.c_str(),
                          known_names[static_cast<int>(known)], cost, chosen.c_str(), choice.total_us(cost),
                          cheapest.c_str(), best.total_us(cost), swept, regret, asking);
-            std::printf("  %5g ns, %-7s: %-36s %9.1f us  best %-36s %9.1f us  %.3f %.3f%s  asked %.0f\n",
-                        cost, known_names[static_cast<int>(known)], chosen.c_str(), choice.total_us(cost),
-                        cheapest.c_str(), best.total_us(cost), swept, regret, regret > limit ? "  OVER" : "",
-                        asking);
             for (const Plan& plan : advice.plans()) {
                 const Candidate& c = measured(plan, ids_of(known));
                 std::fprintf(report.plans_csv, "%s,%s,%g,%s,%.2f,%.2f,%.0f,%.0f\n", scene.name.c_str(),
@@ -253,16 +259,35 @@ template <Isa isa> void judge(const BenchScene& scene, Report& report) {
                              plan.build_ns * 1e-3, c.build_us, plan.evaluations, c.evaluations);
             }
         }
-    std::fflush(stdout);
 }
 
 void print(const Report& report) {
-    const std::ptrdiff_t within =
-        std::ranges::count_if(report.regrets, [](double regret) { return regret <= limit; });
-    std::printf("\nregret: median %.3f, worst %.3f, within %.2f: %td of %zu\n", median(report.regrets),
-                *std::ranges::max_element(report.regrets), limit, within, report.regrets.size());
-    std::printf("asking over a plain build: median %.0f, worst %.0f\n", median(report.asking),
-                *std::ranges::max_element(report.asking));
+    constexpr const char* asked[] = {"advise() with Z bounds", "advise() without", "advise_slices()"};
+    const auto within = [](const std::vector<Regret>& regrets) {
+        return text("%td of %zu",
+                    std::ranges::count_if(regrets, [](const Regret& r) { return r.regret <= limit; }),
+                    regrets.size());
+    };
+    std::vector<TableRow> table = {{"asked", text("within %.2f", limit), "median", "worst", "scene", "ns",
+                                    "choice there", "best there"}};
+    for (const Known known : {Known::bounds, Known::nothing, Known::samples}) {
+        std::vector<Regret> its = report.regrets;
+        std::erase_if(its, [&](const Regret& r) { return r.known != known; });
+        std::ranges::sort(its, {}, &Regret::regret);
+        const Regret& worst = its.back();
+        table.push_back({asked[static_cast<int>(known)], within(its),
+                         text("%.3f", its[its.size() / 2].regret), text("%.3f", worst.regret), worst.scene,
+                         text("%g", worst.cost), worst.choice, worst.best});
+    }
+    std::puts("What the chosen plan costs over the best of the sweep\n");
+    print_table(table);
+    const Regret& worst = *std::ranges::max_element(report.regrets, {}, &Regret::regret);
+    conclude({within(report.regrets) +
+                  text(" choices cost at most %.2f times the best, the worst %.3f (", limit, worst.regret) +
+                  worst.scene + text(", %g ns an evaluation).", worst.cost),
+              text("Asking takes as long as %.0f plain builds in the median, %.0f at worst.",
+                   median(report.asking), *std::ranges::max_element(report.asking))},
+             {"advise.csv", "advise_plans.csv"});
 }
 
 /// Calls visit.operator()<isa>() for one of the instruction sets with a build model.
@@ -299,8 +324,10 @@ int main(int argc, char** argv) try {
                                          "swept_regret,regret,asking"),
         .regrets = {},
         .asking = {}};
-    for (const BenchScene& scene : all)
+    for (Progress progress; const BenchScene& scene : all) {
+        progress(scene.name);
         with_isa(isa, [&]<Isa tier> { judge<tier>(scene, report); });
+    }
     print(report);
     std::fclose(report.plans_csv);
     std::fclose(report.csv);

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // A whole build, spheres in to lists out, against the flat baseline measured in turns in the same run, on rotating light
 // sets; with clusters and z-bins; from world space and structs against view-space vec4s; of several views; spots against
-// spheres. Prints each as it ends, then what falls short of the project's goals, and writes binning.csv,
-// binning_slices.csv, binning_sources.csv and binning_spots.csv.
+// spheres. Says how many of the project's goals are met and which are missed by most, and writes binning.csv,
+// binning_slices.csv, binning_sources.csv, binning_views.csv, binning_spots.csv and binning_goals.csv.
+#include "console.hpp"
 #include "flat.hpp"
-#include "lens.hpp"
 #include "gains.hpp"
 #include "glb_scenes.hpp"
 #include "goals.hpp"
+#include "lens.hpp"
 #include "measure.hpp"
 #include "memory.hpp"
 #include "reference.hpp"
@@ -225,14 +226,11 @@ template <Options options> void build(benchmark::State& state, const Case& which
             measure_gains(parallel, seconds_a_case, [&](const lightbin::Parallel& threads, std::size_t turn) {
                 return builds.ours(threads, turn % builds.count()).ids().size_bytes();
             });
-    if (results.empty()) print_header();
     results.push_back(result);
-    print_row(result);
 }
 
 template <Options options> void build_slices(benchmark::State& state, const Case& which) {
     const std::vector<Frame>& frames = frames_of(which);
-    if (slicing_results.empty()) print_slicing_header();
     for (auto _ : state) {
         if constexpr (options.slicing == Slicing::clusters)
             slicing_results.push_back(time_clusters<options>(which.set, frames, seconds_a_case));
@@ -240,7 +238,6 @@ template <Options options> void build_slices(benchmark::State& state, const Case
             slicing_results.push_back(time_z_bins<options>(which.set, frames, seconds_a_case));
         state.SetIterationTime(1e-9 * slicing_results.back().ns_per_light * double(which.lights));
     }
-    print_slicing_row(slicing_results.back());
 }
 
 /// The same set in world space and in structs.
@@ -251,45 +248,69 @@ struct SourceCase {
 
 template <Options options> void build_sources(benchmark::State& state, const SourceCase& which) {
     const std::vector<WorldFrame>& frames = keep_frames(which.set, which.frames);
-    if (source_results.empty()) print_source_header();
     for (auto _ : state) {
         source_results.push_back(time_sources<options>(which.set, 32, frames, seconds_a_case));
         state.SetIterationTime(source_results.back().seconds[world_vec4s]);
     }
-    print_source_row(source_results.back());
 }
 
 template <Options options> void build_views(benchmark::State& state, const SourceCase& which) {
     const std::vector<WorldFrame>& frames = keep_frames(which.set, which.frames);
-    if (several_views_results.empty()) print_several_views_header();
     for (auto _ : state) {
-        for (const SeveralViews& views : {two_eyes(frames[0].view.lens), cube_faces()}) {
+        for (const SeveralViews& views : {two_eyes(frames[0].view.lens), cube_faces()})
             several_views_results.push_back(
                 time_several_views<options>(views, which.set, 32, frames, seconds_a_case));
-            print_several_views_row(several_views_results.back());
-        }
         state.SetIterationTime(several_views_results.back().all);
     }
 }
 
 void build_spots(benchmark::State& state, const SpotTimeCase& which) {
-    if (spot_times.empty()) print_spot_time_header();
     for (auto _ : state) {
         spot_times.push_back(which.time(seconds_a_case));
         state.SetIterationTime(1e-9 * spot_times.back().ns_per_spot * double(spot_times.back().lights));
     }
-    print_spot_time(spot_times.back());
 }
 
-/// Google Benchmark's lines, left to the cases: each prints its own as it ends.
-class Lines : public benchmark::BenchmarkReporter {
+/// Google Benchmark's lines: the case that was measured last, as progress.
+class Names : public benchmark::BenchmarkReporter {
 public:
-    bool ReportContext(const Context&) override {
-        std::printf("this machine's tier: %s\n", to_string(lightbin::machine_isa()));
-        return true;
-    }
-    void ReportRuns(const std::vector<Run>&) override {}
+    bool ReportContext(const Context&) override { return true; }
+    void ReportRuns(const std::vector<Run>& runs) override { progress_(runs.back().run_name.function_name); }
+
+private:
+    Progress progress_;
 };
+
+/// What the usual build takes, of each made set: 4,096 lights, 32-pixel tiles, no depth test.
+std::string usual_ratios() {
+    std::string all;
+    for (const Result& r : results)
+        if (!r.set.ends_with("-u16") && r.lights == 4096 && r.tile_size == 32 && r.depth_test == "none" &&
+            r.footprint == "rectangle" && r.threads == 1 && r.tier == to_string(lightbin::machine_isa()))
+            all += text("%s %s %.2f (%.2f)", all.empty() ? "" : ",", r.set.c_str(), r.ratio, r.spread);
+    return all;
+}
+
+void print_verdict() {
+    Goals goals;
+    add_goals(results, goals);
+    add_scale_goals(results, goals);
+    add_slicing_goals(slicing_results, goals);
+    add_source_goals(source_results, goals);
+    add_spot_time_goals(spot_times, goals);
+    goals.write_csv("binning_goals.csv");
+    goals.print();
+    std::vector<std::string> verdict;
+    const std::string ratios = usual_ratios();
+    if (!ratios.empty())
+        verdict.push_back(std::string("A build as a ratio to the flat loop, by ") +
+                          to_string(lightbin::machine_isa()) + ", in brackets the spread:" + ratios + ".");
+    if (!goals.empty()) verdict.push_back(goals.sentence());
+    if (!results.empty()) verdict.push_back(slower_tiers(results));
+    if (const std::string gains = gains_of_threads(results); !gains.empty()) verdict.push_back(gains);
+    conclude(verdict, {"binning.csv", "binning_slices.csv", "binning_sources.csv", "binning_views.csv",
+                       "binning_spots.csv", "binning_goals.csv"});
+}
 
 /// `name` is what a filter finds it by.
 template <class Which>
@@ -466,22 +487,16 @@ int run(int argc, char** argv) {
     add_views(field20);
     for (const SpotTimeCase& which : spot_time_cases(quick))
         add(which.name, build_spots, which);
-    Lines lines;
-    benchmark::RunSpecifiedBenchmarks(&lines);
+    {
+        Names names;
+        benchmark::RunSpecifiedBenchmarks(&names);
+    }
     write_csv(results, "binning.csv");
     write_slicing_csv(slicing_results, "binning_slices.csv");
     write_sources_csv(source_results, "binning_sources.csv");
+    write_several_views_csv(several_views_results, "binning_views.csv");
     write_spot_times(spot_times, "binning_spots.csv");
-    if (!results.empty()) {
-        print_goals(results);
-        print_scale_goals(results);
-        print_slower_tiers(results);
-        print_threads(results);
-    }
-    if (!slicing_results.empty()) print_slicing_goals(slicing_results);
-    if (!source_results.empty()) print_source_goals(source_results);
-    if (!spot_times.empty()) print_spot_time_goals(spot_times);
-    std::puts("\nwrote binning.csv, binning_slices.csv, binning_sources.csv and binning_spots.csv");
+    print_verdict();
     return EXIT_SUCCESS;
 }
 

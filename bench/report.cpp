@@ -16,6 +16,7 @@
 //   cutoff          in parts of white
 //   rmse, rmse_restored, largest   of the picture to that of endless lights, white = 1
 #include "arguments.hpp"
+#include "console.hpp"
 #include "cutoff.hpp"
 #include "glb_scenes.hpp"
 #include "measure.hpp"
@@ -24,7 +25,6 @@
 
 #include <lightbin/advise.hpp>
 
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <cstddef>
@@ -33,7 +33,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <unistd.h>
 #include <vector>
 
 namespace {
@@ -49,12 +48,6 @@ struct Case {
     std::string name;
     std::vector<BenchScene> views;
 };
-
-template <class... Values> std::string text(const char* format, Values... values) {
-    char buffer[400];
-    std::snprintf(buffer, sizeof buffer, format, values...);
-    return buffer;
-}
 
 std::string words(const Way& way) {
     return text("%s at %d px", way.method, way.tile_size);
@@ -289,7 +282,7 @@ std::string sentence(const SceneReport& report) {
     else {
         const Result& bounded = report.best(with_bounds, total_without_bounds);
         const double worth = bare.total - total_without_bounds(bounded);
-        if (worth > 0)
+        if (bounded.way.needs_bounds() && worth >= 0.005)
             s += words(bounded.way) +
                  text(" if Z bounds take under %.2f ms (here %.2f)", worth, bounded.bounds);
         else
@@ -314,13 +307,13 @@ std::string ending_sentence(const SceneReport& report) {
         if (ending.difference.rmse_restored <= 0.01) break;
     }
     const bool kept = last->difference.rmse_restored <= 0.01;
-    return text("%s white / %.0f: %.1f %% of RMSE with the mean given back, %.0f light evaluations a pixel.",
-                kept ? "Lights may end at" : "None of these keeps 1 %. At", 1 / last->part,
-                100 * last->difference.rmse_restored, last->evaluations);
+    return text(
+        "%s white / %.0f: an RMSE of %.1f %% with the mean given back, %.0f light evaluations a pixel.",
+        kept ? "Lights may end at" : "None of these keeps an RMSE of 1 %. At", 1 / last->part,
+        100 * last->difference.rmse_restored, last->evaluations);
 }
 
-using Row = std::array<std::string, 6>;
-const Row row_head = {"method", "px", "frame", "at worst", "evaluations", "verdict"};
+const TableRow row_head = {"method", "px", "frame", "at worst", "evaluations", "verdict"};
 
 /// In which scenes a method is as good as any, at its best tile size: of which, and by what cost.
 struct Question {
@@ -357,7 +350,7 @@ std::string verdict_of(const std::vector<SceneReport>& reports, const std::strin
 }
 
 /// A method over all scenes, each at its best tile size there.
-Row row_of(const std::vector<SceneReport>& reports, const std::string& method) {
+TableRow row_of(const std::vector<SceneReport>& reports, const std::string& method) {
     const auto this_one = [&](const Way& way) { return way.method == method; };
     const bool alone = reports.size() == 1;
     std::map<int, int> tiles;
@@ -382,8 +375,8 @@ Row row_of(const std::vector<SceneReport>& reports, const std::string& method) {
             reports[0].best(this_one).way.ours ? verdict_of(reports, method) : "as engines do it"};
 }
 
-std::vector<Row> table(const std::vector<SceneReport>& reports) {
-    std::vector<Row> rows;
+std::vector<TableRow> table(const std::vector<SceneReport>& reports) {
+    std::vector<TableRow> rows;
     for (const Result& result : reports[0].results)
         if (!result.way.variant && (rows.empty() || rows.back()[0] != result.way.method))
             rows.push_back(row_of(reports, result.way.method));
@@ -394,11 +387,9 @@ void print(const std::vector<SceneReport>& reports) {
     std::printf("\nA frame is Z bounds, build, upload and light evaluations of %g ns (%s);\n"
                 "1 is the best of its scene; median and worst. Evaluations are over those needed.\n",
                 evaluation_ns, evaluation_words.c_str());
-    std::vector<Row> rows = table(reports);
+    std::vector<TableRow> rows = table(reports);
     rows.insert(rows.begin(), row_head);
-    for (const Row& row : rows)
-        std::printf("%-15s %2s %6s  %-16s %-24s %s\n", row[0].c_str(), row[1].c_str(), row[2].c_str(),
-                    row[3].c_str(), row[4].c_str(), row[5].c_str());
+    print_table(rows);
     std::puts("");
     for (const SceneReport& report : reports)
         std::puts(sentence(report).c_str());
@@ -417,9 +408,9 @@ void write_page(const std::vector<SceneReport>& reports) {
               "makes over those needed: %g ns an evaluation (%s), one core builds (`%s`).",
               screen.width, screen.height, evaluation_ns, evaluation_words.c_str(),
               to_string(lightbin::machine_isa())));
-    const std::vector<Row> rows = table(reports);
+    const std::vector<TableRow> rows = table(reports);
     for (const Question& question : questions)
-        for (const Row& cells : rows)
+        for (const TableRow& cells : rows)
             if (cells.back().starts_with(std::string(question.verdict) + ":"))
                 line("> " + cells[0] + ": " + cells.back());
     for (const SceneReport& report : reports)
@@ -428,7 +419,7 @@ void write_page(const std::vector<SceneReport>& reports) {
          "worst, "
          "and light evaluations over those needed, from the least to the greatest.\n");
     row(row_head);
-    for (const Row& cells : rows)
+    for (const TableRow& cells : rows)
         row(cells);
     line("\n## What an evaluation costs\nThe best method by what a light evaluation takes: about .005 to .05 "
          "ns "
@@ -518,13 +509,10 @@ int main(int argc, char** argv) try {
         all.push_back({name, std::move(some)});
     }
     std::vector<SceneReport> reports;
-    const bool terminal = isatty(STDERR_FILENO) != 0;
-    for (Case& scene : all) {
-        std::fprintf(stderr, terminal ? "\r\033[K%zu of %zu: %s" : "%zu of %zu: %s\n", reports.size() + 1,
-                     all.size(), scene.name.c_str());
+    for (Progress progress; Case & scene : all) {
+        progress(text("%zu of %zu: %s", reports.size() + 1, all.size(), scene.name.c_str()));
         reports.push_back(measure(std::move(scene)));
     }
-    if (terminal) std::fprintf(stderr, "\r\033[K");
     write_csv(reports);
     write_page(reports);
     print(reports);

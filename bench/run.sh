@@ -5,13 +5,15 @@
 #   binning [--quick] [SCENE.glb ...] [--benchmark_filter=REGEX]
 #       (the default) Whole builds as a ratio to the flat baseline; from world space and from structs as a ratio to
 #       view-space vec4s (^sources), of several views as a ratio to one (^views), with clusters and z-bins (^slices), of
-#       spots as a ratio to spheres (^spots); then what is short of the goals, and where a wider instruction set is
-#       slower than a narrower one. About 6 minutes, --quick half a minute. Writes build/bench/binning.csv: the sets
+#       spots as a ratio to spheres (^spots). Says how many of the goals are met and what is missed by most, where a wider
+#       instruction set is slower than a narrower one, and what threads gain. About 6 minutes, --quick half a minute.
+#       Writes build/bench/binning_goals.csv, and what was timed. binning.csv: the sets
 #       fieldN have a mean footprint of N tiles of 32 pixels; `footprint` and `depth_test` are the options; box and
 #       split_box are held against the baseline without Z; for n = 0 the times are of a whole build. And
 #       binning_slices.csv: ratios of clusters to the baseline, of z-bins to the build without, of `encode`, to
 #       bitmasks, to the build. And binning_sources.csv: `source` is what the lights were; loop_... was moved to view
-#       space by a loop of the bench's own before it was binned. And binning_spots.csv, the times that `spots` takes.
+#       space by a loop of the bench's own before it was binned. And binning_spots.csv, the times that `spots` takes;
+#       binning_views.csv, milliseconds of the first view's build and of all views'.
 #   report [--quick] [--evaluation-ns NUMBER] [SCENE.glb ...]
 #       Error against run time: of every method and tile size what a frame pays (Z bounds, build, upload, light evaluations
 #       of so many nanoseconds: if none are given, what this machine's GPU takes, or .02 where there is none) and how many
@@ -27,7 +29,8 @@
 #       cases with all of the WORDs in their names, as in `spots --time spots20/10000 box avx2`. A minute and a half, --quick
 #       ten seconds. Writes build/bench/spots_tightness.csv and spots_time.csv.
 #   ablation [--quick] [SCENE.glb ...]
-#       What each part of the library costs and saves, by kind of scene; writes build/bench/ablation.csv.
+#       What each part of the library costs and saves: in how many kinds of scenes it pays. Writes build/bench/ablation.csv,
+#       a row for each part and scene.
 #   advise [--quick] [--avx2 | --sse2 | --scalar] [SCENE.glb ...]
 #       What the plan that advise() chooses costs beside the best of all, with Z bounds and without, the same of
 #       advise_slices(), and how long asking takes beside a plain build; on the machine's widest instruction set or the

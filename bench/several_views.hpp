@@ -71,14 +71,10 @@ SeveralViewsResult time_several_views(const SeveralViews& views, const std::stri
     return {views.name, set, to_string(options.isa), frames[0].lights.size(), median(one), median(all)};
 }
 
-inline void print_several_views_header() {
-    std::printf(
-        "\nseveral views of the same world-space lights with one Binner\n%-16s%8s %-16s%-7s%14s%18s\n", "set",
-        "n", "views", "tier", "ms, all", "to the first one");
-}
-
-inline void print_several_views_row(const SeveralViewsResult& r) {
-    std::printf("%-16s%8zu %-16s%-7s%14.3f%18.2f\n", r.set.c_str(), r.lights, r.name.c_str(), r.tier.c_str(),
-                1e3 * r.all, r.all / r.one);
-    std::fflush(stdout);
+inline void write_several_views_csv(const std::vector<SeveralViewsResult>& results, const char* path) {
+    std::FILE* const csv = open_report(path, "set,n,views,tier,ms_first,ms_all");
+    for (const SeveralViewsResult& r : results)
+        std::fprintf(csv, "%s,%zu,%s,%s,%.4f,%.4f\n", r.set.c_str(), r.lights, r.name.c_str(), r.tier.c_str(),
+                     1e3 * r.one, 1e3 * r.all);
+    std::fclose(csv);
 }

@@ -16,6 +16,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <string_view>
 #include <vector>
 
 struct SlicingResult {
@@ -138,23 +139,6 @@ SlicingResult time_z_bins(const std::string& set, const std::vector<Frame>& fram
     return result;
 }
 
-inline void print_slicing_header() {
-    std::printf(
-        "\nslices: clusters, 24 exponential ones of 64-pixel tiles, as a ratio to the flat baseline at 32 "
-        "pixels;\nz-bins, 1,024 linear ones beside 32-pixel tiles, to the same build without; bits: bitmasks "
-        "of\n1,024 lights without lists, to such lists and encoding them\n"
-        "%-16s%8s %-10s%-6s%-7s%10s%8s%8s%9s%8s\n",
-        "set", "n", "slicing", "depth", "tier", "ns/light", "ratio", "spread", "entries", "bits");
-}
-
-inline void print_slicing_row(const SlicingResult& r) {
-    std::printf("%-16s%8zu %-10s%-6s%-7s%10.2f%8.3f%8.3f%9.2f", r.set.c_str(), r.lights, r.slicing.c_str(),
-                r.depth_test.c_str(), r.tier.c_str(), r.ns_per_light, r.ratio, r.spread, r.entries_per_light);
-    if (r.bits > 0) std::printf("%8.2f", r.bits);
-    std::printf("\n");
-    std::fflush(stdout);
-}
-
 inline void write_slicing_csv(const std::vector<SlicingResult>& results, const char* path) {
     std::FILE* const csv =
         open_report(path, "set,n,slicing,depth_test,tier,ns_per_light,ratio,spread,entries,bits");
@@ -166,27 +150,27 @@ inline void write_slicing_csv(const std::vector<SlicingResult>& results, const c
 }
 
 /// The worst of each goal, for the two tiers that have one.
-inline void print_slicing_goals(const std::vector<SlicingResult>& results) {
-    const auto print = [&](const char* tier, const char* slicing, const char* depth_test, std::size_t least,
-                           std::size_t most, Goal goal) {
+inline void add_slicing_goals(const std::vector<SlicingResult>& results, Goals& goals) {
+    const auto add = [&](const char* tier, const char* slicing, const char* depth_test, std::size_t least,
+                         std::size_t most, Goal goal) {
         double worst = 0;
         for (const SlicingResult& r : results)
             if (r.tier == tier && r.slicing == slicing && r.depth_test == depth_test && r.set == "field20" &&
                 r.lights >= least && r.lights <= most)
                 worst = std::max(worst, r.ratio);
-        char what[64];
-        std::snprintf(what, sizeof what, "%s, %s, %zu%s lights of field20", slicing, depth_test, least,
-                      most > least ? " and more" : "");
-        print_goal(what, tier, goal, worst);
+        const char* const group =
+            std::string_view(slicing) == "clusters" ? "clusters to the flat loop" : "z-bins to none";
+        const std::string what =
+            text("%s, %zu%s lights of field20", depth_test, least, most > least ? " and more" : "");
+        goals.add(group, what, tier, goal, worst);
     };
-    print_goal_header("slices: clusters to flat, z-bins to none");
     for (const bool wide : {true, false}) {
         const char* const tier = wide ? "avx512" : "avx2";
         for (const char* const test : {"none", "box"}) {
-            print(tier, "clusters", test, 256, 256, wide ? Goal{1.4, 0.8} : Goal{2, 1});
-            print(tier, "clusters", test, 1000, 1000, wide ? Goal{0.8, 0.4} : Goal{1.1, 0.6});
-            print(tier, "clusters", test, 4096, 10000, wide ? Goal{0.5, 0.25} : Goal{0.8, 0.45});
+            add(tier, "clusters", test, 256, 256, wide ? Goal{1.4, 0.8} : Goal{2, 1});
+            add(tier, "clusters", test, 1000, 1000, wide ? Goal{0.8, 0.4} : Goal{1.1, 0.6});
+            add(tier, "clusters", test, 4096, 10000, wide ? Goal{0.5, 0.25} : Goal{0.8, 0.45});
         }
-        print(tier, "z_bins", "none", 10000, 10000, wide ? Goal{1.5, 1.25} : Goal{1.3, 1.15});
+        add(tier, "z_bins", "none", 10000, 10000, wide ? Goal{1.5, 1.25} : Goal{1.3, 1.15});
     }
 }

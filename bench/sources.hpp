@@ -128,28 +128,6 @@ SourceResult time_sources(const std::string& set, int tile_size, const std::vect
     return result;
 }
 
-inline void print_source_header() {
-    std::puts(
-        "\nfrom what the lights are: ns a light from view-space vec4s, and times that from others, in turns; "
-        "the\nloops: GLM moves the lights to view-space vec4s, which are binned");
-    std::printf("%-16s%8s%4s %-10s%-7s%10s", "set", "n", "px", "depth", "tier", "ns/light");
-    for (std::size_t i = 1; i < source_count; ++i)
-        std::printf("%14s", source_names[i]);
-    std::printf("\n");
-}
-
-inline void print_source_row(const SourceResult& r) {
-    std::printf("%-16s%8zu%4d %-10s%-7s%10.2f", r.set.c_str(), r.lights, r.tile_size, r.depth_test.c_str(),
-                r.tier.c_str(), 1e9 * r.seconds[view_vec4s] / double(r.lights));
-    for (std::size_t i = 1; i < source_count; ++i)
-        if (r.seconds[i] > 0)
-            std::printf("%14.2f", r.ratio(Source(i)));
-        else
-            std::printf("%14s", "");
-    std::printf("\n");
-    std::fflush(stdout);
-}
-
 inline void write_sources_csv(const std::vector<SourceResult>& results, const char* path) {
     std::FILE* const csv =
         open_report(path, "set,n,tile_px,depth_test,tier,source,ns_per_light,ratio_to_view_vec4s");
@@ -162,32 +140,21 @@ inline void write_sources_csv(const std::vector<SourceResult>& results, const ch
     std::fclose(csv);
 }
 
-inline void print_source_goals(const std::vector<SourceResult>& results) {
-    print_goal_header("from what the lights are, to view-space vec4s");
+inline void add_source_goals(const std::vector<SourceResult>& results, Goals& goals) {
     for (const char* const tier : goal_tiers) {
-        const auto print = [&](const char* what, bool many, Source source, Source to, double must,
-                               double aim) {
+        const auto add = [&](const char* what, bool many, Source source, Source to, double must, double aim) {
             double worst = 0;
             for (const SourceResult& r : results)
                 if (r.tier == tier && (r.set == "many_lights") == many)
                     worst = std::max(worst, r.ratio(source, to));
-            print_goal(what, tier, {must, aim}, worst);
+            goals.add("what the lights are", what, tier, {must, aim}, worst);
         };
-        print("10,000 world-space vec4s", false, world_vec4s, view_vec4s, 1.15, 1.05);
-        print("10,000 structs of 64 bytes, view space", false, view_structs, view_vec4s, 1.15, 1.05);
-        print("10,000 structs of 64 bytes, world space", false, world_structs, view_vec4s, 1.25, 1.1);
-        print("many_lights, world-space vec4s", true, world_vec4s, view_vec4s, 1.5, 1.2);
-        print("10,000 world-space vec4s, to a loop of one's own", false, world_vec4s, loop_vec4s, 1, 1);
-        print("10,000 structs, world space, to a loop of one's own", false, world_structs, loop_structs, 1,
-              1);
-        print("many_lights, world-space vec4s, to a loop", true, world_vec4s, loop_vec4s, 1, 1);
+        add("10,000 world-space vec4s", false, world_vec4s, view_vec4s, 1.15, 1.05);
+        add("10,000 structs of 64 bytes, view space", false, view_structs, view_vec4s, 1.15, 1.05);
+        add("10,000 structs of 64 bytes, world space", false, world_structs, view_vec4s, 1.25, 1.1);
+        add("many_lights, world-space vec4s", true, world_vec4s, view_vec4s, 1.5, 1.2);
+        add("10,000 world-space vec4s, to a loop of one's own", false, world_vec4s, loop_vec4s, 1, 1);
+        add("10,000 structs, world space, to a loop of one's own", false, world_structs, loop_structs, 1, 1);
+        add("many_lights, world-space vec4s, to a loop", true, world_vec4s, loop_vec4s, 1, 1);
     }
-    for (const SourceResult& r : results)
-        if (r.set == "many_lights")
-            std::printf(
-                "many_lights, %-7s ms a build: %.2f from view-space vec4s, %.2f from world-space ones\n",
-                (r.tier + ",").c_str(), 1e3 * r.seconds[view_vec4s], 1e3 * r.seconds[world_vec4s]);
-    std::puts(
-        "  published for Bevy: 2.12 ms, on another machine, by its own clustering on the CPU (clusters, not "
-        "tiles)");
 }

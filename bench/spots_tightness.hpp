@@ -3,6 +3,7 @@
 // sphere and as the spot that it is.
 #pragma once
 
+#include "console.hpp"
 #include "goals.hpp"
 #include "measure.hpp"
 #include "slicing.hpp"
@@ -171,37 +172,37 @@ inline void count(const Rung& rung, const lightbin::Spot& spot, const DrawnBound
     }
 }
 
-inline void print_tightness(std::FILE* csv, const Rung& rung, std::size_t angle, std::size_t spots,
+inline void write_tightness(std::FILE* csv, const Rung& rung, std::size_t angle, std::size_t spots,
                             const Tightness& t) {
     const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
-    const double whole = t.ratio(whole_sphere), least = t.ratio(least_sphere_of_it),
-                 own = t.ratio(spot_itself), must = rung.must[angle];
     std::fprintf(csv, "%s,%g,%zu,%llu,%llu,%llu,%.4f,%.4f,%.4f,%g,%g\n", rung.name,
-                 double(half_angles[angle]), spots, number(t.exact), number(t.open), number(t.misses), whole,
-                 least, own, must, rung.aim);
-    std::printf("%-15s%6g%9llu%6llu%8llu%8.2f%8.2f%8.3f", rung.name, double(half_angles[angle]),
-                number(t.exact), number(t.open), number(t.misses), whole, least, own);
-    if (must > 0) std::printf("%8.2f%6.2f %s", must, rung.aim, own - must >= 0.005 ? "MISS" : "");
-    std::printf("\n");
-    std::fflush(stdout);
+                 double(half_angles[angle]), spots, number(t.exact), number(t.open), number(t.misses),
+                 t.ratio(whole_sphere), t.ratio(least_sphere_of_it), t.ratio(spot_itself), rung.must[angle],
+                 rung.aim);
 }
 
-/// Writes spots_tightness.csv and prints its rows. Returns the number of misses.
-inline std::uint64_t report_tightness(bool quick) {
+/// What the half angles and rungs gave in all.
+struct TightnessReport {
+    std::uint64_t misses = 0, open = 0;
+    std::vector<double> saved;  ///< of each, the entries of whole spheres over the spots'
+};
+
+/// Writes spots_tightness.csv and prints a line a rung.
+inline TightnessReport report_tightness(bool quick, Goals& goals) {
     std::FILE* const csv =
         open_report("spots_tightness.csv",
                     "rung,half_angle,spots,exact,open,misses,whole_sphere,least_sphere,spot,must,aim");
     const std::size_t count_of_spots = quick ? 100 : 1000;
-    std::printf("entries over exact pairs of a cell and a spot: 32-pixel tiles, 6 %% deep with a depth test; "
-                "clusters: 64 "
-                "pixels, 24 slices;\n%zu spots a half angle, of sides .05 to .25 of their depth\n"
-                "%-15s%6s%9s%6s%8s%8s%8s%8s%8s%6s\n",
-                count_of_spots, "rung", "angle", "exact", "open", "misses", "whole", "least", "spot", "must",
-                "aim");
     std::vector<Rung> rungs = spot_rungs();
+    std::vector<TableRow> table = {{"half angle"}};
+    for (const Rung& rung : rungs)
+        table.push_back({rung.name});
     SpotQuestions questions;
-    std::uint64_t misses = 0;
+    TightnessReport report;
+    Progress progress;
     for (std::size_t angle = 0; angle < half_angles.size(); ++angle) {
+        progress(text("half angle %g", double(half_angles[angle])));
+        table[0].push_back(text("%g", double(half_angles[angle])));
         std::vector<Tightness> sums(rungs.size());
         Dice dice(std::uint32_t(angle) + 100);
         for (const lightbin::Spot& spot :
@@ -214,10 +215,21 @@ inline std::uint64_t report_tightness(bool quick) {
                 count(rungs[i], spot, bounds, met[rungs[i].question], sums[i]);
         }
         for (std::size_t i = 0; i < rungs.size(); ++i) {
-            print_tightness(csv, rungs[i], angle, count_of_spots, sums[i]);
-            misses += sums[i].misses;
+            const double whole = sums[i].ratio(whole_sphere), own = sums[i].ratio(spot_itself);
+            write_tightness(csv, rungs[i], angle, count_of_spots, sums[i]);
+            table[i + 1].push_back(text("%.2f (%.1f)", own, whole));
+            report.misses += sums[i].misses, report.open += sums[i].open;
+            report.saved.push_back(whole / own);
+            if (rungs[i].must[angle] > 0)
+                goals.add("entries of spots",
+                          rungs[i].name + text(", %g degrees", double(half_angles[angle])), "all",
+                          {rungs[i].must[angle], rungs[i].aim}, own);
         }
     }
     std::fclose(csv);
-    return misses;
+    std::printf(
+        "Entries of %zu spots over exact pairs of a cell and a spot; in brackets those of whole spheres\n",
+        count_of_spots);
+    print_table(table);
+    return report;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "spots_time.hpp"
 
-#include "goals.hpp"
 #include "lens.hpp"
 #include "slicing.hpp"
 #include "spots_sets.hpp"
@@ -12,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -167,23 +167,6 @@ std::vector<SpotTimeCase> spot_time_cases(bool quick) {
     return cases;
 }
 
-void print_spot_time_header() {
-    std::printf(
-        "\nspots, as a ratio to as many spheres that make as many entries; clusters: 24 slices of 64-pixel "
-        "tiles, else 32 pixels\n"
-        "%-10s%7s %-11s%-10s%-9s%-7s%9s%9s%7s%8s%9s%9s\n",
-        "set", "n", "footprint", "depth", "slicing", "tier", "ns/spot", "/sphere", "ratio", "spread",
-        "entries", "spheres'");
-}
-
-void print_spot_time(const SpotTime& t) {
-    std::printf("%-10s%7zu %-11s%-10s%-9s%-7s%9.2f%9.2f%7.2f%8.2f%9.2f%9.2f %s\n", t.set.c_str(), t.lights,
-                t.footprint.c_str(), t.depth_test.c_str(), t.slicing.c_str(), t.tier.c_str(), t.ns_per_spot,
-                t.ns_per_sphere, t.ratio, t.spread, t.entries, t.entries_of_spheres,
-                t.ratio - time_goal.must >= 0.005 ? "MISS" : "");
-    std::fflush(stdout);
-}
-
 void write_spot_times(const std::vector<SpotTime>& times, const char* path) {
     std::FILE* const csv =
         open_report(path, "set,n,footprint,depth_test,slicing,tier,ns_per_spot,ns_per_sphere,ratio,"
@@ -195,29 +178,13 @@ void write_spot_times(const std::vector<SpotTime>& times, const char* path) {
     std::fclose(csv);
 }
 
-void print_spot_time_goals(const std::vector<SpotTime>& times) {
-    print_goal_header("spots to as many spheres with as many entries, the worst");
-    const auto print = [&](const char* footprint, const char* depth_test, const char* slicing,
-                           const char* tier) {
-        const SpotTime* worst = nullptr;
-        for (const SpotTime& t : times)
-            if (t.footprint == footprint && t.depth_test == depth_test && t.slicing == slicing &&
-                t.tier == tier && (worst == nullptr || t.ratio > worst->ratio))
-                worst = &t;
-        if (worst == nullptr) return;
-        char what[96];
-        std::snprintf(what, sizeof what, "%s, %s, %s: %s/%zu", footprint, depth_test, slicing,
-                      worst->set.c_str(), worst->lights);
-        print_goal(what, tier, time_goal, worst->ratio);
-    };
-    for (const auto& [footprint, depth_test, slicing] : {std::tuple("rectangle", "none", "none"),
-                                                         {"silhouette", "none", "none"},
-                                                         {"rectangle", "interval", "none"},
-                                                         {"rectangle", "box", "none"},
-                                                         {"rectangle", "split_box", "none"},
-                                                         {"rectangle", "none", "clusters"},
-                                                         {"rectangle", "box", "clusters"},
-                                                         {"rectangle", "none", "z_bins"}})
-        for (const char* const tier : goal_tiers)
-            print(footprint, depth_test, slicing, tier);
+void add_spot_time_goals(const std::vector<SpotTime>& times, Goals& goals) {
+    std::map<std::pair<std::string, std::string>, const SpotTime*> worst;  // by rung and tier
+    for (const SpotTime& t : times) {
+        const SpotTime*& most = worst[{t.rung(), t.tier}];
+        if (most == nullptr || t.ratio > most->ratio) most = &t;
+    }
+    for (const auto& [rung, time] : worst)
+        goals.add("spots to spheres", rung.first + text(": %s/%zu", time->set.c_str(), time->lights),
+                  rung.second, time_goal, time->ratio);
 }

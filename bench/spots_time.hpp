@@ -2,6 +2,8 @@
 // What building spots takes beside as many spheres whose lists are as long, in the same rung, in turns.
 #pragma once
 
+#include "goals.hpp"
+
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -15,6 +17,8 @@ struct SpotTime {
     double ratio;                        ///< of the medians
     double spread;                       ///< 10th to 90th percentile of the turns' own ratios
     double entries, entries_of_spheres;  ///< a light
+
+    std::string rung() const { return footprint + ", " + depth_test + ", " + slicing; }
 };
 
 struct SpotTimeCase {
@@ -25,9 +29,7 @@ struct SpotTimeCase {
 /// A case for each set, number of lights, rung and tier that this machine has. Those of a set and number follow each other.
 std::vector<SpotTimeCase> spot_time_cases(bool quick);
 
-void print_spot_time_header();
-void print_spot_time(const SpotTime& time);
 void write_spot_times(const std::vector<SpotTime>& times, const char* path);
 
-/// The worst of each rung and tier, beside what it must be and what is aimed at.
-void print_spot_time_goals(const std::vector<SpotTime>& times);
+/// The worst of each rung and tier.
+void add_spot_time_goals(const std::vector<SpotTime>& times, Goals& goals);
