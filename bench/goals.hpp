@@ -90,7 +90,8 @@ public:
 
     std::string sentence() const {
         const auto met = std::ranges::count_if(rows_, &Row::met);
-        const auto worst = std::ranges::max_element(rows_, {}, &Row::worse);
+        const auto worst =
+            std::ranges::max_element(rows_, {}, [](const Row& row) { return row.met() ? 0 : row.worse(); });
         std::string s = text("Goals met: %td of %zu", met, rows_.size());
         if (met < std::ssize(rows_))
             s += ", worst " + worst->group + ", " + worst->what + ", " + worst->tier +
@@ -242,7 +243,7 @@ inline std::string slower_tiers(const std::vector<Result>& results) {
                          wide.tile_size, wide.footprint.c_str(), wide.depth_test.c_str(), wide.tier.c_str(),
                          times, narrow.tier.c_str());
         }
-    if (slower == 0) return "No wider instruction set is slower than a narrower one.";
+    if (slower == 0) return "No wider instruction set is slower than a narrower one beyond their spreads.";
     return text("A wider instruction set is slower than a narrower one in %zu pairs, most in ", slower) +
            worst + ".";
 }

@@ -18,8 +18,8 @@
 #       Error against run time: of every method and tile size what a frame pays (Z bounds, build, upload, light evaluations
 #       of so many nanoseconds: if none are given, what this machine's GPU takes, or .02 where there is none) and how many
 #       light evaluations it makes over those needed, on made scenes and those of bench/scenes, or on the named ones; and
-#       what the picture loses by where lights end. A table with verdicts and a sentence a scene. Three minutes, --quick
-#       less than one. Writes build/bench/report.html and report.csv.
+#       what the picture loses by where lights end, and where they may for an RMSE of 1 %. A table with verdicts and a
+#       sentence a scene. Four minutes, --quick one. Writes build/bench/report.html and report.csv.
 #   error [--quick] [SCENE.glb ...]
 #       What each footprint and depth test lists beyond the exact set, and what it misses, each pair of a tile and a light
 #       decided in exact arithmetic; of clusters, too. Writes build/bench/error.csv and cluster_error.csv.
