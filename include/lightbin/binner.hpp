@@ -59,6 +59,10 @@ template <bool read> auto bounds_left_out() {
 class SlicesInput {
 public:
     SlicesInput(const Slices& slices) : given_(&slices) {}
+    // Not inline: g++ 12 would warn of what is not there, in programs with the address sanitizer.
+    LIGHTBIN_NOINLINE SlicesInput(const SlicesInput& other) : given_(other.given_), own_(other.own_) {}
+    LIGHTBIN_NOINLINE ~SlicesInput() {}
+    SlicesInput& operator=(const SlicesInput&) = delete;
     SlicesInput(const Slices&& slices) : own_(slices) {}
     template <class Given>
     SlicesInput(const Result<Given>& result) : own_(result) {}  // says that it is no Slices yet
