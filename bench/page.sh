@@ -10,7 +10,14 @@
 #                              beside each other where there is room
 #   TEXT                       a paragraph. In all of them `CODE`; nothing else has a meaning
 set -eu
+me=bench/page.sh
+here=$(pwd)
 bench=$(cd "$(dirname "$0")" && pwd)
+cd "$bench/.."
+. tests/packages.sh
+takes "the name of a page" '[^-].*' "$@"
+cd "$here"
+[ $# -eq 1 ] || fail "it takes the name of a page, see --help"
 name=$1
 below=$bench/$name.page
 [ -e "$below" ] || below=

@@ -1,5 +1,5 @@
 #!/bin/sh
-# sh tests/oracle/stability.sh PROGRAM: bench/stability in few cases. It reports every family of conditions, each with formulas
+# stability.sh PROGRAM: bench/stability in few cases. It reports every family of conditions, each with formulas
 # of the textbooks and the library; the library misses nothing; and what is known to break a formula in float breaks it.
 set -eu
 folder=$(mktemp -d)
