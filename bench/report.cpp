@@ -275,8 +275,8 @@ std::string more(const Result& a, const Result& b) {
 /// The answer for one scene.
 std::string sentence(const SceneReport& report) {
     const Result &best = report.best(ours), &bare = report.best(without_bounds);
-    std::string s =
-        report.name + ": " + words(best.way) + text(", %.2f ms, %.2f times needed; ", best.total, best.ratio);
+    std::string s = report.name + ": " + words(best.way) +
+                    text(", %.2f ms, %.2f times the evaluations needed; ", best.total, best.ratio);
     if (best.way.needs_bounds())
         s += "without Z bounds " + words(bare.way) + ", " + more(bare, best);
     else {
@@ -284,7 +284,7 @@ std::string sentence(const SceneReport& report) {
         const double worth = bare.total - total_without_bounds(bounded);
         if (bounded.way.needs_bounds() && worth >= 0.005)
             s += words(bounded.way) +
-                 text(" if Z bounds take under %.2f ms (here %.2f)", worth, bounded.bounds);
+                 text(" if Z bounds take under %.2f ms (%.2f here, on the CPU)", worth, bounded.bounds);
         else
             s += "Z bounds don't pay";
     }
@@ -294,7 +294,8 @@ std::string sentence(const SceneReport& report) {
          (outlined.total * as_good < best.total ? "pay, " + more(outlined, best) : std::string("don't pay"));
     const auto whole = [](const Way& way) { return way.ours && way.form == Form::whole_spheres; };
     if (std::ranges::any_of(report.results, [&](const Result& r) { return whole(r.way); }))
-        s += "; cones save " + text("%.0f %%", 100 * (1 - best.total / report.best(whole).total));
+        s += "; cones instead of whole spheres save " +
+             text("%.0f %%", 100 * (1 - best.total / report.best(whole).total));
     return s;
 }
 
@@ -309,7 +310,7 @@ std::string ending_sentence(const SceneReport& report) {
     const bool kept = last->difference.rmse_restored <= 0.01;
     return text(
         "%s white / %.0f: an RMSE of %.1f %% with the mean given back, %.0f light evaluations a pixel.",
-        kept ? "Lights may end at" : "None of these keeps an RMSE of 1 %. At", 1 / last->part,
+        kept ? "Lights may end smoothly at" : "No smooth end keeps an RMSE of 1 %. At", 1 / last->part,
         100 * last->difference.rmse_restored, last->evaluations);
 }
 
@@ -346,7 +347,7 @@ std::string verdict_of(const std::vector<SceneReport>& reports, const std::strin
     double least = HUGE_VAL;
     for (const SceneReport& report : reports)
         least = std::min(least, report.best(this_one).total / report.best(ours).total);
-    return text("leave it out: at least %.0f %% behind the best", 100 * (least - 1));
+    return text("leave it out at %g ns: %.0f %% behind the best or more", evaluation_ns, 100 * (least - 1));
 }
 
 /// A method over all scenes, each at its best tile size there.
@@ -384,9 +385,11 @@ std::vector<TableRow> table(const std::vector<SceneReport>& reports) {
 }
 
 void print(const std::vector<SceneReport>& reports) {
-    std::printf("\nA frame is Z bounds, build, upload and light evaluations of %g ns (%s);\n"
-                "1 is the best of its scene; median and worst. Evaluations are over those needed.\n",
-                evaluation_ns, evaluation_words.c_str());
+    std::printf("\nframe: Z bounds, build, upload and light evaluations, over the best method's of each "
+                "scene; median and\n"
+                "worst. An evaluation takes %g ns (%s). evaluations: over the\n"
+                "lights that reach the pixel. As good: within %.0f %%.\n",
+                evaluation_ns, evaluation_words.c_str(), 100 * (as_good - 1));
     std::vector<TableRow> rows = table(reports);
     rows.insert(rows.begin(), row_head);
     print_table(rows);

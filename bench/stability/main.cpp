@@ -26,8 +26,8 @@ int main(int count, char** words) try {
     const std::vector<Family> families = all_families();
     std::vector<Measured> all;
     std::printf("%-32s%24s%37s%26s\n", "",
-                "error in pixels:", "missed, bare / all with our margin:", "ns a light:");
-    print_row("stiff or extreme: where it is worst", heads);
+                "error in pixels (slices):", "missed: without, and with our margin:", "ns a light:");
+    print_row("stiff or extreme: where float is worst", heads);
     std::uint64_t misses = 0, unlike = 0, denied = 0, checked = 0;
     for (const Family& family : families) {
         Measured measured{&family, {}};

@@ -173,14 +173,15 @@ inline std::string sentence(const Measured& of) {
     std::string text = of.family->title + (of.family->axis.empty() ? "" : ", by " + of.family->axis) + ": ";
     if (of.family->spots)
         text += "what textbooks put around spots is up to " + error(of.textbook(of.worst(), "float", false)) +
-                " px too wide, in either precision";
+                " px too wide by the better of two shapes, in either precision";
     else
         text += std::string("textbooks off by a ") + (slices ? "slice" : "pixel") +
                 " or more, in float: " + where_broken(of, "float") +
                 "; in double: " + where_broken(of, "double");
     text += ". Ours: by " + number(ours) + (slices ? " slice" : " px") + (slices && ours != 1 ? "s" : "") +
             " at most";
-    if (!slices && inward < ours / 2) text += " (" + number(inward) + " towards missing)";
+    if (!slices && inward < ours / 2)
+        text += ", outward (inward by " + number(inward) + ", which the margin covers)";
     std::uint64_t misses = 0;
     for (const Result& result : of.results)
         misses += result.ours.missed_same;
@@ -262,9 +263,11 @@ inline std::vector<std::string> verdict(const std::vector<Measured>& all, std::u
             "In float even the best textbook formula is off by a pixel or a slice or more: " +
                 (in_float.empty() ? "nowhere" : in_float) + ".",
             "In double: " + (in_double.empty() ? "nowhere" : in_double) + "; that takes " +
-                number(double_ns) + " ns a light in an ordinary scene, in float " + number(float_ns) +
-                ", ours " + number(plain_ns) + " there and up to " + number(most_ns) + " elsewhere.",
-            "Ours lists more than a pixel or a slice too much: " + (loose.empty() ? "nowhere" : loose) + "."};
+                number(double_ns) + " ns a sphere in an ordinary scene, in float " + number(float_ns) +
+                ", ours " + number(plain_ns) + " there and up to " + number(most_ns) +
+                " elsewhere. (Slices are timed up to their lists.)",
+            "Ours lists more than a pixel or a slice too much, where formulas in double would not: " +
+                (loose.empty() ? "nowhere" : loose) + "."};
 }
 
 inline void write_page(const std::vector<Measured>& all, const std::vector<std::string>& answer) {
@@ -277,14 +280,15 @@ inline void write_page(const std::vector<Measured>& all, const std::vector<std::
     };
     for (const std::string& line : answer)
         std::fprintf(file, "> %s\n", line.c_str());
-    std::fprintf(file, "\n"
-                       "## Each family at its worst\n"
-                       "Where the best of the textbooks' formulas is farthest off in float. Errors are "
-                       "of a light's screen bounds, the largest of all lights, in pixels, or of its "
-                       "slices, in slices: of the best formula in float, of the worst one in "
-                       "double, and ours before the margin. Missed is the share of the exact "
-                       "rectangles' tiles that a formula leaves out: bare the best one in float without "
-                       "a margin, the others given the library's.\n\n");
+    std::fprintf(
+        file,
+        "\n"
+        "## Each family at its worst\n"
+        "A row a family, at the condition where the best formula in float errs most; the sentences below "
+        "give the worst over all conditions. Errors are the largest of any light's screen bounds, in "
+        "pixels, or of its slices, in slices: of the best formula in float, of the worst one in double, "
+        "and ours before the margin. Missed is the share of the exact rectangles' tiles that is left "
+        "out: bare is the best formula in float without a margin, the others have the library's.\n\n");
     const auto table = [&](const std::vector<std::string>& head, const std::vector<std::size_t>& columns) {
         row(head);
         for (const Measured& measured : all) {

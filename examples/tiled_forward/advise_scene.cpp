@@ -317,7 +317,7 @@ std::string advise_scene(const Scene& scene, const AdviseSettings& settings) {
              ms(found.cost.total()), ms(found.cost.depth), ms(found.cost.build), ms(found.cost.upload),
              ms(found.cost.shade));
     page += text("             %.3f ms by plain tiles (%d px); %.3f ms by every light in every pixel;\n"
-                 "             %.3f ms by every part that can be had together\n",
+                 "             %.3f ms by all parts that combine, those that save little, too\n",
                  ms(found.plain.total()), found.plain_plan.tile_size, ms(found.untiled.total()),
                  ms(found.everything.total()));
     page += "advised      " + to_string(found.way.plan) + "\n";

@@ -9,7 +9,7 @@
 #pragma once
 
 #if (defined(_MSVC_LANG) ? _MSVC_LANG : __cplusplus) <= 201703L
-#include "lightbin wants C++20, which the flag -std=c++20 gives (Microsoft's: /std:c++20)"
+#include "lightbin wants C++20, which the flag -std=c++20 gives (Microsoft's: /std:c++20); no file is missing"
 #endif
 
 // The name says which rung of the ladder of vector instructions is taken for granted, with all rungs below it, and then
