@@ -77,11 +77,11 @@ inline std::string to_string(const Plan& plan) {
 
 /// What a part that a plan has is worth, or what one that it lacks would cost.
 struct Verdict {
-    std::string part;     ///< such as "box"
-    bool keep = false;    ///< the plan has the part
-    Plan other = {};      ///< the cheapest that differs in the part
-    std::string instead;  ///< that in words; empty where none was weighed
-    double saved_ns = 0;  ///< what a frame takes longer by the other
+    std::string part;     ///< the part's name, such as "box"
+    bool keep = false;    ///< whether the plan has the part
+    Plan other = {};      ///< the cheapest weighed plan that differs from it in the part
+    std::string instead;  ///< `other` in words; empty where no weighed plan differs in the part
+    double saved_ns = 0;  ///< the frame's time by `other` minus that by the plan
 };
 
 /// Returns a line such as "box          keep: saves 1.200 ms                instead: 16 px, rectangle, interval".

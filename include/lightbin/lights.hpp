@@ -56,7 +56,7 @@ concept Array = requires(const Range& range) {
     std::span(std::data(range), std::size(range));
 };
 
-/// Whether `to_light` can't be called with an element itself, but at most with what that points or refers to.
+/// Whether `to_light` does not accept an element itself. Then it is called with what the element points or refers to.
 template <class ToLight, class Light>
 inline constexpr bool by_reference =
     std::same_as<decltype(call(std::declval<const ToLight&>(), std::declval<const Light&>())), NotCalled>;

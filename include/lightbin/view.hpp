@@ -320,7 +320,7 @@ private:
         return static_cast<double>(axis.sign) * (pixels / tile_size_ - axis.offset) / axis.scale;
     }
 
-    /// Returns what is wrong with the near and far plane.
+    /// Stores the depths of the near and far plane. Returns why these are refused, or nothing where they are not.
     detail::Maybe<ErrorCode> set_depth_range() {
         const DepthInterval range = view_depths(0, 1);
         camera_.near_depth = range.min;

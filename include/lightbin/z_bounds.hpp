@@ -54,9 +54,9 @@ struct ZBoundsBuffers {
 /// two floats next to what it stands for. Bounds don't hold for what is further off, as where the buffer has fewer bits
 /// than the format that is named, or a polygon offset has moved its depths.
 enum class DepthFormat : std::uint8_t {
-    float32,  ///< a float, denormals possibly flushed to zero
-    unorm24,  ///< whole multiples of 1 / (2^24 - 1)
-    unorm16,  ///< whole multiples of 1 / (2^16 - 1)
+    float32,  ///< a 32-bit float; denormal numbers may have been flushed to zero
+    unorm24,  ///< a 24-bit integer n that stands for the depth n / (2^24 - 1)
+    unorm16,  ///< a 16-bit integer n that stands for the depth n / (2^16 - 1)
 };
 
 constexpr const char* to_string(DepthFormat format) {
