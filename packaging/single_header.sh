@@ -28,7 +28,7 @@ EOF
 
         # Each header once. What ends in .inl is meant to be included often, each time under other macros; its comments
         # are kept the first time.
-        function write(name, often, line, got, dropped) {
+        function write(name, often, line, got, dropped, alone) {
             often = name ~ /\.inl$/
             if (name in depth_of) {
                 if (!often && depth_of[name] > 0) fail(name " is included first under a condition, and again")
@@ -37,6 +37,11 @@ EOF
             print "// ---- " name
             dropped = 1
             while ((got = (getline line < ("include/" name))) > 0) {
+                if (line ~ /^#if !defined\(LIGHTBIN_KERNELS\)/) alone = 1  # what an editor reads
+                if (alone) {
+                    if (line == "#endif") alone = 0
+                    continue
+                }
                 if (line ~ /^ *# *if/) ++depth
                 if (line ~ /^ *# *endif/) --depth
                 if (line ~ /^#include <lightbin\//) {

@@ -4,8 +4,8 @@
 #pragma once
 
 #include <lightbin/binner.hpp>
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/rounding.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/rounding.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/options.hpp>
@@ -30,7 +30,7 @@
 #include <utility>
 #include <vector>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// What advise() can't measure. Times in nanoseconds, 0 or more.
 struct Costs {
@@ -503,4 +503,4 @@ Result<Advice> advise_slices(const View& view, const LightRange& lights, const W
         });
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}}  // namespace lightbin

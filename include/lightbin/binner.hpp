@@ -2,23 +2,23 @@
 // Binner: the one easy call. It owns the scratch memory of the stages, and the lists.
 #pragma once
 
-#include <lightbin/bin.hpp>
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/float_environment.hpp>
-#include <lightbin/detail/maybe.hpp>
-#include <lightbin/detail/scratch.hpp>
-#include <lightbin/detail/sizes.hpp>
-#include <lightbin/detail/supertile.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/checked_sizes.hpp>
+#include <lightbin/detail/base/float_environment.hpp>
+#include <lightbin/detail/base/maybe.hpp>
+#include <lightbin/detail/depth/ranked_footprints.hpp>
+#include <lightbin/detail/depth/sliced_footprints.hpp>
+#include <lightbin/detail/engine/block.hpp>
+#include <lightbin/detail/engine/grid_lists.hpp>
+#include <lightbin/detail/engine/scratch.hpp>
+#include <lightbin/detail/project/footprints.hpp>
 #include <lightbin/isa.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/list_format.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/parallel.hpp>
-#include <lightbin/project.hpp>
-#include <lightbin/ranked_footprints.hpp>
 #include <lightbin/result.hpp>
-#include <lightbin/sliced_footprints.hpp>
 #include <lightbin/slices.hpp>
 #include <lightbin/view.hpp>
 #include <lightbin/z_bounds.hpp>
@@ -30,9 +30,9 @@
 #include <type_traits>
 #include <utility>
 
-#include <lightbin/detail/warnings_off.inl>
+#include <lightbin/detail/base/warnings_off.inl>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 namespace detail {
 
@@ -300,6 +300,6 @@ private:
     std::conditional_t<with_depth, Lists, Nothing> transparent_;
 };
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}}  // namespace lightbin
 
-#include <lightbin/detail/warnings_on.inl>
+#include <lightbin/detail/base/warnings_on.inl>

@@ -2,8 +2,8 @@
 // Stage 4a: the light grid in other forms: narrow ids, sentinel-terminated lists, a bitmask a tile.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/sizes.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/checked_sizes.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/list_format.hpp>
 #include <lightbin/result.hpp>
@@ -15,9 +15,9 @@
 #include <optional>
 #include <span>
 
-#include <lightbin/detail/warnings_off.inl>
+#include <lightbin/detail/base/warnings_off.inl>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// Returns how many lights ids of a format can number.
 inline std::uint64_t countable_lights(const ListFormat& format) {
@@ -138,6 +138,6 @@ Result<Encoded> encode(const LightGrid<Id>& grid, const ListFormat& format, std:
     return encoded;
 }
 
-}  // namespace lightbin
+}}  // namespace lightbin
 
-#include <lightbin/detail/warnings_on.inl>
+#include <lightbin/detail/base/warnings_on.inl>

@@ -2,9 +2,9 @@
 // Instruction sets: which of them the compiler made kernels for, and which this machine runs.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/names.hpp>
-#include <lightbin/detail/platform.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/enum_names.hpp>
+#include <lightbin/detail/base/platform.hpp>
 
 #include <cstdint>
 #include <initializer_list>
@@ -13,7 +13,7 @@
 #include <intrin.h>
 #endif
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// Instruction sets with kernels of their own. All give the same bytes.
 enum class Isa : std::uint8_t {
@@ -105,4 +105,4 @@ inline Isa machine_isa(Isa cap = compiled_isa) {
 #endif
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}}  // namespace lightbin

@@ -2,9 +2,9 @@
 // The output: the light grid of Tiled Shading, Figure 1 - offset and count a tile, and one light index list.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/names.hpp>
-#include <lightbin/detail/plain.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/algorithms.hpp>
+#include <lightbin/detail/base/enum_names.hpp>
 #include <lightbin/result.hpp>
 
 #include <array>
@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <span>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// Bytes of a light id.
 enum class IdWidth : std::uint8_t {
@@ -137,4 +137,4 @@ template <class Id> ListLengths list_lengths(const LightGrid<Id>& grid) {
     return lengths;
 }
 
-}  // namespace lightbin
+}}  // namespace lightbin

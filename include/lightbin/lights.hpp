@@ -2,10 +2,10 @@
 // The lights as the caller has them: vec4 arrays or the caller's own structs, in view space or world space.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/maybe.hpp>
-#include <lightbin/detail/plain.hpp>
-#include <lightbin/detail/world_to_view.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/algorithms.hpp>
+#include <lightbin/detail/base/maybe.hpp>
+#include <lightbin/detail/project/world_to_view.hpp>
 #include <lightbin/matrix.hpp>
 #include <lightbin/sphere.hpp>
 #include <lightbin/spot.hpp>
@@ -15,9 +15,9 @@
 #include <type_traits>
 #include <utility>
 
-#include <lightbin/detail/warnings_off.inl>
+#include <lightbin/detail/base/warnings_off.inl>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 namespace detail {
 
@@ -231,6 +231,6 @@ template <class Light, class ToLight> const Sphere* as_they_are(const Lights<Lig
 }
 
 }  // namespace detail
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}}  // namespace lightbin
 
-#include <lightbin/detail/warnings_on.inl>
+#include <lightbin/detail/base/warnings_on.inl>

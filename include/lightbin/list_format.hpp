@@ -2,13 +2,13 @@
 // The forms that lists have. What a Binner or encode() writes and what a shader reads must have the same.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/names.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/enum_names.hpp>
 #include <lightbin/light_grid.hpp>
 
 #include <cstdint>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// How the lights of a tile are written down.
 enum class ListEncoding : std::uint8_t {
@@ -31,4 +31,4 @@ struct ListFormat {
     std::uint32_t max_lights = 0;  ///< ids are below it; bitmask: needed, others: 0 is as many as ids number
 };
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}}  // namespace lightbin

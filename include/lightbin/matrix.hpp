@@ -16,8 +16,8 @@
 // of column_major and row_vectors, and the fourth, eighth and twelfth of row_major.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/math.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/math.hpp>
 #include <lightbin/result.hpp>
 
 #include <concepts>
@@ -25,7 +25,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// What sixteen numbers in memory are.
 enum class MatrixLayout : std::uint8_t {
@@ -140,4 +140,4 @@ template <class Numbers> Matrix matrix(const Numbers& numbers, MatrixLayout layo
     return layout == MatrixLayout::row_major ? detail::transposed(columns) : columns;
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}}  // namespace lightbin

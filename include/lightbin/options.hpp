@@ -2,14 +2,14 @@
 // What a Binner does, fixed at compile time: an option that is off leaves no code.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/names.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/enum_names.hpp>
 #include <lightbin/isa.hpp>
 #include <lightbin/light_grid.hpp>
 
 #include <cstdint>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// The tiles that a light's projection is taken to cover.
 enum class Footprint : std::uint8_t {
@@ -57,4 +57,4 @@ struct Options {
     Isa isa = compiled_isa;
 };
 
-}  // namespace lightbin
+}}  // namespace lightbin

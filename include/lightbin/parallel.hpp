@@ -2,13 +2,13 @@
 // The caller's threads, lent for the time of a call: lightbin has none of its own.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/float_environment.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/float_environment.hpp>
 
 #include <cstddef>
 #include <type_traits>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// A worker count and the caller's way to run a loop on several threads. Refers to the caller's callable, an object or
 /// a function, which must outlive the call that it is given to.
@@ -89,4 +89,4 @@ struct Serial {
     operator Parallel() const { return {}; }
 };
 
-}  // namespace lightbin
+}}  // namespace lightbin

@@ -2,8 +2,8 @@
 // Errors a program can meet come back as values with a text; programmer errors assert.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/maybe.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/maybe.hpp>
 
 #include <cstdint>
 #include <string>
@@ -16,7 +16,7 @@
 #define LIGHTBIN_ASSERT(condition) assert(condition)
 #endif
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 enum class ErrorCode : std::uint8_t {
     // View::from_projection
@@ -287,4 +287,4 @@ private:
     Error error_ = {};
 };
 
-}  // namespace lightbin
+}}  // namespace lightbin

@@ -2,8 +2,8 @@
 // Stage 4b: the shader text that reads a light grid. docs/shader.md shows its use.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/names.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/enum_names.hpp>
 #include <lightbin/encode.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/shader_checks.hpp>
@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// Where the lists lie.
 enum class ListStorage : std::uint8_t {
@@ -439,4 +439,4 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {}) {
     return writer.finish();
 }
 
-}  // namespace lightbin
+}}  // namespace lightbin

@@ -3,13 +3,13 @@
 // grid. Each text is a whole shader but for `#version`.
 #pragma once
 
-#include <lightbin/detail/cell_boxes.hpp>
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/float_environment.hpp>
-#include <lightbin/detail/names.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/enum_names.hpp>
+#include <lightbin/detail/base/float_environment.hpp>
+#include <lightbin/detail/engine/cell_boxes.hpp>
+#include <lightbin/detail/project/footprints.hpp>
 #include <lightbin/lights.hpp>
 #include <lightbin/options.hpp>
-#include <lightbin/project.hpp>
 #include <lightbin/shader.hpp>
 #include <lightbin/shader_text.hpp>
 #include <lightbin/view.hpp>
@@ -23,7 +23,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 enum class ShaderStage : std::uint8_t { compute, fragment };
 
@@ -530,4 +530,4 @@ float $greatest(float side, vec2 z) {
     return writer.finish();
 }
 
-}  // namespace lightbin
+}}  // namespace lightbin

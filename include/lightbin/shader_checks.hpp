@@ -3,15 +3,15 @@
 // lacks. Text on request: ShaderOptions::view_check and list_check.
 #pragma once
 
-#include <lightbin/detail/camera.hpp>
-#include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/project/camera.hpp>
 #include <lightbin/shader_text.hpp>
 #include <lightbin/view.hpp>
 
 #include <cmath>
 #include <string>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// What the constants `image` and `depths` of a text with view_check are set to. In a uniform block: this struct.
 struct ShaderView {
@@ -95,4 +95,4 @@ bool $next_missing(inout $missing m, uint lights) {
 }
 
 }  // namespace detail
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}}  // namespace lightbin

@@ -2,8 +2,8 @@
 // The slice of a view depth, in shader text: what is uploaded, and how it is looked up.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/platform.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/platform.hpp>
 #include <lightbin/shader_text.hpp>
 #include <lightbin/slices.hpp>
 
@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 namespace detail {
 
@@ -98,4 +98,4 @@ inline void add_slice(ShaderWriter& writer) {
 }
 
 }  // namespace detail
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}}  // namespace lightbin

@@ -2,9 +2,9 @@
 // Shader languages: one text, written in GLSL, becomes each of them.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/names.hpp>
-#include <lightbin/detail/translate.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/enum_names.hpp>
+#include <lightbin/detail/shader/translate.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/texel_format.hpp>
 
@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include <lightbin/detail/warnings_off.inl>
+#include <lightbin/detail/base/warnings_off.inl>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 enum class ShaderLanguage : std::uint8_t {
     glsl_330,     ///< OpenGL 3.3 to 4.2
@@ -339,6 +339,6 @@ private:
 
 }  // namespace detail
 
-}  // namespace lightbin
+}}  // namespace lightbin
 
-#include <lightbin/detail/warnings_on.inl>
+#include <lightbin/detail/base/warnings_on.inl>

@@ -3,13 +3,13 @@
 // HPG 2012).
 #pragma once
 
-#include <lightbin/detail/buffer.hpp>
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/float_environment.hpp>
-#include <lightbin/detail/math.hpp>
-#include <lightbin/detail/plain.hpp>
-#include <lightbin/detail/rounding.hpp>
-#include <lightbin/detail/slice_table.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/algorithms.hpp>
+#include <lightbin/detail/base/buffer.hpp>
+#include <lightbin/detail/base/float_environment.hpp>
+#include <lightbin/detail/base/math.hpp>
+#include <lightbin/detail/base/rounding.hpp>
+#include <lightbin/detail/depth/slice_table.hpp>
 #include <lightbin/result.hpp>
 
 #include <cstddef>
@@ -17,9 +17,9 @@
 #include <span>
 #include <utility>
 
-#include <lightbin/detail/warnings_off.inl>
+#include <lightbin/detail/base/warnings_off.inl>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 class Slices;
 
@@ -129,6 +129,6 @@ inline const detail::SliceTable& detail::table_of(const Slices& slices) {
     return slices.table_;
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}}  // namespace lightbin
 
-#include <lightbin/detail/warnings_on.inl>
+#include <lightbin/detail/base/warnings_on.inl>

@@ -2,15 +2,15 @@
 // A light as the library takes it.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/math.hpp>
-#include <lightbin/detail/rounding.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/math.hpp>
+#include <lightbin/detail/base/rounding.hpp>
 
 #include <cstring>
 
-#include <lightbin/detail/warnings_off.inl>
+#include <lightbin/detail/base/warnings_off.inl>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// A light's sphere of influence: centre and radius (the papers' range), in the units of the space that the lights are
 /// given in. That is the space that the projection matrix takes, unless they go through world_space().
@@ -71,6 +71,6 @@ inline Sphere load_sphere(const Sphere* from) {
 }
 
 }  // namespace detail
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}}  // namespace lightbin
 
-#include <lightbin/detail/warnings_on.inl>
+#include <lightbin/detail/base/warnings_on.inl>

@@ -2,18 +2,18 @@
 // Lights that are not spheres, and the spheres around them: spots, tubes, rectangles.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/math.hpp>
-#include <lightbin/detail/plain.hpp>
-#include <lightbin/detail/platform.hpp>
-#include <lightbin/detail/rounding.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/algorithms.hpp>
+#include <lightbin/detail/base/math.hpp>
+#include <lightbin/detail/base/platform.hpp>
+#include <lightbin/detail/base/rounding.hpp>
 #include <lightbin/sphere.hpp>
 
 #include <cfloat>
 
-#include <lightbin/detail/warnings_off.inl>
+#include <lightbin/detail/base/warnings_off.inl>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// A spot light's influence: the points of a sphere that a cone from its centre holds. Two vec4s.
 ///
@@ -139,6 +139,6 @@ Sphere rectangle_sphere(const Point& centre, const Point& half_x, const Point& h
     return detail::sphere_around_nearly(c, half_diagonal + static_cast<double>(range));
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}}  // namespace lightbin
 
-#include <lightbin/detail/warnings_on.inl>
+#include <lightbin/detail/base/warnings_on.inl>

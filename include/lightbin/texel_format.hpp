@@ -3,13 +3,13 @@
 // names.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/names.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/enum_names.hpp>
 
 #include <cstddef>
 #include <cstdint>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// Texel of a texture or buffer texture: one or two unsigned integers of 8, 16 or 32 bits, or a float.
 enum class TexelFormat : std::uint8_t { none, r8ui, r16ui, r32ui, rg32ui, r32f };
@@ -67,4 +67,4 @@ constexpr std::size_t texture_rows(std::size_t count, std::size_t width) {
     return count == 0 ? 1 : (count - 1) / width + 1;
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}}  // namespace lightbin

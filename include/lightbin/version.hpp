@@ -2,7 +2,7 @@
 // The one place that holds the version; CMakeLists.txt reads it from here.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
 
 #define LIGHTBIN_VERSION_MAJOR 0
 #define LIGHTBIN_VERSION_MINOR 1

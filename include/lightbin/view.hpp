@@ -2,14 +2,14 @@
 // Stage 1: projection matrix + viewport + tile size -> the few constants that all other stages use.
 #pragma once
 
-#include <lightbin/detail/camera.hpp>
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/float_environment.hpp>
-#include <lightbin/detail/math.hpp>
-#include <lightbin/detail/maybe.hpp>
-#include <lightbin/detail/names.hpp>
-#include <lightbin/detail/plain.hpp>
-#include <lightbin/detail/rounding.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/algorithms.hpp>
+#include <lightbin/detail/base/enum_names.hpp>
+#include <lightbin/detail/base/float_environment.hpp>
+#include <lightbin/detail/base/math.hpp>
+#include <lightbin/detail/base/maybe.hpp>
+#include <lightbin/detail/base/rounding.hpp>
+#include <lightbin/detail/project/camera.hpp>
 #include <lightbin/matrix.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/view_summary.hpp>
@@ -18,9 +18,9 @@
 #include <cstdint>
 #include <optional>
 
-#include <lightbin/detail/warnings_off.inl>
+#include <lightbin/detail/base/warnings_off.inl>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// Range of clip-space depth. It is a setting of the graphics API and cannot be read from the matrix.
 /// Given wrongly, minus_one_to_one puts the near plane too near (safe); zero_to_one puts it too far (not
@@ -371,6 +371,6 @@ inline const detail::Camera& detail::camera_of(const View& view) {
     return view.camera_;
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}}  // namespace lightbin
 
-#include <lightbin/detail/warnings_on.inl>
+#include <lightbin/detail/base/warnings_on.inl>

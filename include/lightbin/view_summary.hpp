@@ -2,14 +2,14 @@
 // What a View read from its matrix, for a person: print it once, and the usual mistakes show.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
 
 #include <cstdio>
 #include <string>
 
-#include <lightbin/detail/warnings_off.inl>
+#include <lightbin/detail/base/warnings_off.inl>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// What View::summary() returns.
 struct ViewSummary {
@@ -67,6 +67,6 @@ template <class Text = std::string> Text to_string(const ViewSummary& view) {
     return line;
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}}  // namespace lightbin
 
-#include <lightbin/detail/warnings_on.inl>
+#include <lightbin/detail/base/warnings_on.inl>

@@ -2,13 +2,13 @@
 // Stage 2b: depth buffer -> per-tile minimum and maximum view depth of what is drawn there.
 #pragma once
 
-#include <lightbin/detail/flavour.hpp>
-#include <lightbin/detail/float_environment.hpp>
-#include <lightbin/detail/kernels.hpp>
-#include <lightbin/detail/names.hpp>
-#include <lightbin/detail/plain.hpp>
-#include <lightbin/detail/rounding.hpp>
-#include <lightbin/detail/sizes.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/algorithms.hpp>
+#include <lightbin/detail/base/checked_sizes.hpp>
+#include <lightbin/detail/base/enum_names.hpp>
+#include <lightbin/detail/base/float_environment.hpp>
+#include <lightbin/detail/base/rounding.hpp>
+#include <lightbin/detail/tiers/kernels.hpp>
 #include <lightbin/isa.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/view.hpp>
@@ -19,7 +19,7 @@
 #include <span>
 #include <utility>
 
-namespace lightbin::inline LIGHTBIN_FLAVOUR {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// Z bounds: the view depths between which a tile has anything to light. One float a tile, row-major, at
 /// least View::tile_count() of them; each side from its own source, and an empty span for a side that is not
@@ -247,4 +247,4 @@ Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer, const 
                    .background_skipped = buffer.skip_background};
 }
 
-}  // namespace lightbin::inline LIGHTBIN_FLAVOUR
+}}  // namespace lightbin

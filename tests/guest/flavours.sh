@@ -1,5 +1,5 @@
 #!/bin/sh
-# flavours.sh GCC CLANG: what detail/flavour.hpp names the library's namespace, with each flag of the compilers that changes
+# flavours.sh GCC CLANG: what detail/base/abi_tag.hpp names the library's namespace, with each flag of the compilers that changes
 # the instructions that they may use. Wherever the macros of two sets of flags differ, by which a compiler tells of these, the
 # names do, but for the macros listed here, each with the reason why no code of the library has what it stands for. A new
 # compiler's new macro is so told of, until it is in the one list or the other. Clang is asked for other processors, too.
@@ -7,7 +7,7 @@ set -eu
 include=$(cd "$(dirname "$0")/../../include" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-printf '#include <lightbin/detail/flavour.hpp>\nname LIGHTBIN_FLAVOUR\n' >"$work/file.cpp"
+printf '#include <lightbin/detail/base/abi_tag.hpp>\nname LIGHTBIN_ABI_TAG\n' >"$work/file.cpp"
 
 # Patterns of macros, without the underscores around them. Behind two spaces stands why.
 numbers="

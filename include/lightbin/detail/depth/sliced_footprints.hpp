@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// Stage 2c: footprints + slices -> the footprints in each slice.
+#pragma once
+
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/algorithms.hpp>
+#include <lightbin/detail/base/buffer.hpp>
+#include <lightbin/detail/base/maybe.hpp>
+#include <lightbin/detail/base/rounding.hpp>
+#include <lightbin/detail/depth/slice_table.hpp>
+#include <lightbin/detail/project/footprint_arrays.hpp>
+#include <lightbin/detail/project/footprints.hpp>
+#include <lightbin/detail/tiers/kernels.hpp>
+#include <lightbin/isa.hpp>
+#include <lightbin/options.hpp>
+#include <lightbin/result.hpp>
+#include <lightbin/slices.hpp>
+#include <lightbin/view.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <lightbin/detail/base/warnings_off.inl>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
+
+/// Footprints by slice, in ascending order of id in each. Keeps its memory from call to call.
+template <Footprint footprint> class SlicedFootprints {
+    static constexpr bool with_spans = footprint == Footprint::silhouette;
+
+public:
+    /// Takes each light to the slices that its depths, z - r to z + r and the margin, meet, ends included. Errors: there are more
+    /// than 2^32 - 1 cells, or pairs of a light and a slice.
+    ///
+    /// spots  the lights are spots
+    template <bool spots>
+    detail::Maybe<Error> order(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
+                               const Slices& slices) {
+        constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
+        const detail::FootprintArrays& lights = footprints.arrays();
+        table_ = &detail::table_of(slices);
+        run_count_ = static_cast<std::size_t>(slices.count());
+        const std::uint64_t cells = std::uint64_t{view.tile_count()} * run_count_;
+        if (cells > most) return Error{ErrorCode::too_many_cells, cells, most};
+        const std::uint64_t places = find_slices<spots>(isa, view, footprints);
+        if (places > most) return Error{ErrorCode::too_many_list_places, places, most};
+        arrays_ = buffers_.reserve(places, with_spans);
+        arrays_.spans = lights.spans;
+        arrays_.spheres = lights.spheres;
+        arrays_.spots = lights.spots;
+        const Met* met = met_.data();
+        for (const detail::FootprintRun& run : footprints.runs())
+            for (std::uint32_t i = run.begin; i < run.end; ++i, ++met) {
+                const std::uint64_t area =
+                    (lights.x1[i] - lights.x0[i] + std::uint64_t{1}) * (lights.y1[i] - lights.y0[i] + 1u);
+                // A first slice and another one are written without a branch, which would be mispredicted.
+                const std::uint32_t more = met->first < met->last;
+                put(lights, i, area, met->first, 1);
+                put(lights, i, area * more, met->first + 1, more);
+                for (std::uint32_t slice = met->first + 2; slice <= met->last; ++slice)
+                    put(lights, i, area, slice, 1);
+            }
+        return {};
+    }
+
+    int slices() const { return static_cast<int>(run_count_); }
+    detail::LitSlice slice(std::size_t i) const {
+        const SliceRun& run = runs_.data()[i];
+        return {arrays_,
+                {&run, 1},
+                run.end - run.begin,
+                run.area,
+                {i == 0 ? -detail::infinity : table_->nearer(table_->boundaries()[i - 1]),
+                 i + 1 == run_count_ ? detail::infinity : table_->farther(table_->boundaries()[i])}};
+    }
+
+private:
+    /// Slices first..last.
+    struct Met {
+        std::uint32_t first, last;
+    };
+    /// The footprints in a slice, and the sum of their rectangles' tiles.
+    struct SliceRun : detail::FootprintRun {
+        std::uint64_t area;
+    };
+
+    /// Finds the slices of each light, and where their runs begin, with a place between two. Returns where they end.
+    template <bool spots>
+    std::uint64_t find_slices(Isa isa, const View& view, const Footprints<footprint, true>& footprints) {
+        SliceRun* const runs = runs_.reserve(run_count_ + 1);
+        detail::fill_items(runs, run_count_ + 1, {});
+        Met* met = met_.reserve(footprints.visible());
+        const auto found = [=](std::uint32_t, std::uint32_t first, std::uint32_t last) mutable {
+            *met++ = {first, last};
+            // First the steps of the lights' number from slice to slice: sums wrap, and come out right.
+            ++runs[first].end;
+            --runs[last + 1].end;
+        };
+        table_->find(detail::slice_places_kernel<spots>(isa), false, detail::camera_of(view).z_sign,
+                     footprints.arrays(), footprints.runs(), found);
+        std::uint64_t places = 0;
+        std::uint32_t count = 0;
+        for (SliceRun* run = runs; run <= runs + run_count_; ++run) {
+            count += run->end;
+            run->begin = run->end = static_cast<std::uint32_t>(places);
+            places += count + std::uint64_t{1};
+        }
+        return places;
+    }
+
+    /// Puts light i in a slice; or, if `count` and `area` are 0, writes what the next one overwrites.
+    void put(const detail::FootprintArrays& lights, std::uint32_t i, std::uint64_t area, std::uint32_t slice,
+             std::uint32_t count) {
+        SliceRun& run = runs_.data()[slice];
+        const std::uint32_t to = run.end;
+        run.end += count;
+        run.area += area;
+        arrays_.ids[to] = lights.ids[i];
+        arrays_.x0[to] = lights.x0[i];
+        arrays_.y0[to] = lights.y0[i];
+        arrays_.x1[to] = lights.x1[i];
+        arrays_.y1[to] = lights.y1[i];
+        if constexpr (with_spans) arrays_.span_begin[to] = lights.span_begin[i];
+    }
+
+    const detail::SliceTable* table_ = nullptr;  ///< of the caller's Slices, for a call
+    detail::Buffer<Met> met_;
+    detail::Buffer<SliceRun> runs_;
+    detail::FootprintBuffers buffers_;
+    detail::FootprintArrays arrays_ = {};
+    std::size_t run_count_ = 0;
+};
+
+}}  // namespace lightbin
+
+#include <lightbin/detail/base/warnings_on.inl>

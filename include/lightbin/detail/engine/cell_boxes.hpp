@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// The view-space box around a tile's cell, which DepthTest::box tests spheres against (Thomas, "Advancements
+// in Tiled-Based Compute Rendering", GDC 2015; Stewart, "Compute-Based Tiled Culling", GPU Pro 6).
+//
+// A cell lies between two planes a side, through the eye (perspective) or along the viewing direction
+// (orthographic), and between two depths. Between the depths z0 and z1, 0 < z0, the planes of slope s0 and s1
+// bound the coordinate by  min(s0 z0, s0 z1)  and  max(s1 z0, s1 z1).
+//
+// Rounding, u = 2^-24. Outward everywhere:
+// - an edge's slope is computed in double: the offset may be off by 2^-51 of its parts, the quotient by a few
+//   2^-53 of itself. It is moved outward by 2^-48 and 2^-21 of these, and rounding to float takes u.
+// - slope * depth takes another u, so the product is still outward of the truth: 2^-21 = 8u. Underflow, or a
+//   caller who flushes denormal numbers to zero, takes up to 2^-126; `flushed` is more.
+// - the distance along an axis is within u of the truth, its square 3u, the sum of three squares 5u (sums of
+//   terms of one sign). The squared radius loses 3u. 2^-20 = 16u makes up for the 8u, and 2^-125 for squares
+//   that are flushed to zero. What overflows to infinity did so in both or in the sphere's favour, since all
+//   roundings are monotone; infinity is not beyond infinity.
+// - in a slice (slab.inl) the squared distances along z and y are subtracted from the squared radius, and the rest is
+//   compared with that along x. Where it could be more, each difference is off by u of the squared radius, as much
+//   as a sum above. One that is flushed to zero is off by 2^-126, two by 2^-125: squares don't need that
+//   then, as a squared radius that is flushed leaves 2^-125 - 0 - 0, which is not.
+#pragma once
+
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/algorithms.hpp>
+#include <lightbin/detail/base/math.hpp>
+#include <lightbin/detail/base/platform.hpp>
+#include <lightbin/detail/base/rounding.hpp>
+#include <lightbin/sphere.hpp>
+#include <lightbin/view.hpp>
+
+#include <cstddef>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
+inline constexpr float flushed = 0x1p-120f;
+
+/// Writes a tile's two edges along an axis, as slopes or coordinates, `low` rounded down and `high` up.
+inline void tile_edges(const ImageAxis& axis, int tile, float& low, float& high) {
+    constexpr double most = static_cast<double>(FLT_MAX);
+    const double error = 0x1p-48 * (abs_of(axis.offset) + axis.tiles + 1);
+    const double end = min_of(tile + 1.0, static_cast<double>(axis.limit));
+    double from = (tile - axis.offset - error) / axis.scale, to = (end - axis.offset + error) / axis.scale;
+    from -= abs_of(from) * 0x1p-21 + 0x1p-100;
+    to += abs_of(to) * 0x1p-21 + 0x1p-100;
+    low = from < -most ? -infinity : static_cast<float>(min_of(from, most));
+    high = to > most ? infinity : static_cast<float>(max_of(to, -most));
+}
+
+/// The boxes around the cells of a slice, which share their depths z0 to z1: their ends, low x and high x by column,
+/// low y and high y by row. Readable (not meaningful) up to `padding` elements past the last.
+struct SlabBoxes {
+    static constexpr std::size_t padding = 8;
+
+    const float* ends[4] = {};
+    float z0 = 0, z1 = 0;
+};
+
+/// A light as the depth tests see it: the tile index grows with x and y, and z is the view depth.
+struct TestedLight {
+    TestedLight() = default;
+    TestedLight(const Camera& camera, const Sphere& light)
+        : x(camera.x.sign * light.x), y(camera.y.sign * light.y), z(camera.z_sign * light.z),
+          nearest(z - light.radius), farthest(z + light.radius),
+          reach2(rounded(rounded(light.radius * light.radius) * (1 + 0x1p-20f)) + 0x1p-125f) {}
+
+    float x, y, z;
+    float nearest, farthest;  ///< rounding is monotone: comparing them with float bounds never loses a light
+    float reach2;             ///< the squared radius, rounded up
+};
+}}}  // namespace lightbin::detail

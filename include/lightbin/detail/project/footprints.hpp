@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// Stage 2: spheres or spots -> footprints, the tile rectangle of each light in view, rounded outward.
+#pragma once
+
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/algorithms.hpp>
+#include <lightbin/detail/base/buffer.hpp>
+#include <lightbin/detail/base/maybe.hpp>
+#include <lightbin/detail/engine/costs.hpp>
+#include <lightbin/detail/project/footprint_arrays.hpp>
+#include <lightbin/detail/tiers/kernels.hpp>
+#include <lightbin/lights.hpp>
+#include <lightbin/options.hpp>
+#include <lightbin/parallel.hpp>
+#include <lightbin/result.hpp>
+#include <lightbin/view.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <lightbin/detail/base/warnings_off.inl>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
+
+namespace detail {
+
+/// The lights that no stage takes, ids being 32 bits at most.
+template <class Light, class ToLight>
+Maybe<Error> refuse(const Lights<Light, ToLight>& lights, std::uint64_t most = 0xffffffff) {
+    if (lights.to_view)
+        if (const auto code = lights.to_view->refusal()) return Error{*code};
+    if (lights.array.size() > most) return Error{ErrorCode::too_many_lights, lights.array.size(), most};
+    return {};
+}
+
+/// See LightSource.
+template <class Light, class ToLight>
+void copy_lights(const void* lights, std::size_t first, std::size_t count, Sphere* to,
+                 [[maybe_unused]] Sphere* cones) {
+    const auto& from = *static_cast<const Lights<Light, ToLight>*>(lights);
+    for (std::size_t i = 0; i < count; ++i)
+        if constexpr (Lights<Light, ToLight>::spots) {
+            const Spot spot = from.made(from.array[first + i]);
+            to[i] = {spot.x, spot.y, spot.z, spot.radius};
+            cones[i] = {spot.axis_x, spot.axis_y, spot.axis_z, spot.cos_half_angle};
+        } else {
+            to[i] = from.made(from.array[first + i]);
+        }
+}
+
+}  // namespace detail
+
+/// The footprints of the lights in view, in ascending order of id. Keeps its memory from call to call.
+///
+/// footprint     silhouette: with row spans
+/// with_spheres  have the view-space spheres or spots at hand, for a depth test; row spans need them anyway
+template <Footprint footprint, bool with_spheres> class Footprints {
+    static constexpr bool with_spans = footprint == Footprint::silhouette, keep = with_spheres || with_spans;
+
+public:
+    /// Projects every light with the kernel of an instruction set. After it, a light's rectangle holds each
+    /// tile that the part of its sphere beyond the near plane projects to; it is the smallest such rectangle
+    /// but for the rounding margin of the view. So it is of a spot whose ball lies beyond the near plane; another one's is
+    /// where the rectangles of its ball and of its least sphere meet.
+    ///
+    /// force_parallel  share even what is soon done: there will be more to share, and by then the threads are awake
+    /// for_boxes       have what boxes ask of spots at hand, too; only with_spheres
+    template <class Light, class ToLight>
+    void project(Isa isa, const View& view, const Lights<Light, ToLight>& lights, const Parallel& parallel,
+                 bool force_parallel = false, bool for_boxes = false) {
+        lights_ = lights.array.size();
+        const bool share =
+            force_parallel || parallel.pays_off(detail::project_ns(isa, static_cast<double>(lights_)));
+        const Parallel threads = share ? parallel : Parallel();
+        constexpr bool spots = Lights<Light, ToLight>::spots;
+        // One light is done sooner than a vector is filled up with copies of it.
+        const Isa taken = lights_ > 1 ? isa : Isa::scalar;
+        reserve(parts_for(parallel));
+        detail::LightSource source = {.spheres = detail::as_they_are(lights),
+                                      .lights = &lights,
+                                      .copy = nullptr,
+                                      .to_view = lights.to_view ? &*lights.to_view : nullptr,
+                                      .kept = nullptr,
+                                      .kept_spots = nullptr,
+                                      .with_planes = for_boxes};
+        if (source.spheres == nullptr) source.copy = detail::copy_lights<Light, ToLight>;
+        arrays_.spheres = source.spheres;
+        [[maybe_unused]] const std::uint64_t places = std::uint64_t{lights_} + chunk;
+        if constexpr (keep && spots)
+            arrays_.spots = source.kept_spots = spots_.reserve(places);
+        else if constexpr (keep)
+            if (source.copy != nullptr || source.to_view != nullptr)
+                arrays_.spheres = source.kept = spheres_.reserve(places);
+        run_parts(view, source, detail::project_kernel<spots>(taken), threads);
+        if constexpr (with_spans) add_spans(detail::row_span_kernel<spots>(isa), view, threads);
+    }
+
+    std::size_t lights() const { return lights_; }
+    std::uint32_t visible() const { return counts_.visible; }
+    std::uint32_t rejected() const { return counts_.rejected; }  ///< bad input, see Sphere
+    std::uint64_t area() const { return counts_.area; }          ///< sum of the rectangles' tiles
+    const detail::FootprintArrays& arrays() const { return arrays_; }
+    detail::Items<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
+
+    /// All depths are one slice.
+    int slices() const { return 1; }
+    detail::LitSlice slice(std::size_t) const { return {arrays_, runs(), visible(), area()}; }
+
+private:
+    static constexpr std::size_t chunk = detail::ChunkRects::size;
+
+    /// As many where they are not shared; one part where 32 bits might not number the places of more.
+    std::size_t parts_for(const Parallel& parallel) const {
+        return lights_ >> 31 == 0 ? detail::project_parts(lights_ / chunk + 1, parallel.workers()) : 1;
+    }
+
+    /// Has a kernel project the lights, whole chunks a part.
+    void run_parts(const View& view, const detail::LightSource& source, detail::ProjectKernel kernel,
+                   const Parallel& threads) {
+        const std::size_t chunks = lights_ / chunk + 1, parts = run_count_;
+        const auto first_of = [&](std::size_t part) {
+            return static_cast<std::size_t>(
+                detail::min_of<std::uint64_t>(std::uint64_t{chunks} * part / parts * chunk, lights_));
+        };
+        threads.run(parts, [&](std::size_t part) {
+            const std::size_t first = first_of(part), end = first_of(part + 1);
+            const std::size_t place = first + part * detail::FootprintArrays::padding;
+            detail::ProjectCounts sum;
+            kernel(detail::camera_of(view), source, static_cast<std::uint32_t>(first),
+                   static_cast<std::uint32_t>(end - first), arrays_.from(place), sum);
+            const std::uint32_t begin = static_cast<std::uint32_t>(place), end_place = begin + sum.visible;
+            if constexpr (with_spans)
+                for (std::uint32_t i = begin; i < end_place; ++i)
+                    sum.rows += arrays_.y1[i] - arrays_.y0[i] + 1u;
+            part_counts_.data()[part] = sum;
+            runs_.data()[part] = {begin, end_place};
+        });
+        counts_ = {};
+        for (std::size_t part = 0; part < parts; ++part) {
+            const detail::ProjectCounts& counts = part_counts_.data()[part];
+            counts_.visible += counts.visible;
+            counts_.rejected += counts.rejected;
+            counts_.area += counts.area;
+            counts_.rows += counts.rows;
+        }
+    }
+
+    void reserve(std::size_t parts) {
+        const std::uint64_t padding = (parts - 1) * detail::FootprintArrays::padding;  // between two
+        arrays_ = buffers_.reserve(lights_ + padding, with_spans);
+        runs_.reserve(parts);
+        part_counts_.reserve(parts);
+        run_count_ = parts;
+    }
+
+    void add_spans(detail::RowSpanKernel kernel, const View& view, const Parallel& threads) {
+        constexpr std::uint64_t padding = 8;  // a vector of rows
+        // Later lights than 32 bits can number the spans of keep their rectangles.
+        const std::uint64_t capacity =
+            detail::min_of(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
+        detail::RowSpan* spans = spans_.reserve(capacity + padding);
+        arrays_.spans = spans;
+        std::uint64_t place = 0;
+        for (std::size_t part = 0; part < run_count_; ++part) {
+            detail::ProjectCounts& counts = part_counts_.data()[part];
+            const std::uint64_t rows = counts.rows;
+            counts.rows = place;  // now where its spans begin
+            place += rows + padding;
+        }
+        threads.run(run_count_, [&](std::size_t part) {
+            kernel(detail::camera_of(view), arrays_, runs_.data()[part], spans,
+                   part_counts_.data()[part].rows);
+        });
+    }
+
+    detail::FootprintBuffers buffers_;
+    detail::Buffer<detail::RowSpan> spans_;
+    detail::Buffer<Sphere> spheres_;
+    detail::Buffer<detail::ViewSpot> spots_;
+    detail::Buffer<detail::FootprintRun> runs_;
+    detail::Buffer<detail::ProjectCounts> part_counts_;
+    std::size_t lights_ = 0, run_count_ = 0;
+    detail::FootprintArrays arrays_ = {};
+    detail::ProjectCounts counts_;
+};
+
+}}  // namespace lightbin
+
+#include <lightbin/detail/base/warnings_on.inl>

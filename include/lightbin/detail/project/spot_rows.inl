@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// The silhouettes of spots: those of their balls, within the wedge of their cones. Included once a tier, after
+// silhouette.inl.
+//
+// Two planes through the eye touch a cone, if the eye is not in it: in the image, two lines from the apex. With u the
+// unit vector from the eye to the apex, a the axis, b = a - (a.u) u and s = |b|, their normals are
+//     n = -(sin t / s) b / s +- sqrt(1 - (sin t / s)^2) u x b / s,    for which  n.u = 0  and  n.a = -sin t,
+// and every point p of the cone has  n.p <= 0. So in a row of tiles, slopes v0 to v1, of points at the depth z or more, for
+// a spot whose floats are off by `blur`:  n_x x <= blur / z - n_z - min(n_y v0, n_y v1). (Unity's URP bounds spots by
+// the same planes.) Orthographic: u is the direction of view, and n.(p - apex) <= blur.
+//
+// Where t is near 90 degrees, sines hardly tell angles apart: sin t and the length of a are within 8u and 18u, u = 2^-24,
+// so the planes' angle to the axis is within 26u tan t, and n.p may be as much of r more. 32u r / cos t is allowed. In
+// double, with e = 2^-53 and s of 2^-20 at least, n is within 2^-30 of what the floats say; (|p| + r) 2^-28 is allowed.
+// What rounding does to the rest is less than 2^-48 of the rows' and columns' slopes; 2^-40 is allowed.
+#if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
+#pragma once
+#include <lightbin/detail/project/sphere_rows.inl>
+#endif
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
+
+/// Of `lanes` spots, the two lines: in a row, tiles end or begin at (most - min(n_y v0, n_y v1)) per_x + offset.
+struct WedgeTerms {
+    double per_x[2][lanes], n_y[2][lanes], most[2][lanes];
+};
+
+/// The axis, apex and more of a vector of spots.
+struct WedgeLanes {
+    Doubles apex[3], axis[3], sine;
+    Doubles blur;  ///< the most that n.p may be, over its depth
+};
+
+inline Doubles dot(const Doubles (&a)[3], const Doubles (&b)[3]) {
+    return mul(a[0], b[0]) + mul(a[1], b[1]) + mul(a[2], b[2]);
+}
+
+inline void find_wedges(const Camera& camera, const WedgeLanes& spots, unsigned at,
+                                        WedgeTerms& terms) {
+    const Doubles zero = broadcast(0.0), one = broadcast(1.0), none = broadcast(static_cast<double>(infinity));
+    Doubles u[3] = {zero, zero, one};
+    if (!camera.orthographic) {
+        const Doubles per_length = 1.0 / sqrt(dot(spots.apex, spots.apex));
+        for (unsigned i = 0; i < 3; ++i)
+            u[i] = mul(spots.apex[i], per_length);
+    }
+    const Doubles along = dot(spots.axis, u);
+    Doubles b[3];
+    for (unsigned i = 0; i < 3; ++i)
+        b[i] = spots.axis[i] - mul(along, u[i]);
+    const Doubles s = sqrt(dot(b, b)), per_s = 1.0 / s;
+    const auto limited = less(mul(spots.sine, broadcast(1 + 0x1p-20)) + 0x1p-20, s);
+    const Doubles cosine = mul(spots.sine, per_s),
+                  sine = mul(sqrt(maximum(mul(s - spots.sine, s + spots.sine), zero)), per_s);
+    Doubles back[3], aside[3];
+    for (unsigned i = 0; i < 3; ++i) {
+        const unsigned j = (i + 1) % 3, k = (i + 2) % 3;
+        back[i] = mul(b[i], mul(per_s, cosine));
+        aside[i] = mul(mul(u[j], b[k]) - mul(u[k], b[j]), mul(per_s, sine));
+    }
+    const double rows = (abs_of(camera.y.offset) + camera.y.tiles) / camera.y.scale;
+    const Doubles slack = spots.blur + 0x1p-40 * (1 + rows);
+    for (unsigned side = 0; side < 2; ++side) {
+        Doubles n[3];
+        for (unsigned i = 0; i < 3; ++i)
+            n[i] = (side == 0 ? aside[i] : -aside[i]) - back[i];
+        const Doubles most =
+            camera.orthographic ? slack + mul(n[0], spots.apex[0]) + mul(n[1], spots.apex[1]) : slack - n[2];
+        store_doubles(terms.per_x[side] + at, select(limited, camera.x.scale / n[0], one));
+        store_doubles(terms.n_y[side] + at, select(limited, n[1], zero));
+        store_doubles(terms.most[side] + at, select(limited, most, none));
+    }
+}
+
+/// As SphereRows.
+struct SpotRows {
+    unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin,
+                                  std::uint32_t used) {
+        Sphere balls[lanes], axes[lanes], rest[lanes];
+        for (std::uint32_t i = 0; i < lanes; ++i) {
+            const ViewSpot& spot = lights.spots[lights.ids[begin + (i < used ? i : 0)]];
+            balls[i] = spot.ball;
+            axes[i] = {spot.axis_x, spot.axis_y, spot.axis_z, spot.cosine};
+            rest[i] = {spot.nearest, spot.farthest, spot.sine, spot.blur};
+        }
+        Floats apex[3], r, axis[3], cosine, nearest, farthest, sine, blur;
+        load_spheres(balls, apex[0], apex[1], apex[2], r);
+        load_spheres(axes, axis[0], axis[1], axis[2], cosine);
+        load_spheres(rest, nearest, farthest, sine, blur);
+        balls_known = 0;
+        for (unsigned half = 0; half < lanes / double_lanes; ++half) {
+            WedgeLanes wedge;
+            const Doubles radius = widened(r, half);
+            Doubles size = radius;
+            for (unsigned i = 0; i < 3; ++i) {
+                wedge.apex[i] = widened(apex[i], half);
+                wedge.axis[i] = widened(axis[i], half);
+                size = size + abs(wedge.apex[i]);
+            }
+            balls_known |= row_terms(camera, wedge.apex[0], wedge.apex[1], wedge.apex[2], radius, ball,
+                                     half * double_lanes);
+            wedge.sine = widened(sine, half);
+            wedge.blur = widened(blur, half) + size * 0x1p-28 + radius * 0x1p-19 / widened(cosine, half);
+            if (!camera.orthographic)
+                wedge.blur =
+                    wedge.blur / maximum(widened(nearest, half), broadcast(static_cast<double>(camera.near_depth)));
+            find_wedges(camera, wedge, half * double_lanes, wedges);
+        }
+        const double margin = 0x1p-40 * (abs_of(camera.x.offset) + camera.x.tiles);
+        low = camera.x.offset - margin;
+        high = camera.x.offset + margin;
+        return ~0u;
+    }
+
+    void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost,
+                               RowSpan* to) const {
+        Doubles begin = leftmost, end = rightmost + 1.0;
+        if ((balls_known >> i & 1) != 0) {
+            Doubles ball_begin, ball_end;
+            silhouette_ends(ball, i, v0, v1, ball_begin, ball_end);
+            begin = maximum(ball_begin, begin);
+            end = minimum(ball_end, end);
+        }
+        for (unsigned side = 0; side < 2; ++side) {
+            const Doubles per_x = broadcast(wedges.per_x[side][i]), n_y = broadcast(wedges.n_y[side][i]);
+            const Doubles here = mul(wedges.most[side][i] - minimum(mul(n_y, v0), mul(n_y, v1)), per_x);
+            const auto to_right = less(broadcast(0.0), per_x);
+            end = minimum(select(to_right, here + high, end), end);
+            begin = maximum(select(to_right, begin, here + low), begin);
+        }
+        const auto none = less(end, begin);
+        store_spans(to, select(none, broadcast(1.0), minimum(maximum(begin, leftmost), rightmost)),
+                    select(none, broadcast(0.0), minimum(maximum(end, leftmost), rightmost)));
+    }
+
+    RowTerms ball;
+    unsigned balls_known;
+    WedgeTerms wedges;
+    double low, high;
+};
+
+}}}}  // namespace lightbin::detail

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: MIT
+// The AVX-512 tier: vectors of 16 lights, and a binning kernel of its own built on compress instructions.
+#pragma once
+
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/tiers/tier.hpp>
+
+#if defined(LIGHTBIN_X86)
+
+#include <lightbin/detail/tiers/avx2.hpp>
+
+#include <immintrin.h>
+
+// gcc 12's own AVX-512 header gives these warnings, about values it leaves undefined on purpose.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wuninitialized"
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+
+#include <lightbin/detail/base/warnings_off.inl>
+
+LIGHTBIN_TARGET_BEGIN("avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2,avx512bitalg,avx512vpopcntdq,bmi,bmi2,popcnt")
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace avx512 {
+
+using FloatRegister = __m512;
+using DoubleRegister = __m512d;
+inline constexpr std::uint32_t lanes = 16, double_lanes = 8;
+
+template <int how> inline __mmask16 compared(__m512 a, __m512 b) {
+    return _mm512_cmp_ps_mask(a, b, how);
+}
+template <int how> inline __mmask8 compared(__m512d a, __m512d b) {
+    return _mm512_cmp_pd_mask(a, b, how);
+}
+#define LIGHTBIN_LESS(a, b) compared<_CMP_LT_OQ>(a, b)
+#define LIGHTBIN_LESS_EQUAL(a, b) compared<_CMP_LE_OQ>(a, b)
+#define LIGHTBIN_SELECT(mask, a, b) LIGHTBIN_OP(mask_mov)(b, mask, a)
+
+#define LIGHTBIN_VECTOR Floats
+#define LIGHTBIN_ELEMENT float
+#define LIGHTBIN_REGISTER __m512
+#define LIGHTBIN_MASK __mmask16
+#define LIGHTBIN_OP(name) _mm512_##name##_ps
+#include <lightbin/detail/tiers/x86_vector.inl>
+
+#define LIGHTBIN_VECTOR Doubles
+#define LIGHTBIN_ELEMENT double
+#define LIGHTBIN_REGISTER __m512d
+#define LIGHTBIN_MASK __mmask8
+#define LIGHTBIN_OP(name) _mm512_##name##_pd
+#include <lightbin/detail/tiers/x86_vector.inl>
+
+inline unsigned movemask(unsigned mask) {
+    return mask;
+}
+
+/// Half 0 or 1 of the lanes.
+inline Doubles widened(Floats a, unsigned half) {
+    return _mm512_cvtps_pd(half == 0 ? _mm512_castps512_ps256(a) : _mm512_extractf32x8_ps(a, 1));
+}
+
+/// Four by four, in each quarter of the vectors.
+inline void transpose(Floats& a, Floats& b, Floats& c, Floats& d) {
+    const Floats low = _mm512_unpacklo_ps(a, b), high = _mm512_unpackhi_ps(a, b);
+    const Floats low_after = _mm512_unpacklo_ps(c, d), high_after = _mm512_unpackhi_ps(c, d);
+    a = _mm512_shuffle_ps(low, low_after, 0x44);
+    b = _mm512_shuffle_ps(low, low_after, 0xee);
+    c = _mm512_shuffle_ps(high, high_after, 0x44);
+    d = _mm512_shuffle_ps(high, high_after, 0xee);
+}
+
+/// From quarters' first lanes, second lanes ... to the lanes of the first quarter, of the second ...; and back.
+inline Floats swap_quarters(Floats a) {
+    return _mm512_permutexvar_ps(_mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15), a);
+}
+
+/// From 4 spheres each to coordinates.
+inline void separate(Floats& x, Floats& y, Floats& z, Floats& radius) {
+    transpose(x, y, z, radius);
+    x = swap_quarters(x);
+    y = swap_quarters(y);
+    z = swap_quarters(z);
+    radius = swap_quarters(radius);
+}
+inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z,
+                                         Floats& radius) {
+    x = _mm512_loadu_ps(&spheres[0].x);
+    y = _mm512_loadu_ps(&spheres[4].x);
+    z = _mm512_loadu_ps(&spheres[8].x);
+    radius = _mm512_loadu_ps(&spheres[12].x);
+    separate(x, y, z, radius);
+}
+inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
+    Floats a = swap_quarters(x), b = swap_quarters(y), c = swap_quarters(z), d = swap_quarters(radius);
+    transpose(a, b, c, d);
+    _mm512_storeu_ps(&spheres[0].x, a);
+    _mm512_storeu_ps(&spheres[4].x, b);
+    _mm512_storeu_ps(&spheres[8].x, c);
+    _mm512_storeu_ps(&spheres[12].x, d);
+}
+
+inline Floats ascending_bits(Floats values) {
+    const __m512i bits = _mm512_castps_si512(values);
+    return _mm512_cvtepi32_ps(_mm512_xor_si512(bits, _mm512_srli_epi32(_mm512_srai_epi32(bits, 31), 1)));
+}
+inline void store_tiles(std::uint16_t* tiles, Floats values) {
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(tiles),
+                        _mm512_cvtusepi32_epi16(_mm512_cvttps_epi32(values)));
+}
+inline void store_tiles(std::uint16_t* tiles, Doubles values) {
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(tiles), _mm256_cvtepi32_epi16(_mm512_cvttpd_epi32(values)));
+}
+
+inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
+    const __m256i pairs =
+        _mm256_or_si256(_mm512_cvttpd_epi32(first), _mm256_slli_epi32(_mm512_cvttpd_epi32(last), 16));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(spans), pairs);
+}
+
+/// As the general append_visible, with compress instructions.
+inline void append_visible(const FootprintArrays& out, ProjectCounts& counts,
+                                           std::uint32_t first_id, unsigned visible, const ChunkRects& rects,
+                                           std::uint32_t first) {
+    const __mmask16 kept = static_cast<__mmask16>(visible);
+    const __m256i x0 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.x0 + first));
+    const __m256i y0 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.y0 + first));
+    const __m256i x1 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.x1 + first));
+    const __m256i y1 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.y1 + first));
+    const std::uint32_t at = counts.visible;
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.x0 + at), _mm256_maskz_compress_epi16(kept, x0));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.y0 + at), _mm256_maskz_compress_epi16(kept, y0));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.x1 + at), _mm256_maskz_compress_epi16(kept, x1));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.y1 + at), _mm256_maskz_compress_epi16(kept, y1));
+    const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    const __m512i ids = _mm512_add_epi32(lane, _mm512_set1_epi32(static_cast<int>(first_id + first)));
+    _mm512_storeu_si512(out.ids + at, _mm512_maskz_compress_epi32(kept, ids));
+    counts.visible += static_cast<std::uint32_t>(std::popcount(visible));
+
+    const __m512i one = _mm512_set1_epi32(1);
+    const __m512i width = _mm512_add_epi32(_mm512_cvtepu16_epi32(_mm256_sub_epi16(x1, x0)), one);
+    const __m512i height = _mm512_add_epi32(_mm512_cvtepu16_epi32(_mm256_sub_epi16(y1, y0)), one);
+    const __m512i area = _mm512_maskz_mullo_epi32(kept, width, height);  // at most 2^30 each
+    const __m512i sums = _mm512_add_epi64(_mm512_cvtepu32_epi64(_mm512_castsi512_si256(area)),
+                                          _mm512_cvtepu32_epi64(_mm512_extracti64x4_epi64(area, 1)));
+    counts.area += static_cast<std::uint64_t>(_mm512_reduce_add_epi64(sums));
+}
+
+/// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
+inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
+    const __m512i all_bytes = _mm512_loadu_si512(bytes);
+    for (unsigned bit = 0; bit < 8; ++bit)
+        words[bit] = _mm512_test_epi8_mask(all_bytes, _mm512_set1_epi8(static_cast<char>(1 << bit)));
+}
+
+/// On Zen 5 the form of a compress instruction that zeroes the rest waits for what its register held before, which
+/// makes a chain of one iteration and the next: it is given fresh zeros.
+inline __m512i fresh_zeros() {
+    __m512i zeros = _mm512_setzero_si512();
+    LIGHTBIN_FORGET(zeros);  // or the compiler picks that form
+    return zeros;
+}
+/// Those of the chosen elements, then zeros.
+inline __m512i compressed_bytes(__mmask64 chosen, __m512i from) {
+    return _mm512_mask_compress_epi8(fresh_zeros(), chosen, from);
+}
+
+// Vectors of bytes.
+
+struct Bytes {
+    __m512i v;
+};
+using ByteMask = std::uint64_t;
+using ListId = std::uint16_t;
+inline constexpr std::uint32_t byte_lanes = 64;
+
+inline Bytes load_bytes(const std::uint8_t* from) {
+    return {_mm512_loadu_si512(from)};
+}
+inline Bytes all_bytes(unsigned each) {
+    return {_mm512_set1_epi8(static_cast<char>(each))};
+}
+inline Bytes operator&(Bytes a, Bytes b) {
+    return {_mm512_and_si512(a.v, b.v)};
+}
+inline Bytes minimum(Bytes a, Bytes b) {
+    return {_mm512_min_epu8(a.v, b.v)};
+}
+inline Bytes subtract(Bytes a, Bytes b) {
+    return {_mm512_subs_epu8(a.v, b.v)};
+}
+inline Bytes shuffle(const std::uint8_t (&table)[16], Bytes places) {
+    const __m128i once = _mm_loadu_si128(reinterpret_cast<const __m128i*>(table));
+    return {_mm512_shuffle_epi8(_mm512_broadcast_i32x4(once), places.v)};
+}
+inline ByteMask not_zero(Bytes bytes) {
+    return _mm512_test_epi8_mask(bytes.v, bytes.v);
+}
+inline Bytes coordinates(const std::uint16_t* from, unsigned more, unsigned begin) {
+    const __m512i add = _mm512_set1_epi16(static_cast<short>(more)),
+                  start = _mm512_set1_epi16(static_cast<short>(begin));
+    const __m512i low = _mm512_subs_epu16(_mm512_add_epi16(_mm512_loadu_si512(from), add), start),
+                  high = _mm512_subs_epu16(_mm512_add_epi16(_mm512_loadu_si512(from + 32), add), start);
+    return {_mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtusepi16_epi8(low)),
+                               _mm512_cvtusepi16_epi8(high), 1)};
+}
+
+inline void append_chosen(ByteMask chosen, Bytes from, std::uint8_t* to) {
+    _mm512_storeu_si512(to, compressed_bytes(chosen, from.v));
+}
+/// Of 64 lights 16 bits each, in two vectors.
+struct ByteIds {
+    __m512i low, high;
+};
+inline ByteIds load_ids(const std::uint16_t* from) {
+    return {_mm512_loadu_si512(from), _mm512_loadu_si512(from + 32)};
+}
+inline ByteIds load_ids(const std::uint32_t* from) {
+    __m256i quarters[4];
+    for (unsigned i = 0; i < 4; ++i)
+        quarters[i] = _mm512_cvtepi32_epi16(_mm512_loadu_si512(from + 16 * i));
+    return {_mm512_inserti64x4(_mm512_castsi256_si512(quarters[0]), quarters[1], 1),
+            _mm512_inserti64x4(_mm512_castsi256_si512(quarters[2]), quarters[3], 1)};
+}
+inline ByteIds count_ids(std::uint32_t first) {
+    static constexpr auto lane = [] {
+        std::array<std::uint16_t, 64> places = {};
+        for (std::uint16_t i = 0; i < 64; ++i)
+            places[i] = i;
+        return places;
+    }();
+    const __m512i begin = _mm512_set1_epi16(static_cast<short>(first));
+    const ByteIds places = load_ids(lane.data());
+    return {_mm512_add_epi16(places.low, begin), _mm512_add_epi16(places.high, begin)};
+}
+inline void append_chosen(ByteMask chosen, const ByteIds& from, std::uint16_t* to) {
+    const __mmask32 low = static_cast<__mmask32>(chosen), high = static_cast<__mmask32>(chosen >> 32);
+    _mm512_storeu_si512(to, _mm512_mask_compress_epi16(fresh_zeros(), low, from.low));
+    _mm512_storeu_si512(to + std::popcount(low), _mm512_mask_compress_epi16(fresh_zeros(), high, from.high));
+}
+
+/// Of the spheres at 4 places, four floats each.
+template <class Place>
+inline Floats load_4_spheres(const Sphere* spheres, const Place* places) {
+    __m512 four = _mm512_castps128_ps512(_mm_loadu_ps(&spheres[places[0]].x));
+    four = _mm512_insertf32x4(four, _mm_loadu_ps(&spheres[places[1]].x), 1);
+    four = _mm512_insertf32x4(four, _mm_loadu_ps(&spheres[places[2]].x), 2);
+    return _mm512_insertf32x4(four, _mm_loadu_ps(&spheres[places[3]].x), 3);
+}
+
+/// As load_spheres(), of the spheres at `count` places, or as many as a vector has; if those are fewer, others are
+/// the first of all.
+template <class Place>
+inline void load_listed_spheres(const Sphere* spheres, const Place* places,
+                                                std::uint32_t count, Floats& x, Floats& y, Floats& z,
+                                                Floats& radius) {
+    Place listed[lanes];
+    const __mmask16 first = static_cast<__mmask16>(0xffff >> (lanes - min_of(count, lanes)));
+    if constexpr (sizeof(Place) == 2)
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(listed), _mm256_maskz_loadu_epi16(first, places));
+    else
+        _mm512_storeu_si512(listed, _mm512_maskz_loadu_epi32(first, places));
+    x = load_4_spheres(spheres, listed);
+    y = load_4_spheres(spheres, listed + 4);
+    z = load_4_spheres(spheres, listed + 8);
+    radius = load_4_spheres(spheres, listed + 12);
+    separate(x, y, z, radius);
+}
+
+using avx2::arrange_cells;
+using avx2::arrange_slab;
+using avx2::fill_empty;
+
+}}}}  // namespace lightbin::detail
+
+#define LIGHTBIN_TIER avx512
+#define LIGHTBIN_TIER_HAS_BYTES
+#define LIGHTBIN_TIER_COMPRESSES
+#include <lightbin/detail/tiers/kernels.inl>
+LIGHTBIN_TARGET_END
+
+
+#include <lightbin/detail/base/warnings_on.inl>
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
+#endif

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// What every tier includes: the types and the standard headers that its kernels' text, the .inl files, works with, and
+// the types of the kernels.
+#pragma once
+
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/algorithms.hpp>
+#include <lightbin/detail/base/platform.hpp>
+#include <lightbin/detail/depth/slice_table.hpp>
+#include <lightbin/detail/engine/block.hpp>
+#include <lightbin/detail/engine/costs.hpp>
+#include <lightbin/detail/engine/scratch.hpp>
+#include <lightbin/detail/project/footprint_arrays.hpp>
+#include <lightbin/detail/tiers/portable.hpp>
+#include <lightbin/sphere.hpp>
+#include <lightbin/spot.hpp>
+#include <lightbin/view.hpp>
+
+#include <array>
+#include <bit>
+#include <cfloat>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
+
+// See project.inl, project_spots.inl, silhouette.inl, depth_columns.inl; bin.inl, bits.inl and scatter.inl.
+using ProjectKernel = void (*)(const Camera& camera, const LightSource& source, std::uint32_t first,
+                               std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts);
+using RowSpanKernel = void (*)(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
+                               RowSpan* spans, std::uint64_t place);
+using SlicePlacesKernel = void (*)(const SlicePlaces& to, float z_sign, const FootprintArrays& lights,
+                                   const std::uint32_t* ids, std::uint32_t count, PlacedDepths& out);
+using DepthKernel = void (*)(const DepthRows& depth, float skipped, const float* split, float* lower,
+                             float* upper);
+template <class Id>
+using BinKernel = std::uint64_t (*)(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands);
+template <class Id>
+using BitsKernel = void (*)(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end,
+                            std::uint32_t* bits, std::size_t each);
+
+}}}  // namespace lightbin::detail
