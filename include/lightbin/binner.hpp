@@ -10,7 +10,6 @@
 #include <lightbin/detail/depth/sliced_footprints.hpp>
 #include <lightbin/detail/engine/block.hpp>
 #include <lightbin/detail/engine/grid_lists.hpp>
-#include <lightbin/detail/engine/scratch.hpp>
 #include <lightbin/detail/project/footprints.hpp>
 #include <lightbin/isa.hpp>
 #include <lightbin/light_grid.hpp>
@@ -222,7 +221,7 @@ public:
     }
 
 private:
-    using Lists = GridLists<Id, options.footprint, options.depth_test, clusters>;
+    using Lists = detail::GridLists<Id, options.footprint, options.depth_test, clusters>;
     struct Nothing {};
     using Ordered = std::conditional_t<
         clusters, SlicedFootprints<options.footprint>,

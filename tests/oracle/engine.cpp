@@ -88,11 +88,11 @@ Lists on_all_tiers(const lightbin::View& view, const Scene& scene, bool flush,
     };
     if constexpr (every_way) compare.template operator()<Isa::scalar>();
 #if defined(LIGHTBIN_X86)
-    compare.template operator()<Isa::sse2>();
+    compare.template operator()<Isa::simd128>();
     compare.template operator()<Isa::avx2>();
     compare.template operator()<Isa::avx512>();
 #elif defined(LIGHTBIN_NEON)
-    compare.template operator()<Isa::neon>();
+    compare.template operator()<Isa::simd128>();
 #endif
     for (const std::size_t workers : {3, 2, 16}) {
         if (workers != 3 && !every_way) break;

@@ -54,7 +54,7 @@
 #define LIGHTBIN_RUNG LIGHTBIN_IF(__ARM_FEATURE_SVE2, sve2_, LIGHTBIN_IF(__ARM_FEATURE_SVE, sve_, baseline))
 #endif
 #elif defined(__wasm__)  // other kernels are picked
-#define LIGHTBIN_INSTRUCTION_SET LIGHTBIN_IF(__wasm_simd128__, LIGHTBIN_IF(__SSE2__, sse2, simd128), baseline)
+#define LIGHTBIN_INSTRUCTION_SET LIGHTBIN_IF(__wasm_simd128__, simd128, baseline)
 #elif defined(__s390__)
 #define LIGHTBIN_INSTRUCTION_SET LIGHTBIN_PASTE(z, __ARCH__, LIGHTBIN_IF(__VX__, _vx, ), , , , , )
 #elif defined(__powerpc__)

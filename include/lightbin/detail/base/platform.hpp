@@ -16,11 +16,12 @@
 #if defined(LIGHTBIN_NO_SIMD) || defined(LIGHTBIN_MEMORY_SANITIZER)
 #elif defined(__x86_64__) || (defined(_M_X64) && !defined(_M_ARM64EC))
 #define LIGHTBIN_X86 1
-#define LIGHTBIN_SSE2 1
-#elif defined(__wasm_simd128__) && defined(__SSE2__)
-#define LIGHTBIN_SSE2 1  // emscripten makes its own instructions of these
+#define LIGHTBIN_SIMD128 1
+#elif defined(__wasm_simd128__)
+#define LIGHTBIN_SIMD128 1
 #elif defined(__aarch64__) && (defined(__GNUC__) || defined(__clang__))
 #define LIGHTBIN_NEON 1
+#define LIGHTBIN_SIMD128 1
 #endif
 
 // Between LIGHTBIN_TARGET_BEGIN("avx2,bmi") and LIGHTBIN_TARGET_END functions, templates and lambdas may use these instruction

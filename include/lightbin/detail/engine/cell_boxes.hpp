@@ -15,7 +15,7 @@
 //   terms of one sign). The squared radius loses 3u. 2^-20 = 16u makes up for the 8u, and 2^-125 for squares
 //   that are flushed to zero. What overflows to infinity did so in both or in the sphere's favour, since all
 //   roundings are monotone; infinity is not beyond infinity.
-// - in a slice (slab.inl) the squared distances along z and y are subtracted from the squared radius, and the rest is
+// - in a slice (slab_tiles_met) the squared distances along z and y are subtracted from the squared radius, and the rest is
 //   compared with that along x. Where it could be more, each difference is off by u of the squared radius, as much
 //   as a sum above. One that is flushed to zero is off by 2^-126, two by 2^-125: squares don't need that
 //   then, as a squared radius that is flushed leaves 2^-125 - 0 - 0, which is not.
@@ -26,6 +26,7 @@
 #include <lightbin/detail/base/math.hpp>
 #include <lightbin/detail/base/platform.hpp>
 #include <lightbin/detail/base/rounding.hpp>
+#include <lightbin/options.hpp>
 #include <lightbin/sphere.hpp>
 #include <lightbin/view.hpp>
 
@@ -46,14 +47,27 @@ inline void tile_edges(const ImageAxis& axis, int tile, float& low, float& high)
     high = to > most ? infinity : static_cast<float>(max_of(to, -most));
 }
 
-/// The boxes around the cells of a slice, which share their depths z0 to z1: their ends, low x and high x by column,
-/// low y and high y by row. Readable (not meaningful) up to `padding` elements past the last.
+/// The boxes around the cells of a slice, which share their depths z0 to z1.
 struct SlabBoxes {
-    static constexpr std::size_t padding = 8;
+    /// Vectors are read and written up to this many elements past the last.
+    static constexpr std::size_t padding = 16;
 
-    const float* ends[4] = {};
+    const float* ends[4] = {};  ///< low x and high x by column of tiles, low y and high y by row
     float z0 = 0, z1 = 0;
 };
+
+/// The squared radius of a sphere, rounded up as above.
+inline float reach2_of(float radius) {
+    return rounded(rounded(radius * radius) * (1 + 0x1p-20f)) + 0x1p-125f;
+}
+
+/// Planes of 64 floats that a depth test reads of a block, see arrange_cells().
+template <DepthTest depth_test>
+inline constexpr unsigned cell_planes = depth_test == DepthTest::split_box ? 12
+                                        : depth_test == DepthTest::box     ? 6
+                                                                                : depth_test == DepthTest::interval ? 2
+                                                                            : 1;
+inline constexpr unsigned next_box = 64 * cell_planes<DepthTest::box>;  ///< the distance of split_box's second box
 
 /// A light as the depth tests see it: the tile index grows with x and y, and z is the view depth.
 struct TestedLight {
@@ -61,10 +75,10 @@ struct TestedLight {
     TestedLight(const Camera& camera, const Sphere& light)
         : x(camera.x.sign * light.x), y(camera.y.sign * light.y), z(camera.z_sign * light.z),
           nearest(z - light.radius), farthest(z + light.radius),
-          reach2(rounded(rounded(light.radius * light.radius) * (1 + 0x1p-20f)) + 0x1p-125f) {}
+          reach2(reach2_of(light.radius)) {}
 
     float x, y, z;
     float nearest, farthest;  ///< rounding is monotone: comparing them with float bounds never loses a light
-    float reach2;             ///< the squared radius, rounded up
+    float reach2;             ///< see reach2_of()
 };
 }}}  // namespace lightbin::detail

@@ -1,53 +1,59 @@
 // SPDX-License-Identifier: MIT
-// Step 2 of bin.inl: which of a supertile's 8x8 tiles each of its lights is in. With row spans or a depth test, as
-// one word a light with a bit per tile: its rectangle, and-ed with its silhouette's row spans and with the tiles
-// whose Z bounds it meets. Included once a tier, after step 3, which says in what form it takes the words, and makes
-// those of a slice's boxes (slab.inl).
+// Step 2 of binning: which of a block's 64 tiles each of its lights is in. Included once a tier.
+//
+// With a silhouette or a depth test it is found as a mask a light, with a bit for each tile: the tiles of its rectangle, and-ed
+// with those within its silhouette's row spans and with those whose cells it meets.
 //
 //     bit  0  1 ..  7      . . . . . . . .      rows that the rectangle covers     0 1 1 1 0 0 0 0
 //          8  9 .. 15      . . # # # # . .      columns                            0 0 1 1 1 1 0 0
 //          :               . . # # # # . .
 //         56 57 .. 63      . . # # # # . .      Each pair of a light and a tile is tested once.
 //                          . . . . . . . .
+//
+// Step 3 reads a byte a light for each row of tiles, see Scratch::row_columns_of().
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
-#include <lightbin/detail/tiers/in_editor.hpp>
+#include <lightbin/detail/engine/cells.inl>
+#include <lightbin/detail/engine/lists.inl>
 #endif
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// The squared distances of a point from `lanes` boxes.
-inline Floats distance2(const float* cell, float x, float y, float z) {
-    const Floats along_z = distance(broadcast(z), load_floats(cell), load_floats(cell + 64)),
-                 along_x = distance(broadcast(x), load_floats(cell + 128), load_floats(cell + 192)),
-                 along_y = distance(broadcast(y), load_floats(cell + 256), load_floats(cell + 320));
+/// The distances of coordinates from the intervals low to high, 0 within them.
+inline Floats distance(Floats coordinate, Floats low, Floats high) {
+    return maximum(maximum(low - coordinate, coordinate - high), broadcast(0.0f));
+}
+
+/// The squared distances of a point from a vector of boxes, see store_box().
+inline Floats distance2(const float* boxes, float x, float y, float z) {
+    const Floats along_z = distance(broadcast(z), load_floats(boxes), load_floats(boxes + 64)),
+                 along_x = distance(broadcast(x), load_floats(boxes + 128), load_floats(boxes + 192)),
+                 along_y = distance(broadcast(y), load_floats(boxes + 256), load_floats(boxes + 320));
     return mul(along_x, along_x) + mul(along_y, along_y) + mul(along_z, along_z);
 }
 
-/// Of `lanes` boxes, those that a sphere misses. Always inline: returned by a call, GCC 12 drops half of such a mask.
-LIGHTBIN_INLINE auto boxes_missed(const float* cell, const TestedLight& light) {
-    return less(broadcast(light.reach2), distance2(cell, light.x, light.y, light.z));
+/// A mask of the boxes of a vector that a sphere misses. Always inline: returned by a call, GCC 12 drops half of such a mask.
+LIGHTBIN_INLINE auto boxes_missed(const float* boxes, const TestedLight& light) {
+    return less(broadcast(light.reach2), distance2(boxes, light.x, light.y, light.z));
 }
 
-/// Those beyond the ball or beside the cone of a spot: a box is if its corner that is deepest in one of the half spaces
-/// around the cone is not in it. (Unreal tests one such plane, chosen for each box.)
-LIGHTBIN_INLINE auto boxes_missed(const float* cell, const TestedSpot& light) {
+/// A mask of the boxes of a vector that a spot misses: the ball misses the box, or one of the four planes around the cone has the
+/// whole box outside, which its corner that lies deepest inside decides. (Unreal tests one such plane, chosen for each box.)
+LIGHTBIN_INLINE auto boxes_missed(const float* boxes, const TestedSpot& light) {
     const ViewSpot& spot = *light.spot;
-    auto missed =
-        less(reach2_of(broadcast(spot.ball.radius)), distance2(cell, spot.ball.x, spot.ball.y, spot.ball.z));
+    auto missed = less(broadcast(reach2_of(spot.ball.radius)), distance2(boxes, spot.ball.x, spot.ball.y, spot.ball.z));
     for (unsigned i = 0; i < 4; ++i) {
         const SpotPlane& plane = spot.planes[i];
-        const Floats deepest = mul(load_floats(cell + spot.corners[i][0]), broadcast(plane.x)) +
-                               mul(load_floats(cell + spot.corners[i][1]), broadcast(plane.y)) +
-                               mul(load_floats(cell + spot.corners[i][2]), broadcast(plane.z));
+        const Floats deepest = mul(load_floats(boxes + spot.corners[i][0]), broadcast(plane.x)) +
+                               mul(load_floats(boxes + spot.corners[i][1]), broadcast(plane.y)) +
+                               mul(load_floats(boxes + spot.corners[i][2]), broadcast(plane.z));
         missed = either(missed, less(broadcast(plane.most), deepest));
     }
     return missed;
 }
 
-/// Of the first `lanes` tiles of `cells`, those whose Z bounds or boxes the light meets.
-template <DepthTest depth_test, class Light>
-inline std::uint64_t tiles_met(const float* cells, const Light& light) {
+/// A bit for each of a vector of tiles whose cell the light meets. `cells` are those of arrange_cells(), from the first tile on.
+template <DepthTest depth_test, class Light> std::uint64_t tiles_met(const float* cells, const Light& light) {
     const Floats nearest = broadcast(light.nearest), farthest = broadcast(light.farthest);
     std::uint64_t met = 0;
     for (const float* cell = cells; cell < cells + 64 * cell_planes<depth_test>; cell += next_box) {
@@ -58,59 +64,86 @@ inline std::uint64_t tiles_met(const float* cells, const Light& light) {
     return met;
 }
 
-/// What a depth test has to know of a supertile's tiles, see arrange_cells().
-template <DepthTest depth_test> struct TestedTiles {
-    float cells[64 * cell_planes<depth_test>];
-    std::uint64_t lit;     ///< a bit for each tile that has anything to light
-    DepthInterval depths;  ///< of all boxes
+/// What a depth test reads of a block's tiles, see arrange_cells().
+template <DepthTest depth_test> struct BlockCells {
+    float planes[64 * cell_planes<depth_test>];
+    std::uint64_t drawn;   ///< a bit for each tile whose Z bounds are not empty
+    DepthInterval depths;  ///< of all cells in vectors with a drawn tile
 };
 
-/// The depths of all boxes of the vectors of tiles of which any is `lit`.
-template <DepthTest depth_test>
-inline DepthInterval depth_range(const float* cells, std::uint64_t lit) {
+/// The nearest and farthest depths of the cells in vectors of tiles with any bit in `drawn`.
+template <DepthTest depth_test> DepthInterval depth_range(const float* cells, std::uint64_t drawn) {
     float min[lanes], max[lanes];
-    Floats least = broadcast(infinity), most = broadcast(-infinity);
-    for (unsigned place = 0; place < 64; place += lanes)
-        if ((lit >> place & every_lane) != 0)
-            for (unsigned plane = 0; plane < 64 * cell_planes<depth_test>; plane += next_box) {
-                least = minimum(load_floats(cells + plane + place), least);
-                most = maximum(load_floats(cells + plane + 64 + place), most);
+    Floats nearest = broadcast(infinity), farthest = broadcast(-infinity);
+    for (unsigned tile = 0; tile < 64; tile += lanes)
+        if ((drawn >> tile & every_lane) != 0)
+            for (unsigned box = 0; box < 64 * cell_planes<depth_test>; box += next_box) {
+                nearest = minimum(load_floats(cells + box + tile), nearest);
+                farthest = maximum(load_floats(cells + box + 64 + tile), farthest);
             }
-    store_floats(min, least);
-    store_floats(max, most);
+    store_floats(min, nearest);
+    store_floats(max, farthest);
     DepthInterval range = {min[0], max[0]};
     for (std::uint32_t lane = 1; lane < lanes; ++lane)
         range = {min_of(range.min, min[lane]), max_of(range.max, max[lane])};
     return range;
 }
 
-/// Adds the tiles that they meet to the words of some of 64 lights with these bytes of columns and rows; the tiles of
-/// a vector count if any of them is in the rectangle. A vector of tiles stays in registers while its lights pass: loops
-/// over a light's few vectors would be mispredicted once a light.
+/// Adds to met[i] the tiles whose cells light i meets, for those of 64 lights whose bit in `chosen` is set. Tests only vectors of
+/// tiles of which any is in the light's rectangle. Tiles are the outer loop, lights the inner: a vector of cells then stays in
+/// registers, and no short loop over a light's own vectors has its end mispredicted.
+///
+/// columns, rows  the lights' bytes, see Scratch
 template <DepthTest depth_test, class Light>
-inline void meet_tiles(const TestedTiles<depth_test>& tiles, const Light* lights,
-                                       const std::uint8_t* columns, const std::uint8_t* rows,
-                                       std::uint64_t some, std::uint64_t* met) {
+void meet_tiles(const BlockCells<depth_test>& cells, const Light* lights, const std::uint8_t* columns,
+                const std::uint8_t* rows, std::uint64_t chosen, std::uint64_t* met) {
     std::uint64_t in_column[8], in_row[8];
     split_bits(columns, in_column);
     split_bits(rows, in_row);
-    for (unsigned place = 0; place < 64; place += lanes) {
-        if ((tiles.lit >> place & every_lane) == 0) continue;
+    for (unsigned tile = 0; tile < 64; tile += lanes) {
+        if ((cells.drawn >> tile & every_lane) == 0) continue;
         std::uint64_t in_rows = 0, in_columns = 0;
         for (unsigned lane = 0; lane < lanes; lane += 8)
-            in_rows |= in_row[(place + lane) / 8];
+            in_rows |= in_row[(tile + lane) / 8];
         for (unsigned lane = 0; lane < lanes && lane < 8; ++lane)
-            in_columns |= in_column[place % 8 + lane];
-        for (std::uint64_t rest = in_rows & in_columns & some; rest != 0; rest &= rest - 1) {
+            in_columns |= in_column[tile % 8 + lane];
+        for (std::uint64_t rest = in_rows & in_columns & chosen; rest != 0; rest &= rest - 1) {
             const unsigned light = static_cast<unsigned>(std::countr_zero(rest));
-            met[light] |= tiles_met<depth_test>(tiles.cells + place, lights[light]) << place;
+            met[light] |= tiles_met<depth_test>(cells.planes + tile, lights[light]) << tile;
         }
     }
 }
 
-/// Of the tiles of a supertile, from column 8 x and row `top` on, those within the row spans of visible light i.
-inline std::uint64_t silhouette_tiles(const FootprintArrays& lights, std::uint32_t i,
-                                                      unsigned x, unsigned top, std::uint64_t tiles) {
+/// A mask of a block's tiles whose boxes in a slice a sphere meets. The boxes have the same depths and differ only by column and
+/// by row, so the squared distance to each is a sum of one along x by column, one along y by row and one along z: 17 numbers and
+/// a comparison a tile. A box is missed where  less(reach2 - z2 - y2, x2);  see cell_boxes.hpp on rounding. NaN, where reach2 and a
+/// distance are infinite, misses nothing. Depths are not compared: only lights that meet the slice's depths are in its lists.
+///
+/// x0, x1, y0, y1  the low and high ends of the block's boxes by column and by row
+inline std::uint64_t slab_tiles_met(const SlabBoxes& slab, const float* x0, const float* x1, const float* y0,
+                                    const float* y1, const TestedLight& light) {
+    constexpr unsigned vectors = lanes < 8 ? 8 / lanes : 1;
+    const float z_distance = max_of(max_of(slab.z0 - light.z, light.z - slab.z1), 0.0f);
+    const Floats left = broadcast(light.reach2 - rounded(z_distance * z_distance));
+    Floats x2[vectors];
+    float left_by_row[vectors * lanes];
+    for (unsigned i = 0; i < vectors; ++i) {
+        const Floats along_x = distance(broadcast(light.x), load_floats(x0 + i * lanes), load_floats(x1 + i * lanes)),
+                     along_y = distance(broadcast(light.y), load_floats(y0 + i * lanes), load_floats(y1 + i * lanes));
+        x2[i] = mul(along_x, along_x);
+        store_floats(left_by_row + i * lanes, left - mul(along_y, along_y));
+    }
+    std::uint64_t missed = 0;
+    for (unsigned row = 0; row < 8; ++row)
+        for (unsigned i = 0; i < vectors; ++i)
+            missed |= std::uint64_t{movemask(less(broadcast(left_by_row[row]), x2[i])) & 0xff} << (8 * row + i * lanes);
+    return ~missed;
+}
+
+/// A mask of those of a block's `tiles` that are within the row spans of light i of the footprint arrays. The block begins at
+/// column 8 x and row `top`.
+inline std::uint64_t silhouette_tiles(const FootprintArrays& lights, std::uint32_t i, unsigned x, unsigned top,
+                                      std::uint64_t tiles) {
     if (tiles == 0 || lights.span_begin[i] == FootprintArrays::whole_rectangle) return tiles;
     std::uint64_t spanned = 0;
     for (unsigned row = static_cast<unsigned>(std::countr_zero(tiles)) / 8,
@@ -123,112 +156,125 @@ inline std::uint64_t silhouette_tiles(const FootprintArrays& lights, std::uint32
     return tiles & spanned;
 }
 
-/// Makes the words of up to 64 lights of a supertile, given by visible index, counted from `first`, with the columns
-/// and rows that they cover; and ids of their indices. Lights that are in none of the tiles are dropped. Returns how
-/// many are left. `ids` may be `lights`, or before it.
-template <Footprint footprint, DepthTest depth_test, bool spots, class Id>
-inline std::uint32_t mask_64_lights(const BinJob<Id>& job, unsigned x, unsigned top,
-                                                    [[maybe_unused]] const TestedTiles<depth_test>& cells,
-                                                    const ListId* lights, std::uint32_t first,
-                                                    const std::uint8_t* columns, const std::uint8_t* rows,
-                                                    std::uint32_t count, ListId* ids, std::uint64_t* words) {
-    std::uint64_t met[64];
-    if constexpr (depth_test != DepthTest::none) {
-        Tested<spots> tested[64];
-        std::uint64_t in_range = 0;
-        for (std::uint32_t j = 0; j < count; ++j) {
-            const std::uint32_t id = job.lights.ids[first + lights[j]];
-            // In its place, as a copy of what was written in parts has to wait for them.
-            if constexpr (spots)
-                std::construct_at(tested + j, *job.camera, job.lights.spots[id]);
-            else
-                std::construct_at(tested + j, *job.camera, load_sphere(job.lights.spheres + id));
-            met[j] = 0;
-            // Most lights that miss all tiles are beyond all of them.
-            const bool missed =
-                (tested[j].farthest < cells.depths.min) | (cells.depths.max < tested[j].nearest);
-            in_range |= std::uint64_t{!missed} << j;
-        }
-        if (in_range != 0) meet_tiles(cells, tested, columns, rows, in_range, met);
-    }
-    std::uint32_t left = 0;
+/// The depth test of up to 64 lights of a block, given by their indices in the footprint arrays and their bytes of columns and
+/// rows: a mask a light of the tiles whose cells it meets.
+template <DepthTest depth_test, bool spots, class Id>
+void meet_64_lights(const BinJob<Id>& job, const BlockCells<depth_test>& cells, const std::uint32_t* indices,
+                    const std::uint8_t* columns, const std::uint8_t* rows, std::uint32_t count, std::uint64_t* met) {
+    Tested<spots> tested[64];
+    std::uint64_t in_range = 0;
     for (std::uint32_t j = 0; j < count; ++j) {
-        const std::uint32_t light = first + lights[j];
-        std::uint64_t tiles = spread_rows(rows[j]) & columns[j] * std::uint64_t{0x0101010101010101};
-        if constexpr (depth_test != DepthTest::none) tiles &= met[j] & cells.lit;
-        if constexpr (footprint == Footprint::silhouette)
-            tiles = silhouette_tiles(job.lights, light, x, top, tiles);
-        ids[left] = static_cast<ListId>(job.lights.ids[light]);
-        words[left] = tiles;
-        left += tiles != 0;
+        const std::uint32_t id = job.lights.ids[indices[j]];
+        // Constructed in place: a copy would have to wait for what was just written in parts.
+        if constexpr (spots)
+            std::construct_at(tested + j, *job.camera, job.lights.spots[id]);
+        else
+            std::construct_at(tested + j, *job.camera, load_sphere(job.lights.spheres + id));
+        met[j] = 0;
+        // Most lights that miss all of the block's cells lie beyond all of their depths.
+        const bool missed = (tested[j].farthest < cells.depths.min) | (cells.depths.max < tested[j].nearest);
+        in_range |= std::uint64_t{!missed} << j;
     }
-    return left;
+    if (in_range != 0) meet_tiles(cells, tested, columns, rows, in_range, met);
 }
 
-/// Of a list in blocks of ids, whose lights before `begin` were masked so that `left` of them are left: lets those
-/// that follow begin at a multiple of 64 if they are of another block, and notes of which one. Returns what their
-/// visible indices are counted from.
-inline std::uint32_t begin_group(const Scratch& scratch, const SupertileList& list, std::uint32_t begin,
-                                 std::uint32_t& left, std::uint64_t* masks) {
-    std::uint32_t* const groups = scratch.group_blocks.data() + list.begin / 64;
-    const std::uint32_t block = groups[begin / 64];
-    if (left % 64 != 0 && groups[left / 64] != block)
-        while (left % 64 != 0)
-            masks[left++] = 0;
-    groups[left / 64] = groups[(left + 63) / 64] = block;
-    return scratch.blocks.data()[block].begin;
+/// Stores the bytes of Scratch::row_columns_of() for lights whose tiles are those of their rectangles.
+inline void store_rectangles(Scratch& scratch, const BlockList& list) {
+    const std::uint32_t padded = list.padded_count();
+    const std::uint8_t *const columns = scratch.list_columns.data() + list.begin,
+                       *const rows = scratch.list_rows.data() + list.begin;
+    std::uint8_t* const row_columns = scratch.row_columns_of(list);
+    for (std::uint32_t i = 0; i < padded; i += byte_lanes) {
+        const Bytes in_columns = load_bytes(columns + i), in_rows = load_bytes(rows + i);
+        for (unsigned row = 0; row < 8; ++row)
+            store_bytes(row_columns + row * padded + i, keep_where(in_columns, in_rows & broadcast_byte(1u << row)));
+    }
 }
 
-/// Makes the words of a supertile's lights in scratch.masks, and ids of their visible indices. Lights that are in
-/// none of the tiles are dropped. Returns how many are left.
-template <Footprint footprint, DepthTest depth_test, bool spots, class Id>
-std::uint32_t mask_lights(const BinJob<Id>& job, Scratch& scratch, unsigned x, unsigned top,
-                                          const SupertileList& list, ListId* all_lights) {
-    TestedTiles<depth_test> cells;
-    if constexpr (depth_test != DepthTest::none) {
-        cells.lit = arrange_cells<depth_test>(job, x, top, cells.cells);
-        cells.depths = depth_range<depth_test>(cells.cells, cells.lit);
+/// Stores the bytes of Scratch::row_columns_of() for lights with masks: transposes 8x8 bytes, of 8 lights and 8 rows.
+inline void store_masks(Scratch& scratch, const BlockList& list) {
+    const std::uint32_t padded = list.padded_count();
+    std::uint64_t* const masks = scratch.tile_masks.data();
+    fill_items(masks + list.count, padded - list.count, 0);
+    std::uint8_t* const row_columns = scratch.row_columns_of(list);
+    for (std::uint32_t i = 0; i < padded; i += 8) {
+        std::uint64_t rows[8];
+        std::memcpy(rows, masks + i, sizeof rows);
+        transpose_bytes(rows);
+        for (unsigned row = 0; row < 8; ++row)
+            store_8_bytes(row_columns + row * padded + i, rows[row]);
     }
-    const std::uint8_t* columns = scratch.list_columns.data() + list.begin;
-    const std::uint8_t* rows = scratch.list_rows.data() + list.begin;
-    ListId* lights = all_lights + list.begin;
-    std::uint64_t* masks = scratch.masks.reserve(std::uint64_t{list.count} + 64);
+}
+
+/// Finds the mask of each light of a list of indices, of the block that begins at column 8 x and row `top`. Drops the lights that
+/// are in none of its tiles, and makes ids of the indices of the others.
+///
+/// slab  with by_slab: the boxes of the slice's cells
+template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>
+void mask_lights(const BinJob<Id>& job, Scratch& scratch, [[maybe_unused]] const SlabBoxes& slab, unsigned x,
+                 unsigned top, BlockList& list) {
+    [[maybe_unused]] BlockCells<by_slab ? DepthTest::none : depth_test> cells;
+    if constexpr (depth_test != DepthTest::none && !by_slab) {
+        cells.drawn = arrange_cells<depth_test>(job, x, top, cells.planes);
+        cells.depths = depth_range<depth_test>(cells.planes, cells.drawn);
+    }
+    const std::uint8_t *const columns = scratch.list_columns.data() + list.begin,
+                       *const rows = scratch.list_rows.data() + list.begin;
+    std::uint32_t* const indices = scratch.list_ids.data() + list.begin;
+    std::uint64_t* const masks = scratch.tile_masks.reserve(list.count + std::uint64_t{64});
     std::uint32_t left = 0;
     for (std::uint32_t begin = 0; begin < list.count; begin += 64) {
         const std::uint32_t count = min_of(list.count - begin, 64u);
-        std::uint32_t first = 0;
-        if constexpr (sizeof(ListId) == 2) first = begin_group(scratch, list, begin, left, masks);
-        left += mask_64_lights<footprint, depth_test, spots>(job, x, top, cells, lights + begin, first,
-                                                             columns + begin, rows + begin, count,
-                                                             lights + left, masks + left);
+        [[maybe_unused]] std::uint64_t met[64];
+        if constexpr (depth_test != DepthTest::none && !by_slab)
+            meet_64_lights<depth_test, spots>(job, cells, indices + begin, columns + begin, rows + begin, count, met);
+        for (std::uint32_t i = begin; i < begin + count; ++i) {
+            const std::uint32_t light = indices[i], id = job.lights.ids[light];
+            std::uint64_t tiles = spread_bits(rows[i]) & columns[i] * std::uint64_t{0x0101010101010101};
+            if constexpr (by_slab)
+                tiles &= slab_tiles_met(slab, slab.ends[0] + 8 * x, slab.ends[1] + 8 * x, slab.ends[2] + top,
+                                        slab.ends[3] + top, {*job.camera, load_sphere(job.lights.spheres + id)});
+            else if constexpr (depth_test != DepthTest::none)
+                tiles &= met[i - begin] & cells.drawn;
+            if constexpr (footprint == Footprint::silhouette) tiles = silhouette_tiles(job.lights, light, x, top, tiles);
+            indices[left] = id;
+            masks[left] = tiles;
+            left += tiles != 0;
+        }
     }
-    return left;
+    list.count = left;
 }
 
-/// Makes the words of a band's supertiles, in the form that step 3 takes. Lights in no tile of a list are taken out of
-/// it, where that is known of each by itself: by mask_lights(). Returns where the words end, 0 if no light is left.
+/// Lists the lights of each block of the band that begins at tile row `top`, with the bytes of Scratch::row_columns_of(). Returns
+/// the lists, one a block, or null if they are all empty.
+///
+/// bands  kept from band to band: the bands listed so far
+/// end    the last tile row + 1 that will be asked for
 template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>
-std::uint32_t make_words(const BinJob<Id>& job, Scratch& scratch, unsigned top,
-                                         const BandLists<ListId>& band, unsigned width) {
-    constexpr bool worded = with_words<footprint, depth_test>;
-    const std::uint32_t begin = store_no_words(scratch);
-    std::uint32_t used = begin;
+const BlockList* list_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab, BandLists& bands,
+                             unsigned top, unsigned end) {
+    constexpr bool tested = has_tests<footprint, depth_test>;
+    const unsigned width = (static_cast<unsigned>(job.camera->x.tiles) + 7) / 8;
+    if (top >= bands.end) list_bands<tested>(job, scratch, top, end, bands);
+    BlockList* const lists = scratch.lists.reserve(width);
+    std::uint32_t used = 0;
     for (unsigned x = 0; x < width; ++x) {
-        SupertileList& list = band.lists[x];
-        if constexpr (worded && !by_slab)
-            if (list.count > 0)
-                list.count = mask_lights<footprint, depth_test, spots>(job, scratch, x, top, list, band.ids);
-        if (list.count == 0) {
-            list = {band.lists->begin, 0, 0};
-            continue;
+        BlockList& list = lists[x];
+        list = {used, list_block(scratch, bands, (top - bands.begin) / 8, x, used)};
+        if constexpr (tested)
+            if (list.count > 0) mask_lights<footprint, depth_test, by_slab, spots>(job, scratch, slab, x, top, list);
+        if (list.count == 0) continue;
+        const std::uint32_t padded = list.padded_count();
+        scratch.row_columns.reserve(std::uint64_t{8} * (used + padded), std::size_t{8} * used);
+        if constexpr (tested) {
+            store_masks(scratch, list);
+        } else {
+            std::memset(scratch.list_columns.data() + used + list.count, 0, padded - list.count);
+            store_rectangles(scratch, list);
         }
-        list.words = used;
-        if constexpr (by_slab)
-            used = store_slab_words<spots>(job, scratch, x, top, band, list);
-        else
-            used = store_words<worded, Id>(scratch, band, list);
+        used += padded;
     }
-    return used > begin ? used : 0;
+    return used == 0 ? nullptr : lists;
 }
 
 }}}}  // namespace lightbin::detail

@@ -1,234 +1,179 @@
 // SPDX-License-Identifier: MIT
-// Step 3 of bin.inl, for tiers without a compress instruction, and the form of the words that it reads. Included
-// once such a tier, after its append().
-//
-// Words are 64 lights' columns, 8 words with a bit a light, and their rows, 8 more: the lights of tile (row,
-// column) are rows[row] & columns[column]. With row spans or a depth test they are 8 lights' 64 tiles, a byte per
-// tile with a bit a light.
+// Step 3 of binning: the lists of the tiles. Tiles are taken in row-major order, so the index list is written strictly in
+// sequence: no count pass over tiles, no scatter, no sort. Included once a tier.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
-#include <lightbin/detail/tiers/in_editor.hpp>
+#include <lightbin/detail/engine/depth_tests.inl>
 #endif
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// Stores what stands for the words of empty lists: nothing. Returns where it ends.
-inline std::uint32_t store_no_words(Scratch&) {
-    return 0;
-}
+/// Lights of a block for one of its rows of tiles: their ids, and a byte a light with a bit for each column whose tile it is in.
+struct RowLights {
+    const std::uint32_t* ids;
+    const std::uint8_t* columns;
+    std::uint32_t count;
+};
 
-/// The ids of a list in the form that append() takes.
-template <class Id>
-inline Packed<Id>* packed_ids(const Scratch& scratch, const BandLists<ListId>& band,
-                                              const SupertileList& list) {
-    if constexpr (packs_ids)
-        return reinterpret_cast<Packed<Id>*>(scratch.packed_ids.data()) + (list.begin - band.lists->begin);
-    else
-        return band.ids + list.begin;
-}
-
-/// Packs the ids of a list.
-template <class Id>
-inline void pack_ids(Scratch& scratch, const BandLists<ListId>& band,
-                                     const SupertileList& list) {
-    if constexpr (packs_ids) {
-        const std::size_t before = list.begin - band.lists->begin, size = sizeof(Packed<Id>);
-        const std::uint64_t after = before + ((list.count + std::uint64_t{63}) & ~std::uint64_t{63});
-        scratch.packed_ids.reserve(after * size, before * size);
-        pack(band.ids + list.begin, list.count, packed_ids<Id>(scratch, band, list));
-    }
-}
-
-/// Stores the words of a list at list.words of scratch.words. Returns where they end.
-template <bool with_words, class Id>
-inline std::uint32_t store_words(Scratch& scratch, const BandLists<ListId>& band,
-                                                 const SupertileList& list) {
-    const std::uint32_t groups = (list.count + 63) / 64, eights = (list.count + 7) / 8,
-                        end = list.words + (with_words ? 8 * eights : 16 * groups);
-    std::uint64_t* words = scratch.words.reserve(end, list.words) + list.words;
-    if constexpr (with_words) {
-        std::uint64_t* const masks = scratch.masks.data();
-        fill_items(masks + list.count, 8 * eights - list.count, 0);
-        for (std::uint32_t i = 0; i < list.count; i += 8, words += 8)
-            transpose_words(masks + i, words);
-    } else {
-        std::uint8_t* const columns = scratch.list_columns.data() + list.begin;
-        std::uint8_t* const rows = scratch.list_rows.data() + list.begin;
-        std::memset(columns + list.count, 0, 64 * groups - list.count);
-        std::memset(rows + list.count, 0, 64 * groups - list.count);
-        for (std::uint32_t i = 0; i < list.count; i += 64, words += 16) {
-            split_bits(columns + i, words);
-            split_bits(rows + i, words + 8);
-        }
-    }
-    pack_ids<Id>(scratch, band, list);
-    return end;
-}
-
-/// Of 8 lights at most, those that miss the boxes of a supertile: a byte per tile, a bit a light.
-template <class Light>
-inline void store_missed(const Camera& camera, const SupertileBoxes& boxes,
-                                         const Light* lights_by_id, const ListId* ids, std::uint32_t count,
-                                         std::uint64_t* words) {
-    const float* const(&ends)[4] = boxes.slab.ends;
-    fill_items(words, 8, 0);
-    for (std::uint32_t first = 0; first < 8 && first < count; first += lanes) {
-        const auto lights = load_slab_lights(camera, boxes.slab, lights_by_id, ids + first, count - first);
-        for (unsigned test = 0; test < lights.tests; ++test) {
-            float by_column[8][lanes];
-            for (unsigned column = 0; column < 8; ++column)
-                store_floats(by_column[column], lights.by_column(test, ends[0][column], ends[1][column]));
-            for (unsigned row = 0; row < boxes.rows; ++row)
-                words[row] |=
-                    movemask_of_8_less(lights.left_by_row(test, ends[2][row], ends[3][row]), by_column[0])
-                    << first;
-        }
-    }
-}
-
-/// Makes the words of a list, by the boxes of the supertile from column 8 x and row `top` on, and stores them as
-/// store_words() does.
-template <bool spots, class Id>
-inline std::uint32_t store_slab_words(const BinJob<Id>& job, Scratch& scratch, unsigned x,
-                                                      unsigned top, const BandLists<ListId>& band,
-                                                      const SupertileList& list) {
-    const std::uint32_t eights = (list.count + 7) / 8, end = list.words + 8 * eights;
-    std::uint64_t* words = scratch.words.reserve(end, list.words) + list.words;
-    std::uint8_t* const columns = scratch.list_columns.data() + list.begin;
-    const std::uint8_t* const rows = scratch.list_rows.data() + list.begin;
-    const ListId* const ids = band.ids + list.begin;
-    std::memset(columns + list.count, 0, 8 * eights - list.count);
-    const SupertileBoxes boxes = boxes_at(job, scratch, x, top);
-    for (std::uint32_t i = 0; i < list.count; i += 8, words += 8) {
-        store_missed(*job.camera, boxes, lights_of<spots>(job), ids + i, list.count - i, words);
-        const std::uint64_t in_columns = transpose_bits(load_8_bytes(columns + i)),
-                            in_rows = transpose_bits(load_8_bytes(rows + i));
-        for (unsigned row = 0; row < boxes.rows; ++row)
-            words[row] = ~words[row] & in_columns & (in_rows >> 8 * row & 0xff) * 0x0101010101010101;
-    }
-    pack_ids<Id>(scratch, band, list);
-    return end;
-}
-
-/// Appends those of 8 ids whose bit is set in the lowest byte, then those of 8 more by the next. Returns the end.
-template <class Id, class Ids>
-inline Id* append_16(Id* out, const Ids* ids, std::uint64_t chosen) {
-    out += append(out, ids, static_cast<unsigned>(chosen & 0xff));
-    return out + append(out, ids + 8, static_cast<unsigned>(chosen >> 8 & 0xff));
-}
-
-/// Appends those of `count` ids, up to 64, whose bit is set. Returns the end. No loop, whose end is predicted worse
-/// than these branches.
-template <class Id, class Ids>
-inline Id* append_64(Id* out, const Ids* ids, std::uint64_t chosen, std::uint32_t count) {
-    out = append_16(out, ids, chosen);
-    if (count <= 16) return out;
-    out = append_16(out, ids + 16, chosen >> 16);
-    if (count <= 32) return out;
-    out = append_16(out, ids + 32, chosen >> 32);
-    if (count <= 48) return out;
-    return append_16(out, ids + 48, chosen >> 48);
-}
-
-/// Appends the lights of a tile by its words: bytes[0], bytes[64] ... have 8 lights each. Returns the end.
-template <class Id, class Ids>
-inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count,
-                                       const std::uint8_t* bytes) {
-    std::size_t i = 0;
-    do
-        out += append(out, ids + i, bytes[i * 8]);
-    while ((i += 8) < count);
-    return out;
-}
-
-/// The same by the words of its column and its row: [0], [16] ... have 64 lights each.
-template <bool up_to_64, class Id, class Ids>
-inline Id* append_tile(Id* out, const Ids* ids, std::uint32_t count,
-                                       const std::uint64_t* column, const std::uint64_t* row) {
-    if constexpr (!up_to_64)
-        for (; count > 64; count -= 64, ids += 64, column += 16, row += 16)
-            out = append_64(out, ids, *column & *row, 64);
-    return append_64(out, ids, *column & *row, count);
-}
-
-/// Appends a row of a supertile's tiles. Returns the end. Not inline, as in a longer function compilers keep what it
-/// needs on the stack.
-template <bool with_words, bool up_to_64, class Id>
-LIGHTBIN_NOINLINE Id*
-append_tiles(Id* out, ListRange* tiles, std::ptrdiff_t columns, std::uint32_t at, const Packed<Id>* ids,
-             std::uint32_t count, const std::uint64_t* words, unsigned row) {
-    for (std::ptrdiff_t column = 0; column < columns; ++column) {
-        Id* const from = out;
-        if constexpr (with_words)
-            out = append_tile(out, ids, count,
-                              reinterpret_cast<const std::uint8_t*>(words) + 8 * row + byte_place(column));
-        else
-            out = append_tile<up_to_64>(out, ids, count, words + column, words + 8 + row);
-        const std::uint32_t lights = static_cast<std::uint32_t>(out - from);
-        tiles[column] = {at, lights};
-        at += lights;
-    }
-    return out;
-}
-
-#if defined(LIGHTBIN_TIER_HAS_BYTES)
-/// Of a long list whose lights cover few of its rows, those of a row are picked first, and the row's 8 tiles are made
-/// of them: where that is faster, replaces a supertile's list, its ids and words by those of its lights in a row. In
-/// their words that row has all of them.
-LIGHTBIN_NOINLINE inline void pick_row(Scratch& scratch, const SupertileList& list,
-                                                       unsigned row, const std::uint32_t*& ids,
-                                                       const std::uint64_t*& words, std::uint32_t& count) {
+/// Returns the lights of a row out of a list: the whole list or, where few of its lights are in the row, a copy of those.
+inline RowLights pick_row(Scratch& scratch, const BlockList& list, unsigned row) {
+    const RowLights all = {scratch.list_ids.data() + list.begin,
+                           scratch.row_columns_of(list) + std::size_t{row} * list.padded_count(), list.count};
     std::uint32_t in_row = 0;
-    for (std::uint32_t i = 0; i < count; i += 64)
-        in_row += static_cast<unsigned>(std::popcount(words[i / 4 + 8 + row]));
-    if (!picking_is_faster(count, in_row)) return;
-
-    std::uint32_t* const to_ids = scratch.row_ids.reserve(in_row + std::uint64_t{64});
-    std::uint8_t* const to_columns = scratch.row_columns.reserve(in_row + std::uint64_t{64});
-    const std::uint8_t* const columns = scratch.list_columns.data() + list.begin;
+    for (std::uint32_t i = 0; i < all.count; i += byte_lanes)
+        in_row += static_cast<std::uint32_t>(std::popcount(not_zero(load_bytes(all.columns + i))));
+    if (in_row == 0) return {};
+    if (all.count <= 16 || 2 * in_row > all.count) return all;
+    std::uint32_t* const ids = scratch.row_ids.reserve(in_row + std::uint64_t{128});
+    std::uint8_t* const columns = scratch.picked_columns.reserve(in_row + std::uint64_t{128});
     std::uint32_t picked = 0;
-    for (std::uint32_t i = 0; i < count; i += 64) {
-        std::uint64_t chosen = words[i / 4 + 8 + row];
-        const std::uint32_t end = min_of(i + 64, count);
-        for (std::uint32_t j = i; j < end; j += 8, chosen >>= 8)
-            picked += append_lights(to_ids + picked, to_columns + picked, ids + j, columns + j,
-                                    static_cast<unsigned>(chosen & 0xff));
+    for (std::uint32_t i = 0; i < all.count; i += byte_lanes) {
+        const Bytes here = load_bytes(all.columns + i);
+        const ByteMask chosen = not_zero(here);
+        compress_store(chosen, here, columns + picked);
+        compress_store(chosen, all.ids + i, ids + picked);
+        picked += static_cast<std::uint32_t>(std::popcount(chosen));
     }
-    std::memset(to_columns + picked, 0, 64);
-    std::uint64_t* const to_words = scratch.row_words.reserve(std::uint64_t{in_row} / 4 + 16);
-    for (std::uint32_t i = 0; i < picked; i += 64) {
-        split_bits(to_columns + i, to_words + i / 4);
-        to_words[i / 4 + 8 + row] = ~std::uint64_t{0};
-    }
-    ids = to_ids;
-    words = to_words;
-    count = picked;
+    std::memset(columns + picked, 0, 64);
+    return {ids, columns, picked};
 }
-#endif
 
-/// Emits a row of tiles, `row` of its supertiles. `at` is the offset of `out` in the index list. Returns the end.
-template <bool with_words, class Id>
-Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t at, Scratch& scratch,
-                             const BandLists<ListId>& band, unsigned row) {
-    const SupertileList* list = band.lists;
-    for (const ListRange* const end = tiles + tiles_x; tiles < end; tiles += 8, ++list) {
-        const std::ptrdiff_t columns = min_of<std::ptrdiff_t>(end - tiles, 8);
-        const Packed<Id>* ids = packed_ids<Id>(scratch, band, *list);
-        const std::uint64_t* words = scratch.words.data() + list->words;
-        std::uint32_t count = list->count;
-#if defined(LIGHTBIN_TIER_HAS_BYTES)
-        if (!with_words && count > 64) pick_row(scratch, *list, row, ids, words, count);
-#endif
-        Id* const from = out;
-        if (count == 0)
-            fill_items(tiles, static_cast<std::size_t>(columns), {at, 0});
-        else if (with_words || count <= 64)
-            out = append_tiles<with_words, true>(out, tiles, columns, at, ids, count, words, row);
-        else
-            out = append_tiles<with_words, false>(out, tiles, columns, at, ids, count, words, row);
-        at += static_cast<std::uint32_t>(out - from);
+/// Appends those of `count` ids, up to 64, whose bit is set. Returns the end. Branches rather than a loop, whose end would be
+/// mispredicted more often.
+template <class Id> Id* append_64(Id* out, const std::uint32_t* ids, std::uint64_t chosen, std::uint32_t count) {
+    out = append_16(out, ids, static_cast<unsigned>(chosen & 0xffff));
+    if (count <= 16) return out;
+    out = append_16(out, ids + 16, static_cast<unsigned>(chosen >> 16 & 0xffff));
+    if (count <= 32) return out;
+    out = append_16(out, ids + 32, static_cast<unsigned>(chosen >> 32 & 0xffff));
+    if (count <= 48) return out;
+    return append_16(out, ids + 48, static_cast<unsigned>(chosen >> 48));
+}
+
+/// Emits a block's tiles of one row: appends the lights of each to the index list and writes its range. Returns the list's end.
+/// Not inline: in a longer function compilers keep what it needs on the stack.
+///
+/// offset  of `out` in the index list
+/// words   for each 64 lights a word a column, with a bit a light
+template <bool up_to_64, class Id>
+LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset, const RowLights& row,
+                                 const std::uint64_t* words) {
+    const std::uint32_t* const ids = row.ids;
+    const std::uint32_t count = row.count;
+    for (unsigned column = 0; column < columns; ++column) {
+        Id* const begin = out;
+        std::uint32_t i = 0;
+        if constexpr (!up_to_64)
+            for (; i + 64 < count; i += 64)
+                out = append_64(out, ids + i, words[i / 8 + column], 64);
+        out = append_64(out, ids + i, words[i / 8 + column], count - i);
+        const std::uint32_t size = static_cast<std::uint32_t>(out - begin);
+        tiles[column] = {offset, size};
+        offset += size;
     }
     return out;
+}
+
+/// Emits a row of tiles, number `row` of its band. Returns the end of the index list.
+template <class Id>
+Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t offset, Scratch& scratch,
+             const BlockList* lists, unsigned row) {
+    for (unsigned x = 0; x < tiles_x; x += 8, ++lists) {
+        const unsigned columns = min_of(tiles_x - x, 8u);
+        RowLights lights = {};
+        if (lists->count > 0) lights = pick_row(scratch, *lists, row);
+        if (lights.count == 0) {
+            fill_items(tiles + x, columns, {offset, 0});
+            continue;
+        }
+        Id* end;
+        if (lights.count <= 64) {
+            std::uint64_t words[8];
+            split_bits(lights.columns, words);
+            end = emit_tiles<true>(out, tiles + x, columns, offset, lights, words);
+        } else {
+            std::uint64_t* const words = scratch.row_words.reserve(lights.count / 8 + std::uint64_t{16});
+            for (std::uint32_t i = 0; i < lights.count; i += 64)
+                split_bits(lights.columns + i, words + i / 8);
+            end = emit_tiles<false>(out, tiles + x, columns, offset, lights, words);
+        }
+        offset += static_cast<std::uint32_t>(end - out);
+        out = end;
+    }
+    return out;
+}
+
+/// Bins the tile rows of `share`. Returns the number of entries. May write BinShare::slack elements past them.
+template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>
+std::uint64_t bin_blocks(const BinJob<Id>& job, Scratch& scratch, const BinShare<Id>& share) {
+    const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles);
+    ListRange* tiles = job.tiles + share.begin * std::size_t{tiles_x};
+    Id* out = share.out;
+    std::uint32_t offset = share.offset;
+    if (job.visible == 0) {
+        fill_empty(tiles, (share.end - share.begin) * std::size_t{tiles_x}, offset);
+        return 0;
+    }
+    SlabBoxes slab;
+    if constexpr (by_slab) slab = arrange_slab(job, scratch);
+    BandLists bands;
+    for (unsigned top = share.begin; top < share.end; top += 8) {
+        const BlockList* const lists =
+            list_lights<footprint, depth_test, by_slab, spots>(job, scratch, slab, bands, top, share.end);
+        const unsigned rows = min_of(share.end - top, 8u);
+        if (lists == nullptr) {
+            fill_empty(tiles, rows * std::size_t{tiles_x}, offset);
+            tiles += rows * std::size_t{tiles_x};
+            continue;
+        }
+        for (unsigned row = 0; row < rows; ++row, tiles += tiles_x) {
+            Id* const end = emit_row(out, tiles, tiles_x, offset, scratch, lists, row);
+            offset += static_cast<std::uint32_t>(end - out);
+            out = end;
+        }
+    }
+    return offset - share.offset;
+}
+
+/// Counts the entries of the grid without writing it.
+template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>
+std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scratch) {
+    const unsigned end = static_cast<unsigned>(job.camera->y.tiles);
+    SlabBoxes slab;
+    if constexpr (by_slab) slab = arrange_slab(job, scratch);
+    BandLists bands;
+    std::uint64_t entries = 0;
+    for (unsigned top = 0; top < end; top += 8) {
+        const BlockList* list = list_lights<footprint, depth_test, by_slab, spots>(job, scratch, slab, bands, top, end);
+        for (int x = 0; list != nullptr && x < job.camera->x.tiles; x += 8, ++list)
+            for (std::uint32_t i = 0; i < 8 * list->padded_count(); i += 8)
+                entries += static_cast<unsigned>(std::popcount(load_8_bytes(scratch.row_columns_of(*list) + i)));
+    }
+    return entries;
+}
+
+/// Writes bitmasks of the tiles in rows begin..end-1, without lists: `stride` words a tile, of which bit b of word w is light
+/// 32 w + b.
+template <Footprint footprint, DepthTest depth_test, class Id, bool spots>
+void write_bits(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end, std::uint32_t* bits,
+                std::size_t stride) {
+    const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles);
+    const std::size_t row_stride = tiles_x * stride;
+    fill_items(bits + begin * row_stride, (end - begin) * row_stride, 0);
+    BandLists bands;
+    for (unsigned top = begin; top < end; top += 8) {
+        const BlockList* list = list_lights<footprint, depth_test, false, spots>(job, scratch, {}, bands, top, end);
+        for (unsigned x = 0; list != nullptr && x < tiles_x; x += 8, ++list)
+            for (unsigned row = 0; row < min_of(end - top, 8u); ++row) {
+                const std::uint8_t* const columns = scratch.row_columns_of(*list) + std::size_t{row} * list->padded_count();
+                std::uint32_t* const first = bits + (top + row) * row_stride + x * stride;
+                for (std::uint32_t i = 0; i < list->count; ++i) {
+                    const std::uint32_t id = scratch.list_ids.data()[list->begin + i];
+                    for (unsigned rest = columns[i]; rest != 0; rest &= rest - 1)
+                        first[static_cast<unsigned>(std::countr_zero(rest)) * stride + id / 32] |= std::uint32_t{1} << id % 32;
+                }
+            }
+    }
 }
 
 }}}}  // namespace lightbin::detail

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Stage 3: footprints (+ Z bounds), of all lights in view or by slice -> the light grid.
+// The binning stage: footprints and Z bounds, of all lights in view or by slice -> the light grid.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/base/buffer.hpp>
 #include <lightbin/detail/base/maybe.hpp>
 #include <lightbin/detail/engine/block.hpp>
 #include <lightbin/detail/engine/cell_boxes.hpp>
 #include <lightbin/detail/engine/costs.hpp>
-#include <lightbin/detail/engine/scratch.hpp>
 #include <lightbin/detail/engine/shares.hpp>
 #include <lightbin/detail/project/footprint_arrays.hpp>
 #include <lightbin/detail/tiers/kernels.hpp>
@@ -28,89 +26,83 @@
 
 #include <lightbin/detail/base/warnings_off.inl>
 
-namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Light grids in memory of their own, kept from call to call: one of all lights in view or, `sliced`, one of each slice.
+/// Light grids in memory of their own, kept from call to call: one of all lights in view or, `sliced`, one for each slice.
 template <class Id, Footprint footprint, DepthTest depth_test, bool sliced> class GridLists {
-    static_assert(
-        !sliced || depth_test == DepthTest::none || depth_test == DepthTest::box,
-        "lightbin: with slices the depth test is none, as lights are in the slices that they meet, or box");
-    static constexpr bool worded = detail::with_words<footprint, depth_test>,
-                          with_boxes = detail::with_boxes<depth_test>,
-                          by_slab = sliced && with_boxes && footprint == Footprint::rectangle;
+    static_assert(!sliced || depth_test == DepthTest::none || depth_test == DepthTest::box,
+                  "lightbin: with slices the depth test is none, as lights are in the slices that they meet, or box");
+    static constexpr bool tested = has_tests<footprint, depth_test>;
 
 public:
-    /// Builds the grids with kernels of an instruction set: the tiles of the first slice row by row, then those of the next
-    /// one. Returns an Error if Z bounds are shorter than a grid, or 32-bit offsets can't reach the list's end; then there is
-    /// no grid.
+    /// Builds the grids with the kernels of an instruction set: the tiles of the first slice in row-major order, then those of the
+    /// next. Errors, after which there is no grid: Z bounds are shorter than a grid; 32 bits can't count the entries.
     ///
-    /// spots     the lights are spots
-    /// lit       Footprints or RankedFootprints, with spheres for a depth test; sliced: SlicedFootprints
-    /// parallel  Serial or Parallel
-    template <bool spots, class Lit, class Threads>
-    detail::Maybe<Error> build(Isa isa, const View& view, const Lit& lit, const ZBounds& bounds,
-                               detail::Buffer<detail::Scratch>& scratch,
-                               [[maybe_unused]] const Threads& parallel) {
+    /// spots      whether the lights are spots
+    /// footprints Footprints or RankedFootprints, with spheres for a depth test; sliced: SlicedFootprints
+    /// parallel   Serial or Parallel
+    template <bool spots, class AnyFootprints, class Threads>
+    Maybe<Error> build(Isa isa, const View& view, const AnyFootprints& footprints, const ZBounds& bounds,
+                       Buffer<Scratch>& scratch, [[maybe_unused]] const Threads& parallel) {
         tile_count_ = entries_ = 0;  // until there is a grid
-        Job all = {};
-        if (const auto error = prepare(view, bounds, all)) return error;
-        const std::size_t tiles = view.tile_count(), slices = static_cast<std::size_t>(lit.slices());
+        shared_ = false;
+        Job common = {};
+        if (const auto error = prepare(view, bounds, common)) return error;
+        const std::size_t tiles = view.tile_count(), slices = static_cast<std::size_t>(footprints.slices());
         const unsigned rows = static_cast<unsigned>(view.tiles_y());
         std::uint64_t lights = 0, area = 0;
         for (std::size_t slice = 0; slice < slices; ++slice) {
-            const detail::LitSlice part = lit.slice(slice);
+            const LitSlice part = footprints.slice(slice);
             lights += part.visible;
             area += part.area;
-            if (const auto error = check_places(view, part)) return error;
+            if (const auto error = check_list_size(view, part)) return error;
         }
         std::uint64_t capacity = area;
-        // Where the rectangles' area is out of reach, what is left of it may still be within: counted exactly.
-        if constexpr (worded)
-            if (area > most) {
+        // Where 32 bits can't count the rectangles' tiles, they may still count those that pass the tests.
+        if constexpr (tested)
+            if (area > max_entries) {
                 capacity = 0;
                 for (std::size_t slice = 0; slice < slices; ++slice)
-                    capacity += detail::scalar::count_entries<footprint, depth_test, by_slab, spots>(
-                        job_of(all, lit, slice), scratch.data()[0]);
+                    capacity += scalar::count_entries<footprint, depth_test, by_slab<spots>, spots>(
+                        job_of(common, footprints, slice), scratch.data()[0]);
             }
-        if (capacity > most) return Error{ErrorCode::too_many_entries, capacity, most};
+        if (capacity > max_entries) return Error{ErrorCode::too_many_entries, capacity, max_entries};
 
-        all.tiles = tiles_.reserve(std::uint64_t{tiles} * slices);
-        Id* const list = indices_.reserve(capacity + slack);
+        common.tiles = tiles_.reserve(std::uint64_t{tiles} * slices);
+        Id* const list = indices_.reserve(capacity + BinShare<Id>::slack);
         tile_count_ = tiles * slices;
-        const auto build_slices = [&](std::size_t begin, std::size_t end, Id* out, detail::Scratch& memory) {
-            std::uint32_t at = 0;
+        const auto build_slices = [&](std::size_t begin, std::size_t end, Id* out, Scratch& memory) {
+            std::uint32_t offset = 0;
             for (std::size_t slice = begin; slice < end; ++slice) {
-                Job job = job_of(all, lit, slice);
+                Job job = job_of(common, footprints, slice);
                 job.tiles += slice * tiles;
                 const auto kernel = kernel_of<spots>(isa, view, job);
-                at += static_cast<std::uint32_t>(kernel(job, memory, {0, rows, out + at, at}));
+                offset += static_cast<std::uint32_t>(kernel(job, memory, {0, rows, out + offset, offset}));
             }
-            return std::uint64_t{at};
+            return std::uint64_t{offset};
         };
-        shared_ = false;
         if constexpr (!std::is_same_v<Threads, Serial>) {
-            const std::size_t parts = detail::min_of<std::size_t>(parallel.workers(), sliced ? slices : rows);
-            const bool scatters = !worded && detail::scatter_is_faster(isa, tile_count_, lights, area);
-            const double count = static_cast<double>(lights), entries = static_cast<double>(area);
-            shared_ = parts > 1 && area <= most &&
-                      parallel.pays_off(scatters ? detail::scatter_ns(count, entries)
-                                                 : detail::supertile_ns(isa, worded, count, entries));
+            const std::size_t steps = sliced ? slices : rows, count = min_of<std::size_t>(parallel.workers(), steps);
+            shared_ = count > 1 && area <= max_entries &&
+                      parallel.pays_off(bin_ns<tested>(isa, tile_count_, lights, area));
             if (shared_) {
-                scratch.reserve(parts, parts);
-                const detail::Items<detail::Part> shares = {parts_.reserve(parts), parts};
-                if constexpr (sliced) {
-                    detail::share_steps(shares, slices, detail::empty_row_cost(tiles),
-                                        [&](std::size_t slice) { return lit.slice(slice).area; });
-                    entries_ = static_cast<std::size_t>(detail::build_apart(
-                        parallel, shares, all.tiles, tiles, spares_, list, [&](std::size_t i, Id* out) {
-                            return build_slices(shares[i].begin, shares[i].end, out, scratch.data()[i]);
-                        }));
-                } else {
-                    const Job job = job_of(all, lit, 0);
-                    const auto kernel = kernel_of<spots>(isa, view, job);
-                    entries_ = static_cast<std::size_t>(
-                        build_parts(isa, job, kernel, list, scratch, parallel, shares));
-                }
+                scratch.reserve(count, count);
+                const Items<Share> shares = {shares_.reserve(count), count};
+                const Job job = job_of(common, footprints, 0);
+                if constexpr (sliced)
+                    share_steps(shares, slices, empty_row_cost(tiles),
+                                [&](std::size_t slice) { return footprints.slice(slice).area; });
+                else
+                    share_rows(job, parallel, row_sums_, shares);
+                const auto kernel = kernel_of<spots>(isa, view, job);
+                entries_ = static_cast<std::size_t>(build_shares(
+                    parallel, shares, common.tiles, tiles / (sliced ? 1 : rows), share_lists_, list,
+                    [&](const Share& share, std::size_t i, Id* out) {
+                        if constexpr (sliced)
+                            return build_slices(share.begin, share.end, out, scratch.data()[i]);
+                        else
+                            return kernel(job, scratch.data()[i], {share.begin, share.end, out, 0});
+                    }));
                 return {};
             }
         }
@@ -118,137 +110,100 @@ public:
         return {};
     }
 
-    /// Writes bitmasks of the footprints, `each` words a tile, see bits.inl. Errors as build() but for offsets. There is no
-    /// grid then.
-    template <bool spots, class Lit>
-    detail::Maybe<Error> write_bits(Isa isa, const View& view, const Lit& lit, const ZBounds& bounds,
-                                    detail::Buffer<detail::Scratch>& scratch, const Parallel& parallel,
-                                    std::uint32_t* bits, std::size_t each) {
+    /// Writes a bitmask of lights for each tile, `stride` words each, see write_bits(). Errors as build() but for entries, which
+    /// are not counted. There is no grid then.
+    template <bool spots, class AnyFootprints>
+    Maybe<Error> write_bits(Isa isa, const View& view, const AnyFootprints& footprints, const ZBounds& bounds,
+                            Buffer<Scratch>& scratch, const Parallel& parallel, std::uint32_t* bits, std::size_t stride) {
         tile_count_ = entries_ = 0;
-        Job all = {};
-        if (const auto error = prepare(view, bounds, all)) return error;
-        const Job job = job_of(all, lit, 0);
-        if (const auto error = check_places(view, job)) return error;
-        const auto kernel = detail::bits_kernel<footprint, depth_test, Id, spots>(isa);
+        Job common = {};
+        if (const auto error = prepare(view, bounds, common)) return error;
+        const Job job = job_of(common, footprints, 0);
+        if (const auto error = check_list_size(view, job)) return error;
+        const auto kernel = bits_kernel<footprint, depth_test, Id, spots>(isa);
         const std::size_t rows = static_cast<std::size_t>(view.tiles_y()), bands = (rows + 7) / 8;
-        const bool share =
-            parallel.pays_off(detail::supertile_ns(isa, true, job.visible, static_cast<double>(job.area)));
-        const std::size_t parts =
-            share ? detail::max_of<std::size_t>(detail::min_of(parallel.workers(), bands), 1) : 1;
-        scratch.reserve(parts, parts);
-        parallel.run(parts, [&](std::size_t i) {
+        const bool share = parallel.pays_off(block_ns(isa, true, job.visible, static_cast<double>(job.area)));
+        const std::size_t count = share ? max_of<std::size_t>(min_of(parallel.workers(), bands), 1) : 1;
+        scratch.reserve(count, count);
+        parallel.run(count, [&](std::size_t i) {
             const auto row = [&](std::size_t part) {
-                return static_cast<unsigned>(detail::min_of(rows, part * bands / parts * 8));
+                return static_cast<unsigned>(min_of(rows, part * bands / count * 8));
             };
-            kernel(job, scratch.data()[i], row(i), row(i + 1), bits, each);
+            kernel(job, scratch.data()[i], row(i), row(i + 1), bits, stride);
         });
         return {};
     }
 
-    template <class Range = ListRange> std::span<const Range> tiles() const {
-        return {tiles_.data(), tile_count_};
-    }
+    template <class Range = ListRange> std::span<const Range> tiles() const { return {tiles_.data(), tile_count_}; }
     std::span<const Id> indices() const { return {indices_.data(), entries_}; }
 
     /// Whether the last grid was built on several threads.
     bool shared() const { return shared_; }
 
 private:
-    using Job = detail::BinJob<Id>;
-    static constexpr std::size_t slack = detail::BandJob<Id>::slack;
-    static constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
+    using Job = BinJob<Id>;
+    static constexpr std::uint64_t max_entries = (std::numeric_limits<std::uint32_t>::max)();
 
-    /// Makes what the jobs of all slices share, but for the table.
-    detail::Maybe<Error> prepare(const View& view, const ZBounds& bounds, Job& all) {
+    /// Whether spheres are tested against the boxes of a slice, see slab_tiles_met(). Twice as fast as the test of any boxes.
+    template <bool spots>
+    static constexpr bool by_slab = sliced && depth_test == DepthTest::box && footprint == Footprint::rectangle && !spots;
+
+    /// Sets what the jobs of all slices share, but for the table.
+    Maybe<Error> prepare(const View& view, const ZBounds& bounds, Job& common) {
         const std::size_t tiles = view.tile_count();
-        all.camera = &detail::camera_of(view);
+        common.camera = &camera_of(view);
         const std::span<const float> sides[] = {bounds.min, bounds.max, bounds.gap_min, bounds.gap_max};
         for (std::size_t side = 0; side < 4; ++side) {
             if (sides[side].empty()) continue;
-            if (sides[side].size() < tiles)
-                return Error{ErrorCode::z_bounds_too_small, tiles, sides[side].size()};
-            all.bounds[side] = sides[side].data();
+            if (sides[side].size() < tiles) return Error{ErrorCode::z_bounds_too_small, tiles, sides[side].size()};
+            common.bounds[side] = sides[side].data();
         }
-        if constexpr (with_boxes) find_edges(all);
+        if constexpr (with_boxes<depth_test>) find_edges(common);
         return {};
     }
 
-    /// Finds the edges of all tiles, for boxes.
-    void find_edges(Job& all) {
-        const detail::ImageAxis* axes[] = {&all.camera->x, &all.camera->y};
+    /// Finds the edges of all columns and rows of tiles, for boxes. Vectors are read beyond them: there are zeros.
+    void find_edges(Job& common) {
+        const ImageAxis* axes[] = {&common.camera->x, &common.camera->y};
         for (std::size_t i = 0; i < 2; ++i) {
-            const std::size_t capacity = static_cast<std::size_t>(axes[i]->tiles) + 8;  // vectors are read
+            const std::size_t count = static_cast<std::size_t>(axes[i]->tiles), capacity = count + SlabBoxes::padding;
             float *low = edges_[2 * i].reserve(capacity), *high = edges_[2 * i + 1].reserve(capacity);
             for (int tile = 0; tile < axes[i]->tiles; ++tile)
-                detail::tile_edges(*axes[i], tile, low[tile], high[tile]);
-            all.edges[2 * i] = low;
-            all.edges[2 * i + 1] = high;
+                tile_edges(*axes[i], tile, low[tile], high[tile]);
+            fill_items(low + count, SlabBoxes::padding, 0.0f);
+            fill_items(high + count, SlabBoxes::padding, 0.0f);
+            common.edges[2 * i] = low;
+            common.edges[2 * i + 1] = high;
         }
     }
 
-    template <class Lit> static Job job_of(const Job& all, const Lit& lit, std::size_t slice) {
-        Job job = all;
-        static_cast<detail::LitSlice&>(job) = lit.slice(slice);
+    template <class AnyFootprints> static Job job_of(const Job& common, const AnyFootprints& footprints, std::size_t slice) {
+        Job job = common;
+        static_cast<LitSlice&>(job) = footprints.slice(slice);
         return job;
     }
 
-    static detail::Maybe<Error> check_places(const View& view, const detail::LitSlice& lit) {
-        if (lit.area > detail::surely_listed_area)
-            if (const std::uint64_t places = detail::list_places(detail::camera_of(view), lit); places > most)
-                return Error{ErrorCode::too_many_list_places, places, most};
+    static Maybe<Error> check_list_size(const View& view, const LitSlice& lit) {
+        if (lit.area > surely_listed_area)
+            if (const std::uint64_t size = list_size_bound(camera_of(view), lit); size > max_entries)
+                return Error{ErrorCode::too_many_list_places, size, max_entries};
         return {};
     }
 
-    template <bool spots> static detail::BinKernel<Id> kernel_of(Isa isa, const View& view, const Job& job) {
-        return detail::bin_kernel<footprint, depth_test, Id, by_slab, spots>(isa, view, job.visible,
-                                                                             job.area);
+    template <bool spots> static BinKernel<Id> kernel_of(Isa isa, const View& view, const Job& job) {
+        return bin_kernel<footprint, depth_test, Id, by_slab<spots>, spots>(isa, view, job.visible, job.area);
     }
 
-    /// Builds parts of tile rows on the caller's threads. Returns the number of entries.
-    std::uint64_t build_parts(Isa isa, const Job& job, detail::BinKernel<Id> kernel, Id* list,
-                              detail::Buffer<detail::Scratch>& scratch, const Parallel& parallel,
-                              detail::Items<detail::Part> parts) {
-        detail::make_parts(job, parallel, row_sums_, parts);
-        if constexpr (worded) {
-            return detail::build_apart(
-                parallel, parts, job.tiles, static_cast<std::size_t>(job.camera->x.tiles), spares_, list,
-                [&](std::size_t i, Id* out) {
-                    return kernel(job, scratch.data()[i], {parts[i].begin, parts[i].end, out, 0});
-                });
-        } else {
-            spares_.reserve(parts.size(), parts.size());
-            // Rectangles: a part's place in the list is known. Its last entries go there by way of spare memory,
-            // as a kernel writes beyond its end, where the next part is at work.
-            parallel.run(parts.size(), [&](std::size_t i) {
-                const detail::Part& part = parts[i];
-                Id* out = list + part.before;
-                detail::BandJob<Id> rows = {part.begin, part.end, out,
-                                            static_cast<std::uint32_t>(part.before)};
-                // The last part has room for that, and scattering writes nothing beyond.
-                const bool beyond = i + 1 < parts.size() && kernel != detail::scatter_kernel<Id>(isa);
-                if (beyond) {
-                    rows.spare_row = part.spare_row;
-                    rows.spare = spares_.data()[i].reserve(part.spare_area + slack);
-                }
-                kernel(job, scratch.data()[i], rows);
-                if (beyond)
-                    detail::copy_items(rows.spare, part.spare_area, out + part.area - part.spare_area);
-            });
-            const detail::Part& last = parts[parts.size() - 1];
-            return last.before + last.area;
-        }
-    }
-
-    detail::Buffer<ListRange> tiles_;
-    detail::Buffer<Id> indices_;
-    detail::Buffer<float> edges_[4];
-    detail::Buffer<detail::Part> parts_;
-    detail::Buffer<detail::Buffer<Id>> spares_;  ///< one a part: what it can't put in its place at once
-    detail::Buffer<std::uint64_t> row_sums_;
+    Buffer<ListRange> tiles_;
+    Buffer<Id> indices_;
+    Buffer<float> edges_[4];
+    Buffer<Share> shares_;
+    Buffer<Buffer<Id>> share_lists_;
+    Buffer<std::uint64_t> row_sums_;
     std::size_t tile_count_ = 0, entries_ = 0;
     bool shared_ = false;
 };
 
-}}  // namespace lightbin
+}}}  // namespace lightbin::detail
 
 #include <lightbin/detail/base/warnings_on.inl>

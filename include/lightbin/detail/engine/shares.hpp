@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How binning is shared among threads: each part is some tile rows, or slices, and everything in them, so parts share nothing
-// but the lights they read.
+// How binning is shared among threads: each share is a range of tile rows, or of slices, and everything in it, so shares have
+// nothing in common but the lights that they read.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -15,90 +15,85 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Tile rows begin..end-1, or slices, and the tiles of all rectangles in them.
-struct Part {
+/// The tile rows, or slices, begin..end-1.
+struct Share {
     unsigned begin, end;
-    std::uint64_t before, area;  ///< of the parts before it, of its own
-    /// From this tile row on there are BandJob::slack tiles or few more; before it, the rest.
-    unsigned spare_row;
-    std::uint64_t spare_area;
+    std::uint64_t entries;  ///< how many there are at most: the tiles of all rectangles in it. Once it is built, how many there are
 };
 
-/// Writes parts of about equal work of `steps` tile rows or slices, no more parts than those. A step has area(step)
-/// tiles in rectangles, and takes as long as `each` more of them.
-template <class Area> void share_steps(Items<Part> parts, std::size_t steps, std::uint64_t each, Area area) {
-    const std::size_t count = parts.size();
-    std::uint64_t work = 0, before = 0, done = 0;
+/// Divides `steps` tile rows or slices into shares of about equal work, no more than there are steps. The work of a step is the
+/// tiles of its rectangles, area(step), and `overhead`.
+template <class Area> void share_steps(Items<Share> shares, std::size_t steps, std::uint64_t overhead, Area area) {
+    const std::size_t count = shares.size();
+    std::uint64_t work = 0, done = 0;
     for (std::size_t step = 0; step < steps; ++step)
-        work += area(step) + each;
+        work += area(step) + overhead;
     unsigned step = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        Part part = {step, step, before, 0, 0, 0};
+        Share share = {step, step, 0};
         const std::uint64_t goal = work / count * (i + 1);
-        const std::size_t last = steps - (count - 1 - i);  // leave a step for each later part
-        while (step < last && (step == part.begin || i + 1 == count || done < goal)) {
-            part.area += area(step);
-            done += area(step) + each;
+        const std::size_t last = steps - (count - 1 - i);  // leaves a step for each later share
+        while (step < last && (step == share.begin || i + 1 == count || done < goal)) {
+            share.entries += area(step);
+            done += area(step) + overhead;
             ++step;
         }
-        part.end = part.spare_row = step;
-        before += part.area;
-        parts[i] = part;
+        share.end = step;
+        shares[i] = share;
     }
 }
 
-/// The same of a grid's tile rows.
+/// Divides a grid's tile rows into shares. The tiles of rectangles in each row come from a difference array over the rows: each run
+/// of lights fills one of its own, so that threads can.
+///
+/// sums  memory for the difference arrays
 template <class Id>
-void make_parts(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums,
-                Items<Part> parts) {
-    // Each run of lights adds its widths to the steps between rows, in a column of its own.
+void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums, Items<Share> shares) {
     const std::size_t rows = static_cast<std::size_t>(job.camera->y.tiles), pitch = rows + 1;
-    std::uint64_t* row_area = sums.reserve(std::uint64_t{pitch} * job.runs.size());
+    std::uint64_t* const row_area = sums.reserve(std::uint64_t{pitch} * job.runs.size());
     parallel.run(job.runs.size(), [&](std::size_t run) {
-        std::uint64_t* steps = row_area + run * pitch;
+        std::uint64_t* const steps = row_area + run * pitch;
         fill_items(steps, pitch, 0);
         for (std::uint32_t i = job.runs[run].begin; i < job.runs[run].end; ++i) {
             const std::uint64_t width = job.lights.x1[i] - job.lights.x0[i] + 1u;
             steps[job.lights.y0[i]] += width;
-            steps[job.lights.y1[i] + 1u] -= width;  // sums wrap, and come out right
+            steps[job.lights.y1[i] + 1u] -= width;  // wraps below 0; the sums below do not
         }
     });
-    std::uint64_t step_sum = 0;
+    std::uint64_t area = 0;
     for (std::size_t row = 0; row < rows; ++row) {
         for (std::size_t run = 0; run < job.runs.size(); ++run)
-            step_sum += row_area[run * pitch + row];
-        row_area[row] = step_sum;
+            area += row_area[run * pitch + row];
+        row_area[row] = area;
     }
-    share_steps(parts, rows, empty_row_cost(static_cast<std::uint64_t>(job.camera->x.tiles)),
+    share_steps(shares, rows, empty_row_cost(static_cast<std::uint64_t>(job.camera->x.tiles)),
                 [&](std::size_t row) { return row_area[row]; });
-    for (Part& part : parts)
-        while (part.spare_row > part.begin && part.spare_area < BandJob<Id>::slack)
-            part.spare_area += row_area[--part.spare_row];
 }
 
-/// Has build(part, out) make a list of its own of each part, the first one in `list`, and puts the others in their places
-/// after it. A step's ranges are `width`. Returns the number of all entries.
+/// Has build(share, out) make the index list of each share, numbers counting from 0: the first one's in `list`, the others' in
+/// memory of their own, from which they are copied to their places behind it. Returns the number of all entries.
+///
+/// ranges  the grid's ranges, `width` for each step
 template <class Id, class Build>
-std::uint64_t build_apart(const Parallel& parallel, Items<Part> parts, ListRange* ranges, std::size_t width,
-                          Buffer<Buffer<Id>>& spares, Id* list, Build build) {
-    spares.reserve(parts.size(), parts.size());
-    parallel.run(parts.size(), [&](std::size_t i) {
-        Id* const out = i == 0 ? list : spares.data()[i].reserve(parts[i].area + BandJob<Id>::slack);
-        parts[i].area = build(i, out);
+std::uint64_t build_shares(const Parallel& parallel, Items<Share> shares, ListRange* ranges, std::size_t width,
+                           Buffer<Buffer<Id>>& memory, Id* list, Build build) {
+    memory.reserve(shares.size(), shares.size());
+    parallel.run(shares.size(), [&](std::size_t i) {
+        Id* const out = i == 0 ? list : memory.data()[i].reserve(shares[i].entries + BinShare<Id>::slack);
+        shares[i].entries = build(shares[i], i, out);
+    });
+    parallel.run(shares.size() - 1, [&](std::size_t previous) {
+        const Share& share = shares[previous + 1];
+        std::uint64_t before = 0;
+        for (std::size_t i = 0; i <= previous; ++i)
+            before += shares[i].entries;
+        for (ListRange *range = ranges + width * share.begin, *end = ranges + width * share.end; range < end; ++range)
+            range->offset += static_cast<std::uint32_t>(before);
+        copy_items(memory.data()[previous + 1].data(), static_cast<std::size_t>(share.entries), list + before);
     });
     std::uint64_t entries = 0;
-    for (Part& part : parts) {
-        part.before = entries;
-        entries += part.area;
-    }
-    parallel.run(parts.size() - 1, [&](std::size_t previous) {
-        const Part& part = parts[previous + 1];
-        for (ListRange *range = ranges + width * part.begin, *end = ranges + width * part.end; range < end;
-             ++range)
-            range->offset += static_cast<std::uint32_t>(part.before);
-        copy_items(spares.data()[previous + 1].data(), static_cast<std::size_t>(part.area),
-                   list + part.before);
-    });
+    for (const Share& share : shares)
+        entries += share.entries;
     return entries;
 }
 

@@ -119,25 +119,22 @@ struct LitSlice {
     float slab[2] = {-infinity, infinity};  ///< the slice's depths: they take the place of absent min and max
 };
 
-/// What binning works on and writes.
+/// What the binning kernels read, and the table that they write.
 template <class Id> struct BinJob : LitSlice {
     const Camera* camera;
     const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one
-    const float* edges[4];  ///< of the tiles, for boxes: low x, high x, low y, high y; see cell_boxes.hpp
-    ListRange* tiles;       ///< the table to write
+    const float* edges[4];   ///< of the tiles, for boxes: low x, high x, low y, high y; see cell_boxes.hpp
+    ListRange* tiles;        ///< of the whole grid
 };
 
-/// The part of it that one call of a kernel does: the tile rows begin..end-1. Bands of 8 are counted from begin.
-template <class Id> struct BandJob {
-    /// Elements that a kernel may write past the end of its index list: full vectors are stored.
+/// The share of one call of a binning kernel: the tile rows begin..end-1, whose bands of 8 rows count from `begin`.
+template <class Id> struct BinShare {
+    /// Kernels store whole vectors, and so may write up to this many elements past the end of their index list.
     static constexpr std::size_t slack = 64;
 
     unsigned begin, end;
-    Id* out;           ///< where their index list begins
-    std::uint32_t at;  ///< and at what offset in the whole one
-    /// From this tile row on, write to `spare` instead: another call owns what follows `out`.
-    unsigned spare_row = ~0u;
-    Id* spare = nullptr;
+    Id* out;               ///< where their index list begins in memory
+    std::uint32_t offset;  ///< and in the whole grid's index list
 };
 
 }}}  // namespace lightbin::detail

@@ -35,56 +35,9 @@ inline constexpr std::uint32_t lanes = 8, double_lanes = 4;
 #define LIGHTBIN_OP(name) _mm256_##name##_pd
 #include <lightbin/detail/tiers/x86_vector.inl>
 
-/// Of four masks the bits, a byte each.
-inline std::uint32_t movemask_of_4(__m256 a, __m256 b, __m256 c, __m256 d) {
-    const __m256i ab = _mm256_packs_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b)),
-                  cd = _mm256_packs_epi32(_mm256_castps_si256(c), _mm256_castps_si256(d));
-    return static_cast<std::uint32_t>(_mm256_movemask_epi8(
-        _mm256_permutevar8x32_epi32(_mm256_packs_epi16(ab, cd), _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7))));
-}
-
-/// As the general bits_of_8_less, with fewer instructions.
-inline std::uint64_t movemask_of_8_less(Floats a, const float* eight) {
-    __m256 lesser[8];
-    for (unsigned i = 0; i < 8; ++i)
-        lesser[i] = less(a, _mm256_loadu_ps(eight + 8 * i));
-    return movemask_of_4(lesser[0], lesser[1], lesser[2], lesser[3]) |
-           std::uint64_t{movemask_of_4(lesser[4], lesser[5], lesser[6], lesser[7])} << 32;
-}
-
-/// Counts of a column's tiles, and tiles: for scatter.inl.
-struct Rows {
-    __m256i v;
-};
-using Tiles = __m256i;
-inline Rows operator+(Rows a, Rows b) {
-    return {_mm256_add_epi32(a.v, b.v)};
-}
-inline Rows operator-(Rows a, Rows b) {
-    return {_mm256_sub_epi32(a.v, b.v)};
-}
-inline Rows all_rows(std::uint32_t count) {
-    return {_mm256_set1_epi32(static_cast<int>(count))};
-}
-inline Rows last_row(Rows rows) {
-    return {_mm256_permutevar8x32_epi32(rows.v, _mm256_set1_epi32(7))};
-}
-inline Tiles low_pairs(Rows ends, Rows counts) {
-    return _mm256_unpacklo_epi32(ends.v, counts.v);
-}
-inline Tiles high_pairs(Rows ends, Rows counts) {
-    return _mm256_unpackhi_epi32(ends.v, counts.v);
-}
-inline void transpose(Tiles* columns) {
-    const Tiles even_low = _mm256_unpacklo_epi64(columns[0], columns[1]),
-                odd_low = _mm256_unpackhi_epi64(columns[0], columns[1]),
-                even_high = _mm256_unpacklo_epi64(columns[2], columns[3]),
-                odd_high = _mm256_unpackhi_epi64(columns[2], columns[3]);
-    columns[0] = _mm256_permute2x128_si256(even_low, even_high, 0x20);
-    columns[1] = _mm256_permute2x128_si256(odd_low, odd_high, 0x20);
-    columns[2] = _mm256_permute2x128_si256(even_low, even_high, 0x31);
-    columns[3] = _mm256_permute2x128_si256(odd_low, odd_high, 0x31);
-}
+#undef LIGHTBIN_LESS
+#undef LIGHTBIN_LESS_EQUAL
+#undef LIGHTBIN_SELECT
 
 /// Half 0 or 1 of the lanes.
 inline Doubles widened(Floats a, unsigned half) {
@@ -139,17 +92,6 @@ inline void store_tiles(std::uint16_t* tiles, Doubles values) {
     _mm_storel_epi64(reinterpret_cast<__m128i*>(tiles), _mm_packs_epi32(whole, whole));
 }
 
-/// For each byte, the places of its set bits in ascending order, a byte each: the first, then those of the rest.
-struct SetBits {
-    std::uint64_t of[256];
-};
-inline constexpr SetBits set_bits = [] {
-    SetBits table = {};
-    for (unsigned byte = 1; byte < 256; ++byte)
-        table.of[byte] = table.of[byte & (byte - 1)] << 8 | static_cast<unsigned>(std::countr_zero(byte));
-    return table;
-}();
-
 /// As the general append_visible, with shuffles by the table.
 inline void append_visible(const FootprintArrays& out, ProjectCounts& counts,
                                            std::uint32_t first_id, unsigned visible, const ChunkRects& rects,
@@ -190,7 +132,6 @@ inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
     _mm_storeu_si128(reinterpret_cast<__m128i*>(spans), pairs);
 }
 
-/// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     __m256i low = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes));
     __m256i high = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes + 32));
@@ -202,51 +143,36 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     }
 }
 
-/// Writes those of 8 ids whose bit is set, in order; then up to 8 elements that mean nothing. Returns how
-/// many.
-template <class Id> inline std::uint32_t append(Id* out, __m256i ids, unsigned mask) {
-    const std::uint64_t places = set_bits.of[mask];
+/// Appends those of eight ids whose bit is set, and up to 8 elements without meaning. Returns the end.
+template <class Id> Id* append_8(Id* out, const std::uint32_t* ids, unsigned mask) {
     const __m256i chosen = _mm256_permutevar8x32_epi32(
-        ids, _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(places))));
+        _mm256_loadu_si256(reinterpret_cast<const __m256i*>(ids)),
+        _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_bits.of + mask))));
     if constexpr (sizeof(Id) == 4)
         _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), chosen);
     else
-        _mm_storeu_si128(
-            reinterpret_cast<__m128i*>(out),
-            _mm_packus_epi32(_mm256_castsi256_si128(chosen), _mm256_extracti128_si256(chosen, 1)));
-    return static_cast<std::uint32_t>(std::popcount(mask));
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(out),
+                         _mm_packus_epi32(_mm256_castsi256_si128(chosen), _mm256_extracti128_si256(chosen, 1)));
+    return out + std::popcount(mask);
 }
-template <class Id>
-inline std::uint32_t append(Id* out, const std::uint32_t* ids, unsigned mask) {
-    return append(out, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(ids)), mask);
+template <class Id> Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
+    return append_8(append_8(out, ids, mask & 0xff), ids + 8, mask >> 8);
 }
 
-/// The same of 8 lights' ids and columns.
-inline std::uint32_t append_lights(std::uint32_t* to_ids, std::uint8_t* to_columns,
-                                                   const std::uint32_t* ids, const std::uint8_t* columns,
-                                                   unsigned mask) {
-    const __m128i places = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_bits.of + mask)),
-                  eight = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(columns));
-    _mm_storel_epi64(reinterpret_cast<__m128i*>(to_columns), _mm_shuffle_epi8(eight, places));
-    return append(to_ids, ids, mask);
-}
-
-using portable::Packed;
-using portable::packs_ids;
-
-// Vectors of bytes.
-
+/// A vector of 32 bytes, and a mask of a bit each.
 struct Bytes {
     __m256i v;
 };
 using ByteMask = std::uint32_t;
-using ListId = std::uint32_t;
 inline constexpr std::uint32_t byte_lanes = 32;
 
 inline Bytes load_bytes(const std::uint8_t* from) {
     return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from))};
 }
-inline Bytes all_bytes(unsigned each) {
+inline void store_bytes(std::uint8_t* to, Bytes bytes) {
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), bytes.v);
+}
+inline Bytes broadcast_byte(unsigned each) {
     return {_mm256_set1_epi8(static_cast<char>(each))};
 }
 inline Bytes operator&(Bytes a, Bytes b) {
@@ -258,61 +184,40 @@ inline Bytes minimum(Bytes a, Bytes b) {
 inline Bytes subtract(Bytes a, Bytes b) {
     return {_mm256_subs_epu8(a.v, b.v)};
 }
-inline Bytes shuffle(const std::uint8_t (&table)[16], Bytes places) {
+inline Bytes shuffle(const std::uint8_t (&table)[16], Bytes indices) {
     const __m128i once = _mm_loadu_si128(reinterpret_cast<const __m128i*>(table));
-    return {_mm256_shuffle_epi8(_mm256_broadcastsi128_si256(once), places.v)};
+    return {_mm256_shuffle_epi8(_mm256_broadcastsi128_si256(once), indices.v)};
+}
+inline Bytes keep_where(Bytes bytes, Bytes condition) {
+    return {_mm256_andnot_si256(_mm256_cmpeq_epi8(condition.v, _mm256_setzero_si256()), bytes.v)};
 }
 inline ByteMask not_zero(Bytes bytes) {
     return ~static_cast<ByteMask>(_mm256_movemask_epi8(_mm256_cmpeq_epi8(bytes.v, _mm256_setzero_si256())));
 }
 inline Bytes coordinates(const std::uint16_t* from, unsigned more, unsigned begin) {
-    const __m256i add = _mm256_set1_epi16(static_cast<short>(more)),
-                  start = _mm256_set1_epi16(static_cast<short>(begin)), most = _mm256_set1_epi16(255);
+    const __m256i add = _mm256_set1_epi16(static_cast<short>(more)), start = _mm256_set1_epi16(static_cast<short>(begin)),
+                  max = _mm256_set1_epi16(255);  // packing takes words as signed, and there are some from 0x8000 on
     const __m256i* const halves = reinterpret_cast<const __m256i*>(from);
     const __m256i low = _mm256_subs_epu16(_mm256_add_epi16(_mm256_loadu_si256(halves), add), start),
                   high = _mm256_subs_epu16(_mm256_add_epi16(_mm256_loadu_si256(halves + 1), add), start);
-    // Packing takes words as signed, and the end of the last of 32768 rows is 0x8000.
-    return {_mm256_permute4x64_epi64(
-        _mm256_packus_epi16(_mm256_min_epu16(low, most), _mm256_min_epu16(high, most)), 0xd8)};
+    return {_mm256_permute4x64_epi64(_mm256_packus_epi16(_mm256_min_epu16(low, max), _mm256_min_epu16(high, max)), 0xd8)};
 }
-
-inline void append_chosen(ByteMask chosen, Bytes from, std::uint8_t* to) {
+inline void compress_store(ByteMask chosen, Bytes from, std::uint8_t* to) {
     const __m128i halves[] = {_mm256_castsi256_si128(from.v), _mm256_extracti128_si256(from.v, 1)};
     for (unsigned i = 0; i < 4; ++i, chosen >>= 8) {
-        __m128i places = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_bits.of + (chosen & 0xff)));
-        if (i % 2 == 1) places = _mm_add_epi8(places, _mm_set1_epi8(8));
-        _mm_storel_epi64(reinterpret_cast<__m128i*>(to), _mm_shuffle_epi8(halves[i / 2], places));
+        __m128i indices = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_bits.of + (chosen & 0xff)));
+        if (i % 2 == 1) indices = _mm_add_epi8(indices, _mm_set1_epi8(8));
+        _mm_storel_epi64(reinterpret_cast<__m128i*>(to), _mm_shuffle_epi8(halves[i / 2], indices));
         to += std::popcount(chosen & 0xff);
     }
 }
-struct ByteIds {
-    __m256i eights[4];
-};
-inline ByteIds load_ids(const std::uint32_t* from) {
-    ByteIds ids;
-    for (unsigned i = 0; i < 4; ++i)
-        ids.eights[i] = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from + 8 * i));
-    return ids;
+inline void compress_store(ByteMask chosen, const std::uint32_t* from, std::uint32_t* to) {
+    append_16(append_16(to, from, chosen & 0xffff), from + 16, chosen >> 16);
 }
-inline ByteIds count_ids(std::uint32_t first) {
-    ByteIds ids;
-    for (unsigned i = 0; i < 4; ++i)
-        ids.eights[i] = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first + 8 * i)),
-                                         _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-    return ids;
-}
-inline void append_chosen(ByteMask chosen, const ByteIds& from, std::uint32_t* to) {
-    for (unsigned i = 0; i < 4; ++i, chosen >>= 8)
-        to += append(to, from.eights[i], chosen & 0xff);
-}
-
-#include <lightbin/detail/tiers/transpose_x86.inl>
 
 }}}}  // namespace lightbin::detail
 
 #define LIGHTBIN_TIER avx2
-#define LIGHTBIN_TIER_HAS_ROWS
-#define LIGHTBIN_TIER_HAS_BYTES
 #include <lightbin/detail/tiers/kernels.inl>
 LIGHTBIN_TARGET_END
 

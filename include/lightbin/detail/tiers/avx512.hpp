@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The AVX-512 tier: vectors of 16 lights, and a binning kernel of its own built on compress instructions.
+// The AVX-512 tier: sixteen lights at a time. With VBMI2's compress instructions: Ice Lake, Zen 4 and later.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/tiers/tier.hpp>
 
 #if defined(LIGHTBIN_X86)
-
-#include <lightbin/detail/tiers/avx2.hpp>
 
 #include <immintrin.h>
 
@@ -20,7 +18,7 @@
 
 #include <lightbin/detail/base/warnings_off.inl>
 
-LIGHTBIN_TARGET_BEGIN("avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2,avx512bitalg,avx512vpopcntdq,bmi,bmi2,popcnt")
+LIGHTBIN_TARGET_BEGIN("avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2,bmi,bmi2,popcnt")
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace avx512 {
 
@@ -52,6 +50,10 @@ template <int how> inline __mmask8 compared(__m512d a, __m512d b) {
 #define LIGHTBIN_OP(name) _mm512_##name##_pd
 #include <lightbin/detail/tiers/x86_vector.inl>
 
+#undef LIGHTBIN_LESS
+#undef LIGHTBIN_LESS_EQUAL
+#undef LIGHTBIN_SELECT
+
 inline unsigned movemask(unsigned mask) {
     return mask;
 }
@@ -76,21 +78,17 @@ inline Floats swap_quarters(Floats a) {
     return _mm512_permutexvar_ps(_mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15), a);
 }
 
-/// From 4 spheres each to coordinates.
-inline void separate(Floats& x, Floats& y, Floats& z, Floats& radius) {
-    transpose(x, y, z, radius);
-    x = swap_quarters(x);
-    y = swap_quarters(y);
-    z = swap_quarters(z);
-    radius = swap_quarters(radius);
-}
 inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z,
                                          Floats& radius) {
     x = _mm512_loadu_ps(&spheres[0].x);
     y = _mm512_loadu_ps(&spheres[4].x);
     z = _mm512_loadu_ps(&spheres[8].x);
     radius = _mm512_loadu_ps(&spheres[12].x);
-    separate(x, y, z, radius);
+    transpose(x, y, z, radius);
+    x = swap_quarters(x);
+    y = swap_quarters(y);
+    z = swap_quarters(z);
+    radius = swap_quarters(radius);
 }
 inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
     Floats a = swap_quarters(x), b = swap_quarters(y), c = swap_quarters(z), d = swap_quarters(radius);
@@ -147,7 +145,6 @@ inline void append_visible(const FootprintArrays& out, ProjectCounts& counts,
     counts.area += static_cast<std::uint64_t>(_mm512_reduce_add_epi64(sums));
 }
 
-/// For each of 8 bits, which of 64 bytes have it: words[bit], one bit a byte.
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     const __m512i all_bytes = _mm512_loadu_si512(bytes);
     for (unsigned bit = 0; bit < 8; ++bit)
@@ -161,24 +158,31 @@ inline __m512i fresh_zeros() {
     LIGHTBIN_FORGET(zeros);  // or the compiler picks that form
     return zeros;
 }
-/// Those of the chosen elements, then zeros.
-inline __m512i compressed_bytes(__mmask64 chosen, __m512i from) {
-    return _mm512_mask_compress_epi8(fresh_zeros(), chosen, from);
+
+/// Appends those of sixteen ids whose bit is set, and up to 16 elements without meaning. Returns the end.
+template <class Id> Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
+    const __m512i chosen = _mm512_mask_compress_epi32(fresh_zeros(), static_cast<__mmask16>(mask), _mm512_loadu_si512(ids));
+    if constexpr (sizeof(Id) == 4)
+        _mm512_storeu_si512(out, chosen);
+    else
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm512_cvtepi32_epi16(chosen));
+    return out + std::popcount(mask);
 }
 
-// Vectors of bytes.
-
+/// A vector of 64 bytes, and a mask of a bit each.
 struct Bytes {
     __m512i v;
 };
 using ByteMask = std::uint64_t;
-using ListId = std::uint16_t;
 inline constexpr std::uint32_t byte_lanes = 64;
 
 inline Bytes load_bytes(const std::uint8_t* from) {
     return {_mm512_loadu_si512(from)};
 }
-inline Bytes all_bytes(unsigned each) {
+inline void store_bytes(std::uint8_t* to, Bytes bytes) {
+    _mm512_storeu_si512(to, bytes.v);
+}
+inline Bytes broadcast_byte(unsigned each) {
     return {_mm512_set1_epi8(static_cast<char>(each))};
 }
 inline Bytes operator&(Bytes a, Bytes b) {
@@ -190,93 +194,33 @@ inline Bytes minimum(Bytes a, Bytes b) {
 inline Bytes subtract(Bytes a, Bytes b) {
     return {_mm512_subs_epu8(a.v, b.v)};
 }
-inline Bytes shuffle(const std::uint8_t (&table)[16], Bytes places) {
+inline Bytes shuffle(const std::uint8_t (&table)[16], Bytes indices) {
     const __m128i once = _mm_loadu_si128(reinterpret_cast<const __m128i*>(table));
-    return {_mm512_shuffle_epi8(_mm512_broadcast_i32x4(once), places.v)};
+    return {_mm512_shuffle_epi8(_mm512_broadcast_i32x4(once), indices.v)};
+}
+inline Bytes keep_where(Bytes bytes, Bytes condition) {
+    return {_mm512_maskz_mov_epi8(_mm512_test_epi8_mask(condition.v, condition.v), bytes.v)};
 }
 inline ByteMask not_zero(Bytes bytes) {
     return _mm512_test_epi8_mask(bytes.v, bytes.v);
 }
 inline Bytes coordinates(const std::uint16_t* from, unsigned more, unsigned begin) {
-    const __m512i add = _mm512_set1_epi16(static_cast<short>(more)),
-                  start = _mm512_set1_epi16(static_cast<short>(begin));
+    const __m512i add = _mm512_set1_epi16(static_cast<short>(more)), start = _mm512_set1_epi16(static_cast<short>(begin));
     const __m512i low = _mm512_subs_epu16(_mm512_add_epi16(_mm512_loadu_si512(from), add), start),
                   high = _mm512_subs_epu16(_mm512_add_epi16(_mm512_loadu_si512(from + 32), add), start);
-    return {_mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtusepi16_epi8(low)),
-                               _mm512_cvtusepi16_epi8(high), 1)};
+    return {_mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtusepi16_epi8(low)), _mm512_cvtusepi16_epi8(high), 1)};
 }
-
-inline void append_chosen(ByteMask chosen, Bytes from, std::uint8_t* to) {
-    _mm512_storeu_si512(to, compressed_bytes(chosen, from.v));
+inline void compress_store(ByteMask chosen, Bytes from, std::uint8_t* to) {
+    _mm512_storeu_si512(to, _mm512_mask_compress_epi8(fresh_zeros(), chosen, from.v));
 }
-/// Of 64 lights 16 bits each, in two vectors.
-struct ByteIds {
-    __m512i low, high;
-};
-inline ByteIds load_ids(const std::uint16_t* from) {
-    return {_mm512_loadu_si512(from), _mm512_loadu_si512(from + 32)};
+inline void compress_store(ByteMask chosen, const std::uint32_t* from, std::uint32_t* to) {
+    for (unsigned i = 0; i < 64; i += 16)
+        to = append_16(to, from + i, static_cast<unsigned>(chosen >> i & 0xffff));
 }
-inline ByteIds load_ids(const std::uint32_t* from) {
-    __m256i quarters[4];
-    for (unsigned i = 0; i < 4; ++i)
-        quarters[i] = _mm512_cvtepi32_epi16(_mm512_loadu_si512(from + 16 * i));
-    return {_mm512_inserti64x4(_mm512_castsi256_si512(quarters[0]), quarters[1], 1),
-            _mm512_inserti64x4(_mm512_castsi256_si512(quarters[2]), quarters[3], 1)};
-}
-inline ByteIds count_ids(std::uint32_t first) {
-    static constexpr auto lane = [] {
-        std::array<std::uint16_t, 64> places = {};
-        for (std::uint16_t i = 0; i < 64; ++i)
-            places[i] = i;
-        return places;
-    }();
-    const __m512i begin = _mm512_set1_epi16(static_cast<short>(first));
-    const ByteIds places = load_ids(lane.data());
-    return {_mm512_add_epi16(places.low, begin), _mm512_add_epi16(places.high, begin)};
-}
-inline void append_chosen(ByteMask chosen, const ByteIds& from, std::uint16_t* to) {
-    const __mmask32 low = static_cast<__mmask32>(chosen), high = static_cast<__mmask32>(chosen >> 32);
-    _mm512_storeu_si512(to, _mm512_mask_compress_epi16(fresh_zeros(), low, from.low));
-    _mm512_storeu_si512(to + std::popcount(low), _mm512_mask_compress_epi16(fresh_zeros(), high, from.high));
-}
-
-/// Of the spheres at 4 places, four floats each.
-template <class Place>
-inline Floats load_4_spheres(const Sphere* spheres, const Place* places) {
-    __m512 four = _mm512_castps128_ps512(_mm_loadu_ps(&spheres[places[0]].x));
-    four = _mm512_insertf32x4(four, _mm_loadu_ps(&spheres[places[1]].x), 1);
-    four = _mm512_insertf32x4(four, _mm_loadu_ps(&spheres[places[2]].x), 2);
-    return _mm512_insertf32x4(four, _mm_loadu_ps(&spheres[places[3]].x), 3);
-}
-
-/// As load_spheres(), of the spheres at `count` places, or as many as a vector has; if those are fewer, others are
-/// the first of all.
-template <class Place>
-inline void load_listed_spheres(const Sphere* spheres, const Place* places,
-                                                std::uint32_t count, Floats& x, Floats& y, Floats& z,
-                                                Floats& radius) {
-    Place listed[lanes];
-    const __mmask16 first = static_cast<__mmask16>(0xffff >> (lanes - min_of(count, lanes)));
-    if constexpr (sizeof(Place) == 2)
-        _mm256_storeu_si256(reinterpret_cast<__m256i*>(listed), _mm256_maskz_loadu_epi16(first, places));
-    else
-        _mm512_storeu_si512(listed, _mm512_maskz_loadu_epi32(first, places));
-    x = load_4_spheres(spheres, listed);
-    y = load_4_spheres(spheres, listed + 4);
-    z = load_4_spheres(spheres, listed + 8);
-    radius = load_4_spheres(spheres, listed + 12);
-    separate(x, y, z, radius);
-}
-
-using avx2::arrange_cells;
-using avx2::arrange_slab;
-using avx2::fill_empty;
 
 }}}}  // namespace lightbin::detail
 
 #define LIGHTBIN_TIER avx512
-#define LIGHTBIN_TIER_HAS_BYTES
-#define LIGHTBIN_TIER_COMPRESSES
 #include <lightbin/detail/tiers/kernels.inl>
 LIGHTBIN_TARGET_END
 

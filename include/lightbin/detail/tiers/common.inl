@@ -46,18 +46,20 @@ inline Reals select_unpredicted(Mask mask, Reals a, Reals b) {
     return select(mask, a, b);
 }
 
-/// less() of a vector and each of 8, a byte each of bits. The AVX2 tier has its own.
-template <class Vector> inline std::uint64_t movemask_of_8_less(Vector a, const float* eight) {
-    std::uint64_t all_bits = 0;
-    for (unsigned i = 0; i < 8; ++i)
-        all_bits |= std::uint64_t{movemask(less(a, load_floats(eight + i * lanes)))} << 8 * i;
-    return all_bits;
+/// Loads the spheres at the first `count` of `indices`, or as many as a vector has; if those are fewer, the last lanes repeat the
+/// last sphere.
+inline void load_listed_spheres(const Sphere* spheres, const std::uint32_t* indices, std::uint32_t count, Floats& x,
+                                Floats& y, Floats& z, Floats& radius) {
+    Sphere some[lanes];
+    for (std::uint32_t i = 0; i < lanes; ++i)
+        some[i] = load_sphere(spheres + indices[min_of(i, count - 1)]);
+    load_spheres(some, x, y, z, radius);
 }
 
-#if !defined(LIGHTBIN_TIER_HAS_BYTES)
 /// Appends those of a vector of a chunk's lights, from `first` on, whose bit in `visible` is set. Every lane is written,
 /// and the place moves on for those in view: no branch to predict.
-inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, std::uint32_t first_id,
+template <class Counts>
+void append_visible(const FootprintArrays& out, Counts& counts, std::uint32_t first_id,
                            unsigned visible, const ChunkRects& rects, std::uint32_t first) {
     for (std::uint32_t i = first; i < first + lanes; ++i, visible >>= 1) {
         const std::uint32_t at = counts.visible, in_view = visible & 1;
@@ -71,6 +73,5 @@ inline void append_visible(const FootprintArrays& out, ProjectCounts& counts, st
             in_view * ((rects.x1[i] - rects.x0[i] + 1u) * std::uint64_t{rects.y1[i] - rects.y0[i] + 1u});
     }
 }
-#endif
 
 }}}}  // namespace lightbin::detail

@@ -4,13 +4,12 @@
 
 #include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/engine/costs.hpp>
-#include <lightbin/detail/engine/scratch.hpp>
+#include <lightbin/detail/engine/scatter.hpp>
 #include <lightbin/detail/project/footprint_arrays.hpp>
 #include <lightbin/detail/tiers/avx2.hpp>
 #include <lightbin/detail/tiers/avx512.hpp>
-#include <lightbin/detail/tiers/neon.hpp>
 #include <lightbin/detail/tiers/scalar.hpp>
-#include <lightbin/detail/tiers/sse2.hpp>
+#include <lightbin/detail/tiers/simd128.hpp>
 #include <lightbin/isa.hpp>
 
 #include <cstddef>
@@ -24,10 +23,8 @@ template <class Pick> auto with_tier(Isa isa, Pick pick) {
     if (isa == Isa::avx512) return pick(avx512::Tier{});
     if (isa == Isa::avx2) return pick(avx2::Tier{});
 #endif
-#if defined(LIGHTBIN_SSE2)
-    if (isa == Isa::sse2) return pick(sse2::Tier{});
-#elif defined(LIGHTBIN_NEON)
-    if (isa == Isa::neon) return pick(neon::Tier{});
+#if defined(LIGHTBIN_SIMD128)
+    if (isa == Isa::simd128) return pick(simd128::Tier{});
 #endif
     static_cast<void>(isa);
     return pick(scalar::Tier{});
@@ -44,16 +41,11 @@ template <bool spots> SlicePlacesKernel slice_places_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.template slice_places_kernel<spots>(); });
 }
 
-/// For rows of `columns` samples or more: of this tier or the widest below it whose vectors are no wider.
+/// For rows of `columns` samples or more: the kernel of this tier or, where its vectors are wider than that, of a lower one.
 template <bool by_split> DepthKernel depth_kernel(Isa isa, std::size_t columns) {
     if (with_tier(isa, [=](auto tier) { return columns >= tier.vector; }))
         return with_tier(isa, [](auto tier) { return tier.template depth_kernel<by_split>(); });
-    const bool wide = isa == Isa::avx512 || isa == Isa::avx2;
-    return depth_kernel<by_split>(wide ? static_cast<Isa>(static_cast<int>(isa) - 1) : Isa::scalar, columns);
-}
-
-template <class Id> BinKernel<Id> scatter_kernel(Isa isa) {
-    return with_tier(isa, [](auto tier) { return tier.template scatter_kernel<Id>(); });
+    return depth_kernel<by_split>(static_cast<Isa>(static_cast<int>(isa) - 1), columns);
 }
 
 template <Footprint footprint, DepthTest depth_test, class Id, bool spots>
@@ -65,13 +57,12 @@ BitsKernel<Id> bits_kernel(Isa isa) {
 
 /// The fastest kernel for `lights` lights in view whose rectangles have `area` tiles in all.
 ///
-/// by_slab  there are no Z bounds, and boxes are those of job.slab: see slab.inl
+/// by_slab  boxes are those of a slice, see slab_tiles_met()
 /// spots    the lights are spots
 template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>
 BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint32_t lights, std::uint64_t area) {
-    if constexpr (!with_words<footprint, depth_test>) {
-        if (scatter_is_faster(isa, view.tile_count(), lights, area)) return scatter_kernel<Id>(isa);
-    }
+    if constexpr (!has_tests<footprint, depth_test>)
+        if (scatter_is_faster(isa, view.tile_count(), lights, area)) return scatter_lights<Id>;
     return with_tier(isa, [](auto tier) {
         return tier.template bin_kernel < footprint, depth_test, Id, by_slab,
                spots && reads_spots < depth_test >> ();

@@ -12,10 +12,9 @@ using Floats = float;
 using Doubles = double;
 using FloatRegister = float;
 using DoubleRegister = double;
-using ListId = std::uint32_t;
 inline constexpr std::uint32_t lanes = 1, double_lanes = 1;
 
-#include <lightbin/detail/tiers/numbers.inl>
+#include <lightbin/detail/tiers/native_vector.inl>
 
 template <class Real> Real broadcast(Real each) {
     return each;
@@ -56,11 +55,58 @@ inline void store_spans(RowSpan* spans, double first, double last) {
     *spans = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(last)};
 }
 
-using portable::append;
-using portable::Packed;
-using portable::packs_ids;
-using portable::split_bits;
-using portable::transpose_words;
+inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
+    for (unsigned i = 0; i < 64; i += 8) {
+        const std::uint64_t eight = transpose_bits(load_8_bytes(bytes + i));
+        for (unsigned bit = 0; bit < 8; ++bit)
+            words[bit] = (i == 0 ? 0 : words[bit]) | (eight >> 8 * bit & 0xff) << i;
+    }
+}
+/// Each id is written, and the end moves on past those whose bit is set: no branch to mispredict.
+template <class Id> Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
+    for (unsigned i = 0; mask != 0; ++i, mask >>= 1) {
+        *out = static_cast<Id>(ids[i]);
+        out += mask & 1;
+    }
+    return out;
+}
+
+/// A vector of one byte, and a mask of one bit.
+using Bytes = std::uint8_t;
+using ByteMask = std::uint8_t;
+inline constexpr std::uint32_t byte_lanes = 1;
+
+inline Bytes load_bytes(const std::uint8_t* from) {
+    return *from;
+}
+inline void store_bytes(std::uint8_t* to, Bytes byte) {
+    *to = byte;
+}
+inline Bytes broadcast_byte(unsigned each) {
+    return static_cast<Bytes>(each);
+}
+inline Bytes subtract(Bytes a, Bytes b) {
+    return a > b ? static_cast<Bytes>(a - b) : Bytes{0};
+}
+inline Bytes shuffle(const std::uint8_t (&table)[16], Bytes index) {
+    return table[index];
+}
+inline Bytes keep_where(Bytes byte, unsigned condition) {
+    return condition != 0 ? byte : Bytes{0};
+}
+inline ByteMask not_zero(unsigned byte) {
+    return byte != 0;
+}
+inline Bytes coordinates(const std::uint16_t* from, unsigned more, unsigned begin) {
+    const unsigned coordinate = *from + more;
+    return coordinate > begin ? static_cast<Bytes>(min_of(coordinate - begin, 255u)) : Bytes{0};
+}
+template <class T> void compress_store(ByteMask, T from, std::uint8_t* to) {
+    *to = static_cast<std::uint8_t>(from);
+}
+inline void compress_store(ByteMask, const std::uint32_t* from, std::uint32_t* to) {
+    *to = *from;
+}
 
 }}}}  // namespace lightbin::detail
 

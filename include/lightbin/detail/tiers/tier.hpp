@@ -9,9 +9,8 @@
 #include <lightbin/detail/depth/slice_table.hpp>
 #include <lightbin/detail/engine/block.hpp>
 #include <lightbin/detail/engine/costs.hpp>
-#include <lightbin/detail/engine/scratch.hpp>
+#include <lightbin/detail/engine/cell_boxes.hpp>
 #include <lightbin/detail/project/footprint_arrays.hpp>
-#include <lightbin/detail/tiers/portable.hpp>
 #include <lightbin/sphere.hpp>
 #include <lightbin/spot.hpp>
 #include <lightbin/view.hpp>
@@ -27,7 +26,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-// See project.inl, project_spots.inl, silhouette.inl, depth_columns.inl; bin.inl, bits.inl and scatter.inl.
+// What kernels.inl hands out of each tier.
 using ProjectKernel = void (*)(const Camera& camera, const LightSource& source, std::uint32_t first,
                                std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts);
 using RowSpanKernel = void (*)(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
@@ -37,9 +36,21 @@ using SlicePlacesKernel = void (*)(const SlicePlaces& to, float z_sign, const Fo
 using DepthKernel = void (*)(const DepthRows& depth, float skipped, const float* split, float* lower,
                              float* upper);
 template <class Id>
-using BinKernel = std::uint64_t (*)(const BinJob<Id>& job, Scratch& scratch, const BandJob<Id>& bands);
+using BinKernel = std::uint64_t (*)(const BinJob<Id>& job, Scratch& scratch, const BinShare<Id>& share);
 template <class Id>
 using BitsKernel = void (*)(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end,
-                            std::uint32_t* bits, std::size_t each);
+                            std::uint32_t* bits, std::size_t stride);
+
+/// For each byte, the positions of its set bits in ascending order, a byte each from the lowest: what moves the chosen elements of
+/// eight together when it is the index of a shuffle.
+struct SetBits {
+    std::uint64_t of[256];
+};
+inline constexpr SetBits set_bits = [] {
+    SetBits table = {};
+    for (unsigned byte = 1; byte < 256; ++byte)
+        table.of[byte] = table.of[byte & (byte - 1)] << 8 | static_cast<unsigned>(std::countr_zero(byte));
+    return table;
+}();
 
 }}}  // namespace lightbin::detail

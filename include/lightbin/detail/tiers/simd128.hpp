@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+// The tier of 128-bit vectors, four lights at a time: SSE4.1 (x86 processors since 2008), NEON (64-bit ARM) and WebAssembly's
+// simd128. Here is what all three have in common; sse41.inl, neon.inl and wasm.inl spell its operations.
+#pragma once
+
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/tiers/tier.hpp>
+
+#if defined(LIGHTBIN_SIMD128)
+
+#if defined(LIGHTBIN_X86)
+#include <smmintrin.h>
+#elif defined(LIGHTBIN_NEON)
+#include <arm_neon.h>
+#else
+#include <wasm_simd128.h>
+#endif
+
+#include <lightbin/detail/base/warnings_off.inl>
+
+#if defined(LIGHTBIN_X86)
+LIGHTBIN_TARGET_BEGIN("ssse3,sse4.1,popcnt")
+#endif
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace simd128 {
+
+inline constexpr std::uint32_t lanes = 4, double_lanes = 2;
+
+#if defined(LIGHTBIN_X86)
+#include <lightbin/detail/tiers/sse41.inl>
+#elif defined(LIGHTBIN_NEON)
+#include <lightbin/detail/tiers/neon.inl>
+#else
+#include <lightbin/detail/tiers/wasm.inl>
+#endif
+
+/// A vector of 16 bytes, and a mask of a bit each.
+struct Bytes {
+    ByteRegister v;
+};
+using ByteMask = std::uint16_t;
+inline constexpr std::uint32_t byte_lanes = 16;
+
+inline Bytes load_bytes(const std::uint8_t* from) {
+    return {load_register(from)};
+}
+inline void store_bytes(std::uint8_t* to, Bytes bytes) {
+    store_register(to, bytes.v);
+}
+inline Bytes broadcast_byte(unsigned each) {
+    return {broadcast_register(each)};
+}
+inline Bytes operator&(Bytes a, Bytes b) {
+    return {and_registers(a.v, b.v)};
+}
+inline Bytes minimum(Bytes a, Bytes b) {
+    return {min_of_bytes(a.v, b.v)};
+}
+inline Bytes subtract(Bytes a, Bytes b) {
+    return {subtract_bytes(a.v, b.v)};
+}
+inline Bytes shuffle(const std::uint8_t (&table)[16], Bytes indices) {
+    return {shuffle_bytes(load_register(table), indices.v)};
+}
+inline Bytes keep_where(Bytes bytes, Bytes condition) {
+    return {and_registers(bytes.v, bytes_not_zero(condition.v))};
+}
+inline ByteMask not_zero(Bytes bytes) {
+    return static_cast<ByteMask>(movemask_of_bytes(bytes_not_zero(bytes.v)));
+}
+inline Bytes coordinates(const std::uint16_t* from, unsigned more, unsigned begin) {
+    return {narrow(relative_words(load_register(from), more, begin), relative_words(load_register(from + 8), more, begin))};
+}
+inline void compress_store(ByteMask chosen, Bytes from, std::uint8_t* to) {
+    const unsigned low = chosen & 0xffu, high = chosen >> 8;
+    store_half(to, shuffle_bytes(from.v, load_half(&set_bits.of[low])));
+    store_half(to + std::popcount(low), shuffle_bytes(high_half(from.v), load_half(&set_bits.of[high])));
+}
+
+/// How many bits of four are set.
+inline constexpr std::uint8_t set_of_4[] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
+
+/// For each mask of four 32-bit elements, the bytes of those whose bit is set.
+struct Compress4 {
+    alignas(16) std::uint8_t of[16][16];
+};
+inline constexpr Compress4 compress_4 = [] {
+    Compress4 table = {};
+    for (unsigned mask = 0; mask < 16; ++mask)
+        for (unsigned i = 0, to = 0; i < 4; ++i)
+            for (unsigned byte = 0; (mask >> i & 1) != 0 && byte < 4; ++byte)
+                table.of[mask][to++] = static_cast<std::uint8_t>(4 * i + byte);
+    return table;
+}();
+
+/// Appends those of four ids whose bit is set, and up to 4 elements without meaning. Returns the end.
+template <class Id> Id* append_4(Id* out, const std::uint32_t* ids, unsigned mask) {
+    const ByteRegister chosen = shuffle_bytes(load_register(ids), load_register(compress_4.of[mask]));
+    if constexpr (sizeof(Id) == 4)
+        store_register(out, chosen);
+    else
+        store_half(out, narrow_ids(chosen));
+    return out + set_of_4[mask];
+}
+template <class Id> Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
+    for (unsigned i = 0; i < 16; i += 4)
+        out = append_4(out, ids + i, mask >> i & 15);
+    return out;
+}
+inline void compress_store(ByteMask chosen, const std::uint32_t* from, std::uint32_t* to) {
+    append_16(to, from, chosen);
+}
+
+}}}}  // namespace lightbin::detail
+
+#define LIGHTBIN_TIER simd128
+#include <lightbin/detail/tiers/kernels.inl>
+#if defined(LIGHTBIN_X86)
+LIGHTBIN_TARGET_END
+#endif
+
+#include <lightbin/detail/base/warnings_on.inl>
+#endif

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// The operations of the tier of 128-bit vectors in SSE4.1. Included by simd128.hpp, in its namespace.
+
+using FloatRegister = __m128;
+using DoubleRegister = __m128d;
+
+#define LIGHTBIN_LESS(a, b) LIGHTBIN_OP(cmplt)(a, b)
+#define LIGHTBIN_LESS_EQUAL(a, b) LIGHTBIN_OP(cmple)(a, b)
+#define LIGHTBIN_SELECT(mask, a, b) LIGHTBIN_OP(blendv)(b, a, mask)
+
+#define LIGHTBIN_VECTOR Floats
+#define LIGHTBIN_ELEMENT float
+#define LIGHTBIN_REGISTER __m128
+#define LIGHTBIN_OP(name) _mm_##name##_ps
+#include <lightbin/detail/tiers/x86_vector.inl>
+
+#define LIGHTBIN_VECTOR Doubles
+#define LIGHTBIN_ELEMENT double
+#define LIGHTBIN_REGISTER __m128d
+#define LIGHTBIN_OP(name) _mm_##name##_pd
+#include <lightbin/detail/tiers/x86_vector.inl>
+
+#undef LIGHTBIN_LESS
+#undef LIGHTBIN_LESS_EQUAL
+#undef LIGHTBIN_SELECT
+
+inline Doubles widened(Floats a, unsigned half) {
+    return _mm_cvtps_pd(half == 0 ? a.v : _mm_movehl_ps(a, a));
+}
+inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z, Floats& radius) {
+    const float* p = &spheres->x;
+    x = _mm_loadu_ps(p);
+    y = _mm_loadu_ps(p + 4);
+    z = _mm_loadu_ps(p + 8);
+    radius = _mm_loadu_ps(p + 12);
+    _MM_TRANSPOSE4_PS(x.v, y.v, z.v, radius.v);
+}
+inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
+    _MM_TRANSPOSE4_PS(x.v, y.v, z.v, radius.v);
+    float* p = &spheres->x;
+    _mm_storeu_ps(p, x);
+    _mm_storeu_ps(p + 4, y);
+    _mm_storeu_ps(p + 8, z);
+    _mm_storeu_ps(p + 12, radius);
+}
+inline Floats ascending_bits(Floats values) {
+    const __m128i bits = _mm_castps_si128(values);
+    return _mm_cvtepi32_ps(_mm_xor_si128(bits, _mm_srli_epi32(_mm_srai_epi32(bits, 31), 1)));
+}
+inline void store_tiles(std::uint16_t* tiles, Floats values) {
+    const __m128i whole = _mm_cvttps_epi32(values);
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(tiles), _mm_packs_epi32(whole, whole));
+}
+inline void store_tiles(std::uint16_t* tiles, Doubles values) {
+    const __m128i whole = _mm_cvttpd_epi32(values);
+    const int both_tiles = _mm_cvtsi128_si32(_mm_packs_epi32(whole, whole));
+    std::memcpy(tiles, &both_tiles, sizeof both_tiles);
+}
+inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
+    const __m128i pairs = _mm_or_si128(_mm_cvttpd_epi32(first), _mm_slli_epi32(_mm_cvttpd_epi32(last), 16));
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(spans), pairs);
+}
+
+using ByteRegister = __m128i;
+
+inline __m128i load_register(const void* from) {
+    return _mm_loadu_si128(static_cast<const __m128i*>(from));
+}
+inline void store_register(void* to, __m128i a) {
+    _mm_storeu_si128(static_cast<__m128i*>(to), a);
+}
+inline __m128i load_half(const void* from) {
+    return _mm_loadl_epi64(static_cast<const __m128i*>(from));
+}
+inline void store_half(void* to, __m128i a) {
+    _mm_storel_epi64(static_cast<__m128i*>(to), a);
+}
+inline __m128i high_half(__m128i a) {
+    return _mm_unpackhi_epi64(a, a);
+}
+inline __m128i broadcast_register(unsigned byte) {
+    return _mm_set1_epi8(static_cast<char>(byte));
+}
+inline __m128i and_registers(__m128i a, __m128i b) {
+    return _mm_and_si128(a, b);
+}
+inline __m128i min_of_bytes(__m128i a, __m128i b) {
+    return _mm_min_epu8(a, b);
+}
+inline __m128i subtract_bytes(__m128i a, __m128i b) {
+    return _mm_subs_epu8(a, b);
+}
+inline __m128i shuffle_bytes(__m128i table, __m128i indices) {
+    return _mm_shuffle_epi8(table, indices);
+}
+inline __m128i bytes_not_zero(__m128i a) {
+    return _mm_cmpgt_epi8(_mm_cmpeq_epi8(a, _mm_setzero_si128()), _mm_set1_epi8(-1));
+}
+inline unsigned movemask_of_bytes(__m128i a) {
+    return static_cast<unsigned>(_mm_movemask_epi8(a));
+}
+inline __m128i relative_words(__m128i words, unsigned more, unsigned begin) {
+    return _mm_subs_epu16(_mm_add_epi16(words, _mm_set1_epi16(static_cast<short>(more))),
+                          _mm_set1_epi16(static_cast<short>(begin)));
+}
+inline __m128i narrow(__m128i low, __m128i high) {
+    const __m128i max = _mm_set1_epi16(255);  // packing takes words as signed, and there are some from 0x8000 on
+    return _mm_packus_epi16(_mm_min_epu16(low, max), _mm_min_epu16(high, max));
+}
+inline __m128i narrow_ids(__m128i ids) {
+    return _mm_packus_epi32(ids, ids);
+}
+inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
+    __m128i quarter[4];
+    for (int i = 0; i < 4; ++i)
+        quarter[i] = load_register(bytes + 16 * i);
+    for (int bit = 7; bit >= 0; --bit) {
+        words[bit] = 0;
+        for (int i = 0; i < 4; ++i) {
+            words[bit] |= std::uint64_t{movemask_of_bytes(quarter[i])} << 16 * i;
+            quarter[i] = _mm_add_epi8(quarter[i], quarter[i]);
+        }
+    }
+}
