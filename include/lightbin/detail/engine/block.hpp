@@ -29,12 +29,12 @@ template <DepthTest depth_test>
 inline constexpr bool with_boxes = depth_test == DepthTest::box || depth_test == DepthTest::split_box;
 
 /// The list of the lights that meet a block: elements begin..begin + count - 1 of Scratch::list_ids, list_columns and
-/// list_rows. `begin` is a multiple of 64, so that whole vectors can be written.
+/// list_rows.
 struct BlockList {
     std::uint32_t begin, count;
 
-    /// The room that the list takes: its size rounded up to whole vectors.
-    std::uint32_t padded_count() const { return (count + 63) & ~63u; }
+    /// The size rounded up to a multiple of 16, as lights are emitted by 16.
+    std::uint32_t padded_count() const { return (count + 15) & ~15u; }
 };
 
 /// Working memory of the binning kernels, kept from call to call.
@@ -61,7 +61,8 @@ struct Scratch {
     Buffer<float> slab_ends;  ///< of SlabBoxes
 
     /// What the emission reads of a list: for each of the block's 8 rows in turn a byte a light, with a bit for each column
-    /// whose tile in this row the light is in. Rows are list.padded_count() bytes apart; the padding is 0.
+    /// whose tile in this row the light is in. Rows are list.padded_count() bytes apart, filled up with 0. Readable, and to be
+    /// written in this order, in whole vectors.
     std::uint8_t* row_columns_of(const BlockList& list) const {
         return row_columns.data() + std::size_t{8} * list.begin;
     }

@@ -64,6 +64,12 @@ inline void copy_8_floats(const float* from, unsigned count, float* to) {
         to[i] = from[min_of(i, count - 1)];
 }
 
+/// Stores 8 floats, and perhaps 8 more.
+inline void fill_8_floats(float* to, float value) {
+    for (unsigned i = 0; i < 8; i += lanes)
+        store_floats(to + i, broadcast(value));
+}
+
 /// Writes what a depth test reads of the tiles of the block that begins at column 8 x and row `top`, in planes of 64 floats:
 /// the tiles' minimum and maximum depths, for boxes followed by the ends along x and y; split_box has the planes of a second box.
 /// Returns a bit for each tile whose Z bounds are not empty.
@@ -75,19 +81,23 @@ std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, flo
     const unsigned rows = min_of(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
     const unsigned columns = min_of(8u, static_cast<unsigned>(width) - 8 * x);
     const float absent[] = {job.slab[0], job.slab[1], infinity, -infinity};
-    float bounds[sides][64], edges[boxes ? 4 : 1][64];
+    float bounds[sides][64 + lanes], y_edges[2][64 + lanes];
+    float x_edges[2][16];  // those of the block's columns, twice, as a vector may have two rows of tiles
+    if constexpr (boxes)
+        for (unsigned side = 0; side < 2; ++side) {
+            copy_8_floats(job.edges[side] + 8 * x, columns, x_edges[side]);
+            copy_8_floats(x_edges[side], 8, x_edges[side] + 8);
+        }
     for (unsigned row = 0; row < 8; ++row) {
         const unsigned first = 8 * row, y = top + min_of(row, rows - 1);  // below the last row, that row again
         for (unsigned side = 0; side < sides; ++side)
             if (job.bounds[side] != nullptr)
                 copy_8_floats(job.bounds[side] + y * width + 8 * x, columns, bounds[side] + first);
             else
-                fill_items(bounds[side] + first, 8, absent[side]);
+                fill_8_floats(bounds[side] + first, absent[side]);
         if constexpr (boxes)
-            for (unsigned side = 0; side < 2; ++side) {
-                copy_8_floats(job.edges[side] + 8 * x, columns, edges[side] + first);
-                fill_items(edges[2 + side] + first, 8, job.edges[2 + side][y]);
-            }
+            for (unsigned side = 0; side < 2; ++side)
+                fill_8_floats(y_edges[side] + first, job.edges[2 + side][y]);
     }
     std::uint64_t drawn = 0;
     for (unsigned tile = 0; tile < 64; tile += lanes) {
@@ -96,8 +106,9 @@ std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, flo
             of_tiles[side] = load_floats(bounds[side] + tile);
         drawn |= (~std::uint64_t{movemask(less(of_tiles[1], of_tiles[0]))} & every_lane) << tile;
         if constexpr (boxes) {
-            store_boxes<depth_test>(*job.camera, cells + tile, load_floats(edges[0] + tile), load_floats(edges[1] + tile),
-                                    load_floats(edges[2] + tile), load_floats(edges[3] + tile), of_tiles);
+            store_boxes<depth_test>(*job.camera, cells + tile, load_floats(x_edges[0] + tile % 8),
+                                    load_floats(x_edges[1] + tile % 8), load_floats(y_edges[0] + tile),
+                                    load_floats(y_edges[1] + tile), of_tiles);
         } else {
             store_floats(cells + tile, maximum(of_tiles[0], broadcast(-infinity)));  // NaN excludes no light
             store_floats(cells + 64 + tile, minimum(of_tiles[1], broadcast(infinity)));

@@ -178,24 +178,23 @@ void meet_64_lights(const BinJob<Id>& job, const BlockCells<depth_test>& cells, 
     if (in_range != 0) meet_tiles(cells, tested, columns, rows, in_range, met);
 }
 
-/// Stores the bytes of Scratch::row_columns_of() for lights whose tiles are those of their rectangles.
+/// Stores the bytes of Scratch::row_columns_of() for lights that are in all tiles of their rectangles.
 inline void store_rectangles(Scratch& scratch, const BlockList& list) {
     const std::uint32_t padded = list.padded_count();
-    const std::uint8_t *const columns = scratch.list_columns.data() + list.begin,
-                       *const rows = scratch.list_rows.data() + list.begin;
-    std::uint8_t* const row_columns = scratch.row_columns_of(list);
-    for (std::uint32_t i = 0; i < padded; i += byte_lanes) {
-        const Bytes in_columns = load_bytes(columns + i), in_rows = load_bytes(rows + i);
-        for (unsigned row = 0; row < 8; ++row)
-            store_bytes(row_columns + row * padded + i, keep_where(in_columns, in_rows & broadcast_byte(1u << row)));
-    }
+    std::uint8_t* const columns = scratch.list_columns.data() + list.begin;
+    const std::uint8_t* const rows = scratch.list_rows.data() + list.begin;
+    std::uint8_t* to = scratch.row_columns_of(list);
+    std::memset(columns + list.count, 0, 16);
+    for (unsigned row = 0; row < 8; ++row, to += padded)
+        for (std::uint32_t i = 0; i < padded; i += byte_lanes)
+            store_bytes(to + i, keep_where(load_bytes(columns + i), load_bytes(rows + i) & broadcast_byte(1u << row)));
 }
 
 /// Stores the bytes of Scratch::row_columns_of() for lights with masks: transposes 8x8 bytes, of 8 lights and 8 rows.
 inline void store_masks(Scratch& scratch, const BlockList& list) {
     const std::uint32_t padded = list.padded_count();
     std::uint64_t* const masks = scratch.tile_masks.data();
-    fill_items(masks + list.count, padded - list.count, 0);
+    std::memset(masks + list.count, 0, 16 * sizeof *masks);
     std::uint8_t* const row_columns = scratch.row_columns_of(list);
     for (std::uint32_t i = 0; i < padded; i += 8) {
         std::uint64_t rows[8];
@@ -258,6 +257,7 @@ const BlockList* list_lights(const BinJob<Id>& job, Scratch& scratch, const Slab
     if (top >= bands.end) list_bands<tested>(job, scratch, top, end, bands);
     BlockList* const lists = scratch.lists.reserve(width);
     std::uint32_t used = 0;
+    if (band_size(bands, (top - bands.begin) / 8) == 0) return nullptr;
     for (unsigned x = 0; x < width; ++x) {
         BlockList& list = lists[x];
         list = {used, list_block(scratch, bands, (top - bands.begin) / 8, x, used)};
@@ -265,13 +265,11 @@ const BlockList* list_lights(const BinJob<Id>& job, Scratch& scratch, const Slab
             if (list.count > 0) mask_lights<footprint, depth_test, by_slab, spots>(job, scratch, slab, x, top, list);
         if (list.count == 0) continue;
         const std::uint32_t padded = list.padded_count();
-        scratch.row_columns.reserve(std::uint64_t{8} * (used + padded), std::size_t{8} * used);
-        if constexpr (tested) {
+        scratch.row_columns.reserve(std::uint64_t{8} * (used + padded) + 64, std::size_t{8} * used);
+        if constexpr (tested)
             store_masks(scratch, list);
-        } else {
-            std::memset(scratch.list_columns.data() + used + list.count, 0, padded - list.count);
+        else
             store_rectangles(scratch, list);
-        }
         used += padded;
     }
     return used == 0 ? nullptr : lists;

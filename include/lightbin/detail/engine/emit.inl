@@ -19,22 +19,23 @@ struct RowLights {
 inline RowLights pick_row(Scratch& scratch, const BlockList& list, unsigned row) {
     const RowLights all = {scratch.list_ids.data() + list.begin,
                            scratch.row_columns_of(list) + std::size_t{row} * list.padded_count(), list.count};
+    if (all.count <= 16) return all;
     std::uint32_t in_row = 0;
     for (std::uint32_t i = 0; i < all.count; i += byte_lanes)
-        in_row += static_cast<std::uint32_t>(std::popcount(not_zero(load_bytes(all.columns + i))));
-    if (in_row == 0) return {};
-    if (all.count <= 16 || 2 * in_row > all.count) return all;
+        in_row += static_cast<std::uint32_t>(
+            std::popcount(static_cast<ByteMask>(not_zero(load_bytes(all.columns + i)) & first_bytes(all.count - i))));
+    if (2 * in_row > all.count) return all;
     std::uint32_t* const ids = scratch.row_ids.reserve(in_row + std::uint64_t{128});
     std::uint8_t* const columns = scratch.picked_columns.reserve(in_row + std::uint64_t{128});
     std::uint32_t picked = 0;
     for (std::uint32_t i = 0; i < all.count; i += byte_lanes) {
         const Bytes here = load_bytes(all.columns + i);
-        const ByteMask chosen = not_zero(here);
+        const ByteMask chosen = static_cast<ByteMask>(not_zero(here) & first_bytes(all.count - i));
         compress_store(chosen, here, columns + picked);
         compress_store(chosen, all.ids + i, ids + picked);
         picked += static_cast<std::uint32_t>(std::popcount(chosen));
     }
-    std::memset(columns + picked, 0, 64);
+    std::memset(columns + picked, 0, 16);
     return {ids, columns, picked};
 }
 
@@ -53,9 +54,10 @@ template <class Id> Id* append_64(Id* out, const std::uint32_t* ids, std::uint64
 /// Emits a block's tiles of one row: appends the lights of each to the index list and writes its range. Returns the list's end.
 /// Not inline: in a longer function compilers keep what it needs on the stack.
 ///
-/// offset  of `out` in the index list
-/// words   for each 64 lights a word a column, with a bit a light
-template <bool up_to_64, class Id>
+/// at_most  there are no more lights: 16, 64, or any number
+/// offset   of `out` in the index list
+/// words    for each 64 lights a word a column, with a bit a light
+template <unsigned at_most, class Id>
 LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset, const RowLights& row,
                                  const std::uint64_t* words) {
     const std::uint32_t* const ids = row.ids;
@@ -63,10 +65,13 @@ LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned columns, st
     for (unsigned column = 0; column < columns; ++column) {
         Id* const begin = out;
         std::uint32_t i = 0;
-        if constexpr (!up_to_64)
+        if constexpr (at_most > 64)
             for (; i + 64 < count; i += 64)
                 out = append_64(out, ids + i, words[i / 8 + column], 64);
-        out = append_64(out, ids + i, words[i / 8 + column], count - i);
+        if constexpr (at_most > 16)
+            out = append_64(out, ids + i, words[i / 8 + column], count - i);
+        else
+            out = append_16(out, ids, static_cast<unsigned>(words[column] & 0xffff));
         const std::uint32_t size = static_cast<std::uint32_t>(out - begin);
         tiles[column] = {offset, size};
         offset += size;
@@ -87,15 +92,19 @@ Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t offset, 
             continue;
         }
         Id* end;
-        if (lights.count <= 64) {
+        if (lights.count <= 16) {
+            std::uint64_t words[8];
+            split_16_bytes(lights.columns, words);
+            end = emit_tiles<16>(out, tiles + x, columns, offset, lights, words);
+        } else if (lights.count <= 64) {
             std::uint64_t words[8];
             split_bits(lights.columns, words);
-            end = emit_tiles<true>(out, tiles + x, columns, offset, lights, words);
+            end = emit_tiles<64>(out, tiles + x, columns, offset, lights, words);
         } else {
             std::uint64_t* const words = scratch.row_words.reserve(lights.count / 8 + std::uint64_t{16});
             for (std::uint32_t i = 0; i < lights.count; i += 64)
                 split_bits(lights.columns + i, words + i / 8);
-            end = emit_tiles<false>(out, tiles + x, columns, offset, lights, words);
+            end = emit_tiles<~0u>(out, tiles + x, columns, offset, lights, words);
         }
         offset += static_cast<std::uint32_t>(end - out);
         out = end;

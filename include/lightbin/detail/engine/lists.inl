@@ -104,6 +104,14 @@ void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigne
             add_to_bands(job.lights, ids, to, i, run.end - i);
 }
 
+/// How many lights a band's lists have together.
+inline std::size_t band_size(const BandLists& bands, std::size_t band) {
+    std::size_t size = 0;
+    for (std::size_t panel = 0; panel < bands.panels; ++panel)
+        size += bands.sizes[band * bands.panels + panel];
+    return size;
+}
+
 /// Makes the list of block x of a band, from element `begin` on, out of the band's list for the block's panel. Returns its size.
 inline std::uint32_t list_block(Scratch& scratch, const BandLists& bands, std::size_t band, unsigned x,
                                 std::uint32_t begin) {

@@ -132,6 +132,11 @@ inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
     _mm_storeu_si128(reinterpret_cast<__m128i*>(spans), pairs);
 }
 
+inline void split_16_bytes(const std::uint8_t* bytes, std::uint64_t* words) {
+    __m128i all = _mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes));
+    for (int bit = 7; bit >= 0; --bit, all = _mm_add_epi8(all, all))
+        words[bit] = static_cast<unsigned>(_mm_movemask_epi8(all));
+}
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     __m256i low = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes));
     __m256i high = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes + 32));

@@ -145,6 +145,11 @@ inline void append_visible(const FootprintArrays& out, ProjectCounts& counts,
     counts.area += static_cast<std::uint64_t>(_mm512_reduce_add_epi64(sums));
 }
 
+inline void split_16_bytes(const std::uint8_t* bytes, std::uint64_t* words) {
+    const __m128i all = _mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes));
+    for (unsigned bit = 0; bit < 8; ++bit)
+        words[bit] = _mm_test_epi8_mask(all, _mm_set1_epi8(static_cast<char>(1 << bit)));
+}
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     const __m512i all_bytes = _mm512_loadu_si512(bytes);
     for (unsigned bit = 0; bit < 8; ++bit)

@@ -18,7 +18,8 @@
 //   load_spheres, store_spheres    `lanes` spheres as four vectors, and back
 //   store_tiles, store_spans       coordinates of tiles, rounded down to 16 bits; pairs of them
 //   ascending_bits                 the bits of floats as numbers in the order of the floats, as floats
-//   split_bits(bytes, words)       for each bit of 64 bytes the word of that bit in each: a transpose of 64x8 bits
+//   split_bits(bytes, words)       for each of the 8 bits of 64 bytes the word of that bit in each: a transpose of 64x8 bits
+//   split_16_bytes(bytes, words)   the same of 16 bytes
 //   append_16(out, ids, mask)      appends those of 16 ids whose bit is set, and up to 16 elements without meaning; the end
 //   Bytes, ByteMask, byte_lanes    a vector of bytes without sign, a bit for each, how many
 //   load_bytes, store_bytes, broadcast_byte, &, minimum

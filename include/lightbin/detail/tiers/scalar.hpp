@@ -55,12 +55,18 @@ inline void store_spans(RowSpan* spans, double first, double last) {
     *spans = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(last)};
 }
 
-inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
-    for (unsigned i = 0; i < 64; i += 8) {
+template <unsigned count> void split_bytes(const std::uint8_t* bytes, std::uint64_t* words) {
+    for (unsigned i = 0; i < count; i += 8) {
         const std::uint64_t eight = transpose_bits(load_8_bytes(bytes + i));
         for (unsigned bit = 0; bit < 8; ++bit)
             words[bit] = (i == 0 ? 0 : words[bit]) | (eight >> 8 * bit & 0xff) << i;
     }
+}
+inline void split_16_bytes(const std::uint8_t* bytes, std::uint64_t* words) {
+    split_bytes<16>(bytes, words);
+}
+inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
+    split_bytes<64>(bytes, words);
 }
 /// Each id is written, and the end moves on past those whose bit is set: no branch to mispredict.
 template <class Id> Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
