@@ -38,9 +38,6 @@ ratio() {
     ratio docs/depth.md '`DepthTest::split_box` |' split_box 16
     ratio docs/depth.md '`Slicing::clusters` with `DepthTest::box`' clusters+box 64
     ratio docs/depth.md '`Slicing::z_bins`, 1,024 bins' z-bins 32
-    ratio README.md '`Options{.depth_test = DepthTest::box}`' box 16
-    ratio README.md '`Slicing::clusters`' clusters+box 64
-    ratio README.md '  `z_bins`' z-bins 32
     has docs/depth.md '`Footprint::silhouette`' "$(of silhouette 16 ratio | awk '$2 == "top-down" { printf "%.1f (%s)", $1, $2 }')"
 }
 
