@@ -33,8 +33,8 @@ inline constexpr bool with_boxes = depth_test == DepthTest::box || depth_test ==
 struct BlockList {
     std::uint32_t begin, count;
 
-    /// The size rounded up to a multiple of 16, as lights are emitted by 16.
-    std::uint32_t padded_count() const { return (count + 15) & ~15u; }
+    /// The size rounded up to 8 or a multiple of 16: lights are emitted by as many.
+    std::uint32_t padded_count() const { return count <= 8 ? 8 : (count + 15) & ~15u; }
 };
 
 /// Working memory of the binning kernels, kept from call to call.
@@ -81,12 +81,15 @@ inline std::uint64_t list_size_bound(const Camera& camera, const LitSlice& lit) 
     return size;
 }
 
-/// Writes `count` tiles without lights whose lists begin at `offset`.
+/// Writes `count` tiles without lights whose lists begin at `offset`: some one by one, then copies of all so far, as memcpy() writes
+/// whole vectors.
 inline void fill_empty(ListRange* tiles, std::size_t count, std::uint32_t offset) {
-    if (offset == 0)
-        std::memset(static_cast<void*>(tiles), 0, count * sizeof *tiles);
-    else
-        fill_items(tiles, count, {offset, 0});
+    std::size_t filled = min_of<std::size_t>(count, 16);
+    fill_items(tiles, filled, {offset, 0});
+    for (std::size_t copied; filled < count; filled += copied) {
+        copied = min_of(filled, count - filled);
+        copy_items(tiles, copied, tiles + filled);
+    }
 }
 
 /// A bit for each of the 8 tiles from `begin` on that first..last contains. The two ranges must meet.

@@ -114,32 +114,6 @@ void meet_tiles(const BlockCells<depth_test>& cells, const Light* lights, const 
     }
 }
 
-/// A mask of a block's tiles whose boxes in a slice a sphere meets. The boxes have the same depths and differ only by column and
-/// by row, so the squared distance to each is a sum of one along x by column, one along y by row and one along z: 17 numbers and
-/// a comparison a tile. A box is missed where  less(reach2 - z2 - y2, x2);  see cell_boxes.hpp on rounding. NaN, where reach2 and a
-/// distance are infinite, misses nothing. Depths are not compared: only lights that meet the slice's depths are in its lists.
-///
-/// x0, x1, y0, y1  the low and high ends of the block's boxes by column and by row
-inline std::uint64_t slab_tiles_met(const SlabBoxes& slab, const float* x0, const float* x1, const float* y0,
-                                    const float* y1, const TestedLight& light) {
-    constexpr unsigned vectors = lanes < 8 ? 8 / lanes : 1;
-    const float z_distance = max_of(max_of(slab.z0 - light.z, light.z - slab.z1), 0.0f);
-    const Floats left = broadcast(light.reach2 - rounded(z_distance * z_distance));
-    Floats x2[vectors];
-    float left_by_row[vectors * lanes];
-    for (unsigned i = 0; i < vectors; ++i) {
-        const Floats along_x = distance(broadcast(light.x), load_floats(x0 + i * lanes), load_floats(x1 + i * lanes)),
-                     along_y = distance(broadcast(light.y), load_floats(y0 + i * lanes), load_floats(y1 + i * lanes));
-        x2[i] = mul(along_x, along_x);
-        store_floats(left_by_row + i * lanes, left - mul(along_y, along_y));
-    }
-    std::uint64_t missed = 0;
-    for (unsigned row = 0; row < 8; ++row)
-        for (unsigned i = 0; i < vectors; ++i)
-            missed |= std::uint64_t{movemask(less(broadcast(left_by_row[row]), x2[i])) & 0xff} << (8 * row + i * lanes);
-    return ~missed;
-}
-
 /// A mask of those of a block's `tiles` that are within the row spans of light i of the footprint arrays. The block begins at
 /// column 8 x and row `top`.
 inline std::uint64_t silhouette_tiles(const FootprintArrays& lights, std::uint32_t i, unsigned x, unsigned top,
@@ -205,15 +179,59 @@ inline void store_masks(Scratch& scratch, const BlockList& list) {
     }
 }
 
+/// Stores the bytes of Scratch::row_columns_of() for spheres that are tested against the boxes of a slice, in the block that begins
+/// at column 8 x and row `top`.
+///
+/// The boxes have the same depths and differ only by column and by row, so the squared distance to each is a sum of one along x by
+/// column, one along y by row and one along z: 17 numbers and a comparison a tile. A box is missed where
+/// less(reach2 - z2 - y2, x2);  see cell_boxes.hpp on rounding. NaN, where reach2 and a distance are infinite, misses nothing.
+/// Depths are not compared: only lights that meet the slice's depths are in its lists.
+template <class Id>
+void store_met_boxes(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab, unsigned x, unsigned top,
+                     const BlockList& list) {
+    constexpr unsigned vectors = lanes < 8 ? 8 / lanes : 1;
+    Floats x0[vectors], x1[vectors], y0[vectors], y1[vectors];
+    for (unsigned i = 0; i < vectors; ++i) {
+        x0[i] = load_floats(slab.ends[0] + 8 * x + i * lanes);
+        x1[i] = load_floats(slab.ends[1] + 8 * x + i * lanes);
+        y0[i] = load_floats(slab.ends[2] + top + i * lanes);
+        y1[i] = load_floats(slab.ends[3] + top + i * lanes);
+    }
+    const std::uint32_t padded = list.padded_count();
+    const std::uint32_t* const ids = scratch.list_ids.data() + list.begin;
+    const std::uint8_t *const columns = scratch.list_columns.data() + list.begin,
+                       *const rows = scratch.list_rows.data() + list.begin;
+    std::uint8_t* const row_columns = scratch.row_columns_of(list);
+    for (std::uint32_t i = 0; i < list.count; ++i) {
+        const TestedLight light(*job.camera, load_sphere(job.lights.spheres + ids[i]));
+        const float z_distance = max_of(max_of(slab.z0 - light.z, light.z - slab.z1), 0.0f);
+        const Floats left = broadcast(light.reach2 - rounded(z_distance * z_distance));
+        Floats x2[vectors];
+        float left_by_row[vectors * lanes];
+        for (unsigned k = 0; k < vectors; ++k) {
+            const Floats along_x = distance(broadcast(light.x), x0[k], x1[k]),
+                         along_y = distance(broadcast(light.y), y0[k], y1[k]);
+            x2[k] = mul(along_x, along_x);
+            store_floats(left_by_row + k * lanes, left - mul(along_y, along_y));
+        }
+        for (unsigned row = 0; row < 8; ++row) {
+            unsigned missed = 0;
+            for (unsigned k = 0; k < vectors; ++k)
+                missed |= movemask(less(broadcast(left_by_row[row]), x2[k])) << k * lanes;
+            const unsigned in_row = 0u - (rows[i] >> row & 1u);
+            row_columns[row * padded + i] = static_cast<std::uint8_t>(columns[i] & in_row & ~missed);
+        }
+    }
+    for (unsigned row = 0; row < 8; ++row)
+        std::memset(row_columns + row * padded + list.count, 0, padded - list.count);
+}
+
 /// Finds the mask of each light of a list of indices, of the block that begins at column 8 x and row `top`. Drops the lights that
 /// are in none of its tiles, and makes ids of the indices of the others.
-///
-/// slab  with by_slab: the boxes of the slice's cells
-template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>
-void mask_lights(const BinJob<Id>& job, Scratch& scratch, [[maybe_unused]] const SlabBoxes& slab, unsigned x,
-                 unsigned top, BlockList& list) {
-    [[maybe_unused]] BlockCells<by_slab ? DepthTest::none : depth_test> cells;
-    if constexpr (depth_test != DepthTest::none && !by_slab) {
+template <Footprint footprint, DepthTest depth_test, bool spots, class Id>
+void mask_lights(const BinJob<Id>& job, Scratch& scratch, unsigned x, unsigned top, BlockList& list) {
+    [[maybe_unused]] BlockCells<depth_test> cells;
+    if constexpr (depth_test != DepthTest::none) {
         cells.drawn = arrange_cells<depth_test>(job, x, top, cells.planes);
         cells.depths = depth_range<depth_test>(cells.planes, cells.drawn);
     }
@@ -225,18 +243,15 @@ void mask_lights(const BinJob<Id>& job, Scratch& scratch, [[maybe_unused]] const
     for (std::uint32_t begin = 0; begin < list.count; begin += 64) {
         const std::uint32_t count = min_of(list.count - begin, 64u);
         [[maybe_unused]] std::uint64_t met[64];
-        if constexpr (depth_test != DepthTest::none && !by_slab)
+        if constexpr (depth_test != DepthTest::none)
             meet_64_lights<depth_test, spots>(job, cells, indices + begin, columns + begin, rows + begin, count, met);
         for (std::uint32_t i = begin; i < begin + count; ++i) {
-            const std::uint32_t light = indices[i], id = job.lights.ids[light];
+            const std::uint32_t light = indices[i];
             std::uint64_t tiles = spread_bits(rows[i]) & columns[i] * std::uint64_t{0x0101010101010101};
-            if constexpr (by_slab)
-                tiles &= slab_tiles_met(slab, slab.ends[0] + 8 * x, slab.ends[1] + 8 * x, slab.ends[2] + top,
-                                        slab.ends[3] + top, {*job.camera, load_sphere(job.lights.spheres + id)});
-            else if constexpr (depth_test != DepthTest::none)
+            if constexpr (depth_test != DepthTest::none)
                 tiles &= met[i - begin] & cells.drawn;
             if constexpr (footprint == Footprint::silhouette) tiles = silhouette_tiles(job.lights, light, x, top, tiles);
-            indices[left] = id;
+            indices[left] = job.lights.ids[light];
             masks[left] = tiles;
             left += tiles != 0;
         }
@@ -247,27 +262,30 @@ void mask_lights(const BinJob<Id>& job, Scratch& scratch, [[maybe_unused]] const
 /// Lists the lights of each block of the band that begins at tile row `top`, with the bytes of Scratch::row_columns_of(). Returns
 /// the lists, one a block, or null if they are all empty.
 ///
+/// slab   with by_slab: the boxes of the slice's cells
 /// bands  kept from band to band: the bands listed so far
 /// end    the last tile row + 1 that will be asked for
 template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>
 const BlockList* list_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab, BandLists& bands,
                              unsigned top, unsigned end) {
-    constexpr bool tested = has_tests<footprint, depth_test>;
+    constexpr bool masked = has_tests<footprint, depth_test> && !by_slab;
     const unsigned width = (static_cast<unsigned>(job.camera->x.tiles) + 7) / 8;
-    if (top >= bands.end) list_bands<tested>(job, scratch, top, end, bands);
+    if (top >= bands.end) list_bands<masked>(job, scratch, top, end, bands);
     BlockList* const lists = scratch.lists.reserve(width);
     std::uint32_t used = 0;
     if (band_size(bands, (top - bands.begin) / 8) == 0) return nullptr;
     for (unsigned x = 0; x < width; ++x) {
         BlockList& list = lists[x];
         list = {used, list_block(scratch, bands, (top - bands.begin) / 8, x, used)};
-        if constexpr (tested)
-            if (list.count > 0) mask_lights<footprint, depth_test, by_slab, spots>(job, scratch, slab, x, top, list);
+        if constexpr (masked)
+            if (list.count > 0) mask_lights<footprint, depth_test, spots>(job, scratch, x, top, list);
         if (list.count == 0) continue;
         const std::uint32_t padded = list.padded_count();
         scratch.row_columns.reserve(std::uint64_t{8} * (used + padded) + 64, std::size_t{8} * used);
-        if constexpr (tested)
+        if constexpr (masked)
             store_masks(scratch, list);
+        else if constexpr (by_slab)
+            store_met_boxes(job, scratch, slab, x, top, list);
         else
             store_rectangles(scratch, list);
         used += padded;

@@ -19,7 +19,10 @@ struct RowLights {
 inline RowLights pick_row(Scratch& scratch, const BlockList& list, unsigned row) {
     const RowLights all = {scratch.list_ids.data() + list.begin,
                            scratch.row_columns_of(list) + std::size_t{row} * list.padded_count(), list.count};
-    if (all.count <= 16) return all;
+    if (all.count <= 16) {
+        const std::uint64_t any = load_8_bytes(all.columns) | (all.count > 8 ? load_8_bytes(all.columns + 8) : 0);
+        return any != 0 ? all : RowLights{};
+    }
     std::uint32_t in_row = 0;
     for (std::uint32_t i = 0; i < all.count; i += byte_lanes)
         in_row += static_cast<std::uint32_t>(
@@ -54,10 +57,10 @@ template <class Id> Id* append_64(Id* out, const std::uint32_t* ids, std::uint64
 /// Emits a block's tiles of one row: appends the lights of each to the index list and writes its range. Returns the list's end.
 /// Not inline: in a longer function compilers keep what it needs on the stack.
 ///
-/// at_most  there are no more lights: 16, 64, or any number
+/// columns  the number of tiles
 /// offset   of `out` in the index list
 /// words    for each 64 lights a word a column, with a bit a light
-template <unsigned at_most, class Id>
+template <bool up_to_64, class Id>
 LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset, const RowLights& row,
                                  const std::uint64_t* words) {
     const std::uint32_t* const ids = row.ids;
@@ -65,11 +68,28 @@ LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned columns, st
     for (unsigned column = 0; column < columns; ++column) {
         Id* const begin = out;
         std::uint32_t i = 0;
-        if constexpr (at_most > 64)
+        if constexpr (!up_to_64)
             for (; i + 64 < count; i += 64)
                 out = append_64(out, ids + i, words[i / 8 + column], 64);
-        if constexpr (at_most > 16)
-            out = append_64(out, ids + i, words[i / 8 + column], count - i);
+        out = append_64(out, ids + i, words[i / 8 + column], count - i);
+        const std::uint32_t size = static_cast<std::uint32_t>(out - begin);
+        tiles[column] = {offset, size};
+        offset += size;
+    }
+    return out;
+}
+
+#if !defined(LIGHTBIN_TIER_EMITS_SHORT)
+/// The same of up to 8 or 16 lights, given by their bytes of columns.
+template <unsigned at_most, class Id>
+LIGHTBIN_NOINLINE Id* emit_short(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset, const std::uint32_t* ids,
+                                 const std::uint8_t* row_columns) {
+    std::uint64_t words[8];
+    split_16_bytes(row_columns, words);
+    for (unsigned column = 0; column < columns; ++column) {
+        Id* const begin = out;
+        if constexpr (at_most == 8)
+            out = append_8(out, ids, static_cast<unsigned>(words[column] & 0xff));
         else
             out = append_16(out, ids, static_cast<unsigned>(words[column] & 0xffff));
         const std::uint32_t size = static_cast<std::uint32_t>(out - begin);
@@ -78,6 +98,7 @@ LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned columns, st
     }
     return out;
 }
+#endif
 
 /// Emits a row of tiles, number `row` of its band. Returns the end of the index list.
 template <class Id>
@@ -93,18 +114,17 @@ Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t offset, 
         }
         Id* end;
         if (lights.count <= 16) {
-            std::uint64_t words[8];
-            split_16_bytes(lights.columns, words);
-            end = emit_tiles<16>(out, tiles + x, columns, offset, lights, words);
+            end = lights.count <= 8 ? emit_short<8>(out, tiles + x, columns, offset, lights.ids, lights.columns)
+                                    : emit_short<16>(out, tiles + x, columns, offset, lights.ids, lights.columns);
         } else if (lights.count <= 64) {
             std::uint64_t words[8];
             split_bits(lights.columns, words);
-            end = emit_tiles<64>(out, tiles + x, columns, offset, lights, words);
+            end = emit_tiles<true>(out, tiles + x, columns, offset, lights, words);
         } else {
             std::uint64_t* const words = scratch.row_words.reserve(lights.count / 8 + std::uint64_t{16});
             for (std::uint32_t i = 0; i < lights.count; i += 64)
                 split_bits(lights.columns + i, words + i / 8);
-            end = emit_tiles<~0u>(out, tiles + x, columns, offset, lights, words);
+            end = emit_tiles<false>(out, tiles + x, columns, offset, lights, words);
         }
         offset += static_cast<std::uint32_t>(end - out);
         out = end;

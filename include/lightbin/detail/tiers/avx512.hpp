@@ -18,7 +18,7 @@
 
 #include <lightbin/detail/base/warnings_off.inl>
 
-LIGHTBIN_TARGET_BEGIN("avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2,bmi,bmi2,popcnt")
+LIGHTBIN_TARGET_BEGIN("avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2,avx512bitalg,bmi,bmi2,popcnt")
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace avx512 {
 
@@ -172,6 +172,63 @@ template <class Id> Id* append_16(Id* out, const std::uint32_t* ids, unsigned ma
     else
         _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm512_cvtepi32_epi16(chosen));
     return out + std::popcount(mask);
+}
+
+/// 0, 1, 2 ...
+inline constexpr auto counting_bytes = [] {
+    std::array<std::uint8_t, 64> bytes = {};
+    for (unsigned i = 0; i < 64; ++i)
+        bytes[i] = static_cast<std::uint8_t>(i);
+    return bytes;
+}();
+/// The positions of a word's set bits modulo `period`, a power of two: a byte each, in ascending order.
+template <int period> __m512i set_positions(std::uint64_t word) {
+    const __m512i positions = _mm512_and_si512(_mm512_loadu_si512(counting_bytes.data()), _mm512_set1_epi8(period - 1));
+    return _mm512_mask_compress_epi8(fresh_zeros(), word, positions);
+}
+/// Stores sixteen ids at `out`.
+template <class Id> void store_ids(Id* out, __m512i ids) {
+    if constexpr (sizeof(Id) == 4)
+        _mm512_storeu_si512(out, ids);
+    else
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm512_cvtepi32_epi16(ids));
+}
+
+/// Appends the lights of 64 / lights tiles, whose masks of `lights` bits are one after another in a word. Returns the end.
+template <int lights, class Id> Id* append_several(Id* out, __m512i ids, std::uint64_t masks) {
+    const __m512i positions = set_positions<lights>(masks);
+    const int count = std::popcount(masks);
+    store_ids(out, _mm512_permutexvar_epi32(_mm512_cvtepu8_epi32(_mm512_castsi512_si128(positions)), ids));
+    store_ids(out + 16, _mm512_permutexvar_epi32(_mm512_cvtepu8_epi32(_mm512_extracti32x4_epi32(positions, 1)), ids));
+    if (count > 32) {
+        store_ids(out + 32, _mm512_permutexvar_epi32(_mm512_cvtepu8_epi32(_mm512_extracti32x4_epi32(positions, 2)), ids));
+        store_ids(out + 48, _mm512_permutexvar_epi32(_mm512_cvtepu8_epi32(_mm512_extracti32x4_epi32(positions, 3)), ids));
+    }
+    return out + count;
+}
+
+#define LIGHTBIN_TIER_EMITS_SHORT
+/// Emits eight tiles of up to 8 or 16 lights as the emit_short() of emit.inl does, all together.
+template <unsigned at_most, class Id>
+Id* emit_short(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset, const std::uint32_t* ids,
+               const std::uint8_t* row_columns) {
+    // A byte a tile with a bit a light, of the first eight lights and of the others.
+    const std::uint64_t low = transpose_bits(load_8_bytes(row_columns)),
+                        high = at_most == 8 ? 0 : transpose_bits(load_8_bytes(row_columns + 8));
+    const __m128i lights = _mm_set_epi64x(static_cast<long long>(high), static_cast<long long>(low)),
+                  counts = _mm_popcnt_epi8(lights), sizes = _mm_add_epi8(counts, _mm_unpackhi_epi64(counts, counts));
+    // Sizes of at most 16, a byte a tile: a product makes running sums of them.
+    const std::uint64_t sums = static_cast<std::uint64_t>(_mm_cvtsi128_si64(sizes)) * 0x0101010101010101;
+    const __m512i ends = _mm512_cvtepu8_epi64(_mm_cvtsi64_si128(static_cast<long long>(sums))),
+                  begins = _mm512_cvtepu8_epi64(_mm_cvtsi64_si128(static_cast<long long>(sums << 8)));
+    _mm512_mask_storeu_epi64(tiles, static_cast<__mmask8>(0xff >> (8 - columns)),
+                             _mm512_or_si512(_mm512_add_epi32(begins, _mm512_set1_epi64(offset)),
+                                             _mm512_slli_epi64(_mm512_sub_epi64(ends, begins), 32)));
+    const __m512i table = _mm512_loadu_si512(ids);
+    if constexpr (at_most == 8) return append_several<8>(out, table, low);
+    const __m128i masks = _mm_unpacklo_epi8(lights, _mm_unpackhi_epi64(lights, lights));
+    out = append_several<16>(out, table, static_cast<std::uint64_t>(_mm_cvtsi128_si64(masks)));
+    return append_several<16>(out, table, static_cast<std::uint64_t>(_mm_extract_epi64(masks, 1)));
 }
 
 /// A vector of 64 bytes, and a mask of a bit each.

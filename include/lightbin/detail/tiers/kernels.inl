@@ -21,6 +21,7 @@
 //   split_bits(bytes, words)       for each of the 8 bits of 64 bytes the word of that bit in each: a transpose of 64x8 bits
 //   split_16_bytes(bytes, words)   the same of 16 bytes
 //   append_16(out, ids, mask)      appends those of 16 ids whose bit is set, and up to 16 elements without meaning; the end
+//   append_8                       the same of 8 ids, with up to 16 elements without meaning
 //   Bytes, ByteMask, byte_lanes    a vector of bytes without sign, a bit for each, how many
 //   load_bytes, store_bytes, broadcast_byte, &, minimum
 //   subtract                       0 where the difference is negative
@@ -91,4 +92,5 @@ struct Tier {
 }}}}  // namespace lightbin::detail
 
 #undef LIGHTBIN_KERNELS
+#undef LIGHTBIN_TIER_EMITS_SHORT
 #undef LIGHTBIN_TIER

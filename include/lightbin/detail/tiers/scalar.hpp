@@ -76,6 +76,9 @@ template <class Id> Id* append_16(Id* out, const std::uint32_t* ids, unsigned ma
     }
     return out;
 }
+template <class Id> Id* append_8(Id* out, const std::uint32_t* ids, unsigned mask) {
+    return append_16(out, ids, mask);
+}
 
 /// A vector of one byte, and a mask of one bit.
 using Bytes = std::uint8_t;

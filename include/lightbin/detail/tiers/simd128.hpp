@@ -102,10 +102,11 @@ template <class Id> Id* append_4(Id* out, const std::uint32_t* ids, unsigned mas
         store_half(out, narrow_ids(chosen));
     return out + set_of_4[mask];
 }
+template <class Id> Id* append_8(Id* out, const std::uint32_t* ids, unsigned mask) {
+    return append_4(append_4(out, ids, mask & 15), ids + 4, mask >> 4);
+}
 template <class Id> Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
-    for (unsigned i = 0; i < 16; i += 4)
-        out = append_4(out, ids + i, mask >> i & 15);
-    return out;
+    return append_8(append_8(out, ids, mask & 0xff), ids + 8, mask >> 8);
 }
 inline void compress_store(ByteMask chosen, const std::uint32_t* from, std::uint32_t* to) {
     append_16(to, from, chosen);
