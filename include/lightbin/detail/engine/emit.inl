@@ -44,7 +44,7 @@ inline RowLights pick_row(Scratch& scratch, const BlockList& list, unsigned row)
 
 /// Appends those of `count` ids, up to 64, whose bit is set. Returns the end. Branches rather than a loop, whose end would be
 /// mispredicted more often.
-template <class Id> Id* append_64(Id* out, const std::uint32_t* ids, std::uint64_t chosen, std::uint32_t count) {
+template <class Id> LIGHTBIN_INLINE Id* append_64(Id* out, const std::uint32_t* ids, std::uint64_t chosen, std::uint32_t count) {
     out = append_16(out, ids, static_cast<unsigned>(chosen & 0xffff));
     if (count <= 16) return out;
     out = append_16(out, ids + 16, static_cast<unsigned>(chosen >> 16 & 0xffff));

@@ -149,7 +149,7 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
 }
 
 /// Appends those of eight ids whose bit is set, and up to 8 elements without meaning. Returns the end.
-template <class Id> Id* append_8(Id* out, const std::uint32_t* ids, unsigned mask) {
+template <class Id> LIGHTBIN_INLINE Id* append_8(Id* out, const std::uint32_t* ids, unsigned mask) {
     const __m256i chosen = _mm256_permutevar8x32_epi32(
         _mm256_loadu_si256(reinterpret_cast<const __m256i*>(ids)),
         _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_bits.of + mask))));
@@ -160,7 +160,7 @@ template <class Id> Id* append_8(Id* out, const std::uint32_t* ids, unsigned mas
                          _mm_packus_epi32(_mm256_castsi256_si128(chosen), _mm256_extracti128_si256(chosen, 1)));
     return out + std::popcount(mask);
 }
-template <class Id> Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
+template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
     return append_8(append_8(out, ids, mask & 0xff), ids + 8, mask >> 8);
 }
 

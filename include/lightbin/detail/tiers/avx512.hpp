@@ -165,7 +165,7 @@ inline __m512i fresh_zeros() {
 }
 
 /// Appends those of sixteen ids whose bit is set, and up to 16 elements without meaning. Returns the end.
-template <class Id> Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
+template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
     const __m512i chosen = _mm512_mask_compress_epi32(fresh_zeros(), static_cast<__mmask16>(mask), _mm512_loadu_si512(ids));
     if constexpr (sizeof(Id) == 4)
         _mm512_storeu_si512(out, chosen);

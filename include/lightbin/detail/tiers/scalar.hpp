@@ -69,14 +69,14 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     split_bytes<64>(bytes, words);
 }
 /// Each id is written, and the end moves on past those whose bit is set: no branch to mispredict.
-template <class Id> Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
+template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
     for (unsigned i = 0; mask != 0; ++i, mask >>= 1) {
         *out = static_cast<Id>(ids[i]);
         out += mask & 1;
     }
     return out;
 }
-template <class Id> Id* append_8(Id* out, const std::uint32_t* ids, unsigned mask) {
+template <class Id> LIGHTBIN_INLINE Id* append_8(Id* out, const std::uint32_t* ids, unsigned mask) {
     return append_16(out, ids, mask);
 }
 

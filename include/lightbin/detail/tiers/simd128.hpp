@@ -94,7 +94,7 @@ inline constexpr Compress4 compress_4 = [] {
 }();
 
 /// Appends those of four ids whose bit is set, and up to 4 elements without meaning. Returns the end.
-template <class Id> Id* append_4(Id* out, const std::uint32_t* ids, unsigned mask) {
+template <class Id> LIGHTBIN_INLINE Id* append_4(Id* out, const std::uint32_t* ids, unsigned mask) {
     const ByteRegister chosen = shuffle_bytes(load_register(ids), load_register(compress_4.of[mask]));
     if constexpr (sizeof(Id) == 4)
         store_register(out, chosen);
@@ -102,10 +102,10 @@ template <class Id> Id* append_4(Id* out, const std::uint32_t* ids, unsigned mas
         store_half(out, narrow_ids(chosen));
     return out + set_of_4[mask];
 }
-template <class Id> Id* append_8(Id* out, const std::uint32_t* ids, unsigned mask) {
+template <class Id> LIGHTBIN_INLINE Id* append_8(Id* out, const std::uint32_t* ids, unsigned mask) {
     return append_4(append_4(out, ids, mask & 15), ids + 4, mask >> 4);
 }
-template <class Id> Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
+template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
     return append_8(append_8(out, ids, mask & 0xff), ids + 8, mask >> 8);
 }
 inline void compress_store(ByteMask chosen, const std::uint32_t* from, std::uint32_t* to) {
