@@ -152,16 +152,21 @@ void meet_64_lights(const BinJob<Id>& job, const BlockCells<depth_test>& cells, 
     if (in_range != 0) meet_tiles(cells, tested, columns, rows, in_range, met);
 }
 
-/// Stores the bytes of Scratch::row_columns_of() for lights that are in all tiles of their rectangles.
-inline void store_rectangles(Scratch& scratch, const BlockList& list) {
+/// Stores the bytes of Scratch::row_columns_of() for lights that are in all tiles of their rectangles or, by_slab, in those of them
+/// that are among store_met_boxes()'s.
+template <bool by_slab> void store_rectangles(Scratch& scratch, const BlockList& list) {
     const std::uint32_t padded = list.padded_count();
     std::uint8_t* const columns = scratch.list_columns.data() + list.begin;
     const std::uint8_t* const rows = scratch.list_rows.data() + list.begin;
+    const std::uint8_t* met = reinterpret_cast<const std::uint8_t*>(scratch.tile_masks.data());
     std::uint8_t* to = scratch.row_columns_of(list);
     std::memset(columns + list.count, 0, 16);
-    for (unsigned row = 0; row < 8; ++row, to += padded)
-        for (std::uint32_t i = 0; i < padded; i += byte_lanes)
-            store_bytes(to + i, keep_where(load_bytes(columns + i), load_bytes(rows + i) & broadcast_byte(1u << row)));
+    for (unsigned row = 0; row < 8; ++row, to += padded, met += padded)
+        for (std::uint32_t i = 0; i < padded; i += byte_lanes) {
+            const Bytes in_row = load_bytes(rows + i) & broadcast_byte(1u << row);
+            const Bytes in_columns = by_slab ? load_bytes(columns + i) & load_bytes(met + i) : load_bytes(columns + i);
+            store_bytes(to + i, keep_where(in_columns, in_row));
+        }
 }
 
 /// Stores the bytes of Scratch::row_columns_of() for lights with masks: transposes 8x8 bytes, of 8 lights and 8 rows.
@@ -179,8 +184,8 @@ inline void store_masks(Scratch& scratch, const BlockList& list) {
     }
 }
 
-/// Stores the bytes of Scratch::row_columns_of() for spheres that are tested against the boxes of a slice, in the block that begins
-/// at column 8 x and row `top`.
+/// Tests a list's spheres against the boxes of a slice, in the block that begins at column 8 x and row `top`. Stores the boxes that
+/// they meet in scratch.tile_masks, in the form of Scratch::row_columns_of().
 ///
 /// The boxes have the same depths and differ only by column and by row, so the squared distance to each is a sum of one along x by
 /// column, one along y by row and one along z: 17 numbers and a comparison a tile. A box is missed where
@@ -199,9 +204,7 @@ void store_met_boxes(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& s
     }
     const std::uint32_t padded = list.padded_count();
     const std::uint32_t* const ids = scratch.list_ids.data() + list.begin;
-    const std::uint8_t *const columns = scratch.list_columns.data() + list.begin,
-                       *const rows = scratch.list_rows.data() + list.begin;
-    std::uint8_t* const row_columns = scratch.row_columns_of(list);
+    std::uint8_t* const met = reinterpret_cast<std::uint8_t*>(scratch.tile_masks.reserve(padded + std::uint64_t{64}));
     for (std::uint32_t i = 0; i < list.count; ++i) {
         const TestedLight light(*job.camera, load_sphere(job.lights.spheres + ids[i]));
         const float z_distance = max_of(max_of(slab.z0 - light.z, light.z - slab.z1), 0.0f);
@@ -218,12 +221,9 @@ void store_met_boxes(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& s
             unsigned missed = 0;
             for (unsigned k = 0; k < vectors; ++k)
                 missed |= movemask(less(broadcast(left_by_row[row]), x2[k])) << k * lanes;
-            const unsigned in_row = 0u - (rows[i] >> row & 1u);
-            row_columns[row * padded + i] = static_cast<std::uint8_t>(columns[i] & in_row & ~missed);
+            met[row * padded + i] = static_cast<std::uint8_t>(~missed);
         }
     }
-    for (unsigned row = 0; row < 8; ++row)
-        std::memset(row_columns + row * padded + list.count, 0, padded - list.count);
 }
 
 /// Finds the mask of each light of a list of indices, of the block that begins at column 8 x and row `top`. Drops the lights that
@@ -286,8 +286,7 @@ const BlockList* list_lights(const BinJob<Id>& job, Scratch& scratch, const Slab
             store_masks(scratch, list);
         else if constexpr (by_slab)
             store_met_boxes(job, scratch, slab, x, top, list);
-        else
-            store_rectangles(scratch, list);
+        if constexpr (!masked) store_rectangles<by_slab>(scratch, list);
         used += padded;
     }
     return used == 0 ? nullptr : lists;
