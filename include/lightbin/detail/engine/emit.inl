@@ -23,6 +23,7 @@ inline RowLights pick_row(Scratch& scratch, const BlockList& list, unsigned row)
         const std::uint64_t any = load_8_bytes(all.columns) | (all.count > 8 ? load_8_bytes(all.columns + 8) : 0);
         return any != 0 ? all : RowLights{};
     }
+    if (all.count <= 64) return all;
     std::uint32_t in_row = 0;
     for (std::uint32_t i = 0; i < all.count; i += byte_lanes)
         in_row += static_cast<std::uint32_t>(
