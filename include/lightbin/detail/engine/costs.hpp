@@ -25,9 +25,9 @@ inline std::size_t project_parts(std::size_t chunks, std::size_t workers) {
 
 /// Whether rectangles with `area` tiles in all are binned sooner by scattering than by blocks. A walk over all blocks costs as much
 /// as scattering some entries a tile. Without vectors scattering is always faster.
-inline bool scatter_is_faster(Isa isa, std::uint64_t tiles, std::uint64_t lights, std::uint64_t area) {
+inline bool scatter_is_faster(Isa isa, std::uint64_t tiles, std::uint64_t area) {
     if (isa == Isa::scalar) return true;
-    return isa == Isa::avx512 ? area <= tiles && lights < tiles / 16 : area < 3 * tiles;
+    return area < (isa == Isa::avx512 ? 1 : 3) * tiles;
 }
 
 /// About how many ns one thread of a fast processor takes to bin lights by scattering, apart from what each share of the work does
@@ -47,7 +47,7 @@ inline double block_ns(Isa isa, bool tested, double lights, double entries) {
 /// The same by the faster way.
 template <bool tested> double bin_ns(Isa isa, std::uint64_t tiles, std::uint64_t lights, std::uint64_t area) {
     const double count = static_cast<double>(lights), entries = static_cast<double>(area);
-    return !tested && scatter_is_faster(isa, tiles, lights, area) ? scatter_ns(count, entries)
+    return !tested && scatter_is_faster(isa, tiles, area) ? scatter_ns(count, entries)
                                                                   : block_ns(isa, tested, count, entries);
 }
 

@@ -191,7 +191,7 @@ private:
     }
 
     template <bool spots> static BinKernel<Id> kernel_of(Isa isa, const View& view, const Job& job) {
-        return bin_kernel<footprint, depth_test, Id, by_slab<spots>, spots>(isa, view, job.visible, job.area);
+        return bin_kernel<footprint, depth_test, Id, by_slab<spots>, spots>(isa, view, job.area);
     }
 
     Buffer<ListRange> tiles_;

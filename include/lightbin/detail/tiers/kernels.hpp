@@ -55,14 +55,14 @@ BitsKernel<Id> bits_kernel(Isa isa) {
     });
 }
 
-/// The fastest kernel for `lights` lights in view whose rectangles have `area` tiles in all.
+/// The fastest kernel for lights whose rectangles have `area` tiles in all.
 ///
 /// by_slab  boxes are those of a slice, see slab_tiles_met()
 /// spots    the lights are spots
 template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>
-BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint32_t lights, std::uint64_t area) {
+BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint64_t area) {
     if constexpr (!has_tests<footprint, depth_test>)
-        if (scatter_is_faster(isa, view.tile_count(), lights, area)) return scatter_lights<Id>;
+        if (scatter_is_faster(isa, view.tile_count(), area)) return scatter_lights<Id>;
     return with_tier(isa, [](auto tier) {
         return tier.template bin_kernel < footprint, depth_test, Id, by_slab,
                spots && reads_spots < depth_test >> ();
