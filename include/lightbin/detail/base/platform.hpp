@@ -45,21 +45,17 @@
 #endif
 #endif
 
-// Makes the compiler forget how a number or vector came about, or an array in memory. See rounded(). Microsoft's fuses
+// Makes the compiler forget how a number or vector came about. See rounded(). Microsoft's fuses
 // nothing unless told to, and WebAssembly cannot. On processors without a tier of their own by way of memory, which all
 // compilers understand.
 #if defined(__x86_64__) || defined(__i386__)
 #define LIGHTBIN_FORGET(value) __asm__("" : "+v"(value))
-#define LIGHTBIN_FORGET_ARRAY(array) __asm__("" : "+m"(array))
 #elif defined(__aarch64__) && (defined(__GNUC__) || defined(__clang__))
 #define LIGHTBIN_FORGET(value) __asm__("" : "+w"(value))
-#define LIGHTBIN_FORGET_ARRAY(array) __asm__("" : "+m"(array))
 #elif defined(__GNUC__) && !defined(__wasm__)
 #define LIGHTBIN_FORGET(value) __asm__("" : "+m"(value))
-#define LIGHTBIN_FORGET_ARRAY(array) __asm__("" : "+m"(array))
 #else
 #define LIGHTBIN_FORGET(value) static_cast<void>(value)
-#define LIGHTBIN_FORGET_ARRAY(array) static_cast<void>(array)
 #endif
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {

@@ -8,7 +8,6 @@
 // 2(2), 2013).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
-#include <lightbin/detail/project/eights.inl>
 #include <lightbin/detail/project/world_to_view.inl>
 #endif
 
@@ -182,32 +181,19 @@ inline void project(const Camera& camera, const LightSource& source, std::uint32
     Sphere chunk[ChunkRects::size], padded[lanes];
     const MoveLanes move(source.to_view);
     const ViewLanes view(camera);
-    const bool by_vectors =
-        lanes > 1 && source.to_view != nullptr;  // the scalar tier moves them before, see take()
+    const bool moved = source.to_view != nullptr;
     // Copies are made a few at a time, so that the next lights are fetched while these are projected.
-    const std::uint32_t usual = source.copy != nullptr ? 32 : ChunkRects::size;
-    std::uint32_t most = lanes == 1 ? 8 : usual;
+    const std::uint32_t batch = source.copy != nullptr ? 32 : ChunkRects::size;
     for (std::uint32_t here; count > 0; count -= here, first += here) {
-        here = min_of(count, most);
+        here = min_of(count, batch);
         // Where spheres come from, and where they are in view space.
         Sphere* const own = source.kept != nullptr ? source.kept + first : chunk;
         const Sphere* const given = source.spheres != nullptr ? source.spheres + first : own;
-        const Sphere* const spheres = source.to_view != nullptr ? own : given;
-        if constexpr (lanes == 1) {
-            const std::uint32_t eight = min_of(here, 8u);
-            take(source, first, eight, given, own);
-            if (eight == 8 && eight_out_of_view(camera, spheres)) {
-                here = most = 8;
-                continue;
-            }
-            take(source, first + eight, here - eight, given + eight, own + eight);
-            if (most < usual) most *= 2;  // ask less often where the answer is no
-        } else if (source.copy != nullptr) {
-            source.copy(source.lights, first, here, own, nullptr);
-        }
+        const Sphere* const spheres = moved ? own : given;
+        if (source.copy != nullptr) source.copy(source.lights, first, here, own, nullptr);
         std::uint32_t careful_count = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
-            const Sphere* from = (lanes == 1 ? spheres : given) + i;
+            const Sphere* from = given + i;
             const std::uint32_t used = min_of(lanes, here - i);
             if (used < lanes) {
                 for (std::uint32_t lane = 0; lane < lanes; ++lane)
@@ -216,7 +202,7 @@ inline void project(const Camera& camera, const LightSource& source, std::uint32
             }
             Floats x, y, z, r;
             load_spheres(from, x, y, z, r);
-            if (by_vectors) move_spheres(move, x, y, z, r);
+            if (moved) move_spheres(move, x, y, z, r);
             const Floats at[] = {x, y, z};
             x = x * view.sign_x;
             y = y * view.sign_y;
@@ -236,7 +222,7 @@ inline void project(const Camera& camera, const LightSource& source, std::uint32
                 tangent_slopes(y, z, r, e, per_e, bottom, top);
             }
             unsigned rest = ~movemask(either(plain, culled)) & valid;
-            if (by_vectors && (source.kept != nullptr || rest != 0))
+            if (moved && (source.kept != nullptr || rest != 0))
                 store_spheres(own + i, at[0], at[1], at[2], r);
             for (; rest != 0; rest &= rest - 1)
                 careful[careful_count++] =

@@ -42,8 +42,6 @@
 
 #include <lightbin/detail/project/world_to_view.inl>
 
-#include <lightbin/detail/project/eights.inl>
-
 #include <lightbin/detail/project/spheres.inl>
 
 #include <lightbin/detail/project/spot_vectors.inl>
