@@ -46,7 +46,7 @@ list() {
     mutant families detail/project/spheres.inl 's/either(either(less(farthest, view.front)/either(either(less(nearest, view.front)/'
     mutant families detail/project/spheres.inl 's/less(size \* 0x1p-21f, aside - r)/less(size * -0x1p-19f, aside - r)/'
     mutant families detail/project/spheres.inl 's/+ offset - margin;/+ offset + margin;/'
-    mutant families detail/project/spheres.inl 's/less_equal(size, broadcast(most_plain))/less_equal(size, broadcast(0x1p100f))/'
+    mutant families detail/project/spheres.inl 's/less_equal(size, broadcast(float_safe_max))/less_equal(size, broadcast(0x1p100f))/'
     mutant families detail/project/spheres.inl 's/const auto behind = less(z, zero);/const auto behind = less(zero, z);/'
     mutant cells detail/project/spheres.inl 's/const auto whole = less(broadcast(near_depth), nearest);/const auto whole = less(broadcast(0.0), nearest);/'
     mutant families detail/project/spheres.inl 's/const Doubles h = sqrt(maximum(h2, zero) + h2_error);/const Doubles h = sqrt(maximum(h2, zero)) * 0.999;/'

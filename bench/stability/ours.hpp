@@ -86,7 +86,7 @@ inline Behind behind(const lightbin::detail::Camera& camera, const lightbin::Sph
     const float x = sphere.x * camera.x.sign, y = sphere.y * camera.y.sign, z = sphere.z * camera.z_sign,
                 r = sphere.radius;
     const float nearest = z - r, farthest = z + r, size = std::abs(x) + std::abs(y) + std::abs(z) + r;
-    const bool usable = size <= lightbin::detail::most_plain && lightbin::detail::least_plain <= r;
+    const bool usable = size <= lightbin::detail::float_safe_max && lightbin::detail::float_safe_min <= r;
     Behind result;
     if (usable && scalar::out_of_view(scalar::ViewLanes(camera), x, y, z, r, nearest, farthest, size))
         return result;

@@ -34,7 +34,7 @@ static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<doubl
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// Lights are taken in floats whose sizes lie between: squares neither over- nor underflow.
-inline constexpr float least_plain = 0x1p-40f, most_plain = 0x1p40f;
+inline constexpr float float_safe_min = 0x1p-40f, float_safe_max = 0x1p40f;
 
 /// Returns the largest float below a finite `value`. (std::nextafter is a call.)
 inline float next_below(float value) {

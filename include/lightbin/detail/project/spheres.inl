@@ -208,7 +208,7 @@ inline void project(const Camera& camera, const LightSource& source, std::uint32
             y = y * view.sign_y;
             z = z * view.sign_z;
             const Floats nearest = z - r, farthest = z + r, size = abs(x) + abs(y) + abs(z) + r;
-            const auto usable = both(less_equal(size, broadcast(most_plain)), less_equal(broadcast(least_plain), r));
+            const auto usable = both(less_equal(size, broadcast(float_safe_max)), less_equal(broadcast(float_safe_min), r));
             const auto culled = both(usable, out_of_view(view, x, y, z, r, nearest, farthest, size));
             const unsigned valid = used < 32 ? (1u << used) - 1 : ~0u;
             unsigned& in_view = visible[i / lanes] = 0;

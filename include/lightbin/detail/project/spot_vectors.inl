@@ -48,9 +48,9 @@ LIGHTBIN_INLINE void shape_spots(const Camera& camera, const MoveLanes& move,
     const Floats away = abs(spots.x) + abs(spots.y) + abs(spots.z),
                  long_axis = abs(axis[0]) + abs(axis[1]) + abs(axis[2]);
     // What floats can make a ViewSpot of; others are binned as their least spheres.
-    auto plain = both(less_equal(away, broadcast(most_plain)), less_equal(abs(cosine), broadcast(1.0f)));
+    auto plain = both(less_equal(away, broadcast(float_safe_max)), less_equal(abs(cosine), broadcast(1.0f)));
     plain = both(plain,
-                 both(less_equal(broadcast(least_plain), given_radius), less_equal(given_radius, broadcast(most_plain))));
+                 both(less_equal(broadcast(float_safe_min), given_radius), less_equal(given_radius, broadcast(float_safe_max))));
     plain = both(plain, both(less_equal(broadcast(0x1p-20f), long_axis), less_equal(long_axis, broadcast(0x1p20f))));
     Floats blur = mul(spots.radius, broadcast(0x1p-18f));
     if (move.to_view != nullptr) {

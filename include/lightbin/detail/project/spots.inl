@@ -158,7 +158,7 @@ inline void project_spots(const Camera& camera, const LightSource& source, std::
 
             const Floats size = abs(spots.x) + abs(spots.y) + abs(spots.z) + spots.radius;
             const auto usable =
-                both(less_equal(size, broadcast(most_plain)), less_equal(broadcast(least_plain), spots.radius));
+                both(less_equal(size, broadcast(float_safe_max)), less_equal(broadcast(float_safe_min), spots.radius));
             const auto culled = both(usable, out_of_view(view, spots.x, spots.y, spots.z, spots.radius,
                                                          nearest, farthest, size));
             const unsigned used = min_of(lanes, here - i), valid = used < 32 ? (1u << used) - 1 : ~0u;

@@ -160,7 +160,7 @@ private:
         floats_.error = float_above(root_of(longest2) * (6 * 0x1p-24) * (1 + 0x1p-18));
         floats_.least_error = float_above((offset * 0x1p-23 + before * 0x1p-50) * (1 + 0x1p-18) + 0x1p-100);
         floats_.bend = uneven_ < 0x1p-4 ? float_above(3 * uneven_ + 0x1p-40) : infinity;
-        floats_.most = most_plain;
+        floats_.most = float_safe_max;
     }
 
     Matrix m_;

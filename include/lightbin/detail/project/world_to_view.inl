@@ -53,7 +53,7 @@ LIGHTBIN_INLINE void move_spheres(const MoveLanes& move, Floats& x, Floats& y, F
     const Floats dx = x - move.origin[0], dy = y - move.origin[1], dz = z - move.origin[2];
     const Floats away = abs(dx) + abs(dy) + abs(dz);
     const auto plain = both(less_equal(away, move.most),
-                            both(less_equal(broadcast(least_plain), radius), less_equal(radius, broadcast(most_plain))));
+                            both(less_equal(broadcast(float_safe_min), radius), less_equal(radius, broadcast(float_safe_max))));
     const Floats given[] = {x, y, z, radius};
     x = moved_direction(move, 0, dx, dy, dz) + move.at_origin[0];
     y = moved_direction(move, 1, dx, dy, dz) + move.at_origin[1];
