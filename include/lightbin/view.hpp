@@ -324,7 +324,7 @@ private:
     detail::Maybe<ErrorCode> set_depth_range() {
         const DepthInterval range = view_depths(0, 1);
         camera_.near_depth = range.min;
-        camera_.near_fast = detail::max_of(detail::float_safe_min, range.min);
+        camera_.min_float_depth = detail::max_of(detail::float_safe_min, range.min);
         camera_.far_depth = range.max;
         if (camera_.orthographic) {
             if (detail::is_finite(range.min) && detail::is_finite(range.max)) return {};

@@ -33,7 +33,7 @@ struct Camera {
     float z_sign = 1;      ///< view depth = z_sign * z
     float near_depth = 0;  ///< rounded down
     float far_depth = 0;   ///< rounded up, may be +inf
-    float near_fast = 0;   ///< spheres beyond it are projected in float: near_depth, but at least float_safe_min
+    float min_float_depth = 0;   ///< spheres beyond it are projected in float: near_depth, but at least float_safe_min
     bool orthographic = false;
 };
 

@@ -55,7 +55,7 @@ inline unsigned row_terms(const Camera& camera, Doubles x, Doubles y, Doubles z,
         g_z = z;
         r2_v = r2;
         largest_f = mul(r, broadcast(1 + most));
-        whole = less(broadcast(static_cast<double>(camera.near_fast)), z - r);
+        whole = less(broadcast(static_cast<double>(camera.min_float_depth)), z - r);
     }
     const Doubles m = mul(g_z, broadcast(most)) + abs(y) + largest_f;
     const Doubles error =

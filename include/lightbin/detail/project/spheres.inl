@@ -216,7 +216,7 @@ inline void project(const Camera& camera, const LightSource& source, std::uint32
             auto plain = and_not(usable, culled);
             Floats left = x - r, right = x + r, bottom = y - r, top = y + r;
             if (!camera.orthographic) {
-                plain = both(plain, less(broadcast(camera.near_fast), nearest));
+                plain = both(plain, less(broadcast(camera.min_float_depth), nearest));
                 const Floats e = mul(nearest, farthest), per_e = 1.0f / e;
                 tangent_slopes(x, z, r, e, per_e, left, right);
                 tangent_slopes(y, z, r, e, per_e, bottom, top);

@@ -171,7 +171,7 @@ inline void project_spots(const Camera& camera, const LightSource& source, std::
             if (camera.orthographic) {
                 find_coordinates(spots, bounds);
             } else {
-                plain = both(plain, both(less(broadcast(camera.near_fast), spots.z - spots.radius),
+                plain = both(plain, both(less(broadcast(camera.min_float_depth), spots.z - spots.radius),
                                          less(size * 0x1p-16f, nearest)));
                 find_slopes(spots, size, nearest, across_z, bounds);
             }
