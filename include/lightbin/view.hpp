@@ -291,7 +291,7 @@ private:
         axis.sign = p < 0 ? -1.0f : 1.0f;
         axis.scale = detail::abs_of(p) / w * (0.5 * tiles);
         axis.offset = (q / w + 1.0) * (0.5 * tiles);
-        axis.inside = static_cast<float>(axis.tiles) - 0.5f;
+        axis.last_tile_centre = static_cast<float>(axis.tiles) - 0.5f;
         axis.limit = detail::float_above(tiles);
         // A float slope is within 10u of the truth (u = 2^-24, see project.inl), times scale as a float 12u, plus u
         // of offset and u of the sum; inside the viewport |scale * slope| <= |offset| + tiles. 16u leaves room
@@ -302,8 +302,8 @@ private:
         if (!camera_.orthographic && axis.scale > 0) {
             const double slope = detail::max_of(tiles - axis.offset, axis.offset) / axis.scale;
             const double length = detail::root_of(1 + slope * slope);
-            axis.side = static_cast<float>(1 / length);
-            axis.side_z = static_cast<float>(-slope / length);
+            axis.normal = static_cast<float>(1 / length);
+            axis.normal_z = static_cast<float>(-slope / length);
         }
         if (side == 0) {
             axis.limit = -1;  // nothing is inside

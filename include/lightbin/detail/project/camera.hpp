@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the stages read of a View.
+// The constants of a View that the projection and the depth tests read.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -10,30 +10,31 @@ class View;
 
 namespace detail {
 
-/// One image axis of a camera, oriented so that the tile index grows with the coordinate. A point with
-/// coordinate c (after the sign) and view depth d lands at  scale * (c / d) + offset  tiles (perspective)  or
-/// scale * c + offset (orthographic). Off-centre, jittered, reversed, flipped cameras differ in these numbers
-/// only.
+/// How one image axis, x or y, maps view space to tiles. A point with the coordinate c, multiplied by `sign`, and the view
+/// depth d is projected to  scale * (c / d) + offset  tiles with a perspective projection, and to  scale * c + offset  with
+/// an orthographic one. Off-centre, jittered and flipped projections differ in these numbers only.
 struct ImageAxis {
-    double scale = 0;  ///< > 0
+    double scale = 0;  ///< greater than 0
     double offset = 0;
-    float sign = 1;    ///< of the view-space coordinate
-    float margin = 0;  ///< bound on the error of a float tile coordinate inside the viewport, in tiles
-    float limit = 0;   ///< the viewport's far edge in tiles, rounded up
-    float inside = 0;  ///< a coordinate in the last tile
-    /// A plane through the eye with the whole viewport on one side, and so its mirror image: points at depth
-    /// d with  side * |c| + side_z * d > 0  are out of view. Of unit length; 0 if there is no such plane.
-    float side = 0, side_z = 0;
+    float sign = 1;    ///< 1, or -1 where tile indices grow as the view-space coordinate falls
+    float margin = 0;  ///< bound on the error, in tiles, of a coordinate inside the viewport that is computed in float
+    float limit = 0;   ///< the viewport's size in tiles, partial tiles as fractions, rounded up
+    float last_tile_centre = 0;  ///< coordinates are clamped to it before they are truncated to tile indices
+    /// Unit normal (normal, normal_z) of a plane through the eye that has the whole viewport on its inner side. So has
+    /// its mirror image: a point with the coordinate c and the view depth d is out of view if
+    /// normal * |c| + normal_z * d > 0. Both are 0 with an orthographic projection, which has no such plane.
+    float normal = 0, normal_z = 0;
     int tiles = 0;
 };
 
-/// Everything the projection stage needs to know of a view.
+/// What the projection of lights has to know of a View.
 struct Camera {
     ImageAxis x, y;
-    float z_sign = 1;      ///< view depth = z_sign * z
-    float near_depth = 0;  ///< rounded down
-    float far_depth = 0;   ///< rounded up, may be +inf
-    float min_float_depth = 0;   ///< spheres beyond it are projected in float: near_depth, but at least float_safe_min
+    float z_sign = 1;      ///< view depth = z_sign * z, so that it grows away from the eye
+    float near_depth = 0;  ///< view depth of the near plane, rounded down
+    float far_depth = 0;   ///< view depth of the far plane, rounded up; +inf where there is none
+    /// Spheres that lie wholly beyond this view depth can be projected in float: near_depth, or float_safe_min if larger.
+    float min_float_depth = 0;
     bool orthographic = false;
 };
 

@@ -85,7 +85,7 @@ inline Mask tile_span(const ImageAxis& axis, Reals low, Reals high, Mask visible
                margin = static_cast<Real>(axis.margin);
     low = mul(low, broadcast(scale)) + offset - margin;
     high = mul(high, broadcast(scale)) + offset + margin;
-    const Reals zero = Reals{}, inside = broadcast(static_cast<Real>(axis.inside));
+    const Reals zero = Reals{}, inside = broadcast(static_cast<Real>(axis.last_tile_centre));
     store_tiles(first, minimum(maximum(low, zero), inside));
     store_tiles(last, minimum(maximum(high, zero), inside));
     return both(visible, both(less_equal(zero, high), less_equal(low, broadcast(static_cast<Real>(axis.limit)))));
@@ -150,8 +150,8 @@ inline void project_carefully(const Camera& camera, const Sphere* spheres,
 struct ViewLanes {
     explicit ViewLanes(const Camera& camera)
         : sign_x(broadcast(camera.x.sign)), sign_y(broadcast(camera.y.sign)), sign_z(broadcast(camera.z_sign)),
-          side_x(broadcast(camera.x.side)), side_xz(broadcast(camera.x.side_z)), side_y(broadcast(camera.y.side)),
-          side_yz(broadcast(camera.y.side_z)), front(broadcast(camera.near_depth)), back(broadcast(camera.far_depth)) {}
+          side_x(broadcast(camera.x.normal)), side_xz(broadcast(camera.x.normal_z)), side_y(broadcast(camera.y.normal)),
+          side_yz(broadcast(camera.y.normal_z)), front(broadcast(camera.near_depth)), back(broadcast(camera.far_depth)) {}
 
     Floats sign_x, sign_y, sign_z, side_x, side_xz, side_y, side_yz, front, back;
 };
