@@ -83,7 +83,7 @@ private:
             last_bins[i] = last;
             ++begins[first];
         };
-        detail::table_of(slices).find(detail::slice_places_kernel<spots>(isa), true,
+        detail::table_of(slices).find(detail::depth_buckets_kernel<spots>(isa), true,
                                       detail::camera_of(view).z_sign, footprints.arrays(), footprints.runs(),
                                       found);
     }

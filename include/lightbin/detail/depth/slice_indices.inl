@@ -7,8 +7,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// SlicePlaces::of() of each lane.
-inline Floats slice_place(const SlicePlaces& to, Floats depth) {
+/// DepthBuckets::of() of each lane.
+inline Floats slice_place(const DepthBuckets& to, Floats depth) {
     depth = depth + broadcast(0.0f);  // not -0
     const Floats place = mul((to.by_bits ? ascending_bits(depth) : depth) - broadcast(to.begin), broadcast(to.scale));
     return minimum(maximum(place, broadcast(0.0f)), broadcast(to.last));
@@ -37,8 +37,8 @@ inline void load_depths(const FootprintArrays& lights, float z_sign, const std::
 
 /// Finds the depths of the `count` lights that `ids` number, and their places. There are ids to fill up a vector.
 template <bool spots>
-inline void slice_places(const SlicePlaces& to, float z_sign, const FootprintArrays& lights,
-                                         const std::uint32_t* ids, std::uint32_t count, PlacedDepths& out) {
+inline void find_depth_buckets(const DepthBuckets& to, float z_sign, const FootprintArrays& lights,
+                                         const std::uint32_t* ids, std::uint32_t count, LightDepths& out) {
     for (std::uint32_t i = 0; i < count; i += lanes) {
         Floats nearest, farthest;
         load_depths<spots>(lights, z_sign, ids + i, nearest, farthest);

@@ -19,7 +19,7 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 /// From a depth to its place in a table.
-struct SlicePlaces {
+struct DepthBuckets {
     float begin = 0, scale = 0, last = 0;
     bool by_bits = false;
 
@@ -38,7 +38,7 @@ struct SlicePlaces {
 };
 
 /// The depths of some lights, and the places of those; written in whole vectors.
-struct PlacedDepths {
+struct LightDepths {
     static constexpr std::uint32_t size = 64;
     float nearest[size], farthest[size];
     std::uint16_t first[size], last[size];
@@ -71,16 +71,16 @@ public:
     /// Calls found(i, first, last) for each light i of the runs: its depths, ends included, meet the slices first..last.
     /// Where `roughly`, these may be one more at either end, if that is sooner known.
     ///
-    /// kernel        slice_places() of a tier
+    /// kernel        find_depth_buckets() of a tier
     /// lights, runs  FootprintArrays and FootprintRuns
     template <class Kernel, class Lights, class Runs, class Found>
     void find(Kernel kernel, bool roughly, float z_sign, const Lights& lights, Runs runs, Found found) const {
         roughly = roughly && shared_ == 0 && places_.last < most_places - 1;
         for (const auto& run : runs) {
             fill_items(lights.ids + run.end, 16, lights.ids[run.begin]);  // whole vectors of lights are read
-            for (std::uint32_t i = run.begin; i < run.end; i += PlacedDepths::size) {
-                const std::uint32_t count = min_of(run.end - i, PlacedDepths::size);
-                PlacedDepths at;
+            for (std::uint32_t i = run.begin; i < run.end; i += LightDepths::size) {
+                const std::uint32_t count = min_of(run.end - i, LightDepths::size);
+                LightDepths at;
                 kernel(places_, z_sign, lights, lights.ids + i, count, at);
                 if (margin > 0) widen(at, count);
                 for (std::uint32_t j = 0; j < count && roughly; ++j)
@@ -102,7 +102,7 @@ private:
         return exact + abs_of(exact) * static_cast<double>(share);  // of floats, so the product is exact
     }
 
-    void widen(PlacedDepths& at, std::uint32_t count) const {
+    void widen(LightDepths& at, std::uint32_t count) const {
         for (std::uint32_t i = 0; i < count; ++i) {
             at.nearest[i] = nearer(at.nearest[i]);
             at.farthest[i] = farther(at.farthest[i]);
@@ -148,7 +148,7 @@ private:
     std::size_t count_;             ///< of those without it
     Buffer<std::uint32_t> before_;  ///< how many boundaries are before a place, and in all of them
     std::size_t shared_ = 0;        ///< boundaries that are in the place of another
-    SlicePlaces places_;
+    DepthBuckets places_;
 };
 
 }}}  // namespace lightbin::detail

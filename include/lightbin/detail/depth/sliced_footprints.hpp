@@ -97,7 +97,7 @@ private:
             ++runs[first].end;
             --runs[last + 1].end;
         };
-        table_->find(detail::slice_places_kernel<spots>(isa), false, detail::camera_of(view).z_sign,
+        table_->find(detail::depth_buckets_kernel<spots>(isa), false, detail::camera_of(view).z_sign,
                      footprints.arrays(), footprints.runs(), found);
         std::uint64_t places = 0;
         std::uint32_t count = 0;

@@ -37,8 +37,8 @@ template <bool spots> RowSpanKernel row_span_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.template row_span_kernel<spots>(); });
 }
 
-template <bool spots> SlicePlacesKernel slice_places_kernel(Isa isa) {
-    return with_tier(isa, [](auto tier) { return tier.template slice_places_kernel<spots>(); });
+template <bool spots> DepthBucketsKernel depth_buckets_kernel(Isa isa) {
+    return with_tier(isa, [](auto tier) { return tier.template depth_buckets_kernel<spots>(); });
 }
 
 /// For rows of `columns` samples or more: the kernel of this tier or, where its vectors are wider than that, of a lower one.

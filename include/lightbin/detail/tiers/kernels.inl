@@ -75,7 +75,7 @@ struct Tier {
     template <bool spots> static RowSpanKernel row_span_kernel() {
         return row_spans<std::conditional_t<spots, SpotRows, SphereRows>>;
     }
-    template <bool spots> static SlicePlacesKernel slice_places_kernel() { return slice_places<spots>; }
+    template <bool spots> static DepthBucketsKernel depth_buckets_kernel() { return find_depth_buckets<spots>; }
     template <bool by_split> static DepthKernel depth_kernel() { return column_extremes<by_split>; }
 
     template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>

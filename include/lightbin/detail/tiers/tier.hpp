@@ -31,8 +31,8 @@ using ProjectKernel = void (*)(const Camera& camera, const LightSource& source, 
                                std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts);
 using RowSpanKernel = void (*)(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
                                RowSpan* spans, std::uint64_t place);
-using SlicePlacesKernel = void (*)(const SlicePlaces& to, float z_sign, const FootprintArrays& lights,
-                                   const std::uint32_t* ids, std::uint32_t count, PlacedDepths& out);
+using DepthBucketsKernel = void (*)(const DepthBuckets& to, float z_sign, const FootprintArrays& lights,
+                                   const std::uint32_t* ids, std::uint32_t count, LightDepths& out);
 using DepthKernel = void (*)(const DepthRows& depth, float skipped, const float* split, float* lower,
                              float* upper);
 template <class Id>
