@@ -65,7 +65,7 @@ public:
 
     /// All depths are one slice of tiles.
     int slices() const { return 1; }
-    detail::LitSlice slice(std::size_t) const { return {arrays_, {&run_, 1}, run_.end, area_}; }
+    detail::FootprintSlice slice(std::size_t) const { return {arrays_, {&run_, 1}, run_.end, area_}; }
     template <class Ranks = LightRanks> Ranks ranks() const {
         return {{order_.data(), run_.end}, {bins_.data(), bin_count_}};
     }

@@ -65,7 +65,7 @@ public:
     }
 
     int slices() const { return static_cast<int>(run_count_); }
-    detail::LitSlice slice(std::size_t i) const {
+    detail::FootprintSlice slice(std::size_t i) const {
         const SliceRun& run = runs_.data()[i];
         return {arrays_,
                 {&run, 1},

@@ -70,7 +70,7 @@ struct Scratch {
 
 /// An upper bound on the padded sizes of all lists of a kernel together, which it counts in 32 bits: one element for each light
 /// and each block that its rectangle can meet, wherever the first block begins, and the padding.
-inline std::uint64_t list_size_bound(const Camera& camera, const LitSlice& lit) {
+inline std::uint64_t list_size_bound(const Camera& camera, const FootprintSlice& lit) {
     const std::uint64_t width = static_cast<std::uint64_t>(camera.x.tiles) / 8 + 3,
                         height = static_cast<std::uint64_t>(camera.y.tiles) / 8 + 3;
     std::uint64_t size = 64 * width * height;

@@ -52,7 +52,7 @@ public:
         const unsigned rows = static_cast<unsigned>(view.tiles_y());
         std::uint64_t lights = 0, area = 0;
         for (std::size_t slice = 0; slice < slices; ++slice) {
-            const LitSlice part = footprints.slice(slice);
+            const FootprintSlice part = footprints.slice(slice);
             lights += part.visible;
             area += part.area;
             if (const auto error = check_list_size(view, part)) return error;
@@ -179,11 +179,11 @@ private:
 
     template <class AnyFootprints> static Job job_of(const Job& common, const AnyFootprints& footprints, std::size_t slice) {
         Job job = common;
-        static_cast<LitSlice&>(job) = footprints.slice(slice);
+        static_cast<FootprintSlice&>(job) = footprints.slice(slice);
         return job;
     }
 
-    static Maybe<Error> check_list_size(const View& view, const LitSlice& lit) {
+    static Maybe<Error> check_list_size(const View& view, const FootprintSlice& lit) {
         if (lit.area > surely_listed_area)
             if (const std::uint64_t size = list_size_bound(camera_of(view), lit); size > max_entries)
                 return Error{ErrorCode::too_many_list_places, size, max_entries};

@@ -111,7 +111,7 @@ struct ChunkRects {
 };
 
 /// The lights in view, or those of them that meet a slice.
-struct LitSlice {
+struct FootprintSlice {
     FootprintArrays lights;
     Items<const FootprintRun> runs;
     std::uint32_t visible;                  ///< lights in all runs
@@ -120,7 +120,7 @@ struct LitSlice {
 };
 
 /// What the binning kernels read, and the table that they write.
-template <class Id> struct BinJob : LitSlice {
+template <class Id> struct BinJob : FootprintSlice {
     const Camera* camera;
     const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one
     const float* edges[4];   ///< of the tiles, for boxes: low x, high x, low y, high y; see cell_boxes.hpp

@@ -105,7 +105,7 @@ public:
 
     /// All depths are one slice.
     int slices() const { return 1; }
-    detail::LitSlice slice(std::size_t) const { return {arrays_, runs(), visible(), area()}; }
+    detail::FootprintSlice slice(std::size_t) const { return {arrays_, runs(), visible(), area()}; }
 
 private:
     static constexpr std::size_t chunk = detail::ChunkRects::size;
