@@ -47,7 +47,7 @@ LIGHTBIN_INLINE auto boxes_missed(const float* boxes, const TestedSpot& light) {
         const Floats deepest = mul(load_floats(boxes + spot.corners[i][0]), broadcast(plane.x)) +
                                mul(load_floats(boxes + spot.corners[i][1]), broadcast(plane.y)) +
                                mul(load_floats(boxes + spot.corners[i][2]), broadcast(plane.z));
-        missed = either(missed, less(broadcast(plane.most), deepest));
+        missed = either(missed, less(broadcast(plane.offset), deepest));
     }
     return missed;
 }

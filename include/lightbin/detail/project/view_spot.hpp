@@ -20,9 +20,9 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// The half space of the points with  x p_x + y p_y + z p_z <= most.
+/// The half space of the points with  x p_x + y p_y + z p_z <= offset.
 struct SpotPlane {
-    float x, y, z, most;
+    float x, y, z, offset;
 };
 
 /// A spot: x and y are as in an ImageAxis, z is the view depth. Of a whole sphere the axis is 0 and the sine 1, and no
