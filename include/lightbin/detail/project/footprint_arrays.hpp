@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The types that pass between the stages' kernels, apart from the kernels themselves.
+// The structs that the stages and their kernels hand to each other.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -17,62 +17,60 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Where the projection finds the lights, by id: `spheres` as they are, or null and `copy`, which makes spheres of some
-/// of `lights`, or of spots their balls, and as vec4s their axes and cosines. They are moved by `to_view`, if not null.
-/// Those that are copied or moved stay in `kept`, spots in `kept_spots`, if not null, which have some more places behind
-/// them.
+/// Where a projection kernel reads lights from, and where it writes what later stages need of them in view space. Arrays are
+/// indexed by a light's id.
 struct LightSource {
-    const Sphere* spheres;  ///< to be read with load_sphere
-    const void* lights;
+    const Sphere* spheres;  ///< the caller's own array, to be read with load_sphere(); null: `copy` is called
+    const void* lights;     ///< the caller's Lights, for `copy`
+    /// Writes lights first..first + count - 1 to `to` as spheres. Of spots it writes the balls, and to `cones` vec4s with the
+    /// axes and the cosines of the half angles.
     void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* to, Sphere* cones);
-    const WorldToView* to_view;
-    Sphere* kept;
-    ViewSpot* kept_spots;
-    bool with_planes;  ///< of those
+    const WorldToView* to_view;  ///< the transform to view space; null: the lights are given in view space
+    Sphere* out_spheres;         ///< where copied or transformed spheres are stored, if not null; padded for whole vectors
+    ViewSpot* out_spots;         ///< where spots are stored, if not null; padded likewise
+    bool with_planes;            ///< store ViewSpot::planes and corners, too
 };
 
-/// The tiles first..last of one tile row that a light's silhouette reaches; none if first > last.
+/// The tiles first..last of one tile row that a light's silhouette touches; none if first > last.
 struct RowSpan {
     std::uint16_t first, last;
 };
 
-/// A part of the footprint arrays: elements begin..end-1.
+/// The elements begin..end-1 of the footprint arrays.
 struct FootprintRun {
     std::uint32_t begin, end;
 };
 
-/// The lights in view, as parallel arrays: tiles x0..x1, y0..y1, both ends included. They lie in one or more
-/// runs; ids ascend within a run and from run to run. Readable (not meaningful) up to `padding` elements past
-/// the end.
+/// The footprints of the lights in view, as parallel arrays: tile columns x0..x1 and tile rows y0..y1, ends included. The
+/// footprints lie in one or more runs; ids ascend in each run and from run to run. `padding` elements past the end can be read
+/// and written, as kernels load and store whole vectors.
 struct FootprintArrays {
     static constexpr std::size_t padding = 64;
-    static constexpr std::uint32_t whole_rectangle = 0xffffffff;
+    static constexpr std::uint32_t whole_rectangle = 0xffffffff;  ///< a value of span_begin
 
     std::uint32_t* ids;
     std::uint16_t *x0, *y0, *x1, *y1;
 
-    /// With Footprint::silhouette, as the arrays above: the place in `spans` of the light's first row, y0;
-    /// one span a row up to y1. Or whole_rectangle.
+    /// With Footprint::silhouette, parallel to the arrays above: the index in `spans` of the light's tile row y0, which the
+    /// spans of the rows up to y1 follow. Or whole_rectangle, if there are no spans and every tile of the rectangle counts.
     std::uint32_t* span_begin;
     const RowSpan* spans;
 
-    /// With silhouettes or a depth test, by id, of all lights here: view space as the caller has it. To be read with
-    /// load_sphere.
+    /// With silhouettes or a depth test, all lights in view space, by id: spheres, to be read with load_sphere(), or spots.
     const Sphere* spheres;
-    /// Or, of lights that are spots, these.
     const ViewSpot* spots;
 
-    /// The same arrays with their first `begin` elements left out, for writing rectangles.
+    /// Returns these arrays without their first `begin` elements, and without spans.
     FootprintArrays from(std::size_t begin) const {
         return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin,
                 nullptr,     nullptr,    spheres,    spots};
     }
 };
 
-/// Memory of footprint arrays, kept from call to call.
+/// The memory of footprint arrays, reused from call to call.
 class FootprintBuffers {
 public:
-    /// Returns arrays for `count` lights and the padding, with nothing yet that `ids` number.
+    /// Returns arrays for `count` footprints and the padding, without spans, spheres and spots.
     FootprintArrays reserve(std::uint64_t count, bool with_spans) {
         const std::uint64_t capacity = count + FootprintArrays::padding;
         return {.ids = ids_.reserve(capacity),
@@ -91,32 +89,33 @@ private:
     Buffer<std::uint16_t> x0_, y0_, x1_, y1_;
 };
 
-/// Samples of a depth buffer, rows by columns.
+/// A rectangle of a depth buffer: rows of samples, from one row to the next `pitch` floats apart.
 struct DepthRows {
     const float* samples;
     std::size_t pitch, rows, columns;
 };
 
-/// What the projection of some lights came to.
+/// Sums over the lights that were projected.
 struct ProjectCounts {
-    std::uint32_t visible = 0, rejected = 0;
-    std::uint64_t area = 0;  ///< sum of the rectangles' tiles: the most entries there can be
-    std::uint64_t rows = 0;  ///< sum of the rectangles' heights, counted for silhouettes only
+    std::uint32_t visible = 0;   ///< lights in view
+    std::uint32_t rejected = 0;  ///< lights that are bad input, see Sphere
+    std::uint64_t area = 0;      ///< tiles in all rectangles: an upper bound on the number of list entries
+    std::uint64_t rows = 0;      ///< tile rows in all rectangles; counted for silhouettes only
 };
 
-/// The tiles of as many lights as are projected at a time, before those out of view are dropped.
+/// The tile rectangles of a chunk: of as many lights as are projected before those out of view are dropped.
 struct ChunkRects {
     static constexpr std::uint32_t size = 64;
     alignas(64) std::uint16_t x0[size], y0[size], x1[size], y1[size];
 };
 
-/// The lights in view, or those of them that meet a slice.
+/// The footprints of all lights in view, or of those that intersect one depth slice.
 struct FootprintSlice {
     FootprintArrays lights;
     Items<const FootprintRun> runs;
-    std::uint32_t visible;                  ///< lights in all runs
-    std::uint64_t area;                     ///< sum of their rectangles' tiles
-    float slab[2] = {-infinity, infinity};  ///< the slice's depths: they take the place of absent min and max
+    std::uint32_t visible;  ///< footprints in all runs
+    std::uint64_t area;     ///< tiles in their rectangles
+    float slab[2] = {-infinity, infinity};  ///< the slice's depths, which depth tests use in place of absent Z bounds
 };
 
 /// What the binning kernels read, and the table that they write.

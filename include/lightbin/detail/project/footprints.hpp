@@ -81,17 +81,17 @@ public:
                                       .lights = &lights,
                                       .copy = nullptr,
                                       .to_view = lights.to_view ? &*lights.to_view : nullptr,
-                                      .kept = nullptr,
-                                      .kept_spots = nullptr,
+                                      .out_spheres = nullptr,
+                                      .out_spots = nullptr,
                                       .with_planes = for_boxes};
         if (source.spheres == nullptr) source.copy = detail::copy_lights<Light, ToLight>;
         arrays_.spheres = source.spheres;
         [[maybe_unused]] const std::uint64_t places = std::uint64_t{lights_} + chunk;
         if constexpr (keep && spots)
-            arrays_.spots = source.kept_spots = spots_.reserve(places);
+            arrays_.spots = source.out_spots = spots_.reserve(places);
         else if constexpr (keep)
             if (source.copy != nullptr || source.to_view != nullptr)
-                arrays_.spheres = source.kept = spheres_.reserve(places);
+                arrays_.spheres = source.out_spheres = spheres_.reserve(places);
         run_parts(view, source, detail::project_kernel<spots>(taken), threads);
         if constexpr (with_spans) add_spans(detail::row_span_kernel<spots>(isa), view, threads);
     }

@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Row spans: where a light's projection meets each tile row. Included once a tier, after its vectors; in double.
+// Row spans: which tiles of each tile row a light's silhouette touches, computed in double. Here are those of spheres, and in
+// spot_rows.inl those of spots. Included once per tier.
 //
-// A sphere's projection is an ellipse; wedge.inl has that of a spot.
-// The plane  y = v z  through the eye cuts the sphere in a disc whose projection reaches over the slopes
-//     u(v) = (x g -+ t S) / A,  g = y v + z,  S^2 = r^2 (1 + v^2) - (y - v z)^2,  A = y^2 + z^2 - r^2,  t^2 = A + x^2
-// (the tangent cone, solved for u). The ellipse is convex, so within a row its right end is at the row slope v
-// nearest to that of its rightmost point, and so for the left: those two slopes are clamped to each row, once
-// a light and row, and u(v) is all there is. The rightmost point is where the plane x = u z touches the sphere:
-// with T^2 = x^2 + z^2 - r^2 and Q = z T + |x| r its slope v is  y Q / (T (z^2 - r^2)),  and that of the
-// point on the other side  y (x^2 + z^2) / (T Q).  Orthographic: g = 1, S^2 = r^2 - (y - v)^2, u = x -+ S, v = y.
+// A plane  y = v z  through the eye is a line in the image at the height v. It cuts a sphere with the centre (x, y, z) and the
+// radius r in a disc, whose projection reaches over the slopes
+//     u(v) = (x g -+ t S) / A,   g = y v + z,   S^2 = r^2 (1 + v^2) - (y - v z)^2,   A = y^2 + z^2 - r^2,   t^2 = A + x^2,
+// which is the equation of the sphere's tangent cone solved for u. The silhouette, an ellipse, is convex: within a tile row its
+// right end lies at the row's slope v that is nearest to that of its rightmost point, and likewise on the left. So these two
+// slopes are clamped to each row, once per light and row, and u(v) there gives both ends.
 //
-// Rounding, with e = 2^-53, the rows' slopes within +-V, F = r (1 + V) >= r sqrt(1 + v^2), m = V z + |y| + F:
-// - A row's edge is within 14 e V of the truth by the camera's numbers, the extreme slope within 14 e V: in all
-//   v may be off by 2^-48 V. That and 6 e m F of rounding move S^2 by less than 2^-45 F m + 2^-94 m^2, for rows
-//   that the sphere meets, where |y - v z| <= F. Twice that is added to S^2.
-// - x g / A is within 13 e |x| (|y| V + z) / A and moves by 2^-48 |x y| V / A with v; t S / A within 18 e t F / A;
-//   the camera's offset within 9 e (|offset| + tiles). Twice these and more are added to both ends.
+// The rightmost and the leftmost point are where the planes  x = u z  touch the sphere. Let T^2 = x^2 + z^2 - r^2 and
+// Q = z T + |x| r. Then the slope v is  y Q / (T (z^2 - r^2))  of the outer point, which is farther from the view axis, and
+// y (x^2 + z^2) / (T Q)  of the inner one. With an orthographic projection  u = x -+ S,  S^2 = r^2 - (y - v)^2  and  v = y.
+//
+// Rounding, with the unit roundoff e = 2^-53 of double, the tile rows' slopes from -V to V, F = r (1 + V), which is at least
+// r sqrt(1 + v^2), and m = V z + |y| + F:
+// - The slope of a row's edge is within 14 e V of the exact one, as the camera's numbers are rounded, and the slope of the
+//   outermost point within 14 e V. In all, v has an error of at most 2^-48 V. This and rounding errors of 6 e m F change S^2 by
+//   less than 2^-45 F m + 2^-94 m^2 in rows that the sphere meets, where |y - v z| <= F. Twice this is added to S^2.
+// - x g / A has a rounding error of at most 13 e |x| (|y| V + z) / A, and the error of v changes it by 2^-48 |x y| V / A.
+//   t S / A has an error of at most 18 e t F / A, and the camera's offset one of 9 e (|offset| + tiles). The spans are
+//   enlarged by more than twice all of this on both ends.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>
@@ -23,19 +28,25 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// Of `lanes` lights: g = y_v v + z and S^2 = r2 + r2_v v^2 - (y - v z)^2 + slack; in tiles, the ends are
-/// middle g - reach S + low and middle g + reach S + high, at the row slopes left_v and right_v clamped to a row.
+/// The coefficients of `lanes` lights' silhouettes. At the row slope v,  g = y_v v + z  and
+/// S^2 = r2 + r2_v v^2 - (y - v z)^2 + slack.  In tiles, a row's span begins at  middle g - reach S + low  with v = left_v
+/// clamped to the row, and ends at  middle g + reach S + high  with v = right_v clamped to the row.
 struct RowTerms {
     double y[lanes], y_v[lanes], z[lanes], r2[lanes], r2_v[lanes], slack[lanes];
     double middle[lanes], reach[lanes], low[lanes], high[lanes], left_v[lanes], right_v[lanes];
 };
 
-/// Writes the terms of spheres from place `at` on; x and y are as in an ImageAxis, z is the view depth. Returns a bit for
-/// each whose silhouette is known: those wholly beyond the near plane.
-inline unsigned row_terms(const Camera& camera, Doubles x, Doubles y, Doubles z, Doubles r,
-                                          RowTerms& terms, unsigned at) {
-    const double row_offset = camera.y.offset, scale = camera.x.scale, offset = camera.x.offset;
-    const double most = (abs_of(row_offset) + camera.y.tiles) / camera.y.scale;  // V
+/// Returns V, a bound on the slopes of all tile rows.
+inline double max_row_slope(const Camera& camera) {
+    return (abs_of(camera.y.offset) + camera.y.tiles) / camera.y.scale;
+}
+
+/// Writes the coefficients of spheres from lane `at` on. Returns a bit for each sphere whose silhouette is an ellipse: that
+/// lies wholly beyond the near plane.
+///
+/// x, y, z  after the camera's signs: tile indices grow with x and y, and z is the view depth
+inline unsigned row_terms(const Camera& camera, Doubles x, Doubles y, Doubles z, Doubles r, RowTerms& terms, unsigned at) {
+    const double scale = camera.x.scale, offset = camera.x.offset, max_slope = max_row_slope(camera);
     const double margin = 0x1p-48 * (abs_of(offset) + camera.x.tiles) + 0x1p-80 * scale;
     const Doubles r2 = mul(r, r), one = broadcast(1.0), zero = broadcast(0.0);
     Doubles y_v = zero, g_z = one, r2_v = zero, middle = x * scale, reach = broadcast(scale);
@@ -54,12 +65,12 @@ inline unsigned row_terms(const Camera& camera, Doubles x, Doubles y, Doubles z,
         y_v = y;
         g_z = z;
         r2_v = r2;
-        largest_f = mul(r, broadcast(1 + most));
+        largest_f = mul(r, broadcast(1 + max_slope));
         whole = less(broadcast(static_cast<double>(camera.min_float_depth)), z - r);
     }
-    const Doubles m = mul(g_z, broadcast(most)) + abs(y) + largest_f;
+    const Doubles m = mul(g_z, broadcast(max_slope)) + abs(y) + largest_f;
     const Doubles error =
-        (mul(abs(middle), mul(abs(y_v), broadcast(most)) + g_z) + mul(reach, largest_f)) * 0x1p-46 + margin;
+        (mul(abs(middle), mul(abs(y_v), broadcast(max_slope)) + g_z) + mul(reach, largest_f)) * 0x1p-46 + margin;
     store_doubles(terms.y + at, y);
     store_doubles(terms.y_v + at, y_v);
     store_doubles(terms.z + at, g_z);
@@ -75,9 +86,10 @@ inline unsigned row_terms(const Camera& camera, Doubles x, Doubles y, Doubles z,
     return movemask(whole) << at;
 }
 
-/// Where light i's silhouette begins and ends in rows of the slopes v0 to v1, a lane each, in tiles.
-LIGHTBIN_INLINE void silhouette_ends(const RowTerms& terms, std::uint32_t i, Doubles v0,
-                                                     Doubles v1, Doubles& begin, Doubles& end) {
+/// Finds where the silhouette of light i begins and ends, in tiles, in a vector of tile rows, whose edges have the slopes v0
+/// and v1.
+LIGHTBIN_INLINE void silhouette_ends(const RowTerms& terms, std::uint32_t i, Doubles v0, Doubles v1, Doubles& begin,
+                                     Doubles& end) {
     const Doubles y = broadcast(terms.y[i]), y_v = broadcast(terms.y_v[i]), z = broadcast(terms.z[i]), r2 = broadcast(terms.r2[i]);
     const Doubles r2_v = broadcast(terms.r2_v[i]), middle = broadcast(terms.middle[i]), reach = broadcast(terms.reach[i]);
     const Doubles left = minimum(maximum(broadcast(terms.left_v[i]), v0), v1);
@@ -91,16 +103,13 @@ LIGHTBIN_INLINE void silhouette_ends(const RowTerms& terms, std::uint32_t i, Dou
     end = mul(middle, mul(y_v, right) + z) + mul(reach, right_s) + terms.high[i];
 }
 
-/// What becomes of `used` lights in view, from `begin` on.
+/// The silhouettes of a vector of spheres.
 struct SphereRows {
-    /// Returns a bit for each whose row spans are known.
-    unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin,
-                                  std::uint32_t used) {
-        Sphere spheres[lanes];
-        for (std::uint32_t i = 0; i < lanes; ++i)
-            spheres[i] = load_sphere(lights.spheres + lights.ids[begin + (i < used ? i : 0)]);
+    /// Prepares the silhouettes of `count` footprints from element `begin` on, at most a vector of them. Returns a bit for each
+    /// whose row spans store() can find.
+    unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin, std::uint32_t count) {
         Floats x, y, z, r;
-        load_spheres(spheres, x, y, z, r);
+        load_listed_spheres(lights.spheres, lights.ids + begin, count, x, y, z, r);
         unsigned known = 0;
         for (unsigned half = 0; half < lanes / double_lanes; ++half)
             known |= row_terms(camera, widened(x, half) * static_cast<double>(camera.x.sign),
@@ -110,9 +119,10 @@ struct SphereRows {
         return known;
     }
 
-    /// Stores light i's spans of rows of the slopes v0 to v1, a lane each, of the tiles leftmost..rightmost.
-    LIGHTBIN_INLINE void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost,
-                                               Doubles rightmost, RowSpan* to) const {
+    /// Stores the spans of light i in a vector of tile rows, whose edges have the slopes v0 and v1, clamped to the tile columns
+    /// leftmost..rightmost.
+    LIGHTBIN_INLINE void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost,
+                               RowSpan* to) const {
         Doubles begin, end;
         silhouette_ends(terms, i, v0, v1, begin, end);
         store_spans(to, minimum(maximum(begin, leftmost), rightmost),
@@ -122,32 +132,34 @@ struct SphereRows {
     RowTerms terms;
 };
 
-/// Writes the row spans of the lights in view in a run, from spans[place] on; whole vectors are stored. A light gets none
-/// where they could drop nothing or can't be numbered. A sphere's row has at least one tile.
+/// Writes the row spans of a run of footprints, from spans[to] on; whole vectors are stored. A footprint gets no spans where
+/// they could exclude no tile, because it is one tile wide or high, where its silhouette is not known, and where an index of 32
+/// bits can't tell where they begin. A span of a sphere has at least one tile.
+///
+/// Rows  SphereRows or SpotRows
 template <class Rows>
-inline void row_spans(const Camera& camera, const FootprintArrays& lights, FootprintRun run,
-                                      RowSpan* spans, std::uint64_t place) {
+inline void row_spans(const Camera& camera, const FootprintArrays& lights, FootprintRun run, RowSpan* spans,
+                      std::uint64_t to) {
     static constexpr double count_up[] = {0, 1, 2, 3, 4, 5, 6, 7};
     const Doubles lane = load_doubles(count_up);
     const double row_offset = camera.y.offset, per_scale = 1 / camera.y.scale;
     Rows rows;
     for (std::uint32_t begin = run.begin; begin < run.end; begin += lanes) {
-        const std::uint32_t used = run.end - begin < lanes ? run.end - begin : lanes;
-        const unsigned known = rows.find(camera, lights, begin, used);
-        for (std::uint32_t i = 0; i < used; ++i) {
+        const std::uint32_t count = min_of(run.end - begin, lanes);
+        const unsigned known = rows.find(camera, lights, begin, count);
+        for (std::uint32_t i = 0; i < count; ++i) {
             const unsigned x0 = lights.x0[begin + i], x1 = lights.x1[begin + i], y0 = lights.y0[begin + i],
                            y1 = lights.y1[begin + i];
             std::uint32_t& first = lights.span_begin[begin + i];
             first = FootprintArrays::whole_rectangle;
-            if ((known >> i & 1) == 0 || x0 == x1 || y0 == y1 || place + (y1 - y0) >= first) continue;
-            first = static_cast<std::uint32_t>(place);
+            if ((known >> i & 1) == 0 || x0 == x1 || y0 == y1 || to + (y1 - y0) >= first) continue;
+            first = static_cast<std::uint32_t>(to);
             const Doubles leftmost = broadcast(static_cast<double>(x0)), rightmost = broadcast(static_cast<double>(x1));
             for (unsigned row = y0; row <= y1; row += double_lanes) {
                 const Doubles edge = lane + (static_cast<double>(row) - row_offset);
-                rows.store(i, edge * per_scale, (edge + 1.0) * per_scale, leftmost, rightmost,
-                           spans + place + (row - y0));
+                rows.store(i, edge * per_scale, (edge + 1.0) * per_scale, leftmost, rightmost, spans + to + (row - y0));
             }
-            place += y1 - y0 + 1;
+            to += y1 - y0 + 1;
         }
     }
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Spheres to tile rectangles, a vector of lights at a time. Included once a tier, after its vectors; the
-// scalar tier's hold one light. All do the same operations in the same order, so they give the same bytes.
+// The projection of spheres to tile rectangles, a vector of lights at a time. All tiers do the same operations in the same
+// order, so they give the same bytes; the scalar tier's vectors hold one light. Included once per tier.
 //
-// Everything is a 2-D problem in slope space: tile edges are planes x = s z through the eye, so along each
-// image axis a sphere becomes a disc of centre (c, z), c being x or y, and its bounds are the slopes of two
-// tangents (Mara and McGuire, "2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D Sphere", JCGT
-// 2(2), 2013).
+// Each image axis is a problem in two dimensions: the edges of tiles are planes  x = s z  through the eye with the slope s,
+// and a sphere appears as a disc with the centre (c, z), where c is x or y and z the view depth. Its bounds are the slopes of
+// the two tangents from the eye (Mara and McGuire, "2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D Sphere",
+// JCGT 2(2), 2013).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/project/world_to_view.inl>
@@ -13,42 +13,59 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// Slopes of the tangents from the origin to the discs (c, z, r), for z - r > 0, where `e` = (z - r)(z + r) and
-/// `per_e` = 1 / e.
+/// A chunk of lights while they are projected. A light's index is counted from the chunk's first light.
+struct ProjectedChunk {
+    ChunkRects rects;
+    unsigned visible[ChunkRects::size / lanes];  ///< for each vector of lights a word, with a bit per light in view
+    std::uint16_t fallback[ChunkRects::size];    ///< the indices of the lights that need double precision
+    std::uint32_t fallback_count;
+};
+
+/// Bounds of a vector of lights along the image axes, x and y: slopes, or view-space coordinates with an orthographic
+/// projection.
+template <class Reals> struct ImageBounds {
+    Reals low[2], high[2];
+};
+
+/// Finds the slopes of the tangents from the eye, the origin, to discs with the centre (c, z) and the radius r, which lie
+/// wholly in front of the eye: z - r > 0.
 ///
-/// Each sum is of terms of one sign, so errors only add up: with u the unit roundoff, e is within 3u, c^2 + e
-/// within 4u, its root 3u, q 5u, the outer slope 10u and the inner 9u of the truth, each relative to itself.
-/// (The roots' product is (c^2 - r^2) / e.)
+/// e, per_e  (z - r) (z + r) and its reciprocal
+///
+/// The outer tangent is the one farther from the view axis. Both slopes come from sums whose terms have one sign, so that
+/// relative errors never grow by cancellation. With the unit roundoff u, e has a relative error of at most 3u, c^2 + e of 4u,
+/// its root of 3u, q of 5u, the outer slope of 10u and the inner one of 9u. The inner slope follows from the outer one, as
+/// the product of both is (c^2 - r^2) / e.
 template <class Reals>
-inline void tangent_slopes(Reals c, Reals z, Reals r, Reals e, Reals per_e, Reals& low,
-                                           Reals& high) {
+inline void tangent_slopes(Reals c, Reals z, Reals r, Reals e, Reals per_e, Reals& low, Reals& high) {
     const Reals a = abs(c);
     const Reals q = mul(a, z) + mul(r, sqrt(mul(a, a) + e));
     const Reals outer = mul(q, per_e), inner = mul(a - r, a + r) / q;
     const auto negative = less(c, Reals{});
-    low = select_unpredicted(negative, -outer, inner);  // on which side of the view axis a light is
+    // Lights lie on either side of the view axis at random, which no branch predictor could guess.
+    low = select_unpredicted(negative, -outer, inner);
     high = select_unpredicted(negative, -inner, outer);
 }
 
-/// Bounds on c / z over the part of the discs (c, z, r) at depth near_z or more; infinite where double
-/// precision can't tell. For discs that cross the near plane, z - r <= near_z <= z + r. Doubles that hold
-/// floats: their products are exact, none overflows.
+/// Finds bounds on c / z over that part of discs with the centre (c, z) and the radius r whose depth is at least near_depth.
+/// A bound is infinite where double precision can't decide. For discs that meet the near plane: z - r <= near_depth <= z + r.
+/// The arguments are floats that were converted to double: their products are exact, and none overflows.
 ///
-/// That part is convex, so its largest slope is at the tangent point if that lies beyond the near plane, else
-/// at the corner where the circle meets the plane. The tangent bounds the whole disc, so it is right whenever
-/// it exists: the corner is taken only when it is beyond doubt. The smallest slope is the largest of -c.
-inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, Doubles& low,
-                                           Doubles& high) {
+/// The part is convex, so the largest slope c / z is at the point where the tangent touches the circle, if that lies beyond
+/// the near plane, and else at the corner where circle and near plane meet. The tangent's slope bounds the whole disc, so it
+/// is a correct bound wherever there is a tangent; the corner's is taken only where it is certain to be the largest. The
+/// smallest slope is the negative of the largest one of the mirrored disc, whose centre is (-c, z).
+inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, Doubles& low, Doubles& high) {
     const Doubles near_z = broadcast(near_depth), zero = broadcast(0.0), infinite = broadcast(static_cast<double>(infinity));
     const Doubles a = abs(c);
-    const Doubles h2 = mul(r - (near_z - z), r + (near_z - z));  // half chord, squared
+    const Doubles h2 = mul(r - (near_z - z), r + (near_z - z));  // squared half of the chord that the near plane cuts off
     const Doubles h2_error = mul(r, r) * 0x1p-50;
     const Doubles h = sqrt(maximum(h2, zero) + h2_error);  // rounded up
     const Doubles h_low = sqrt(maximum(h2 - h2_error, zero));
 
-    // Along the circle into the region the corner (c + h, near_z) moves by (z - near_z, h), and c / z grows by
-    // (near_z, -(c + h)) a step: the tangent point lies beyond the plane iff  near_z (z - near_z) > h (c +
-    // h). Here for c = a (outer) and c = -a (inner).
+    // At the corner (c + h, near_z) the circle enters the part in the direction (z - near_z, h), in which c / z grows as
+    // (near_z, -(c + h)) . (z - near_z, h). So the tangent touches beyond the near plane if and only if
+    // near_z (z - near_z) > h (c + h). With a = |c|, the outer tangent has c = a there, and the inner one c = -a.
     const Doubles doubt = (mul(h, h) + mul(a, h) + mul(near_z, abs(z) + near_z)) * 0x1p-48;
     const Doubles tangent_side = mul(near_z, z - near_z) + doubt, square = mul(h_low, h_low);
     const auto outer_cut = less(tangent_side, square + mul(a, h_low));
@@ -57,141 +74,173 @@ inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, D
     const Doubles outer_corner = (h + a + corner_error) / near_z;
     const Doubles inner_corner = (h - a + corner_error) / near_z;
 
-    // Tangent length, squared: not positive with the eye on the surface or inside.
+    // The squared length of the tangent is not positive if the eye is on the sphere or inside.
     const Doubles squares = mul(a, a) + mul(z, z), t2 = squares - mul(r, r);
-    const Doubles error = (squares + mul(r, r)) * 0x1p-50 / t2 + 0x1p-48;  // relative, of a slope
-    const auto sure = both(less(zero, t2), less_equal(error, broadcast(0x1p-20)));
-    // As in tangent_slopes: of the two forms of the same root, the one whose sums are of one sign. With the
-    // eye beside the centre's far side the outer tangent points backward.
+    const Doubles error = (squares + mul(r, r)) * 0x1p-50 / t2 + 0x1p-48;  // of a tangent's slope, relative
+    const auto has_tangent = both(less(zero, t2), less_equal(error, broadcast(0x1p-20)));
+    // Of the two forms of each root, this takes the one whose sums have terms of one sign, as tangent_slopes() does. If the
+    // sphere reaches behind the eye, z <= r, the outer tangent points backward and bounds nothing.
     const Doubles az = mul(a, z), rt = mul(r, sqrt(t2)), e = mul(z - r, z + r);
     const auto behind = less(z, zero);
     const Doubles outer = (az + rt) / e;
     const Doubles inner = select(behind, rt - az, mul(r - a, r + a)) / select(behind, e, rt + az);
-    const Doubles high_outer = select(
-        outer_cut, outer_corner, select(both(sure, less(r, z)), outer + mul(abs(outer), error), infinite));
+    const Doubles high_outer =
+        select(outer_cut, outer_corner, select(both(has_tangent, less(r, z)), outer + mul(abs(outer), error), infinite));
     const Doubles high_inner =
-        select(inner_cut, inner_corner, select(sure, inner + mul(abs(inner), error), infinite));
+        select(inner_cut, inner_corner, select(has_tangent, inner + mul(abs(inner), error), infinite));
     const auto negative = less(c, zero);
     low = -select(negative, high_outer, high_inner);
     high = select(negative, high_inner, high_outer);
 }
 
-/// Writes the tiles that the extents low..high touch, slopes (perspective) or view-space coordinates
-/// (orthographic), grown by the axis' margin. Takes those out of the viewport out of `visible`.
+/// Stores the first and the last tile, along an image axis, that the bounds low..high of each light touch, enlarged by the
+/// axis' margin. Returns `visible` without the lights that lie outside the viewport.
 template <class Real, class Reals, class Mask>
-inline Mask tile_span(const ImageAxis& axis, Reals low, Reals high, Mask visible,
-                                      std::uint16_t* first, std::uint16_t* last) {
+inline Mask tile_span(const ImageAxis& axis, Reals low, Reals high, Mask visible, std::uint16_t* first, std::uint16_t* last) {
     const Real scale = static_cast<Real>(axis.scale), offset = static_cast<Real>(axis.offset),
                margin = static_cast<Real>(axis.margin);
     low = mul(low, broadcast(scale)) + offset - margin;
     high = mul(high, broadcast(scale)) + offset + margin;
-    const Reals zero = Reals{}, inside = broadcast(static_cast<Real>(axis.last_tile_centre));
-    store_tiles(first, minimum(maximum(low, zero), inside));
-    store_tiles(last, minimum(maximum(high, zero), inside));
+    const Reals zero = Reals{}, last_tile = broadcast(static_cast<Real>(axis.last_tile_centre));
+    store_tiles(first, minimum(maximum(low, zero), last_tile));
+    store_tiles(last, minimum(maximum(high, zero), last_tile));
     return both(visible, both(less_equal(zero, high), less_equal(low, broadcast(static_cast<Real>(axis.limit)))));
 }
 
-/// The general case, in double, for some of a chunk's lights: near-plane straddlers, eye inside, tiny, huge and infinite
-/// spheres, bad input. Sets the bits of those in view in `visible`.
-inline void project_carefully(const Camera& camera, const Sphere* spheres,
-                                              const std::uint8_t* places, std::uint32_t count,
-                                              ChunkRects& rects, unsigned* visible, ProjectCounts& counts) {
-    for (std::uint32_t used; count > 0; count -= used, places += used) {
-        used = min_of(count, double_lanes);
-        Sphere gathered[lanes];
-        for (std::uint32_t i = 0; i < lanes; ++i)
-            gathered[i] = load_sphere(spheres + places[i < used ? i : 0]);
+/// Stores the tile rectangles of a vector of lights, from element i of `rects` on. Returns `visible` without the lights that
+/// lie outside the viewport.
+template <class Real, class Reals, class Mask>
+LIGHTBIN_INLINE Mask tile_rects(const Camera& camera, const ImageBounds<Reals>& bounds, Mask visible, ChunkRects& rects,
+                                std::uint32_t i) {
+    visible = tile_span<Real>(camera.x, bounds.low[0], bounds.high[0], visible, rects.x0 + i, rects.x1 + i);
+    return tile_span<Real>(camera.y, bounds.low[1], bounds.high[1], visible, rects.y0 + i, rects.y1 + i);
+}
+
+/// Stores the tile rectangles of a vector of lights of a chunk, from index i on, and which of them are in view. Lights whose
+/// bit in `fallback` is set are listed for the double-precision path instead.
+///
+/// valid  a bit for each lane that holds a light of the chunk
+template <class Mask>
+LIGHTBIN_INLINE void put_vector(const Camera& camera, const ImageBounds<Floats>& bounds, Mask float_safe, unsigned fallback,
+                                unsigned valid, std::uint32_t i, ProjectedChunk& chunk) {
+    for (; fallback != 0; fallback &= fallback - 1)
+        chunk.fallback[chunk.fallback_count++] =
+            static_cast<std::uint16_t>(i + static_cast<unsigned>(std::countr_zero(fallback)));
+    chunk.visible[i / lanes] = movemask(tile_rects<float>(camera, bounds, float_safe, chunk.rects, i)) & valid;
+}
+
+/// Appends the footprints of a chunk's lights that are in view.
+///
+/// first  the id of the chunk's first light
+/// here   the number of its lights
+inline void append_chunk(const ProjectedChunk& chunk, std::uint32_t first, std::uint32_t here, const FootprintArrays& out,
+                         ProjectCounts& counts) {
+    for (std::uint32_t i = 0; i < here; i += lanes)
+        if (const unsigned visible = chunk.visible[i / lanes]; visible != 0)
+            append_visible(out, counts, first, visible, chunk.rects, i);
+}
+
+/// Projects in double the lights of a chunk that are listed in chunk.fallback: those that cross the near plane or contain the
+/// eye, tiny, huge and infinite ones, and bad input, which it counts. Sets the bits in chunk.visible of those in view.
+///
+/// spheres  of all lights of the chunk, in view space
+inline void project_in_double(const Camera& camera, const Sphere* spheres, ProjectedChunk& chunk, ProjectCounts& counts) {
+    for (std::uint32_t begin = 0, used; begin < chunk.fallback_count; begin += used) {
+        used = min_of(chunk.fallback_count - begin, double_lanes);
+        const std::uint16_t* const indices = chunk.fallback + begin;
         Floats floats[4];
-        load_spheres(gathered, floats[0], floats[1], floats[2], floats[3]);
+        load_listed_spheres(spheres, indices, used, floats[0], floats[1], floats[2], floats[3]);
         const Doubles x = widened(floats[0], 0) * static_cast<double>(camera.x.sign);
         const Doubles y = widened(floats[1], 0) * static_cast<double>(camera.y.sign);
         const Doubles z = widened(floats[2], 0) * static_cast<double>(camera.z_sign);
-        const Doubles radius = widened(floats[3], 0), most = broadcast(static_cast<double>(FLT_MAX));
+        const Doubles radius = widened(floats[3], 0), largest = broadcast(static_cast<double>(FLT_MAX));
         const double near_depth = static_cast<double>(camera.near_depth);
-        const auto good = both(both(less_equal(abs(x), most), less_equal(abs(y), most)),
-                               both(less_equal(abs(z), most), less_equal(broadcast(0.0), radius)));
+        const auto good = both(both(less_equal(abs(x), largest), less_equal(abs(y), largest)),
+                               both(less_equal(abs(z), largest), less_equal(broadcast(0.0), radius)));
         const Doubles nearest = z - radius, farthest = z + radius;
-        auto seen = and_not(good, either(less(farthest, broadcast(near_depth)),
-                                         less(broadcast(static_cast<double>(camera.far_depth)), nearest)));
-        // Not 0, so that no root is: much less than the rounding of any float.
+        auto visible = and_not(good, either(less(farthest, broadcast(near_depth)),
+                                            less(broadcast(static_cast<double>(camera.far_depth)), nearest)));
+        // A radius of 0 is enlarged to much less than any float's rounding error, so that no square root is taken of 0.
         const Doubles r = maximum(radius, broadcast(0x1p-400));
-        Doubles left = x - r, right = x + r, bottom = y - r, top = y + r;
+        ImageBounds<Doubles> bounds = {{x - r, y - r}, {x + r, y + r}};
         if (!camera.orthographic) {
             const auto whole = less(broadcast(near_depth), nearest);
-            const Doubles e = mul(nearest, farthest), per_e = 1.0 / e;
-            Doubles low, high;
-            tangent_slopes(x, z, r, e, per_e, low, high);
-            clipped_slopes(x, z, r, near_depth, left, right);
-            left = select(whole, low, left);
-            right = select(whole, high, right);
-            tangent_slopes(y, z, r, e, per_e, low, high);
-            clipped_slopes(y, z, r, near_depth, bottom, top);
-            bottom = select(whole, low, bottom);
-            top = select(whole, high, top);
+            const Doubles centre[] = {x, y}, e = mul(nearest, farthest), per_e = 1.0 / e;
+            for (unsigned axis = 0; axis < 2; ++axis) {
+                Doubles low, high;
+                clipped_slopes(centre[axis], z, r, near_depth, bounds.low[axis], bounds.high[axis]);
+                tangent_slopes(centre[axis], z, r, e, per_e, low, high);
+                bounds.low[axis] = select(whole, low, bounds.low[axis]);
+                bounds.high[axis] = select(whole, high, bounds.high[axis]);
+            }
         }
-        alignas(64) std::uint16_t x0[double_lanes], y0[double_lanes], x1[double_lanes], y1[double_lanes];
-        seen = tile_span<double>(camera.x, left, right, seen, x0, x1);
-        seen = tile_span<double>(camera.y, bottom, top, seen, y0, y1);
+        ChunkRects rects;
+        const unsigned in_view = movemask(tile_rects<double>(camera, bounds, visible, rects, 0));
         counts.rejected += used - static_cast<std::uint32_t>(std::popcount(movemask(good) & ((1u << used) - 1)));
-        const unsigned in_view = movemask(seen);
         for (std::uint32_t i = 0; i < used; ++i) {
-            const std::uint32_t place = places[i];
-            rects.x0[place] = x0[i];
-            rects.y0[place] = y0[i];
-            rects.x1[place] = x1[i];
-            rects.y1[place] = y1[i];
-            visible[place / lanes] |= (in_view >> i & 1) << place % lanes;
+            const std::uint32_t to = indices[i];
+            chunk.rects.x0[to] = rects.x0[i];
+            chunk.rects.y0[to] = rects.y0[i];
+            chunk.rects.x1[to] = rects.x1[i];
+            chunk.rects.y1[to] = rects.y1[i];
+            chunk.visible[to / lanes] |= (in_view >> i & 1) << to % lanes;
         }
     }
 }
 
-/// What each vector of lights is asked first, in every lane: broadcasting it again would take narrow vectors as long as
-/// asking.
+/// The camera's numbers that cull lights, each broadcast to a vector once: narrow vectors would take as long to broadcast
+/// them again for every vector of lights as to cull those.
 struct ViewLanes {
     explicit ViewLanes(const Camera& camera)
         : sign_x(broadcast(camera.x.sign)), sign_y(broadcast(camera.y.sign)), sign_z(broadcast(camera.z_sign)),
-          side_x(broadcast(camera.x.normal)), side_xz(broadcast(camera.x.normal_z)), side_y(broadcast(camera.y.normal)),
-          side_yz(broadcast(camera.y.normal_z)), front(broadcast(camera.near_depth)), back(broadcast(camera.far_depth)) {}
+          normal_x(broadcast(camera.x.normal)), normal_xz(broadcast(camera.x.normal_z)), normal_y(broadcast(camera.y.normal)),
+          normal_yz(broadcast(camera.y.normal_z)), front(broadcast(camera.near_depth)), back(broadcast(camera.far_depth)) {}
 
-    Floats sign_x, sign_y, sign_z, side_x, side_xz, side_y, side_yz, front, back;
+    Floats sign_x, sign_y, sign_z, normal_x, normal_xz, normal_y, normal_yz, front, back;
 };
 
-/// Which of a vector's lights are out of view beyond doubt, if floats hold them; x and y are as in an ImageAxis and z is
-/// the view depth, of their balls, whose `size` is |x| + |y| + |z| + r.
+/// Returns which lights of a vector are certain to lie outside the view frustum, of those that are safe in float.
 ///
-/// Rounding is monotone and near and far are floats, so comparing rounded sums with them is exact. The distance to a side
-/// plane is within 4u of the sizes that it is made of.
-LIGHTBIN_INLINE auto out_of_view(const ViewLanes& view, Floats x, Floats y, Floats z, Floats r,
-                                                 Floats nearest, Floats farthest, Floats size) {
-    const Floats aside = maximum(mul(abs(x), view.side_x) + mul(z, view.side_xz),
-                                 mul(abs(y), view.side_y) + mul(z, view.side_yz));
-    return either(either(less(farthest, view.front), less(view.back, nearest)),
-                  less(size * 0x1p-21f, aside - r));
+/// x, y, z, r         the lights' spheres, after the camera's signs: tile indices grow with x and y, and z is the view depth
+/// nearest, farthest  the lights' view depths
+/// size               |x| + |y| + |z| + r
+///
+/// Rounding is monotone and the depths of the near and far plane are floats, so comparing rounded sums with these is exact.
+/// The computed distance to a side plane has an error of at most 4u `size`, where u = 2^-24; the test allows for 8u.
+LIGHTBIN_INLINE auto out_of_view(const ViewLanes& view, Floats x, Floats y, Floats z, Floats r, Floats nearest,
+                                 Floats farthest, Floats size) {
+    const Floats outside = maximum(mul(abs(x), view.normal_x) + mul(z, view.normal_xz),
+                                   mul(abs(y), view.normal_y) + mul(z, view.normal_yz));
+    return either(either(less(farthest, view.front), less(view.back, nearest)), less(size * 0x1p-21f, outside - r));
 }
 
-/// Appends the footprints of those of the lights first..first + count - 1 that are in view.
+/// Returns which lights of a vector can be projected in float without overflow and underflow. False for NaN.
 ///
-/// In float where the error bound of tangent_slopes holds: no over- or underflow (sizes of 2^-40 to 2^40) and
-/// the whole sphere beyond the near plane. Comparisons are arranged so that NaN goes the careful way.
-inline void project(const Camera& camera, const LightSource& source, std::uint32_t first,
-                                    std::uint32_t count, const FootprintArrays& out, ProjectCounts& counts) {
-    ChunkRects rects;
-    unsigned visible[ChunkRects::size / lanes];
-    std::uint8_t careful[ChunkRects::size];
-    Sphere chunk[ChunkRects::size], padded[lanes];
-    const MoveLanes move(source.to_view);
+/// size  |x| + |y| + |z| + r
+LIGHTBIN_INLINE auto safe_in_float(Floats size, Floats r) {
+    return both(less_equal(size, broadcast(float_safe_max)), less_equal(broadcast(float_safe_min), r));
+}
+
+/// Appends the footprints of those of the spheres first..first + count - 1 that are in view.
+///
+/// Spheres are projected in float where the error bounds of tangent_slopes() hold: where nothing overflows or underflows and
+/// the whole sphere lies beyond the near plane. Others are projected in double, with all that hold NaN.
+inline void project(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
+                    const FootprintArrays& out, ProjectCounts& counts) {
+    ProjectedChunk chunk;
+    Sphere buffer[ChunkRects::size], padded[lanes];
+    const TransformLanes transform(source.to_view);
     const ViewLanes view(camera);
-    const bool moved = source.to_view != nullptr;
-    // Copies are made a few at a time, so that the next lights are fetched while these are projected.
+    const bool transformed = source.to_view != nullptr;
+    // Copies are made of a few lights at a time, so that the next ones are fetched from memory while these are projected.
     const std::uint32_t batch = source.copy != nullptr ? 32 : ChunkRects::size;
     for (std::uint32_t here; count > 0; count -= here, first += here) {
         here = min_of(count, batch);
-        // Where spheres come from, and where they are in view space.
-        Sphere* const own = source.kept != nullptr ? source.kept + first : chunk;
+        // Copies and transformed spheres are written to `own`.
+        Sphere* const own = source.out_spheres != nullptr ? source.out_spheres + first : buffer;
         const Sphere* const given = source.spheres != nullptr ? source.spheres + first : own;
-        const Sphere* const spheres = moved ? own : given;
         if (source.copy != nullptr) source.copy(source.lights, first, here, own, nullptr);
-        std::uint32_t careful_count = 0;
+        chunk.fallback_count = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
             const Sphere* from = given + i;
             const std::uint32_t used = min_of(lanes, here - i);
@@ -202,38 +251,32 @@ inline void project(const Camera& camera, const LightSource& source, std::uint32
             }
             Floats x, y, z, r;
             load_spheres(from, x, y, z, r);
-            if (moved) move_spheres(move, x, y, z, r);
-            const Floats at[] = {x, y, z};
+            if (transformed) transform_spheres(transform, x, y, z, r);
+            const Floats centre[] = {x, y, z};
             x = x * view.sign_x;
             y = y * view.sign_y;
             z = z * view.sign_z;
             const Floats nearest = z - r, farthest = z + r, size = abs(x) + abs(y) + abs(z) + r;
-            const auto usable = both(less_equal(size, broadcast(float_safe_max)), less_equal(broadcast(float_safe_min), r));
-            const auto culled = both(usable, out_of_view(view, x, y, z, r, nearest, farthest, size));
-            const unsigned valid = used < 32 ? (1u << used) - 1 : ~0u;
-            unsigned& in_view = visible[i / lanes] = 0;
+            const auto safe = safe_in_float(size, r);
+            const auto culled = both(safe, out_of_view(view, x, y, z, r, nearest, farthest, size));
+            const unsigned valid = (1u << used) - 1;
+            chunk.visible[i / lanes] = 0;
             if ((~movemask(culled) & valid) == 0) continue;
-            auto plain = and_not(usable, culled);
-            Floats left = x - r, right = x + r, bottom = y - r, top = y + r;
+            auto in_float = and_not(safe, culled);
+            ImageBounds<Floats> bounds = {{x - r, y - r}, {x + r, y + r}};
             if (!camera.orthographic) {
-                plain = both(plain, less(broadcast(camera.min_float_depth), nearest));
+                in_float = both(in_float, less(broadcast(camera.min_float_depth), nearest));
                 const Floats e = mul(nearest, farthest), per_e = 1.0f / e;
-                tangent_slopes(x, z, r, e, per_e, left, right);
-                tangent_slopes(y, z, r, e, per_e, bottom, top);
+                tangent_slopes(x, z, r, e, per_e, bounds.low[0], bounds.high[0]);
+                tangent_slopes(y, z, r, e, per_e, bounds.low[1], bounds.high[1]);
             }
-            unsigned rest = ~movemask(either(plain, culled)) & valid;
-            if (moved && (source.kept != nullptr || rest != 0))
-                store_spheres(own + i, at[0], at[1], at[2], r);
-            for (; rest != 0; rest &= rest - 1)
-                careful[careful_count++] =
-                    static_cast<std::uint8_t>(i + static_cast<unsigned>(std::countr_zero(rest)));
-            plain = tile_span<float>(camera.x, left, right, plain, rects.x0 + i, rects.x1 + i);
-            plain = tile_span<float>(camera.y, bottom, top, plain, rects.y0 + i, rects.y1 + i);
-            in_view = movemask(plain) & valid;
+            const unsigned fallback = ~movemask(either(in_float, culled)) & valid;
+            if (transformed && (source.out_spheres != nullptr || fallback != 0))
+                store_spheres(own + i, centre[0], centre[1], centre[2], r);
+            put_vector(camera, bounds, in_float, fallback, valid, i, chunk);
         }
-        project_carefully(camera, spheres, careful, careful_count, rects, visible, counts);
-        for (std::uint32_t i = 0; i < here; i += lanes)
-            if (visible[i / lanes] != 0) append_visible(out, counts, first, visible[i / lanes], rects, i);
+        project_in_double(camera, transformed ? own : given, chunk, counts);
+        append_chunk(chunk, first, here, out, counts);
     }
 }
 

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: MIT
-// The silhouettes of spots: those of their balls, within the wedge of their cones. Included once a tier, after
-// silhouette.inl.
+// The row spans of spots: the silhouettes of their balls, cut off at the lines that bound their cones. Included once per tier.
 //
-// Two planes through the eye touch a cone, if the eye is not in it: in the image, two lines from the apex. With u the
-// unit vector from the eye to the apex, a the axis, b = a - (a.u) u and s = |b|, their normals are
-//     n = -(sin t / s) b / s +- sqrt(1 - (sin t / s)^2) u x b / s,    for which  n.u = 0  and  n.a = -sin t,
-// and every point p of the cone has  n.p <= 0. So in a row of tiles, slopes v0 to v1, of points at the depth z or more, for
-// a spot whose floats are off by `blur`:  n_x x <= blur / z - n_z - min(n_y v0, n_y v1). (Unity's URP bounds spots by
-// the same planes.) Orthographic: u is the direction of view, and n.(p - apex) <= blur.
+// Two planes through the eye touch a cone, unless the eye is inside it. In the image they are two lines through the apex. Let
+// t be the half angle, a the unit axis, u the unit vector from the eye to the apex, b = a - (a.u) u and s = |b|. The planes'
+// unit normals are
+//     n = -(sin t / s) b / s +- sqrt(1 - (sin t / s)^2) u x b / s,   for which  n.u = 0  and  n.a = -sin t,
+// and each point p of the cone has  n.p <= 0. So a spot's points whose view depth is at least z, within the slopes v0 to v1 of
+// a tile row, have slopes x with  n_x x <= tolerance / z - n_z - min(n_y v0, n_y v1),  where `tolerance` is the spot's. (The
+// Universal Render Pipeline of Unity bounds spots by the same planes.) With an orthographic projection u is the view
+// direction, and  n.(p - apex) <= tolerance.
 //
-// Where t is near 90 degrees, sines hardly tell angles apart: sin t and the length of a are within 8u and 18u, u = 2^-24,
-// so the planes' angle to the axis is within 26u tan t, and n.p may be as much of r more. 32u r / cos t is allowed. In
-// double, with e = 2^-53 and s of 2^-20 at least, n is within 2^-30 of what the floats say; (|p| + r) 2^-28 is allowed.
-// What rounding does to the rest is less than 2^-48 of the rows' and columns' slopes; 2^-40 is allowed.
+// Rounding, with the unit roundoffs u = 2^-24 of float and e = 2^-53 of double:
+// - sin t and |a| have errors of at most 8u and 18u. Where t is near 90 degrees, a small change of the sine is a large one of
+//   the angle: the planes' angle to the axis has an error of at most 26u tan t, and n.p can be larger by as much times the
+//   radius r. The tolerance is enlarged by 32u r / cos t.
+// - For s >= 2^-20, n is within 2^-30 of the normal for the given floats. The tolerance is enlarged by 2^-28 (|p| + r).
+// - All other errors are less than 2^-48 of the slopes of rows and columns; 2^-40 of them is added.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/project/sphere_rows.inl>
@@ -20,23 +23,25 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// Of `lanes` spots, the two lines: in a row, tiles end or begin at (most - min(n_y v0, n_y v1)) per_x + offset.
+/// The two lines that bound each of `lanes` cones in the image. In a tile row with the slopes v0 to v1, the span begins or
+/// ends at  (limit - min(n_y v0, n_y v1)) per_x + offset  tiles: it ends there if per_x > 0.
 struct WedgeTerms {
-    double per_x[2][lanes], n_y[2][lanes], most[2][lanes];
+    double per_x[2][lanes], n_y[2][lanes], limit[2][lanes];
 };
 
-/// The axis, apex and more of a vector of spots.
+/// What find_wedges() reads of a vector of spots.
 struct WedgeLanes {
     Doubles apex[3], axis[3], sine;
-    Doubles blur;  ///< the most that n.p may be, over its depth
+    Doubles tolerance;  ///< bound on n.p, divided by p's view depth with a perspective projection
 };
 
 inline Doubles dot(const Doubles (&a)[3], const Doubles (&b)[3]) {
     return mul(a[0], b[0]) + mul(a[1], b[1]) + mul(a[2], b[2]);
 }
 
-inline void find_wedges(const Camera& camera, const WedgeLanes& spots, unsigned at,
-                                        WedgeTerms& terms) {
+/// Finds the lines that bound the cones of spots, and stores them from lane `at` on. Where there are none the limit is
+/// infinite.
+inline void find_wedges(const Camera& camera, const WedgeLanes& spots, unsigned at, WedgeTerms& terms) {
     const Doubles zero = broadcast(0.0), one = broadcast(1.0), none = broadcast(static_cast<double>(infinity));
     Doubles u[3] = {zero, zero, one};
     if (!camera.orthographic) {
@@ -49,7 +54,7 @@ inline void find_wedges(const Camera& camera, const WedgeLanes& spots, unsigned 
     for (unsigned i = 0; i < 3; ++i)
         b[i] = spots.axis[i] - mul(along, u[i]);
     const Doubles s = sqrt(dot(b, b)), per_s = 1.0 / s;
-    const auto limited = less(mul(spots.sine, broadcast(1 + 0x1p-20)) + 0x1p-20, s);
+    const auto eye_outside = less(mul(spots.sine, broadcast(1 + 0x1p-20)) + 0x1p-20, s);
     const Doubles cosine = mul(spots.sine, per_s),
                   sine = mul(sqrt(maximum(mul(s - spots.sine, s + spots.sine), zero)), per_s);
     Doubles back[3], aside[3];
@@ -58,35 +63,33 @@ inline void find_wedges(const Camera& camera, const WedgeLanes& spots, unsigned 
         back[i] = mul(b[i], mul(per_s, cosine));
         aside[i] = mul(mul(u[j], b[k]) - mul(u[k], b[j]), mul(per_s, sine));
     }
-    const double rows = (abs_of(camera.y.offset) + camera.y.tiles) / camera.y.scale;
-    const Doubles slack = spots.blur + 0x1p-40 * (1 + rows);
+    const Doubles slack = spots.tolerance + 0x1p-40 * (1 + max_row_slope(camera));
     for (unsigned side = 0; side < 2; ++side) {
         Doubles n[3];
         for (unsigned i = 0; i < 3; ++i)
             n[i] = (side == 0 ? aside[i] : -aside[i]) - back[i];
-        const Doubles most =
+        const Doubles limit =
             camera.orthographic ? slack + mul(n[0], spots.apex[0]) + mul(n[1], spots.apex[1]) : slack - n[2];
-        store_doubles(terms.per_x[side] + at, select(limited, camera.x.scale / n[0], one));
-        store_doubles(terms.n_y[side] + at, select(limited, n[1], zero));
-        store_doubles(terms.most[side] + at, select(limited, most, none));
+        store_doubles(terms.per_x[side] + at, select(eye_outside, camera.x.scale / n[0], one));
+        store_doubles(terms.n_y[side] + at, select(eye_outside, n[1], zero));
+        store_doubles(terms.limit[side] + at, select(eye_outside, limit, none));
     }
 }
 
-/// As SphereRows.
+/// The silhouettes of a vector of spots, with the members of SphereRows.
 struct SpotRows {
-    unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin,
-                                  std::uint32_t used) {
+    unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin, std::uint32_t count) {
         Sphere balls[lanes], axes[lanes], rest[lanes];
         for (std::uint32_t i = 0; i < lanes; ++i) {
-            const ViewSpot& spot = lights.spots[lights.ids[begin + (i < used ? i : 0)]];
+            const ViewSpot& spot = lights.spots[lights.ids[begin + min_of(i, count - 1)]];
             balls[i] = spot.ball;
             axes[i] = {spot.axis_x, spot.axis_y, spot.axis_z, spot.cosine};
-            rest[i] = {spot.nearest, spot.farthest, spot.sine, spot.blur};
+            rest[i] = {spot.nearest, spot.farthest, spot.sine, spot.tolerance};
         }
-        Floats apex[3], r, axis[3], cosine, nearest, farthest, sine, blur;
+        Floats apex[3], r, axis[3], cosine, nearest, farthest, sine, tolerance;
         load_spheres(balls, apex[0], apex[1], apex[2], r);
         load_spheres(axes, axis[0], axis[1], axis[2], cosine);
-        load_spheres(rest, nearest, farthest, sine, blur);
+        load_spheres(rest, nearest, farthest, sine, tolerance);
         balls_known = 0;
         for (unsigned half = 0; half < lanes / double_lanes; ++half) {
             WedgeLanes wedge;
@@ -100,10 +103,10 @@ struct SpotRows {
             balls_known |= row_terms(camera, wedge.apex[0], wedge.apex[1], wedge.apex[2], radius, ball,
                                      half * double_lanes);
             wedge.sine = widened(sine, half);
-            wedge.blur = widened(blur, half) + size * 0x1p-28 + radius * 0x1p-19 / widened(cosine, half);
+            wedge.tolerance = widened(tolerance, half) + size * 0x1p-28 + radius * 0x1p-19 / widened(cosine, half);
             if (!camera.orthographic)
-                wedge.blur =
-                    wedge.blur / maximum(widened(nearest, half), broadcast(static_cast<double>(camera.near_depth)));
+                wedge.tolerance = wedge.tolerance /
+                                  maximum(widened(nearest, half), broadcast(static_cast<double>(camera.near_depth)));
             find_wedges(camera, wedge, half * double_lanes, wedges);
         }
         const double margin = 0x1p-40 * (abs_of(camera.x.offset) + camera.x.tiles);
@@ -112,8 +115,8 @@ struct SpotRows {
         return ~0u;
     }
 
-    void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost,
-                               RowSpan* to) const {
+    /// Stores spans as SphereRows::store() does; those that are empty as 1..0.
+    void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost, RowSpan* to) const {
         Doubles begin = leftmost, end = rightmost + 1.0;
         if ((balls_known >> i & 1) != 0) {
             Doubles ball_begin, ball_end;
@@ -123,7 +126,7 @@ struct SpotRows {
         }
         for (unsigned side = 0; side < 2; ++side) {
             const Doubles per_x = broadcast(wedges.per_x[side][i]), n_y = broadcast(wedges.n_y[side][i]);
-            const Doubles here = mul(wedges.most[side][i] - minimum(mul(n_y, v0), mul(n_y, v1)), per_x);
+            const Doubles here = mul(wedges.limit[side][i] - minimum(mul(n_y, v0), mul(n_y, v1)), per_x);
             const auto to_right = less(broadcast(0.0), per_x);
             end = minimum(select(to_right, here + high, end), end);
             begin = maximum(select(to_right, begin, here + low), begin);
@@ -133,10 +136,10 @@ struct SpotRows {
                     select(none, broadcast(0.0), minimum(maximum(end, leftmost), rightmost)));
     }
 
-    RowTerms ball;
-    unsigned balls_known;
+    RowTerms ball;         ///< the silhouettes of the balls
+    unsigned balls_known;  ///< a bit for each ball that has one
     WedgeTerms wedges;
-    double low, high;
+    double low, high;      ///< the camera's offset, in tiles, rounded down and up
 };
 
 }}}}  // namespace lightbin::detail

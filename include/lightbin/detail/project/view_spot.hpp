@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// A spot in view space, as the kernels take it.
+// A spot in view space, as the kernels read it: the sector of a sphere, here called its ball, that a cone from the sphere's
+// centre, the apex, cuts out.
 //
-// Its floats are rounded, but every point of the true spot is within `blur` of the part of the ball that the cone of
-// these floats holds, the cone's sector. So a test against a plane is right that asks for `blur` more, and no angle has to
-// be made wider. With u = 2^-24, r the radius: the axis is within 5u of the true one, moved to view space within 18u, the
-// sine within 3u of itself, and so the sector's farthest point in any direction is within 25u r of the true one. 2^-18 = 64u
-// is blur / r at least; in world space what else the move takes comes to it, see world_to_view.hpp.
+// A ViewSpot holds rounded numbers, but each point of the exact spot is within `tolerance` of the sector that these numbers
+// describe. So a test against a plane never loses a light if it allows for `tolerance`, and the cone needs no wider angle.
+// With the unit roundoff u = 2^-24 and the radius r, the unit axis is within 5u of the exact one, or within 18u if it was
+// transformed to view space, and the sine has a relative error of at most 3u. So the sector's farthest point in any direction
+// is within 25u r of the exact one. The tolerance is at least 2^-18 r = 64u r; for spots given in world space the errors of
+// the transform are added, see world_to_view.hpp.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -20,25 +22,27 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// The half space of the points with  x p_x + y p_y + z p_z <= offset.
+/// The half space of the points p with  x p_x + y p_y + z p_z <= offset.
 struct SpotPlane {
     float x, y, z, offset;
 };
 
-/// A spot: x and y are as in an ImageAxis, z is the view depth. Of a whole sphere the axis is 0 and the sine 1, and no
-/// plane leaves out anything.
+/// A spot in view space, after the camera's signs: tile indices grow with x and y, and z is the view depth. A spot that is a
+/// whole sphere has the axis 0, the sine 1 and no tolerance, so that no plane excludes anything of it.
 struct ViewSpot {
-    Sphere ball;
-    float axis_x, axis_y, axis_z, cosine;  ///< the axis of unit length; of the half angle, 0 to 1
-    float nearest, farthest;  ///< view depths; rounding is monotone, so comparing them with floats is exact
-    float sine, blur;
-    /// For boxes: half spaces around the cone, through the apex but for rounding.
+    Sphere ball;                              ///< its centre is the cone's apex
+    float axis_x, axis_y, axis_z, cosine;     ///< the cone's unit axis; the cosine of the half angle, from 0 to 1
+    float nearest, farthest;                  ///< view depths; rounding is monotone, so comparing floats with them is exact
+    float sine;                               ///< of the half angle
+    float tolerance;                          ///< how far points of the exact spot can lie outside this one
+    /// With a depth test against boxes, four half spaces around the cone, whose planes touch the apex but for rounding.
     SpotPlane planes[4];
-    /// And which corner of a box is deepest in each: where its coordinates begin among a supertile's, see arrange_cells().
+    /// For each of these half spaces, which corner of a box lies deepest inside: where the corner's x, y and z begin in the
+    /// array of a block's boxes that arrange_cells() makes.
     std::uint16_t corners[4][3];
 };
 
-/// A spot as the depth tests see it.
+/// A spot as the depth tests read it.
 struct TestedSpot {
     TestedSpot() = default;
     TestedSpot(const Camera&, const ViewSpot& of) : spot(&of), nearest(of.nearest), farthest(of.farthest) {}
@@ -47,7 +51,7 @@ struct TestedSpot {
     float nearest, farthest;
 };
 
-/// A light as a depth test sees it, by whether the lights are spots.
+/// The type of lights that the depth tests read: TestedSpot for spots, TestedLight for spheres.
 template <bool spots> using Tested = std::conditional_t<spots, TestedSpot, TestedLight>;
 
 }}}  // namespace lightbin::detail

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: MIT
-// World to view space: the moved sphere holds the exact image of the given one. Its radius takes in the matrix's
-// largest stretch and the rounding of the moved centre.
+// The transform of lights from world space to view space. A transformed sphere contains the exact image of the given one:
+// its radius is multiplied by the largest factor by which the matrix can stretch a length, and enlarged by a bound on the
+// rounding error of the transformed centre.
 //
-// In floats a vector of lights at a time (move.inl), by way of an origin o near the eye, which keeps the rounding as
-// small far from the world's origin as near it:  A p + t = A (p - o) + (A o + t).  With u = 2^-24 the unit roundoff,
-// A's entries, p - o and the products are within u each and three sums follow, so a centre is within 6u of the sum of
-// |A_j| |p_j - o_j|, A_j being the columns of A. In doubles one by one where floats can't hold or would blur it.
+// world_to_view.inl transforms a vector of lights at a time in float. So that the rounding error far from the world's origin
+// is as small as near it, positions p are taken relative to an origin o near the eye:  A p + t = A (p - o) + (A o + t),  where
+// A is the matrix's linear part with the columns A_j, and t its translation. Let u = 2^-24, the unit roundoff of float. The
+// entries of A, the differences p_j - o_j and the products each have a relative error of at most u, and three sums follow. So
+// a centre is within 6u of the sum over j of |A_j| |p_j - o_j| of the exact one. Lights that are too large, small or far away
+// for the float path are transformed in double, one by one.
 //
-// A cone becomes one only by a rotation Q and a scale. Let s be the largest stretch and A = Q P with P's stretches from
-// (1 - d) s to s: A p is no farther than d s |p| from s Q p, and so the images of a cone's axis under A and Q are at an
-// angle whose sine is d at most. A point of the image is no farther than 3 d s |p| from the cone around the image of the
-// axis, with the same angle (d up to 1/16).
+// Only a rotation with a uniform scale maps every cone to a cone. Let the factors by which A stretches lengths lie between
+// (1 - d) s and s. By the polar decomposition A = Q P, with Q orthogonal and P stretching by the same factors, and so A p is
+// at most d s |p| away from s Q p. The images of a cone's axis under A and under Q then differ by an angle whose sine is at
+// most d. So for d up to 1/16 a point of the cone's image is at most 3 d s |p| away from the cone with the given half angle
+// around the image of the axis under A.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -28,30 +32,34 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// An affine map in floats.
-struct FloatMove {
-    float origin[3];
-    float columns[3][3];  ///< A
-    float at_origin[3];   ///< A origin + t
-    float stretch;        ///< the most that it makes a length longer, rounded up
-    float error;          ///< of the moved centre, by |x| + |y| + |z| from the origin
-    float least_error;    ///< and of at_origin
-    float
-        bend;  ///< how far a point of a cone may move beside its image, by its distance from the apex; inf: any
-    /// As far from the origin it serves, for plain radii; less than 0 where doubles must.
-    float most = -1;
+/// An affine transform of world space to view space, in float.
+struct FloatTransform {
+    float origin[3];        ///< o, a point near the eye, in world space
+    float columns[3][3];    ///< of the linear part, A
+    float origin_image[3];  ///< A o + t, that point in view space
+    float stretch;          ///< bound on the factor by which a length is stretched, rounded up
+    /// A transformed centre has an error of at most  error_rate * (|x| + |y| + |z|) + error_at_origin,  where x, y and z are
+    /// its coordinates relative to the origin.
+    float error_rate, error_at_origin;
+    /// How far a point of a transformed spot can lie outside the cone around the transformed axis, divided by the spot's
+    /// transformed radius; +inf where no bound is known.
+    float cone_error;
+    /// Float is precise enough where |x| + |y| + |z|, relative to the origin, is at most this. Less than 0 where it never is.
+    float max_distance = -1;
 };
 
+/// A matrix that transforms lights from world space to view space.
 class WorldToView {
 public:
-    /// Not inline, so that no operation of it moves out of the environment.
+    /// Not inlined, so that compilers move none of its operations out of the life of `environment`.
     LIGHTBIN_NOINLINE explicit WorldToView(const Matrix& matrix)
-        : m_(matrix), affine_(finite(m_) && last_row_is_plain(m_)) {
+        : m_(matrix), affine_(finite(m_) && last_row_is_affine(m_)) {
         const DefaultFloatEnvironment environment;
-        // The largest singular value is at most the root of the largest row sum of M^T M. Where a product overflows, sums
-        // are infinite or NaN, which no comparison takes for the largest: then there is no bound.
-        // In the same way the square of the smallest is at least the least diagonal element less what stands beside it.
-        double square = 0, all = 0, least = static_cast<double>(infinity);
+        // By Gershgorin's circle theorem the square of the largest singular value, which is the largest eigenvalue of
+        // M^T M, is at most the largest sum of absolute values in a row of M^T M. Likewise, the square of the smallest one is
+        // at least the smallest difference of a diagonal element and the absolute values beside it. If a product overflows,
+        // `all` is infinite or NaN, and there is no bound.
+        double largest2 = 0, all = 0, smallest2 = static_cast<double>(infinity);
         for (int i = 0; i < 3; ++i) {
             double row_sum = 0, diagonal = 0;
             for (int j = 0; j < 3; ++j) {
@@ -59,25 +67,25 @@ public:
                 row_sum += abs_of(product);
                 if (j == i) diagonal = product;
             }
-            square = max_of(square, row_sum);
-            least = min_of(least, 2 * diagonal - row_sum);
+            largest2 = max_of(largest2, row_sum);
+            smallest2 = min_of(smallest2, 2 * diagonal - row_sum);
             all += row_sum;
         }
-        stretch_ = is_finite(all) ? root_of(square) * (1 + 0x1p-48) : static_cast<double>(infinity);
-        uneven_ = least > 0 && is_finite(all) ? 1 - root_of(least / square) : 1;
-        if (affine_) find_floats();
+        stretch_ = is_finite(all) ? root_of(largest2) * (1 + 0x1p-48) : static_cast<double>(infinity);
+        anisotropy_ = smallest2 > 0 && is_finite(all) ? 1 - root_of(smallest2 / largest2) : 1;
+        if (affine_) find_float_transform();
     }
 
-    /// Why no light can be moved by it.
+    /// Returns why the matrix can transform no light, or nothing if it can.
     Maybe<ErrorCode> refusal() const {
         if (affine_) return {};
-        return finite(m_) && last_row_is_plain(transposed(m_)) ? ErrorCode::view_matrix_transposed
+        return finite(m_) && last_row_is_affine(transposed(m_)) ? ErrorCode::view_matrix_transposed
                                                                : ErrorCode::view_matrix_not_affine;
     }
-    const FloatMove& floats() const { return floats_; }
+    const FloatTransform& in_float() const { return in_float_; }
 
-    /// The image of any sphere, in doubles. Bad input stays bad. Not inline: within a tier's kernel, compilers fuse its
-    /// products and sums by that tier's instructions.
+    /// Returns the image of a sphere, computed in double; bad input is returned as it is. Not inlined, because within a tier's
+    /// kernel compilers would fuse its products and sums into that tier's fused multiply-adds, which round differently.
     LIGHTBIN_NOINLINE Sphere operator()(const Sphere& light) const {
         if (!is_finite(light.x) || !is_finite(light.y) || !is_finite(light.z) || !(light.radius >= 0))
             return light;
@@ -88,7 +96,7 @@ public:
             const double a = m_[0][row] * x, b = m_[1][row] * y, c = m_[2][row] * z, d = m_[3][row];
             centre[row] = a + b + c + d;
             if (!(abs_of(centre[row]) <= static_cast<double>(FLT_MAX))) return {0, 0, 0, infinity};
-            // 2^-24 to round the centre to float, 2^-50 for the sum in double
+            // Rounding the centre to float has a relative error of 2^-24; 2^-50 covers the sum in double.
             error +=
                 0x1p-24 * abs_of(centre[row]) + 0x1p-50 * (abs_of(a) + abs_of(b) + abs_of(c) + abs_of(d));
         }
@@ -98,7 +106,7 @@ public:
                 radius <= static_cast<double>(FLT_MAX) ? static_cast<float>(radius) : infinity};
     }
 
-    /// The image of a vector, rounded to nearest, with radius 0.
+    /// Returns the image of a direction, to which no translation is added, rounded to nearest, with radius 0.
     Sphere direction(float x, float y, float z) const {
         float image[3];
         for (int row = 0; row < 3; ++row)
@@ -109,14 +117,16 @@ public:
     }
 
 private:
-    static bool last_row_is_plain(const Matrix& m) {
+    static bool last_row_is_affine(const Matrix& m) {
         return m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
     }
 
-    /// Only for maps near to a rotation and a scale: others can take p - o far beyond the image, and its rounding too. So
-    /// a column is no shorter than 2^-26, and an entry of it that is flushed to zero is no more than 2^-100 of that.
-    void find_floats() {
-        double inverse[3][3], det = 0, norm2 = 0, inverse_norm2 = 0, longest2 = 0;
+    /// Finds the transform in float if A is close to a rotation with a uniform scale: if the product of its Frobenius norm and
+    /// its inverse's is at most 32. Otherwise p - o, and so its rounding error, could be much larger than its image. It follows
+    /// that each column of A is at least 2^-26 long, and that a denormal entry that is flushed to zero is at most 2^-100 times
+    /// its column's length.
+    void find_float_transform() {
+        double inverse[3][3], det = 0, norm2 = 0, inverse_norm2 = 0, longest_column2 = 0;
         for (int c = 0; c < 3; ++c)
             for (int r = 0; r < 3; ++r) {
                 const int c1 = (c + 1) % 3, c2 = (c + 2) % 3, r1 = (r + 1) % 3, r2 = (r + 2) % 3;
@@ -132,42 +142,43 @@ private:
                 length2 += m_[c][r] * m_[c][r];
             }
             norm2 += length2;
-            longest2 = max_of(longest2, length2);
+            longest_column2 = max_of(longest_column2, length2);
         }
         if (!(norm2 * inverse_norm2 <= 1024) || !(norm2 >= 0x1p-40) || !(norm2 <= 0x1p40)) return;
-        double origin[3], before = 0, offset = 0;
+        double origin[3], terms = 0, offset = 0;  // sums of the absolute values in A o + t, and of the results
         for (int c = 0; c < 3; ++c) {
             origin[c] = 0;
             for (int r = 0; r < 3; ++r)
                 origin[c] -= inverse[r][c] * m_[3][r];
             if (!(abs_of(origin[c]) <= 0x1p60)) return;
-            floats_.origin[c] = static_cast<float>(origin[c]);
-            origin[c] = static_cast<double>(floats_.origin[c]);
+            in_float_.origin[c] = static_cast<float>(origin[c]);
+            origin[c] = static_cast<double>(in_float_.origin[c]);
         }
         for (int r = 0; r < 3; ++r) {
             double at = m_[3][r];
-            before += abs_of(at);
+            terms += abs_of(at);
             for (int c = 0; c < 3; ++c) {
                 at += m_[c][r] * origin[c];
-                before += abs_of(m_[c][r] * origin[c]);
-                floats_.columns[c][r] = static_cast<float>(m_[c][r]);
+                terms += abs_of(m_[c][r] * origin[c]);
+                in_float_.columns[c][r] = static_cast<float>(m_[c][r]);
             }
             offset += abs_of(at);
-            floats_.at_origin[r] = static_cast<float>(at);
+            in_float_.origin_image[r] = static_cast<float>(at);
         }
-        // Each a little more than it must be, for the rounding of the moved radius; 2^-100 for what is flushed to zero.
-        floats_.stretch = float_above(stretch_ * (1 + 0x1p-22));
-        floats_.error = float_above(root_of(longest2) * (6 * 0x1p-24) * (1 + 0x1p-18));
-        floats_.least_error = float_above((offset * 0x1p-23 + before * 0x1p-50) * (1 + 0x1p-18) + 0x1p-100);
-        floats_.bend = uneven_ < 0x1p-4 ? float_above(3 * uneven_ + 0x1p-40) : infinity;
-        floats_.most = float_safe_max;
+        // The factors (1 + 2^-22) and (1 + 2^-18) cover the rounding of the transformed radius, and 2^-100 denormal numbers
+        // that are flushed to zero.
+        in_float_.stretch = float_above(stretch_ * (1 + 0x1p-22));
+        in_float_.error_rate = float_above(root_of(longest_column2) * (6 * 0x1p-24) * (1 + 0x1p-18));
+        in_float_.error_at_origin = float_above((offset * 0x1p-23 + terms * 0x1p-50) * (1 + 0x1p-18) + 0x1p-100);
+        in_float_.cone_error = anisotropy_ < 0x1p-4 ? float_above(3 * anisotropy_ + 0x1p-40) : infinity;
+        in_float_.max_distance = float_safe_max;
     }
 
     Matrix m_;
     bool affine_;
-    double stretch_;  ///< the most that it makes a length longer
-    double uneven_;   ///< how much shorter, relative to that, it makes one at most
-    FloatMove floats_ = {};
+    double stretch_;     ///< bound on the factor by which a length is stretched: the largest singular value, rounded up
+    double anisotropy_;  ///< bound on d: the smallest singular value is at least 1 - d times the largest
+    FloatTransform in_float_ = {};
 };
 
 }}}  // namespace lightbin::detail
