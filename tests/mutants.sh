@@ -44,7 +44,7 @@ list() {
     mutant least_spheres spot.hpp 's/axis_length;/(axis_length * (1 + 0x1p-18));/'
     # Projection.
     mutant families detail/project/spheres.inl 's/either(either(less(farthest, view.front)/either(either(less(nearest, view.front)/'
-    mutant families detail/project/spheres.inl 's/less(size \* 0x1p-21f, aside - r)/less(size * -0x1p-19f, aside - r)/'
+    mutant families detail/project/spheres.inl 's/less(size \* 0x1p-21f, outside - r)/less(size * -0x1p-19f, outside - r)/'
     mutant families detail/project/spheres.inl 's/+ offset - margin;/+ offset + margin;/'
     mutant families detail/project/spheres.inl 's/less_equal(size, broadcast(float_safe_max))/less_equal(size, broadcast(0x1p100f))/'
     mutant families detail/project/spheres.inl 's/const auto behind = less(z, zero);/const auto behind = less(zero, z);/'
