@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage 2: spheres or spots -> footprints, the tile rectangle of each light in view, rounded outward.
+// The projection stage: from lights to footprints, the tile rectangles of the lights in view, rounded outward, and with
+// silhouettes the spans of tiles in each tile row.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -25,16 +26,18 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 namespace detail {
 
-/// The lights that no stage takes, ids being 32 bits at most.
+/// Returns why lights can't be binned, or nothing if they can: their view matrix is refused, or there are more than ids can
+/// number.
 template <class Light, class ToLight>
-Maybe<Error> refuse(const Lights<Light, ToLight>& lights, std::uint64_t most = 0xffffffff) {
+Maybe<Error> refuse(const Lights<Light, ToLight>& lights, std::uint64_t max_lights = 0xffffffff) {
     if (lights.to_view)
         if (const auto code = lights.to_view->refusal()) return Error{*code};
-    if (lights.array.size() > most) return Error{ErrorCode::too_many_lights, lights.array.size(), most};
+    if (lights.array.size() > max_lights)
+        return Error{ErrorCode::too_many_lights, lights.array.size(), max_lights};
     return {};
 }
 
-/// See LightSource.
+/// LightSource::copy for the lights of a Lights<Light, ToLight>.
 template <class Light, class ToLight>
 void copy_lights(const void* lights, std::size_t first, std::size_t count, Sphere* to,
                  [[maybe_unused]] Sphere* cones) {
@@ -51,21 +54,22 @@ void copy_lights(const void* lights, std::size_t first, std::size_t count, Spher
 
 }  // namespace detail
 
-/// The footprints of the lights in view, in ascending order of id. Keeps its memory from call to call.
+/// The footprints of the lights in view, in ascending order of id. Memory is reused from call to call.
 ///
 /// footprint     silhouette: with row spans
-/// with_spheres  have the view-space spheres or spots at hand, for a depth test; row spans need them anyway
+/// with_spheres  keep the lights in view space, spheres or spots, for a depth test. With row spans they are kept anyway.
 template <Footprint footprint, bool with_spheres> class Footprints {
-    static constexpr bool with_spans = footprint == Footprint::silhouette, keep = with_spheres || with_spans;
+    static constexpr bool with_spans = footprint == Footprint::silhouette, keeps_lights = with_spheres || with_spans;
 
 public:
-    /// Projects every light with the kernel of an instruction set. After it, a light's rectangle holds each
-    /// tile that the part of its sphere beyond the near plane projects to; it is the smallest such rectangle
-    /// but for the rounding margin of the view. So it is of a spot whose ball lies beyond the near plane; another one's is
-    /// where the rectangles of its ball and of its least sphere meet.
+    /// Projects all lights with an instruction set's kernels. A light's rectangle then holds each tile that the part of its
+    /// sphere beyond the near plane is projected to, and is the smallest such rectangle but for the view's rounding margin. The
+    /// same is true of a spot whose ball lies beyond the near plane. The rectangle of any other spot is where those of its ball
+    /// and its least_sphere() intersect.
     ///
-    /// force_parallel  share even what is soon done: there will be more to share, and by then the threads are awake
-    /// for_boxes       have what boxes ask of spots at hand, too; only with_spheres
+    /// force_parallel  use the caller's threads even if projecting is too little work to wake them up for, because a stage that
+    ///                 follows has enough
+    /// for_boxes       store with each spot what depth tests against boxes need; only if with_spheres
     template <class Light, class ToLight>
     void project(Isa isa, const View& view, const Lights<Light, ToLight>& lights, const Parallel& parallel,
                  bool force_parallel = false, bool for_boxes = false) {
@@ -74,8 +78,6 @@ public:
             force_parallel || parallel.pays_off(detail::project_ns(isa, static_cast<double>(lights_)));
         const Parallel threads = share ? parallel : Parallel();
         constexpr bool spots = Lights<Light, ToLight>::spots;
-        // One light is done sooner than a vector is filled up with copies of it.
-        const Isa taken = lights_ > 1 ? isa : Isa::scalar;
         reserve(parts_for(parallel));
         detail::LightSource source = {.spheres = detail::as_they_are(lights),
                                       .lights = &lights,
@@ -86,36 +88,39 @@ public:
                                       .with_planes = for_boxes};
         if (source.spheres == nullptr) source.copy = detail::copy_lights<Light, ToLight>;
         arrays_.spheres = source.spheres;
-        [[maybe_unused]] const std::uint64_t places = std::uint64_t{lights_} + chunk;
-        if constexpr (keep && spots)
-            arrays_.spots = source.out_spots = spots_.reserve(places);
-        else if constexpr (keep)
+        [[maybe_unused]] const std::uint64_t capacity = std::uint64_t{lights_} + chunk;
+        if constexpr (keeps_lights && spots)
+            arrays_.spots = source.out_spots = spots_.reserve(capacity);
+        else if constexpr (keeps_lights)
             if (source.copy != nullptr || source.to_view != nullptr)
-                arrays_.spheres = source.out_spheres = spheres_.reserve(places);
-        run_parts(view, source, detail::project_kernel<spots>(taken), threads);
+                arrays_.spheres = source.out_spheres = spheres_.reserve(capacity);
+        // A single light is projected faster alone than in a vector that is filled up with copies of it.
+        const Isa kernel_isa = lights_ > 1 ? isa : Isa::scalar;
+        run_parts(view, source, detail::project_kernel<spots>(kernel_isa), threads);
         if constexpr (with_spans) add_spans(detail::row_span_kernel<spots>(isa), view, threads);
     }
 
-    std::size_t lights() const { return lights_; }
-    std::uint32_t visible() const { return counts_.visible; }
-    std::uint32_t rejected() const { return counts_.rejected; }  ///< bad input, see Sphere
-    std::uint64_t area() const { return counts_.area; }          ///< sum of the rectangles' tiles
+    std::size_t lights() const { return lights_; }                ///< lights given
+    std::uint32_t visible() const { return counts_.visible; }     ///< lights in view
+    std::uint32_t rejected() const { return counts_.rejected; }  ///< lights that are bad input, see Sphere
+    std::uint64_t area() const { return counts_.area; }          ///< tiles in all rectangles
     const detail::FootprintArrays& arrays() const { return arrays_; }
     detail::Items<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
 
-    /// All depths are one slice.
+    /// Without slices, all depths are one slice.
     int slices() const { return 1; }
     detail::FootprintSlice slice(std::size_t) const { return {arrays_, runs(), visible(), area()}; }
 
 private:
     static constexpr std::size_t chunk = detail::ChunkRects::size;
 
-    /// As many where they are not shared; one part where 32 bits might not number the places of more.
+    /// Returns how many parts the lights are projected in, which does not depend on whether the threads share them. It is one
+    /// where the padding between parts could make indices larger than 32 bits.
     std::size_t parts_for(const Parallel& parallel) const {
         return lights_ >> 31 == 0 ? detail::project_parts(lights_ / chunk + 1, parallel.workers()) : 1;
     }
 
-    /// Has a kernel project the lights, whole chunks a part.
+    /// Projects the lights in parts of whole chunks, each to a run of its own.
     void run_parts(const View& view, const detail::LightSource& source, detail::ProjectKernel kernel,
                    const Parallel& threads) {
         const std::size_t chunks = lights_ / chunk + 1, parts = run_count_;
@@ -125,16 +130,17 @@ private:
         };
         threads.run(parts, [&](std::size_t part) {
             const std::size_t first = first_of(part), end = first_of(part + 1);
-            const std::size_t place = first + part * detail::FootprintArrays::padding;
+            const std::size_t to = first + part * detail::FootprintArrays::padding;
             detail::ProjectCounts sum;
             kernel(detail::camera_of(view), source, static_cast<std::uint32_t>(first),
-                   static_cast<std::uint32_t>(end - first), arrays_.from(place), sum);
-            const std::uint32_t begin = static_cast<std::uint32_t>(place), end_place = begin + sum.visible;
+                   static_cast<std::uint32_t>(end - first), arrays_.from(to), sum);
+            const detail::FootprintRun run = {static_cast<std::uint32_t>(to),
+                                              static_cast<std::uint32_t>(to) + sum.visible};
             if constexpr (with_spans)
-                for (std::uint32_t i = begin; i < end_place; ++i)
+                for (std::uint32_t i = run.begin; i < run.end; ++i)
                     sum.rows += arrays_.y1[i] - arrays_.y0[i] + 1u;
             part_counts_.data()[part] = sum;
-            runs_.data()[part] = {begin, end_place};
+            runs_.data()[part] = run;
         });
         counts_ = {};
         for (std::size_t part = 0; part < parts; ++part) {
@@ -147,26 +153,27 @@ private:
     }
 
     void reserve(std::size_t parts) {
-        const std::uint64_t padding = (parts - 1) * detail::FootprintArrays::padding;  // between two
+        const std::uint64_t padding = (parts - 1) * detail::FootprintArrays::padding;  // between parts
         arrays_ = buffers_.reserve(lights_ + padding, with_spans);
         runs_.reserve(parts);
         part_counts_.reserve(parts);
         run_count_ = parts;
     }
 
+    /// Finds the row spans of all footprints, those of each part one after another.
     void add_spans(detail::RowSpanKernel kernel, const View& view, const Parallel& threads) {
-        constexpr std::uint64_t padding = 8;  // a vector of rows
-        // Later lights than 32 bits can number the spans of keep their rectangles.
+        constexpr std::uint64_t padding = 8;  // kernels store vectors of up to 8 rows
+        // Lights whose spans would have an index above 32 bits have none, and keep their whole rectangles.
         const std::uint64_t capacity =
             detail::min_of(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
         detail::RowSpan* spans = spans_.reserve(capacity + padding);
         arrays_.spans = spans;
-        std::uint64_t place = 0;
+        std::uint64_t begin = 0;
         for (std::size_t part = 0; part < run_count_; ++part) {
             detail::ProjectCounts& counts = part_counts_.data()[part];
             const std::uint64_t rows = counts.rows;
-            counts.rows = place;  // now where its spans begin
-            place += rows + padding;
+            counts.rows = begin;  // from here on, the index of the part's first span
+            begin += rows + padding;
         }
         threads.run(run_count_, [&](std::size_t part) {
             kernel(detail::camera_of(view), arrays_, runs_.data()[part], spans,

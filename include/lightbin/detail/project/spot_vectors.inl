@@ -113,14 +113,14 @@ inline void store_vec4s(ViewSpot* to, std::size_t offset, const Sphere (&vec4s)[
 /// of the products' sizes. The positive products add up to at most 2 S. The negative ones add up to at most twice all other
 /// terms, or else make the sum so small that its rounding can't matter. For all this the offset is 2^-18 S = 64u S larger.
 inline void store_planes(ViewSpot* to, const SpotLanes& spots) {
-    const Floats (&axis)[3] = spots.axis;
+    const Floats apex[] = {spots.apex[0], spots.apex[1], spots.apex[2]}, (&axis)[3] = spots.axis;
     const auto backward = less(axis[2], Floats{});
     const Floats sign = select(backward, broadcast(-1.0f), broadcast(1.0f)), p = -1.0f / (sign + axis[2]);
     const Floats xp = mul(axis[0], p), q = mul(axis[1], xp);
     const Floats across[2][3] = {{1.0f + mul(mul(sign, axis[0]), xp), sign * q, -(sign * axis[0])},
                                  {q, sign + mul(axis[1], mul(axis[1], p)), -axis[1]}};
     const Floats slack =
-        spots.tolerance + mul(manhattan_length(spots.apex) + spots.radius, broadcast(0x1p-18f));
+        spots.tolerance + mul(manhattan_length(apex) + spots.radius, broadcast(0x1p-18f));
     Floats back[3];
     for (unsigned i = 0; i < 3; ++i)
         back[i] = mul(axis[i], spots.sine);
@@ -129,7 +129,7 @@ inline void store_planes(ViewSpot* to, const SpotLanes& spots) {
         for (unsigned i = 0; i < 3; ++i) {
             const Floats aside = mul(across[plane / 2][i], spots.cosine);
             n[i] = (plane % 2 == 0 ? aside : -aside) - back[i];
-            offset = offset + mul(n[i], spots.apex[i]);
+            offset = offset + mul(n[i], apex[i]);
         }
         Sphere vec4s[lanes];
         store_spheres(vec4s, n[0], n[1], n[2], offset);
