@@ -54,7 +54,7 @@ list() {
     mutant families detail/project/sphere_rows.inl 's/+ mul(reach, right_s) + terms.high/+ mul(reach, right_s) * broadcast(0.999) + terms.high/'
     mutant families detail/project/sphere_rows.inl 's/right_v = select(negative, inner_v, outer_v);/right_v = select(negative, outer_v, inner_v);/'
     # Depth.
-    mutant families detail/depth/depth_columns.inl 's/store_floats(upper + column, select(numbers, most, infinite));/store_floats(upper + column, most);/'
+    mutant families detail/depth/depth_columns.inl 's/store_floats(upper + column, select(numbers, greatest, infinite));/store_floats(upper + column, greatest);/'
     mutant families detail/engine/cells.inl 's/select(less(edges, broadcast(0.0f)), back, front)/select(less(broadcast(0.0f), edges), back, front)/'
     mutant families detail/engine/cells.inl 's/select(both(gap, less(z0, gap_max)), gap_max, z0)/select(both(gap, less(z0, gap_max)), gap_max, z1)/'
     mutant families detail/engine/depth_tests.inl 's/either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest))/either(less(nearest, load_floats(cell)), less(load_floats(cell + 64), nearest))/'

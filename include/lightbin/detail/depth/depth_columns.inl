@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Depth samples by columns: the rows of a row of tiles become one, a vector of columns at a time. Included once a
-// tier, after its vectors.
+// Reduces the rows of a depth buffer that lie in one row of tiles to the extremes of each column of samples, a vector of columns
+// at a time. Included once per tier.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>
@@ -8,36 +8,36 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// Writes to lower[i] and upper[i] the extremes of column i of `rows` rows of `columns` samples, -inf and +inf if
-/// one of them is NaN. Samples equal to `skipped` (NaN: none are) do not count; +inf and -inf where none does.
+/// Writes the minimum and the maximum of each column of `depth` to lower[column] and upper[column]: -inf and +inf if one of its
+/// samples is NaN, and +inf and -inf if it has no samples that count. Samples equal to `skipped` don't count; NaN skips none.
+/// There are at least as many columns as a vector has lanes.
 ///
-/// by_split  Of column i, upper[i] is of those samples alone that are no larger than split[i], lower[i] of those that are.
-///           NaN does not count.
+/// by_split  writes the two sides of a gap at the depth split[column] instead: to upper[column] the maximum of the samples up
+///           to it, and to lower[column] the minimum of those beyond it. NaN does not count.
 template <bool by_split>
-inline void column_extremes(const DepthRows& depth, float skipped, const float* split,
-                                            float* lower, float* upper) {
+inline void column_extremes(const DepthRows& depth, float skipped, const float* split, float* lower, float* upper) {
     const Floats infinite = broadcast(infinity);
     for (std::size_t column = 0; column < depth.columns; column += lanes) {
-        // The last vector may overlap the one before it.
+        // The last vector begins earlier, so that it ends with the last column.
         if (depth.columns - column < lanes) column = depth.columns - lanes;
         const float* samples = depth.samples + column;
-        Floats least = infinite, most = -infinite;
-        auto numbers = less_equal(infinite, infinite);
+        Floats least = infinite, greatest = -infinite;
+        auto numbers = less_equal(infinite, infinite);  // columns without NaN: at first all of them
         for (std::size_t row = 0; row < depth.rows; ++row, samples += depth.pitch) {
             const Floats sample = load_floats(samples);
-            const auto out = both(less_equal(sample, broadcast(skipped)), less_equal(broadcast(skipped), sample));
+            const auto skip = both(less_equal(sample, broadcast(skipped)), less_equal(broadcast(skipped), sample));
             if constexpr (by_split) {
                 const Floats middle = load_floats(split + column);
-                least = minimum(select(and_not(less(middle, sample), out), sample, infinite), least);
-                most = maximum(select(and_not(less_equal(sample, middle), out), sample, -infinite), most);
+                least = minimum(select(and_not(less(middle, sample), skip), sample, infinite), least);
+                greatest = maximum(select(and_not(less_equal(sample, middle), skip), sample, -infinite), greatest);
             } else {
-                least = minimum(select(out, infinite, sample), least);
-                most = maximum(select(out, -infinite, sample), most);
+                least = minimum(select(skip, infinite, sample), least);
+                greatest = maximum(select(skip, -infinite, sample), greatest);
                 numbers = both(numbers, less_equal(sample, sample));
             }
         }
         store_floats(lower + column, select(numbers, least, -infinite));
-        store_floats(upper + column, select(numbers, most, infinite));
+        store_floats(upper + column, select(numbers, greatest, infinite));
     }
 }
 

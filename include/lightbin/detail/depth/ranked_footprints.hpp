@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Stage 2d: footprints + slices -> the footprints in order of depth, and the z-bins (Drobot, "Improved Culling for Tiled
-// and Clustered Rendering", SIGGRAPH 2017).
+// The ranking stage, between projection and binning: from footprints and depth slices to the footprints in order of depth, and
+// for each slice, which is a z-bin here, the range of their ranks (Drobot, "Improved Culling for Tiled and Clustered Rendering",
+// SIGGRAPH 2017).
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -26,16 +27,16 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// Footprints in the order of the bins in which their lights begin, in a bin in the caller's order; their ids are the ranks
-/// in it. Keeps its memory from call to call.
+/// Footprints sorted by the first bin that their light meets, and in the caller's order within a bin. A footprint's rank is its
+/// index in this order, and stands for the light's id. Memory is reused from call to call.
 ///
-/// with_spheres  have the spheres or spots at hand, for a depth test
+/// with_spheres  sort the lights, spheres or spots, too, for a depth test
 template <Footprint footprint, bool with_spheres> class RankedFootprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette;
 
 public:
-    /// Takes each light to the bins that its depths, z - r to z + r and the margin, meet, ends included; also to the one before or
-    /// behind them where they end close to the boundary.
+    /// Sorts the footprints, and finds the bins that each light's view depths meet, ends included: a sphere's are z - r to z + r,
+    /// widened by the slices' margin. A light that ends close to a boundary may also count for the bin on the other side.
     ///
     /// spots  the lights are spots
     template <bool spots>
@@ -47,23 +48,24 @@ public:
         reserve<spots>(footprints.arrays(), footprints.runs().end()[-1].end);
         find_bins<spots>(isa, view, footprints, slices);
 
-        // Sorted by counting: how many lights begin in a bin, where those begin, and then where they end.
+        // A counting sort: ends_ has the number of lights that begin in each bin, then the rank of the first of them, and at
+        // last the rank after the last of them.
         std::uint32_t before = 0;
         for (std::size_t bin = 0; bin < bin_count_; ++bin) {
             const std::uint32_t begin = before;
             before += ends_.data()[bin];
             ends_.data()[bin] = begin;
         }
-        // Only this is written here and there: what is read so is sooner at hand than what is written.
+        // Only indices are scattered here. The arrays are then gathered by them, as scattered reads are faster than writes.
         for (const detail::FootprintRun& run : footprints.runs())
             for (std::uint32_t i = run.begin; i < run.end; ++i)
-                places_.data()[ends_.data()[first_bins_.data()[i]]++] = i;
-        put_lights<spots>(footprints.arrays());
+                sources_.data()[ends_.data()[first_bins_.data()[i]]++] = i;
+        gather_lights<spots>(footprints.arrays());
         find_ranges();
         return {};
     }
 
-    /// All depths are one slice of tiles.
+    /// Tiles have one list each for all depths.
     int slices() const { return 1; }
     detail::FootprintSlice slice(std::size_t) const { return {arrays_, {&run_, 1}, run_.end, area_}; }
     template <class Ranks = LightRanks> Ranks ranks() const {
@@ -71,7 +73,7 @@ public:
     }
 
 private:
-    /// Finds the bins that each light meets, and counts in `ends_` those that begin in each.
+    /// Finds the bins that each light meets, and counts in ends_ the lights that begin in each bin.
     template <bool spots>
     void find_bins(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
                    const Slices& slices) {
@@ -88,17 +90,17 @@ private:
                                       found);
     }
 
-    /// Writes the lights in their order, an array at a time: what is read here and there is then one that is small.
-    template <bool spots> void put_lights(const detail::FootprintArrays& lights) {
+    /// Writes the sorted footprints, one array after another, so that the memory that is read in random order is small.
+    template <bool spots> void gather_lights(const detail::FootprintArrays& lights) {
         for (std::uint32_t rank = 0; rank < run_.end; ++rank) {
-            order_.data()[rank] = lights.ids[places_.data()[rank]];
+            order_.data()[rank] = lights.ids[sources_.data()[rank]];
             arrays_.ids[rank] = rank;
         }
-        put(lights.x0, arrays_.x0);
-        put(lights.y0, arrays_.y0);
-        put(lights.x1, arrays_.x1);
-        put(lights.y1, arrays_.y1);
-        if constexpr (with_spans) put(lights.span_begin, arrays_.span_begin);
+        gather(lights.x0, arrays_.x0);
+        gather(lights.y0, arrays_.y0);
+        gather(lights.x1, arrays_.x1);
+        gather(lights.y1, arrays_.y1);
+        if constexpr (with_spans) gather(lights.span_begin, arrays_.span_begin);
         if constexpr (with_spheres && spots)
             for (std::uint32_t rank = 0; rank < run_.end; ++rank)
                 spots_.data()[rank] = lights.spots[order_.data()[rank]];
@@ -107,60 +109,62 @@ private:
                 spheres_.data()[rank] = detail::load_sphere(lights.spheres + order_.data()[rank]);
     }
 
-    template <class T> void put(const T* from, T* to) const {
-        const std::uint32_t* const places = places_.data();
+    template <class T> void gather(const T* from, T* to) const {
+        const std::uint32_t* const sources = sources_.data();
         for (std::uint32_t rank = 0; rank < run_.end; ++rank)
-            to[rank] = from[places[rank]];
+            to[rank] = from[sources[rank]];
     }
 
-    /// Finds the least and the greatest rank in each bin.
+    /// Finds the range of ranks in each bin, from the least to the greatest rank of the lights that meet it.
     void find_ranges() {
-        const std::uint32_t *const places = places_.data(), *const last_bins = last_bins_.data();
-        // The least is of the first one that ends in the bin or behind it: it begins in the bin, before it, or none of them
-        // does.
+        const std::uint32_t *const sources = sources_.data(), *const last_bins = last_bins_.data();
+        // The least rank is that of the first light in the order that ends in the bin or a later one. Where that light begins
+        // after the bin, no light meets the bin.
         BinRange *to = bins_.data(), *const end = to + bin_count_;
         for (std::uint32_t rank = 0; rank < run_.end && to < end; ++rank)
-            for (const BinRange* last = bins_.data() + last_bins[places[rank]]; to <= last; ++to)
+            for (const BinRange* last = bins_.data() + last_bins[sources[rank]]; to <= last; ++to)
                 to->least = rank;
         detail::fill_items(to, static_cast<std::size_t>(end - to), {0xffffffff, 0});
-        // The last one that begins in a bin or before it, or the one before that where it has ended, and so on; what has
-        // ended is passed by once.
+        // The greatest rank is that of the last light that begins in the bin or an earlier one, or if it ends before the bin
+        // that of the light before it, and so on. passed[rank] is how many lights before that one are known to have ended:
+        // they are skipped, so that each is passed only once.
         std::uint32_t* const passed = first_bins_.data();
         detail::fill_items(passed, run_.end, 0);
         for (std::size_t bin = 0; bin < bin_count_; ++bin) {
             BinRange& range = bins_.data()[bin];
             if (ends_.data()[bin] <= range.least) {
-                range = {1, 0};
+                range = {1, 0};  // empty
                 continue;
             }
             const std::uint32_t begin = ends_.data()[bin] - 1;
             std::uint32_t rank = begin;
-            while (last_bins_.data()[places_.data()[rank]] < bin)
+            while (last_bins_.data()[sources_.data()[rank]] < bin)
                 rank -= 1 + passed[rank];
             if (rank < begin) passed[begin] = begin - rank - 1;
             range.greatest = rank;
         }
     }
 
-    /// places  of the lights in their arrays
-    template <bool spots> void reserve(const detail::FootprintArrays& lights, std::uint32_t places) {
+    /// lights, size  the footprints before they are sorted, and where the last one ends in their arrays
+    template <bool spots> void reserve(const detail::FootprintArrays& lights, std::uint32_t size) {
         arrays_ = buffers_.reserve(run_.end, with_spans);
         arrays_.spans = lights.spans;
         if constexpr (with_spheres && spots)
             arrays_.spots = spots_.reserve(run_.end);
         else if constexpr (with_spheres)
             arrays_.spheres = spheres_.reserve(run_.end);
-        first_bins_.reserve(places);
-        last_bins_.reserve(places);
-        places_.reserve(run_.end);
+        first_bins_.reserve(size);
+        last_bins_.reserve(size);
+        sources_.reserve(run_.end);
         order_.reserve(run_.end);
         ends_.reserve(bin_count_);
         bins_.reserve(bin_count_);
     }
 
-    detail::Buffer<std::uint32_t> first_bins_, last_bins_;   ///< of the lights in their old places
-    detail::Buffer<std::uint32_t> places_, order_;           ///< of each rank: its light's old place, its id
-    detail::Buffer<std::uint32_t> ends_;                     ///< of each bin: the first rank that begins behind it
+    detail::Buffer<std::uint32_t> first_bins_, last_bins_;  ///< the bins that a light meets, by its index before sorting
+    detail::Buffer<std::uint32_t> sources_;                 ///< by rank, the index before sorting
+    detail::Buffer<std::uint32_t> order_;                   ///< by rank, the light's id
+    detail::Buffer<std::uint32_t> ends_;                    ///< by bin, the first rank that begins in a later bin
     detail::Buffer<BinRange> bins_;
     detail::FootprintBuffers buffers_;
     detail::Buffer<Sphere> spheres_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lights' depths and their places in a SliceTable, a vector at a time. Included once a tier, after its vectors.
+// The view depths of lights and their buckets in a SliceTable's lookup table, a vector of lights at a time. Included once per
+// tier.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>
@@ -7,17 +8,19 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// DepthBuckets::of() of each lane.
-inline Floats slice_place(const DepthBuckets& to, Floats depth) {
-    depth = depth + broadcast(0.0f);  // not -0
-    const Floats place = mul((to.by_bits ? ascending_bits(depth) : depth) - broadcast(to.begin), broadcast(to.scale));
-    return minimum(maximum(place, broadcast(0.0f)), broadcast(to.last));
+/// Returns what DepthBuckets::index_of() does for a vector of depths, not yet truncated to integers.
+inline Floats bucket_of(const DepthBuckets& buckets, Floats depth) {
+    depth = depth + broadcast(0.0f);  // makes -0 to 0
+    const Floats coordinate = buckets.by_bits ? ascending_bits(depth) : depth;
+    const Floats bucket = mul(coordinate - broadcast(buckets.begin), broadcast(buckets.scale));
+    return minimum(maximum(bucket, broadcast(0.0f)), broadcast(buckets.last));
 }
 
-/// Finds the depths of the lights that `lanes` ids number. Rounding is monotone: comparing them with floats loses no light.
+/// Finds the least and the greatest view depth of the lights with `lanes` ids. Rounding is monotone, so a light whose exact
+/// depths meet an interval between two floats meets it with its rounded ones.
 template <bool spots>
-inline void load_depths(const FootprintArrays& lights, float z_sign, const std::uint32_t* ids,
-                                        Floats& nearest, Floats& farthest) {
+inline void load_depths(const FootprintArrays& lights, float z_sign, const std::uint32_t* ids, Floats& nearest,
+                        Floats& farthest) {
     if constexpr (spots) {
         float ends[2][lanes];
         for (std::uint32_t lane = 0; lane < lanes; ++lane) {
@@ -35,17 +38,17 @@ inline void load_depths(const FootprintArrays& lights, float z_sign, const std::
     }
 }
 
-/// Finds the depths of the `count` lights that `ids` number, and their places. There are ids to fill up a vector.
+/// Finds the view depths of the lights with `count` ids, and the buckets of these. Whole vectors of ids are read.
 template <bool spots>
-inline void find_depth_buckets(const DepthBuckets& to, float z_sign, const FootprintArrays& lights,
-                                         const std::uint32_t* ids, std::uint32_t count, LightDepths& out) {
+inline void find_depth_buckets(const DepthBuckets& buckets, float z_sign, const FootprintArrays& lights,
+                               const std::uint32_t* ids, std::uint32_t count, LightDepths& out) {
     for (std::uint32_t i = 0; i < count; i += lanes) {
         Floats nearest, farthest;
         load_depths<spots>(lights, z_sign, ids + i, nearest, farthest);
         store_floats(out.nearest + i, nearest);
         store_floats(out.farthest + i, farthest);
-        store_tiles(out.first + i, slice_place(to, nearest));
-        store_tiles(out.last + i, slice_place(to, farthest));
+        store_tiles(out.first_bucket + i, bucket_of(buckets, nearest));
+        store_tiles(out.last_bucket + i, bucket_of(buckets, farthest));
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// From a depth to its slice: by a table of places, which are equally long in depth, or in the bits of a float, which
-// ascend with it and begin with what a logarithm would say.
+// Finds the slices of depths. A lookup table divides all depths into buckets and holds for each how many boundaries between
+// slices lie before it, so that few or no boundaries are left to compare with. The buckets have equal lengths either in depth,
+// which suits linear slices, or in a float's bit pattern, which grows about as the depth's logarithm and suits exponential ones.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -18,137 +19,142 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// From a depth to its place in a table.
+/// The map from depths to buckets: a depth is in the bucket (coordinate(depth) - begin) * scale, clamped to 0..last.
 struct DepthBuckets {
     float begin = 0, scale = 0, last = 0;
-    bool by_bits = false;
+    bool by_bits = false;  ///< the buckets have equal lengths in the bit pattern
 
-    /// Ascends with the depth.
+    /// Returns the depth, or its bit pattern as an integer that ascends with the depth, rounded to float.
     float coordinate(float depth) const {
         if (!by_bits) return depth;
-        const std::int32_t bits = bit_cast<std::int32_t>(depth + 0.0f);  // not -0
+        const std::int32_t bits = bit_cast<std::int32_t>(depth + 0.0f);  // the sum makes -0 to 0
         return static_cast<float>(bits ^ (bits >> 31 & 0x7fffffff));
     }
-    /// Each step rounds the same everywhere and is monotone, so a depth in a later place is greater.
-    std::size_t of(float depth) const {
-        const float place = (coordinate(depth) - begin) * scale;
-        return static_cast<std::size_t>(static_cast<std::int32_t>(
-            place > 0 ? min_of(place, last) : 0));  // NaN, of an infinite depth, is of one place only
+    /// Returns the bucket of a depth. Each step is monotone and rounds the same on every machine, so that a depth in a later
+    /// bucket is greater.
+    std::size_t index_of(float depth) const {
+        const float bucket = (coordinate(depth) - begin) * scale;
+        // NaN, from an infinite depth and a scale of 0, goes to bucket 0, where all depths are then.
+        return static_cast<std::size_t>(static_cast<std::int32_t>(bucket > 0 ? min_of(bucket, last) : 0));
     }
 };
 
-/// The depths of some lights, and the places of those; written in whole vectors.
+/// The least and greatest view depths of some lights, and the buckets of these depths. Kernels write whole vectors.
 struct LightDepths {
     static constexpr std::uint32_t size = 64;
     float nearest[size], farthest[size];
-    std::uint16_t first[size], last[size];
+    std::uint16_t first_bucket[size], last_bucket[size];
 };
 
-/// The slices of one list of boundaries, which ascend and are finite.
+/// The slices between boundaries, which ascend and are finite.
 class SliceTable {
 public:
     explicit SliceTable(Items<const float> boundaries) : count_(boundaries.size()) {
         const DefaultFloatEnvironment environment;
         float* const to = boundaries_.reserve(count_ + std::uint64_t{1});
         copy_items(boundaries.first, count_, to);
-        to[count_] = std::numeric_limits<float>::quiet_NaN();  // neither before nor behind anything
-        // Linear slices are alike in depth, exponential ones in their bits.
-        fill_places(false);
+        to[count_] = std::numeric_limits<float>::quiet_NaN();  // ends searches, as every comparison with it is false
+        // Takes the buckets in which fewer boundaries share one.
+        fill_buckets(false);
         const std::size_t shared_by_depth = shared_;
-        fill_places(true);
-        if (shared_ > shared_by_depth) fill_places(false);
+        fill_buckets(true);
+        if (shared_ > shared_by_depth) fill_buckets(false);
     }
 
     Items<const float> boundaries() const { return {boundaries_.data(), count_}; }
 
-    /// How far the depths of lights and slices are widened, as a share of themselves: see Slices::with_margin().
+    /// How far the depths of lights and slices are widened, as a fraction of themselves: see Slices::with_margin().
     float margin = 0;
 
     /// Returns a depth lowered or raised by the margin and rounded outward: where a widened interval begins or ends.
-    float nearer(float depth) const { return margin > 0 ? float_below(moved(depth, -margin)) : depth; }
-    float farther(float depth) const { return margin > 0 ? float_above(moved(depth, margin)) : depth; }
+    float nearer(float depth) const { return margin > 0 ? float_below(widened(depth, -margin)) : depth; }
+    float farther(float depth) const { return margin > 0 ? float_above(widened(depth, margin)) : depth; }
 
-    /// Calls found(i, first, last) for each light i of the runs: its depths, ends included, meet the slices first..last.
-    /// Where `roughly`, these may be one more at either end, if that is sooner known.
+    /// Calls found(i, first, last) for each footprint i of the runs, whose light's view depths, ends included, meet the slices
+    /// first..last. Writes ids into the padding behind each run.
     ///
     /// kernel        find_depth_buckets() of a tier
+    /// conservative  the slices may be one more at either end, where that is faster to find
     /// lights, runs  FootprintArrays and FootprintRuns
     template <class Kernel, class Lights, class Runs, class Found>
-    void find(Kernel kernel, bool roughly, float z_sign, const Lights& lights, Runs runs, Found found) const {
-        roughly = roughly && shared_ == 0 && places_.last < most_places - 1;
+    void find(Kernel kernel, bool conservative, float z_sign, const Lights& lights, Runs runs, Found found) const {
+        // With at most one boundary each, a bucket meets at most two slices. A table of max_buckets may have few buckets per
+        // boundary, so that many lights would get a slice more.
+        conservative = conservative && shared_ == 0 && buckets_.last < max_buckets - 1;
         for (const auto& run : runs) {
-            fill_items(lights.ids + run.end, 16, lights.ids[run.begin]);  // whole vectors of lights are read
+            fill_items(lights.ids + run.end, 16, lights.ids[run.begin]);  // kernels read whole vectors of ids
             for (std::uint32_t i = run.begin; i < run.end; i += LightDepths::size) {
                 const std::uint32_t count = min_of(run.end - i, LightDepths::size);
-                LightDepths at;
-                kernel(places_, z_sign, lights, lights.ids + i, count, at);
-                if (margin > 0) widen(at, count);
-                for (std::uint32_t j = 0; j < count && roughly; ++j)
-                    found(i + j, before_.data()[at.first[j]], before_.data()[at.last[j] + 1u]);
-                for (std::uint32_t j = 0; j < count && !roughly; ++j) {
-                    const float nearest = at.nearest[j], farthest = at.farthest[j];
-                    found(i + j, before(at.first[j], [=](float boundary) { return boundary < nearest; }),
-                          before(at.last[j], [=](float boundary) { return boundary <= farthest; }));
+                LightDepths depths;
+                kernel(buckets_, z_sign, lights, lights.ids + i, count, depths);
+                if (margin > 0) widen(depths, count);
+                const std::uint16_t *first = depths.first_bucket, *last = depths.last_bucket;
+                for (std::uint32_t j = 0; j < count && conservative; ++j)
+                    found(i + j, before_.data()[first[j]], before_.data()[last[j] + 1u]);
+                for (std::uint32_t j = 0; j < count && !conservative; ++j) {
+                    const float nearest = depths.nearest[j], farthest = depths.farthest[j];
+                    found(i + j, before(first[j], [=](float boundary) { return boundary < nearest; }),
+                          before(last[j], [=](float boundary) { return boundary <= farthest; }));
                 }
             }
         }
     }
 
 private:
-    static constexpr std::size_t most_places = 0x8000;  // 15 bits number them
+    static constexpr std::size_t max_buckets = 0x8000;  // store_tiles() of some tiers packs signed numbers of 16 bits
 
-    static double moved(float depth, float share) {
+    static double widened(float depth, float fraction) {
         const double exact = static_cast<double>(depth);
-        return exact + abs_of(exact) * static_cast<double>(share);  // of floats, so the product is exact
+        return exact + abs_of(exact) * static_cast<double>(fraction);  // a product of two floats is exact in double
     }
 
-    void widen(LightDepths& at, std::uint32_t count) const {
+    void widen(LightDepths& depths, std::uint32_t count) const {
         for (std::uint32_t i = 0; i < count; ++i) {
-            at.nearest[i] = nearer(at.nearest[i]);
-            at.farthest[i] = farther(at.farthest[i]);
-            at.first[i] = static_cast<std::uint16_t>(places_.of(at.nearest[i]));
-            at.last[i] = static_cast<std::uint16_t>(places_.of(at.farthest[i]));
+            depths.nearest[i] = nearer(depths.nearest[i]);
+            depths.farthest[i] = farther(depths.farthest[i]);
+            depths.first_bucket[i] = static_cast<std::uint16_t>(buckets_.index_of(depths.nearest[i]));
+            depths.last_bucket[i] = static_cast<std::uint16_t>(buckets_.index_of(depths.farthest[i]));
         }
     }
 
-    /// Returns how many boundaries are before a depth, from its place on.
-    template <class IsBefore> std::uint32_t before(std::size_t place, IsBefore is_before) const {
+    /// Returns how many boundaries lie before a depth, which is in `bucket`.
+    template <class IsBefore> std::uint32_t before(std::size_t bucket, IsBefore is_before) const {
         const float* const boundaries = boundaries_.data();
-        std::uint32_t slice = before_.data()[place];
-        slice += is_before(boundaries[slice]);  // rarely more than one, so the loop's branch is predicted
+        std::uint32_t slice = before_.data()[bucket];
+        slice += is_before(boundaries[slice]);  // seldom more than one, so that the loop's branch is predicted
         while (is_before(boundaries[slice]))
             ++slice;
         return slice;
     }
 
-    /// Finds how many boundaries are before each place.
-    void fill_places(bool by_bits) {
+    /// Lays out the buckets and counts the boundaries before each: a histogram's prefix sum.
+    void fill_buckets(bool by_bits) {
         const Items<const float> all = boundaries();
-        places_.by_bits = by_bits;
-        // So many that few boundaries share one; no fewer than are in the cache anyway.
-        const std::size_t places = min_of(max_of(std::bit_ceil(4 * count_), std::size_t{512}), most_places);
-        places_.last = static_cast<float>(places - 1);
-        places_.begin = count_ == 0 ? 0 : places_.coordinate(all[0]);
-        const float span = count_ == 0 ? 0 : places_.coordinate(all[count_ - 1]) - places_.begin;
-        places_.scale = places_.last / span;
-        if (!is_finite(places_.scale)) places_.scale = 0;  // there is one at most, or as good as one
+        buckets_.by_bits = by_bits;
+        // Four times as many as boundaries, so that few share one; and no fewer than stay in the cache anyway.
+        const std::size_t buckets = min_of(max_of(std::bit_ceil(4 * count_), std::size_t{512}), max_buckets);
+        buckets_.last = static_cast<float>(buckets - 1);
+        buckets_.begin = count_ == 0 ? 0 : buckets_.coordinate(all[0]);
+        const float length = count_ == 0 ? 0 : buckets_.coordinate(all[count_ - 1]) - buckets_.begin;
+        buckets_.scale = buckets_.last / length;
+        if (!is_finite(buckets_.scale)) buckets_.scale = 0;  // with one boundary or none, or all next to each other
 
-        std::uint32_t* const counts = before_.reserve(places + 1);
-        fill_items(counts, places + 1, 0);
+        std::uint32_t* const counts = before_.reserve(buckets + 1);
+        fill_items(counts, buckets + 1, 0);
         for (const float boundary : all)
-            ++counts[places_.of(boundary) + 1];
+            ++counts[buckets_.index_of(boundary) + 1];
         shared_ = 0;
-        for (std::size_t i = 1; i <= places; ++i) {
+        for (std::size_t i = 1; i <= buckets; ++i) {
             shared_ += counts[i] > 1 ? counts[i] - 1 : 0;
             counts[i] += counts[i - 1];
         }
     }
 
-    Buffer<float> boundaries_;      ///< and NaN
-    std::size_t count_;             ///< of those without it
-    Buffer<std::uint32_t> before_;  ///< how many boundaries are before a place, and in all of them
-    std::size_t shared_ = 0;        ///< boundaries that are in the place of another
-    DepthBuckets places_;
+    Buffer<float> boundaries_;      ///< the boundaries, and NaN behind them
+    std::size_t count_;             ///< of boundaries
+    Buffer<std::uint32_t> before_;  ///< the number of boundaries before each bucket, and at the end of all
+    std::size_t shared_ = 0;        ///< boundaries that are in the bucket of an earlier one
+    DepthBuckets buckets_;
 };
 
 }}}  // namespace lightbin::detail

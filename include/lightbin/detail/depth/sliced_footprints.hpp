@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage 2c: footprints + slices -> the footprints in each slice.
+// The slicing stage, between projection and binning: from footprints and depth slices to the footprints in each slice, of which
+// clusters are made.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -25,36 +26,36 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// Footprints by slice, in ascending order of id in each. Keeps its memory from call to call.
+/// The footprints of the lights that intersect each slice, in ascending order of id. Memory is reused from call to call.
 template <Footprint footprint> class SlicedFootprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette;
 
 public:
-    /// Takes each light to the slices that its depths, z - r to z + r and the margin, meet, ends included. Errors: there are more
-    /// than 2^32 - 1 cells, or pairs of a light and a slice.
+    /// Puts each footprint in the slices that its light's view depths meet, ends included: a sphere's are z - r to z + r, widened
+    /// by the slices' margin. Errors: there are more than 2^32 - 1 cells, or pairs of a light and a slice.
     ///
     /// spots  the lights are spots
     template <bool spots>
     detail::Maybe<Error> order(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
                                const Slices& slices) {
-        constexpr std::uint64_t most = (std::numeric_limits<std::uint32_t>::max)();
+        constexpr std::uint64_t max_count = (std::numeric_limits<std::uint32_t>::max)();
         const detail::FootprintArrays& lights = footprints.arrays();
         table_ = &detail::table_of(slices);
         run_count_ = static_cast<std::size_t>(slices.count());
         const std::uint64_t cells = std::uint64_t{view.tile_count()} * run_count_;
-        if (cells > most) return Error{ErrorCode::too_many_cells, cells, most};
-        const std::uint64_t places = find_slices<spots>(isa, view, footprints);
-        if (places > most) return Error{ErrorCode::too_many_list_places, places, most};
-        arrays_ = buffers_.reserve(places, with_spans);
+        if (cells > max_count) return Error{ErrorCode::too_many_cells, cells, max_count};
+        const std::uint64_t size = find_slices<spots>(isa, view, footprints);
+        if (size > max_count) return Error{ErrorCode::too_many_list_places, size, max_count};
+        arrays_ = buffers_.reserve(size, with_spans);
         arrays_.spans = lights.spans;
         arrays_.spheres = lights.spheres;
         arrays_.spots = lights.spots;
-        const Met* met = met_.data();
+        const SliceRange* met = met_.data();
         for (const detail::FootprintRun& run : footprints.runs())
             for (std::uint32_t i = run.begin; i < run.end; ++i, ++met) {
                 const std::uint64_t area =
                     (lights.x1[i] - lights.x0[i] + std::uint64_t{1}) * (lights.y1[i] - lights.y0[i] + 1u);
-                // A first slice and another one are written without a branch, which would be mispredicted.
+                // Most lights meet one or two slices. These are written without a branch, which would be mispredicted.
                 const std::uint32_t more = met->first < met->last;
                 put(lights, i, area, met->first, 1);
                 put(lights, i, area * more, met->first + 1, more);
@@ -76,40 +77,42 @@ public:
     }
 
 private:
-    /// Slices first..last.
-    struct Met {
+    /// The slices first..last.
+    struct SliceRange {
         std::uint32_t first, last;
     };
-    /// The footprints in a slice, and the sum of their rectangles' tiles.
+    /// The footprints in one slice, and the number of tiles in their rectangles.
     struct SliceRun : detail::FootprintRun {
         std::uint64_t area;
     };
 
-    /// Finds the slices of each light, and where their runs begin, with a place between two. Returns where they end.
+    /// Finds the slices of each light, and where each slice's run begins. An unused element follows each run, as put() writes
+    /// one past it. Returns the number of elements of all runs.
     template <bool spots>
     std::uint64_t find_slices(Isa isa, const View& view, const Footprints<footprint, true>& footprints) {
         SliceRun* const runs = runs_.reserve(run_count_ + 1);
         detail::fill_items(runs, run_count_ + 1, {});
-        Met* met = met_.reserve(footprints.visible());
+        SliceRange* met = met_.reserve(footprints.visible());
         const auto found = [=](std::uint32_t, std::uint32_t first, std::uint32_t last) mutable {
             *met++ = {first, last};
-            // First the steps of the lights' number from slice to slice: sums wrap, and come out right.
+            // A difference array of the number of lights per slice, whose prefix sums are taken below. Its unsigned elements
+            // wrap, and the sums come out right.
             ++runs[first].end;
             --runs[last + 1].end;
         };
         table_->find(detail::depth_buckets_kernel<spots>(isa), false, detail::camera_of(view).z_sign,
                      footprints.arrays(), footprints.runs(), found);
-        std::uint64_t places = 0;
+        std::uint64_t size = 0;
         std::uint32_t count = 0;
         for (SliceRun* run = runs; run <= runs + run_count_; ++run) {
             count += run->end;
-            run->begin = run->end = static_cast<std::uint32_t>(places);
-            places += count + std::uint64_t{1};
+            run->begin = run->end = static_cast<std::uint32_t>(size);
+            size += count + std::uint64_t{1};
         }
-        return places;
+        return size;
     }
 
-    /// Puts light i in a slice; or, if `count` and `area` are 0, writes what the next one overwrites.
+    /// Appends footprint i to a slice. With a `count` and an `area` of 0 it writes an element that the next call overwrites.
     void put(const detail::FootprintArrays& lights, std::uint32_t i, std::uint64_t area, std::uint32_t slice,
              std::uint32_t count) {
         SliceRun& run = runs_.data()[slice];
@@ -124,9 +127,9 @@ private:
         if constexpr (with_spans) arrays_.span_begin[to] = lights.span_begin[i];
     }
 
-    const detail::SliceTable* table_ = nullptr;  ///< of the caller's Slices, for a call
-    detail::Buffer<Met> met_;
-    detail::Buffer<SliceRun> runs_;
+    const detail::SliceTable* table_ = nullptr;  ///< the caller's Slices', during a call
+    detail::Buffer<SliceRange> met_;             ///< the slices of each footprint
+    detail::Buffer<SliceRun> runs_;              ///< of each slice, and one more
     detail::FootprintBuffers buffers_;
     detail::FootprintArrays arrays_ = {};
     std::size_t run_count_ = 0;
