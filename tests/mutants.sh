@@ -77,7 +77,7 @@ list() {
     # Clusters.
     mutant clusters detail/depth/slice_table.hpp 's/return boundary <= farthest;/return boundary < farthest;/'
     mutant clusters detail/depth/slice_table.hpp 's/return boundary < nearest;/return boundary <= nearest;/'
-    mutant clusters detail/depth/slice_indices.inl 's/broadcast(to.begin), broadcast(to.scale))/broadcast(to.begin), broadcast(to.scale)) + broadcast(1.0f)/'
+    mutant clusters detail/depth/slice_indices.inl 's/broadcast(buckets.begin), broadcast(buckets.scale))/broadcast(buckets.begin), broadcast(buckets.scale)) + broadcast(1.0f)/'
     mutant clusters detail/engine/slab.inl 's/broadcast(1 + 0x1p-20f)) + broadcast(0x1p-125f)/broadcast(1 - 0x1p-20f))/'
     mutant clusters detail/engine/slab.inl 's/slab.z0, slab.z1)}/slab.z0, slab.z0)}/'
     mutant clusters detail/depth/sliced_footprints.hpp 's/slice = met->first + 2; slice <= met->last/slice = met->first + 2; slice < met->last/'

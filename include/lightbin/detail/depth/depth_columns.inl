@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reduces the rows of a depth buffer that lie in one row of tiles to the extremes of each column of samples, a vector of columns
-// at a time. Included once per tier.
+// Reduces the rows of a depth buffer that lie in one row of tiles to the extremes of each column of samples, a vector
+// of columns at a time. Included once per tier.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>
@@ -8,12 +8,12 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// Writes the minimum and the maximum of each column of `depth` to lower[column] and upper[column]: -inf and +inf if one of its
-/// samples is NaN, and +inf and -inf if it has no samples that count. Samples equal to `skipped` don't count; NaN skips none.
-/// There are at least as many columns as a vector has lanes.
+/// Writes the minimum and the maximum of each column of `depth` to lower[column] and upper[column]: -inf and +inf if
+/// one of its samples is NaN, and +inf and -inf if it has no samples that count. Samples equal to `skipped` don't
+/// count; NaN skips none. There are at least as many columns as a vector has lanes.
 ///
-/// by_split  writes the two sides of a gap at the depth split[column] instead: to upper[column] the maximum of the samples up
-///           to it, and to lower[column] the minimum of those beyond it. NaN does not count.
+/// by_split  writes the two sides of a gap at the depth split[column] instead: to upper[column] the maximum of the
+///           samples up to it, and to lower[column] the minimum of those beyond it. NaN does not count.
 template <bool by_split>
 inline void column_extremes(const DepthRows& depth, float skipped, const float* split, float* lower, float* upper) {
     const Floats infinite = broadcast(infinity);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The ranking stage, between projection and binning: from footprints and depth slices to the footprints in order of depth, and
-// for each slice, which is a z-bin here, the range of their ranks (Drobot, "Improved Culling for Tiled and Clustered Rendering",
-// SIGGRAPH 2017).
+// The ranking stage, between projection and binning: from footprints and depth slices to the footprints in order of
+// depth, and for each slice, which is a z-bin here, the range of their ranks (Drobot, "Improved Culling for Tiled and
+// Clustered Rendering", SIGGRAPH 2017).
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -27,16 +27,17 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// Footprints sorted by the first bin that their light meets, and in the caller's order within a bin. A footprint's rank is its
-/// index in this order, and stands for the light's id. Memory is reused from call to call.
+/// Footprints sorted by the first bin that their light meets, and in the caller's order within a bin. A footprint's
+/// rank is its index in this order, and stands for the light's id. Memory is reused from call to call.
 ///
 /// with_spheres  sort the lights, spheres or spots, too, for a depth test
 template <Footprint footprint, bool with_spheres> class RankedFootprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette;
 
 public:
-    /// Sorts the footprints, and finds the bins that each light's view depths meet, ends included: a sphere's are z - r to z + r,
-    /// widened by the slices' margin. A light that ends close to a boundary may also count for the bin on the other side.
+    /// Sorts the footprints, and finds the bins that each light's view depths meet, ends included: a sphere's are
+    /// z - r to z + r, widened by the slices' margin. A light that ends close to a boundary may also count for the bin
+    /// on the other side.
     ///
     /// spots  the lights are spots
     template <bool spots>
@@ -48,15 +49,16 @@ public:
         reserve<spots>(footprints.arrays(), footprints.runs().end()[-1].end);
         find_bins<spots>(isa, view, footprints, slices);
 
-        // A counting sort: ends_ has the number of lights that begin in each bin, then the rank of the first of them, and at
-        // last the rank after the last of them.
+        // A counting sort: ends_ has the number of lights that begin in each bin, then the rank of the first of them,
+        // and at last the rank after the last of them.
         std::uint32_t before = 0;
         for (std::size_t bin = 0; bin < bin_count_; ++bin) {
             const std::uint32_t begin = before;
             before += ends_.data()[bin];
             ends_.data()[bin] = begin;
         }
-        // Only indices are scattered here. The arrays are then gathered by them, as scattered reads are faster than writes.
+        // Only indices are scattered here. The arrays are then gathered by them, as scattered reads are faster than
+        // writes.
         for (const detail::FootprintRun& run : footprints.runs())
             for (std::uint32_t i = run.begin; i < run.end; ++i)
                 sources_.data()[ends_.data()[first_bins_.data()[i]]++] = i;
@@ -75,8 +77,7 @@ public:
 private:
     /// Finds the bins that each light meets, and counts in ends_ the lights that begin in each bin.
     template <bool spots>
-    void find_bins(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
-                   const Slices& slices) {
+    void find_bins(Isa isa, const View& view, const Footprints<footprint, true>& footprints, const Slices& slices) {
         std::uint32_t *const begins = ends_.data(), *const first_bins = first_bins_.data(),
                              *const last_bins = last_bins_.data();
         detail::fill_items(begins, bin_count_, 0);
@@ -85,9 +86,8 @@ private:
             last_bins[i] = last;
             ++begins[first];
         };
-        detail::table_of(slices).find(detail::depth_buckets_kernel<spots>(isa), true,
-                                      detail::camera_of(view).z_sign, footprints.arrays(), footprints.runs(),
-                                      found);
+        detail::table_of(slices).find(detail::depth_buckets_kernel<spots>(isa), true, detail::camera_of(view).z_sign,
+                                      footprints.arrays(), footprints.runs(), found);
     }
 
     /// Writes the sorted footprints, one array after another, so that the memory that is read in random order is small.
@@ -118,16 +118,16 @@ private:
     /// Finds the range of ranks in each bin, from the least to the greatest rank of the lights that meet it.
     void find_ranges() {
         const std::uint32_t *const sources = sources_.data(), *const last_bins = last_bins_.data();
-        // The least rank is that of the first light in the order that ends in the bin or a later one. Where that light begins
-        // after the bin, no light meets the bin.
+        // The least rank is that of the first light in the order that ends in the bin or a later one. Where that light
+        // begins after the bin, no light meets the bin.
         BinRange *to = bins_.data(), *const end = to + bin_count_;
         for (std::uint32_t rank = 0; rank < run_.end && to < end; ++rank)
             for (const BinRange* last = bins_.data() + last_bins[sources[rank]]; to <= last; ++to)
                 to->least = rank;
         detail::fill_items(to, static_cast<std::size_t>(end - to), {0xffffffff, 0});
-        // The greatest rank is that of the last light that begins in the bin or an earlier one, or if it ends before the bin
-        // that of the light before it, and so on. passed[rank] is how many lights before that one are known to have ended:
-        // they are skipped, so that each is passed only once.
+        // The greatest rank is that of the last light that begins in the bin or an earlier one, or if it ends before
+        // the bin that of the light before it, and so on. passed[rank] is how many lights before that one are known to
+        // have ended: they are skipped, so that each is passed only once.
         std::uint32_t* const passed = first_bins_.data();
         detail::fill_items(passed, run_.end, 0);
         for (std::size_t bin = 0; bin < bin_count_; ++bin) {
@@ -161,10 +161,11 @@ private:
         bins_.reserve(bin_count_);
     }
 
-    detail::Buffer<std::uint32_t> first_bins_, last_bins_;  ///< the bins that a light meets, by its index before sorting
-    detail::Buffer<std::uint32_t> sources_;                 ///< by rank, the index before sorting
-    detail::Buffer<std::uint32_t> order_;                   ///< by rank, the light's id
-    detail::Buffer<std::uint32_t> ends_;                    ///< by bin, the first rank that begins in a later bin
+    detail::Buffer<std::uint32_t> first_bins_,
+        last_bins_;                          ///< the bins that a light meets, by its index before sorting
+    detail::Buffer<std::uint32_t> sources_;  ///< by rank, the index before sorting
+    detail::Buffer<std::uint32_t> order_;    ///< by rank, the light's id
+    detail::Buffer<std::uint32_t> ends_;     ///< by bin, the first rank that begins in a later bin
     detail::Buffer<BinRange> bins_;
     detail::FootprintBuffers buffers_;
     detail::Buffer<Sphere> spheres_;

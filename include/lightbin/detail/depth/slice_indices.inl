@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The view depths of lights and their buckets in a SliceTable's lookup table, a vector of lights at a time. Included once per
-// tier.
+// The view depths of lights and their buckets in a SliceTable's lookup table, a vector of lights at a time. Included
+// once per tier.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>
@@ -16,8 +16,8 @@ inline Floats bucket_of(const DepthBuckets& buckets, Floats depth) {
     return minimum(maximum(bucket, broadcast(0.0f)), broadcast(buckets.last));
 }
 
-/// Finds the least and the greatest view depth of the lights with `lanes` ids. Rounding is monotone, so a light whose exact
-/// depths meet an interval between two floats meets it with its rounded ones.
+/// Finds the least and the greatest view depth of the lights with `lanes` ids. Rounding is monotone, so a light whose
+/// exact depths meet an interval between two floats meets it with its rounded ones.
 template <bool spots>
 inline void load_depths(const FootprintArrays& lights, float z_sign, const std::uint32_t* ids, Floats& nearest,
                         Floats& farthest) {

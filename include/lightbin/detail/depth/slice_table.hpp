@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Finds the slices of depths. A lookup table divides all depths into buckets and holds for each how many boundaries between
-// slices lie before it, so that few or no boundaries are left to compare with. The buckets have equal lengths either in depth,
-// which suits linear slices, or in a float's bit pattern, which grows about as the depth's logarithm and suits exponential ones.
+// Finds the slices of depths. A lookup table divides all depths into buckets and holds for each how many boundaries
+// between slices lie before it, so that few or no boundaries are left to compare with. The buckets have equal lengths
+// either in depth, which suits linear slices, or in a float's bit pattern, which grows about as the depth's logarithm
+// and suits exponential ones.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -30,8 +31,8 @@ struct DepthBuckets {
         const std::int32_t bits = bit_cast<std::int32_t>(depth + 0.0f);  // the sum makes -0 to 0
         return static_cast<float>(bits ^ (bits >> 31 & 0x7fffffff));
     }
-    /// Returns the bucket of a depth. Each step is monotone and rounds the same on every machine, so that a depth in a later
-    /// bucket is greater.
+    /// Returns the bucket of a depth. Each step is monotone and rounds the same on every machine, so that a depth in a
+    /// later bucket is greater.
     std::size_t index_of(float depth) const {
         const float bucket = (coordinate(depth) - begin) * scale;
         // NaN, from an infinite depth and a scale of 0, goes to bucket 0, where all depths are then.
@@ -70,16 +71,16 @@ public:
     float nearer(float depth) const { return margin > 0 ? float_below(widened(depth, -margin)) : depth; }
     float farther(float depth) const { return margin > 0 ? float_above(widened(depth, margin)) : depth; }
 
-    /// Calls found(i, first, last) for each footprint i of the runs, whose light's view depths, ends included, meet the slices
-    /// first..last. Writes ids into the padding behind each run.
+    /// Calls found(i, first, last) for each footprint i of the runs, whose light's view depths, ends included, meet
+    /// the slices first..last. Writes ids into the padding behind each run.
     ///
     /// kernel        find_depth_buckets() of a tier
     /// conservative  the slices may be one more at either end, where that is faster to find
     /// lights, runs  FootprintArrays and FootprintRuns
     template <class Kernel, class Lights, class Runs, class Found>
     void find(Kernel kernel, bool conservative, float z_sign, const Lights& lights, Runs runs, Found found) const {
-        // With at most one boundary each, a bucket meets at most two slices. A table of max_buckets may have few buckets per
-        // boundary, so that many lights would get a slice more.
+        // With at most one boundary each, a bucket meets at most two slices. A table of max_buckets may have few
+        // buckets per boundary, so that many lights would get a slice more.
         conservative = conservative && shared_ == 0 && buckets_.last < max_buckets - 1;
         for (const auto& run : runs) {
             fill_items(lights.ids + run.end, 16, lights.ids[run.begin]);  // kernels read whole vectors of ids

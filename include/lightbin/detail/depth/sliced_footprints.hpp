@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The slicing stage, between projection and binning: from footprints and depth slices to the footprints in each slice, of which
-// clusters are made.
+// The slicing stage, between projection and binning: from footprints and depth slices to the footprints in each slice,
+// of which clusters are made.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -26,13 +26,14 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// The footprints of the lights that intersect each slice, in ascending order of id. Memory is reused from call to call.
+/// The footprints of the lights that intersect each slice, in ascending order of id. Memory is reused between calls.
 template <Footprint footprint> class SlicedFootprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette;
 
 public:
-    /// Puts each footprint in the slices that its light's view depths meet, ends included: a sphere's are z - r to z + r, widened
-    /// by the slices' margin. Errors: there are more than 2^32 - 1 cells, or pairs of a light and a slice.
+    /// Puts each footprint in the slices that its light's view depths meet, ends included: a sphere's are z - r to
+    /// z + r, widened by the slices' margin. Errors: there are more than 2^32 - 1 cells, or pairs of a light and a
+    /// slice.
     ///
     /// spots  the lights are spots
     template <bool spots>
@@ -86,8 +87,8 @@ private:
         std::uint64_t area;
     };
 
-    /// Finds the slices of each light, and where each slice's run begins. An unused element follows each run, as put() writes
-    /// one past it. Returns the number of elements of all runs.
+    /// Finds the slices of each light, and where each slice's run begins. An unused element follows each run, as put()
+    /// writes one past it. Returns the number of elements of all runs.
     template <bool spots>
     std::uint64_t find_slices(Isa isa, const View& view, const Footprints<footprint, true>& footprints) {
         SliceRun* const runs = runs_.reserve(run_count_ + 1);
@@ -95,8 +96,8 @@ private:
         SliceRange* met = met_.reserve(footprints.visible());
         const auto found = [=](std::uint32_t, std::uint32_t first, std::uint32_t last) mutable {
             *met++ = {first, last};
-            // A difference array of the number of lights per slice, whose prefix sums are taken below. Its unsigned elements
-            // wrap, and the sums come out right.
+            // A difference array of the number of lights per slice, whose prefix sums are taken below. Its unsigned
+            // elements wrap, and the sums come out right.
             ++runs[first].end;
             --runs[last + 1].end;
         };
@@ -112,7 +113,8 @@ private:
         return size;
     }
 
-    /// Appends footprint i to a slice. With a `count` and an `area` of 0 it writes an element that the next call overwrites.
+    /// Appends footprint i to a slice. With a `count` and an `area` of 0 it writes an element that the next call
+    /// overwrites.
     void put(const detail::FootprintArrays& lights, std::uint32_t i, std::uint64_t area, std::uint32_t slice,
              std::uint32_t count) {
         SliceRun& run = runs_.data()[slice];

@@ -10,9 +10,10 @@ class View;
 
 namespace detail {
 
-/// How one image axis, x or y, maps view space to tiles. A point with the coordinate c, multiplied by `sign`, and the view
-/// depth d is projected to  scale * (c / d) + offset  tiles with a perspective projection, and to  scale * c + offset  with
-/// an orthographic one. Off-centre, jittered and flipped projections differ in these numbers only.
+/// How one image axis, x or y, maps view space to tiles. A point with the coordinate c, multiplied by `sign`, and the
+/// view depth d is projected to  scale * (c / d) + offset  tiles with a perspective projection, and to
+/// scale * c + offset  with an orthographic one. Off-centre, jittered and flipped projections differ in these numbers
+/// only.
 struct ImageAxis {
     double scale = 0;  ///< greater than 0
     double offset = 0;
@@ -33,7 +34,8 @@ struct Camera {
     float z_sign = 1;      ///< view depth = z_sign * z, so that it grows away from the eye
     float near_depth = 0;  ///< view depth of the near plane, rounded down
     float far_depth = 0;   ///< view depth of the far plane, rounded up; +inf where there is none
-    /// Spheres that lie wholly beyond this view depth can be projected in float: near_depth, or float_safe_min if larger.
+    /// Spheres that lie wholly beyond this view depth can be projected in float: near_depth, or float_safe_min if
+    /// larger.
     float min_float_depth = 0;
     bool orthographic = false;
 };

@@ -17,18 +17,18 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Where a projection kernel reads lights from, and where it writes what later stages need of them in view space. Arrays are
-/// indexed by a light's id.
+/// Where a projection kernel reads lights from, and where it writes what later stages need of them in view space.
+/// Arrays are indexed by a light's id.
 struct LightSource {
     const Sphere* spheres;  ///< the caller's own array, to be read with load_sphere(); null: `copy` is called
     const void* lights;     ///< the caller's Lights, for `copy`
-    /// Writes lights first..first + count - 1 to `to` as spheres. Of spots it writes the balls, and to `cones` vec4s with the
-    /// axes and the cosines of the half angles.
+    /// Writes lights first..first + count - 1 to `to` as spheres. Of spots it writes the balls, and to `cones` vec4s
+    /// with the axes and the cosines of the half angles.
     void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* to, Sphere* cones);
     const WorldToView* to_view;  ///< the transform to view space; null: the lights are given in view space
-    Sphere* out_spheres;         ///< where copied or transformed spheres are stored, if not null; padded for whole vectors
-    ViewSpot* out_spots;         ///< where spots are stored, if not null; padded likewise
-    bool with_planes;            ///< store ViewSpot::planes and corners, too
+    Sphere* out_spheres;  ///< where copied or transformed spheres are stored, if not null; padded for whole vectors
+    ViewSpot* out_spots;  ///< where spots are stored, if not null; padded likewise
+    bool with_planes;     ///< store ViewSpot::planes and corners, too
 };
 
 /// The tiles first..last of one tile row that a light's silhouette touches; none if first > last.
@@ -41,9 +41,9 @@ struct FootprintRun {
     std::uint32_t begin, end;
 };
 
-/// The footprints of the lights in view, as parallel arrays: tile columns x0..x1 and tile rows y0..y1, ends included. The
-/// footprints lie in one or more runs; ids ascend in each run and from run to run. `padding` elements past the end can be read
-/// and written, as kernels load and store whole vectors.
+/// The footprints of the lights in view, as parallel arrays: tile columns x0..x1 and tile rows y0..y1, ends included.
+/// The footprints lie in one or more runs; ids ascend in each run and from run to run. `padding` elements past the end
+/// can be read and written, as kernels load and store whole vectors.
 struct FootprintArrays {
     static constexpr std::size_t padding = 64;
     static constexpr std::uint32_t whole_rectangle = 0xffffffff;  ///< a value of span_begin
@@ -51,19 +51,20 @@ struct FootprintArrays {
     std::uint32_t* ids;
     std::uint16_t *x0, *y0, *x1, *y1;
 
-    /// With Footprint::silhouette, parallel to the arrays above: the index in `spans` of the light's tile row y0, which the
-    /// spans of the rows up to y1 follow. Or whole_rectangle, if there are no spans and every tile of the rectangle counts.
+    /// With Footprint::silhouette, parallel to the arrays above: the index in `spans` of the light's tile row y0,
+    /// which the spans of the rows up to y1 follow. Or whole_rectangle, if there are no spans and every tile of the
+    /// rectangle counts.
     std::uint32_t* span_begin;
     const RowSpan* spans;
 
-    /// With silhouettes or a depth test, all lights in view space, by id: spheres, to be read with load_sphere(), or spots.
+    /// With silhouettes or a depth test, all lights in view space, by id: spheres, to be read with load_sphere(), or
+    /// spots.
     const Sphere* spheres;
     const ViewSpot* spots;
 
     /// Returns these arrays without their first `begin` elements, and without spans.
     FootprintArrays from(std::size_t begin) const {
-        return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin,
-                nullptr,     nullptr,    spheres,    spots};
+        return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin, nullptr, nullptr, spheres, spots};
     }
 };
 
@@ -113,8 +114,8 @@ struct ChunkRects {
 struct FootprintSlice {
     FootprintArrays lights;
     Items<const FootprintRun> runs;
-    std::uint32_t visible;  ///< footprints in all runs
-    std::uint64_t area;     ///< tiles in their rectangles
+    std::uint32_t visible;                  ///< footprints in all runs
+    std::uint64_t area;                     ///< tiles in their rectangles
     float slab[2] = {-infinity, infinity};  ///< the slice's depths, which depth tests use in place of absent Z bounds
 };
 

@@ -26,21 +26,19 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 namespace detail {
 
-/// Returns why lights can't be binned, or nothing if they can: their view matrix is refused, or there are more than ids can
-/// number.
+/// Returns why lights can't be binned, or nothing if they can: their view matrix is refused, or there are more than
+/// ids can number.
 template <class Light, class ToLight>
 Maybe<Error> refuse(const Lights<Light, ToLight>& lights, std::uint64_t max_lights = 0xffffffff) {
     if (lights.to_view)
         if (const auto code = lights.to_view->refusal()) return Error{*code};
-    if (lights.array.size() > max_lights)
-        return Error{ErrorCode::too_many_lights, lights.array.size(), max_lights};
+    if (lights.array.size() > max_lights) return Error{ErrorCode::too_many_lights, lights.array.size(), max_lights};
     return {};
 }
 
 /// LightSource::copy for the lights of a Lights<Light, ToLight>.
 template <class Light, class ToLight>
-void copy_lights(const void* lights, std::size_t first, std::size_t count, Sphere* to,
-                 [[maybe_unused]] Sphere* cones) {
+void copy_lights(const void* lights, std::size_t first, std::size_t count, Sphere* to, [[maybe_unused]] Sphere* cones) {
     const auto& from = *static_cast<const Lights<Light, ToLight>*>(lights);
     for (std::size_t i = 0; i < count; ++i)
         if constexpr (Lights<Light, ToLight>::spots) {
@@ -57,25 +55,24 @@ void copy_lights(const void* lights, std::size_t first, std::size_t count, Spher
 /// The footprints of the lights in view, in ascending order of id. Memory is reused from call to call.
 ///
 /// footprint     silhouette: with row spans
-/// with_spheres  keep the lights in view space, spheres or spots, for a depth test. With row spans they are kept anyway.
+/// with_spheres  keep the lights in view space, spheres or spots, for a depth test; row spans keep them anyway
 template <Footprint footprint, bool with_spheres> class Footprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette, keeps_lights = with_spheres || with_spans;
 
 public:
-    /// Projects all lights with an instruction set's kernels. A light's rectangle then holds each tile that the part of its
-    /// sphere beyond the near plane is projected to, and is the smallest such rectangle but for the view's rounding margin. The
-    /// same is true of a spot whose ball lies beyond the near plane. The rectangle of any other spot is where those of its ball
-    /// and its least_sphere() intersect.
+    /// Projects all lights with an instruction set's kernels. A light's rectangle then holds each tile that the part
+    /// of its sphere beyond the near plane is projected to, and is the smallest such rectangle but for the view's
+    /// rounding margin. The same is true of a spot whose ball lies beyond the near plane. The rectangle of any other
+    /// spot is where those of its ball and its least_sphere() intersect.
     ///
-    /// force_parallel  use the caller's threads even if projecting is too little work to wake them up for, because a stage that
-    ///                 follows has enough
+    /// force_parallel  use the caller's threads even if projecting is too little work to wake them up for, because a
+    ///                 stage that follows has enough
     /// for_boxes       store with each spot what depth tests against boxes need; only if with_spheres
     template <class Light, class ToLight>
     void project(Isa isa, const View& view, const Lights<Light, ToLight>& lights, const Parallel& parallel,
                  bool force_parallel = false, bool for_boxes = false) {
         lights_ = lights.array.size();
-        const bool share =
-            force_parallel || parallel.pays_off(detail::project_ns(isa, static_cast<double>(lights_)));
+        const bool share = force_parallel || parallel.pays_off(detail::project_ns(isa, static_cast<double>(lights_)));
         const Parallel threads = share ? parallel : Parallel();
         constexpr bool spots = Lights<Light, ToLight>::spots;
         reserve(parts_for(parallel));
@@ -100,8 +97,8 @@ public:
         if constexpr (with_spans) add_spans(detail::row_span_kernel<spots>(isa), view, threads);
     }
 
-    std::size_t lights() const { return lights_; }                ///< lights given
-    std::uint32_t visible() const { return counts_.visible; }     ///< lights in view
+    std::size_t lights() const { return lights_; }               ///< lights given
+    std::uint32_t visible() const { return counts_.visible; }    ///< lights in view
     std::uint32_t rejected() const { return counts_.rejected; }  ///< lights that are bad input, see Sphere
     std::uint64_t area() const { return counts_.area; }          ///< tiles in all rectangles
     const detail::FootprintArrays& arrays() const { return arrays_; }
@@ -114,8 +111,8 @@ public:
 private:
     static constexpr std::size_t chunk = detail::ChunkRects::size;
 
-    /// Returns how many parts the lights are projected in, which does not depend on whether the threads share them. It is one
-    /// where the padding between parts could make indices larger than 32 bits.
+    /// Returns how many parts the lights are projected in, which does not depend on whether the threads share them. It
+    /// is one where the padding between parts could make indices larger than 32 bits.
     std::size_t parts_for(const Parallel& parallel) const {
         return lights_ >> 31 == 0 ? detail::project_parts(lights_ / chunk + 1, parallel.workers()) : 1;
     }
@@ -164,8 +161,7 @@ private:
     void add_spans(detail::RowSpanKernel kernel, const View& view, const Parallel& threads) {
         constexpr std::uint64_t padding = 8;  // kernels store vectors of up to 8 rows
         // Lights whose spans would have an index above 32 bits have none, and keep their whole rectangles.
-        const std::uint64_t capacity =
-            detail::min_of(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
+        const std::uint64_t capacity = detail::min_of(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
         detail::RowSpan* spans = spans_.reserve(capacity + padding);
         arrays_.spans = spans;
         std::uint64_t begin = 0;
@@ -176,8 +172,7 @@ private:
             begin += rows + padding;
         }
         threads.run(run_count_, [&](std::size_t part) {
-            kernel(detail::camera_of(view), arrays_, runs_.data()[part], spans,
-                   part_counts_.data()[part].rows);
+            kernel(detail::camera_of(view), arrays_, runs_.data()[part], spans, part_counts_.data()[part].rows);
         });
     }
 

@@ -1,26 +1,28 @@
 // SPDX-License-Identifier: MIT
-// Row spans: which tiles of each tile row a light's silhouette touches, computed in double. Here are those of spheres, and in
-// spot_rows.inl those of spots. Included once per tier.
+// Row spans: which tiles of each tile row a light's silhouette touches, computed in double. Here are those of spheres,
+// and in spot_rows.inl those of spots. Included once per tier.
 //
-// A plane  y = v z  through the eye is a line in the image at the height v. It cuts a sphere with the centre (x, y, z) and the
-// radius r in a disc, whose projection reaches over the slopes
+// A plane  y = v z  through the eye is a line in the image at the height v. It cuts a sphere with the centre (x, y, z)
+// and the radius r in a disc, whose projection reaches over the slopes
 //     u(v) = (x g -+ t S) / A,   g = y v + z,   S^2 = r^2 (1 + v^2) - (y - v z)^2,   A = y^2 + z^2 - r^2,   t^2 = A + x^2,
-// which is the equation of the sphere's tangent cone solved for u. The silhouette, an ellipse, is convex: within a tile row its
-// right end lies at the row's slope v that is nearest to that of its rightmost point, and likewise on the left. So these two
-// slopes are clamped to each row, once per light and row, and u(v) there gives both ends.
+// which is the equation of the sphere's tangent cone solved for u. The silhouette, an ellipse, is convex: within a
+// tile row its right end lies at the row's slope v that is nearest to that of its rightmost point, and likewise on the
+// left. So these two slopes are clamped to each row, once per light and row, and u(v) there gives both ends.
 //
 // The rightmost and the leftmost point are where the planes  x = u z  touch the sphere. Let T^2 = x^2 + z^2 - r^2 and
-// Q = z T + |x| r. Then the slope v is  y Q / (T (z^2 - r^2))  of the outer point, which is farther from the view axis, and
-// y (x^2 + z^2) / (T Q)  of the inner one. With an orthographic projection  u = x -+ S,  S^2 = r^2 - (y - v)^2  and  v = y.
+// Q = z T + |x| r. Then the slope v is  y Q / (T (z^2 - r^2))  of the outer point, which is farther from the view
+// axis, and y (x^2 + z^2) / (T Q)  of the inner one. With an orthographic projection  u = x -+ S,
+// S^2 = r^2 - (y - v)^2  and  v = y.
 //
-// Rounding, with the unit roundoff e = 2^-53 of double, the tile rows' slopes from -V to V, F = r (1 + V), which is at least
-// r sqrt(1 + v^2), and m = V z + |y| + F:
-// - The slope of a row's edge is within 14 e V of the exact one, as the camera's numbers are rounded, and the slope of the
-//   outermost point within 14 e V. In all, v has an error of at most 2^-48 V. This and rounding errors of 6 e m F change S^2 by
-//   less than 2^-45 F m + 2^-94 m^2 in rows that the sphere meets, where |y - v z| <= F. Twice this is added to S^2.
-// - x g / A has a rounding error of at most 13 e |x| (|y| V + z) / A, and the error of v changes it by 2^-48 |x y| V / A.
-//   t S / A has an error of at most 18 e t F / A, and the camera's offset one of 9 e (|offset| + tiles). The spans are
-//   enlarged by more than twice all of this on both ends.
+// Rounding, with the unit roundoff e = 2^-53 of double, the tile rows' slopes from -V to V, F = r (1 + V), which is at
+// least r sqrt(1 + v^2), and m = V z + |y| + F:
+// - The slope of a row's edge is within 14 e V of the exact one, as the camera's numbers are rounded, and the slope of
+//   the outermost point within 14 e V. In all, v has an error of at most 2^-48 V. This and rounding errors of 6 e m F
+//   change S^2 by less than 2^-45 F m + 2^-94 m^2 in rows that the sphere meets, where |y - v z| <= F. Twice this is
+//   added to S^2.
+// - x g / A has a rounding error of at most 13 e |x| (|y| V + z) / A, and the error of v changes it by 2^-48 |x y|
+//   V / A. t S / A has an error of at most 18 e t F / A, and the camera's offset one of 9 e (|offset| + tiles). The
+//   spans are enlarged by more than twice all of this on both ends.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>
@@ -28,9 +30,9 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// The coefficients of `lanes` lights' silhouettes. At the row slope v,  g = y_v v + z  and
-/// S^2 = r2 + r2_v v^2 - (y - v z)^2 + slack.  In tiles, a row's span begins at  middle g - reach S + low  with v = left_v
-/// clamped to the row, and ends at  middle g + reach S + high  with v = right_v clamped to the row.
+/// The coefficients of `lanes` lights' silhouettes. At the row slope v,  g = y_v v + z  and S^2 = r2 + r2_v
+/// v^2 - (y - v z)^2 + slack.  In tiles, a row's span begins at  middle g - reach S + low  with v = left_v clamped to
+/// the row, and ends at  middle g + reach S + high  with v = right_v clamped to the row.
 struct RowTerms {
     double y[lanes], y_v[lanes], z[lanes], r2[lanes], r2_v[lanes], slack[lanes];
     double middle[lanes], reach[lanes], low[lanes], high[lanes], left_v[lanes], right_v[lanes];
@@ -41,11 +43,12 @@ inline double max_row_slope(const Camera& camera) {
     return (abs_of(camera.y.offset) + camera.y.tiles) / camera.y.scale;
 }
 
-/// Writes the coefficients of spheres from lane `at` on. Returns a bit for each sphere whose silhouette is an ellipse: that
-/// lies wholly beyond the near plane.
+/// Writes the coefficients of spheres from lane `at` on. Returns a bit for each sphere whose silhouette is an ellipse:
+/// that lies wholly beyond the near plane.
 ///
 /// x, y, z  after the camera's signs: tile indices grow with x and y, and z is the view depth
-inline unsigned row_terms(const Camera& camera, Doubles x, Doubles y, Doubles z, Doubles r, RowTerms& terms, unsigned at) {
+inline unsigned row_terms(const Camera& camera, Doubles x, Doubles y, Doubles z, Doubles r, RowTerms& terms,
+                          unsigned at) {
     const double scale = camera.x.scale, offset = camera.x.offset, max_slope = max_row_slope(camera);
     const double margin = 0x1p-48 * (abs_of(offset) + camera.x.tiles) + 0x1p-80 * scale;
     const Doubles r2 = mul(r, r), one = broadcast(1.0), zero = broadcast(0.0);
@@ -86,12 +89,14 @@ inline unsigned row_terms(const Camera& camera, Doubles x, Doubles y, Doubles z,
     return movemask(whole) << at;
 }
 
-/// Finds where the silhouette of light i begins and ends, in tiles, in a vector of tile rows, whose edges have the slopes v0
-/// and v1.
+/// Finds where the silhouette of light i begins and ends, in tiles, in a vector of tile rows, whose edges have the
+/// slopes v0 and v1.
 LIGHTBIN_INLINE void silhouette_ends(const RowTerms& terms, std::uint32_t i, Doubles v0, Doubles v1, Doubles& begin,
                                      Doubles& end) {
-    const Doubles y = broadcast(terms.y[i]), y_v = broadcast(terms.y_v[i]), z = broadcast(terms.z[i]), r2 = broadcast(terms.r2[i]);
-    const Doubles r2_v = broadcast(terms.r2_v[i]), middle = broadcast(terms.middle[i]), reach = broadcast(terms.reach[i]);
+    const Doubles y = broadcast(terms.y[i]), y_v = broadcast(terms.y_v[i]), z = broadcast(terms.z[i]),
+                  r2 = broadcast(terms.r2[i]);
+    const Doubles r2_v = broadcast(terms.r2_v[i]), middle = broadcast(terms.middle[i]),
+                  reach = broadcast(terms.reach[i]);
     const Doubles left = minimum(maximum(broadcast(terms.left_v[i]), v0), v1);
     const Doubles right = minimum(maximum(broadcast(terms.right_v[i]), v0), v1);
     const Doubles left_e = y - mul(left, z), right_e = y - mul(right, z);
@@ -105,8 +110,8 @@ LIGHTBIN_INLINE void silhouette_ends(const RowTerms& terms, std::uint32_t i, Dou
 
 /// The silhouettes of a vector of spheres.
 struct SphereRows {
-    /// Prepares the silhouettes of `count` footprints from element `begin` on, at most a vector of them. Returns a bit for each
-    /// whose row spans store() can find.
+    /// Prepares the silhouettes of `count` footprints from element `begin` on, at most a vector of them. Returns a bit
+    /// for each whose row spans store() can find.
     unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin, std::uint32_t count) {
         Floats x, y, z, r;
         load_listed_spheres(lights.spheres, lights.ids + begin, count, x, y, z, r);
@@ -119,22 +124,21 @@ struct SphereRows {
         return known;
     }
 
-    /// Stores the spans of light i in a vector of tile rows, whose edges have the slopes v0 and v1, clamped to the tile columns
-    /// leftmost..rightmost.
+    /// Stores the spans of light i in a vector of tile rows, whose edges have the slopes v0 and v1, clamped to the
+    /// tile columns leftmost..rightmost.
     LIGHTBIN_INLINE void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost,
                                RowSpan* to) const {
         Doubles begin, end;
         silhouette_ends(terms, i, v0, v1, begin, end);
-        store_spans(to, minimum(maximum(begin, leftmost), rightmost),
-                    minimum(maximum(end, leftmost), rightmost));
+        store_spans(to, minimum(maximum(begin, leftmost), rightmost), minimum(maximum(end, leftmost), rightmost));
     }
 
     RowTerms terms;
 };
 
-/// Writes the row spans of a run of footprints, from spans[to] on; whole vectors are stored. A footprint gets no spans where
-/// they could exclude no tile, because it is one tile wide or high, where its silhouette is not known, and where an index of 32
-/// bits can't tell where they begin. A span of a sphere has at least one tile.
+/// Writes the row spans of a run of footprints, from spans[to] on; whole vectors are stored. A footprint gets no spans
+/// where they could exclude no tile, because it is one tile wide or high, where its silhouette is not known, and where
+/// an index of 32 bits can't tell where they begin. A span of a sphere has at least one tile.
 ///
 /// Rows  SphereRows or SpotRows
 template <class Rows>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The projection of spheres to tile rectangles, a vector of lights at a time. All tiers do the same operations in the same
-// order, so they give the same bytes; the scalar tier's vectors hold one light. Included once per tier.
+// The projection of spheres to tile rectangles, a vector of lights at a time. All tiers do the same operations in the
+// same order, so they give the same bytes; the scalar tier's vectors hold one light. Included once per tier.
 //
-// Each image axis is a problem in two dimensions: the edges of tiles are planes  x = s z  through the eye with the slope s,
-// and a sphere appears as a disc with the centre (c, z), where c is x or y and z the view depth. Its bounds are the slopes of
-// the two tangents from the eye (Mara and McGuire, "2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D Sphere",
-// JCGT 2(2), 2013).
+// Each image axis is a problem in two dimensions: the edges of tiles are planes  x = s z  through the eye with the
+// slope s, and a sphere appears as a disc with the centre (c, z), where c is x or y and z the view depth. Its bounds
+// are the slopes of the two tangents from the eye (Mara and McGuire, "2D Polyhedral Bounds of a Clipped,
+// Perspective-Projected 3D Sphere", JCGT 2(2), 2013).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/project/world_to_view.inl>
@@ -23,19 +23,17 @@ struct ProjectedChunk {
 
 /// Bounds of a vector of lights along the image axes, x and y: slopes, or view-space coordinates with an orthographic
 /// projection.
-template <class Reals> struct ImageBounds {
-    Reals low[2], high[2];
-};
+template <class Reals> struct ImageBounds { Reals low[2], high[2]; };
 
-/// Finds the slopes of the tangents from the eye, the origin, to discs with the centre (c, z) and the radius r, which lie
-/// wholly in front of the eye: z - r > 0.
+/// Finds the slopes of the tangents from the eye, the origin, to discs with the centre (c, z) and the radius r, which
+/// lie wholly in front of the eye: z - r > 0.
 ///
 /// e, per_e  (z - r) (z + r) and its reciprocal
 ///
-/// The outer tangent is the one farther from the view axis. Both slopes come from sums whose terms have one sign, so that
-/// relative errors never grow by cancellation. With the unit roundoff u, e has a relative error of at most 3u, c^2 + e of 4u,
-/// its root of 3u, q of 5u, the outer slope of 10u and the inner one of 9u. The inner slope follows from the outer one, as
-/// the product of both is (c^2 - r^2) / e.
+/// The outer tangent is the one farther from the view axis. Both slopes come from sums whose terms have one sign, so
+/// that relative errors never grow by cancellation. With the unit roundoff u, e has a relative error of at most 3u,
+/// c^2 + e of 4u, its root of 3u, q of 5u, the outer slope of 10u and the inner one of 9u. The inner slope follows
+/// from the outer one, as the product of both is (c^2 - r^2) / e.
 template <class Reals>
 inline void tangent_slopes(Reals c, Reals z, Reals r, Reals e, Reals per_e, Reals& low, Reals& high) {
     const Reals a = abs(c);
@@ -47,18 +45,22 @@ inline void tangent_slopes(Reals c, Reals z, Reals r, Reals e, Reals per_e, Real
     high = select_unpredicted(negative, -inner, outer);
 }
 
-/// Finds bounds on c / z over that part of discs with the centre (c, z) and the radius r whose depth is at least near_depth.
-/// A bound is infinite where double precision can't decide. For discs that meet the near plane: z - r <= near_depth <= z + r.
-/// The arguments are floats that were converted to double: their products are exact, and none overflows.
+/// Finds bounds on c / z over that part of discs with the centre (c, z) and the radius r whose depth is at least
+/// near_depth. A bound is infinite where double precision can't decide. For discs that meet the near plane:
+/// z - r <= near_depth <= z + r. The arguments are floats that were converted to double: their products are exact, and
+/// none overflows.
 ///
-/// The part is convex, so the largest slope c / z is at the point where the tangent touches the circle, if that lies beyond
-/// the near plane, and else at the corner where circle and near plane meet. The tangent's slope bounds the whole disc, so it
-/// is a correct bound wherever there is a tangent; the corner's is taken only where it is certain to be the largest. The
-/// smallest slope is the negative of the largest one of the mirrored disc, whose centre is (-c, z).
+/// The part is convex, so the largest slope c / z is at the point where the tangent touches the circle, if that lies
+/// beyond the near plane, and else at the corner where circle and near plane meet. The tangent's slope bounds the
+/// whole disc, so it is a correct bound wherever there is a tangent; the corner's is taken only where it is certain to
+/// be the largest. The smallest slope is the negative of the largest one of the mirrored disc with the
+/// centre (-c, z).
 inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, Doubles& low, Doubles& high) {
-    const Doubles near_z = broadcast(near_depth), zero = broadcast(0.0), infinite = broadcast(static_cast<double>(infinity));
+    const Doubles near_z = broadcast(near_depth), zero = broadcast(0.0),
+                  infinite = broadcast(static_cast<double>(infinity));
     const Doubles a = abs(c);
-    const Doubles h2 = mul(r - (near_z - z), r + (near_z - z));  // squared half of the chord that the near plane cuts off
+    const Doubles h2 =
+        mul(r - (near_z - z), r + (near_z - z));  // squared half of the chord that the near plane cuts off
     const Doubles h2_error = mul(r, r) * 0x1p-50;
     const Doubles h = sqrt(maximum(h2, zero) + h2_error);  // rounded up
     const Doubles h_low = sqrt(maximum(h2 - h2_error, zero));
@@ -78,14 +80,14 @@ inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, D
     const Doubles squares = mul(a, a) + mul(z, z), t2 = squares - mul(r, r);
     const Doubles error = (squares + mul(r, r)) * 0x1p-50 / t2 + 0x1p-48;  // of a tangent's slope, relative
     const auto has_tangent = both(less(zero, t2), less_equal(error, broadcast(0x1p-20)));
-    // Of the two forms of each root, this takes the one whose sums have terms of one sign, as tangent_slopes() does. If the
-    // sphere reaches behind the eye, z <= r, the outer tangent points backward and bounds nothing.
+    // Of the two forms of each root, this takes the one whose sums have terms of one sign, as tangent_slopes() does.
+    // If the sphere reaches behind the eye, z <= r, the outer tangent points backward and bounds nothing.
     const Doubles az = mul(a, z), rt = mul(r, sqrt(t2)), e = mul(z - r, z + r);
     const auto behind = less(z, zero);
     const Doubles outer = (az + rt) / e;
     const Doubles inner = select(behind, rt - az, mul(r - a, r + a)) / select(behind, e, rt + az);
-    const Doubles high_outer =
-        select(outer_cut, outer_corner, select(both(has_tangent, less(r, z)), outer + mul(abs(outer), error), infinite));
+    const Doubles high_outer = select(outer_cut, outer_corner,
+                                      select(both(has_tangent, less(r, z)), outer + mul(abs(outer), error), infinite));
     const Doubles high_inner =
         select(inner_cut, inner_corner, select(has_tangent, inner + mul(abs(inner), error), infinite));
     const auto negative = less(c, zero);
@@ -93,10 +95,11 @@ inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, D
     high = select(negative, high_inner, high_outer);
 }
 
-/// Stores the first and the last tile, along an image axis, that the bounds low..high of each light touch, enlarged by the
-/// axis' margin. Returns `visible` without the lights that lie outside the viewport.
+/// Stores the first and the last tile, along an image axis, that the bounds low..high of each light touch, enlarged by
+/// the axis' margin. Returns `visible` without the lights that lie outside the viewport.
 template <class Real, class Reals, class Mask>
-inline Mask tile_span(const ImageAxis& axis, Reals low, Reals high, Mask visible, std::uint16_t* first, std::uint16_t* last) {
+inline Mask tile_span(const ImageAxis& axis, Reals low, Reals high, Mask visible, std::uint16_t* first,
+                      std::uint16_t* last) {
     const Real scale = static_cast<Real>(axis.scale), offset = static_cast<Real>(axis.offset),
                margin = static_cast<Real>(axis.margin);
     low = mul(low, broadcast(scale)) + offset - margin;
@@ -107,8 +110,8 @@ inline Mask tile_span(const ImageAxis& axis, Reals low, Reals high, Mask visible
     return both(visible, both(less_equal(zero, high), less_equal(low, broadcast(static_cast<Real>(axis.limit)))));
 }
 
-/// Stores the tile rectangles of a vector of lights, from element i of `rects` on. Returns `visible` without the lights that
-/// lie outside the viewport.
+/// Stores the tile rectangles of a vector of lights, from element i of `rects` on. Returns `visible` without the
+/// lights that lie outside the viewport.
 template <class Real, class Reals, class Mask>
 LIGHTBIN_INLINE Mask tile_rects(const Camera& camera, const ImageBounds<Reals>& bounds, Mask visible, ChunkRects& rects,
                                 std::uint32_t i) {
@@ -116,13 +119,13 @@ LIGHTBIN_INLINE Mask tile_rects(const Camera& camera, const ImageBounds<Reals>& 
     return tile_span<Real>(camera.y, bounds.low[1], bounds.high[1], visible, rects.y0 + i, rects.y1 + i);
 }
 
-/// Stores the tile rectangles of a vector of lights of a chunk, from index i on, and which of them are in view. Lights whose
-/// bit in `fallback` is set are listed for the double-precision path instead.
+/// Stores the tile rectangles of a vector of lights of a chunk, from index i on, and which of them are in view. Lights
+/// whose bit in `fallback` is set are listed for the double-precision path instead.
 ///
 /// valid  a bit for each lane that holds a light of the chunk
 template <class Mask>
-LIGHTBIN_INLINE void put_vector(const Camera& camera, const ImageBounds<Floats>& bounds, Mask float_safe, unsigned fallback,
-                                unsigned valid, std::uint32_t i, ProjectedChunk& chunk) {
+LIGHTBIN_INLINE void put_vector(const Camera& camera, const ImageBounds<Floats>& bounds, Mask float_safe,
+                                unsigned fallback, unsigned valid, std::uint32_t i, ProjectedChunk& chunk) {
     for (; fallback != 0; fallback &= fallback - 1)
         chunk.fallback[chunk.fallback_count++] =
             static_cast<std::uint16_t>(i + static_cast<unsigned>(std::countr_zero(fallback)));
@@ -133,18 +136,20 @@ LIGHTBIN_INLINE void put_vector(const Camera& camera, const ImageBounds<Floats>&
 ///
 /// first  the id of the chunk's first light
 /// here   the number of its lights
-inline void append_chunk(const ProjectedChunk& chunk, std::uint32_t first, std::uint32_t here, const FootprintArrays& out,
-                         ProjectCounts& counts) {
+inline void append_chunk(const ProjectedChunk& chunk, std::uint32_t first, std::uint32_t here,
+                         const FootprintArrays& out, ProjectCounts& counts) {
     for (std::uint32_t i = 0; i < here; i += lanes)
         if (const unsigned visible = chunk.visible[i / lanes]; visible != 0)
             append_visible(out, counts, first, visible, chunk.rects, i);
 }
 
-/// Projects in double the lights of a chunk that are listed in chunk.fallback: those that cross the near plane or contain the
-/// eye, tiny, huge and infinite ones, and bad input, which it counts. Sets the bits in chunk.visible of those in view.
+/// Projects in double the lights of a chunk that are listed in chunk.fallback: those that cross the near plane or
+/// contain the eye, tiny, huge and infinite ones, and bad input, which it counts. Sets the bits in chunk.visible of
+/// those in view.
 ///
 /// spheres  of all lights of the chunk, in view space
-inline void project_in_double(const Camera& camera, const Sphere* spheres, ProjectedChunk& chunk, ProjectCounts& counts) {
+inline void project_in_double(const Camera& camera, const Sphere* spheres, ProjectedChunk& chunk,
+                              ProjectCounts& counts) {
     for (std::uint32_t begin = 0, used; begin < chunk.fallback_count; begin += used) {
         used = min_of(chunk.fallback_count - begin, double_lanes);
         const std::uint16_t* const indices = chunk.fallback + begin;
@@ -188,25 +193,28 @@ inline void project_in_double(const Camera& camera, const Sphere* spheres, Proje
     }
 }
 
-/// The camera's numbers that cull lights, each broadcast to a vector once: narrow vectors would take as long to broadcast
-/// them again for every vector of lights as to cull those.
+/// The camera's numbers that cull lights, each broadcast to a vector once: narrow vectors would take as long to
+/// broadcast them again for every vector of lights as to cull those.
 struct ViewLanes {
     explicit ViewLanes(const Camera& camera)
         : sign_x(broadcast(camera.x.sign)), sign_y(broadcast(camera.y.sign)), sign_z(broadcast(camera.z_sign)),
-          normal_x(broadcast(camera.x.normal)), normal_xz(broadcast(camera.x.normal_z)), normal_y(broadcast(camera.y.normal)),
-          normal_yz(broadcast(camera.y.normal_z)), front(broadcast(camera.near_depth)), back(broadcast(camera.far_depth)) {}
+          normal_x(broadcast(camera.x.normal)), normal_xz(broadcast(camera.x.normal_z)),
+          normal_y(broadcast(camera.y.normal)), normal_yz(broadcast(camera.y.normal_z)),
+          front(broadcast(camera.near_depth)), back(broadcast(camera.far_depth)) {}
 
     Floats sign_x, sign_y, sign_z, normal_x, normal_xz, normal_y, normal_yz, front, back;
 };
 
 /// Returns which lights of a vector are certain to lie outside the view frustum, of those that are safe in float.
 ///
-/// x, y, z, r         the lights' spheres, after the camera's signs: tile indices grow with x and y, and z is the view depth
+/// x, y, z, r         the lights' spheres, after the camera's signs: tile indices grow with x and y, and z is the view
+///                    depth
 /// nearest, farthest  the lights' view depths
 /// size               |x| + |y| + |z| + r
 ///
-/// Rounding is monotone and the depths of the near and far plane are floats, so comparing rounded sums with these is exact.
-/// The computed distance to a side plane has an error of at most 4u `size`, where u = 2^-24; the test allows for 8u.
+/// Rounding is monotone and the depths of the near and far plane are floats, so comparing rounded sums with these is
+/// exact. The computed distance to a side plane has an error of at most 4u `size`, where u = 2^-24; the test allows
+/// for 8u.
 LIGHTBIN_INLINE auto out_of_view(const ViewLanes& view, Floats x, Floats y, Floats z, Floats r, Floats nearest,
                                  Floats farthest, Floats size) {
     const Floats outside = maximum(mul(abs(x), view.normal_x) + mul(z, view.normal_xz),
@@ -223,8 +231,8 @@ LIGHTBIN_INLINE auto safe_in_float(Floats size, Floats r) {
 
 /// Appends the footprints of those of the spheres first..first + count - 1 that are in view.
 ///
-/// Spheres are projected in float where the error bounds of tangent_slopes() hold: where nothing overflows or underflows and
-/// the whole sphere lies beyond the near plane. Others are projected in double, with all that hold NaN.
+/// Spheres are projected in float where the error bounds of tangent_slopes() hold: where nothing overflows or
+/// underflows and the whole sphere lies beyond the near plane. Others are projected in double, with all that hold NaN.
 inline void project(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
                     const FootprintArrays& out, ProjectCounts& counts) {
     ProjectedChunk chunk;
@@ -232,7 +240,8 @@ inline void project(const Camera& camera, const LightSource& source, std::uint32
     const TransformLanes transform(source.to_view);
     const ViewLanes view(camera);
     const bool transformed = source.to_view != nullptr;
-    // Copies are made of a few lights at a time, so that the next ones are fetched from memory while these are projected.
+    // Copies are made of a few lights at a time, so that the next ones are fetched from memory while these are
+    // projected.
     const std::uint32_t batch = source.copy != nullptr ? 32 : ChunkRects::size;
     for (std::uint32_t here; count > 0; count -= here, first += here) {
         here = min_of(count, batch);

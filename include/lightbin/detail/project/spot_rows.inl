@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
-// The row spans of spots: the silhouettes of their balls, cut off at the lines that bound their cones. Included once per tier.
+// The row spans of spots: the silhouettes of their balls, cut off at the lines that bound their cones. Included once
+// per tier.
 //
-// Two planes through the eye touch a cone, unless the eye is inside it. In the image they are two lines through the apex. Let
-// t be the half angle, a the unit axis, u the unit vector from the eye to the apex, b = a - (a.u) u and s = |b|. The planes'
-// unit normals are
+// Two planes through the eye touch a cone, unless the eye is inside it. In the image they are two lines through the
+// apex. Let t be the half angle, a the unit axis, u the unit vector from the eye to the apex, b = a - (a.u) u and
+// s = |b|. The planes' unit normals are
 //     n = -(sin t / s) b / s +- sqrt(1 - (sin t / s)^2) u x b / s,   for which  n.u = 0  and  n.a = -sin t,
-// and each point p of the cone has  n.p <= 0. So a spot's points whose view depth is at least z, within the slopes v0 to v1 of
-// a tile row, have slopes x with  n_x x <= tolerance / z - n_z - min(n_y v0, n_y v1),  where `tolerance` is the spot's. (The
-// Universal Render Pipeline of Unity bounds spots by the same planes.) With an orthographic projection u is the view
-// direction, and  n.(p - apex) <= tolerance.
+// and each point p of the cone has  n.p <= 0. So a spot's points whose view depth is at least z, within the slopes v0
+// to v1 of a tile row, have slopes x with  n_x x <= tolerance / z - n_z - min(n_y v0, n_y v1),  where `tolerance` is
+// the spot's. (The Universal Render Pipeline of Unity bounds spots by the same planes.) With an orthographic
+// projection u is the view direction, and  n.(p - apex) <= tolerance.
 //
 // Rounding, with the unit roundoffs u = 2^-24 of float and e = 2^-53 of double:
-// - sin t and |a| have errors of at most 8u and 18u. Where t is near 90 degrees, a small change of the sine is a large one of
-//   the angle: the planes' angle to the axis has an error of at most 26u tan t, and n.p can be larger by as much times the
-//   radius r. The tolerance is enlarged by 32u r / cos t.
+// - sin t and |a| have errors of at most 8u and 18u. Where t is near 90 degrees, a small change of the sine is a large
+//   one of the angle: the planes' angle to the axis has an error of at most 26u tan t, and n.p can be larger by as
+//   much times the radius r. The tolerance is enlarged by 32u r / cos t.
 // - For s >= 2^-20, n is within 2^-30 of the normal for the given floats. The tolerance is enlarged by 2^-28 (|p| + r).
 // - All other errors are less than 2^-48 of the slopes of rows and columns; 2^-40 of them is added.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
@@ -23,8 +24,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// The two lines that bound each of `lanes` cones in the image. In a tile row with the slopes v0 to v1, the span begins or
-/// ends at  (limit - min(n_y v0, n_y v1)) per_x + offset  tiles: it ends there if per_x > 0.
+/// The two lines that bound each of `lanes` cones in the image. In a tile row with the slopes v0 to v1, the span
+/// begins or ends at  (limit - min(n_y v0, n_y v1)) per_x + offset  tiles: it ends there if per_x > 0.
 struct WedgeTerms {
     double per_x[2][lanes], n_y[2][lanes], limit[2][lanes];
 };
@@ -100,8 +101,8 @@ struct SpotRows {
                 wedge.axis[i] = widened(axis[i], half);
                 size = size + abs(wedge.apex[i]);
             }
-            balls_known |= row_terms(camera, wedge.apex[0], wedge.apex[1], wedge.apex[2], radius, ball,
-                                     half * double_lanes);
+            balls_known |=
+                row_terms(camera, wedge.apex[0], wedge.apex[1], wedge.apex[2], radius, ball, half * double_lanes);
             wedge.sine = widened(sine, half);
             wedge.tolerance = widened(tolerance, half) + size * 0x1p-28 + radius * 0x1p-19 / widened(cosine, half);
             if (!camera.orthographic)
@@ -139,7 +140,7 @@ struct SpotRows {
     RowTerms ball;         ///< the silhouettes of the balls
     unsigned balls_known;  ///< a bit for each ball that has one
     WedgeTerms wedges;
-    double low, high;      ///< the camera's offset, in tiles, rounded down and up
+    double low, high;  ///< the camera's offset, in tiles, rounded down and up
 };
 
 }}}}  // namespace lightbin::detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Spots transformed from how the caller gives them to view space, a vector at a time, and stored as ViewSpots for the later
-// stages; view_spot.hpp derives the bound on their rounding errors. Included once per tier.
+// Spots transformed from how the caller gives them to view space, a vector at a time, and stored as ViewSpots for the
+// later stages; view_spot.hpp derives the bound on their rounding errors. Included once per tier.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/project/world_to_view.inl>
@@ -18,8 +18,8 @@ LIGHTBIN_INLINE Floats manhattan_length(const Floats (&v)[3]) {
     return abs(v[0]) + abs(v[1]) + abs(v[2]);
 }
 
-/// Replaces the spots whose bit in `which` is set by their least_sphere(), the smallest sphere around each: those with sizes
-/// that float can't compute with, or a cone that the transform does not map to a cone.
+/// Replaces the spots whose bit in `which` is set by their least_sphere(), the smallest sphere around each: those with
+/// sizes that float can't compute with, or a cone that the transform does not map to a cone.
 ///
 /// balls, cones  the spots as they were given, see LightSource
 LIGHTBIN_NOINLINE inline void use_least_spheres(const WorldToView* to_view, unsigned which, const Sphere* balls,
@@ -46,12 +46,13 @@ LIGHTBIN_NOINLINE inline void use_least_spheres(const WorldToView* to_view, unsi
 /// Transforms a vector of spots, given as for use_least_spheres(), to view space after the camera's signs.
 LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& transform, const Sphere* balls,
                                 const Sphere* cones, SpotLanes& spots) {
-    Floats (&apex)[3] = spots.apex, axis[3], cosine;
+    Floats(&apex)[3] = spots.apex, axis[3], cosine;
     load_spheres(balls, apex[0], apex[1], apex[2], spots.radius);
     load_spheres(cones, axis[0], axis[1], axis[2], cosine);
     const Floats given_radius = spots.radius, axis_size = manhattan_length(axis);
     // Float can compute with these spots.
-    auto safe = both(less_equal(manhattan_length(apex), broadcast(float_safe_max)), less_equal(abs(cosine), broadcast(1.0f)));
+    auto safe =
+        both(less_equal(manhattan_length(apex), broadcast(float_safe_max)), less_equal(abs(cosine), broadcast(1.0f)));
     safe = both(safe, both(less_equal(broadcast(float_safe_min), given_radius),
                            less_equal(given_radius, broadcast(float_safe_max))));
     safe = both(safe, both(less_equal(broadcast(0x1p-20f), axis_size), less_equal(axis_size, broadcast(0x1p20f))));
@@ -71,8 +72,7 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
     }
     const auto whole = less_equal(cosine, broadcast(0.0f));
     const Floats zero = Floats{};
-    const Floats per_length =
-        1.0f / sqrt(mul(axis[0], axis[0]) + mul(axis[1], axis[1]) + mul(axis[2], axis[2]));
+    const Floats per_length = 1.0f / sqrt(mul(axis[0], axis[0]) + mul(axis[1], axis[1]) + mul(axis[2], axis[2]));
     for (unsigned i = 0; i < 3; ++i)
         spots.axis[i] = select(whole, zero, mul(axis[i], per_length));
     spots.cosine = select(whole, zero, cosine);
@@ -91,8 +91,7 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
 ///
 /// along, across  the lengths of the cone's unit axis along the direction and perpendicular to it
 inline Floats spot_reach(const SpotLanes& spots, Floats along, Floats across) {
-    const Floats rim =
-        minimum(maximum(mul(spots.cosine, along) + mul(spots.sine, across), Floats{}), broadcast(1.0f));
+    const Floats rim = minimum(maximum(mul(spots.cosine, along) + mul(spots.sine, across), Floats{}), broadcast(1.0f));
     const Floats part = select(less_equal(spots.cosine, along), broadcast(1.0f), rim);
     return minimum(mul(spots.radius, part) + spots.tolerance, spots.radius);
 }
@@ -103,15 +102,16 @@ inline void store_vec4s(ViewSpot* to, std::size_t offset, const Sphere (&vec4s)[
         std::memcpy(reinterpret_cast<char*>(to + lane) + offset, vec4s + lane, sizeof(Sphere));
 }
 
-/// Finds and stores the half spaces around the cones of a vector of spots. Let t be the half angle, and e and f two unit
-/// vectors perpendicular to the axis a and to each other (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1),
-/// 2017). The planes' unit normals are  +-e cos t - a sin t  and  +-f cos t - a sin t.
+/// Finds and stores the half spaces around the cones of a vector of spots. Let t be the half angle, and e and f two
+/// unit vectors perpendicular to the axis a and to each other (Duff et al., "Building an Orthonormal Basis,
+/// Revisited", JCGT 6(1), 2017). The planes' unit normals are  +-e cos t - a sin t  and  +-f cos t - a sin t.
 ///
-/// Rounding, with u = 2^-24, the ball's size S = |x| + |y| + |z| + r, a normal n and the apex P: n is within 16u of the normal
-/// for the exact axis, and so n.p - n.P is at most `tolerance` for each point p of the spot. A box that meets the spot in p
-/// has a corner c with n_i c_i <= n_i p_i for i = x, y, z. Rounding increases the sum of n_i c_i by at most 5u times the sum
-/// of the products' sizes. The positive products add up to at most 2 S. The negative ones add up to at most twice all other
-/// terms, or else make the sum so small that its rounding can't matter. For all this the offset is 2^-18 S = 64u S larger.
+/// Rounding, with u = 2^-24, the ball's size S = |x| + |y| + |z| + r, a normal n and the apex P: n is within 16u of
+/// the normal for the exact axis, and so n.p - n.P is at most `tolerance` for each point p of the spot. A box that
+/// meets the spot in p has a corner c with n_i c_i <= n_i p_i for i = x, y, z. Rounding increases the sum of n_i c_i
+/// by at most 5u times the sum of the products' sizes. The positive products add up to at most 2 S. The negative ones
+/// add up to at most twice all other terms, or else make the sum so small that its rounding can't matter. For all this
+/// the offset is 2^-18 S = 64u S larger.
 inline void store_planes(ViewSpot* to, const SpotLanes& spots) {
     const Floats apex[] = {spots.apex[0], spots.apex[1], spots.apex[2]}, (&axis)[3] = spots.axis;
     const auto backward = less(axis[2], Floats{});
@@ -119,8 +119,7 @@ inline void store_planes(ViewSpot* to, const SpotLanes& spots) {
     const Floats xp = mul(axis[0], p), q = mul(axis[1], xp);
     const Floats across[2][3] = {{1.0f + mul(mul(sign, axis[0]), xp), sign * q, -(sign * axis[0])},
                                  {q, sign + mul(axis[1], mul(axis[1], p)), -axis[1]}};
-    const Floats slack =
-        spots.tolerance + mul(manhattan_length(apex) + spots.radius, broadcast(0x1p-18f));
+    const Floats slack = spots.tolerance + mul(manhattan_length(apex) + spots.radius, broadcast(0x1p-18f));
     Floats back[3];
     for (unsigned i = 0; i < 3; ++i)
         back[i] = mul(axis[i], spots.sine);

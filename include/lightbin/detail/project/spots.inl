@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The projection of spots to tile rectangles, a vector of lights at a time. Included once per tier.
 //
-// A spot is the sector that a cone cuts out of a ball. The point of a sector that is farthest in some direction is the apex, a
-// point of the rim, the circle in which cone and ball meet, or a point of the cap, the ball's surface inside the rim; in the
-// last case it is the ball's own farthest point. So a sector has the bounds of its ball where these touch the cap, and else
-// those of the apex and the rim.
+// A spot is the sector that a cone cuts out of a ball. The point of a sector that is farthest in some direction is the
+// apex, a point of the rim, the circle in which cone and ball meet, or a point of the cap, the ball's surface inside
+// the rim; in the last case it is the ball's own farthest point. So a sector has the bounds of its ball where these
+// touch the cap, and else those of the apex and the rim.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/project/spheres.inl>
@@ -13,8 +13,9 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// Stores, in view space, the balls and the least spheres of a vector of spots; least_sphere() describes these. The centre of
-/// a least sphere is within 8u of |x| + |y| + |z| + r of the exact one, where u = 2^-24, and its radius is enlarged by 16u.
+/// Stores, in view space, the balls and the least spheres of a vector of spots; least_sphere() describes these. The
+/// centre of a least sphere is within 8u of |x| + |y| + |z| + r of the exact one, where u = 2^-24, and its radius is
+/// enlarged by 16u.
 inline void store_both_spheres(const Camera& camera, const SpotLanes& spots, Sphere* balls, Sphere* least) {
     const auto narrow = less_equal(broadcast(0.5f), mul(spots.cosine, spots.cosine));
     const Floats half = mul(spots.radius, broadcast(0.5f)) / spots.cosine, along = mul(spots.radius, spots.cosine);
@@ -31,10 +32,10 @@ inline void store_both_spheres(const Camera& camera, const SpotLanes& spots, Sph
 
 /// What the bounds along both image axes have in common, for a vector of spots.
 struct RimLanes {
-    Floats per_z;    ///< the reciprocal of the apex's view depth
-    Floats axis_z;   ///< of the cone's axis
-    Floats cosine2;  ///< the squared cosine of the half angle
-    Floats along;    ///< the distance from the apex to the rim's centre
+    Floats per_z;      ///< the reciprocal of the apex's view depth
+    Floats axis_z;     ///< of the cone's axis
+    Floats cosine2;    ///< the squared cosine of the half angle
+    Floats along;      ///< the distance from the apex to the rim's centre
     Floats rho, rho2;  ///< the rim's radius and its square
     Floats rim_z;      ///< the view depth of the rim's centre
     Floats per_a;      ///< 1 / A, see narrow_slopes()
@@ -56,13 +57,14 @@ LIGHTBIN_INLINE auto touches_cap(const RimLanes& rim, Floats slope, Floats acros
 /// c            the apex's coordinate along the image axis
 /// axis, other  the coordinates of the cone's axis along this and the other image axis
 ///
-/// The plane  x = s z  touches the rim, with the centre (X, Z) in this image axis and depth, the radius R and the axis (a, a_z),
-/// where  (X - s Z)^2 = R^2 (1 + s^2 - (a - s a_z)^2).  The roots are  s = (B -+ R sqrt(D)) / A  with
+/// The plane  x = s z  touches the rim, with the centre (X, Z) in this image axis and depth, the radius R and the axis
+/// (a, a_z), where  (X - s Z)^2 = R^2 (1 + s^2 - (a - s a_z)^2).  The roots are  s = (B -+ R sqrt(D)) / A  with
 ///     A = Z^2 - R^2 (1 - a_z^2),   B = X Z + R^2 a a_z,   D = (X^2 + Z^2 - R^2) other^2 + (X a + Z a_z)^2.
-/// Rounding, with u = 2^-24 and the ball's S = |x| + |y| + |z| + r: D is within 2^-20 (X^2 + Z^2 + R^2) of the exact value;
-/// this bound is added to it. Apex and rim are within 8u S of the exact ones, and all other errors move a point's slope by
-/// less than 32u S (1 + |slope|) / z, where z is the point's depth.
-LIGHTBIN_INLINE void narrow_slopes(const RimLanes& rim, Floats c, Floats axis, Floats other, Floats& low, Floats& high) {
+/// Rounding, with u = 2^-24 and the ball's S = |x| + |y| + |z| + r: D is within 2^-20 (X^2 + Z^2 + R^2) of the exact
+/// value; this bound is added to it. Apex and rim are within 8u S of the exact ones, and all other errors move a
+/// point's slope by less than 32u S (1 + |slope|) / z, where z is the point's depth.
+LIGHTBIN_INLINE void narrow_slopes(const RimLanes& rim, Floats c, Floats axis, Floats other, Floats& low,
+                                   Floats& high) {
     const Floats x = c + mul(rim.along, axis), b = mul(x, rim.rim_z) + mul(rim.rho2, mul(axis, rim.axis_z));
     const Floats squares = mul(x, x) + mul(rim.rim_z, rim.rim_z), q = mul(x, axis) + mul(rim.rim_z, rim.axis_z);
     const Floats d = mul(squares - rim.rho2, mul(other, other)) + mul(q, q);
@@ -75,10 +77,10 @@ LIGHTBIN_INLINE void narrow_slopes(const RimLanes& rim, Floats c, Floats axis, F
     high = select(touches_cap(rim, high, axis - mul(high, rim.axis_z)), high, minimum(largest + error, high));
 }
 
-/// Projects in double the spots of a chunk that are listed in chunk.fallback: a spot's rectangle is where those of its ball
-/// and of its least sphere intersect.
-inline void project_spots_in_double(const Camera& camera, const Sphere* balls, const Sphere* least, ProjectedChunk& chunk,
-                                    ProjectCounts& counts) {
+/// Projects in double the spots of a chunk that are listed in chunk.fallback: a spot's rectangle is where those of its
+/// ball and of its least sphere intersect.
+inline void project_spots_in_double(const Camera& camera, const Sphere* balls, const Sphere* least,
+                                    ProjectedChunk& chunk, ProjectCounts& counts) {
     project_in_double(camera, balls, chunk, counts);
     ProjectedChunk second;
     ProjectCounts counted_before;  // the second projection counts the same bad input again
@@ -134,8 +136,8 @@ LIGHTBIN_INLINE void find_slopes(const SpotLanes& spots, Floats size, Floats nea
     narrow_slopes(rim, spots.apex[1], spots.axis[1], spots.axis[0], bounds.low[1], bounds.high[1]);
 }
 
-/// Appends the footprints of those of the spots first..first + count - 1 that are in view. As with project(), spots whose
-/// ball does not lie beyond the near plane, or that float can't compute with, are projected in double.
+/// Appends the footprints of those of the spots first..first + count - 1 that are in view. As with project(), spots
+/// whose ball does not lie beyond the near plane, or that float can't compute with, are projected in double.
 inline void project_spots(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
                           const FootprintArrays& out, ProjectCounts& counts) {
     ProjectedChunk chunk;

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
-// The transform of lights from world space to view space. A transformed sphere contains the exact image of the given one:
-// its radius is multiplied by the largest factor by which the matrix can stretch a length, and enlarged by a bound on the
-// rounding error of the transformed centre.
+// The transform of lights from world space to view space. A transformed sphere contains the exact image of the given
+// one: its radius is multiplied by the largest factor by which the matrix can stretch a length, and enlarged by a
+// bound on the rounding error of the transformed centre.
 //
-// world_to_view.inl transforms a vector of lights at a time in float. So that the rounding error far from the world's origin
-// is as small as near it, positions p are taken relative to an origin o near the eye:  A p + t = A (p - o) + (A o + t),  where
-// A is the matrix's linear part with the columns A_j, and t its translation. Let u = 2^-24, the unit roundoff of float. The
-// entries of A, the differences p_j - o_j and the products each have a relative error of at most u, and three sums follow. So
-// a centre is within 6u of the sum over j of |A_j| |p_j - o_j| of the exact one. Lights that are too large, small or far away
-// for the float path are transformed in double, one by one.
+// world_to_view.inl transforms a vector of lights at a time in float. So that the rounding error far from the world's
+// origin is as small as near it, positions p are taken relative to an origin o near the eye:  A p + t = A (p - o) + (A
+// o + t),  where A is the matrix's linear part with the columns A_j, and t its translation. Let u = 2^-24, the unit
+// roundoff of float. The entries of A, the differences p_j - o_j and the products each have a relative error of at
+// most u, and three sums follow. So a centre is within 6u of the sum over j of |A_j| |p_j - o_j| of the exact one.
+// Lights that are too large, small or far away for the float path are transformed in double, one by one.
 //
-// Only a rotation with a uniform scale maps every cone to a cone. Let the factors by which A stretches lengths lie between
-// (1 - d) s and s. By the polar decomposition A = Q P, with Q orthogonal and P stretching by the same factors, and so A p is
-// at most d s |p| away from s Q p. The images of a cone's axis under A and under Q then differ by an angle whose sine is at
-// most d. So for d up to 1/16 a point of the cone's image is at most 3 d s |p| away from the cone with the given half angle
-// around the image of the axis under A.
+// Only a rotation with a uniform scale maps every cone to a cone. Let the factors by which A stretches lengths lie
+// between (1 - d) s and s. By the polar decomposition A = Q P, with Q orthogonal and P stretching by the same factors,
+// and so A p is at most d s |p| away from s Q p. The images of a cone's axis under A and under Q then differ by an
+// angle whose sine is at most d. So for d up to 1/16 a point of the cone's image is at most 3 d s |p| away from the
+// cone with the given half angle around the image of the axis under A.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -38,13 +38,14 @@ struct FloatTransform {
     float columns[3][3];    ///< of the linear part, A
     float origin_image[3];  ///< A o + t, that point in view space
     float stretch;          ///< bound on the factor by which a length is stretched, rounded up
-    /// A transformed centre has an error of at most  error_rate * (|x| + |y| + |z|) + error_at_origin,  where x, y and z are
-    /// its coordinates relative to the origin.
+    /// A transformed centre has an error of at most  error_rate * (|x| + |y| + |z|) + error_at_origin,  where x, y and
+    /// z are its coordinates relative to the origin.
     float error_rate, error_at_origin;
     /// How far a point of a transformed spot can lie outside the cone around the transformed axis, divided by the spot's
     /// transformed radius; +inf where no bound is known.
     float cone_error;
-    /// Float is precise enough where |x| + |y| + |z|, relative to the origin, is at most this. Less than 0 where it never is.
+    /// Float is precise enough where |x| + |y| + |z|, relative to the origin, is at most this. Less than 0 where it
+    /// never is.
     float max_distance = -1;
 };
 
@@ -56,9 +57,9 @@ public:
         : m_(matrix), affine_(finite(m_) && last_row_is_affine(m_)) {
         const DefaultFloatEnvironment environment;
         // By Gershgorin's circle theorem the square of the largest singular value, which is the largest eigenvalue of
-        // M^T M, is at most the largest sum of absolute values in a row of M^T M. Likewise, the square of the smallest one is
-        // at least the smallest difference of a diagonal element and the absolute values beside it. If a product overflows,
-        // `all` is infinite or NaN, and there is no bound.
+        // M^T M, is at most the largest sum of absolute values in a row of M^T M. Likewise, the square of the smallest
+        // one is at least the smallest difference of a diagonal element and the absolute values beside it. If a
+        // product overflows, `all` is infinite or NaN, and there is no bound.
         double largest2 = 0, all = 0, smallest2 = static_cast<double>(infinity);
         for (int i = 0; i < 3; ++i) {
             double row_sum = 0, diagonal = 0;
@@ -80,15 +81,15 @@ public:
     Maybe<ErrorCode> refusal() const {
         if (affine_) return {};
         return finite(m_) && last_row_is_affine(transposed(m_)) ? ErrorCode::view_matrix_transposed
-                                                               : ErrorCode::view_matrix_not_affine;
+                                                                : ErrorCode::view_matrix_not_affine;
     }
     const FloatTransform& in_float() const { return in_float_; }
 
-    /// Returns the image of a sphere, computed in double; bad input is returned as it is. Not inlined, because within a tier's
-    /// kernel compilers would fuse its products and sums into that tier's fused multiply-adds, which round differently.
+    /// Returns the image of a sphere, computed in double; bad input is returned as it is. Not inlined, because within
+    /// a tier's kernel compilers would fuse its products and sums into that tier's fused multiply-adds, which round
+    /// differently.
     LIGHTBIN_NOINLINE Sphere operator()(const Sphere& light) const {
-        if (!is_finite(light.x) || !is_finite(light.y) || !is_finite(light.z) || !(light.radius >= 0))
-            return light;
+        if (!is_finite(light.x) || !is_finite(light.y) || !is_finite(light.z) || !(light.radius >= 0)) return light;
         const double x = static_cast<double>(light.x), y = static_cast<double>(light.y),
                      z = static_cast<double>(light.z);
         double centre[3], error = 0;
@@ -97,11 +98,10 @@ public:
             centre[row] = a + b + c + d;
             if (!(abs_of(centre[row]) <= static_cast<double>(FLT_MAX))) return {0, 0, 0, infinity};
             // Rounding the centre to float has a relative error of 2^-24; 2^-50 covers the sum in double.
-            error +=
-                0x1p-24 * abs_of(centre[row]) + 0x1p-50 * (abs_of(a) + abs_of(b) + abs_of(c) + abs_of(d));
+            error += 0x1p-24 * abs_of(centre[row]) + 0x1p-50 * (abs_of(a) + abs_of(b) + abs_of(c) + abs_of(d));
         }
-        const double radius = (static_cast<double>(light.radius) * stretch_ + error) * (1 + 0x1p-23) +
-                              static_cast<double>(FLT_MIN);
+        const double radius =
+            (static_cast<double>(light.radius) * stretch_ + error) * (1 + 0x1p-23) + static_cast<double>(FLT_MIN);
         return {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2]),
                 radius <= static_cast<double>(FLT_MAX) ? static_cast<float>(radius) : infinity};
     }
@@ -110,9 +110,8 @@ public:
     Sphere direction(float x, float y, float z) const {
         float image[3];
         for (int row = 0; row < 3; ++row)
-            image[row] =
-                static_cast<float>(m_[0][row] * static_cast<double>(x) + m_[1][row] * static_cast<double>(y) +
-                                   m_[2][row] * static_cast<double>(z));
+            image[row] = static_cast<float>(m_[0][row] * static_cast<double>(x) + m_[1][row] * static_cast<double>(y) +
+                                            m_[2][row] * static_cast<double>(z));
         return {image[0], image[1], image[2], 0};
     }
 
@@ -121,10 +120,10 @@ private:
         return m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
     }
 
-    /// Finds the transform in float if A is close to a rotation with a uniform scale: if the product of its Frobenius norm and
-    /// its inverse's is at most 32. Otherwise p - o, and so its rounding error, could be much larger than its image. It follows
-    /// that each column of A is at least 2^-26 long, and that a denormal entry that is flushed to zero is at most 2^-100 times
-    /// its column's length.
+    /// Finds the transform in float if A is close to a rotation with a uniform scale: if the product of its Frobenius
+    /// norm and its inverse's is at most 32. Otherwise p - o, and so its rounding error, could be much larger than its
+    /// image. It follows that each column of A is at least 2^-26 long, and that a denormal entry that is flushed to
+    /// zero is at most 2^-100 times its column's length.
     void find_float_transform() {
         double inverse[3][3], det = 0, norm2 = 0, inverse_norm2 = 0, longest_column2 = 0;
         for (int c = 0; c < 3; ++c)
@@ -165,8 +164,8 @@ private:
             offset += abs_of(at);
             in_float_.origin_image[r] = static_cast<float>(at);
         }
-        // The factors (1 + 2^-22) and (1 + 2^-18) cover the rounding of the transformed radius, and 2^-100 denormal numbers
-        // that are flushed to zero.
+        // The factors (1 + 2^-22) and (1 + 2^-18) cover the rounding of the transformed radius, and 2^-100 denormal
+        // numbers that are flushed to zero.
         in_float_.stretch = float_above(stretch_ * (1 + 0x1p-22));
         in_float_.error_rate = float_above(root_of(longest_column2) * (6 * 0x1p-24) * (1 + 0x1p-18));
         in_float_.error_at_origin = float_above((offset * 0x1p-23 + terms * 0x1p-50) * (1 + 0x1p-18) + 0x1p-100);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The transform from world space to view space in float, a vector of spheres at a time; world_to_view.hpp derives its error
-// bounds. Included once per tier.
+// The transform from world space to view space in float, a vector of spheres at a time; world_to_view.hpp derives its
+// error bounds. Included once per tier.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>
@@ -31,8 +31,8 @@ struct TransformLanes {
 };
 
 /// Replaces the images of those spheres of a vector whose bit in `which` is set by their images in double.
-LIGHTBIN_NOINLINE inline void transform_in_double(const WorldToView& to_view, unsigned which,
-                                                  const Floats (&given)[4], Floats (&images)[4]) {
+LIGHTBIN_NOINLINE inline void transform_in_double(const WorldToView& to_view, unsigned which, const Floats (&given)[4],
+                                                  Floats (&images)[4]) {
     Sphere before[lanes], after[lanes];
     store_spheres(before, given[0], given[1], given[2], given[3]);
     store_spheres(after, images[0], images[1], images[2], images[3]);
@@ -46,14 +46,15 @@ inline Floats transformed_row(const TransformLanes& transform, unsigned row, Flo
     return mul(x, transform.columns[0][row]) + mul(y, transform.columns[1][row]) + mul(z, transform.columns[2][row]);
 }
 
-/// Transforms a vector of spheres, those outside the range of the float path in double. Always inlined, because a call would
-/// pass the vectors through memory.
-LIGHTBIN_INLINE void transform_spheres(const TransformLanes& transform, Floats& x, Floats& y, Floats& z, Floats& radius) {
+/// Transforms a vector of spheres, those outside the range of the float path in double. Always inlined, because a call
+/// would pass the vectors through memory.
+LIGHTBIN_INLINE void transform_spheres(const TransformLanes& transform, Floats& x, Floats& y, Floats& z,
+                                       Floats& radius) {
     const Floats dx = x - transform.origin[0], dy = y - transform.origin[1], dz = z - transform.origin[2];
     const Floats distance = abs(dx) + abs(dy) + abs(dz);
     const auto float_safe =
-        both(less_equal(distance, transform.max_distance), both(less_equal(broadcast(float_safe_min), radius),
-                                                                less_equal(radius, broadcast(float_safe_max))));
+        both(less_equal(distance, transform.max_distance),
+             both(less_equal(broadcast(float_safe_min), radius), less_equal(radius, broadcast(float_safe_max))));
     const Floats given[] = {x, y, z, radius};
     x = transformed_row(transform, 0, dx, dy, dz) + transform.origin_image[0];
     y = transformed_row(transform, 1, dx, dy, dz) + transform.origin_image[1];
