@@ -33,7 +33,7 @@ list() {
     mutant spots detail/project/spots.inl 's/const Floats error = mul(rim.error,/const Floats error = mul(-rim.error,/'
     mutant spots detail/project/spot_vectors.inl 's/? aside : -aside) - back\[i\]/? aside : -aside) + back[i]/'
     mutant spots detail/project/spot_vectors.inl 's/store_tiles(corners, select(less(n\[i\], Floats{})/store_tiles(corners, select(less(Floats{}, n[i])/'
-    mutant spots detail/project/spot_vectors.inl 's/load_spheres(rest, spots.sine, spots.tolerance, unused\[0\], unused\[1\])/load_spheres(rest, spots.sine, spots.tolerance, unused[0], unused[0])/'
+    mutant spots detail/project/spot_vectors.inl 's/const auto with_cone = and_not(safe, less_equal(cosine, broadcast(0.0f)))/const auto with_cone = less(broadcast(0.0f), cosine)/'
     mutant spots detail/project/spots.inl 's/select(narrow, half, mul(spots.radius, spots.sine)) +/select(narrow, half, mul(spots.radius, spots.sine)) * broadcast(0.98f) +/'
     mutant spots detail/project/spot_vectors.inl 's/(centre_error + mul(spots.radius, transform.cone_error))/centre_error/'
     mutant spots detail/project/spot_rows.inl 's/radius \* 0x1p-19 \/ widened(cosine, half)/broadcast(0.0)/'

@@ -54,13 +54,13 @@ struct FootprintArrays {
     /// With Footprint::silhouette, parallel to the arrays above: the index in `spans` of the light's tile row y0,
     /// which the spans of the rows up to y1 follow. Or whole_rectangle, if there are no spans and every tile of the
     /// rectangle counts.
-    std::uint32_t* span_begin;
-    const RowSpan* spans;
+    std::uint32_t* span_begin = nullptr;
+    const RowSpan* spans = nullptr;
 
     /// With silhouettes or a depth test, all lights in view space, by id: spheres, to be read with load_sphere(), or
     /// spots.
-    const Sphere* spheres;
-    const ViewSpot* spots;
+    const Sphere* spheres = nullptr;
+    const ViewSpot* spots = nullptr;
 
     /// Returns these arrays without their first `begin` elements, and without spans.
     FootprintArrays from(std::size_t begin) const {
@@ -79,10 +79,7 @@ public:
                 .y0 = y0_.reserve(capacity),
                 .x1 = x1_.reserve(capacity),
                 .y1 = y1_.reserve(capacity),
-                .span_begin = with_spans ? span_begin_.reserve(capacity) : nullptr,
-                .spans = nullptr,
-                .spheres = nullptr,
-                .spots = nullptr};
+                .span_begin = with_spans ? span_begin_.reserve(capacity) : nullptr};
     }
 
 private:

@@ -18,7 +18,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 #include <lightbin/detail/base/warnings_off.inl>
 

@@ -18,29 +18,20 @@ LIGHTBIN_INLINE Floats manhattan_length(const Floats (&v)[3]) {
     return abs(v[0]) + abs(v[1]) + abs(v[2]);
 }
 
-/// Replaces the spots whose bit in `which` is set by their least_sphere(), the smallest sphere around each: those with
-/// sizes that float can't compute with, or a cone that the transform does not map to a cone.
+/// Replaces the balls of the spots whose bit in `which` is set by the spots' least_sphere(), transformed to view space.
 ///
 /// balls, cones  the spots as they were given, see LightSource
 LIGHTBIN_NOINLINE inline void use_least_spheres(const WorldToView* to_view, unsigned which, const Sphere* balls,
                                                 const Sphere* cones, SpotLanes& spots) {
-    Sphere ball[lanes], cone[lanes], rest[lanes];
-    store_spheres(ball, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);
-    store_spheres(cone, spots.axis[0], spots.axis[1], spots.axis[2], spots.cosine);
-    store_spheres(rest, spots.sine, spots.tolerance, spots.tolerance, spots.tolerance);
+    Sphere moved[lanes];
+    store_spheres(moved, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);
     for (; which != 0; which &= which - 1) {
         const unsigned lane = static_cast<unsigned>(std::countr_zero(which));
-        const Sphere given = load_sphere(balls + lane), axis = load_sphere(cones + lane);
-        const Sphere sphere =
-            least_sphere(Spot{given.x, given.y, given.z, given.radius, axis.x, axis.y, axis.z, axis.radius});
-        ball[lane] = to_view != nullptr ? (*to_view)(sphere) : sphere;
-        cone[lane] = {0, 0, 0, 0};
-        rest[lane] = {1, 0, 0, 0};
+        const Sphere ball = load_sphere(balls + lane), cone = load_sphere(cones + lane);
+        const Sphere least = least_sphere(Spot{ball.x, ball.y, ball.z, ball.radius, cone.x, cone.y, cone.z, cone.radius});
+        moved[lane] = to_view != nullptr ? (*to_view)(least) : least;
     }
-    Floats unused[2];
-    load_spheres(ball, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);
-    load_spheres(cone, spots.axis[0], spots.axis[1], spots.axis[2], spots.cosine);
-    load_spheres(rest, spots.sine, spots.tolerance, unused[0], unused[1]);
+    load_spheres(moved, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);
 }
 
 /// Transforms a vector of spots, given as for use_least_spheres(), to view space after the camera's signs.
@@ -70,14 +61,15 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
         tolerance = mul(spots.radius, broadcast(0x1p-18f)) + (centre_error + mul(spots.radius, transform.cone_error));
         safe = both(safe, less_equal(transform.cone_error, broadcast(1.0f)));
     }
-    const auto whole = less_equal(cosine, broadcast(0.0f));
-    const Floats zero = Floats{};
+    // Other spots count as whole spheres: those with a half angle of 90 degrees or more, and those that have sizes float
+    // can't compute with or a cone that the transform does not map to a cone. The latter are replaced by smaller spheres.
+    const auto with_cone = and_not(safe, less_equal(cosine, broadcast(0.0f)));
     const Floats per_length = 1.0f / sqrt(mul(axis[0], axis[0]) + mul(axis[1], axis[1]) + mul(axis[2], axis[2]));
     for (unsigned i = 0; i < 3; ++i)
-        spots.axis[i] = select(whole, zero, mul(axis[i], per_length));
-    spots.cosine = select(whole, zero, cosine);
-    spots.sine = select(whole, broadcast(1.0f), sqrt(mul(1.0f - cosine, 1.0f + cosine)));
-    spots.tolerance = select(whole, zero, tolerance);
+        spots.axis[i] = select(with_cone, mul(axis[i], per_length), Floats{});
+    spots.cosine = select(with_cone, cosine, Floats{});
+    spots.sine = select(with_cone, sqrt(mul(1.0f - cosine, 1.0f + cosine)), broadcast(1.0f));
+    spots.tolerance = select(with_cone, tolerance, Floats{});
     if (const unsigned fallback = ~movemask(safe) & static_cast<unsigned>(every_lane); fallback != 0)
         use_least_spheres(transform.to_view, fallback, balls, cones, spots);
     const Floats signs[] = {broadcast(camera.x.sign), broadcast(camera.y.sign), broadcast(camera.z_sign)};
