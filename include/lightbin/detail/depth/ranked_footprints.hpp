@@ -145,11 +145,11 @@ private:
         }
     }
 
-    detail::Buffer<std::uint32_t> first_bins_,
-        last_bins_;                          ///< the bins that a light meets, by its index before sorting
-    detail::Buffer<std::uint32_t> sources_;  ///< by rank, the index before sorting
-    detail::Buffer<std::uint32_t> order_;    ///< by rank, the light's id
-    detail::Buffer<std::uint32_t> ends_;     ///< by bin, the first rank that begins in a later bin
+    /// The first and the last bin that each light meets, by its footprint's index before sorting.
+    detail::Buffer<std::uint32_t> first_bins_, last_bins_;
+    detail::Buffer<std::uint32_t> sources_;  ///< for each rank, its footprint's index before sorting
+    detail::Buffer<std::uint32_t> order_;    ///< for each rank, the id of its light
+    detail::Buffer<std::uint32_t> ends_;     ///< for each bin, the number of lights that begin in it or an earlier one
     detail::Buffer<BinRange> bins_;
     detail::FootprintBuffers buffers_;
     detail::Buffer<Sphere> spheres_;

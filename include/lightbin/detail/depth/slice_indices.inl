@@ -8,7 +8,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// Returns what DepthBuckets::index_of() does for a vector of depths, not yet truncated to integers.
+/// Returns the buckets of a vector of depths, by the arithmetic of DepthBuckets::index_of(), before truncation to
+/// integers.
 inline Floats bucket_of(const DepthBuckets& buckets, Floats depth) {
     depth = depth + broadcast(0.0f);  // makes -0 to 0
     const Floats coordinate = buckets.by_bits ? ascending_bits(depth) : depth;

@@ -22,13 +22,15 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 struct LightSource {
     const Sphere* spheres;  ///< the caller's own array, to be read with load_sphere(); null: `copy` is called
     const void* lights;     ///< the caller's Lights, for `copy`
-    /// Writes lights first..first + count - 1 to `to` as spheres. Of spots it writes the balls, and to `cones` vec4s
-    /// with the axes and the cosines of the half angles.
-    void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* to, Sphere* cones);
+    /// Writes lights first..first + count - 1 to `to` as spheres. Of spots it writes the spheres that their cones
+    /// cut, and to `cones` vec4s with the axes and the cosines of the half angles.
+    void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* to, Sphere* cones) = nullptr;
     const WorldToView* to_view;  ///< the transform to view space; null: the lights are given in view space
-    Sphere* out_spheres;  ///< where copied or transformed spheres are stored, if not null; padded for whole vectors
-    ViewSpot* out_spots;  ///< where spots are stored, if not null; padded likewise
-    bool with_planes;     ///< store ViewSpot::planes and corners, too
+    bool with_planes;            ///< store ViewSpot::planes and corners, too
+    /// Where copied or transformed spheres, and all spots, are stored if not null. Kernels store whole vectors, so each
+    /// array is padded.
+    Sphere* out_spheres = nullptr;
+    ViewSpot* out_spots = nullptr;
 };
 
 /// The tiles first..last of one tile row that a light's silhouette touches; none if first > last.

@@ -35,7 +35,7 @@ Maybe<Error> refuse(const Lights<Light, ToLight>& lights, std::uint64_t max_ligh
     return {};
 }
 
-/// LightSource::copy for the lights of a Lights<Light, ToLight>.
+/// Makes spheres or spots of the caller's lights: what LightSource::copy points to.
 template <class Light, class ToLight>
 void copy_lights(const void* lights, std::size_t first, std::size_t count, Sphere* to, [[maybe_unused]] Sphere* cones) {
     const auto& from = *static_cast<const Lights<Light, ToLight>*>(lights);
@@ -61,8 +61,8 @@ template <Footprint footprint, bool with_spheres> class Footprints {
 public:
     /// Projects all lights with an instruction set's kernels. A light's rectangle then holds each tile that the part
     /// of its sphere beyond the near plane is projected to, and is the smallest such rectangle but for the view's
-    /// rounding margin. The same is true of a spot whose ball lies beyond the near plane. The rectangle of any other
-    /// spot is where those of its ball and its least_sphere() intersect.
+    /// rounding margin. The same is true of a spot whose whole sphere lies beyond the near plane. The rectangle of any
+    /// other spot is where those of its sphere and of its least_sphere() intersect.
     ///
     /// force_parallel  use the caller's threads even if projecting is too little work to wake them up for, because a
     ///                 stage that follows has enough
@@ -74,13 +74,15 @@ public:
         const bool share = force_parallel || parallel.pays_off(detail::project_ns(isa, static_cast<double>(lights_)));
         const Parallel threads = share ? parallel : Parallel();
         constexpr bool spots = Lights<Light, ToLight>::spots;
-        reserve(parts_for(parallel));
+        // The number of parts does not depend on whether the threads share them. It is one where the padding between
+        // parts could make indices larger than 32 bits.
+        run_count_ = lights_ >> 31 == 0 ? detail::project_parts(lights_ / chunk + 1, parallel.workers()) : 1;
+        runs_.reserve(run_count_);
+        part_counts_.reserve(run_count_);
+        arrays_ = buffers_.reserve(lights_ + (run_count_ - 1) * detail::FootprintArrays::padding, with_spans);
         detail::LightSource source = {.spheres = detail::as_they_are(lights),
                                       .lights = &lights,
-                                      .copy = nullptr,
                                       .to_view = lights.to_view ? &*lights.to_view : nullptr,
-                                      .out_spheres = nullptr,
-                                      .out_spots = nullptr,
                                       .with_planes = for_boxes};
         if (source.spheres == nullptr) source.copy = detail::copy_lights<Light, ToLight>;
         arrays_.spheres = source.spheres;
@@ -109,12 +111,6 @@ public:
 
 private:
     static constexpr std::size_t chunk = detail::ChunkRects::size;
-
-    /// Returns how many parts the lights are projected in, which does not depend on whether the threads share them. It
-    /// is one where the padding between parts could make indices larger than 32 bits.
-    std::size_t parts_for(const Parallel& parallel) const {
-        return lights_ >> 31 == 0 ? detail::project_parts(lights_ / chunk + 1, parallel.workers()) : 1;
-    }
 
     /// Projects the lights in parts of whole chunks, each to a run of its own.
     void run_parts(const View& view, const detail::LightSource& source, detail::ProjectKernel kernel,
@@ -146,14 +142,6 @@ private:
             counts_.area += counts.area;
             counts_.rows += counts.rows;
         }
-    }
-
-    void reserve(std::size_t parts) {
-        const std::uint64_t padding = (parts - 1) * detail::FootprintArrays::padding;  // between parts
-        arrays_ = buffers_.reserve(lights_ + padding, with_spans);
-        runs_.reserve(parts);
-        part_counts_.reserve(parts);
-        run_count_ = parts;
     }
 
     /// Finds the row spans of all footprints, those of each part one after another.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Row spans: which tiles of each tile row a light's silhouette touches, computed in double. Here are those of spheres,
-// and in spot_rows.inl those of spots. Included once per tier.
+// Row spans: which tiles of each tile row a light's silhouette touches, computed in double. This file has the row spans
+// of spheres; spot_rows.inl has those of spots. Included once per tier.
 //
 // A plane  y = v z  through the eye is a line in the image at the height v. It cuts a sphere with the centre (x, y, z)
 // and the radius r in a disc, whose projection reaches over the slopes

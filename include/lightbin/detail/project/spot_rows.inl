@@ -33,7 +33,9 @@ struct WedgeTerms {
 /// What find_wedges() reads of a vector of spots.
 struct WedgeLanes {
     Doubles apex[3], axis[3], sine;
-    Doubles tolerance;  ///< bound on n.p, divided by p's view depth with a perspective projection
+    /// Bound on the scalar product of a plane's normal and any point of the spot; with a perspective projection
+    /// divided by the point's view depth.
+    Doubles tolerance;
 };
 
 inline Doubles dot(const Doubles (&a)[3], const Doubles (&b)[3]) {

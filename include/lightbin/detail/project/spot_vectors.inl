@@ -28,7 +28,8 @@ LIGHTBIN_NOINLINE inline void use_least_spheres(const WorldToView* to_view, unsi
     for (; which != 0; which &= which - 1) {
         const unsigned lane = static_cast<unsigned>(std::countr_zero(which));
         const Sphere ball = load_sphere(balls + lane), cone = load_sphere(cones + lane);
-        const Sphere least = least_sphere(Spot{ball.x, ball.y, ball.z, ball.radius, cone.x, cone.y, cone.z, cone.radius});
+        const Sphere least =
+            least_sphere(Spot{ball.x, ball.y, ball.z, ball.radius, cone.x, cone.y, cone.z, cone.radius});
         moved[lane] = to_view != nullptr ? (*to_view)(least) : least;
     }
     load_spheres(moved, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);
@@ -37,11 +38,11 @@ LIGHTBIN_NOINLINE inline void use_least_spheres(const WorldToView* to_view, unsi
 /// Transforms a vector of spots, given as for use_least_spheres(), to view space after the camera's signs.
 LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& transform, const Sphere* balls,
                                 const Sphere* cones, SpotLanes& spots) {
-    Floats(&apex)[3] = spots.apex, axis[3], cosine;
+    Floats apex[3], axis[3], cosine;
     load_spheres(balls, apex[0], apex[1], apex[2], spots.radius);
     load_spheres(cones, axis[0], axis[1], axis[2], cosine);
     const Floats given_radius = spots.radius, axis_size = manhattan_length(axis);
-    // Float can compute with these spots.
+    // Spots with which float can compute without overflow and underflow.
     auto safe =
         both(less_equal(manhattan_length(apex), broadcast(float_safe_max)), less_equal(abs(cosine), broadcast(1.0f)));
     safe = both(safe, both(less_equal(broadcast(float_safe_min), given_radius),
@@ -61,12 +62,15 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
         tolerance = mul(spots.radius, broadcast(0x1p-18f)) + (centre_error + mul(spots.radius, transform.cone_error));
         safe = both(safe, less_equal(transform.cone_error, broadcast(1.0f)));
     }
-    // Other spots count as whole spheres: those with a half angle of 90 degrees or more, and those that have sizes float
-    // can't compute with or a cone that the transform does not map to a cone. The latter are replaced by smaller spheres.
+    // Other spots count as whole spheres: those with a half angle of 90 degrees or more, and those that have sizes
+    // float can't compute with or a cone that the transform does not map to a cone. The latter are replaced by smaller
+    // spheres.
     const auto with_cone = and_not(safe, less_equal(cosine, broadcast(0.0f)));
     const Floats per_length = 1.0f / sqrt(mul(axis[0], axis[0]) + mul(axis[1], axis[1]) + mul(axis[2], axis[2]));
-    for (unsigned i = 0; i < 3; ++i)
+    for (unsigned i = 0; i < 3; ++i) {
+        spots.apex[i] = apex[i];
         spots.axis[i] = select(with_cone, mul(axis[i], per_length), Floats{});
+    }
     spots.cosine = select(with_cone, cosine, Floats{});
     spots.sine = select(with_cone, sqrt(mul(1.0f - cosine, 1.0f + cosine)), broadcast(1.0f));
     spots.tolerance = select(with_cone, tolerance, Floats{});
@@ -74,12 +78,13 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
         use_least_spheres(transform.to_view, fallback, balls, cones, spots);
     const Floats signs[] = {broadcast(camera.x.sign), broadcast(camera.y.sign), broadcast(camera.z_sign)};
     for (unsigned i = 0; i < 3; ++i) {
-        apex[i] = apex[i] * signs[i];
+        spots.apex[i] = spots.apex[i] * signs[i];
         spots.axis[i] = spots.axis[i] * signs[i];
     }
 }
 
-/// Returns how far spots reach from their apexes in a direction, at least 0 and at most the radius.
+/// Returns how far spots reach from their apexes in a direction: the radius where the direction is inside the cone,
+/// else as far as the rim, or 0 if the apex is farther.
 ///
 /// along, across  the lengths of the cone's unit axis along the direction and perpendicular to it
 inline Floats spot_reach(const SpotLanes& spots, Floats along, Floats across) {

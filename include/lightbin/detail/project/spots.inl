@@ -13,7 +13,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// Stores, in view space, the balls and the least spheres of a vector of spots; least_sphere() describes these. The
+/// Stores, in view space, the balls and the least_sphere()s of a vector of spots, the smallest spheres around each. The
 /// centre of a least sphere is within 8u of |x| + |y| + |z| + r of the exact one, where u = 2^-24, and its radius is
 /// enlarged by 16u.
 inline void store_both_spheres(const Camera& camera, const SpotLanes& spots, Sphere* balls, Sphere* least) {
@@ -30,10 +30,10 @@ inline void store_both_spheres(const Camera& camera, const SpotLanes& spots, Sph
                   (spots.apex[2] + mul(step, spots.axis[2])) * z, select(smaller, radius, spots.radius));
 }
 
-/// What the bounds along both image axes have in common, for a vector of spots.
+/// The terms that are needed for the bounds along both image axes, for the rims of a vector of spots.
 struct RimLanes {
     Floats per_z;      ///< the reciprocal of the apex's view depth
-    Floats axis_z;     ///< of the cone's axis
+    Floats axis_z;     ///< the depth coordinate of the cone's unit axis
     Floats cosine2;    ///< the squared cosine of the half angle
     Floats along;      ///< the distance from the apex to the rim's centre
     Floats rho, rho2;  ///< the rim's radius and its square
@@ -141,7 +141,8 @@ LIGHTBIN_INLINE void find_slopes(const SpotLanes& spots, Floats size, Floats nea
 inline void project_spots(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
                           const FootprintArrays& out, ProjectCounts& counts) {
     ProjectedChunk chunk;
-    // The spots as they are given; of those that are projected in double then the balls and the least spheres.
+    // At first the spots as they are given: the balls, and vec4s with the cones' axes and cosines. Those of spots that
+    // are projected in double are overwritten by their balls and least spheres in view space.
     Sphere balls[ChunkRects::size], cones[ChunkRects::size];
     const TransformLanes transform(source.to_view);
     const ViewLanes view(camera);

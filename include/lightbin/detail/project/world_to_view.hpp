@@ -34,9 +34,9 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 /// An affine transform of world space to view space, in float.
 struct FloatTransform {
-    float origin[3];        ///< o, a point near the eye, in world space
-    float columns[3][3];    ///< of the linear part, A
-    float origin_image[3];  ///< A o + t, that point in view space
+    float origin[3];        ///< a point near the eye, in world space
+    float columns[3][3];    ///< columns of the linear part, a 3x3 matrix
+    float origin_image[3];  ///< `origin` in view space
     float stretch;          ///< bound on the factor by which a length is stretched, rounded up
     /// A transformed centre has an error of at most  error_rate * (|x| + |y| + |z|) + error_at_origin,  where x, y and
     /// z are its coordinates relative to the origin.
@@ -176,7 +176,7 @@ private:
     Matrix m_;
     bool affine_;
     double stretch_;     ///< bound on the factor by which a length is stretched: the largest singular value, rounded up
-    double anisotropy_;  ///< bound on d: the smallest singular value is at least 1 - d times the largest
+    double anisotropy_;  ///< the smallest singular value is at least 1 - anisotropy_ times the largest
     FloatTransform in_float_ = {};
 };
 
