@@ -48,8 +48,9 @@ inline Reals select_unpredicted(Mask mask, Reals a, Reals b) {
 
 /// Loads the spheres at the first `count` of `indices`, or as many as a vector has; if those are fewer, the last lanes repeat the
 /// last sphere.
-inline void load_listed_spheres(const Sphere* spheres, const std::uint32_t* indices, std::uint32_t count, Floats& x,
-                                Floats& y, Floats& z, Floats& radius) {
+template <class Index>
+void load_listed_spheres(const Sphere* spheres, const Index* indices, std::uint32_t count, Floats& x, Floats& y, Floats& z,
+                         Floats& radius) {
     Sphere some[lanes];
     for (std::uint32_t i = 0; i < lanes; ++i)
         some[i] = load_sphere(spheres + indices[min_of(i, count - 1)]);
