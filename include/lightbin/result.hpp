@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Errors a program can meet come back as values with a text; programmer errors assert.
+// Errors that a running program can meet are returned as values with a text. Bugs in the calling program are assertions.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/maybe.hpp>
+#include <lightbin/detail/base/error_sentences.hpp>
+#include <lightbin/error_code.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 
-/// Called with a condition that only a bug in the calling program can make false. Define it before including
-/// lightbin to replace it; the default is the standard assert.
+/// Checks a condition that only a bug in the calling program can make false. The default is the standard assert(); define
+/// LIGHTBIN_ASSERT before including lightbin to replace it.
 #ifndef LIGHTBIN_ASSERT
 #include <cassert>
 #define LIGHTBIN_ASSERT(condition) assert(condition)
@@ -18,213 +20,17 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-enum class ErrorCode : std::uint8_t {
-    // View::from_projection
-    matrix_not_finite,
-    not_a_projection,
-    projection_transposed,
-    eye_not_at_origin,
-    image_axes_rotated,
-    oblique_depth,
-    no_near_plane,
-    near_plane_too_close,
-    depth_range_not_finite,
-    degenerate_scale,
-    image_offset_out_of_range,
-    viewport_out_of_range,
-    tile_size_out_of_range,
-    // lights
-    view_matrix_not_affine,
-    view_matrix_transposed,
-    too_many_lights,
-    // light grid
-    too_many_entries,
-    too_many_list_places,
-    range_buffer_too_small,
-    id_buffer_too_small,
-    // Z bounds
-    z_bounds_too_small,
-    depth_buffer_too_small,
-    samples_out_of_range,
-    row_pitch_too_small,
-    no_transparent_max,
-    // slices
-    no_slices,
-    slice_range_empty,
-    slices_do_not_ascend,
-    too_many_cells,
-    // encodings and shader text
-    ids_too_narrow,
-    list_buffer_too_small,
-    bit_buffer_too_small,
-    capacity_unknown,
-    max_lights_unknown,
-    block_size_unknown,
-    uniform_block_too_small,
-    no_storage_buffers,
-    no_texel_buffers,
-    no_byte_address_buffers,
-    slot_out_of_range,
-    no_sets,
-    no_push_constants,
-    no_multisample_textures,
-    no_split_box_shader,
-    no_such_slicing_shader,
-    no_wave_operations,
-    texture_width_out_of_range,
-    bindings_overlap,
-    not_a_prefix,
-};
-
-/// Returns one sentence for a person, in which {needed}, {given} (the same, with a sign) and {available} stand for the
-/// numbers of an Error.
-constexpr const char* to_string(ErrorCode code) {
-    switch (code) {
-    case ErrorCode::matrix_not_finite:
-        return "the projection matrix has a NaN or infinite entry";
-    case ErrorCode::not_a_projection:
-        return "the matrix is neither a perspective nor an orthographic projection: its w row must read z "
-               "alone, or be a positive constant alone. Pass the projection alone, not projection times view "
-               "(lights in world space go through world_space()), and not the view matrix";
-    case ErrorCode::projection_transposed:
-        return "the matrix is a projection when it is transposed: pass lightbin::matrix(numbers, "
-               "layout) with the other layout, row_major or column_major, or your type as it is where "
-               "matrix.hpp lists it";
-    case ErrorCode::eye_not_at_origin:
-        return "the perspective matrix does not have its eye at the origin of view space: pass the "
-               "projection alone, not projection times view (lights in world space go through world_space())";
-    case ErrorCode::image_axes_rotated:
-        return "the projection rotates or shears the image (its x row reads y, its y row reads x, or an "
-               "orthographic row reads z). Pass the projection alone, not projection times view, and not the "
-               "view "
-               "matrix; where the projection itself turns the image, apply that to the pixels";
-    case ErrorCode::oblique_depth:
-        return "the projection has an oblique near plane (its z row reads x or y): pass the projection "
-               "without it; its tiles are the same and its near plane misses no light";
-    case ErrorCode::no_near_plane:
-        return "the perspective projection has no near plane in front of the eye: was it made with a near "
-               "distance of 0 or less? Check the matrix's z row and ViewOptions::clip_depth";
-    case ErrorCode::near_plane_too_close:
-        return "the near plane is closer to the eye than 2^-126, the least normal float: move it away, or "
-               "use smaller units";
-    case ErrorCode::depth_range_not_finite:
-        return "the orthographic projection's near and far plane must be at depths that floats hold: check "
-               "the matrix's z row, which must read z";
-    case ErrorCode::degenerate_scale:
-        return "the projection scales x or y by zero, or by more than 2^80 or less than 2^-80 tiles a unit";
-    case ErrorCode::image_offset_out_of_range:
-        return "the projection moves the image by more than 2^80 tiles in x or y: check the x and y of "
-               "the matrix's third column, or of an orthographic one's fourth";
-    case ErrorCode::viewport_out_of_range:
-        return "the viewport's sides must be 0 to {available} pixels, and one is {given}";
-    case ErrorCode::tile_size_out_of_range:
-        return "the tile size must be at least 1 pixel, and is {given}";
-    case ErrorCode::view_matrix_not_affine:
-        return "the world-to-view matrix is not affine: its entries must be finite and its last row 0 0 0 1. "
-               "Pass "
-               "the view matrix alone, not projection times view";
-    case ErrorCode::view_matrix_transposed:
-        return "the world-to-view matrix is transposed, its last column is 0 0 0 1: pass "
-               "lightbin::matrix(numbers, layout) with the other layout, row_major or column_major, or your "
-               "type as it is where matrix.hpp lists it";
-    case ErrorCode::too_many_lights:
-        return "{needed} lights are too many for the id type, which counts to {available}: use wider "
-               "Options::ids or fewer lights";
-    case ErrorCode::too_many_entries:
-        return "the light index list would need {needed} entries, and 32-bit offsets reach {available}: use "
-               "larger tiles, fewer slices, or Z bounds";
-    case ErrorCode::too_many_list_places:
-        return "the lights may meet slices, or blocks of 8x8 tiles, {needed} times, and binning counts to "
-               "{available}: use fewer slices, larger tiles or fewer lights";
-    case ErrorCode::range_buffer_too_small:
-        return "the buffer for list ranges holds {available} ranges and {needed} are needed";
-    case ErrorCode::id_buffer_too_small:
-        return "the buffer for light ids holds {available} ids and {needed} are needed";
-    case ErrorCode::z_bounds_too_small:
-        return "a Z bounds buffer holds {available} tiles and {needed} are needed";
-    case ErrorCode::depth_buffer_too_small:
-        return "the depth buffer holds {available} samples and {needed} are needed";
-    case ErrorCode::samples_out_of_range:
-        return "a depth buffer has 1 to 8 samples a pixel, not {given}";
-    case ErrorCode::row_pitch_too_small:
-        return "the depth buffer's row pitch is {available} samples and a row of pixels has {needed}";
-    case ErrorCode::no_transparent_max:
-        return "the Z bounds leave out the background, before which transparent geometry is seen too: have "
-               "reduce_depth() write ZBoundsBuffers::transparent_max, or count the background";
-    case ErrorCode::no_slices:
-        return "there must be at least 1 slice, not {given}";
-    case ErrorCode::slice_range_empty:
-        return "two or more slices need a range of finite depths: 0 < first < last for exponential(), "
-               "begin < end for linear()";
-    case ErrorCode::slices_do_not_ascend:
-        return "the boundaries of slices must be finite and ascend, and boundary {needed}, counted from 0, "
-               "does not (of exponential() and linear(): too few floats in their range for so many slices)";
-    case ErrorCode::too_many_cells:
-        return "tiles times slices are {needed} cells, and 32-bit numbers reach {available}: use larger "
-               "tiles or fewer slices";
-    case ErrorCode::ids_too_narrow:
-        return "the lists' format numbers {available} lights and {needed} are needed: use wider ids, or a "
-               "larger max_lights";
-    case ErrorCode::list_buffer_too_small:
-        return "the buffer for the encoded lists holds {available} bytes and {needed} are needed";
-    case ErrorCode::bit_buffer_too_small:
-        return "the buffer for bitmasks holds {available} words of 32 bits and {needed} are needed";
-    case ErrorCode::capacity_unknown:
-        return "sentinel lists need ListFormat::capacity, the lights a tile can hold";
-    case ErrorCode::max_lights_unknown:
-        return "bitmasks need ListFormat::max_lights, which fixes the words a tile";
-    case ErrorCode::block_size_unknown:
-        return "uniform blocks have a fixed size: ShaderOptions::max_tiles must be given, max_entries "
-               "for offsets and counts, and max_slices for slicing";
-    case ErrorCode::uniform_block_too_small:
-        return "a uniform block would need {needed} bytes and holds {available}: use larger tiles, narrower "
-               "ids or another storage, or raise uniform_block_bytes to what the device has";
-    case ErrorCode::no_storage_buffers:
-        return "GLSL 3.30 and GLSL ES 3.00 have no storage buffers and no compute shaders: read the lists "
-               "from texel_buffer (not ES), texture_2d or uniform_block, reduce depth in a fragment shader, "
-               "and build grids with a Binner";
-    case ErrorCode::no_texel_buffers:
-        return "GLSL ES and WGSL have no buffer textures: use texture_2d, uniform_block or (not ES 3.00) "
-               "storage_buffer";
-    case ErrorCode::no_byte_address_buffers:
-        return "byte_address buffers are HLSL's: use storage_buffer";
-    case ErrorCode::slot_out_of_range:
-        return "ShaderSlot::binding and set must be 0 or more, and one is {given}";
-    case ErrorCode::no_sets:
-        return "this language has no descriptor sets, register spaces or groups: ShaderSlot::set must be 0 "
-               "and is {given}";
-    case ErrorCode::no_push_constants:
-        return "push constants are Vulkan GLSL's: set ShaderOptions::push_constants to false";
-    case ErrorCode::no_multisample_textures:
-        return "GLSL ES 3.00 has no multisample textures: resolve the depth buffer first";
-    case ErrorCode::no_such_slicing_shader:
-        return "the build shaders have clusters, with none or box, and no z-bins: a Binner has those";
-    case ErrorCode::no_wave_operations:
-        return "wave loops need GLSL 4.30, ES 3.10, Vulkan, HLSL 6 (hlsl_5_1) or WGSL";
-    case ErrorCode::no_split_box_shader:
-        return "build_shader has the depth tests none, interval and box, not split_box";
-    case ErrorCode::texture_width_out_of_range:
-        return "ShaderOptions::texture_width must be 1 to {available} texels, and is {needed}";
-    case ErrorCode::bindings_overlap:
-        return "two resources of the shader are bound to binding {needed} of set {available}";
-    case ErrorCode::not_a_prefix:
-        return "ShaderOptions::prefix must begin a name in every language: a letter, then letters, digits and "
-               "single underscores, 1000 at most, not gl_ or GL_, and not vola, which would make volatile";
-    }
-    return "unknown error";
-}
-
-/// What went wrong, and where a size was the trouble: how much is needed and how much there was.
+/// Why a call failed. Where a size or a number was wrong, `needed` and `available` say how much the call needed, or was
+/// given, and how much there was or may be.
 struct Error {
     ErrorCode code;
     std::uint64_t needed = 0;
     std::uint64_t available = 0;
 
-    /// Returns the sentence of to_string() with the numbers in it. Allocates; meant for the error path only. (A
-    /// template, so that only who calls it compiles it.)
-    template <class Text = std::string> Text message() const {
+    /// Returns to_string(code) with the numbers filled in. Allocates memory for the text.
+    std::string message() const {
         const bool negative = static_cast<std::int64_t>(needed) < 0;
-        Text text = to_string(code);
+        std::string text = to_string(code);
         fill_in(text, "{needed}", needed, false);
         fill_in(text, "{given}", negative ? 0 - needed : needed, negative);
         fill_in(text, "{available}", available, false);
@@ -232,39 +38,39 @@ struct Error {
     }
 
 private:
-    template <class Text>
-    static void fill_in(Text& text, const char* name, std::uint64_t number, bool negative) {
+    /// Replaces the placeholder `name` in `text`, if it is there, by a decimal number with an optional minus sign.
+    static void fill_in(std::string& text, const char* name, std::uint64_t number, bool negative) {
         const auto at = text.find(name);
-        if (at == Text::npos) return;
-        char digits[21], *first = digits + sizeof digits;  // the most is 20, or 19 and a sign
+        if (at == std::string::npos) return;
+        char digits[21], *first = digits + sizeof digits;  // 64 bits have at most 20 digits, or 19 and a minus sign
         *--first = 0;
         do {
             *--first = static_cast<char>('0' + number % 10);
             number /= 10;
         } while (number != 0);
         if (negative) *--first = '-';
-        text.replace(at, Text(name).size(), first);
+        text.replace(at, std::string(name).size(), first);
     }
 };
 
-/// A T, or the Error that kept it from being made. Test it before use; reading the side that is not there
-/// asserts.
+/// Either a value of type T or the Error that kept the call from making one. Test it before use: reading the value of a
+/// failed call, or the error of a successful one, is an assertion failure.
 template <class T> class [[nodiscard]] Result {
 public:
     Result(T value) : value_(std::move(value)) {}
     Result(Error error) : error_(error) {}
 
-    bool has_value() const { return static_cast<bool>(value_); }
+    bool has_value() const { return value_.has_value(); }
     explicit operator bool() const { return has_value(); }
 
-    T& operator*() & { return *value(value_); }
-    const T& operator*() const& { return *value(value_); }
-    /// By value, so that a reference to it keeps it alive.
-    T operator*() && { return std::move(*value(value_)); }
-    T* operator->() { return &*value(value_); }
-    const T* operator->() const { return &*value(value_); }
+    T& operator*() & { return *checked(value_); }
+    const T& operator*() const& { return *checked(value_); }
+    /// On a temporary Result, returns the value by value, so that `const T& t = *make();` does not dangle.
+    T operator*() && { return std::move(*checked(value_)); }
+    T* operator->() { return &*checked(value_); }
+    const T* operator->() const { return &*checked(value_); }
 
-    /// Where a T is wanted, a Result is none yet: the compiler says so.
+    /// Passing a Result where a T is wanted is a compile error with a readable message.
     operator const T&() const {
         static_assert(
             sizeof(T) == 0,
@@ -278,12 +84,12 @@ public:
     }
 
 private:
-    template <class Value> static Value& value(Value& of) {
-        LIGHTBIN_ASSERT(static_cast<bool>(of));
-        return of;
+    template <class Value> static Value& checked(Value& value) {
+        LIGHTBIN_ASSERT(value.has_value());
+        return value;
     }
 
-    detail::Maybe<T> value_;
+    std::optional<T> value_;
     Error error_ = {};
 };
 
