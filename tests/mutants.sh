@@ -14,7 +14,7 @@ work=build/mutants
 # or least_spheres.
 list() {
     # Rounding outward.
-    mutant cells view.hpp 's/detail::float_above(0x1p-20 \* (detail::abs_of(axis.offset) + axis.tiles) + 0x1p-80 \* axis.scale)/0.0f/'
+    mutant cells detail/project/projection.hpp 's/float_above(0x1p-20 \* (abs_of(axis.offset) + axis.tiles) + 0x1p-80 \* axis.scale)/0.0f/'
     mutant families detail/base/rounding.hpp 's/return static_cast<double>(nearest) > value ? next_below(nearest) : nearest;/return nearest;/'
     mutant families detail/engine/cell_boxes.hpp 's/from -= abs_of(from) \* 0x1p-21 + 0x1p-100;/from += abs_of(from) * 0x1p-21;/'
     mutant families detail/engine/cell_boxes.hpp 's/(1 + 0x1p-20f)) + 0x1p-125f/(1 - 0x1p-20f))/'

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Matrices as the caller has them. Here end the caller's types, and all conventions but one: M v, columns first.
+// The matrix types that callers have, converted to one: a Matrix for column vectors (M v), stored by columns.
 //
-//   what                                      memory's first four   pass
+//   type                                      first four numbers    what to pass
 //   GLM, cglm, float[4][4] of columns         column of M v         the matrix itself
 //   Eigen                                     either                the matrix or transform itself
 //   DirectXMath's XMFLOAT4X4, D3DMATRIX       row of v M            the matrix itself (an XMMATRIX: XMStoreFloat4x4 first)
@@ -11,30 +11,31 @@
 //   Qt's QMatrix4x4                           column of M v         matrix(m.constData(), MatrixLayout::column_major)
 //   OGRE, rows of one's own                   row of M v            matrix(&m[0][0], MatrixLayout::row_major)
 //
-// The rows of v M are the columns of M v, so column_major and row_vectors are the same numbers in memory. A float[4][4] of
-// rows compiles as it is, and is read transposed. Which one numbers have shows a view matrix: its translation is the last four
-// of column_major and row_vectors, and the fourth, eighth and twelfth of row_major.
+// The rows of a matrix for row vectors (v M) are the columns of the same transform for column vectors (M v), so column_major
+// and row_vectors are the same numbers in memory. A float[4][4] of rows is accepted as it is, but read as its transpose. To
+// see which layout sixteen numbers have, look at a view matrix: its translation is in numbers 13 to 15 with column_major and
+// row_vectors, and in numbers 4, 8 and 12 with row_major, counted from 1.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/math.hpp>
+#include <lightbin/detail/base/matrix_concepts.hpp>
 #include <lightbin/result.hpp>
 
-#include <concepts>
 #include <cstdint>
 #include <type_traits>
 #include <utility>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// What sixteen numbers in memory are.
+/// How sixteen numbers in memory make a matrix.
 enum class MatrixLayout : std::uint8_t {
-    column_major,  ///< the columns of M, for M v: OpenGL's
-    row_major,     ///< the rows of M, for M v: as it is written on paper
-    row_vectors,   ///< the rows of M, for v M: Direct3D's, OpenSceneGraph's
+    column_major,  ///< the columns of a matrix for M v, one after another: OpenGL's
+    row_major,     ///< the rows of a matrix for M v, one after another: as it is written on paper
+    row_vectors,   ///< the rows of a matrix for v M, one after another: Direct3D's, OpenSceneGraph's
 };
 
-/// A 4x4 matrix M for column vectors, M v: matrix[column][row].
+/// A 4x4 matrix for column vectors (M v). Its entries are matrix[column][row].
 struct Matrix {
     double columns[4][4];
 
@@ -43,44 +44,18 @@ struct Matrix {
 
 namespace detail {
 
-template <class M>
-concept SubscriptMatrix = requires(const M& m) {
-    { m[0][0] } -> std::convertible_to<double>;
-};
-template <class M>
-concept EigenLikeMatrix = requires(const M& m) {
-    { m.matrix()(0, 0) } -> std::convertible_to<double>;
-    m.matrix().rows() + m.matrix().cols();
-};
-template <class M>
-concept DirectXLikeMatrix = requires(const M& m) {
-    m._11 + m._44;
-    { m.m[0][0] } -> std::convertible_to<double>;
-};
-template <class M>
-concept OpenSceneGraphLikeMatrix = requires(const M& m) {
-    { m(0, 0) } -> std::convertible_to<double>;
-    m.getTrans();
-    m.ptr();
-};
-template <class M>
-concept SixteenNumbers = requires(const M& m) {
-    { m[0] } -> std::convertible_to<double>;
-};
-
-/// The matrix whose entries are at<column, row>(): constants, as no type of index warns of those.
+/// Returns the matrix whose entries are at<column, row>(). The indices are compile-time constants because a constant converts
+/// to any index type without a warning.
 template <class At> Matrix from_entries(const At& at) {
     Matrix result;
-    [&]<int... place>(std::integer_sequence<int, place...>) {
-        ((result.columns[place / 4][place % 4] =
-              static_cast<double>(at.template operator()<place / 4, place % 4>())),
-         ...);
+    [&]<int... i>(std::integer_sequence<int, i...>) {
+        ((result.columns[i / 4][i % 4] = static_cast<double>(at.template operator()<i / 4, i % 4>())), ...);
     }
     (std::make_integer_sequence<int, 16>());
     return result;
 }
 
-/// Returns a matrix of any type of the table above.
+/// Converts a matrix of any type in the table at the top of matrix.hpp.
 template <class M> Matrix to_matrix(const M& m) {
     if constexpr (SubscriptMatrix<M>) {
         if constexpr (std::is_array_v<M>)
@@ -122,9 +97,9 @@ inline Matrix transposed(const Matrix& m) {
 
 }  // namespace detail
 
-/// Returns the matrix that sixteen numbers are.
+/// Returns the matrix that sixteen numbers make in the given layout.
 ///
-/// numbers  float[16], double[16], a pointer to the first, std::array, std::vector or std::span: sixteen of them
+/// numbers  float[16], double[16], a pointer to the first of sixteen, or a std::array, std::vector or std::span of sixteen
 template <class Numbers> Matrix matrix(const Numbers& numbers, MatrixLayout layout) {
     static_assert(
         detail::SixteenNumbers<Numbers>,

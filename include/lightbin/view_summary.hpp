@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a View read from its matrix, for a person: print it once, and the usual mistakes show.
+// A summary of what a View read from its matrix, for a person: printed once, it shows the usual mistakes with matrices.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -11,38 +11,39 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// What View::summary() returns.
+/// What View::summary() returns: what was read from the projection matrix, and what looks like a mistake.
 struct ViewSummary {
     bool orthographic;
-    /// The angles between the image's sides in degrees, or orthographic its width and height in view space.
+    /// Perspective: the horizontal and vertical field of view in degrees. Orthographic: the image's width and height in
+    /// units of view space.
     double x_size, y_size;
-    double aspect;  ///< width by height of the image on a plane of equal depth
+    double aspect;  ///< width divided by height of the image on a plane of equal depth
     double near_depth, far_depth;
-    bool looks_down_negative_z;  ///< as right-handed view spaces do
+    bool looks_down_negative_z;  ///< true for right-handed view spaces
     bool reversed_z;
-    bool x_flipped, y_flipped;     ///< NDC x grows against view space's, and y
+    bool x_flipped, y_flipped;     ///< NDC x (or y) falls where view-space x (or y) grows
     int width, height, tile_size;  ///< in pixels
 
-    /// What is seldom meant. A View with one of these is as right as any other if it is.
-    ///
-    /// A perspective matrix that has its one where a transposed one has it.
+    // The flags below say what is seldom meant. A View with one of them set is right all the same if it is meant.
+
+    /// The matrix is a perspective one, and its entry of 1 is where a transposed matrix has it.
     bool looks_transposed;
-    /// An orthographic one that scales nothing: an identity, or the view matrix.
+    /// The matrix is orthographic and scales nothing: it may be an identity, or the view matrix.
     bool looks_like_view_matrix;
-    /// As a field of view in degrees does where radians are wanted: the image is upside down.
+    /// The image is upside down and mirrored, as by a field of view in degrees where radians are wanted.
     bool looks_turned;
-    /// An orthographic one, all of whose depths are behind the eye, as with reversed Z that ViewOptions does not say.
+    /// All depths of an orthographic projection are behind the eye: is ViewOptions::reversed_z right?
     bool looks_behind;
-    /// A perspective one with reversed Z whose depths end before -1 however far away, as with depths from 0 to 1 that
-    /// ViewOptions does not say. The far plane is taken to be at infinity then.
+    /// No depth of a perspective projection with reversed Z reaches NDC -1, so that its far plane is taken to be at
+    /// infinity: should ViewOptions::clip_depth be zero_to_one?
     bool looks_zero_to_one;
-    /// The viewport's pixels are not as wide as high, by more than 2 %: its size is stale, or the aspect is inverted.
+    /// The viewport's pixels are wider than high, or higher than wide, by more than 2 %: its size may be stale, or the aspect
+    /// inverted.
     bool pixels_not_square;
 };
 
-/// Returns it in one line, with a question for each thing that is seldom meant. (A template, so that only who calls it
-/// compiles it.)
-template <class Text = std::string> Text to_string(const ViewSummary& view) {
+/// Returns a summary in one line of text, with a question for each flag that is set.
+inline std::string to_string(const ViewSummary& view) {
     const bool flat = view.orthographic;
     char text[256];
     std::snprintf(
@@ -52,7 +53,7 @@ template <class Text = std::string> Text to_string(const ViewSummary& view) {
         view.aspect, view.near_depth, view.far_depth,
         view.looks_down_negative_z ? "-z (right-handed)" : "+z (left-handed)", view.width, view.height,
         view.tile_size);
-    Text line = text;
+    std::string line = text;
     if (view.reversed_z) line += ", reversed Z";
     if (view.x_flipped) line += ", x flipped";
     if (view.y_flipped) line += ", y flipped";

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+// Reads a projection matrix: refuses what is not a promised kind of projection, and derives the camera's constants and the
+// mapping between view depth and window depth.
+#pragma once
+
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/algorithms.hpp>
+#include <lightbin/detail/base/float_environment.hpp>
+#include <lightbin/detail/base/math.hpp>
+#include <lightbin/detail/base/platform.hpp>
+#include <lightbin/detail/base/rounding.hpp>
+#include <lightbin/detail/project/camera.hpp>
+#include <lightbin/matrix.hpp>
+#include <lightbin/result.hpp>
+#include <lightbin/view_summary.hpp>
+
+#include <cstdint>
+#include <optional>
+
+#include <lightbin/detail/base/warnings_off.inl>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
+
+/// The mapping between view depth d and normalized device depth:  ndc = (z_scale d + z_offset) / (w_scale d + w_offset).
+struct DepthMap {
+    double z_scale = 0, z_offset = 0, w_scale = 0, w_offset = 0;
+    bool reversed = false;     ///< the near plane has the larger device depth
+    bool zero_to_one = false;  ///< device depth runs from 0 to 1, not from -1 to 1
+
+    /// Device depth of a window depth, which runs from 0 to 1.
+    double device_depth(double window_depth) const {
+        return zero_to_one ? window_depth : 2 * window_depth - 1;
+    }
+
+    /// Window depth of a view depth, up to rounding. NaN for an infinite view depth.
+    float window_depth(double view_depth) const {
+        const double ndc = (z_scale * view_depth + z_offset) / (w_scale * view_depth + w_offset);
+        return static_cast<float>(zero_to_one ? ndc : 0.5 * (ndc + 1));
+    }
+
+    /// View depth of a device depth `ndc`, moved down (direction -1) or up (+1) by a bound on the rounding error of the
+    /// few steps below, or not moved (0). +inf where no view depth of a perspective projection has this device depth.
+    double view_depth(double ndc, int direction) const {
+        double top = ndc * w_offset - z_offset;
+        double bottom = z_scale - ndc * w_scale;
+        const double top_error = 0x1p-51 * (abs_of(ndc * w_offset) + abs_of(z_offset));
+        const double bottom_error = 0x1p-51 * (abs_of(z_scale) + abs_of(ndc * w_scale));
+        if (reversed) {
+            top = -top;
+            bottom = -bottom;
+        }
+        const double outward = direction;
+        top += outward * top_error;
+        bottom -= (top < 0 ? -outward : outward) * bottom_error;
+        if (!(bottom > 0)) return static_cast<double>(infinity);
+        return top / bottom * (1.0 + (top < 0 ? -outward : outward) * 0x1p-51);
+    }
+
+    /// View depths of the near plane and of the far plane, not rounded outward.
+    double near_plane() const { return view_depth(device_depth(reversed ? 1 : 0), 0); }
+    double far_plane() const { return view_depth(device_depth(reversed ? 0 : 1), 0); }
+
+    /// Least and greatest view depth of all points whose window depth lies in [lower, upper], rounded outward.
+    void view_depths(double lower, double upper, float& least, float& greatest) const {
+        least = float_below(view_depth(device_depth(reversed ? upper : lower), -1));
+        greatest = float_above(view_depth(device_depth(reversed ? lower : upper), +1));
+    }
+};
+
+/// Returns why a matrix with these zeros and signs is no promised kind of projection, or nothing if it is one.
+inline std::optional<ErrorCode> wrong_shape(const Matrix& m) {
+    const double w_x = m[0][3], w_y = m[1][3], w_z = m[2][3], w_1 = m[3][3];
+    const bool perspective = w_x == 0 && w_y == 0 && w_z != 0 && w_1 == 0;
+    const bool orthographic = w_x == 0 && w_y == 0 && w_z == 0 && w_1 > 0;
+    if (w_x == 0 && w_y == 0 && w_z != 0 && w_1 != 0) return ErrorCode::eye_not_at_origin;
+    if (!perspective && !orthographic) return ErrorCode::not_a_projection;
+    if (perspective && (m[3][0] != 0 || m[3][1] != 0)) return ErrorCode::eye_not_at_origin;
+    if (m[1][0] != 0 || m[0][1] != 0) return ErrorCode::image_axes_rotated;
+    if (orthographic && (m[2][0] != 0 || m[2][1] != 0)) return ErrorCode::image_axes_rotated;
+    if (m[0][2] != 0 || m[1][2] != 0) return ErrorCode::oblique_depth;
+    return {};
+}
+
+/// Whether the 1 or -1 of a perspective matrix, which should be the z entry of its w row, is where a transposed matrix has
+/// it: the constant of its z row.
+inline bool one_is_transposed(const Matrix& m) {
+    return abs_of(m[3][2]) == 1 && abs_of(m[2][3]) != 1;
+}
+
+/// A View's projection: a matrix, and what was derived from it for a viewport and a tile size.
+struct Projection {
+    Matrix matrix = {};
+    Camera camera;
+    DepthMap depth;
+
+    /// Sets one image axis. Device coordinates are  ndc = (c / w) * p + q / w  of a view coordinate c, and ndc -1 to 1 are
+    /// the `side` pixels of the viewport. Returns false if the scale is too small or too large to compute with.
+    bool set_axis(ImageAxis& axis, double p, double q, double w, int side, int tile_size) const {
+        const double tiles = static_cast<double>(side) / tile_size;
+        axis.tiles = side / tile_size + (side % tile_size != 0 ? 1 : 0);
+        axis.sign = p < 0 ? -1.0f : 1.0f;
+        axis.scale = abs_of(p) / w * (0.5 * tiles);
+        axis.offset = (q / w + 1.0) * (0.5 * tiles);
+        axis.last_tile_centre = static_cast<float>(axis.tiles) - 0.5f;
+        axis.limit = float_above(tiles);
+        // The slope of a tangent, computed in floats, is within 10u of the true one, where u = 2^-24 (derived in
+        // spheres.inl). Times the scale, rounded to float, that is 12u; the rounding of the offset and of the sum add u
+        // each. Inside the viewport |scale * slope| <= |offset| + tiles. A margin of 16u of that also covers the double
+        // steps above and the addition of the margin itself. The term 2^-80 scale is for callers who flush denormal
+        // numbers to zero.
+        axis.margin = float_above(0x1p-20 * (abs_of(axis.offset) + axis.tiles) + 0x1p-80 * axis.scale);
+        if (!camera.orthographic && axis.scale > 0) {
+            const double slope = max_of(tiles - axis.offset, axis.offset) / axis.scale;
+            const double length = root_of(1 + slope * slope);
+            axis.normal = static_cast<float>(1 / length);
+            axis.normal_z = static_cast<float>(-slope / length);
+        }
+        if (side == 0) {
+            axis.limit = -1;  // an empty viewport contains no coordinate
+            return p != 0;
+        }
+        return axis.scale >= 0x1p-80 && axis.scale <= 0x1p80;
+    }
+
+    /// Sets the depths of the near and far plane. Returns why they are refused, or nothing.
+    std::optional<ErrorCode> set_depth_range() {
+        depth.view_depths(0, 1, camera.near_depth, camera.far_depth);
+        camera.min_float_depth = max_of(float_safe_min, camera.near_depth);
+        if (camera.orthographic) {
+            if (is_finite(camera.near_depth) && is_finite(camera.far_depth)) return {};
+            return ErrorCode::depth_range_not_finite;
+        }
+        if (camera.near_depth >= FLT_MIN && camera.near_depth < camera.far_depth) return {};
+        const bool in_front = depth.near_plane() > 0;
+        return in_front && camera.near_depth < FLT_MIN ? ErrorCode::near_plane_too_close
+                                                       : ErrorCode::no_near_plane;
+    }
+
+    /// Reads `matrix`. depth.zero_to_one must be set before. Returns why the matrix is refused, or nothing.
+    ///
+    /// y_up        tile rows count up from the side of the image where device y is -1
+    /// reversed_z  read for orthographic matrices alone: a perspective matrix shows it
+    ///
+    /// Not inline, so that the compiler moves no operation of this function out of the default floating-point environment.
+    LIGHTBIN_NOINLINE std::optional<ErrorCode> read(int width, int height, int tile_size, bool y_up,
+                                                    bool reversed_z) {
+        const DefaultFloatEnvironment environment;
+        const Matrix& m = matrix;
+        if (!finite(m)) return ErrorCode::matrix_not_finite;
+        if (const auto wrong = wrong_shape(m)) {
+            const bool is_transposed =
+                !wrong_shape(transposed(m)) && (*wrong != ErrorCode::oblique_depth || one_is_transposed(m));
+            return is_transposed ? ErrorCode::projection_transposed : *wrong;
+        }
+        const double w_z = m[2][3], w_1 = m[3][3];
+        const bool orthographic = w_z == 0;
+        camera.orthographic = orthographic;
+
+        // Visible points have w > 0, so the sign of w_z is the viewing direction. An orthographic w tells no direction:
+        // there, view depth grows with device depth, or against it where Z is reversed.
+        const double w = orthographic ? w_1 : abs_of(w_z);
+        const bool forward = orthographic ? (m[2][2] > 0) != reversed_z : w_z > 0;
+        camera.z_sign = forward ? 1.0f : -1.0f;
+        const double flip_z = forward ? 1.0 : -1.0, up = y_up ? 1.0 : -1.0;
+        const double offset_x = orthographic ? m[3][0] : flip_z * m[2][0];
+        const double offset_y = orthographic ? m[3][1] : flip_z * m[2][1];
+        if (!set_axis(camera.x, m[0][0], offset_x, w, width, tile_size) ||
+            !set_axis(camera.y, up * m[1][1], up * offset_y, w, height, tile_size))
+            return ErrorCode::degenerate_scale;
+        if (max_of(abs_of(camera.x.offset), abs_of(camera.y.offset)) > 0x1p80)
+            return ErrorCode::image_offset_out_of_range;
+
+        depth.z_scale = flip_z * m[2][2];
+        depth.z_offset = m[3][2];
+        depth.w_scale = orthographic ? 0 : w;
+        depth.w_offset = orthographic ? w : 0;
+        depth.reversed = orthographic ? reversed_z : depth.z_offset > 0;
+        return set_depth_range();
+    }
+
+    /// Returns what a person checks a matrix by. See View::summary().
+    ViewSummary summary(int width, int height, int tile_size) const {
+        const bool flat = camera.orthographic;
+        const Matrix& m = matrix;
+        // The image's extent between ndc -1 and 1 on one axis. The axes of the camera would not do: an empty viewport
+        // has no extent there.
+        const auto size = [&](int axis) {
+            const double w = flat ? depth.w_offset : depth.w_scale,
+                         offset = flat ? m[3][axis] : static_cast<double>(camera.z_sign) * m[2][axis];
+            const double low = (-w - offset) / m[axis][axis], high = (w - offset) / m[axis][axis];
+            return abs_of(flat ? high - low
+                               : (arctan_of(high) - arctan_of(low)) * (180 / 3.14159265358979324));
+        };
+        // On a plane of equal depth the image is 2 w / m[0][0] wide and 2 w / m[1][1] high.
+        const double aspect = abs_of(m[1][1] / m[0][0]);
+        const auto is_one = [](double x) { return abs_of(x) == 1; };
+        const bool never_minus_one = !flat && depth.reversed && !depth.zero_to_one &&
+                                     depth.z_scale + 0.999 * depth.w_scale > 0;
+        const double width_off = abs_of(aspect * height - width);
+        return {.orthographic = flat,
+                .x_size = size(0),
+                .y_size = size(1),
+                .aspect = aspect,
+                .near_depth = depth.near_plane(),
+                .far_depth = depth.far_plane(),
+                .looks_down_negative_z = camera.z_sign < 0,
+                .reversed_z = depth.reversed,
+                .x_flipped = m[0][0] < 0,
+                .y_flipped = m[1][1] < 0,
+                .width = width,
+                .height = height,
+                .tile_size = tile_size,
+                .looks_transposed = !flat && one_is_transposed(m),
+                .looks_like_view_matrix = flat && is_one(m[0][0]) && is_one(m[1][1]) && is_one(m[2][2]),
+                .looks_turned = m[0][0] < 0 && m[1][1] < 0,
+                .looks_behind = flat && camera.far_depth <= 0,
+                .looks_zero_to_one = never_minus_one,
+                .pixels_not_square = width > 0 && height > 0 && !(width_off <= 0.02 * width)};
+    }
+};
+
+}}}  // namespace lightbin::detail
+
+#include <lightbin/detail/base/warnings_on.inl>
