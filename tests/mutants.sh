@@ -24,7 +24,7 @@ list() {
     mutant world detail/project/world_to_view.inl 's/less_equal(distance, transform.max_distance)/less_equal(distance, broadcast(0x1p40f))/'
     mutant world detail/project/spheres.inl 's/source.out_spheres != nullptr || fallback != 0/source.out_spheres != nullptr/'
     # Spots.
-    mutant spots spot.hpp 's/rounded(radius \* (1 + 0x1p-48))/rounded(radius * (1 - 0x1p-20))/'
+    mutant spots detail/project/sphere_around.hpp 's/rounded(radius \* (1 + 0x1p-48))/rounded(radius * (1 - 0x1p-20))/'
     mutant spots spot.hpp 's/2 \* cosine2 >= 1;/2 * cosine2 >= 1.1;/'
     mutant spots detail/project/spot_vectors.inl 's/select(less_equal(spots.cosine, along), broadcast(1.0f), rim)/rim/'
     mutant spots detail/project/spots.inl 's/minimum(mul(b - root, rim.per_a), apex), largest/mul(b - root, rim.per_a), largest/'

@@ -5,6 +5,7 @@
 #include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/base/maybe.hpp>
+#include <lightbin/detail/project/sphere_around.hpp>
 #include <lightbin/detail/project/world_to_view.hpp>
 #include <lightbin/matrix.hpp>
 #include <lightbin/sphere.hpp>

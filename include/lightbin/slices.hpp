@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Depth slices: what makes clusters of tiles (Olsson, Billeter, Assarsson, "Clustered Deferred and Forward Shading",
-// HPG 2012).
+// Depth slices: intervals of view depth that divide each tile's cell into clusters (Olsson, Billeter, Assarsson, "Clustered
+// Deferred and Forward Shading", HPG 2012) or serve as z-bins.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -25,20 +25,21 @@ class Slices;
 
 namespace detail {
 
-/// Where depths are in the slices.
+/// The lookup table that maps a depth to its slice.
 const SliceTable& table_of(const Slices& slices);
 
 }  // namespace detail
 
-/// Intervals of view depth, one behind another without a gap: the first begins at the near plane, the last one ends at
-/// the far plane, and between two lies a boundary.
+/// Adjacent intervals of view depth without a gap between them. The first slice begins at the near plane, the last one ends at
+/// the far plane, and a boundary separates each slice from the next.
 class Slices {
 public:
-    /// Returns slices of which the first ends at depth `first`, and each of the others is as many times as deep as the
-    /// one before it as make the last one end at `last`; it is open all the same. So cells are about as deep as wide.
+    /// Returns slices whose depth grows geometrically, so that perspective cells are about as deep as they are wide. The first
+    /// slice ends at depth `first`. Each further slice ends at the depth where it begins times a constant, chosen so that the
+    /// last one would end at depth `last`; in fact the last slice reaches to the far plane.
     ///
-    /// count  from 1 on. Errors: it is less; where there are two slices or more: not 0 < first < last, last is infinite,
-    ///        or two boundaries round to the same float
+    /// Errors: count is less than 1. With two slices or more: not 0 < first < last, `last` is infinite, or two boundaries
+    /// round to the same float.
     static Result<Slices> exponential(int count, float first, float last) {
         if (count > 1 && !(0 < first && first < last && detail::is_finite(last)))
             return Error{ErrorCode::slice_range_empty};
@@ -48,10 +49,11 @@ public:
         });
     }
 
-    /// Returns slices that are equally deep from depth `begin` to `end`; the last one is open.
+    /// Returns slices that divide the depths from `begin` to `end` into equal parts. The first slice still begins at the near
+    /// plane, and the last one reaches to the far plane.
     ///
-    /// count  from 1 on. Errors: it is less; where there are two slices or more: not begin < end, one of them is infinite,
-    ///        or two boundaries round to the same float
+    /// Errors: count is less than 1. With two slices or more: not begin < end, one of them is infinite, or two boundaries
+    /// round to the same float.
     static Result<Slices> linear(int count, float begin, float end) {
         if (count > 1 && !(begin < end && detail::is_finite(begin) && detail::is_finite(end)))
             return Error{ErrorCode::slice_range_empty};
@@ -61,22 +63,24 @@ public:
         });
     }
 
-    /// Returns one slice more than there are boundaries. Errors: they do not ascend, or one is NaN or infinite.
+    /// Returns the slices between the given boundaries, one slice more than there are boundaries. Errors: the boundaries do not
+    /// strictly ascend, or one of them is NaN or infinite.
     static Result<Slices> from_boundaries(std::span<const float> boundaries) {
         return from_law(static_cast<std::int64_t>(boundaries.size()) + 1,
                         [=](std::size_t i) { return boundaries[i]; });
     }
 
-    /// Returns the same slices for readers that may look up another depth than d in place of d, from d - margin |d| to
-    /// d + margin |d|: by a formula of their own, which rounds, or by a rounded depth. A light is then listed in every slice
-    /// that one of its depths may be looked up in. Readers that use slice_at() or shader_slices() need no margin.
+    /// Returns the same slices for readers whose lookup is inexact: a shader that computes the slice by a rounding formula of
+    /// its own, or from a rounded depth. Such a reader may find for a depth d the slice of any depth from d - margin |d| to
+    /// d + margin |d|. Lights are then listed in every slice that may be found for one of their depths. Readers that use
+    /// slice_at() or shader_slices() need no margin.
     ///
     /// margin  from 0 to 1/2; docs/depth.md says which is enough
     Slices with_margin(float margin) const {
         LIGHTBIN_ASSERT(0 <= margin && margin <= 0.5f);
         const double exact = static_cast<double>(margin);
         Slices result(*this);
-        // What is looked up at a depth lies within margin / (1 - margin) of it. A little more is for rounding.
+        // The true depth lies within margin / (1 - margin) of the depth that is looked up. 2^-20 of that is for rounding.
         result.table_.margin = detail::float_above(exact / (1 - exact) * (1 + 0x1p-20));
         return result;
     }
@@ -90,13 +94,15 @@ public:
 
     int count() const { return static_cast<int>(table_.boundaries().size()) + 1; }
 
-    /// count() - 1 of them, ascending: slice i is from boundary i - 1 to boundary i. (A template as Error::message().)
-    template <class Float = float> std::span<const Float> boundaries() const& {
+    /// Returns the count() - 1 boundaries in ascending order. Slice i lies between boundaries i - 1 and i. Valid as long as
+    /// these Slices.
+    std::span<const float> boundaries() const& {
         return {table_.boundaries().first, table_.boundaries().count};
     }
-    void boundaries() && = delete;  // would dangle
+    void boundaries() && = delete;  // the span would dangle
 
-    /// Returns the slice of a depth that is not NaN; of a boundary the one behind it.
+    /// Returns the index of the slice that contains a depth. A boundary itself belongs to the slice behind it. The depth must
+    /// not be NaN.
     int slice_at(float depth) const {
         const detail::Items<const float> all = table_.boundaries();
         return static_cast<int>(
@@ -109,13 +115,14 @@ private:
 
     explicit Slices(detail::Items<const float> boundaries) : table_(boundaries) {}
 
+    /// Returns `count` slices whose boundary i is at the depth boundary(i).
     template <class Law> static Result<Slices> from_law(std::int64_t count, Law boundary) {
         const detail::DefaultFloatEnvironment environment;
         if (count < 1) return Error{ErrorCode::no_slices, static_cast<std::uint64_t>(count)};
         detail::Buffer<float> memory;
         float* const boundaries = memory.reserve(static_cast<std::uint64_t>(count));
         for (std::size_t i = 0; i < static_cast<std::size_t>(count) - 1; ++i) {
-            boundaries[i] = static_cast<float>(boundary(i)) + 0.0f;  // not -0
+            boundaries[i] = static_cast<float>(boundary(i)) + 0.0f;  // makes -0 a +0
             if (!detail::is_finite(boundaries[i]) || (i > 0 && !(boundaries[i - 1] < boundaries[i])))
                 return Error{ErrorCode::slices_do_not_ascend, i};
         }

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// Reduces rows of depth samples to the extreme samples of each tile.
+#pragma once
+
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/algorithms.hpp>
+#include <lightbin/detail/base/rounding.hpp>
+#include <lightbin/detail/tiers/kernels.hpp>
+#include <lightbin/isa.hpp>
+
+#include <cstddef>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
+
+/// The least and the greatest of some numbers; lower > upper if there are no numbers.
+struct Extremes {
+    float lower = infinity, upper = -infinity;
+
+    void take(float low, float high) {
+        lower = min_of(lower, low);
+        upper = max_of(upper, high);
+    }
+};
+
+/// Returns the extremes of `so_far` and of `count` ranges from lower[i] to upper[i]. Four independent chains of minima and
+/// maxima let the processor overlap them.
+inline Extremes extremes(const float* lower, const float* upper, std::size_t count, Extremes so_far) {
+    Extremes chains[4] = {so_far, so_far, so_far, so_far};
+    std::size_t i = 0;
+    for (; i + 4 <= count; i += 4)
+        for (std::size_t chain = 0; chain < 4; ++chain)
+            chains[chain].take(lower[i + chain], upper[i + chain]);
+    for (; i < count; ++i)
+        chains[0].take(lower[i], upper[i]);
+    for (std::size_t chain = 1; chain < 4; ++chain)
+        chains[0].take(chains[chain].lower, chains[chain].upper);
+    return chains[0];
+}
+
+/// Reduces one row of tiles and calls finish(tile, extremes) for each tile. The kernel first reduces each pixel column to its
+/// extremes, as many columns at once as fit in a buffer on the stack; then the columns of each tile are reduced.
+///
+/// tile_columns  samples across a tile
+/// skipped       samples of this value are left out; NaN: none are
+/// by_split      instead of the extremes of all samples, finds the greatest sample that is not above splits[tile], as `upper`,
+///               and the least one that is above it, as `lower`
+template <bool by_split, class Finish>
+void reduce_tile_row(Isa isa, const DepthRows& row, std::size_t tile_columns, float skipped,
+                     const float* splits, Finish finish) {
+    constexpr std::size_t buffer_size = 512;
+    const std::size_t block = tile_columns < buffer_size ? buffer_size / tile_columns * tile_columns : buffer_size;
+    float lower[buffer_size], upper[buffer_size], split[by_split ? buffer_size : 1];
+    Extremes tile;
+    for (std::size_t first = 0; first < row.columns; first += block) {
+        const std::size_t end = min_of(first + block, row.columns);
+        const DepthRows part = {row.samples + first, row.pitch, row.rows, end - first};
+        for (std::size_t column = first; by_split && column < end;) {
+            const std::size_t stop = min_of((column / tile_columns + 1) * tile_columns, end);
+            fill_items(split + (column - first), stop - column, splits[column / tile_columns]);
+            column = stop;
+        }
+        depth_kernel<by_split>(isa, part.columns)(part, skipped, split, lower, upper);
+        for (std::size_t column = first; column < end;) {
+            const std::size_t index = column / tile_columns;
+            const std::size_t tile_end = min_of((index + 1) * tile_columns, row.columns);
+            const std::size_t stop = min_of(tile_end, end);
+            tile = extremes(lower + (column - first), upper + (column - first), stop - column, tile);
+            if (stop == tile_end) {
+                finish(index, tile);
+                tile = {};
+            }
+            column = stop;
+        }
+    }
+}
+
+}}}  // namespace lightbin::detail

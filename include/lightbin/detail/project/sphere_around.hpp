@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// Float spheres around spheres that were computed in double, rounded outward.
+#pragma once
+
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/math.hpp>
+#include <lightbin/detail/base/platform.hpp>
+#include <lightbin/detail/base/rounding.hpp>
+#include <lightbin/sphere.hpp>
+
+#include <cfloat>
+#include <cstring>
+
+#include <lightbin/detail/base/warnings_off.inl>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
+
+/// A Sphere that is bad input: skipped and counted.
+inline constexpr Sphere bad_sphere = {0, 0, 0, -1};
+
+/// Returns a float sphere that contains a sphere of doubles. The centre is rounded to nearest, and the radius is enlarged by
+/// the distance that this moves the centre. A sphere that floats represent exactly stays as it is; a centre beyond the range
+/// of floats gives a sphere that covers everything; bad input stays bad.
+inline Sphere sphere_around(double x, double y, double z, double radius) {
+    if (!is_finite(x) || !is_finite(y) || !is_finite(z) || !(radius >= 0)) return bad_sphere;
+    constexpr double most = static_cast<double>(FLT_MAX);
+    if (abs_of(x) > most || abs_of(y) > most || abs_of(z) > most) return {0, 0, 0, infinity};
+    const Sphere nearest = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 0};
+    const double error = abs_of(x - static_cast<double>(nearest.x)) +
+                         abs_of(y - static_cast<double>(nearest.y)) +
+                         abs_of(z - static_cast<double>(nearest.z));
+    const double reach = error > 0 ? (radius + error) * (1 + 0x1p-50) : radius;
+    return {nearest.x, nearest.y, nearest.z, float_above(reach)};
+}
+
+/// Returns the sphere stored at `from`. The memory may hold objects of any type with the layout of a Sphere: its bytes are
+/// copied, because access through a Sphere pointer would break the aliasing rules.
+inline Sphere load_sphere(const Sphere* from) {
+    Sphere sphere;
+    std::memcpy(&sphere, from, sizeof sphere);
+    return sphere;
+}
+
+/// A point or vector of doubles.
+struct Triple {
+    double x, y, z;
+};
+
+/// Converts any point type with members x, y and z.
+template <class Point> Triple triple(const Point& p) {
+    return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+}
+
+/// Returns the length of a vector, with a relative error of at most 2^-51 if no square underflows or overflows.
+inline double length(const Triple& v) {
+    return root_of(rounded(v.x * v.x) + rounded(v.y * v.y) + rounded(v.z * v.z));
+}
+
+inline bool finite(const Triple& v) {
+    return is_finite(v.x) && is_finite(v.y) && is_finite(v.z);
+}
+
+/// Returns a float sphere that contains a sphere whose centre and radius were computed in double with rounding errors: up to
+/// 2^-50 of the radius in the radius, and up to 2^-50 of the radius plus 2^-53 of each coordinate in the centre. The term
+/// 2^-124 is for values that were flushed to zero.
+inline Sphere sphere_around_nearly(const Triple& centre, double radius) {
+    return sphere_around(centre.x, centre.y, centre.z,
+                         rounded(radius * (1 + 0x1p-48)) +
+                             rounded((abs_of(centre.x) + abs_of(centre.y) + abs_of(centre.z)) * 0x1p-52) +
+                             0x1p-124);
+}
+
+}}}  // namespace lightbin::detail
+
+#include <lightbin/detail/base/warnings_on.inl>
