@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The output: the light grid of Tiled Shading, Figure 1 - offset and count a tile, and one light index list.
+// The output: a light grid (Tiled Shading, Figure 1). It has an offset and a count per tile, and one light index list.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -15,9 +15,9 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// Bytes of a light id.
+/// The width of a light id in bytes.
 enum class IdWidth : std::uint8_t {
-    u8 = 1,   ///< up to 256 lights; encode() makes them, a Binner does not
+    u8 = 1,   ///< up to 256 lights; made by encode(), not by a Binner
     u16 = 2,  ///< up to 65,536 lights
     u32 = 4,
 };
@@ -26,38 +26,39 @@ constexpr const char* to_string(IdWidth width) {
     return detail::name_at(width, {"?", "u8", "u16", "?", "u32"});
 }
 
-/// One tile's part of the light index list: `count` ids from `offset` on. 8 bytes, as a GPU's uvec2.
+/// The list of one tile: `count` ids of the light index list, from index `offset` on. 8 bytes, the layout of a uvec2 on a GPU.
 struct ListRange {
     std::uint32_t offset, count;
 };
 
-/// What became of the lights that a grid was made of. The others, lights - rejected - culled, have tiles in their
-/// footprints.
+/// How many lights a grid was made of, and how many of them it leaves out. The remaining lights - rejected - culled lights
+/// have at least one tile in their footprints.
 struct LightCounts {
     std::uint32_t lights = 0;
-    std::uint32_t rejected = 0;  ///< bad input, see Sphere
-    std::uint32_t culled = 0;    ///< out of the view
+    std::uint32_t rejected = 0;  ///< bad input: see Sphere and Spot
+    std::uint32_t culled = 0;    ///< outside of the view
 };
 
-/// The ranks of the lights in a depth bin: from the least to the greatest, with others possibly between them. A bin without
-/// lights has least > greatest.
+/// The least and greatest rank of the lights whose depths meet a z-bin. A rank is a light's position in order of depth. Ranks in
+/// between may belong to lights that do not meet the bin. A bin that no light meets has least > greatest.
 struct BinRange {
     std::uint32_t least, greatest;
 };
 
-/// What Slicing::z_bins adds to a grid.
+/// What Slicing::z_bins adds to a grid: the lights in order of depth, and the ranks in each z-bin.
 struct LightRanks {
-    std::span<const std::uint32_t> order;  ///< the light of each rank, as its position in the caller's array
-    std::span<const BinRange> bins;        ///< one a slice
+    std::span<const std::uint32_t> order;  ///< for each rank, the position of its light in the caller's array
+    std::span<const BinRange> bins;        ///< one per slice
 };
 
-/// What Binner::bin_bits() returns beside the bitmasks.
+/// What Binner::bin_bits() returns. The bitmasks are in the caller's memory.
 struct LightBits {
     LightCounts counts;
-    LightRanks ranks;  ///< with Slicing::z_bins
+    LightRanks ranks;  ///< filled in with Slicing::z_bins, else empty
 };
 
-/// A finished light grid. It does not own its memory: see the call that returned it for how long that lives.
+/// A finished light grid: a view of memory that it does not own. The function that returns the grid says how long that memory
+/// is valid.
 template <class Id> class LightGrid {
 public:
     LightGrid(int tiles_x, int tiles_y, std::span<const ListRange> ranges, std::span<const Id> ids,
@@ -67,17 +68,18 @@ public:
 
     int tiles_x() const { return tiles_x_; }
     int tiles_y() const { return tiles_y_; }
-    int slices() const { return slices_; }  ///< 1 without clusters
+    int slices() const { return slices_; }  ///< 1 unless made with Slicing::clusters
 
-    /// The parts of ids() that are the tiles' lists: tiles_x() * tiles_y() of them, row-major; of each slice, one slice
-    /// after another. Offsets ascend and leave no gap.
+    /// The range of ids() that each tile lists: tiles_x() * tiles_y() ranges, row-major. With clusters that many for each
+    /// slice, one slice after another. Each range begins where the one before it ends.
     std::span<const ListRange> ranges() const { return ranges_; }
 
-    /// The light index list. A light's id is its position in the caller's array, or with Slicing::z_bins its rank; ids
-    /// ascend within a tile.
+    /// The light index list. A light's id is its position in the caller's array, or its rank with Slicing::z_bins. The ids of
+    /// a tile ascend.
     std::span<const Id> ids() const { return ids_; }
 
-    /// Returns the ids of the lights of tile (x, y), 0 <= x < tiles_x(), 0 <= y < tiles_y(), in a slice.
+    /// Returns the ids of the lights of tile (x, y) in a slice, where 0 <= x < tiles_x(), 0 <= y < tiles_y() and 0 <= slice <
+    /// slices().
     std::span<const Id> lights_in(int x, int y, int slice = 0) const {
         LIGHTBIN_ASSERT(x >= 0 && x < tiles_x_ && y >= 0 && y < tiles_y_ && slice >= 0 && slice < slices_);
         const std::size_t row = static_cast<std::size_t>(slice) * static_cast<std::size_t>(tiles_y_) +
@@ -89,12 +91,13 @@ public:
 
     const LightCounts& light_counts() const { return counts_; }
 
-    /// With Slicing::z_bins. Upload the lights in this order, or read them by way of it.
+    /// Filled in with Slicing::z_bins, else empty. A shader reads ranks as ids, so upload the lights in the order of
+    /// ranks().order, or upload that order and look up each light in it.
     const LightRanks& ranks() const { return ranks_; }
 
-    /// Copies ranges() and ids() to the beginning of the caller's memory, and returns the grid there, which is valid as
-    /// long as that memory. Only writes there, in order, so it may be a mapped GPU buffer. Errors: a buffer is smaller
-    /// than ranges() or ids(); then nothing is written. ranks() stay where they are.
+    /// Copies ranges() and ids() to the beginning of the caller's buffers, and returns a grid that refers to the copies. The
+    /// buffers are only written, in ascending order, so they may be mapped GPU memory. ranks() is not copied. Errors: a buffer
+    /// is smaller than ranges() or ids(); then nothing is written.
     Result<LightGrid> copy_to(std::span<ListRange> ranges, std::span<Id> ids) const {
         if (ranges.size() < ranges_.size())
             return Error{ErrorCode::range_buffer_too_small, ranges_.size(), ranges.size()};
@@ -113,21 +116,21 @@ private:
     LightRanks ranks_;
 };
 
-/// Returns the part of a tile's list that lies in a bin, which is what a shader goes through at the bin's depths.
+/// Returns the ids of a tile's list whose ranks lie in a z-bin: the lights that a shader evaluates at the bin's depths.
 template <class Id> std::span<const Id> lights_of_bin(std::span<const Id> list, const BinRange& bin) {
     const Id* const end = list.data() + list.size();
     const Id* const begin = detail::first_not(list.data(), end, [&](Id id) { return id < bin.least; });
     return {begin, detail::first_not(begin, end, [&](Id id) { return id <= bin.greatest; })};
 }
 
-/// How long a grid's lists are.
+/// Statistics of the lengths of a grid's lists.
 struct ListLengths {
     std::uint32_t longest = 0;
-    /// [0]: tiles without lights; [k]: tiles with 2^(k-1) to 2^k - 1 lights.
+    /// histogram[0] counts the tiles without lights, histogram[k] those with 2^(k-1) to 2^k - 1 lights.
     std::array<std::uint64_t, 33> histogram = {};
 };
 
-/// Returns the lengths of a grid's lists; a pass over its tiles.
+/// Returns statistics of the lengths of a grid's lists. Reads all ranges.
 template <class Id> ListLengths list_lengths(const LightGrid<Id>& grid) {
     ListLengths lengths;
     for (const ListRange range : grid.ranges()) {

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The lights as the caller has them: vec4 arrays or the caller's own structs, in view space or world space.
+// Lights as the caller has them: arrays of vec4, Sphere, Spot or the caller's own structs, in view space or world space.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/algorithms.hpp>
-#include <lightbin/detail/base/maybe.hpp>
 #include <lightbin/detail/project/sphere_around.hpp>
+#include <lightbin/detail/project/to_light.hpp>
 #include <lightbin/detail/project/world_to_view.hpp>
 #include <lightbin/matrix.hpp>
 #include <lightbin/sphere.hpp>
 #include <lightbin/spot.hpp>
 
 #include <concepts>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -20,111 +20,19 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-namespace detail {
-
-template <class Light, class Number>
-concept Vec4Of = requires(const Light& light) {
-    requires std::same_as<std::remove_cvref_t<decltype(light.x)>, Number>;
-    requires std::same_as<std::remove_cvref_t<decltype(light.y)>, Number>;
-    requires std::same_as<std::remove_cvref_t<decltype(light.z)>, Number>;
-    requires std::same_as<std::remove_cvref_t<decltype(light.w)>, Number>;
-};
-
-}  // namespace detail
-
-/// How a light becomes a Sphere or a Spot by default: what is one, derives from one or converts to one, as it is; else a
-/// Sphere of the x, y, z and w of a vec4 of floats, or of doubles, which are rounded outward.
-struct AsLight {
-    template <class Light>
-    requires(std::convertible_to<const Light&, Sphere> || std::convertible_to<const Light&, Spot> ||
-             detail::Vec4Of<Light, float> || detail::Vec4Of<Light, double>) constexpr auto
-    operator()(const Light& light) const {
-        if constexpr (std::convertible_to<const Light&, Spot>)
-            return static_cast<Spot>(light);
-        else if constexpr (std::convertible_to<const Light&, Sphere>)
-            return static_cast<Sphere>(light);
-        else if constexpr (detail::Vec4Of<Light, float>)
-            return Sphere{light.x, light.y, light.z, light.w};
-        else
-            return detail::sphere_around(light.x, light.y, light.z, light.w);
-    }
-};
-
-namespace detail {
-
-template <class Range>
-concept Array = requires(const Range& range) {
-    std::span(std::data(range), std::size(range));
-};
-
-/// Whether `to_light` does not accept an element itself. Then it is called with what the element points or refers to.
-template <class ToLight, class Light>
-inline constexpr bool by_reference =
-    std::same_as<decltype(call(std::declval<const ToLight&>(), std::declval<const Light&>())), NotCalled>;
-
-/// Calls `to_light` with an element, or with what that refers to. Returns NotCalled where it takes neither.
-template <class ToLight, class Light>
-constexpr decltype(auto) make_light(const ToLight& to_light, const Light& light) {
-    if constexpr (by_reference<ToLight, Light>)
-        return call(to_light, referred(light));
-    else
-        return call(to_light, light);
-}
-
-/// Returns `to_light`, or where it can't be one, the compiler's sentence and one that can, so that no other error follows.
-template <class Light, class ToLight> constexpr auto checked_to_light(const ToLight& to_light) {
-    using Made = decltype(make_light(to_light, std::declval<const Light&>()));
-    constexpr bool can_be_called = !std::same_as<Made, NotCalled>;
-    if constexpr (std::same_as<ToLight, AsLight>)
-        static_assert(
-            can_be_called,
-            "lightbin: this light is no Sphere or Spot and has no float or double x, y, z and w (the "
-            "radius): pass view_space(lights, to_light) or world_space(lights, view_matrix, to_light), "
-            "where to_light makes a lightbin::Sphere or a lightbin::Spot of a light");
-    else
-        static_assert(
-            can_be_called,
-            "lightbin: to_light is called, as const, with a const reference to one of the lights, or with "
-            "what that points to, and can't be called with either");
-    if constexpr (std::convertible_to<Made, Sphere> || std::convertible_to<Made, Spot>) {
-        return to_light;
-    } else {
-        static_assert(!can_be_called,
-                      "lightbin: to_light must return a lightbin::Sphere or a lightbin::Spot");
-        return [](const Light&) { return Sphere(); };
-    }
-}
-
-/// Returns the caller's array, or where it is none, the compiler's sentence and an empty one.
-template <class Range> auto checked_array(const Range& lights) {
-    static_assert(
-        Array<Range>,
-        "lightbin: lights are an array, a std::vector, a std::span or another range whose elements lie one "
-        "after another, with data() and size()");
-    if constexpr (Array<Range>)
-        return std::span<const std::remove_cvref_t<decltype(*std::data(lights))>>(std::data(lights),
-                                                                                  std::size(lights));
-    else if constexpr (requires { *std::begin(lights); })
-        return std::span<const std::remove_cvref_t<decltype(*std::begin(lights))>>();
-    else
-        return std::span<const Sphere>();
-}
-
-}  // namespace detail
-
-/// Lights made by view_space() or world_space(): a view of the caller's array, how an element becomes a Sphere or a Spot,
-/// and how that is moved to view space.
+/// What view_space() and world_space() return: a span of the caller's array, the callable that makes a Sphere or a Spot of an
+/// element, and for world_space() the transform to view space.
 template <class Light, class ToLight> struct Lights {
     std::span<const Light> array;
     ToLight to_light;
-    detail::Maybe<detail::WorldToView> to_view;
+    std::optional<detail::WorldToView> to_view;
 
-    /// Whether the lights are Spots, of which some may be whole spheres.
+    /// True if `to_light` makes Spots, some of which may cover whole spheres.
     static constexpr bool spots = std::convertible_to<
         decltype(detail::make_light(std::declval<const ToLight&>(), std::declval<const Light&>())), Spot>;
 
-    /// Returns the Spot or Sphere that to_light makes of an element; of a null pointer that it would be called through, one
-    /// that is bad input.
+    /// Returns the Spot or Sphere that to_light makes of an array element, in the space of the array. A null pointer gives bad
+    /// input, unless to_light itself takes pointers.
     auto made(const Light& light) const {
         using Made = std::conditional_t<spots, Spot, Sphere>;
         if constexpr (detail::by_reference<ToLight, Light> && requires { !light, *light; })
@@ -132,13 +40,13 @@ template <class Light, class ToLight> struct Lights {
         return static_cast<Made>(detail::make_light(to_light, light));
     }
 
-    /// Returns a light of the array as a sphere in view space.
+    /// Returns the sphere, in view space, of an array element.
     Sphere view_sphere(const Light& light) const {
         const Sphere sphere = made(light);
         return to_view ? (*to_view)(sphere) : sphere;
     }
 
-    /// Returns a light of the array in view space, a Spot with its axis rounded to nearest.
+    /// Returns the Sphere or Spot, in view space, of an array element. The axis of a Spot is rounded to nearest, not outward.
     auto view_light(const Light& light) const {
         if constexpr (spots) {
             const Spot spot = made(light);
@@ -152,21 +60,22 @@ template <class Light, class ToLight> struct Lights {
     }
 };
 
-/// Lights that view_space() or world_space() made of a temporary array, such as a std::vector that a function returned,
-/// which they moved in here: it lives as long as they do. (A temporary std::span is copied; the array it views is not.)
+/// What view_space() and world_space() return for a temporary array, such as a std::vector that a function returned: the array
+/// was moved in here and lives as long as this object. (Of a temporary std::span only the span is copied.)
 template <class Range, class ToLight> struct OwnedLights {
     Range array;
     ToLight to_light;
-    detail::Maybe<detail::WorldToView> to_view;
+    std::optional<detail::WorldToView> to_view;
 };
 
-/// Returns lights in view space (the space that the projection matrix takes). The array is read in place: it
-/// must live until the Binner's call returns. A temporary one is moved into what is returned.
+/// Describes lights that are in view space, the space that the projection matrix is applied to. The array is read where it is,
+/// so it must live until the Binner's call returns. A temporary array is moved into the returned object.
 ///
-/// lights    a contiguous range of anything: of structs, of pointers or smart pointers to them, of std::reference_wrapper
-/// to_light  a callable or a pointer to a member that makes a Sphere, or a Spot, of an element or, where it does not take
-///           one, of what the element points to; it is copied, and called as const. A null pointer is bad input, as
-///           described at Sphere: that light is skipped and counted. A to_light that takes pointers is given null ones, too
+/// lights    a contiguous range of any type: structs, pointers or smart pointers to them, std::reference_wrapper
+/// to_light  a callable or a pointer to a member that makes a Sphere or a Spot of an element. If it does not take an element
+///           itself, it is called with the object that the element points to, and a null pointer is bad input: that light is
+///           skipped and counted. A to_light that takes pointers is called with null pointers, too. It is copied, and called
+///           as const.
 template <class Range, class ToLight = AsLight>
 auto view_space(Range&& lights, const ToLight& to_light = {}) {
     constexpr bool temporary = !std::is_lvalue_reference_v<Range>,
@@ -183,11 +92,13 @@ auto view_space(Range&& lights, const ToLight& to_light = {}) {
         return Lights<typename decltype(array)::value_type, Checked>{array, checked, {}};
 }
 
-/// Returns lights in world space, moved by `view_matrix` (any type that matrix.hpp lists; affine: rotation,
-/// translation, scale) as they are read. The rounding of the move is in the spheres and cones: no light is missed by
-/// it. A matrix that is far from a rotation and a scale bends cones out of shape: spots are moved as least spheres then.
+/// Describes lights that are in world space. They are transformed by `view_matrix` as they are read, and their spheres and
+/// cones are enlarged by the rounding of the transform, so that no light is missed by it.
 ///
 /// lights, to_light  as for view_space()
+/// view_matrix       world space to view space, any type that matrix.hpp lists. Must be affine: rotation, translation, scale.
+///                   A matrix that is far from rotation and uniform scale would distort cones: with it, spots are transformed
+///                   as the least spheres around them.
 template <class Range, class ViewMatrix, class ToLight = AsLight>
 auto world_space(Range&& lights, const ViewMatrix& view_matrix, const ToLight& to_light = {}) {
     auto result = view_space(static_cast<Range&&>(lights), to_light);
@@ -197,7 +108,7 @@ auto world_space(Range&& lights, const ViewMatrix& view_matrix, const ToLight& t
 
 namespace detail {
 
-/// Lights passed as a plain range are view-space vec4s, Spheres or Spots.
+/// Returns the Lights that a call was given. A plain range is taken for vec4s, Spheres or Spots in view space.
 template <class Range> auto as_lights(const Range& lights) {
     return view_space(lights);
 }
@@ -211,8 +122,8 @@ template <class Range, class ToLight> auto as_lights(const OwnedLights<Range, To
     return result;
 }
 
-/// The caller's array as spheres, if its elements are Spheres, or vec4s laid out like them; else null. Read it with
-/// load_sphere.
+/// Returns a pointer to the caller's array as Spheres if its elements are Spheres or float vec4s of the same layout, so that
+/// kernels can read the array directly; else null. Elements must be read by load_sphere().
 template <class Light, class ToLight> const Sphere* as_they_are(const Lights<Light, ToLight>& lights) {
     if constexpr (std::is_same_v<ToLight, AsLight> && !Lights<Light, ToLight>::spots &&
                   sizeof(Light) == sizeof(Sphere) && std::is_trivially_copyable_v<Light>) {

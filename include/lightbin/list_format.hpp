@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The forms that lists have. What a Binner or encode() writes and what a shader reads must have the same.
+// The format of the lists of lights. The shader that reads the lists must be made for the format that a Binner or encode() wrote.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -10,25 +10,25 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// How the lights of a tile are written down.
+/// How the list of a tile is stored.
 enum class ListEncoding : std::uint8_t {
-    offset_count,  ///< grid.ranges(), and the ids of all tiles one after the other (Tiled Shading, Figure 1)
-    /// `capacity` ids a tile; a shorter list ends with the sentinel, the largest value of the id's width.
-    /// Needs no table of tiles (Light Indexed Deferred Rendering).
+    offset_count,  ///< as in a LightGrid: {offset, count} per tile, and one list of ids (Tiled Shading, Figure 1)
+    /// Memory for `capacity` ids per tile, so that no offsets are needed (Light Indexed Deferred Rendering). A shorter list ends
+    /// with a sentinel, the largest value of the id's width.
     sentinel,
-    bitmask,  ///< (max_lights + 31) / 32 words of 32 bits a tile: bit b of word w is light 32 w + b
+    bitmask,  ///< (max_lights + 31) / 32 words of 32 bits per tile: bit b of word w is set for light 32 w + b
 };
 
 constexpr const char* to_string(ListEncoding encoding) {
     return detail::name_at(encoding, {"offset_count", "sentinel", "bitmask"});
 }
 
-/// A form of the lists.
+/// The format of the lists: their encoding, and the numbers that fix its sizes.
 struct ListFormat {
     ListEncoding encoding = ListEncoding::offset_count;
-    IdWidth ids = IdWidth::u32;    ///< offset_count, sentinel
-    std::uint32_t capacity = 0;    ///< sentinel: lights a tile can hold, 1 or more
-    std::uint32_t max_lights = 0;  ///< ids are below it; bitmask: needed, others: 0 is as many as ids number
+    IdWidth ids = IdWidth::u32;    ///< width of an id; read for offset_count and sentinel
+    std::uint32_t capacity = 0;    ///< ids that a tile has memory for, 1 or more; read for sentinel
+    std::uint32_t max_lights = 0;  ///< all ids are below it; must be given for bitmask, else 0: as many as `ids` can number
 };
 
 }}  // namespace lightbin

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a Binner does, fixed at compile time: an option that is off leaves no code.
+// The options of a Binner. They are template arguments, so an option that is off leaves no code in the program.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -11,27 +11,28 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// The tiles that a light's projection is taken to cover.
+/// The shape of a light's footprint: which tiles its projection is taken to cover.
 enum class Footprint : std::uint8_t {
-    rectangle,   ///< its bounding rectangle (the papers' method)
-    silhouette,  ///< one exact span of tiles a tile row: drops the rectangle's corners
+    rectangle,   ///< the tiles of its bounding rectangle (the papers' method)
+    silhouette,  ///< one exact span of tiles per tile row, without the corners of the rectangle
 };
 
-/// What keeps a light out of a tile beside its footprint. All but `none` need Z bounds.
+/// The test that keeps a light out of tiles of its footprint by depth. All but `none` read Z bounds or clusters.
 enum class DepthTest : std::uint8_t {
-    none,       ///< nothing
-    interval,   ///< its depths z - r to z + r must meet the tile's Z bounds (Tiled Shading, section 6.3)
-    box,        ///< its sphere must also meet the view-space box around the tile's cell
-    split_box,  ///< the same with two boxes, before and behind the tile's gap (see ZBounds)
+    none,       ///< no test: a light is listed in all tiles of its footprint
+    interval,   ///< the light's depths, z - r to z + r, must meet the tile's Z bounds (Tiled Shading, section 6.3)
+    box,        ///< also, the light must meet the view-space box around the tile's cell
+    split_box,  ///< also, it must meet one of two boxes, in front of and behind the tile's gap (see ZBounds)
 };
 
-/// How depth is cut without a depth buffer, by the Slices that bin() is given.
+/// How the depth range is divided by the Slices that bin() is given. This needs no depth buffer.
 enum class Slicing : std::uint8_t {
     none,
-    /// Lists for each tile in each slice. The depth test, none or box, is then of those cells.
+    /// Each tile has one list per slice. DepthTest::box tests lights against the box around the tile in that slice; no Z bounds
+    /// are read.
     clusters,
-    /// Each slice is a bin: ids are ranks in order of depth, and each bin has the least and greatest rank of the lights in
-    /// it (Drobot, "Improved Culling for Tiled and Clustered Rendering", SIGGRAPH 2017).
+    /// Each tile has one list, whose ids are ranks: positions of the lights in order of depth. Each slice is a bin that stores
+    /// the least and greatest rank of its lights, so a shader skips the ids outside of its pixel's bin (Drobot, "Improved Culling for Tiled and Clustered Rendering", SIGGRAPH 2017).
     z_bins,
 };
 
@@ -47,13 +48,13 @@ constexpr const char* to_string(Slicing slicing) {
     return detail::name_at(slicing, {"none", "clusters", "z_bins"});
 }
 
-/// What a Binner does.
+/// What a Binner does: its template argument.
 struct Options {
     IdWidth ids = IdWidth::u32;  ///< u16 or u32
     Footprint footprint = Footprint::rectangle;
     DepthTest depth_test = DepthTest::none;
     Slicing slicing = Slicing::none;
-    /// Use no wider instructions than these, even where the machine has them. The result is the same.
+    /// The widest instruction set to use, even where the machine has a wider one. The result is the same.
     Isa isa = compiled_isa;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The caller's threads, lent for the time of a call: lightbin has none of its own.
+// Lets a call use the caller's threads. lightbin starts no threads of its own.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -10,36 +10,38 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// A worker count and the caller's way to run a loop on several threads. Refers to the caller's callable, an object or
-/// a function, which must outlive the call that it is given to.
+/// The caller's function for running a loop on several threads, and how many threads it uses. A Parallel refers to the caller's
+/// function or function object, which must outlive the call that the Parallel is passed to.
 class Parallel {
+    /// The loop body passed to the caller's function: a type-erased callable of an index.
     struct Body {
         void operator()(std::size_t i) const { call(context, i); }
 
         const void* context;
         void (*call)(const void* context, std::size_t i);
     };
+    /// The caller's function object or function, without its type. A function pointer does not fit in a void*.
     union CallersRun {
         void* object;
         void (*function)();
     };
 
 public:
-    /// No threads: the work is done by the calling thread.
+    /// Does all work on the calling thread.
     Parallel() = default;
 
-    /// workers   how many threads `run` has; more or fewer change the speed, never the result
-    /// run       run(n, body) calls body(i), a std::size_t, once for each 0 <= i < n, in any order, on any
-    ///           threads, and returns when all calls have returned: tbb::parallel_for, a thread pool, OpenMP.
-    ///           A call throws where there is no memory, or what the caller's own functions throw. `run` may
-    ///           throw too, that or anything, once no call is under way.
-    /// start_ns  about how long it takes until `run` has its threads at work. What would gain less is done by the
-    ///           calling thread alone, unless it wakes the threads for what follows. The default is that of
-    ///           threads asleep; 0 shares all that can be shared.
+    /// workers   the number of threads that `run` uses. A wrong number costs speed, but never changes the result.
+    /// run       run(n, body) must call body(i) once for each std::size_t i from 0 to n - 1, in any order and on any threads,
+    ///           and return when all these calls have returned: by tbb::parallel_for, a thread pool, OpenMP. body(i) throws
+    ///           if memory runs out or a function of the caller throws. `run` may pass that exception on, or throw its own,
+    ///           once no call of body is running.
+    /// start_ns  about how many nanoseconds pass until the threads of `run` have started working. Work that would gain less
+    ///           from sharing is done by the calling thread alone, unless it wakes the threads for the work that follows. The
+    ///           default is for sleeping threads; 0 shares everything that can be shared.
     template <class Run>
     Parallel(std::size_t workers, Run&& run, double start_ns = 50000)
         : workers_(workers > 1 ? workers : 1), start_ns_(start_ns) {
-        using Function = std::decay_t<Run>;  // a pointer, of a function and of a pointer to one
+        using Function = std::decay_t<Run>;  // for a function, too, a pointer to it
         if constexpr (std::is_function_v<std::remove_pointer_t<Function>>) {
             run_.function = reinterpret_cast<void (*)()>(Function(run));
             start_ = [](CallersRun callers, std::size_t n, Body body) {
@@ -60,13 +62,14 @@ public:
 
     std::size_t workers() const { return workers_; }
 
-    /// Whether sharing work pays off that takes one thread so long: the gain is at least twice what the start costs.
+    /// Returns whether to share work that takes one thread `ns` nanoseconds: true if sharing would gain at least twice the time
+    /// that starting the threads takes.
     bool pays_off(double ns) const {
         const double workers = static_cast<double>(workers_);
         return workers_ > 1 && ns * (workers - 1) >= 2 * start_ns_ * workers;
     }
 
-    /// Calls body(i) for each 0 <= i < n.
+    /// Calls body(i) for each i from 0 to n - 1: by the caller's function, or on the calling thread if there is none.
     template <class Function> void run(std::size_t n, const Function& body) const {
         const auto call = [](const void* context, std::size_t i) {
             const detail::DefaultFloatEnvironment environment;
@@ -84,7 +87,8 @@ private:
     void (*start_)(CallersRun callers, std::size_t n, Body body) = nullptr;
 };
 
-/// No threads to share work among, known at compile time: leaves no code for it.
+/// Like Parallel(), does all work on the calling thread. Because this is known at compile time, no code for sharing work is
+/// compiled.
 struct Serial {
     operator Parallel() const { return {}; }
 };

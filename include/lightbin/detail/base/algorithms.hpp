@@ -34,31 +34,6 @@ template <class T> constexpr T max_of(T a, T b) {
     return a < b ? b : a;
 }
 
-/// What call() returns where the callable can't be called with the light.
-struct NotCalled {};
-
-/// Calls `callable`, a function, an object or a pointer to a member, with a light.
-template <class Callable, class Light> constexpr decltype(auto) call(const Callable& callable, Light& light) {
-    if constexpr (requires { callable(light); })
-        return callable(light);
-    else if constexpr (requires { (light.*callable)(); })
-        return (light.*callable)();
-    else if constexpr (std::is_member_object_pointer_v<Callable> && requires { light.*callable; })
-        return (light.*callable);
-    else
-        return NotCalled();
-}
-
-/// Returns what a pointer, a smart pointer or a std::reference_wrapper refers to; of anything else, itself.
-template <class Light> constexpr auto& referred(Light& light) {
-    if constexpr (requires { requires std::is_lvalue_reference_v<decltype(*light)>; })
-        return *light;
-    else if constexpr (requires { requires std::is_same_v<decltype(light.get()), typename Light::type&>; })
-        return light.get();
-    else
-        return light;
-}
-
 template <class T> void fill_items(T* to, std::uint64_t count, std::type_identity_t<T> value) {
     for (const T* const end = to + count; to != end; ++to)
         *to = value;
