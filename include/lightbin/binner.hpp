@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Binner: the one easy call. It owns the scratch memory of the stages, and the lists.
+// Binner: makes light grids in one call. It owns the grids and the scratch memory that making them takes.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/checked_sizes.hpp>
 #include <lightbin/detail/base/float_environment.hpp>
-#include <lightbin/detail/base/maybe.hpp>
+#include <lightbin/detail/depth/binner_inputs.hpp>
 #include <lightbin/detail/depth/ranked_footprints.hpp>
 #include <lightbin/detail/depth/sliced_footprints.hpp>
 #include <lightbin/detail/engine/block.hpp>
@@ -25,6 +25,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -33,72 +34,22 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-namespace detail {
-
-/// In place of an input that the options don't need. Given all the same, it is a sentence of the compiler.
-struct NotRead {
-    NotRead() = default;
-    template <class Given> NotRead(const Given&) {
-        static_assert(
-            sizeof(Given) == 0,
-            "lightbin: this Binner does not read this input: bounds want an Options::depth_test, and "
-            "slices an Options::slicing; clusters read no bounds");
-    }
-};
-
-/// In place of what is needed and was not given: the same.
-template <bool read> auto bounds_left_out() {
-    static_assert(
-        !read, "lightbin: this Binner's depth test needs Z bounds: bin(view, lights, {.bounds = ...}), with "
-               "what reduce_depth() returns or bounds of your own");
-    return std::conditional_t<read, ZBounds, NotRead>();
-}
-/// The slices of an Inputs: a reference to the caller's, or a copy of temporary ones, which would be gone after the
-/// expression that makes the Inputs.
-class SlicesInput {
-public:
-    SlicesInput(const Slices& slices) : given_(&slices) {}
-    // Not inline: g++ 12 would warn of what is not there, in programs with the address sanitizer.
-    LIGHTBIN_NOINLINE SlicesInput(const SlicesInput& other) : given_(other.given_), own_(other.own_) {}
-    LIGHTBIN_NOINLINE ~SlicesInput() {}
-    SlicesInput& operator=(const SlicesInput&) = delete;
-    SlicesInput(const Slices&& slices) : own_(slices) {}
-    template <class Given>
-    SlicesInput(const Result<Given>& result) : own_(result) {}  // says that it is no Slices yet
-
-    operator const Slices&() const { return given_ != nullptr ? *given_ : *own_; }
-
-private:
-    const Slices* given_ = nullptr;
-    Maybe<Slices> own_;
-};
-struct NoSlices {
-    operator SlicesInput() const;
-};
-template <bool read> auto slices_left_out() {
-    static_assert(!read,
-                  "lightbin: this Binner slices depth: bin(view, lights, {.slices = *slices}), with what "
-                  "Slices::exponential() or linear() returns");
-    return std::conditional_t<read, NoSlices, NotRead>();
-}
-
-}  // namespace detail
-
-/// What Binner::bin() reads beside the lights. What the options need must be given, and nothing else can be.
+/// The inputs of Binner::bin() beside the lights. Inputs that the options read must be given; giving any other is a compile
+/// error.
 template <DepthTest depth_test, Slicing slicing = Slicing::none> struct Inputs {
     static constexpr bool reads_slices = slicing != Slicing::none,
                           reads_bounds = depth_test != DepthTest::none && slicing != Slicing::clusters;
 
-    /// Read where they are: they must live until the call. Temporary ones are copied.
+    /// Not copied, so the caller's Slices must live until the call. Temporary Slices are copied.
     std::conditional_t<reads_slices, detail::SlicesInput, detail::NotRead> slices =
         detail::slices_left_out<reads_slices>();
-    /// Minimum, maximum or both. See ZBounds for what an empty side means.
+    /// Minimum, maximum or both. An empty span in ZBounds is not tested against.
     std::conditional_t<reads_bounds, ZBounds, detail::NotRead> bounds =
         detail::bounds_left_out<reads_bounds>();
 };
 
-/// Returns the inputs of a Binner whose options vary, such as with_options() gives them: what they don't need is
-/// left out.
+/// Returns Inputs with the bounds if the options read bounds, else without. For templates whose options vary, as with
+/// with_options().
 template <Options options>
 requires(options.slicing == Slicing::none) Inputs<options.depth_test> inputs_for([[maybe_unused]] const ZBounds& bounds) {
     if constexpr (options.depth_test == DepthTest::none)
@@ -107,8 +58,8 @@ requires(options.slicing == Slicing::none) Inputs<options.depth_test> inputs_for
         return {.bounds = bounds};
 }
 
-/// The same where slices are among the options that vary. They are read where they are, temporary ones copied, as by an
-/// Inputs.
+/// Returns Inputs with those of the bounds and slices that the options read. For templates whose options vary, Options::slicing
+/// among them. The slices must live until the call; temporary Slices are copied.
 template <Options options>
 Inputs<options.depth_test, options.slicing> inputs_for([[maybe_unused]] const ZBounds& bounds,
                                                        [[maybe_unused]] const detail::SlicesInput& slices) {
@@ -121,16 +72,18 @@ Inputs<options.depth_test, options.slicing> inputs_for([[maybe_unused]] const ZB
         return {.slices = slices};
 }
 
-/// The two grids of Tiled Forward Shading, section 4.5, Listing 4.2: `opaque` is pruned by minimum and maximum depth;
-/// `transparent` by the maximum alone, as transparent geometry may lie anywhere in front of the opaque.
+/// Two grids of one scene (Tiled Forward Shading, section 4.5, Listing 4.2). `opaque` is tested against minimum and maximum
+/// depth; `transparent` against the maximum alone, because transparent geometry may lie anywhere in front of opaque geometry.
 template <class Id> struct TransparencyGrids { LightGrid<Id> opaque, transparent; };
 
-/// Bins lights into screen tiles. Keeps its memory: the same input again allocates nothing, another one only where
-/// it outgrows the earlier ones, or where another kernel or number of threads takes it. After an exception in a call,
-/// there is no grid, and the next call is as any other. Not thread-safe: one Binner a thread.
+/// Bins lights into screen tiles.
 ///
-/// A call computes, and has the caller's callables compute, in the floating-point environment that threads start with
-/// (rounding to nearest, no traps, denormal numbers kept), and leaves the caller's as it was.
+/// A Binner keeps its memory from call to call: it allocates only where an input needs more memory than all before, or where
+/// another kernel or number of threads is chosen for it. If a call throws, the Binner has no grid, and later calls work as
+/// usual. Not thread-safe: use one Binner per thread.
+///
+/// During a call, the library and the caller's callables compute in the floating-point environment that threads start with:
+/// rounding to nearest, no traps, denormal numbers kept. The caller's environment is restored afterwards.
 template <Options options = Options{}> class Binner {
     static_assert(options.ids != IdWidth::u8,
                   "lightbin: a Binner's ids have 16 or 32 bits: take Options{.ids = IdWidth::u16} and have "
@@ -142,29 +95,28 @@ template <Options options = Options{}> class Binner {
 public:
     using Id = std::conditional_t<options.ids == IdWidth::u16, std::uint16_t, std::uint32_t>;
     using Inputs = lightbin::Inputs<options.depth_test, options.slicing>;
-    /// The form of the grid as it is, for a shader that reads it: ShaderOptions::format.
+    /// The format of the grids, to give to ShaderOptions::format for a shader that reads them.
     static constexpr ListFormat list_format = {.ids = options.ids};
 
     Binner() = default;
-    /// Takes over the other's memory and grid. The other is as new.
+    /// Takes over the memory and the grid of `other`, which is then like a new Binner.
     Binner(Binner&& other) noexcept { swap(other); }
     Binner& operator=(Binner&& other) noexcept {
         Binner(std::move(other)).swap(*this);
         return *this;
     }
 
-    /// Returns the light grid of `lights` in `view`, in the Binner's memory: valid until its next call.
+    /// Returns the light grid of `lights` in `view`. Its memory belongs to the Binner and is valid until the next call.
     ///
-    /// lights   a contiguous range of vec4 (x, y, z, radius), Sphere or Spot in view space, view_space(...) or
-    ///          world_space(...)
-    /// inputs   {.slices = ...} with clusters; else {.slices = ...} with z_bins, {.bounds = ...} with a depth test, both in
-    ///          this order with both, else {} or nothing
-    /// threads  a Parallel: threads to share the work among. The grid is the same with any number of them.
+    /// lights   view_space(...), world_space(...), or a contiguous range of vec4 (x, y, z, radius), Sphere or Spot in view
+    ///          space
+    /// inputs   {.slices = ...} with clusters or z_bins, {.bounds = ...} with a depth test unless with clusters, and
+    ///          {.slices = ..., .bounds = ...} with z_bins and a depth test; else nothing
+    /// threads  a Parallel, to share the work among the caller's threads. The grid does not depend on it.
     ///
-    /// After it, every tile lists every light whose sphere, or spot, meets the tile's cell (no miss), in ascending
-    /// order. Errors: more lights than Id can number; more than 2^32 - 1 entries, cells, or pairs of a light
-    /// and a slice or block of 8x8 tiles; a world_space() matrix that is not affine; a side of the Z bounds that is
-    /// shorter than view.tile_count().
+    /// Afterwards every tile lists, in ascending order, every light whose sphere, or spot, meets the tile's cell; no light is
+    /// missed. Errors: more lights than Id can number; more than 2^32 - 1 entries, cells, or pairs of a light and a slice or
+    /// block of 8x8 tiles; a world_space() matrix that is not affine; Z bounds shorter than view.tile_count().
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     Result<LightGrid<Id>> bin(const View& view, const LightRange& lights, const Inputs& inputs = {},
                               const Threads& threads = {}) {
@@ -173,11 +125,11 @@ public:
         return build<spots<LightRange>>(lists_, view, bounds_of(inputs), threads);
     }
 
-    /// Returns both grids of a scene with transparent geometry from one projection, valid until the Binner's
-    /// next call. Errors as bin(), and bounds that leave out the background without a transparent_max.
+    /// Returns two grids, for opaque and for transparent geometry, and projects the lights once for both. They are valid until
+    /// the Binner's next call. Errors: those of bin(); bounds made without the background but without transparent_max.
     ///
-    /// inputs  the bounds are those of the opaque geometry; transparent lights are pruned by transparent_max or,
-    ///         without it, by max
+    /// inputs  the bounds are those of the opaque geometry. Lights for transparent geometry are tested against
+    ///         transparent_max, or against max where that is empty
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     requires(with_depth) Result<TransparencyGrids<Id>> bin_transparency(const View& view,
                                                                         const LightRange& lights,
@@ -197,11 +149,13 @@ public:
         return TransparencyGrids<Id>{*opaque, *transparent};
     }
 
-    /// Writes to `bits` what encode() makes of bin()'s grid with {.encoding = ListEncoding::bitmask, .max_lights =
-    /// max_lights}: of each tile (max_lights + 31) / 32 words, bit b of word w being light 32 w + b. Up to about a
-    /// thousand lights that is faster without the lists. Returns what became of the lights, and with z_bins the
-    /// ranks, valid until the next call. Errors as bin(), but for entries, which nothing counts; and, then without
-    /// a bit written, fewer words than that, or more lights than max_lights, with z_bins more lights in view.
+    /// Writes a bitmask per tile to `bits`, without making lists: (max_lights + 31) / 32 words per tile, where bit b of word w
+    /// is set if the tile's list would have id 32 w + b. The result equals encode() of bin()'s grid with {.encoding =
+    /// ListEncoding::bitmask, .max_lights = max_lights}, and is faster up to about a thousand lights. Returns the counts of
+    /// lights and, with z_bins, the ranks, which are valid until the next call.
+    ///
+    /// Errors: those of bin() except for entries, which are not counted; fewer words in `bits` than view.tile_count() tiles
+    /// need; more lights than max_lights (with z_bins, more lights in view). After either of the last two no bit was written.
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     requires(!clusters) Result<LightBits> bin_bits(const View& view, const LightRange& lights,
                                                    std::uint32_t max_lights, std::span<std::uint32_t> bits,
@@ -214,7 +168,7 @@ public:
         const std::uint64_t numbered = z_bins ? footprints_.visible() : footprints_.lights();
         if (numbered > max_lights) return Error{ErrorCode::ids_too_narrow, numbered, max_lights};
         if (const auto error = lists_.template write_bits<spots<LightRange>>(
-                isa_, view, lit(), bounds_of(inputs), scratch_, threads, bits.data(),
+                isa_, view, visible(), bounds_of(inputs), scratch_, threads, bits.data(),
                 static_cast<std::size_t>(each)))
             return *error;
         return LightBits{counts(), ranks()};
@@ -227,12 +181,14 @@ private:
         clusters, SlicedFootprints<options.footprint>,
         std::conditional_t<z_bins, RankedFootprints<options.footprint, with_depth>, Nothing>>;
 
+    /// True if the caller's lights are Spots.
     template <class LightRange>
     static constexpr bool spots =
         std::remove_cvref_t<decltype(detail::as_lights(std::declval<const LightRange&>()))>::spots;
 
+    /// Projects the lights to footprints and, where slices are read, orders the footprints by depth.
     template <class LightRange>
-    detail::Maybe<Error> project(const View& view, const LightRange& lights,
+    std::optional<Error> project(const View& view, const LightRange& lights,
                                  [[maybe_unused]] const Inputs& inputs, const Parallel& threads) {
         const auto& source = detail::as_lights(lights);
         if (const auto error = detail::refuse(source, options.ids == IdWidth::u16 ? 0x10000 : 0xffffffff))
@@ -247,7 +203,8 @@ private:
             return {};
     }
 
-    const auto& lit() const {
+    /// Returns the footprints of the lights in view, ordered by depth if slices are read.
+    const auto& visible() const {
         if constexpr (Inputs::reads_slices)
             return ordered_;
         else
@@ -261,13 +218,14 @@ private:
             return {};
     }
 
+    /// Builds the lists of the projected lights into `lists` and returns the grid of them.
     template <bool of_spots, class Threads>
     Result<LightGrid<Id>> build(Lists& lists, const View& view, const ZBounds& bounds,
                                 const Threads& threads) {
-        if (const auto error = lists.template build<of_spots>(isa_, view, lit(), bounds, scratch_, threads))
+        if (const auto error = lists.template build<of_spots>(isa_, view, visible(), bounds, scratch_, threads))
             return *error;
         return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), counts(),
-                             lit().slices(), ranks());
+                             visible().slices(), ranks());
     }
 
     LightCounts counts() const {
@@ -292,9 +250,9 @@ private:
     }
 
     Isa isa_ = Isa::scalar;
-    detail::Buffer<detail::Scratch> scratch_;  ///< one a worker
+    detail::Buffer<detail::Scratch> scratch_;  ///< one per worker
     Footprints<options.footprint, with_depth || options.slicing != Slicing::none> footprints_;
-    Ordered ordered_;
+    Ordered ordered_;  ///< the footprints ordered by depth
     Lists lists_;
     std::conditional_t<with_depth, Lists, Nothing> transparent_;
 };

@@ -7,7 +7,6 @@
 #include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/base/buffer.hpp>
-#include <lightbin/detail/base/maybe.hpp>
 #include <lightbin/detail/depth/slice_table.hpp>
 #include <lightbin/detail/project/footprint_arrays.hpp>
 #include <lightbin/detail/project/footprints.hpp>
@@ -21,6 +20,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include <lightbin/detail/base/warnings_off.inl>
 
@@ -40,7 +40,7 @@ public:
     ///
     /// spots  the lights are spots
     template <bool spots>
-    detail::Maybe<Error> order(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
+    std::optional<Error> order(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
                                const Slices& slices) {
         run_ = {0, footprints.visible()};
         area_ = footprints.area();

@@ -6,7 +6,6 @@
 #include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/base/buffer.hpp>
-#include <lightbin/detail/base/maybe.hpp>
 #include <lightbin/detail/base/rounding.hpp>
 #include <lightbin/detail/depth/slice_table.hpp>
 #include <lightbin/detail/project/footprint_arrays.hpp>
@@ -21,6 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include <lightbin/detail/base/warnings_off.inl>
 
@@ -37,7 +37,7 @@ public:
     ///
     /// spots  the lights are spots
     template <bool spots>
-    detail::Maybe<Error> order(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
+    std::optional<Error> order(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
                                const Slices& slices) {
         constexpr std::uint64_t max_count = (std::numeric_limits<std::uint32_t>::max)();
         const detail::FootprintArrays& lights = footprints.arrays();

@@ -4,7 +4,6 @@
 
 #include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/buffer.hpp>
-#include <lightbin/detail/base/maybe.hpp>
 #include <lightbin/detail/engine/block.hpp>
 #include <lightbin/detail/engine/cell_boxes.hpp>
 #include <lightbin/detail/engine/costs.hpp>
@@ -21,6 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <type_traits>
 
@@ -42,7 +42,7 @@ public:
     /// footprints Footprints or RankedFootprints, with spheres for a depth test; sliced: SlicedFootprints
     /// parallel   Serial or Parallel
     template <bool spots, class AnyFootprints, class Threads>
-    Maybe<Error> build(Isa isa, const View& view, const AnyFootprints& footprints, const ZBounds& bounds,
+    std::optional<Error> build(Isa isa, const View& view, const AnyFootprints& footprints, const ZBounds& bounds,
                        Buffer<Scratch>& scratch, [[maybe_unused]] const Threads& parallel) {
         tile_count_ = entries_ = 0;  // until there is a grid
         shared_ = false;
@@ -113,7 +113,7 @@ public:
     /// Writes a bitmask of lights for each tile, `stride` words each, see write_bits(). Errors as build() but for entries, which
     /// are not counted. There is no grid then.
     template <bool spots, class AnyFootprints>
-    Maybe<Error> write_bits(Isa isa, const View& view, const AnyFootprints& footprints, const ZBounds& bounds,
+    std::optional<Error> write_bits(Isa isa, const View& view, const AnyFootprints& footprints, const ZBounds& bounds,
                             Buffer<Scratch>& scratch, const Parallel& parallel, std::uint32_t* bits, std::size_t stride) {
         tile_count_ = entries_ = 0;
         Job common = {};
@@ -149,7 +149,7 @@ private:
     static constexpr bool by_slab = sliced && depth_test == DepthTest::box && footprint == Footprint::rectangle && !spots;
 
     /// Sets what the jobs of all slices share, but for the table.
-    Maybe<Error> prepare(const View& view, const ZBounds& bounds, Job& common) {
+    std::optional<Error> prepare(const View& view, const ZBounds& bounds, Job& common) {
         const std::size_t tiles = view.tile_count();
         common.camera = &camera_of(view);
         const std::span<const float> sides[] = {bounds.min, bounds.max, bounds.gap_min, bounds.gap_max};
@@ -183,7 +183,7 @@ private:
         return job;
     }
 
-    static Maybe<Error> check_list_size(const View& view, const FootprintSlice& lit) {
+    static std::optional<Error> check_list_size(const View& view, const FootprintSlice& lit) {
         if (lit.area > surely_listed_area)
             if (const std::uint64_t size = list_size_bound(camera_of(view), lit); size > max_entries)
                 return Error{ErrorCode::too_many_list_places, size, max_entries};

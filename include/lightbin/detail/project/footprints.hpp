@@ -6,7 +6,6 @@
 #include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/base/buffer.hpp>
-#include <lightbin/detail/base/maybe.hpp>
 #include <lightbin/detail/engine/costs.hpp>
 #include <lightbin/detail/project/footprint_arrays.hpp>
 #include <lightbin/detail/tiers/kernels.hpp>
@@ -18,6 +17,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include <lightbin/detail/base/warnings_off.inl>
 
@@ -28,7 +28,7 @@ namespace detail {
 /// Returns why lights can't be binned, or nothing if they can: their view matrix is refused, or there are more than
 /// ids can number.
 template <class Light, class ToLight>
-Maybe<Error> refuse(const Lights<Light, ToLight>& lights, std::uint64_t max_lights = 0xffffffff) {
+std::optional<Error> refuse(const Lights<Light, ToLight>& lights, std::uint64_t max_lights = 0xffffffff) {
     if (lights.to_view)
         if (const auto code = lights.to_view->refusal()) return Error{*code};
     if (lights.array.size() > max_lights) return Error{ErrorCode::too_many_lights, lights.array.size(), max_lights};

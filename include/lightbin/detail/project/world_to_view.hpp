@@ -21,12 +21,13 @@
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/base/float_environment.hpp>
 #include <lightbin/detail/base/math.hpp>
-#include <lightbin/detail/base/maybe.hpp>
 #include <lightbin/detail/base/platform.hpp>
 #include <lightbin/detail/base/rounding.hpp>
 #include <lightbin/matrix.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/sphere.hpp>
+
+#include <optional>
 
 #include <lightbin/detail/base/warnings_off.inl>
 
@@ -78,7 +79,7 @@ public:
     }
 
     /// Returns why the matrix can transform no light, or nothing if it can.
-    Maybe<ErrorCode> refusal() const {
+    std::optional<ErrorCode> refusal() const {
         if (affine_) return {};
         return finite(m_) && last_row_is_affine(transposed(m_)) ? ErrorCode::view_matrix_transposed
                                                                 : ErrorCode::view_matrix_not_affine;
