@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Instruction sets: which of them the compiler made kernels for, and which this machine runs.
+// Instruction sets: those that the compiler made kernels for, and the widest that this machine runs.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -15,7 +15,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// Instruction sets with kernels of their own. All give the same bytes.
+/// The instruction sets that have their own kernels. The kernels of all of them give the same bytes.
 enum class Isa : std::uint8_t {
     scalar,   ///< every machine
     simd128,  ///< vectors of 128 bits: SSE4.1 on x86-64, NEON on 64-bit ARM, simd128 of WebAssembly (-msimd128)
@@ -27,9 +27,9 @@ constexpr const char* to_string(Isa isa) {
     return detail::name_at(isa, {"scalar", "simd128", "avx2", "avx512"});
 }
 
-/// The widest instruction set that this compiler makes kernels for.
+/// The widest instruction set that this build contains kernels for.
 #if defined(LIGHTBIN_X86) && defined(__MINGW32__) && !defined(__clang__)
-inline constexpr Isa compiled_isa = Isa::simd128;  // wider vectors are misaligned on the stack: GCC bug 54412
+inline constexpr Isa compiled_isa = Isa::simd128;  // wider vectors would be misaligned on the stack (GCC bug 54412)
 #elif defined(LIGHTBIN_X86)
 inline constexpr Isa compiled_isa = Isa::avx512;
 #elif defined(LIGHTBIN_SIMD128)
@@ -41,10 +41,11 @@ inline constexpr Isa compiled_isa = Isa::scalar;
 #if defined(LIGHTBIN_X86)
 namespace detail {
 
-/// The widest instruction set whose kernels the processor, and the system's saving of registers, can run.
+/// The widest instruction set whose kernels the processor and the operating system support.
 inline Isa processor_isa() {
 #if defined(_MSC_VER)
-    // Intel's manual, volume 2, CPUID: leaf 1, ECX; leaf 7, EBX and ECX. XGETBV: what the system saves of registers.
+    // Bits of CPUID leaf 1 (ECX) and leaf 7 (EBX, ECX) say what the processor supports; bits of XGETBV, which registers the
+    // operating system saves. (Intel's manual, volume 2, CPUID.)
     int leaf_0[4], leaf_1[4], leaf_7[4] = {};
     __cpuid(leaf_0, 0);
     __cpuid(leaf_1, 1);
@@ -60,7 +61,7 @@ inline Isa processor_isa() {
     const bool avx512 = (saved & 0xe6) == 0xe6 && has(leaf_7[1], {8, 16, 17, 30, 31});  // BMI2, F, DQ, BW, VL
     return avx512 && has(leaf_7[2], {1, 6, 12}) ? Isa::avx512 : Isa::avx2;              // VBMI, VBMI2, BITALG
 #else
-    // The compiler's own, which asks the processor once a program: in a virtual machine asking takes 10 us and more.
+    // The compiler's builtins execute CPUID once per program. In a virtual machine, CPUID takes 10 us and more.
     if (!__builtin_cpu_supports("ssse3") || !__builtin_cpu_supports("sse4.1") || !__builtin_cpu_supports("popcnt"))
         return Isa::scalar;
     if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("bmi")) return Isa::simd128;
@@ -75,8 +76,8 @@ inline Isa processor_isa() {
 }  // namespace detail
 #endif
 
-/// Returns the widest instruction set, `cap` or below, that was compiled in and that this machine runs: what a Binner
-/// with Options::isa = cap uses.
+/// Returns the widest instruction set up to `cap` that this build contains and this machine runs: the one that a Binner with
+/// Options::isa = cap uses.
 inline Isa machine_isa(Isa cap = compiled_isa) {
     if (cap > compiled_isa) cap = compiled_isa;
 #if defined(LIGHTBIN_X86)

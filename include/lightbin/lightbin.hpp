@@ -1,52 +1,52 @@
 // SPDX-License-Identifier: MIT
 //
-// lightbin: lights a scene with thousands of lights. Header-only C++20, standard library only.
+// lightbin: finds the lights that can reach each screen tile. Header-only C++20, standard library only.
 //
-// What it does. From a projection matrix and N light spheres it makes, for each screen tile, the list of
-// lights that can touch what the tile shows: {offset, count} a tile and one light index list, two flat
-// buffers that a forward, deferred or compute pass reads. It misses no light, whatever the camera or the
-// numbers, and drops nothing in silence.
+// What it does. From a projection matrix and N light spheres it makes, for each screen tile, the list of the lights that can
+// reach what the tile shows: {offset, count} per tile and one light index list. A forward, deferred or compute pass reads
+// these two flat buffers. No light is missed, whatever the camera and the numbers, and nothing is dropped silently.
 //
-// What it does not do. No lighting model, no shadows, no GPU calls, no threads, no file formats: it fills
-// memory and makes text.
+// What it does not do. It has no lighting model, no shadows, no GPU calls, no threads and no file formats: it fills memory
+// and writes shader text.
 //
 // Step by step
 //   1. View::from_projection(projection, {width, height}, {.tile_size = 32, ...})              view.hpp
-//        Whenever the camera or the window's size changes. Any perspective or orthographic matrix; a Result,
-//        as a matrix may be refused by name. It also tells the pixel and the tile of a point.
-//   2. Optionally reduce_depth(view, {.depth = pixels}, {.min = min, .max = max}), or Z       z_bounds.hpp
-//      bounds of your own
-//   3. Binner<Options{...}> binner; once. Then each frame                                      binner.hpp
-//        binner.bin(view, lights), with a depth test binner.bin(view, lights, {.bounds = *bounds}); and your
-//        threads, if you lend some, last.
-//        lights: vec4, Sphere or Spot array in view space, or view_space(yours, to_light),
-//        or world_space(yours, view_matrix[, to_light])                                       lights.hpp
-//        to_light makes a Sphere of a light, or a Spot, which is listed where its cone reaches   spot.hpp
-//   4. Upload grid->ranges() and grid->ids(), or have grid->copy_to(ranges, ids)               light_grid.hpp
-//      write them to buffers of yours.
-//   For all depths without a depth buffer (no pre-pass, fog, glass): Slices::exponential(24, 5, 200)  slices.hpp
-//      once, a Binner<Options{.slicing = Slicing::clusters}> or z_bins, and binner.bin(view, lights, {.slices = *slices}).
-//   5. #include <lightbin/shader.hpp>. Put shader_snippet({...})->text in your shader, and bind what its
-//      bindings list. docs/README.md leads to the steps, API by API.
+//        Call it whenever the camera or the window's size changes. It takes any perspective or orthographic matrix, and
+//        returns a Result, since a matrix may be refused by name. A View also tells the pixel and the tile of a point.
+//   2. Optional: reduce_depth(view, {.depth = pixels}, {.min = min, .max = max}), or your      z_bounds.hpp
+//        own Z bounds.
+//   3. Make a Binner<Options{...}> binner once. Then, each frame:                              binner.hpp
+//        binner.bin(view, lights), or with a depth test binner.bin(view, lights, {.bounds = *bounds}). To use several
+//        threads, add a Parallel as the last argument.                                         parallel.hpp
+//        lights is an array of vec4, Sphere or Spot in view space, or view_space(array, to_light), or
+//        world_space(array, view_matrix[, to_light]), where to_light makes a Sphere or a Spot  lights.hpp
+//        of an element. A Spot is listed where its cone reaches.                               spot.hpp
+//   4. Upload grid->ranges() and grid->ids(), or let grid->copy_to(ranges, ids) write to       light_grid.hpp
+//        mapped buffers.
+//      To cover all depths without a depth buffer (no pre-pass, fog, glass), make Slices       slices.hpp
+//        once, such as Slices::exponential(24, 5, 200), use Options{.slicing = Slicing::clusters} or z_bins, and call
+//        binner.bin(view, lights, {.slices = *slices}).
+//   5. Include <lightbin/shader.hpp>, put shader_snippet({...})->text into your shader, and bind the resources that its
+//        bindings list. docs/README.md leads on, graphics API by graphics API.
 //
-// This header includes steps 1 to 4. What else there is, one include each:
-//   shader.hpp        the shader text that reads the lists, in GLSL, HLSL and WGSL
-//   encode.hpp        the lists in other forms: 8-bit ids, sentinel-terminated lists, bitmasks
-//   shader_build.hpp  shaders that do the same as steps 2 and 3 on the GPU
-//   advise.hpp        which tile size and options? advise(view, lights, costs[, bounds]) measures them
+// This header includes steps 1 to 4. Further headers, to be included by name:
+//   shader.hpp        shader text that reads the lists, in GLSL, HLSL and WGSL
+//   encode.hpp        the lists in other formats: 8-bit ids, sentinel-terminated lists, bitmasks
+//   shader_build.hpp  shader text that does steps 2 and 3 on the GPU
+//   advise.hpp        advise(view, lights, costs[, bounds]) measures which tile size and options are best
 //
-// Building. No compiler flags are needed. With gcc or clang there are kernels for SSE2, AVX2 and AVX-512 on
-// x86-64, of which the machine's own is picked at run time, and for NEON on 64-bit ARM; elsewhere the scalar
-// ones run. All give the same bytes. Define LIGHTBIN_NO_SIMD to leave them out, LIGHTBIN_ASSERT to take over the
-// assertions. -ffast-math is refused where the compiler tells of it; docs/limits.md says where it does not. So is x87
-// arithmetic, which 32-bit compilers may default to. Rounding modes, traps and flushed denormal numbers change nothing.
+// Building. No compiler flags are needed. With gcc and clang there are kernels for several vector instruction sets; see
+// isa.hpp. The widest that the machine has is chosen at run time, and all give the same bytes. Define LIGHTBIN_NO_SIMD to leave
+// the vector kernels out, and LIGHTBIN_ASSERT to replace the assertions. -ffast-math is an error where the compiler tells of
+// it (docs/limits.md says where it does not), and so is x87 arithmetic, the default of some 32-bit compilers. The caller's
+// rounding mode, traps and flushing of denormal numbers do not change the results.
 //
-// Files of one program may be compiled for different processors. They share none of this library's functions: its names
-// lie in an inline namespace that says what the file is compiled for. So its types can't be handed from one such file
-// to another (a linker error says so), nor be declared without its headers.
+// The files of a program may be compiled for different processors. They share no functions of this library, because its names
+// lie in an inline namespace named after the instruction set. Therefore lightbin's types cannot be passed between such files (the
+// linker reports it), nor be declared without including its headers.
 //
-// Sources: Olsson and Assarsson, "Tiled Shading", JGT 15(4), 2011. Billeter, Olsson and Assarsson, "Tiled
-// Forward Shading", GPU Pro 4, 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.
+// Sources: Olsson and Assarsson, "Tiled Shading", JGT 15(4), 2011. Billeter, Olsson and Assarsson, "Tiled Forward Shading",
+// GPU Pro 4, 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.
 #pragma once
 
 #include <lightbin/binner.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The one place that holds the version; CMakeLists.txt reads it from here.
+// The version of the library. CMakeLists.txt reads it from this file.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>

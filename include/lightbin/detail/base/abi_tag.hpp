@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: MIT
-// Names everything in the library after the instructions that the compiler may use anywhere. Two translation units
-// with different flags then share no function and no type: of one that both have the linker would keep either copy,
-// and its instructions might not exist on the machine. Who hands a lightbin type from one such unit to another is told
-// by the linker.
+// LIGHTBIN_ABI_TAG: the name of the library's inline namespace. It encodes the instructions that the compiler's flags allow
+// everywhere, so that two translation units compiled with different flags share no function and no type. Of a shared inline
+// function the linker would keep either copy, whose instructions might not exist on the machine. Passing a lightbin type
+// between such units is a linker error.
 //
-// All other headers read this one before anything else, so it also refuses what is not C++20. After #error gcc and clang
-// would go on to hundreds of errors; a file that does not exist ends every compiler, by one error that shows its name.
+// All other headers include this one first, so it also refuses compilers that are not set to C++20. It does so by including a
+// file that does not exist, which ends every compiler with one error that shows the file's name. After an #error gcc and clang
+// would go on to report hundreds of errors.
 #pragma once
 
 #if (defined(_MSVC_LANG) ? _MSVC_LANG : __cplusplus) <= 201703L
 #include "lightbin wants C++20, which the flag -std=c++20 gives (Microsoft's: /std:c++20); no file is missing"
 #endif
 
-// The name says which rung of the ladder of vector instructions is taken for granted, with all rungs below it, and then
-// each other extension that is, by the number of its line below and its letter there. The rule: every extension whose
-// instructions a compiler may choose by itself for plain C++, of which it tells by a macro. So none of those that take an
-// intrinsic, a checksum, a cipher or 16-bit floats, no hints (prefetches, marks of control flow), which other processors
-// skip, and none of WebAssembly, whose engines refuse a module as a whole. tests/guest/flavours.sh has a list of these.
+// The name consists of the highest level of vector instructions that the flags allow, such as sse41, and of each other extension
+// that they allow, written as the number of its LIGHTBIN_LINE below and its letter within that line. Included is every extension
+// that a compiler may use of its own accord for plain C++ and announces by a macro. Left out are extensions that only
+// intrinsics reach, those for checksums, ciphers and 16-bit floats, hints that older processors ignore (prefetches,
+// control-flow marks), and those of WebAssembly, where an engine refuses a module as a whole. tests/guest/flavours.sh has a
+// list of all that are left out.
 
-// NAME where MACRO is 1, or what versions RISC-V counts, NAME and a number where it is that, OTHER where it is not defined.
+// LIGHTBIN_IF(macro, name, other) expands to `name` if the macro is 1 (RISC-V: 1000000), to `name` and the digit if it is 2 or 3,
+// and to `other` if it is not defined.
 #define LIGHTBIN_IF(macro, name, other) LIGHTBIN_IF_VALUE(macro, name, other)
 #define LIGHTBIN_IF_VALUE(value, name, other) LIGHTBIN_IF_FOUND(LIGHTBIN_FOUND_##value(name), other)
 #define LIGHTBIN_IF_FOUND(found, other) LIGHTBIN_SECOND(found, other, )
@@ -35,8 +38,8 @@
                    LIGHTBIN_IF_VALUE(D, n##d, ), LIGHTBIN_IF_VALUE(E, n##e, ), LIGHTBIN_IF_VALUE(F, n##f, ), \
                    LIGHTBIN_IF_VALUE(G, n##g, ), LIGHTBIN_IF_VALUE(H, n##h, ))
 
-// By processor, and none of it where nothing is beyond the baseline: it is expanded wherever the namespace is named, and all
-// of it would take 15 ms a file.
+// LIGHTBIN_INSTRUCTION_SET is defined for each processor family, and as plain `baseline` if the flags allow no x86 extension.
+// The macro is expanded wherever the namespace is named; the long form would cost each compiled file 15 ms.
 // clang-format off
 #if defined(__arm__) || defined(__aarch64__)
 #define LIGHTBIN_INSTRUCTION_SET LIGHTBIN_PASTE(LIGHTBIN_RUNG, \
@@ -53,7 +56,7 @@
 #else
 #define LIGHTBIN_RUNG LIGHTBIN_IF(__ARM_FEATURE_SVE2, sve2_, LIGHTBIN_IF(__ARM_FEATURE_SVE, sve_, baseline))
 #endif
-#elif defined(__wasm__)  // other kernels are picked
+#elif defined(__wasm__)  // the kernels depend on this macro
 #define LIGHTBIN_INSTRUCTION_SET LIGHTBIN_IF(__wasm_simd128__, simd128, baseline)
 #elif defined(__s390__)
 #define LIGHTBIN_INSTRUCTION_SET LIGHTBIN_PASTE(z, __ARCH__, LIGHTBIN_IF(__VX__, _vx, ), , , , , )
@@ -87,7 +90,7 @@
 #endif
 // clang-format on
 
-#if defined(LIGHTBIN_NO_SIMD)  // other kernels are picked
+#if defined(LIGHTBIN_NO_SIMD)  // chooses other kernels, so needs another name
 #define LIGHTBIN_ABI_TAG LIGHTBIN_PASTE(built_for_, LIGHTBIN_INSTRUCTION_SET, _no_simd, , , , , )
 #else
 #define LIGHTBIN_ABI_TAG LIGHTBIN_PASTE(built_for_, LIGHTBIN_INSTRUCTION_SET, , , , , , )

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the core takes of <algorithm>, <functional> and <span>, in a few lines. The first two take every file that includes
-// the core a tenth of a second each to compile, and a std::span another 7 ms for each type of items that one is made of:
-// functions that return one are templates, which only their callers compile.
+// Stand-ins for the few parts of <algorithm> and <span> that the core uses, because those cost every file that includes the
+// core more time to compile: <algorithm> 50 ms, and std::span in place of Items 30 ms.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -15,7 +14,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Some items in a row. As std::span, which the core takes and hands out.
+/// A contiguous array of items that someone else owns, like std::span. Public functions take and return std::span.
 template <class T> struct Items {
     T* first;
     std::size_t count;
@@ -26,10 +25,11 @@ template <class T> struct Items {
     T& operator[](std::size_t i) const { return first[i]; }
 };
 
-/// With NaN, or equal numbers, `a`: so is max_of().
+/// Returns the lesser of two values; `a` if they are equal or if either is NaN.
 template <class T> constexpr T min_of(T a, T b) {
     return b < a ? b : a;
 }
+/// Returns the greater of two values; `a` if they are equal or if either is NaN.
 template <class T> constexpr T max_of(T a, T b) {
     return a < b ? b : a;
 }
@@ -39,13 +39,14 @@ template <class T> void fill_items(T* to, std::uint64_t count, std::type_identit
         *to = value;
 }
 
-/// Of memory that does not overlap. No count, no pointers needed.
+/// Copies `count` items between arrays that do not overlap. With a count of 0 the pointers may be null.
 template <class T> void copy_items(const T* from, std::uint64_t count, T* to) {
     static_assert(std::is_trivially_copyable_v<T>);
     if (count > 0) std::memcpy(static_cast<void*>(to), from, static_cast<std::size_t>(count) * sizeof *to);
 }
 
-/// The first item of which `is_before` is false, as it is of all behind it; or `end`.
+/// Binary search: returns the first item for which is_before(item) is false, or `end`. The items must be sorted so that
+/// is_before is true for a first part of them and false for the rest.
 template <class T, class IsBefore> const T* first_not(const T* begin, const T* end, IsBefore is_before) {
     while (begin < end) {
         const T* const middle = begin + (end - begin) / 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scratch memory that is kept from call to call and not cleared.
+// Buffer: memory that is kept from call to call and is not initialised.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -16,6 +16,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
+/// An array whose elements are not initialised. Unlike std::vector it does not clear memory that is about to be overwritten.
 template <class T> class Buffer {
 public:
     Buffer() = default;
@@ -26,8 +27,8 @@ public:
     }
     ~Buffer() { delete[] memory_; }
 
-    /// Returns memory of `size` elements or more. Their values are lost where it has to grow. Where there is no
-    /// memory for them, or `std::size_t` does not count them, it throws as `new` does, and later calls are right.
+    /// Returns memory for `size` elements or more. If it has to grow, all values are lost. Throws as `new` does if there is not
+    /// enough memory or if `size` exceeds std::size_t; the Buffer remains usable.
     T* reserve(std::uint64_t size) {
         if (size > size_) {
             Buffer().swap(*this);
@@ -36,7 +37,8 @@ public:
         return memory_;
     }
 
-    /// The same, keeping the first `used` elements, or as many as there are; grows in large steps.
+    /// Returns memory for `size` elements or more and keeps the values of the first `used` elements. Grows to twice `size`, so
+    /// that appending one element at a time takes linear time.
     T* reserve(std::uint64_t size, std::size_t used) {
         if (size > size_) {
             Buffer larger(sum_of_sizes(size, size));
@@ -63,11 +65,12 @@ public:
     }
 
 private:
-    /// Uninitialised. More elements than std::size_t counts are as many as it does: no memory has those.
+    /// Allocates `size` uninitialised elements. A size beyond std::size_t is reduced to its maximum, so that `new` throws.
     explicit Buffer(std::uint64_t size)
         : size_(static_cast<std::size_t>(min_of<std::uint64_t>(size, ~std::size_t{0}))) {
 #if defined(LIGHTBIN_MEMORY_SANITIZER)
-        // Kernels read whole words and vectors; it takes what they leave unused of them for used.
+        // Initialised, because kernels read whole words and vectors and ignore parts of them. The sanitizer would report those
+        // parts as used.
         memory_ = new T[size_]();
 #else
         memory_ = new T[size_];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Sizes are counted in 64 bits, on machines of 32 bits too. There are fewer than 2^32 lights, tiles and entries, so
-// sums and products of these fit. Numbers that a caller may choose freely are added and multiplied here.
+// Saturating sums and products of sizes. Sizes are 64-bit numbers, also on 32-bit machines. The numbers of lights, tiles and
+// entries are below 2^32, so that the product of any two of them fits. Numbers that the caller may choose freely, such as the
+// pitch of a depth buffer, are added and multiplied by these functions.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -9,16 +10,17 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-inline constexpr std::uint64_t most_size = ~std::uint64_t{0};
+/// The greatest size, which no memory has. It stands for all sizes that overflow.
+inline constexpr std::uint64_t max_size = ~std::uint64_t{0};
 
-/// The sum, or most_size, which no memory has.
+/// Returns a + b, or max_size if the sum overflows.
 constexpr std::uint64_t sum_of_sizes(std::uint64_t a, std::uint64_t b) {
-    return a > most_size - b ? most_size : a + b;
+    return a > max_size - b ? max_size : a + b;
 }
 
-/// The product, or most_size.
+/// Returns a * b, or max_size if the product overflows.
 constexpr std::uint64_t product_of_sizes(std::uint64_t a, std::uint64_t b) {
-    return b != 0 && a > most_size / b ? most_size : a * b;
+    return b != 0 && a > max_size / b ? max_size : a * b;
 }
 
 }}}  // namespace lightbin::detail

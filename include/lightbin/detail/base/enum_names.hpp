@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What to_string() of an enum returns.
+// The common implementation of to_string() for enums.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -9,10 +9,10 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// The name at a value's place: the names of an enum's values, in their order. "?" where there is none.
+/// Returns names[value], or "?" if the value is not an index of `names`.
 template <class Enum> constexpr const char* name_at(Enum value, std::initializer_list<const char*> names) {
-    const std::size_t place = static_cast<std::size_t>(value);
-    return place < names.size() ? names.begin()[place] : "?";
+    const std::size_t index = static_cast<std::size_t>(value);
+    return index < names.size() ? names.begin()[index] : "?";
 }
 
 }}}  // namespace lightbin::detail

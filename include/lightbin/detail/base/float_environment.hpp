@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The thread's floating-point environment: how it rounds, what it traps, whether it flushes denormal numbers to zero.
-// Kernels divide by zero and compare NaN in lanes that they then ignore, and their margins are derived for rounding to
-// nearest. So the library computes in the environment that a thread starts with, whatever the caller has set.
+// DefaultFloatEnvironment: sets the thread's floating-point environment (rounding mode, traps, flushing of denormal numbers) to
+// the one that threads start with, for the duration of a library call. Kernels need it because their error margins are derived for
+// rounding to nearest, and because they divide by zero and compare NaN in lanes whose results they ignore, which must not trap.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -21,8 +21,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// For its life the thread rounds to nearest, traps nothing and keeps denormal numbers. After it the thread has the
-/// environment of before, and no flag is raised that was not. Takes about ten nanoseconds.
+/// While an object of this class lives, the thread rounds to nearest, traps nothing and keeps denormal numbers. Its destructor
+/// restores the caller's environment and exception flags. Takes about ten nanoseconds.
 class DefaultFloatEnvironment {
 public:
     DefaultFloatEnvironment(const DefaultFloatEnvironment&) = delete;
@@ -30,7 +30,7 @@ public:
 
 #if defined(LIGHTBIN_GET_ENVIRONMENT)
     DefaultFloatEnvironment() : callers_(LIGHTBIN_GET_ENVIRONMENT()) {
-        constexpr unsigned flags = 0x3f, by_default = 0x1f80;  // all exceptions masked, nothing else set
+        constexpr unsigned flags = 0x3f, by_default = 0x1f80;  // all exceptions masked, rounding to nearest
         if ((callers_ & ~flags) != by_default) LIGHTBIN_SET_ENVIRONMENT(by_default);
     }
     ~DefaultFloatEnvironment() {
@@ -40,7 +40,7 @@ public:
 private:
     unsigned callers_;
 #elif defined(__wasm__)
-    DefaultFloatEnvironment() {}  // there is no other environment
+    DefaultFloatEnvironment() {}  // WebAssembly has one fixed environment
     ~DefaultFloatEnvironment() {}
 #else
     DefaultFloatEnvironment() {

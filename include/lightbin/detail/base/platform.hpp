@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What compilers and processors differ in. Define LIGHTBIN_NO_SIMD to have the scalar kernels alone. So has the memory
-// sanitizer, which does not know what most vector instructions leave unused.
+// Differences between compilers and processors, as macros. LIGHTBIN_NO_SIMD, which users may define, leaves only the scalar
+// kernels. So does the memory sanitizer, which would report the unused lanes of vectors as uninitialised.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -24,8 +24,8 @@
 #define LIGHTBIN_SIMD128 1
 #endif
 
-// Between LIGHTBIN_TARGET_BEGIN("avx2,bmi") and LIGHTBIN_TARGET_END functions, templates and lambdas may use these instruction
-// sets beyond those of the compiler's flags. Microsoft's compiler lets every function use all of them.
+// Functions, templates and lambdas between LIGHTBIN_TARGET_BEGIN("avx2,bmi") and LIGHTBIN_TARGET_END may use the named instruction
+// sets in addition to those that the compiler's flags allow. Microsoft's compiler allows every function to use all of them.
 #if defined(_MSC_VER) && !defined(__clang__)
 #define LIGHTBIN_NOINLINE __declspec(noinline)
 #define LIGHTBIN_INLINE __forceinline
@@ -45,9 +45,9 @@
 #endif
 #endif
 
-// Makes the compiler forget how a number or vector came about. See rounded(). Microsoft's fuses
-// nothing unless told to, and WebAssembly cannot. On processors without a tier of their own by way of memory, which all
-// compilers understand.
+// LIGHTBIN_FORGET(value) makes the compiler forget how a number or vector was computed, so that it cannot fuse the computation
+// with a later one; see rounded(). Microsoft's compiler does not fuse unless told to, and WebAssembly has no fused instructions. On
+// processors without vector kernels the value goes through memory ("+m"), a constraint that all processors have.
 #if defined(__x86_64__) || defined(__i386__)
 #define LIGHTBIN_FORGET(value) __asm__("" : "+v"(value))
 #elif defined(__aarch64__) && (defined(__GNUC__) || defined(__clang__))
@@ -60,14 +60,14 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// A product that is rounded before it is added to anything: keeps compilers from fusing the two, which would
-/// make the result depend on the instruction set.
+/// Returns `product`, rounded to its type. Keeps the compiler from fusing a product and a later sum into one instruction that
+/// rounds once, since the result would then depend on the instruction set.
 template <class Real> inline Real rounded(Real product) {
     LIGHTBIN_FORGET(product);
     return product;
 }
 
-/// As std::bit_cast, which not every library of C++20 has.
+/// Returns the value of type To that has the bytes of `from`: std::bit_cast, which some C++20 standard libraries lack.
 template <class To, class From> To bit_cast(const From& from) {
     static_assert(sizeof(To) == sizeof(From));
     To to;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Warnings that users have on and that mean nothing here, off from where a header includes this until it includes
-// warnings_on.inl:
+// Turns off warnings that users may have on, from where a header includes this file until it includes warnings_on.inl. They
+// are about code that is meant as it is:
 //
-//   -Wfloat-equal   where numbers are compared for equality, exactly that is asked
-//   -Wcast-align    the instructions that load and store vectors take any address
-//   -Wuseless-cast  what std::size_t is, and so which cast changes nothing, depends on the machine
+//   -Wfloat-equal   floats are compared for exact equality on purpose
+//   -Wcast-align    vector load and store instructions accept any address
+//   -Wuseless-cast  a cast to std::size_t changes the type on some machines only
 #if defined(__GNUC__) || defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wfloat-equal"
