@@ -19,9 +19,9 @@
 
 #include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/math.hpp>
-#include <lightbin/detail/base/matrix_concepts.hpp>
 #include <lightbin/result.hpp>
 
+#include <concepts>
 #include <cstdint>
 #include <type_traits>
 #include <utility>
@@ -43,6 +43,33 @@ struct Matrix {
 };
 
 namespace detail {
+
+// The matrix types of other libraries are recognized by their members, without including those libraries.
+template <class M>
+concept SubscriptMatrix = requires(const M& m) {
+    { m[0][0] } -> std::convertible_to<double>;
+};
+template <class M>
+concept EigenLikeMatrix = requires(const M& m) {
+    { m.matrix()(0, 0) } -> std::convertible_to<double>;
+    m.matrix().rows() + m.matrix().cols();
+};
+template <class M>
+concept DirectXLikeMatrix = requires(const M& m) {
+    m._11 + m._44;
+    { m.m[0][0] } -> std::convertible_to<double>;
+};
+template <class M>
+concept OpenSceneGraphLikeMatrix = requires(const M& m) {
+    { m(0, 0) } -> std::convertible_to<double>;
+    m.getTrans();
+    m.ptr();
+};
+/// M is an array of numbers, or a pointer to numbers, without a matrix type.
+template <class M>
+concept SixteenNumbers = requires(const M& m) {
+    { m[0] } -> std::convertible_to<double>;
+};
 
 /// Returns the matrix whose entries are at<column, row>(). The indices are compile-time constants because a constant converts
 /// to any index type without a warning.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/error_sentences.hpp>
 #include <lightbin/error_code.hpp>
 
 #include <cstdint>

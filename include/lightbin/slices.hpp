@@ -17,8 +17,6 @@
 #include <span>
 #include <utility>
 
-#include <lightbin/detail/base/warnings_off.inl>
-
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 class Slices;
@@ -137,5 +135,3 @@ inline const detail::SliceTable& detail::table_of(const Slices& slices) {
 }
 
 }}  // namespace lightbin
-
-#include <lightbin/detail/base/warnings_on.inl>

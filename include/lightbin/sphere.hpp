@@ -6,8 +6,6 @@
 #include <lightbin/detail/base/math.hpp>
 #include <lightbin/detail/base/rounding.hpp>
 
-#include <lightbin/detail/base/warnings_off.inl>
-
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// The sphere outside of which a light gives no light: centre and radius, in the units of the space that the lights are given
@@ -45,5 +43,3 @@ inline float light_window(float distance, float range) {
 }
 
 }}  // namespace lightbin
-
-#include <lightbin/detail/base/warnings_on.inl>

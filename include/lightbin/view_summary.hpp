@@ -7,8 +7,6 @@
 #include <cstdio>
 #include <string>
 
-#include <lightbin/detail/base/warnings_off.inl>
-
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// What View::summary() returns: what was read from the projection matrix, and what looks like a mistake.
@@ -69,5 +67,3 @@ inline std::string to_string(const ViewSummary& view) {
 }
 
 }}  // namespace lightbin
-
-#include <lightbin/detail/base/warnings_on.inl>

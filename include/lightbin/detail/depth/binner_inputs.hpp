@@ -45,7 +45,7 @@ public:
     SlicesInput(const Slices&& slices) : own_(slices) {}
     template <class Given>
     SlicesInput(const Result<Given>& result)
-        : own_(static_cast<const Given&>(result)) {}  // a compile error: this is still a Result
+        : own_(static_cast<const Given&>(result)) {}  // refuses: this is still a Result
 
     operator const Slices&() const { return given_ != nullptr ? *given_ : *own_; }
 

@@ -28,9 +28,7 @@ struct DepthMap {
     bool zero_to_one = false;  ///< device depth runs from 0 to 1, not from -1 to 1
 
     /// Device depth of a window depth, which runs from 0 to 1.
-    double device_depth(double window_depth) const {
-        return zero_to_one ? window_depth : 2 * window_depth - 1;
-    }
+    double device_depth(double window) const { return zero_to_one ? window : 2 * window - 1; }
 
     /// Window depth of a view depth, up to rounding. NaN for an infinite view depth.
     float window_depth(double view_depth) const {
@@ -103,11 +101,10 @@ struct Projection {
         axis.offset = (q / w + 1.0) * (0.5 * tiles);
         axis.last_tile_centre = static_cast<float>(axis.tiles) - 0.5f;
         axis.limit = float_above(tiles);
-        // The slope of a tangent, computed in floats, is within 10u of the true one, where u = 2^-24 (derived in
-        // spheres.inl). Times the scale, rounded to float, that is 12u; the rounding of the offset and of the sum add u
-        // each. Inside the viewport |scale * slope| <= |offset| + tiles. A margin of 16u of that also covers the double
-        // steps above and the addition of the margin itself. The term 2^-80 scale is for callers who flush denormal
-        // numbers to zero.
+        // A tangent's slope in floats is within 10u of the true one, where u = 2^-24 (derived in spheres.inl). Multiplied
+        // by the scale, rounded to float, the error is 12u; rounding the offset and the sum adds u each. Inside the viewport
+        // |scale * slope| <= |offset| + tiles. A margin of 16u of that also covers the double steps above and the addition
+        // of the margin itself. The term 2^-80 scale is for callers who flush denormal numbers to zero.
         axis.margin = float_above(0x1p-20 * (abs_of(axis.offset) + axis.tiles) + 0x1p-80 * axis.scale);
         if (!camera.orthographic && axis.scale > 0) {
             const double slope = max_of(tiles - axis.offset, axis.offset) / axis.scale;
@@ -122,7 +119,7 @@ struct Projection {
         return axis.scale >= 0x1p-80 && axis.scale <= 0x1p80;
     }
 
-    /// Sets the depths of the near and far plane. Returns why they are refused, or nothing.
+    /// Sets the camera's near and far depth. Returns why they are refused, or nothing.
     std::optional<ErrorCode> set_depth_range() {
         depth.view_depths(0, 1, camera.near_depth, camera.far_depth);
         camera.min_float_depth = max_of(float_safe_min, camera.near_depth);
@@ -131,9 +128,8 @@ struct Projection {
             return ErrorCode::depth_range_not_finite;
         }
         if (camera.near_depth >= FLT_MIN && camera.near_depth < camera.far_depth) return {};
-        const bool in_front = depth.near_plane() > 0;
-        return in_front && camera.near_depth < FLT_MIN ? ErrorCode::near_plane_too_close
-                                                       : ErrorCode::no_near_plane;
+        const bool too_close = depth.near_plane() > 0 && camera.near_depth < FLT_MIN;
+        return too_close ? ErrorCode::near_plane_too_close : ErrorCode::no_near_plane;
     }
 
     /// Reads `matrix`. depth.zero_to_one must be set before. Returns why the matrix is refused, or nothing.
@@ -153,8 +149,7 @@ struct Projection {
             return is_transposed ? ErrorCode::projection_transposed : *wrong;
         }
         const double w_z = m[2][3], w_1 = m[3][3];
-        const bool orthographic = w_z == 0;
-        camera.orthographic = orthographic;
+        const bool orthographic = camera.orthographic = w_z == 0;
 
         // Visible points have w > 0, so the sign of w_z is the viewing direction. An orthographic w tells no direction:
         // there, view depth grows with device depth, or against it where Z is reversed.
@@ -197,25 +192,20 @@ struct Projection {
         const bool never_minus_one = !flat && depth.reversed && !depth.zero_to_one &&
                                      depth.z_scale + 0.999 * depth.w_scale > 0;
         const double width_off = abs_of(aspect * height - width);
+        // clang-format off
         return {.orthographic = flat,
-                .x_size = size(0),
-                .y_size = size(1),
-                .aspect = aspect,
-                .near_depth = depth.near_plane(),
-                .far_depth = depth.far_plane(),
-                .looks_down_negative_z = camera.z_sign < 0,
-                .reversed_z = depth.reversed,
-                .x_flipped = m[0][0] < 0,
-                .y_flipped = m[1][1] < 0,
-                .width = width,
-                .height = height,
-                .tile_size = tile_size,
+                .x_size = size(0), .y_size = size(1), .aspect = aspect,
+                .near_depth = depth.near_plane(), .far_depth = depth.far_plane(),
+                .looks_down_negative_z = camera.z_sign < 0, .reversed_z = depth.reversed,
+                .x_flipped = m[0][0] < 0, .y_flipped = m[1][1] < 0,
+                .width = width, .height = height, .tile_size = tile_size,
                 .looks_transposed = !flat && one_is_transposed(m),
                 .looks_like_view_matrix = flat && is_one(m[0][0]) && is_one(m[1][1]) && is_one(m[2][2]),
                 .looks_turned = m[0][0] < 0 && m[1][1] < 0,
                 .looks_behind = flat && camera.far_depth <= 0,
                 .looks_zero_to_one = never_minus_one,
                 .pixels_not_square = width > 0 && height > 0 && !(width_off <= 0.02 * width)};
+        // clang-format on
     }
 };
 

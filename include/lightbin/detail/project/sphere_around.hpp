@@ -11,8 +11,6 @@
 #include <cfloat>
 #include <cstring>
 
-#include <lightbin/detail/base/warnings_off.inl>
-
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 /// A Sphere that is bad input: skipped and counted.
@@ -71,5 +69,3 @@ inline Sphere sphere_around_nearly(const Triple& centre, double radius) {
 }
 
 }}}  // namespace lightbin::detail
-
-#include <lightbin/detail/base/warnings_on.inl>
