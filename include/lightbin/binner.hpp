@@ -40,16 +40,16 @@ template <DepthTest depth_test, Slicing slicing = Slicing::none> struct Inputs {
     static constexpr bool reads_slices = slicing != Slicing::none,
                           reads_bounds = depth_test != DepthTest::none && slicing != Slicing::clusters;
 
-    /// Not copied, so the caller's Slices must live until the call. Temporary Slices are copied.
+    /// The depth slices. They are not copied, so they must live until the call; temporary Slices are copied.
     std::conditional_t<reads_slices, detail::SlicesInput, detail::NotRead> slices =
         detail::slices_left_out<reads_slices>();
-    /// Minimum, maximum or both. An empty span in ZBounds is not tested against.
+    /// Z bounds: minimum, maximum or both. Lights are not tested against a bound whose span is empty.
     std::conditional_t<reads_bounds, ZBounds, detail::NotRead> bounds =
         detail::bounds_left_out<reads_bounds>();
 };
 
-/// Returns Inputs with the bounds if the options read bounds, else without. For templates whose options vary, as with
-/// with_options().
+/// Returns Inputs with the bounds if the options read bounds, else without them. For templates whose options vary, such as
+/// callables given to with_options() of advise.hpp.
 template <Options options>
 requires(options.slicing == Slicing::none) Inputs<options.depth_test> inputs_for([[maybe_unused]] const ZBounds& bounds) {
     if constexpr (options.depth_test == DepthTest::none)
@@ -58,8 +58,8 @@ requires(options.slicing == Slicing::none) Inputs<options.depth_test> inputs_for
         return {.bounds = bounds};
 }
 
-/// Returns Inputs with those of the bounds and slices that the options read. For templates whose options vary, Options::slicing
-/// among them. The slices must live until the call; temporary Slices are copied.
+/// Returns Inputs with those of the bounds and slices that the options read. For templates whose options vary,
+/// Options::slicing among them. The slices must live until the call; temporary Slices are copied.
 template <Options options>
 Inputs<options.depth_test, options.slicing> inputs_for([[maybe_unused]] const ZBounds& bounds,
                                                        [[maybe_unused]] const detail::SlicesInput& slices) {
@@ -72,8 +72,9 @@ Inputs<options.depth_test, options.slicing> inputs_for([[maybe_unused]] const ZB
         return {.slices = slices};
 }
 
-/// Two grids of one scene (Tiled Forward Shading, section 4.5, Listing 4.2). `opaque` is tested against minimum and maximum
-/// depth; `transparent` against the maximum alone, because transparent geometry may lie anywhere in front of opaque geometry.
+/// Two grids of one scene (Tiled Forward Shading, section 4.5, Listing 4.2). `opaque` is tested against minimum and
+/// maximum depth; `transparent` against the maximum alone, because transparent geometry may lie anywhere in front of
+/// opaque geometry.
 template <class Id> struct TransparencyGrids { LightGrid<Id> opaque, transparent; };
 
 /// Bins lights into screen tiles.
@@ -114,9 +115,10 @@ public:
     ///          {.slices = ..., .bounds = ...} with z_bins and a depth test; else nothing
     /// threads  a Parallel, to share the work among the caller's threads. The grid does not depend on it.
     ///
-    /// Afterwards every tile lists, in ascending order, every light whose sphere, or spot, meets the tile's cell; no light is
-    /// missed. Errors: more lights than Id can number; more than 2^32 - 1 entries, cells, or pairs of a light and a slice or
-    /// block of 8x8 tiles; a world_space() matrix that is not affine; Z bounds shorter than view.tile_count().
+    /// Afterwards every tile lists, in ascending order, every light whose sphere, or spot, meets the tile's cell; no
+    /// light is missed. Errors: more lights than Id can number; more than 2^32 - 1 entries, cells, or pairs of a light
+    /// and a slice or block of 8x8 tiles; a world_space() matrix that is not affine; Z bounds shorter than
+    /// view.tile_count().
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     Result<LightGrid<Id>> bin(const View& view, const LightRange& lights, const Inputs& inputs = {},
                               const Threads& threads = {}) {
@@ -125,8 +127,9 @@ public:
         return build<spots<LightRange>>(lists_, view, bounds_of(inputs), threads);
     }
 
-    /// Returns two grids, for opaque and for transparent geometry, and projects the lights once for both. They are valid until
-    /// the Binner's next call. Errors: those of bin(); bounds made without the background but without transparent_max.
+    /// Returns two grids, for opaque and for transparent geometry, and projects the lights once for both. They are
+    /// valid until the Binner's next call. Errors: those of bin(); bounds made without the background but without
+    /// transparent_max.
     ///
     /// inputs  the bounds are those of the opaque geometry. Lights for transparent geometry are tested against
     ///         transparent_max, or against max where that is empty
@@ -149,13 +152,14 @@ public:
         return TransparencyGrids<Id>{*opaque, *transparent};
     }
 
-    /// Writes a bitmask per tile to `bits`, without making lists: (max_lights + 31) / 32 words per tile, where bit b of word w
-    /// is set if the tile's list would have id 32 w + b. The result equals encode() of bin()'s grid with {.encoding =
-    /// ListEncoding::bitmask, .max_lights = max_lights}, and is faster up to about a thousand lights. Returns the counts of
-    /// lights and, with z_bins, the ranks, which are valid until the next call.
+    /// Writes a bitmask per tile to `bits`, without making lists: (max_lights + 31) / 32 words per tile, where bit b of
+    /// word w is set if the tile's list would have id 32 w + b. The result equals encode() of bin()'s grid with
+    /// {.encoding = ListEncoding::bitmask, .max_lights = max_lights}, and is faster up to about a thousand lights.
+    /// Returns the counts of lights and, with z_bins, the ranks, which are valid until the next call.
     ///
-    /// Errors: those of bin() except for entries, which are not counted; fewer words in `bits` than view.tile_count() tiles
-    /// need; more lights than max_lights (with z_bins, more lights in view). After either of the last two no bit was written.
+    /// Errors: those of bin() except for entries, which are not counted; fewer words in `bits` than view.tile_count()
+    /// tiles need; more lights than max_lights (with z_bins, more lights in view). After either of the last two no bit
+    /// was written.
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     requires(!clusters) Result<LightBits> bin_bits(const View& view, const LightRange& lights,
                                                    std::uint32_t max_lights, std::span<std::uint32_t> bits,

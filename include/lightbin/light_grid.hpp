@@ -26,21 +26,21 @@ constexpr const char* to_string(IdWidth width) {
     return detail::name_at(width, {"?", "u8", "u16", "?", "u32"});
 }
 
-/// The list of one tile: `count` ids of the light index list, from index `offset` on. 8 bytes, the layout of a uvec2 on a GPU.
+/// The list of one tile: `count` ids of the light index list, from index `offset` on. 8 bytes, laid out as a GPU's uvec2.
 struct ListRange {
     std::uint32_t offset, count;
 };
 
-/// How many lights a grid was made of, and how many of them it leaves out. The remaining lights - rejected - culled lights
-/// have at least one tile in their footprints.
+/// How many lights a grid was made of, and how many of them it leaves out. Each of the other lights, of which there are
+/// lights - rejected - culled, has at least one tile in its footprint.
 struct LightCounts {
     std::uint32_t lights = 0;
-    std::uint32_t rejected = 0;  ///< bad input: see Sphere and Spot
-    std::uint32_t culled = 0;    ///< outside of the view
+    std::uint32_t rejected = 0;  ///< lights left out as bad input: see Sphere and Spot
+    std::uint32_t culled = 0;    ///< lights left out as outside of the view
 };
 
-/// The least and greatest rank of the lights whose depths meet a z-bin. A rank is a light's position in order of depth. Ranks in
-/// between may belong to lights that do not meet the bin. A bin that no light meets has least > greatest.
+/// The least and greatest rank of the lights whose depths meet a z-bin. A rank is a light's position in order of depth.
+/// Ranks in between may belong to lights that do not meet the bin. A bin that no light meets has least > greatest.
 struct BinRange {
     std::uint32_t least, greatest;
 };
@@ -57,8 +57,8 @@ struct LightBits {
     LightRanks ranks;  ///< filled in with Slicing::z_bins, else empty
 };
 
-/// A finished light grid: a view of memory that it does not own. The function that returns the grid says how long that memory
-/// is valid.
+/// A finished light grid. It refers to memory that it does not own; the function that returns the grid says how long that
+/// memory is valid.
 template <class Id> class LightGrid {
 public:
     LightGrid(int tiles_x, int tiles_y, std::span<const ListRange> ranges, std::span<const Id> ids,
@@ -74,12 +74,12 @@ public:
     /// slice, one slice after another. Each range begins where the one before it ends.
     std::span<const ListRange> ranges() const { return ranges_; }
 
-    /// The light index list. A light's id is its position in the caller's array, or its rank with Slicing::z_bins. The ids of
-    /// a tile ascend.
+    /// The light index list. A light's id is its position in the caller's array, or its rank with Slicing::z_bins. The
+    /// ids of a tile ascend.
     std::span<const Id> ids() const { return ids_; }
 
-    /// Returns the ids of the lights of tile (x, y) in a slice, where 0 <= x < tiles_x(), 0 <= y < tiles_y() and 0 <= slice <
-    /// slices().
+    /// Returns the ids of the lights of tile (x, y) in a slice, where 0 <= x < tiles_x(), 0 <= y < tiles_y() and 0 <=
+    /// slice < slices().
     std::span<const Id> lights_in(int x, int y, int slice = 0) const {
         LIGHTBIN_ASSERT(x >= 0 && x < tiles_x_ && y >= 0 && y < tiles_y_ && slice >= 0 && slice < slices_);
         const std::size_t row = static_cast<std::size_t>(slice) * static_cast<std::size_t>(tiles_y_) +
@@ -95,9 +95,9 @@ public:
     /// ranks().order, or upload that order and look up each light in it.
     const LightRanks& ranks() const { return ranks_; }
 
-    /// Copies ranges() and ids() to the beginning of the caller's buffers, and returns a grid that refers to the copies. The
-    /// buffers are only written, in ascending order, so they may be mapped GPU memory. ranks() is not copied. Errors: a buffer
-    /// is smaller than ranges() or ids(); then nothing is written.
+    /// Copies ranges() and ids() to the beginning of the caller's buffers, and returns a grid that refers to the
+    /// copies. The buffers are only written, in ascending order, so they may be mapped GPU memory. ranks() is not
+    /// copied. Errors: a buffer is smaller than ranges() or ids(); then nothing is written.
     Result<LightGrid> copy_to(std::span<ListRange> ranges, std::span<Id> ids) const {
         if (ranges.size() < ranges_.size())
             return Error{ErrorCode::range_buffer_too_small, ranges_.size(), ranges.size()};

@@ -36,14 +36,14 @@
 //   advise.hpp        advise(view, lights, costs[, bounds]) measures which tile size and options are best
 //
 // Building. No compiler flags are needed. With gcc and clang there are kernels for several vector instruction sets; see
-// isa.hpp. The widest that the machine has is chosen at run time, and all give the same bytes. Define LIGHTBIN_NO_SIMD to leave
-// the vector kernels out, and LIGHTBIN_ASSERT to replace the assertions. -ffast-math is an error where the compiler tells of
-// it (docs/limits.md says where it does not), and so is x87 arithmetic, the default of some 32-bit compilers. The caller's
-// rounding mode, traps and flushing of denormal numbers do not change the results.
+// isa.hpp. The widest that the machine has is chosen at run time, and all give the same bytes. Define LIGHTBIN_NO_SIMD
+// to leave the vector kernels out, and LIGHTBIN_ASSERT to replace the assertions. -ffast-math is an error where the
+// compiler tells of it (docs/limits.md says where it does not), and so is x87 arithmetic, the default of some 32-bit
+// compilers. The caller's rounding mode, traps and flushing of denormal numbers do not change the results.
 //
-// The files of a program may be compiled for different processors. They share no functions of this library, because its names
-// lie in an inline namespace named after the instruction set. Therefore lightbin's types cannot be passed between such files (the
-// linker reports it), nor be declared without including its headers.
+// The files of a program may be compiled for different processors. They share no functions of this library, because its
+// names lie in an inline namespace named after the instruction set. Therefore lightbin's types cannot be passed between
+// such files (the linker reports it), nor be declared without including its headers.
 //
 // Sources: Olsson and Assarsson, "Tiled Shading", JGT 15(4), 2011. Billeter, Olsson and Assarsson, "Tiled Forward Shading",
 // GPU Pro 4, 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.

@@ -20,8 +20,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// What view_space() and world_space() return: a span of the caller's array, the callable that makes a Sphere or a Spot of an
-/// element, and for world_space() the transform to view space.
+/// What view_space() and world_space() return: a span of the caller's array, the callable that makes a Sphere or a Spot
+/// of an element, and for world_space() the transform to view space.
 template <class Light, class ToLight> struct Lights {
     std::span<const Light> array;
     ToLight to_light;
@@ -31,8 +31,8 @@ template <class Light, class ToLight> struct Lights {
     static constexpr bool spots = std::convertible_to<
         decltype(detail::make_light(std::declval<const ToLight&>(), std::declval<const Light&>())), Spot>;
 
-    /// Returns the Spot or Sphere that to_light makes of an array element, in the space of the array. A null pointer gives bad
-    /// input, unless to_light itself takes pointers.
+    /// Returns the Spot or Sphere that to_light makes of an array element, in the space of the array. A null pointer
+    /// gives bad input, unless to_light itself takes pointers.
     auto made(const Light& light) const {
         using Made = std::conditional_t<spots, Spot, Sphere>;
         if constexpr (detail::by_reference<ToLight, Light> && requires { !light, *light; })
@@ -46,7 +46,8 @@ template <class Light, class ToLight> struct Lights {
         return to_view ? (*to_view)(sphere) : sphere;
     }
 
-    /// Returns the Sphere or Spot, in view space, of an array element. The axis of a Spot is rounded to nearest, not outward.
+    /// Returns the Sphere or Spot, in view space, of an array element. The axis of a Spot is rounded to nearest, not
+    /// outward.
     auto view_light(const Light& light) const {
         if constexpr (spots) {
             const Spot spot = made(light);
@@ -60,16 +61,16 @@ template <class Light, class ToLight> struct Lights {
     }
 };
 
-/// What view_space() and world_space() return for a temporary array, such as a std::vector that a function returned: the array
-/// was moved in here and lives as long as this object. (Of a temporary std::span only the span is copied.)
+/// What view_space() and world_space() return for a temporary array, such as a std::vector that a function returned:
+/// the array was moved in here and lives as long as this object. (Of a temporary std::span only the span is copied.)
 template <class Range, class ToLight> struct OwnedLights {
     Range array;
     ToLight to_light;
     std::optional<detail::WorldToView> to_view;
 };
 
-/// Describes lights that are in view space, the space that the projection matrix is applied to. The array is read where it is,
-/// so it must live until the Binner's call returns. A temporary array is moved into the returned object.
+/// Describes lights that are in view space, the space that the projection matrix is applied to. The array is read where
+/// it is, so it must live until the Binner's call returns. A temporary array is moved into the returned object.
 ///
 /// lights    a contiguous range of any type: structs, pointers or smart pointers to them, std::reference_wrapper
 /// to_light  a callable or a pointer to a member that makes a Sphere or a Spot of an element. If it does not take an element

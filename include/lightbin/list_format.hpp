@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The format of the lists of lights. The shader that reads the lists must be made for the format that a Binner or encode() wrote.
+// The format of the lists of lights. A shader that reads lists must be made for the format that a Binner or encode() wrote.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -13,8 +13,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 /// How the list of a tile is stored.
 enum class ListEncoding : std::uint8_t {
     offset_count,  ///< as in a LightGrid: {offset, count} per tile, and one list of ids (Tiled Shading, Figure 1)
-    /// Memory for `capacity` ids per tile, so that no offsets are needed (Light Indexed Deferred Rendering). A shorter list ends
-    /// with a sentinel, the largest value of the id's width.
+    /// Memory for `capacity` ids per tile, so that no offsets are needed (Light Indexed Deferred Rendering). A shorter
+    /// list ends with a sentinel, the largest value of the id's width.
     sentinel,
     bitmask,  ///< (max_lights + 31) / 32 words of 32 bits per tile: bit b of word w is set for light 32 w + b
 };
@@ -28,7 +28,7 @@ struct ListFormat {
     ListEncoding encoding = ListEncoding::offset_count;
     IdWidth ids = IdWidth::u32;    ///< width of an id; read for offset_count and sentinel
     std::uint32_t capacity = 0;    ///< ids that a tile has memory for, 1 or more; read for sentinel
-    std::uint32_t max_lights = 0;  ///< all ids are below it; must be given for bitmask, else 0: as many as `ids` can number
+    std::uint32_t max_lights = 0;  ///< all ids are below it; bitmask needs it, else 0 means as many as `ids` can number
 };
 
 }}  // namespace lightbin

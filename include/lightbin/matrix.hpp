@@ -71,8 +71,8 @@ concept SixteenNumbers = requires(const M& m) {
     { m[0] } -> std::convertible_to<double>;
 };
 
-/// Returns the matrix whose entries are at<column, row>(). The indices are compile-time constants because a constant converts
-/// to any index type without a warning.
+/// Returns the matrix whose entries are at<column, row>(). The indices are compile-time constants because a constant
+/// converts to any index type without a warning.
 template <class At> Matrix from_entries(const At& at) {
     Matrix result;
     [&]<int... i>(std::integer_sequence<int, i...>) {

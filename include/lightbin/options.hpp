@@ -11,28 +11,29 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// The shape of a light's footprint: which tiles its projection is taken to cover.
+/// How a light's footprint is computed: the tiles that its projection covers.
 enum class Footprint : std::uint8_t {
     rectangle,   ///< the tiles of its bounding rectangle (the papers' method)
     silhouette,  ///< one exact span of tiles per tile row, without the corners of the rectangle
 };
 
-/// The test that keeps a light out of tiles of its footprint by depth. All but `none` read Z bounds or clusters.
+/// The test that keeps a light out of tiles of its footprint by depth. All but `none` need Z bounds or clusters.
 enum class DepthTest : std::uint8_t {
     none,       ///< no test: a light is listed in all tiles of its footprint
     interval,   ///< the light's depths, z - r to z + r, must meet the tile's Z bounds (Tiled Shading, section 6.3)
-    box,        ///< also, the light must meet the view-space box around the tile's cell
-    split_box,  ///< also, it must meet one of two boxes, in front of and behind the tile's gap (see ZBounds)
+    box,        ///< as interval, and the light must meet the view-space box around the tile's cell
+    split_box,  ///< as box, with two boxes, in front of and behind the tile's depth gap (see ZBounds)
 };
 
-/// How the depth range is divided by the Slices that bin() is given. This needs no depth buffer.
+/// How the Slices given to bin() narrow the lights of a tile by depth. No depth buffer is needed.
 enum class Slicing : std::uint8_t {
     none,
-    /// Each tile has one list per slice. DepthTest::box tests lights against the box around the tile in that slice; no Z bounds
-    /// are read.
+    /// Each tile has one list per slice. DepthTest::box tests lights against the box around the tile in that slice; no
+    /// Z bounds are read.
     clusters,
-    /// Each tile has one list, whose ids are ranks: positions of the lights in order of depth. Each slice is a bin that stores
-    /// the least and greatest rank of its lights, so a shader skips the ids outside of its pixel's bin (Drobot, "Improved Culling for Tiled and Clustered Rendering", SIGGRAPH 2017).
+    /// Each tile has one list, whose ids are ranks: positions of the lights in order of depth. Each slice is a bin that
+    /// stores the least and greatest rank of its lights, so a shader skips the ids outside of its pixel's bin (Drobot,
+    /// "Improved Culling for Tiled and Clustered Rendering", SIGGRAPH 2017).
     z_bins,
 };
 

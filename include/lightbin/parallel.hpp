@@ -10,8 +10,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// The caller's function for running a loop on several threads, and how many threads it uses. A Parallel refers to the caller's
-/// function or function object, which must outlive the call that the Parallel is passed to.
+/// The caller's function for running a loop on several threads, and how many threads it uses. A Parallel refers to the
+/// caller's function or function object, which must outlive the call that the Parallel is passed to.
 class Parallel {
     /// The loop body passed to the caller's function: a type-erased callable of an index.
     struct Body {
@@ -62,8 +62,8 @@ public:
 
     std::size_t workers() const { return workers_; }
 
-    /// Returns whether to share work that takes one thread `ns` nanoseconds: true if sharing would gain at least twice the time
-    /// that starting the threads takes.
+    /// Returns whether to share work that takes one thread `ns` nanoseconds: true if sharing would gain at least twice
+    /// the time that starting the threads takes.
     bool pays_off(double ns) const {
         const double workers = static_cast<double>(workers_);
         return workers_ > 1 && ns * (workers - 1) >= 2 * start_ns_ * workers;

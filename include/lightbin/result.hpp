@@ -19,8 +19,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// Why a call failed. Where a size or a number was wrong, `needed` and `available` say how much the call needed, or was
-/// given, and how much there was or may be.
+/// Why a call failed. For errors about sizes, `needed` is the size that the call needed and `available` the size that there
+/// was. For errors about other numbers, `needed` is the number given and `available` the greatest one allowed.
 struct Error {
     ErrorCode code;
     std::uint64_t needed = 0;

@@ -28,13 +28,13 @@ const SliceTable& table_of(const Slices& slices);
 
 }  // namespace detail
 
-/// Adjacent intervals of view depth without a gap between them. The first slice begins at the near plane, the last one ends at
-/// the far plane, and a boundary separates each slice from the next.
+/// Adjacent intervals of view depth without a gap between them. The first slice begins at the near plane, the last one
+/// ends at the far plane, and a boundary separates each slice from the next.
 class Slices {
 public:
-    /// Returns slices whose depth grows geometrically, so that perspective cells are about as deep as they are wide. The first
-    /// slice ends at depth `first`. Each further slice ends at the depth where it begins times a constant, chosen so that the
-    /// last one would end at depth `last`; in fact the last slice reaches to the far plane.
+    /// Returns slices whose depth grows geometrically, so that perspective cells are about as deep as they are wide.
+    /// The first slice ends at depth `first`. Each further slice ends at the depth where it begins times a constant,
+    /// chosen so that the last one would end at depth `last`; in fact the last slice reaches to the far plane.
     ///
     /// Errors: count is less than 1. With two slices or more: not 0 < first < last, `last` is infinite, or two boundaries
     /// round to the same float.
@@ -47,8 +47,8 @@ public:
         });
     }
 
-    /// Returns slices that divide the depths from `begin` to `end` into equal parts. The first slice still begins at the near
-    /// plane, and the last one reaches to the far plane.
+    /// Returns slices that divide the depths from `begin` to `end` into equal parts. The first slice still begins at
+    /// the near plane, and the last one reaches to the far plane.
     ///
     /// Errors: count is less than 1. With two slices or more: not begin < end, one of them is infinite, or two boundaries
     /// round to the same float.
@@ -61,24 +61,25 @@ public:
         });
     }
 
-    /// Returns the slices between the given boundaries, one slice more than there are boundaries. Errors: the boundaries do not
-    /// strictly ascend, or one of them is NaN or infinite.
+    /// Returns the slices between the given boundaries, one slice more than there are boundaries. Errors: the
+    /// boundaries do not strictly ascend, or one of them is NaN or infinite.
     static Result<Slices> from_boundaries(std::span<const float> boundaries) {
         return from_law(static_cast<std::int64_t>(boundaries.size()) + 1,
                         [=](std::size_t i) { return boundaries[i]; });
     }
 
-    /// Returns the same slices for readers whose lookup is inexact: a shader that computes the slice by a rounding formula of
-    /// its own, or from a rounded depth. Such a reader may find for a depth d the slice of any depth from d - margin |d| to
-    /// d + margin |d|. Lights are then listed in every slice that may be found for one of their depths. Readers that use
-    /// slice_at() or shader_slices() need no margin.
+    /// Returns the same slices for readers whose lookup is inexact: a shader that computes the slice by a rounding
+    /// formula of its own, or from a rounded depth. Such a reader may find for a depth d the slice of any depth from d
+    /// - margin |d| to d + margin |d|. Lights are then listed in every slice that may be found for one of their depths.
+    /// Readers that use slice_at() or shader_slices() need no margin.
     ///
     /// margin  from 0 to 1/2; docs/depth.md says which is enough
     Slices with_margin(float margin) const {
         LIGHTBIN_ASSERT(0 <= margin && margin <= 0.5f);
         const double exact = static_cast<double>(margin);
         Slices result(*this);
-        // The true depth lies within margin / (1 - margin) of the depth that is looked up. 2^-20 of that is for rounding.
+        // If a depth d is looked up as e, with |e - d| <= margin |d|, then d lies within margin / (1 - margin) |e| of e. The
+        // factor 1 + 2^-20 covers rounding.
         result.table_.margin = detail::float_above(exact / (1 - exact) * (1 + 0x1p-20));
         return result;
     }
@@ -99,8 +100,8 @@ public:
     }
     void boundaries() && = delete;  // the span would dangle
 
-    /// Returns the index of the slice that contains a depth. A boundary itself belongs to the slice behind it. The depth must
-    /// not be NaN.
+    /// Returns the index of the slice that contains a depth. A boundary itself belongs to the slice behind it. The
+    /// depth must not be NaN.
     int slice_at(float depth) const {
         const detail::Items<const float> all = table_.boundaries();
         return static_cast<int>(

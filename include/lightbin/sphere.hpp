@@ -8,11 +8,11 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// The sphere outside of which a light gives no light: centre and radius, in the units of the space that the lights are given
-/// in. That is view space, which the projection matrix is applied to, or with world_space() world space.
+/// The sphere outside of which a light gives no light: centre and radius, in the units of the space that the lights are
+/// given in. That is view space, which the projection matrix is applied to, or with world_space() world space.
 ///
-/// Radius 0 is a point; radius +inf covers everything. A light with a NaN or infinite centre, or a NaN or negative radius, is
-/// bad input: it is skipped and counted, and all other lights are binned as usual.
+/// Radius 0 is a point; radius +inf covers everything. A light with a NaN or infinite centre, or a NaN or negative
+/// radius, is bad input: it is skipped and counted, and all other lights are binned as usual.
 struct Sphere {
     float x, y, z, radius;
 };

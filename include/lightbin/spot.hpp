@@ -21,9 +21,9 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 /// cos_half_angle          cosine of the angle between the axis and the cone's side, from 1 (a ray) over 0 (a half sphere)
 ///                         to -1 (a whole sphere). glTF: cos(outerConeAngle); Unity: cosine of half the spotAngle.
 ///
-/// A point p is in the cone if  (p - centre).axis >= cos_half_angle |p - centre| |axis|,  evaluated without rounding for the
-/// floats given. The float nearest to a cosine may be above the cosine, which makes the cone narrower: by up to 2^-12 radians
-/// where it is narrow. If your shader compares with the angle itself, round the cosine down.
+/// A point p is in the cone if  (p - centre).axis >= cos_half_angle |p - centre| |axis|,  evaluated without rounding
+/// for the floats given. The float nearest to a cosine may be above the cosine, which makes the cone narrower: by up to
+/// 2^-12 radians where it is narrow. If your shader compares with the angle itself, round the cosine down.
 ///
 /// A spot with radius +inf, or a half angle of 90 degrees or more, is treated as its whole sphere. What is bad input in a
 /// Sphere is so in a Spot, as are an axis with a NaN or infinite coordinate or of length zero, and a cosine that is NaN or
@@ -32,19 +32,21 @@ struct Spot {
     float x, y, z, radius;
     float axis_x, axis_y, axis_z, cos_half_angle;
 
-    /// Returns a spot that covers a whole sphere, for a callable that returns a Spot although some of its lights are spheres.
+    /// Returns a spot that covers a whole sphere, for a callable that returns a Spot although some of its lights are
+    /// spheres.
     static constexpr Spot whole(const Sphere& sphere) {
         return {sphere.x, sphere.y, sphere.z, sphere.radius, 0, 0, 1, -1};
     }
 
-    /// Converts to least_sphere(*this), for functions that take only spheres. A Binner takes spots themselves, in an array or
-    /// returned by a callable, and lists fewer tiles for them than for their spheres.
+    /// Converts to least_sphere(*this), for functions that take only spheres. A Binner takes spots themselves, in an
+    /// array or returned by a callable, and lists fewer tiles for them than for their spheres.
     operator Sphere() const;
 };
 
-/// Returns the least sphere that contains all points of a spot, up to rounding. Its radius exceeds the exact one by at most
-/// 2^-22 (|x| + |y| + |z| + radius) + 2^-123 and never exceeds the spot's own. Returns the spot's own sphere where no smaller
-/// one was found, for half angles of 90 degrees or more, and for an infinite radius. A bad spot gives a bad Sphere.
+/// Returns the least sphere that contains all points of a spot, up to rounding. Its radius exceeds the exact one by at
+/// most 2^-22 (|x| + |y| + |z| + radius) + 2^-123 and never exceeds the spot's own. Returns the spot's own sphere where
+/// no smaller one was found, for half angles of 90 degrees or more, and for an infinite radius. A bad spot gives a bad
+/// Sphere.
 inline Sphere least_sphere(const Spot& spot) {
     const detail::Triple axis = {static_cast<double>(spot.axis_x), static_cast<double>(spot.axis_y),
                                  static_cast<double>(spot.axis_z)};
@@ -55,9 +57,9 @@ inline Sphere least_sphere(const Spot& spot) {
     const Sphere own = {spot.x, spot.y, spot.z, spot.radius};
     if (cosine <= 0 || spot.radius == detail::infinity) return own;
 
-    // The spot's farthest points from any point on the axis are the apex or the rim, the circle where cone and sphere meet. Up
-    // to a half angle of 45 degrees the least sphere passes through both; beyond, it is the sphere that has the rim as a
-    // great circle. The square of a float is exact in double.
+    // The spot's farthest points from any point on the axis are the apex or the rim, the circle where cone and sphere
+    // meet. Up to a half angle of 45 degrees the least sphere passes through both; beyond, it is the sphere that has
+    // the rim as a great circle. The square of a float is exact in double.
     const double cosine2 = cosine * cosine;
     const bool narrow = 2 * cosine2 >= 1;
     const double along = narrow ? radius / (2 * cosine) : radius * cosine;
@@ -89,8 +91,8 @@ template <class Point> Sphere tube_sphere(const Point& a, const Point& b, float 
         half + static_cast<double>(radius));
 }
 
-/// Returns the least sphere, up to rounding, that contains all points within `range` of a rectangle, such as an area light. Its
-/// radius exceeds the exact one by as little as that of tube_sphere().
+/// Returns the least sphere, up to rounding, that contains all points within `range` of a rectangle, such as an area
+/// light. Its radius exceeds the exact one by as little as that of tube_sphere().
 ///
 /// centre          any type with members x, y and z, floats or doubles. NaN or infinite coordinates in this or the next two
 ///                 arguments give a bad Sphere

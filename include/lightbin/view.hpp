@@ -45,7 +45,7 @@ struct Extent {
     int height = 0;
 };
 
-/// What View::from_projection() cannot read from the matrix.
+/// The parameters of a View that from_projection() cannot read from the matrix.
 struct ViewOptions {
     int tile_size = 32;  ///< side of a square tile in pixels, 1 or more
     ClipDepth clip_depth = ClipDepth::minus_one_to_one;
@@ -97,7 +97,7 @@ public:
         return make(detail::to_matrix(projection), viewport, options);
     }
 
-    /// Returns the view of the same projection and viewport with tiles of another size. Errors as from_projection().
+    /// Returns the view of the same projection and viewport with tiles of another size. Errors: those of from_projection().
     Result<View> with_tile_size(int tile_size) const {
         return make(projection_.matrix, viewport_, {tile_size, clip_depth(), origin_, reversed_z()});
     }

@@ -35,8 +35,8 @@ struct ViewSummary {
     /// No depth of a perspective projection with reversed Z reaches NDC -1, so that its far plane is taken to be at
     /// infinity: should ViewOptions::clip_depth be zero_to_one?
     bool looks_zero_to_one;
-    /// The viewport's pixels are wider than high, or higher than wide, by more than 2 %: its size may be stale, or the aspect
-    /// inverted.
+    /// The viewport's pixels are wider than high, or higher than wide, by more than 2 %: its size may be stale, or the
+    /// aspect inverted.
     bool pixels_not_square;
 };
 

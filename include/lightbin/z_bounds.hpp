@@ -21,8 +21,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// Z bounds: the view depths that bound what is drawn in each tile. Each array has one float per tile, row-major, and at least
-/// View::tile_count() of them. An empty span means that lights are not tested against that bound.
+/// Z bounds: the view depths that bound what is drawn in each tile. Each array has one float per tile, row-major, and
+/// at least View::tile_count() of them. An empty span means that lights are not tested against that bound.
 ///
 /// A tile with min > max shows nothing that could be lit, so it gets no lights. A bound that is NaN excludes no light.
 struct ZBounds {
@@ -32,8 +32,8 @@ struct ZBounds {
     /// between gap_min and gap_max. A tile with gap_min >= gap_max, or NaN in either, has no gap.
     std::span<const float> gap_min = {};
     std::span<const float> gap_max = {};
-    /// Read by Binner::bin_transparency(): maxima in which the background counts as drawn at the far plane, since transparent
-    /// geometry is also seen in front of the background. If empty, `max` is used.
+    /// Read by Binner::bin_transparency(): maxima in which the background counts as drawn at the far plane, since
+    /// transparent geometry is also seen in front of the background. If empty, `max` is used.
     std::span<const float> transparent_max = {};
     /// `min`, `max` and the gaps were made without the background. bin_transparency() then requires transparent_max.
     bool background_skipped = false;
@@ -70,9 +70,9 @@ struct DepthBuffer {
     int samples = 1;            ///< samples per pixel, 1 to 8
     std::size_t row_pitch = 0;  ///< floats from the start of one row to the next; 0: viewport width * samples
     DepthFormat format = DepthFormat::float32;
-    /// Treats samples at the far end of the depth range (1, or 0 with reversed Z) as background, where nothing is drawn: they
-    /// count for ZBounds::transparent_max alone. Right for buffers that were cleared to that value and drawn with a strict
-    /// depth comparison. If false, such a sample is something drawn at the far plane.
+    /// Treats samples at the far end of the depth range (1, or 0 with reversed Z) as background, where nothing is
+    /// drawn: they count for ZBounds::transparent_max alone. Right for buffers that were cleared to that value and
+    /// drawn with a strict depth comparison. If false, such a sample is something drawn at the far plane.
     bool skip_background = false;
 };
 
@@ -108,8 +108,8 @@ inline DepthInterval fragment_depths(const View& view, Extremes window, DepthFor
 ///
 /// isa  use no wider instructions than these; the result is the same
 ///
-/// Errors: a sample count outside 1 to 8; a row pitch shorter than a row; too few samples; an `out` span that is neither empty
-/// nor as long as View::tile_count().
+/// Errors: a sample count outside 1 to 8; a row pitch shorter than a row; too few samples; an `out` span that is
+/// neither empty nor as long as View::tile_count().
 ///
 /// Source: Tiled Shading, section 6.3 (minimum and maximum depth of a tile); Harada, "A 2.5D Culling for Forward+", SIGGRAPH
 /// Asia 2012 (depths with a gap).

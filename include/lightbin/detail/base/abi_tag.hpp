@@ -4,24 +4,24 @@
 // function the linker would keep either copy, whose instructions might not exist on the machine. Passing a lightbin type
 // between such units is a linker error.
 //
-// All other headers include this one first, so it also refuses compilers that are not set to C++20. It does so by including a
-// file that does not exist, which ends every compiler with one error that shows the file's name. After an #error gcc and clang
-// would go on to report hundreds of errors.
+// All other headers include this one first, so it also refuses compilers that are not set to C++20. It does so by
+// including a file that does not exist, which ends every compiler with one error that shows the file's name. After an
+// #error gcc and clang would go on to report hundreds of errors.
 #pragma once
 
 #if (defined(_MSVC_LANG) ? _MSVC_LANG : __cplusplus) <= 201703L
 #include "lightbin wants C++20, which the flag -std=c++20 gives (Microsoft's: /std:c++20); no file is missing"
 #endif
 
-// The name consists of the highest level of vector instructions that the flags allow, such as sse41, and of each other extension
-// that they allow, written as the number of its LIGHTBIN_LINE below and its letter within that line. Included is every extension
-// that a compiler may use of its own accord for plain C++ and announces by a macro. Left out are extensions that only
-// intrinsics reach, those for checksums, ciphers and 16-bit floats, hints that older processors ignore (prefetches,
-// control-flow marks), and those of WebAssembly, where an engine refuses a module as a whole. tests/guest/flavours.sh has a
-// list of all that are left out.
+// The name consists of the highest level of vector instructions that the flags allow, such as sse41, and of each other
+// extension that they allow, written as the number of its LIGHTBIN_LINE below and its letter within that line. Included
+// is every extension that a compiler may use of its own accord for plain C++ and announces by a macro. Left out are
+// extensions that only intrinsics reach, those for checksums, ciphers and 16-bit floats, hints that older processors
+// ignore (prefetches, control-flow marks), and those of WebAssembly, where an engine refuses a module as a whole.
+// tests/guest/flavours.sh has a list of all that are left out.
 
-// LIGHTBIN_IF(macro, name, other) expands to `name` if the macro is 1 (RISC-V: 1000000), to `name` and the digit if it is 2 or 3,
-// and to `other` if it is not defined.
+// LIGHTBIN_IF(macro, name, other) expands to `name` if the macro is 1 (RISC-V: 1000000), to `name` and the digit if it
+// is 2 or 3, and to `other` if it is not defined.
 #define LIGHTBIN_IF(macro, name, other) LIGHTBIN_IF_VALUE(macro, name, other)
 #define LIGHTBIN_IF_VALUE(value, name, other) LIGHTBIN_IF_FOUND(LIGHTBIN_FOUND_##value(name), other)
 #define LIGHTBIN_IF_FOUND(found, other) LIGHTBIN_SECOND(found, other, )
@@ -38,8 +38,8 @@
                    LIGHTBIN_IF_VALUE(D, n##d, ), LIGHTBIN_IF_VALUE(E, n##e, ), LIGHTBIN_IF_VALUE(F, n##f, ), \
                    LIGHTBIN_IF_VALUE(G, n##g, ), LIGHTBIN_IF_VALUE(H, n##h, ))
 
-// LIGHTBIN_INSTRUCTION_SET is defined for each processor family, and as plain `baseline` if the flags allow no x86 extension.
-// The macro is expanded wherever the namespace is named; the long form would cost each compiled file 15 ms.
+// LIGHTBIN_INSTRUCTION_SET is defined for each processor family, and as plain `baseline` if the flags allow no x86
+// extension. The macro is expanded wherever the namespace is named; the long form would cost each compiled file 15 ms.
 // clang-format off
 #if defined(__arm__) || defined(__aarch64__)
 #define LIGHTBIN_INSTRUCTION_SET LIGHTBIN_PASTE(LIGHTBIN_RUNG, \

@@ -27,8 +27,8 @@ public:
     }
     ~Buffer() { delete[] memory_; }
 
-    /// Returns memory for `size` elements or more. If it has to grow, all values are lost. Throws as `new` does if there is not
-    /// enough memory or if `size` exceeds std::size_t; the Buffer remains usable.
+    /// Returns memory for `size` elements or more. If it has to grow, all values are lost. Throws as `new` does if
+    /// there is not enough memory or if `size` exceeds std::size_t; the Buffer remains usable.
     T* reserve(std::uint64_t size) {
         if (size > size_) {
             Buffer().swap(*this);
@@ -37,8 +37,8 @@ public:
         return memory_;
     }
 
-    /// Returns memory for `size` elements or more and keeps the values of the first `used` elements. Grows to twice `size`, so
-    /// that appending one element at a time takes linear time.
+    /// Returns memory for `size` elements or more and keeps the values of the first `used` elements. Grows to twice
+    /// `size`, so that appending one element at a time takes linear time.
     T* reserve(std::uint64_t size, std::size_t used) {
         if (size > size_) {
             Buffer larger(sum_of_sizes(size, size));
@@ -69,8 +69,8 @@ private:
     explicit Buffer(std::uint64_t size)
         : size_(static_cast<std::size_t>(min_of<std::uint64_t>(size, ~std::size_t{0}))) {
 #if defined(LIGHTBIN_MEMORY_SANITIZER)
-        // Initialised, because kernels read whole words and vectors and ignore parts of them. The sanitizer would report those
-        // parts as used.
+        // Initialised, because kernels read whole words and vectors and ignore parts of them. The sanitizer would
+        // report those parts as used.
         memory_ = new T[size_]();
 #else
         memory_ = new T[size_];

@@ -24,8 +24,9 @@
 #define LIGHTBIN_SIMD128 1
 #endif
 
-// Functions, templates and lambdas between LIGHTBIN_TARGET_BEGIN("avx2,bmi") and LIGHTBIN_TARGET_END may use the named instruction
-// sets in addition to those that the compiler's flags allow. Microsoft's compiler allows every function to use all of them.
+// Functions, templates and lambdas between LIGHTBIN_TARGET_BEGIN("avx2,bmi") and LIGHTBIN_TARGET_END may use the named
+// instruction sets in addition to those that the compiler's flags allow. Microsoft's compiler allows every function to
+// use all of them.
 #if defined(_MSC_VER) && !defined(__clang__)
 #define LIGHTBIN_NOINLINE __declspec(noinline)
 #define LIGHTBIN_INLINE __forceinline
@@ -60,8 +61,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Returns `product`, rounded to its type. Keeps the compiler from fusing a product and a later sum into one instruction that
-/// rounds once, since the result would then depend on the instruction set.
+/// Returns `product`, rounded to its type. Keeps the compiler from fusing a product and a later sum into one
+/// instruction that rounds once, since the result would then depend on the instruction set.
 template <class Real> inline Real rounded(Real product) {
     LIGHTBIN_FORGET(product);
     return product;

@@ -33,8 +33,8 @@ template <bool read> auto bounds_left_out() {
     return std::conditional_t<read, ZBounds, NotRead>();
 }
 
-/// The slices of an Inputs: a reference to the caller's Slices, or a copy of a temporary, which would be destroyed at the end of
-/// the expression that makes the Inputs.
+/// The slices of an Inputs: a reference to the caller's Slices, or a copy of a temporary, which would be destroyed at
+/// the end of the expression that makes the Inputs.
 class SlicesInput {
 public:
     SlicesInput(const Slices& slices) : given_(&slices) {}
@@ -54,7 +54,7 @@ private:
     std::optional<Slices> own_;
 };
 
-/// Converts to SlicesInput in name only, since the assertion of slices_left_out() ends the compilation.
+/// Stands in for slices that were left out. Its conversion is never called, as slices_left_out() has reported the error.
 struct NoSlices {
     operator SlicesInput() const;
 };

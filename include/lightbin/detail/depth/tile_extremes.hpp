@@ -37,8 +37,8 @@ inline Extremes extremes(const float* lower, const float* upper, std::size_t cou
     return chains[0];
 }
 
-/// Reduces one row of tiles and calls finish(tile, extremes) for each tile. The kernel first reduces each pixel column to its
-/// extremes, as many columns at once as fit in a buffer on the stack; then the columns of each tile are reduced.
+/// Reduces one row of tiles and calls finish(tile, extremes) for each tile. The kernel first reduces each pixel column
+/// to its extremes, as many columns at once as fit in a buffer on the stack; then the columns of each tile are reduced.
 ///
 /// tile_columns  samples across a tile
 /// skipped       samples of this value are left out; NaN: none are

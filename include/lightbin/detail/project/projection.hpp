@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reads a projection matrix: refuses what is not a promised kind of projection, and derives the camera's constants and the
+// Reads a projection matrix: refuses what is no supported kind of projection, and derives the camera's constants and the
 // mapping between view depth and window depth.
 #pragma once
 
@@ -65,7 +65,7 @@ struct DepthMap {
     }
 };
 
-/// Returns why a matrix with these zeros and signs is no promised kind of projection, or nothing if it is one.
+/// Returns why a matrix is no supported kind of projection, judged by which entries are zero, or nothing if it is one.
 inline std::optional<ErrorCode> wrong_shape(const Matrix& m) {
     const double w_x = m[0][3], w_y = m[1][3], w_z = m[2][3], w_1 = m[3][3];
     const bool perspective = w_x == 0 && w_y == 0 && w_z != 0 && w_1 == 0;
@@ -173,12 +173,12 @@ struct Projection {
         return set_depth_range();
     }
 
-    /// Returns what a person checks a matrix by. See View::summary().
+    /// Returns the values that View::summary() reports.
     ViewSummary summary(int width, int height, int tile_size) const {
         const bool flat = camera.orthographic;
         const Matrix& m = matrix;
-        // The image's extent between ndc -1 and 1 on one axis. The axes of the camera would not do: an empty viewport
-        // has no extent there.
+        // The image's extent between ndc -1 and 1 on one axis. It is computed from the matrix because the camera's image
+        // axes have a scale of 0 for an empty viewport.
         const auto size = [&](int axis) {
             const double w = flat ? depth.w_offset : depth.w_scale,
                          offset = flat ? m[3][axis] : static_cast<double>(camera.z_sign) * m[2][axis];

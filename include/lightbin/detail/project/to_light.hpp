@@ -29,8 +29,8 @@ concept Vec4Of = requires(const Light& light) {
 }  // namespace detail
 
 /// The default way to make a Sphere or a Spot of a light. A type that is, derives from or converts to Spot or Sphere is
-/// converted. A vec4 of floats becomes the Sphere with centre (x, y, z) and radius w; a vec4 of doubles becomes such a Sphere
-/// rounded outward.
+/// converted. A vec4 of floats becomes the Sphere with centre (x, y, z) and radius w; a vec4 of doubles becomes such a
+/// Sphere rounded outward.
 struct AsLight {
     template <class Light>
     requires(std::convertible_to<const Light&, Sphere> || std::convertible_to<const Light&, Spot> ||
@@ -64,7 +64,8 @@ template <class Callable, class Light> constexpr decltype(auto) call(const Calla
         return NotCalled();
 }
 
-/// Returns the object that a pointer, a smart pointer or a std::reference_wrapper refers to. Anything else is returned itself.
+/// Returns the object that a pointer, a smart pointer or a std::reference_wrapper refers to. Anything else is returned
+/// itself.
 template <class Light> constexpr auto& referred(Light& light) {
     if constexpr (requires { requires std::is_lvalue_reference_v<decltype(*light)>; })
         return *light;
@@ -96,8 +97,8 @@ constexpr decltype(auto) make_light(const ToLight& to_light, const Light& light)
         return call(to_light, light);
 }
 
-/// Returns `to_light`. If it cannot make lights of type Light, that is a compile error with a readable message, and a stand-in
-/// is returned so that no further errors follow.
+/// Returns `to_light`. If it cannot make lights of type Light, that is a compile error with a readable message, and a
+/// stand-in is returned so that no further errors follow.
 template <class Light, class ToLight> constexpr auto checked_to_light(const ToLight& to_light) {
     using Made = decltype(make_light(to_light, std::declval<const Light&>()));
     constexpr bool can_be_called = !std::same_as<Made, NotCalled>;
@@ -121,8 +122,8 @@ template <class Light, class ToLight> constexpr auto checked_to_light(const ToLi
     }
 }
 
-/// Returns a span of the caller's array. If it is not contiguous, that is a compile error with a readable message, and an empty
-/// span is returned so that no further errors follow.
+/// Returns a span of the caller's array. If it is not contiguous, that is a compile error with a readable message, and
+/// an empty span is returned so that no further errors follow.
 template <class Range> auto checked_array(const Range& lights) {
     static_assert(
         Array<Range>,
