@@ -34,6 +34,7 @@ EOF
                 if (!often && depth_of[name] > 0) fail(name " is included first under a condition, and again")
                 if (!often) return
             }
+            if (!often) depth_of[name] = depth  # before it is read: a header of detail/ may include the one that includes it
             print "// ---- " name
             dropped = 1
             while ((got = (getline line < ("include/" name))) > 0) {

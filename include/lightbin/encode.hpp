@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stage 4a: the light grid in other forms: narrow ids, sentinel-terminated lists, a bitmask a tile.
+// Writes the lists of a light grid in another format: narrower ids, lists that end with a sentinel, or a bitmask per tile.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -19,7 +19,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// Returns how many lights ids of a format can number.
+/// Returns how many lights the format can tell apart: one fewer where the sentinel takes an id, and 2^32 - 1 in a bitmask.
 inline std::uint64_t countable_lights(const ListFormat& format) {
     const std::uint64_t values = std::uint64_t{1} << (8 * static_cast<unsigned>(format.ids));
     if (format.encoding == ListEncoding::bitmask) return 0xffffffff;
@@ -28,12 +28,12 @@ inline std::uint64_t countable_lights(const ListFormat& format) {
 
 namespace detail {
 
-/// How many ids, or words of bits, each tile has, whatever its list.
-inline std::uint64_t places_a_tile(const ListFormat& format) {
+/// Returns how many ids (sentinel) or 32-bit words (bitmask) the format reserves for each tile.
+inline std::uint64_t elements_per_tile(const ListFormat& format) {
     return format.encoding == ListEncoding::bitmask ? (format.max_lights + 31ull) / 32 : format.capacity;
 }
 
-/// What is no format: neither encode() nor the shaders take it.
+/// Returns the error of a format that is inconsistent, and so refused by encode() and shader_snippet().
 inline std::optional<Error> refuse(const ListFormat& format) {
     if (format.max_lights > countable_lights(format))
         return Error{ErrorCode::ids_too_narrow, format.max_lights, countable_lights(format)};
@@ -46,23 +46,23 @@ inline std::optional<Error> refuse(const ListFormat& format) {
 
 }  // namespace detail
 
-/// Returns the bytes that encode() writes for a grid of so many tiles and list entries, a multiple of 4. Where they
-/// are more than 64 bits count: 2^64 - 4.
+/// Returns how many bytes encode() needs for a grid of so many tiles and list entries, rounded up to a multiple of 4. If
+/// that exceeds 64 bits, returns 2^64 - 4.
 inline std::uint64_t encoded_bytes(const ListFormat& format, std::uint64_t tiles, std::uint64_t entries) {
-    const std::uint64_t places = format.encoding == ListEncoding::offset_count
-                                     ? entries
-                                     : detail::product_of_sizes(tiles, detail::places_a_tile(format));
+    const std::uint64_t elements = format.encoding == ListEncoding::offset_count
+                                       ? entries
+                                       : detail::product_of_sizes(tiles, detail::elements_per_tile(format));
     const std::uint64_t width =
         format.encoding == ListEncoding::bitmask ? 4 : static_cast<std::uint64_t>(format.ids);
-    constexpr std::uint64_t most = ~std::uint64_t{3};
-    return places > most / width ? most : (places * width + 3) / 4 * 4;
+    constexpr std::uint64_t limit = ~std::uint64_t{3};
+    return elements > limit / width ? limit : (elements * width + 3) / 4 * 4;
 }
 
-/// What a sentinel list's capacity cut off.
+/// What encode() left out of lists that are longer than the capacity of the sentinel format.
 struct Encoded {
     std::uint64_t entries_cut = 0;
-    std::uint32_t tiles_cut = 0;        ///< tiles that lost some
-    std::uint32_t capacity_needed = 0;  ///< length of the longest list: a capacity that cuts nothing
+    std::uint32_t tiles_cut = 0;        ///< tiles whose list was cut
+    std::uint32_t capacity_needed = 0;  ///< length of the longest list, the least capacity that cuts nothing
 };
 
 namespace detail {
@@ -89,11 +89,11 @@ template <class Id> void encode_bits(const LightGrid<Id>& grid, std::size_t byte
     std::fill_n(out, bytes_a_tile * grid.ranges().size(), std::byte{0});
     for (const ListRange range : grid.ranges()) {
         for (const Id id : grid.ids().subspan(range.offset, range.count)) {
-            std::byte* const place = out + id / 32u * 4;
+            std::byte* const at = out + id / 32u * 4;
             std::uint32_t word = 0;
-            std::memcpy(&word, place, 4);
+            std::memcpy(&word, at, 4);
             word |= std::uint32_t{1} << id % 32u;
-            std::memcpy(place, &word, 4);
+            std::memcpy(at, &word, 4);
         }
         out += bytes_a_tile;
     }
@@ -101,25 +101,27 @@ template <class Id> void encode_bits(const LightGrid<Id>& grid, std::size_t byte
 
 }  // namespace detail
 
-/// Writes the lists of a grid to `out`, which takes encoded_bytes(format, tiles, entries) or more; what lies
-/// beyond the ids is left as it is. Ids and words are in this machine's byte order.
+/// Writes the lists of a grid to `out`, in this machine's byte order. `out` must hold encoded_bytes(format, tiles, entries)
+/// or more; bytes beyond the ids keep their values. With offset_count, shaders read grid.ranges() beside `out`.
 ///
-/// After it, each tile's list in `out` is the grid's. Only a sentinel list longer than its capacity is cut:
-/// its first `capacity` ids, the lowest, stay, and the result counts the others. offset_count: the table of
-/// tiles is grid.ranges() as it is. Errors: a format without the capacity or max_lights that it needs, or with more
-/// max_lights than its ids number; an id it can't number; `out` too small. Then `out` is not touched.
+/// Every list is complete, except that the sentinel format cuts a list longer than its capacity: the lowest `capacity` ids
+/// stay, and the result counts the entries that were cut.
+///
+/// Errors, after which `out` is unchanged: the format lacks its capacity or max_lights, or max_lights exceeds what its ids
+/// can tell apart; an id of the grid is too large for the format; `out` is too small.
 template <class Id>
 Result<Encoded> encode(const LightGrid<Id>& grid, const ListFormat& format, std::span<std::byte> out) {
     if (const auto error = detail::refuse(format)) return *error;
     const std::uint64_t bytes = encoded_bytes(format, grid.ranges().size(), grid.ids().size());
     if (out.size() < bytes) return Error{ErrorCode::list_buffer_too_small, bytes, out.size()};
-    const std::uint64_t most = countable_lights(format);
-    const std::uint64_t limit = format.max_lights ? (std::min<std::uint64_t>)(format.max_lights, most) : most;
+    const std::uint64_t countable = countable_lights(format);
+    const std::uint64_t limit =
+        format.max_lights ? (std::min<std::uint64_t>)(format.max_lights, countable) : countable;
 
     Encoded encoded;
-    std::uint64_t needed = 0;  // to number the greatest id
+    std::uint64_t needed = 0;  // the greatest id + 1
     for (const ListRange range : grid.ranges()) {
-        if (range.count > 0)  // ids ascend: the last one is the greatest
+        if (range.count > 0)  // ids ascend, so the last one is the greatest
             needed = (std::max)(needed, grid.ids()[range.offset + range.count - 1] + std::uint64_t{1});
         encoded.capacity_needed = (std::max)(encoded.capacity_needed, range.count);
         if (format.encoding != ListEncoding::sentinel || range.count <= format.capacity) continue;

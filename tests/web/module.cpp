@@ -269,8 +269,8 @@ TEST_CASE("what the GPU makes lists of has room for the lists of the Binner, and
         settings.on_gpu = true;
         const Frame& frame = stage.frame(view, settings, {});
         CHECK(frame.ids.empty());
-        CHECK(frame.build.room >= entries);
-        CHECK(frame.build.room < 2 * entries);
+        CHECK(frame.build.capacity >= entries);
+        CHECK(frame.build.capacity < 2 * entries);
         CHECK(frame.build.footprints == frame.footprints.size());
         CHECK(frame.slabs.size() == (method == DepthMethod::clusters ? 24 : 0));
         for (const lightbin::ShaderFootprint& footprint : frame.footprints)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// From the GLSL that the shader texts are written in to each language. It knows what they need, not all of GLSL: a
-// declaration holds one name, every branch and loop has braces, nothing is assigned to a parameter but through `inout`,
-// no `?:`. `$` stands for the prefix, `&` before a name for a variable that is handed over to be written.
+// Translates the shader texts from GLSL to each language. It handles the part of GLSL that the texts keep to: a
+// declaration holds one name, every branch and loop has braces, only `inout` parameters are assigned to, and there is no
+// `?:`. Two signs are not GLSL's: `$` stands for the prefix of names, and `&` marks an argument for an `inout` parameter.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -16,12 +16,12 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// A character of a name or number. `$` stands for the prefix.
+/// Whether a character can be part of a name or number. `$` can, as it stands for the prefix of a name.
 inline bool in_word(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '$';
 }
 
-/// The word that begins at `at`; empty if none does.
+/// Returns the name or number that begins at position `at` of a text; empty if none does.
 inline std::string_view word_at(std::string_view text, std::size_t at) {
     std::size_t end = at;
     while (end < text.size() && in_word(text[end]))
@@ -29,13 +29,13 @@ inline std::string_view word_at(std::string_view text, std::size_t at) {
     return text.substr(at, end - at);
 }
 
-/// A word of the texts in each language.
+/// A keyword, type or built-in function of GLSL and its equivalents.
 struct ShaderWord {
     std::string_view glsl, hlsl, wgsl;
     bool is_type = false;
 };
 
-/// The row of a word. What is in no row is the same in all languages.
+/// Returns the equivalents of a word. A word that the table lacks is the same in all languages.
 inline ShaderWord shader_word(std::string_view word) {
     static constexpr ShaderWord words[] = {
         {"bool", "bool", "bool", true},
@@ -64,8 +64,8 @@ inline ShaderWord shader_word(std::string_view word) {
     return {word, word, word};
 }
 
-/// Returns a text in GLSL or HLSL. Types are declared highp in ES: a fragment shader's integers have 16 bits there
-/// otherwise, and no default precision is set, as it would reach the user's code.
+/// Translates to HLSL, or to GLSL for OpenGL, Vulkan or ES. In ES every declaration is marked highp, since a fragment
+/// shader's integers may have only 16 bits otherwise. (A default precision would change the user's code, too.)
 inline std::string translate(std::string_view glsl, bool hlsl, bool es) {
     std::string text;
     for (std::size_t at = 0; at < glsl.size();) {
@@ -84,13 +84,12 @@ inline std::string translate(std::string_view glsl, bool hlsl, bool es) {
     return text;
 }
 
-/// A name of the text that WGSL has in another way: a constant is a member of its block, what is handed over to be
-/// written is where a pointer points.
+/// What a name becomes in WGSL. Constants become members of their block, and `inout` parameters dereferenced pointers.
 struct WgslName {
     std::string glsl, wgsl;
 };
 
-/// Goes through a text once, sign by sign and word by word; text() is what came out.
+/// Translates a text from GLSL to WGSL in one pass over its words and signs. text() returns the result.
 class WgslTranslation {
 public:
     WgslTranslation(std::string_view glsl, const std::vector<WgslName>& constants)
@@ -106,7 +105,7 @@ public:
 
 private:
     void take_sign(char sign) {
-        if (sign == '/' && glsl_.substr(at_).starts_with('/')) {  // a comment, whose words are no code
+        if (sign == '/' && glsl_.substr(at_).starts_with('/')) {  // a comment is copied as it is
             const std::size_t end = glsl_.find('\n', at_);
             wgsl_ += glsl_.substr(at_ - 1, end - at_ + 1);
             at_ = end;
@@ -114,7 +113,7 @@ private:
         }
         if (sign == '{') ++depth_;
         if (sign == '}') in_struct_ = --depth_ > 0 && in_struct_;
-        // A pointer is handed on as it is.
+        // An inout parameter that is passed on as one is a pointer already, which needs no `&` in WGSL.
         if (const std::string_view word = word_at(glsl_, at_); sign == '&' && renamed(word) != word) {
             wgsl_ += word;
             at_ += word.size();
@@ -135,7 +134,7 @@ private:
             ++at_;
             return;
         }
-        // A type, a space and a name declare something. Types of the text's own begin with the prefix.
+        // A type, a space and a name are a declaration. Types that the text itself declares begin with the prefix.
         const ShaderWord row = shader_word(word);
         const std::string_view name = at_ < glsl_.size() && glsl_[at_] == ' ' ? word_at(glsl_, at_ + 1) : "";
         if ((row.is_type || word == "void" || word.starts_with('$')) && !name.empty()) {
@@ -171,7 +170,7 @@ private:
     }
 
     std::string_view glsl_;
-    std::vector<WgslName> names_;  // the constants and the function's inout parameters
+    std::vector<WgslName> names_;  // the constants, then the current function's inout parameters
     std::string wgsl_, result_;
     std::size_t constants_, at_ = 0;
     int depth_ = 0;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The slice of a view depth, in shader text: what is uploaded, and how it is looked up.
+// How a shader finds the slice of a view depth: the content of the buffer `slices`, and the function `slice` that reads it.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/platform.hpp>
-#include <lightbin/shader_text.hpp>
+#include <lightbin/detail/shader/writer.hpp>
 #include <lightbin/slices.hpp>
 
 #include <cmath>
@@ -19,30 +19,30 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 namespace detail {
 
-/// About which slice a depth is in: by_log2 * log2(depth) + by_depth * depth + offset.
+/// The coefficients of an estimate of a depth's slice: by_log2 * log2(depth) + by_depth * depth + offset.
 struct SliceGuess {
     float by_log2, by_depth, offset;
 };
 
-/// Returns what is exact for Slices::exponential or linear but for rounding, and for other boundaries goes through
-/// the first and the last.
+/// Returns the line through the first and the last boundary, over the depth or over its logarithm, whichever is nearer to
+/// the other boundaries. But for rounding it is exact for the boundaries of Slices::linear() and Slices::exponential().
 inline SliceGuess best_guess(std::span<const float> boundaries) {
     SliceGuess best = {0, 0, 0};
     if (boundaries.empty()) return best;
     double least_error = std::numeric_limits<double>::infinity();
     for (const bool by_log2 : {false, true}) {
-        const auto place = [&](float depth) {
+        const auto scaled = [&](float depth) {
             const double exact = static_cast<double>(depth);
             return by_log2 ? std::log2(exact) : exact;
         };
-        const double first = place(boundaries.front()), last = place(boundaries.back());
+        const double first = scaled(boundaries.front()), last = scaled(boundaries.back());
         const double slope =
             boundaries.size() == 1 ? 0 : (static_cast<double>(boundaries.size()) - 1) / (last - first);
         const double offset = 1 - slope * first;
         double error = 0;
         for (std::size_t i = 0; i < boundaries.size(); ++i)
-            error += std::fabs(slope * place(boundaries[i]) + offset - static_cast<double>(i + 1));
-        if (!(error < least_error)) continue;  // nor if it is NaN: what is not positive has no logarithm
+            error += std::fabs(slope * scaled(boundaries[i]) + offset - static_cast<double>(i + 1));
+        if (!(error < least_error)) continue;  // also when NaN: depths of 0 or less have no logarithm
         least_error = error;
         const float factor = static_cast<float>(slope);
         best = {by_log2 ? factor : 0, by_log2 ? 0 : factor, static_cast<float>(offset)};
@@ -50,32 +50,14 @@ inline SliceGuess best_guess(std::span<const float> boundaries) {
     return best;
 }
 
-}  // namespace detail
-
-/// Returns the words of the buffer `slices`: how to guess the slice of a depth, the last slice, and the boundaries, as
-/// numbers that order as they do. Four and one a boundary: slices.count() + 3.
-inline std::vector<std::uint32_t> shader_slices(const Slices& slices) {
-    const std::span<const float> boundaries = slices.boundaries();
-    const detail::SliceGuess guess = detail::best_guess(boundaries);
-    std::vector<std::uint32_t> words = {
-        detail::bit_cast<std::uint32_t>(guess.by_log2), detail::bit_cast<std::uint32_t>(guess.by_depth),
-        detail::bit_cast<std::uint32_t>(guess.offset), static_cast<std::uint32_t>(boundaries.size())};
-    for (const float boundary : boundaries) {
-        const std::uint32_t bits = detail::bit_cast<std::uint32_t>(boundary), sign = 0x80000000;
-        words.push_back(bits & sign ? ~bits : bits | sign);
-    }
-    return words;
-}
-
-namespace detail {
-
-/// The bytes of shader_slices() for so many slices, 0 for none.
+/// Returns the size of shader_slices() in bytes for a number of slices; 0 if there are none.
 inline std::uint64_t slice_bytes(std::uint64_t slices) {
     return slices == 0 ? 0 : 4 * (slices + 3);
 }
 
-/// `slice`: the slice of a view depth. A guess, by a logarithm that a device may round as it likes, and from there to
-/// where the boundaries have it. They and the depth are compared as words: devices may take tiny floats for zero.
+/// Adds the function `slice`, which returns the slice of a view depth. It starts from the estimate, in which a device may
+/// round the logarithm as it likes, and steps from there until the boundaries enclose the depth. Boundaries and depth are
+/// compared as integers that are in the order of the floats, because devices may flush denormal floats to zero.
 inline void add_slice(ShaderWriter& writer) {
     const auto word = [&](const std::string& index) { return writer.read("slices", index); };
     const auto number = [&](const std::string& index) { return "uintBitsToFloat(" + word(index) + ")"; };
@@ -98,4 +80,18 @@ inline void add_slice(ShaderWriter& writer) {
 }
 
 }  // namespace detail
+
+inline std::vector<std::uint32_t> shader_slices(const Slices& slices) {
+    const std::span<const float> boundaries = slices.boundaries();
+    const detail::SliceGuess guess = detail::best_guess(boundaries);
+    std::vector<std::uint32_t> words = {
+        detail::bit_cast<std::uint32_t>(guess.by_log2), detail::bit_cast<std::uint32_t>(guess.by_depth),
+        detail::bit_cast<std::uint32_t>(guess.offset), static_cast<std::uint32_t>(boundaries.size())};
+    for (const float boundary : boundaries) {
+        const std::uint32_t bits = detail::bit_cast<std::uint32_t>(boundary), sign = 0x80000000;
+        words.push_back(bits & sign ? ~bits : bits | sign);
+    }
+    return words;
+}
+
 }}  // namespace lightbin

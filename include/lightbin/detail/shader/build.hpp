@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+// How build_shader() makes its text, and the data that the shaders read.
+#pragma once
+
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/float_environment.hpp>
+#include <lightbin/detail/engine/cell_boxes.hpp>
+#include <lightbin/detail/project/footprints.hpp>
+#include <lightbin/detail/shader/writer.hpp>
+#include <lightbin/lights.hpp>
+#include <lightbin/shader_build.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
+
+namespace detail {
+
+inline std::optional<Error> refuse(const BuildShaderOptions& options) {
+    if (auto error = refuse_common(options, {options.footprints, options.z_bounds, options.tiles,
+                                            options.lists, options.total, options.grid}))
+        return error;
+    if (!detail::dialect(options.language).storage_buffers) return Error{ErrorCode::no_storage_buffers};
+    if (options.depth_test == DepthTest::split_box) return Error{ErrorCode::no_split_box_shader};
+    if (options.slicing == Slicing::z_bins ||
+        (options.slicing == Slicing::clusters && options.depth_test == DepthTest::interval))
+        return Error{ErrorCode::no_such_slicing_shader};
+    return std::nullopt;
+}
+
+}  // namespace detail
+
+template <class LightRange>
+Result<std::vector<ShaderFootprint>> shader_footprints(const View& view, const LightRange& lights) {
+    const detail::DefaultFloatEnvironment environment;
+    const auto& source = detail::as_lights(lights);
+    if (const auto error = detail::refuse(source)) return *error;
+    Footprints<Footprint::rectangle, true> footprints;
+    footprints.project(machine_isa(), view, source, Parallel{});
+    const detail::FootprintArrays& in = footprints.arrays();
+    const detail::Camera& camera = detail::camera_of(view);
+    std::vector<ShaderFootprint> out;
+    for (std::uint32_t i = 0; i < footprints.visible(); ++i) {
+        Sphere sphere;
+        if constexpr (std::remove_cvref_t<decltype(source)>::spots)
+            sphere = source.view_sphere(source.array[in.ids[i]]);  // the least sphere around the spot
+        else
+            sphere = detail::load_sphere(in.spheres + in.ids[i]);
+        const detail::TestedLight light(camera, sphere);
+        out.push_back({in.ids[i], in.x0[i], in.y0[i], in.x1[i], in.y1[i], light.reach2, light.x, light.y,
+                       light.z, sphere.radius});
+    }
+    return out;
+}
+
+inline std::vector<ShaderEdges> shader_edges(const View& view) {
+    const detail::DefaultFloatEnvironment environment;
+    std::vector<ShaderEdges> edges;
+    const detail::Camera& camera = detail::camera_of(view);
+    for (const detail::ImageAxis* axis : {&camera.x, &camera.y})
+        for (int tile = 0; tile < axis->tiles; ++tile) {
+            ShaderEdges sides;
+            detail::tile_edges(*axis, tile, sides.low, sides.high);
+            edges.push_back(sides);
+        }
+    return edges;
+}
+
+inline std::vector<ShaderEdges> shader_slabs(const Slices& slices) {
+    const detail::SliceTable& table = detail::table_of(slices);
+    std::vector<ShaderEdges> slabs;
+    float low = -detail::infinity;
+    for (const float boundary : table.boundaries()) {
+        slabs.push_back({low, table.farther(boundary)});
+        low = table.nearer(boundary);
+    }
+    slabs.push_back({low, detail::infinity});
+    return slabs;
+}
+
+inline Result<ShaderText> build_shader(const BuildShaderOptions& options) {
+    using namespace detail;
+    if (const auto error = refuse(options)) return *error;
+    ShaderWriter writer(options.language, options.prefix);
+    const bool clusters = options.slicing == Slicing::clusters, box = options.depth_test == DepthTest::box,
+               depths = clusters || options.depth_test != DepthTest::none,
+               max_only = options.max_only && !clusters, fill = options.pass == BuildPass::fill;
+    std::vector<ShaderConstant> constants = {{"uvec4", "grid"}};
+    if (options.pass == BuildPass::offsets) {
+        writer.declare_constants(constants, options.grid, options.push_constants);
+        writer.declare_storage("tiles", "uvec2", "", options.tiles, 8);
+        writer.declare_storage("total", "uint", "writeonly", options.total, 4);
+        writer.add("\n");
+        writer.declare_shared("sums", 128, false);
+        writer.add(R"(
+// Each thread sums a run of tiles; the sums of the runs before it are added up (Hillis, Steele 1986). A sum that 32 bits
+// don't hold stays at the greatest that they do: min(number, ~sum) is what can be added.
+void $run(uvec2 group, uint thread) {
+    uint tiles = $grid.x * $grid.y;
+    uint each = (tiles + 127u) / 128u;
+    uint first = min(thread * each, tiles);
+    uint last = min(first + each, tiles);
+    uint sum = 0u;
+    for (uint i = first; i < last; i += 1u) { sum += min($tiles[i].y, ~sum); }
+    $sums[thread] = sum;
+    sync_group();
+    for (uint distance = 1u; distance < 128u; distance *= 2u) {
+        uint before = 0u;
+        if (thread >= distance) { before = $sums[thread - distance]; }
+        sync_group();
+        $sums[thread] += min(before, ~$sums[thread]);
+        sync_group();
+    }
+    uint offset = 0u;
+    if (thread > 0u) { offset = $sums[thread - 1u]; }
+    for (uint tile = first; tile < last; tile += 1u) {
+        uint count = $tiles[tile].y;
+        uint begin = min(offset, $grid.w);
+        $tiles[tile] = uvec2(begin, min(count, $grid.w - begin));
+        offset += min(count, ~offset);
+    }
+    if (thread == 127u) { $total[0] = offset; }
+}
+)");
+        writer.add_compute_main(128);
+        return writer.finish();
+    }
+
+    if (box || clusters) constants.push_back({"vec4", "planes"});
+    writer.declare_constants(constants, options.grid, options.push_constants);
+    writer.add(
+        "struct $footprint {\n    uint id;\n    uint low;\n    uint high;\n    float reach2;\n    vec4 "
+        "sphere;\n};\n");
+    writer.declare_storage("footprints", "$footprint", "readonly", options.footprints, 32);
+    if (depths) writer.declare_storage("z_bounds", "vec2", "readonly", options.z_bounds, 8);
+    writer.declare_storage("tiles", "uvec2", fill ? "readonly" : "writeonly", options.tiles, 8);
+    if (fill) writer.declare_storage("lists", "uint", "writeonly", options.lists, 4);
+
+    // `meets` tells whether a light may reach the cell of a tile.
+    writer.add(std::string("\nbool $meets($footprint f, uvec2 tile") + (depths ? ", vec2 z" : "") +
+               (box ? ", vec4 cell" : "") + ") {\n" + R"(    uvec2 low = uvec2(f.low & 0xffffu, f.low >> 16u);
+    uvec2 high = uvec2(f.high & 0xffffu, f.high >> 16u);
+    bool met = tile.x >= low.x && tile.x <= high.x && tile.y >= low.y && tile.y <= high.y;
+)");
+    if (depths)
+        writer.add(std::string("    if (f.sphere.z - f.sphere.w > z.y") +
+                   (max_only ? "" : " || f.sphere.z + f.sphere.w < z.x") + ") { met = false; }\n");
+    if (box)
+        writer.add(R"(    float x = max(max(cell.x - f.sphere.x, f.sphere.x - cell.y), 0.0);
+    float y = max(max(cell.z - f.sphere.y, f.sphere.y - cell.w), 0.0);
+    float d = max(max(z.x - f.sphere.z, f.sphere.z - z.y), 0.0);
+    if (x * x + y * y + d * d > f.reach2) { met = false; }
+)");
+    writer.add("    return met;\n}\n\n");
+    // In perspective the sides of a column are slopes. Their view-space coordinates over the cell's depths lie between
+    // `least` and `greatest`.
+    if (box && !options.orthographic)
+        writer.add(R"(float $least(float side, vec2 z) {
+    float depth = z.x;
+    if (side < 0.0) { depth = z.y; }
+    return side * depth - 7.5231638e-37;
+}
+
+float $greatest(float side, vec2 z) {
+    float depth = z.x;
+    if (side > 0.0) { depth = z.y; }
+    return side * depth + 7.5231638e-37;
+}
+
+)");
+    writer.declare_shared("hits", 2, true);
+    writer.add("\nvoid $run(uvec2 group, uint thread) {\n    uvec2 tile = group;\n"
+               "    uint place = tile.y * $grid.x + tile.x;\n");
+    if (clusters) writer.add("    uint slice = tile.y / uint($planes.z);\n    tile.y %= uint($planes.z);\n");
+    std::string arguments = "tile";
+    if (depths) {
+        // A bound that is NaN excludes nothing. NaN is recognised by its bits, as compilers may assume that no float is NaN.
+        const auto if_nan = [](const char* end) {
+            return "if ((floatBitsToUint(z." + std::string(end) + ") & 0x7fffffffu) > 0x7f800000u) ";
+        };
+        writer.add(infinity_lines + ("    vec2 z = $z_bounds[" + std::string(clusters ? "slice" : "place")) +
+                   "];\n    " + (max_only ? "z.x = -endless;" : if_nan("x") + "{ z.x = -endless; }") +
+                   "\n    " + if_nan("y") + "{ z.y = endless; }\n    bool lit = z.x <= z.y;\n");
+        arguments += ", z";
+    }
+    if (box) {  // the cell's view-space box, as engine/cell_boxes.hpp computes it
+        writer.add(R"(    z.x = min(max(z.x, $planes.x), 3.4028234e38);
+    z.y = min(z.y, $planes.y);
+    uint edges = )" +
+                   std::string(clusters ? "$grid.y / uint($planes.z)" : "$grid.x * $grid.y") +
+                   R"(;
+    vec4 cell = vec4($z_bounds[edges + tile.x], $z_bounds[edges + $grid.x + tile.y]);
+)");
+        if (!options.orthographic)
+            writer.add("    cell = vec4($least(cell.x, z), $greatest(cell.y, z), $least(cell.z, z), "
+                       "$greatest(cell.w, z));\n");
+        arguments += ", cell";
+    }
+    if (fill) writer.add("    uvec2 list = $tiles[place];\n");
+    writer.add("    uint count = 0u;\n    for (uint first = 0u; first < $grid.z; first += 64u) {\n"
+               "        if (thread < 2u) { " +
+               writer.store_atomic("$hits[thread]", "0u") + R"(; }
+        sync_group();
+        uint i = first + thread;
+        bool hit = false;
+        if ()" +
+               (depths ? "lit && " : "") + "i < $grid.z) { hit = $meets($footprints[i], " + arguments +
+               R"(); }
+        if (hit) { atomicOr(&$hits[thread >> 5u], 1u << (thread & 31u)); }
+        sync_group();
+)");
+    const std::string low_hits = writer.load_atomic("$hits[0]"), high_hits = writer.load_atomic("$hits[1]");
+    if (fill)
+        writer.add(
+            "        uint before = (1u << (thread & 31u)) - 1u;\n        uint rank = count + uint(bitCount(" +
+            writer.load_atomic("$hits[thread >> 5u]") +
+            " & before));\n        if (thread >= 32u) { rank += uint(bitCount(" + low_hits +
+            ")); }\n        if (hit && rank < list.y) { $lists[list.x + rank] = $footprints[i].id; }\n");
+    writer.add("        count += uint(bitCount(" + low_hits + ")) + uint(bitCount(" + high_hits +
+               "));\n        sync_group();\n    }\n");
+    if (!fill) writer.add("    if (thread == 0u) { $tiles[place] = uvec2(0u, count); }\n");
+    writer.add("}\n");
+    writer.add_compute_main(64);
+    return writer.finish();
+}
+
+}}  // namespace lightbin

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: MIT
+// How shader_snippet() makes its text.
+#pragma once
+
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/shader/slice_lookup.hpp>
+#include <lightbin/detail/shader/writer.hpp>
+#include <lightbin/encode.hpp>
+#include <lightbin/options.hpp>
+#include <lightbin/shader.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
+
+namespace detail {
+
+/// Returns the texel format of the lists. One texel holds one id in buffer textures and textures, unless the ids are packed.
+inline TexelFormat list_texels(const ShaderOptions& options) {
+    const bool one_id =
+        !options.packed_ids && options.format.encoding != ListEncoding::bitmask &&
+        (options.storage == ListStorage::texel_buffer || options.storage == ListStorage::texture_2d);
+    return one_id && options.format.ids == IdWidth::u8    ? TexelFormat::r8ui
+           : one_id && options.format.ids == IdWidth::u16 ? TexelFormat::r16ui
+                                                          : TexelFormat::r32ui;
+}
+
+/// Returns the buffers that the text reads.
+inline std::vector<ShaderBuffer> list_buffers(const ShaderOptions& options) {
+    using enum ShaderResource;
+    constexpr ShaderResource by_storage[] = {storage_buffer, texel_buffer, texture_2d, uniform_block,
+                                             byte_address};
+    const ShaderResource resource = by_storage[static_cast<std::size_t>(options.storage)];
+    const std::uint32_t width = resource == texture_2d ? options.texture_width : 0;
+    std::vector<ShaderBuffer> buffers;
+    if (options.format.encoding == ListEncoding::offset_count)
+        buffers.push_back({"tiles", options.tiles_in_uniform_block ? uniform_block : resource, options.tiles,
+                           TexelFormat::rg32ui, 8ull * options.max_tiles, 0});
+    buffers.push_back({"lists", resource, options.lists, list_texels(options),
+                       encoded_bytes(options.format, options.max_tiles, options.max_entries), width});
+    if (options.slicing != Slicing::none)
+        buffers.push_back({"slices", resource, options.slices, TexelFormat::r32ui,
+                           slice_bytes(options.max_slices), width});
+    if (options.slicing == Slicing::z_bins)
+        buffers.push_back(
+            {"bins", resource, options.bins, TexelFormat::rg32ui, 8ull * options.max_slices, width});
+    return buffers;
+}
+
+inline std::optional<Error> refuse(const ShaderOptions& options) {
+    const Dialect dialect = detail::dialect(options.language);
+    if (auto error = refuse_common(options, {options.tiles, options.lists, options.grid, options.slices,
+                                             options.bins, options.view}))
+        return error;
+    if (options.storage == ListStorage::storage_buffer && !dialect.storage_buffers)
+        return Error{ErrorCode::no_storage_buffers};
+    if (options.storage == ListStorage::texel_buffer && (dialect.es || dialect.wgsl))
+        return Error{ErrorCode::no_texel_buffers};
+    if (options.storage == ListStorage::byte_address && !dialect.hlsl)
+        return Error{ErrorCode::no_byte_address_buffers};
+    if (options.wave_loop && (!dialect.storage_buffers || options.language == ShaderLanguage::hlsl_5_0))
+        return Error{ErrorCode::no_wave_operations};
+    if (options.tile_size < 0)
+        return Error{ErrorCode::tile_size_out_of_range, static_cast<std::uint64_t>(options.tile_size)};
+    if (options.storage == ListStorage::texture_2d &&
+        (options.texture_width < 1 || options.texture_width > 16384))
+        return Error{ErrorCode::texture_width_out_of_range, options.texture_width, 16384};
+
+    if (const auto error = refuse(options.format)) return error;
+    // A block is an array of 16-byte vectors. Direct3D limits it to 4096 of them.
+    const std::uint64_t limit =
+        options.uniform_block_bytes > 65536 && dialect.hlsl ? 65536 : options.uniform_block_bytes / 16 * 16;
+    const std::vector<ShaderBuffer> buffers = list_buffers(options);
+    for (const ShaderBuffer& buffer : buffers)
+        if (buffer.resource == ShaderResource::uniform_block && buffer.bytes == 0)
+            return Error{ErrorCode::block_size_unknown};
+    for (const ShaderBuffer& buffer : buffers)
+        if (buffer.resource == ShaderResource::uniform_block && buffer.bytes > limit)
+            return Error{ErrorCode::uniform_block_too_small, buffer.bytes, limit};
+    return std::nullopt;
+}
+
+inline std::string number_text(std::uint64_t number) {
+    return std::to_string(number) + "u";
+}
+
+/// Returns the expression of the tile size.
+inline std::string tile_size_text(const ShaderOptions& options) {
+    return options.tile_size == 0 ? "$grid.x" : number_text(static_cast<std::uint64_t>(options.tile_size));
+}
+
+/// Returns lines that convert `pixel`, as the shader counts pixels, to `here`, as the view counts them. A pixel left of or
+/// above the viewport wraps around to a large unsigned number, and so stays outside.
+inline std::string to_grid_lines(const ShaderOptions& options) {
+    return std::string("    uvec2 here = pixel") + (options.viewport_corner ? " - uvec2($corner)" : "") +
+           ";\n" + (options.flip_y ? "    here.y = $grid.w - 1u - here.y;\n" : "");
+}
+
+/// Adds the function `tile`. It divides by at least 1, because the tile size is 0 while the constants are unset.
+inline void add_tile(ShaderWriter& writer, const ShaderOptions& options) {
+    const std::string size = tile_size_text(options);
+    writer.add("\n// The tile that a pixel lies in.\nuvec2 $tile(uvec2 pixel) {\n" + to_grid_lines(options) +
+               "    return here / " + (options.tile_size == 0 ? "max(" + size + ", 1u)" : size) + ";\n}\n");
+}
+
+/// Adds the function `id_at`, which returns one id of the lists; from packed lists it extracts the byte or half word.
+inline void add_id_at(ShaderWriter& writer, const ShaderOptions& options) {
+    const IdWidth ids = options.format.ids;
+    const bool whole = ids == IdWidth::u32 || list_texels(options) != TexelFormat::r32ui;
+    writer.add("\nuint $id_at(uint at) {\n    return " +
+               (whole ? writer.read("lists", "at")
+                : ids == IdWidth::u16
+                    ? "(" + writer.read("lists", "at >> 1u") + " >> ((at & 1u) * 16u)) & 0xffffu"
+                    : "(" + writer.read("lists", "at >> 2u") + " >> ((at & 3u) * 8u)) & 0xffu") +
+               ";\n}\n");
+}
+
+/// Adds the struct `cursor` and the function `begin`. For a pixel outside of the grid it reads nothing and divides by
+/// nothing: the constants may be unset, or describe a smaller image or other tiles.
+inline void add_begin(ShaderWriter& writer, const ShaderOptions& options) {
+    const ListFormat& format = options.format;
+    const bool table = format.encoding == ListEncoding::offset_count,
+               bits = format.encoding == ListEncoding::bitmask, binned = options.slicing == Slicing::z_bins;
+    writer.add("\nstruct $own_cursor {\n    uint id;\n    uint at;\n    uint end;\n");
+    if (bits) writer.add("    uint bits;\n");
+    if (binned) writer.add("    uint last;\n");
+    writer.add("};\n\n$own_cursor $own_begin(uvec2 pixel, float view_depth) {\n" + to_grid_lines(options) +
+               "    $own_cursor c;\n    c.at = 0u;\n    c.end = 0u;\n" +
+               (bits && !binned ? "    c.id = 0xffffffe0u;  // 32 before the first\n" : "    c.id = 0u;\n"));
+    if (bits) writer.add("    c.bits = 0u;\n");
+    if (binned) writer.add("    c.last = 0u;\n");
+    const std::string tile_size = tile_size_text(options);
+    writer.add("    if (here.x < $grid.z && here.y < $grid.w" +
+               (options.tile_size == 0 ? "" : " && $grid.x == " + tile_size) +
+               ") {\n        uvec2 tile = here / " + tile_size + ";\n");
+    if (options.slicing != Slicing::none) writer.add("        uint slice = $slice(view_depth);\n");
+    if (options.slicing == Slicing::clusters)
+        writer.add("        tile.y += slice * (($grid.w - 1u) / " + tile_size + " + 1u);\n");
+    if (binned)
+        writer.add("        uvec2 bin = " + writer.read("bins", "slice") + ";\n        c.last = bin.y;\n");
+    writer.add("        uint place = tile.y * $grid.y + tile.x;\n");
+    const std::string each = number_text(elements_per_tile(format));
+    if (table)
+        writer.add("        uvec2 list = " +
+                   (options.storage == ListStorage::texture_2d && !options.tiles_in_uniform_block
+                        ? writer.read_texel("$tiles", "ivec2(int(tile.x), int(tile.y))") + ".xy"
+                        : writer.read("tiles", "place")) +
+                   ";\n        c.at = list.x;\n        c.end = list.x + list.y;\n");
+    else
+        writer.add("        c.at = place * " + each + ";\n        c.end = c.at + " +
+                   (bits && binned ? "(bin.y >> 5u) + 1u" : each) + ";\n");
+    // With z-bins the cursor skips to the first id of the bin's least rank or above: in a bitmask by the index of the word,
+    // in a list of known length by binary search, in one that a sentinel ends by linear search.
+    if (binned && bits)
+        writer.add("        c.at += bin.x >> 5u;\n        c.id = bin.x & ~31u;\n        c.bits = " +
+                   writer.read("lists", "c.at") +
+                   " & (0xffffffffu << (bin.x & 31u));\n        c.at += 1u;\n");
+    else if (binned && table)
+        writer.add(R"(        uint end = c.end;
+        while (c.at < end) {
+            uint middle = c.at + ((end - c.at) >> 1u);
+            if ($id_at(middle) < bin.x) { c.at = middle + 1u; }
+            else { end = middle; }
+        }
+)");
+    else if (binned)
+        writer.add("        while (c.at < c.end && $id_at(c.at) < bin.x) { c.at += 1u; }\n");
+    writer.add("    }\n    return c;\n}\n");
+}
+
+/// Adds the function `next`. It has a single return statement, as the compiler fxc takes an early return in shader model
+/// 5.1 for a result that was not set.
+inline void add_next(ShaderWriter& writer, const ShaderOptions& options) {
+    writer.add("\nbool $own_next(inout $own_cursor c) {\n");
+    if (options.format.encoding == ListEncoding::bitmask) {
+        // The upper 27 bits of c.id are the index of the current word, c.bits its bits that are still to come. Without
+        // findLSB the exponent of the lowest bit, converted to float, is its index.
+        writer.add("    c.id &= ~31u;\n    while (c.bits == 0u && c.at < c.end) {\n        c.bits = " +
+                   writer.read("lists", "c.at") +
+                   ";\n        c.at += 1u;\n        c.id += 32u;\n    }\n"
+                   "    bool more = c.bits != 0u;\n    if (more) {\n        c.id += " +
+                   (writer.dialect().storage_buffers
+                        ? "uint(findLSB(c.bits))"
+                        : "(floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u") +
+                   ";\n        c.bits &= c.bits - 1u;\n");
+    } else {
+        writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = $id_at(c.at);\n        "
+                   "c.at += 1u;\n");
+        if (options.format.encoding == ListEncoding::sentinel)
+            writer.add("        more = c.id != " + number_text(countable_lights(options.format)) + ";\n");
+    }
+    if (options.slicing == Slicing::z_bins) writer.add("        more = more && c.id <= c.last;\n");
+    writer.add("    }\n    return more;\n}\n");
+}
+
+/// Adds `cursor`, `begin` and `next` for a wave. The wave's next light is the least id among the next lights of its lanes.
+inline void add_wave_cursor(ShaderWriter& writer) {
+    writer.add(R"(
+struct $cursor {
+    uint id;
+    bool own;
+    bool more;
+    $own_cursor ahead;
+};
+
+$cursor $begin(uvec2 pixel, float view_depth) {
+    $cursor c;
+    c.id = 0u;
+    c.own = false;
+    $own_cursor ahead = $own_begin(pixel, view_depth);
+    c.more = $own_next(&ahead);
+    c.ahead = ahead;
+    return c;
+}
+
+bool $next(inout $cursor c) {
+    $own_cursor ahead = c.ahead;
+    if (c.own) { c.more = $own_next(&ahead); }
+    c.ahead = ahead;
+    uint own = 0xffffffffu;
+    if (c.more) { own = ahead.id; }
+    c.id = subgroupMin(own);
+    c.own = c.more && own == c.id;
+    return c.id != 0xffffffffu;
+}
+)");
+}
+
+/// Adds the functions `count` and `heat`. Only the plain offset_count lists tell their length without being walked.
+inline void add_heat_map(ShaderWriter& writer, const ShaderOptions& options) {
+    const bool counted =
+        options.format.encoding == ListEncoding::offset_count && options.slicing != Slicing::z_bins;
+    writer.add("\nuint $count(uvec2 pixel, float view_depth) {\n"
+               "    $own_cursor c = $own_begin(pixel, view_depth);\n");
+    writer.add(counted
+                   ? "    return c.end - c.at;\n"
+                   : "    uint count = 0u;\n    while ($own_next(&c)) { count += 1u; }\n    return count;\n");
+    writer.add(R"(}
+
+vec3 $heat(uvec2 pixel, float view_depth, float most) {
+    float heat = float($count(pixel, view_depth)) / most;
+    vec3 colour = vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat);
+    return clamp(colour, vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
+}
+)");
+}
+
+/// Adds the function `window`, the shader's light_window().
+inline void add_window(ShaderWriter& writer) {
+    writer.add(R"(
+// 1 at a light, falling smoothly to 0 at its range and beyond.
+float $window(float apart, float range) {
+    float x = apart / range;
+    float w = 0.0;
+    if (apart < range) { w = 1.0 - x * x * x * x; }
+    return w * w;
+}
+)");
+}
+
+/// Adds the function `check_view`.
+inline void add_view_check(ShaderWriter& writer, const ShaderOptions& options) {
+    writer.add(
+        "\n// Whether the View has a position of view space in this pixel, and not before its near plane.\n"
+        "bool $check_view(uvec2 pixel, vec3 position) {\n" +
+        to_grid_lines(options) + R"(    float depth = $depths.x * position.z;
+    float w = 1.0;
+    if ($depths.y > 0.0) { w = depth; }
+    vec2 at = $image.xy * position.xy / w + $image.zw;
+    vec2 apart = abs(at - (vec2(here) + 0.5));
+    return apart.x < $depths.w && apart.y < $depths.w && depth >= $depths.z;
+}
+)");
+}
+
+/// Adds `missing`, `begin_missing`, `next_missing` and the loop over them. As the ids of a list ascend, one pass over all
+/// ids, with the list's cursor beside it, finds the ids that the list lacks.
+inline void add_list_check(ShaderWriter& writer) {
+    writer.add(R"(
+// A light, and whether the pixel's list lacks it.
+struct $missing {
+    uint id;
+    bool lacked;
+    bool more;
+    $own_cursor listed;
+};
+
+$missing $begin_missing(uvec2 pixel, float view_depth) {
+    $own_cursor listed = $own_begin(pixel, view_depth);
+    $missing m;
+    m.id = 0xffffffffu;
+    m.lacked = false;
+    m.more = $own_next(&listed);
+    m.listed = listed;
+    return m;
+}
+
+bool $next_missing(inout $missing m, uint lights) {
+    m.id += 1u;
+    $own_cursor listed = m.listed;
+    m.lacked = !(m.more && listed.id == m.id);
+    if (!m.lacked) { m.more = $own_next(&listed); }
+    m.listed = listed;
+    return m.id < lights;
+}
+)");
+    writer.add_macro(
+        "for_each_missing(cursor, lights, pixel, view_depth)",
+        "for ($missing cursor = $begin_missing(pixel, view_depth); $next_missing(cursor, lights);) "
+        "if (cursor.lacked)");
+}
+
+}  // namespace detail
+
+inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
+    using namespace detail;
+    if (const auto error = refuse(options)) return *error;
+    ShaderWriter writer(options.language, options.prefix);
+    // The wave's loop ends for all lanes at once, which WGSL compilers can't prove.
+    if (options.wave_loop && writer.dialect().wgsl)
+        writer.add("enable subgroups;\ndiagnostic(off, subgroup_uniformity);\n");
+    else if (options.wave_loop && !writer.dialect().hlsl)
+        writer.add("#extension GL_KHR_shader_subgroup_arithmetic : require\n");
+    std::vector<ShaderConstant> constants = {{"uvec4", "grid"}};
+    if (options.viewport_corner) constants.push_back({"ivec2", "corner"});
+    writer.declare_constants(constants, options.grid, options.push_constants);
+    if (options.view_check)
+        writer.declare_constants({{"vec4", "image"}, {"vec4", "depths"}}, options.view, false);
+    for (const ShaderBuffer& buffer : list_buffers(options))
+        writer.declare(buffer);
+
+    add_tile(writer, options);
+    if (options.slicing != Slicing::none) add_slice(writer);
+    if (options.format.encoding != ListEncoding::bitmask) add_id_at(writer, options);
+    add_begin(writer, options);
+    add_next(writer, options);
+    if (options.wave_loop) add_wave_cursor(writer);
+    writer.add_macro("for_each_light(cursor, pixel, view_depth)",
+                     std::string("for ($cursor cursor = $begin(pixel, view_depth); $next(cursor);)") +
+                         (options.wave_loop ? " if (cursor.own)" : ""));
+    if (options.heat_map) add_heat_map(writer, options);
+    if (options.window) add_window(writer);
+    if (options.view_check) add_view_check(writer, options);
+    if (options.list_check) add_list_check(writer);
+    // `own_` tells the cursor of one lane from that of its wave. Without waves there is one cursor, without `own_`.
+    if (!options.wave_loop) writer.replace("$own_", "$");
+    return writer.finish();
+}
+
+}}  // namespace lightbin

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: MIT
+// ShaderWriter collects a shader text that is written in GLSL, declares resources in the wanted language, and translates
+// the whole in the end.
+#pragma once
+
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/shader/translate.hpp>
+#include <lightbin/result.hpp>
+#include <lightbin/shader_text.hpp>
+#include <lightbin/texel_format.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <lightbin/detail/base/warnings_off.inl>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
+
+/// The family and the features of a shader language.
+struct Dialect {
+    bool hlsl, es, vulkan, wgsl;
+    bool spaces;           ///< bindings have a descriptor set, register space or bind group
+    bool storage_buffers;  ///< storage buffers, compute shaders, bindings in the text, and the function findLSB
+};
+
+inline Dialect dialect(ShaderLanguage language) {
+    using enum ShaderLanguage;
+    return {.hlsl = language == hlsl_5_0 || language == hlsl_5_1,
+            .es = language == essl_300 || language == essl_310,
+            .vulkan = language == glsl_vulkan,
+            .wgsl = language == wgsl,
+            .spaces = language == glsl_vulkan || language == hlsl_5_1 || language == wgsl,
+            .storage_buffers = language != glsl_330 && language != essl_300};
+}
+
+/// Whether every name of the texts is a valid identifier when it begins with `prefix`. ES limits identifiers to 1024
+/// characters, of which the longest name needs fewer than 24. GLSL reserves names that contain `__` or begin with `gl_`,
+/// and macros that begin with `GL_`. `vola` is refused because it makes the keyword `volatile` of the name `tile`; no other
+/// keyword of the languages ends in one of the names.
+inline bool is_prefix(std::string_view prefix) {
+    constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+    return !prefix.empty() && prefix.size() <= 1000 && prefix.find_first_not_of(letters) == prefix.npos &&
+           prefix.find_first_of("0123456789_") != 0 && prefix.find("__") == prefix.npos &&
+           !prefix.starts_with("gl_") && !prefix.starts_with("GL_") && prefix != "vola";
+}
+
+/// Checks the options that all shader texts have: the prefix, push_constants and the slots.
+template <class Options>
+std::optional<Error> refuse_common(const Options& options, std::initializer_list<ShaderSlot> slots) {
+    const Dialect dialect = detail::dialect(options.language);
+    if (!is_prefix(options.prefix)) return Error{ErrorCode::not_a_prefix};
+    if (options.push_constants && !dialect.vulkan) return Error{ErrorCode::no_push_constants};
+    for (const ShaderSlot& slot : slots)
+        for (const int number : {slot.binding, slot.set})
+            if (number < 0) return Error{ErrorCode::slot_out_of_range, static_cast<std::uint64_t>(number)};
+    for (const ShaderSlot& slot : slots)
+        if (slot.set != 0 && !dialect.spaces)
+            return Error{ErrorCode::no_sets, static_cast<std::uint64_t>(slot.set)};
+    return std::nullopt;
+}
+
+/// Returns `text` with every `from` replaced by `to`.
+inline std::string replaced(std::string text, std::string_view from, std::string_view to) {
+    for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+        text.replace(at, from.size(), to);
+    return text;
+}
+
+/// A read-only buffer whose elements are uint or uvec2.
+struct ShaderBuffer {
+    std::string name;
+    ShaderResource resource;
+    ShaderSlot slot;
+    TexelFormat format;   ///< the elements are uvec2 if it is rg32ui, otherwise uint
+    std::uint64_t bytes;  ///< uniform_block: the size of the largest content
+    std::uint32_t width;  ///< texture_2d: texels per row
+};
+
+/// A vector that the CPU sets, such as {"uvec4", "grid"}.
+struct ShaderConstant {
+    const char* type;
+    const char* name;
+};
+
+/// A declaration, or the part of one, in the three language families.
+struct ByLanguage {
+    std::string glsl = {}, hlsl = {}, wgsl = {};
+};
+
+/// Lines that declare `endless`, infinity. WGSL refuses infinity as a constant, but not made from the bits in a variable.
+inline constexpr const char* infinity_lines = R"(    uint endless_bits = 0x7f800000u;
+    float endless = uintBitsToFloat(endless_bits);
+)";
+
+/// Collects one shader text and its bindings. What declares a resource adds the declaration to the text and the resource to
+/// the bindings. In all text that is handed over `$` stands for the prefix.
+class ShaderWriter {
+public:
+    ShaderWriter(ShaderLanguage language, std::string_view prefix)
+        : dialect_(detail::dialect(language)), prefix_(prefix) {}
+
+    const Dialect& dialect() const { return dialect_; }
+
+    /// Appends text in the part of GLSL that translate.hpp describes.
+    void add(std::string_view glsl) { shader_.text += glsl; }
+
+    /// Replaces every `from` in the text so far by `to`.
+    void replace(std::string_view from, std::string_view to) {
+        shader_.text = replaced(std::move(shader_.text), from, to);
+    }
+
+    /// Defines a macro, except in WGSL, which has none.
+    void add_macro(const std::string& call, const std::string& text) {
+        if (!dialect_.wgsl) add("\n#define $" + call + " " + text + "\n");
+    }
+
+    /// Declares a resource by the text of the writer's language. `@` in the text stands for the layout, register or
+    /// attribute that binds the resource. binding.name lacks the prefix.
+    void declare(ShaderBinding binding, const ByLanguage& text) {
+        const std::string& own = dialect_.hlsl ? text.hlsl : dialect_.wgsl ? text.wgsl : text.glsl;
+        add(replaced(own, "@", binding_text(binding)) + ";\n");
+        binding.name.insert(0, prefix_);
+        shader_.bindings.push_back(std::move(binding));
+    }
+
+    /// Declares a texture or another resource that has an opaque type.
+    void declare_opaque(ShaderBinding binding, const ByLanguage& type) {
+        const std::string name = " $" + binding.name, highp = dialect_.es ? "highp " : "";
+        declare(std::move(binding), {.glsl = "@uniform " + highp + type.glsl + name,
+                                     .hlsl = type.hlsl + name + "@",
+                                     .wgsl = "@var" + name + " : " + type.wgsl});
+    }
+
+    /// Declares a storage buffer, an array of `type`. `access` is "readonly", "writeonly", or "" for both.
+    void declare_storage(const std::string& name, const std::string& type, const std::string& access,
+                         ShaderSlot slot, std::uint32_t stride) {
+        const bool writable = access != "readonly", block = !dialect_.hlsl && !dialect_.wgsl;
+        const ShaderResource resource =
+            writable ? ShaderResource::writable_buffer : ShaderResource::storage_buffer;
+        declare({name + (block ? "_block" : ""), resource, slot, TexelFormat::none, stride},
+                {.glsl = "@" + access + (access.empty() ? "" : " ") + "buffer $" + name + "_block {\n    " +
+                         type + " $" + name + "[];\n}",
+                 .hlsl = (writable ? "RWStructuredBuffer<" : "StructuredBuffer<") + type + "> $" + name + "@",
+                 .wgsl = std::string("@var<storage, ") + (writable ? "read_write" : "read") + "> $" + name +
+                         " : array<" + type + ">"});
+    }
+
+    /// Declares a read-only buffer in whichever kind of resource it lies. read() then reads its elements.
+    void declare(const ShaderBuffer& buffer) {
+        buffers_.push_back(buffer);
+        const std::string type = buffer.format == TexelFormat::rg32ui ? "uvec2" : "uint";
+        const std::uint32_t stride = texel_names(buffer.format).bytes;
+        if (buffer.resource == ShaderResource::storage_buffer)
+            return declare_storage(buffer.name, type, "readonly", buffer.slot, stride);
+        if (buffer.resource == ShaderResource::uniform_block) {
+            // Each array element takes 16 bytes in a uniform block, so the array is one of uvec4.
+            const auto vectors = static_cast<std::uint32_t>((buffer.bytes + 15) / 16);
+            const std::string name = "$" + buffer.name, count = std::to_string(vectors);
+            return declare_block(buffer.name + (dialect_.wgsl ? "" : "_block"), buffer.slot, false,
+                                 16 * vectors, "    uvec4 " + name + "[" + count + "];\n",
+                                 "@var<uniform> " + name + " : array<vec4u, " + count + ">");
+        }
+        const bool texture = buffer.resource == ShaderResource::texture_2d,
+                   untyped = buffer.resource == ShaderResource::byte_address;
+        declare_opaque(
+            {buffer.name, buffer.resource, buffer.slot, untyped ? TexelFormat::none : buffer.format, stride,
+             0, buffer.width},
+            {.glsl = texture ? "usampler2D" : "usamplerBuffer",
+             .hlsl = untyped ? "ByteAddressBuffer" : (texture ? "Texture2D<" : "Buffer<") + type + ">",
+             .wgsl = "texture_2d<u32>"});
+    }
+
+    /// Declares constants, each at a multiple of 16 bytes. In OpenGL they are single uniforms; in the other APIs they form
+    /// one block, or push constants if `push` is set, which is named after the first constant.
+    void declare_constants(const std::vector<ShaderConstant>& constants, ShaderSlot slot, bool push) {
+        const bool loose = !dialect_.hlsl && !dialect_.vulkan && !dialect_.wgsl;
+        const std::string name = std::string(constants.front().name) + "_block";
+        std::string lines;
+        for (const ShaderConstant& constant : constants) {
+            const std::string own = constant.name, type = constant.type;
+            lines += "    " + type + (dialect_.wgsl ? " " : " $") + own + ";\n";
+            members_.push_back({"$" + own, "$" + name + "." + own});
+            const std::uint32_t bytes = type == "ivec2" ? 8 : 16;
+            if (loose)
+                declare({.name = own, .stride = bytes, .bytes = bytes},
+                        {.glsl = "uniform " + type + " $" + own});
+        }
+        if (!loose)
+            declare_block(name, slot, push, static_cast<std::uint32_t>(16 * constants.size()), lines,
+                          "struct $" + name + "_members {\n" + lines + "}\n@var<uniform> $" + name + " : $" +
+                              name + "_members");
+    }
+
+    /// Returns the expression that reads the element `index` of a declared ShaderBuffer, a uint or a uvec2.
+    std::string read(std::string_view buffer_name, const std::string& index) const {
+        const ShaderBuffer* found = buffers_.data();
+        while (found->name != buffer_name)
+            ++found;
+        const ShaderBuffer& buffer = *found;
+        const bool pairs = buffer.format == TexelFormat::rg32ui;
+        const std::string name = "$" + buffer.name;
+        const auto word = [&](const std::string& i) {
+            return name + "[(" + i + ") >> 2u][(" + i + ") & 3u]";
+        };
+        if (buffer.resource == ShaderResource::uniform_block)
+            return pairs ? "uvec2(" + word("2u * " + index) + ", " + word("2u * " + index + " + 1u") + ")"
+                         : word(index);
+        if (buffer.resource == ShaderResource::byte_address)
+            return name + (pairs ? ".Load2(8u * (" : ".Load(4u * (") + index + "))";
+        const std::string components = pairs ? ".xy" : ".x";
+        if (buffer.resource == ShaderResource::texture_2d) {
+            const std::string width = std::to_string(buffer.width) + "u)";
+            return read_texel(name, "ivec2(int((" + index + ") % " + width + ", int((" + index + ") / " +
+                                        width + ")") +
+                   components;
+        }
+        if (buffer.resource == ShaderResource::texel_buffer && !dialect_.hlsl)
+            return "texelFetch(" + name + ", int(" + index + "))" + components;
+        return name + "[" + index + "]";
+    }
+
+    /// Returns the expression that reads a texel of a texture at `at`, an ivec2; of a multisampled texture, one sample.
+    std::string read_texel(const std::string& texture, const std::string& at,
+                           const std::string& sample = "0") const {
+        return dialect_.hlsl
+                   ? texture + ".Load(" + (sample == "0" ? "int3(" + at + ", 0)" : at + ", " + sample) + ")"
+               : dialect_.wgsl ? "textureLoad(" + texture + ", " + at + ", " + sample + ")"
+                               : "texelFetch(" + texture + ", " + at + ", " + sample + ")";
+    }
+
+    /// Declares an array of uint in the memory that a work group shares. WGSL has a type of its own for atomic variables:
+    /// load_atomic(), store_atomic() and the atomic functions of GLSL are all that may access them.
+    void declare_shared(const std::string& name, int count, bool atomic) {
+        const std::string size = std::to_string(count), type = atomic ? "atomic<uint>" : "uint";
+        add(dialect_.wgsl ? "var<workgroup> $" + name + " : array<" + type + ", " + size + ">;\n"
+                          : "shared uint $" + name + "[" + size + "];\n");
+    }
+
+    std::string load_atomic(const std::string& variable) const {
+        return dialect_.wgsl ? "atomicLoad(&" + variable + ")" : variable;
+    }
+
+    std::string store_atomic(const std::string& variable, const std::string& value) const {
+        return dialect_.wgsl ? "atomicStore(&" + variable + ", " + value + ")" : variable + " = " + value;
+    }
+
+    /// Adds the entry point of a compute shader with `threads` threads per group. It calls $run(group id, thread index).
+    void add_compute_main(unsigned threads) {
+        const std::string count = std::to_string(threads);
+        add(dialect_.wgsl ? "\n@compute @workgroup_size(" + count +
+                                ")\nfn main(@builtin(workgroup_id) group : vec3u, "
+                                "@builtin(local_invocation_index) thread : u32) {\n"
+                                "    $run(group.xy, thread);\n}\n"
+            : dialect_.hlsl
+                ? "\n[numthreads(" + count +
+                      ", 1, 1)]\nvoid main(uint3 group : SV_GroupID, uint thread : SV_GroupIndex) {\n"
+                      "    $run(group.xy, thread);\n}\n"
+                : "\nlayout(local_size_x = " + count +
+                      ") in;\nvoid main() {\n    $run(gl_WorkGroupID.xy, gl_LocalInvocationIndex);\n}\n");
+    }
+
+    /// Returns the text in the writer's language, or an Error if two resources are bound to one slot.
+    Result<ShaderText> finish() {
+        shader_.text = replaced(dialect_.wgsl ? WgslTranslation(shader_.text, members_).text()
+                                              : translate(shader_.text, dialect_.hlsl, dialect_.es),
+                                "$", prefix_);
+        for (const ShaderBinding& a : shader_.bindings)
+            for (const ShaderBinding& b : shader_.bindings)
+                if (&a < &b && clash(a, b))
+                    return Error{ErrorCode::bindings_overlap, static_cast<std::uint64_t>(a.slot.binding),
+                                 static_cast<std::uint64_t>(a.slot.set)};
+        return shader_;
+    }
+
+private:
+    void declare_block(const std::string& name, ShaderSlot slot, bool push, std::uint32_t bytes,
+                       const std::string& lines, const std::string& wgsl) {
+        declare({name, push ? ShaderResource::push_constants : ShaderResource::uniform_block, slot,
+                 TexelFormat::none, bytes, bytes},
+                {.glsl = "@uniform $" + name + " {\n" + lines + "}",
+                 .hlsl = "cbuffer $" + name + "@ {\n" + lines + "}",
+                 .wgsl = wgsl});
+    }
+
+    /// Returns the layout, register or attribute by which a declaration says where the resource is bound.
+    std::string binding_text(const ShaderBinding& binding) const {
+        const std::string number = std::to_string(binding.slot.binding),
+                          set = std::to_string(binding.slot.set);
+        if (dialect_.wgsl) return "@group(" + set + ") @binding(" + number + ") ";
+        if (dialect_.hlsl)
+            return std::string(" : register(") + numbering_of(binding) + number +
+                   (dialect_.spaces ? ", space" + set : "") + ")";
+        if (binding.resource == ShaderResource::push_constants) return "layout(push_constant) ";
+        std::string inside = binding.resource == ShaderResource::uniform_block ? "std140, "
+                             : binding.resource == ShaderResource::storage_buffer ||
+                                     binding.resource == ShaderResource::writable_buffer
+                                 ? "std430, "
+                                 : "";
+        if (dialect_.spaces) inside += "set = " + set + ", ";
+        if (dialect_.storage_buffers) inside += "binding = " + number + ", ";
+        return inside.empty() ? "" : "layout(" + inside.substr(0, inside.size() - 2) + ") ";
+    }
+
+    /// Returns a letter for the numbering that a resource's binding belongs to: two resources of one letter can't have the
+    /// same binding. HLSL numbers by register type, which is the letter; OpenGL numbers uniform blocks (b), storage buffers
+    /// (s) and textures (t) apart; Vulkan and WebGPU number everything in a set together. '-' stands for no binding.
+    char numbering_of(const ShaderBinding& binding) const {
+        return (dialect_.hlsl                      ? "-b-ttttu"
+                : dialect_.vulkan || dialect_.wgsl ? "-b-bbbbb"
+                                                   : "-b-s-tts")[static_cast<std::size_t>(binding.resource)];
+    }
+
+    /// Whether two resources have the same binding. Languages without bindings in the text have no clashes.
+    bool clash(const ShaderBinding& a, const ShaderBinding& b) const {
+        return dialect_.storage_buffers && numbering_of(a) != '-' && numbering_of(a) == numbering_of(b) &&
+               a.slot.binding == b.slot.binding && a.slot.set == b.slot.set;
+    }
+
+    Dialect dialect_;
+    std::string prefix_;
+    ShaderText shader_;  // in GLSL until finish()
+    std::vector<ShaderBuffer> buffers_;
+    std::vector<WgslName> members_;  // the names of the constants in WGSL
+};
+
+}}}  // namespace lightbin::detail
+
+#include <lightbin/detail/base/warnings_on.inl>
