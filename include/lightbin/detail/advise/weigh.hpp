@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+// How advise() and advise_slices() measure plans.
+#pragma once
+
+#include <lightbin/advise.hpp>
+#include <lightbin/binner.hpp>
+#include <lightbin/detail/advise/grids.hpp>
+#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/light_grid.hpp>
+#include <lightbin/lights.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
+
+namespace detail {
+
+/// The options that advise() measures. Silhouettes with a depth test are not among them: they were the cheapest in no
+/// scene on AVX-512, and the cheapest by at most 1 % on SSE2, because a box leaves them little to drop.
+inline constexpr Options weighed[] = {{.footprint = Footprint::rectangle, .depth_test = DepthTest::none},
+                                      {.footprint = Footprint::rectangle, .depth_test = DepthTest::interval},
+                                      {.footprint = Footprint::rectangle, .depth_test = DepthTest::box},
+                                      {.footprint = Footprint::rectangle, .depth_test = DepthTest::split_box},
+                                      {.footprint = Footprint::silhouette, .depth_test = DepthTest::none}};
+
+/// The options that advise_slices() measures. Silhouettes with boxes are among them: without these, the best plan cost up
+/// to 10 % more where an evaluation cost 1 ns.
+inline constexpr Options weighed_sliced[] = {
+    {.footprint = Footprint::rectangle},
+    {.footprint = Footprint::silhouette},
+    {.footprint = Footprint::rectangle, .slicing = Slicing::z_bins},
+    {.footprint = Footprint::rectangle, .slicing = Slicing::clusters},
+    {.footprint = Footprint::rectangle, .depth_test = DepthTest::box, .slicing = Slicing::clusters},
+    {.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::clusters}};
+
+/// Returns `base` with the measured options taken from `row`.
+constexpr Options weighed_options(Options base, const Options& row) {
+    base.footprint = row.footprint;
+    base.depth_test = row.depth_test;
+    base.slicing = row.slicing;
+    return base;
+}
+
+/// Finds a plan's options in a table from row i on, and calls visit() with them as a constant.
+template <const auto& table, Options base, std::size_t i, class Visit>
+decltype(auto) with_options_from(const Plan& plan, Visit& visit) {
+    constexpr Options options = weighed_options(base, table[i]);
+    const bool found = plan.footprint == options.footprint && plan.depth_test == options.depth_test &&
+                       plan.slicing == options.slicing;
+    if constexpr (i + 1 < std::size(table)) {
+        if (!found) return with_options_from<table, base, i + 1>(plan, visit);
+    } else {
+        LIGHTBIN_ASSERT(found);
+    }
+    return visit.template operator()<options>();
+}
+
+/// The return type is a tuple of one Binner for each row of a table.
+template <const auto& table, Options base, std::size_t... i>
+auto weighed_binners(std::index_sequence<i...>) -> std::tuple<Binner<weighed_options(base, table[i])>...>;
+
+/// Whether a depth test can be measured with the Z bounds that are given. In clusters it needs none.
+inline bool allowed(const Options& options, const ZBounds& bounds) {
+    if (options.depth_test == DepthTest::none || options.slicing == Slicing::clusters) return true;
+    if (options.depth_test == DepthTest::split_box)
+        return !bounds.gap_min.empty() && !bounds.gap_max.empty();
+    return !bounds.min.empty() || !bounds.max.empty();
+}
+
+/// Measures each row of a table on each grid.
+///
+/// slices            null if no row of the table needs them
+/// for_each_visible  for_each_visible(visit) calls visit(x, y, depth, pixels) for every pixel or sample with something to
+///                   light: its position, its depth (read with slices only), and the number of pixels that it stands for
+template <const auto& table, Options base, class Clock, class LightRange, class ForEachVisible>
+Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlices* slices,
+                     const LightRange& lights, const Costs& costs, ForEachVisible for_each_visible) {
+    const std::vector<WeighedGrid> grids = weighed_grids(view, bounds);
+    decltype(weighed_binners<table, base>(std::make_index_sequence<std::size(table)>())) binners;
+    // Builds a plan's grid of the lights `moved` and keeps its time if it is the shortest; the first time also counts
+    // entries and evaluations.
+    const auto build = [&](Plan& plan, const auto& moved, bool first) -> std::optional<Error> {
+        const WeighedGrid* grid = grids.data();
+        while (grid->view.tile_size() != plan.tile_size)
+            ++grid;
+        const auto with = [&]<Options options>() -> std::optional<Error> {
+            constexpr bool with_bounds =
+                options.depth_test != DepthTest::none && options.slicing == Slicing::none;
+            const Slices* const by = options.slicing == Slicing::none       ? nullptr
+                                     : options.slicing == Slicing::clusters ? &slices->clusters
+                                                                            : &slices->z_bins;
+            const auto inputs = [&] {
+                if constexpr (options.slicing == Slicing::none)
+                    return inputs_for<options>(grid->bounds);
+                else
+                    return inputs_for<options>({}, *by);
+            };
+            const auto start = Clock::now();
+            const auto built = std::get<Binner<options>>(binners).bin(grid->view, moved, inputs());
+            const std::chrono::duration<double, std::nano> time = Clock::now() - start;
+            if (!built) return built.error();
+            plan.build_ns = (std::min)(plan.build_ns, time.count() + (with_bounds ? costs.z_bounds_ns : 0));
+            if (!first) return std::nullopt;
+            const LightRanks& ranks = built->ranks();
+            plan.upload_ns = costs.upload_byte_ns *
+                             static_cast<double>(built->ranges().size_bytes() + built->ids().size_bytes() +
+                                                 ranks.order.size_bytes() + ranks.bins.size_bytes());
+            plan.entries = built->ids().size();
+            for_each_visible([&](int x, int y, float depth, double pixels) {
+                const int slice = by != nullptr ? by->slice_at(depth) : 0,
+                          layer = options.slicing == Slicing::clusters ? slice : 0;
+                auto list = built->lights_in(x / plan.tile_size, y / plan.tile_size, layer);
+                if constexpr (options.slicing == Slicing::z_bins)
+                    list = lights_of_bin(list, ranks.bins[static_cast<std::size_t>(slice)]);
+                plan.evaluations += pixels * static_cast<double>(list.size());
+            });
+            if (!with_bounds) plan.evaluations *= costs.overdraw;
+            return std::nullopt;
+        };
+        return with_options_from<table, base, 0>(plan, with);
+    };
+
+    const auto& source = as_lights(lights);
+    std::vector<Plan> plans = {{.tiled = false}};
+    for_each_visible([&](int, int, float, double pixels) {
+        plans[0].evaluations += costs.overdraw * pixels * static_cast<double>(source.array.size());
+    });
+    for (const WeighedGrid& grid : grids)
+        for (const Options& options : table) {
+            if (!allowed(options, grid.bounds)) continue;
+            Plan plan = {.footprint = options.footprint,
+                         .depth_test = options.depth_test,
+                         .slicing = options.slicing,
+                         .tile_size = grid.view.tile_size(),
+                         .build_ns = HUGE_VAL};
+            if (const auto error = build(plan, lights, true)) return *error;
+            plans.push_back(plan);
+        }
+
+    // The plans are built in turns, so that a slow moment of the machine slows all of them alike. The time above includes
+    // the allocation of memory. In each turn the lights are moved sideways, by up to 1/32 of the image's width, because
+    // branch predictors learn a scene that is built repeatedly, which may halve the time of some plans. After two turns a
+    // plan's time is assumed to be at most twice its true time, so only plans that may still become the cheapest go on.
+    constexpr int turns = 8;
+    for (int turn = 0;; ++turn) {
+        double least = HUGE_VAL;
+        for (Plan& plan : plans) {
+            plan.total_ns = plan.build_ns + plan.upload_ns + plan.evaluations * costs.evaluation_ns;
+            least = (std::min)(least, plan.total_ns);
+        }
+        if (turn == turns) return Advice(std::move(plans));
+        const float aside = static_cast<float>((2.0 * turn / (turns - 1) - 1) / 32 * view.tiles_x() /
+                                               camera_of(view).x.scale);
+        const auto moved = view_space(source.array, [&](const auto& light) {
+            auto in_view = source.view_light(light);
+            in_view.x += aside * (view.orthographic() ? 1 : in_view.z);
+            return in_view;
+        });
+        for (Plan& plan : plans)
+            if (plan.tiled && (turn < 2 || plan.total_ns - 0.5 * plan.build_ns < least))
+                static_cast<void>(build(plan, moved, false));
+    }
+}
+
+}  // namespace detail
+
+template <Options base, class Visit> decltype(auto) with_options(const Plan& plan, Visit&& visit) {
+    return detail::with_options_from<detail::weighed, base, 0>(plan, visit);
+}
+
+template <Options base, class Visit> decltype(auto) with_sliced_options(const Plan& plan, Visit&& visit) {
+    return detail::with_options_from<detail::weighed_sliced, base, 0>(plan, visit);
+}
+
+template <Options base, class Clock, class LightRange>
+Result<Advice> advise(const View& view, const LightRange& lights, const Costs& costs, const ZBounds& bounds) {
+    for (const std::span<const float> side : {bounds.min, bounds.max, bounds.gap_min, bounds.gap_max})
+        if (!side.empty() && side.size() < view.tile_count())
+            return Error{ErrorCode::z_bounds_too_small, view.tile_count(), side.size()};
+
+    const Extent window = view.viewport();
+    const int size = view.tile_size();
+    return detail::weigh<detail::weighed, base, Clock>(view, bounds, nullptr, lights, costs, [&](auto visit) {
+        detail::for_each_drawn(view, bounds, [&](int x, int y, std::size_t, float low, float) {
+            visit(x, y, low, 1.0 * (std::min)(size, window.width - x) * (std::min)(size, window.height - y));
+        });
+    });
+}
+
+template <Options base, class Clock, class LightRange>
+Result<Advice> advise_slices(const View& view, const LightRange& lights, const WeighedSlices& slices,
+                             const DepthSamples& samples, const Costs& costs) {
+    const Extent window = view.viewport(), grid = samples.size;
+    const auto side = [](int n) { return static_cast<std::uint64_t>((std::max)(n, 0)); };
+    const std::uint64_t count = side(grid.width) * side(grid.height);
+    if (samples.depths.size() < count)
+        return Error{ErrorCode::depth_buffer_too_small, count, samples.depths.size()};
+    const double pixels =
+        1.0 * window.width * window.height / static_cast<double>((std::max)(count, std::uint64_t{1}));
+    // The pixel at the middle of sample i of a row or column.
+    const auto pixel = [](int i, int samples_across, int pixels_across) {
+        return static_cast<int>((2 * std::int64_t{i} + 1) * pixels_across /
+                                (2 * std::int64_t{samples_across}));
+    };
+    return detail::weigh<detail::weighed_sliced, base, Clock>(
+        view, {}, &slices, lights, costs, [&](auto visit) {
+            if (view.tile_count() == 0) return;
+            const float* depth = samples.depths.data();
+            for (int y = 0; y < grid.height; ++y)
+                for (int x = 0; x < grid.width; ++x, ++depth)
+                    if (std::isfinite(*depth))
+                        visit(pixel(x, grid.width, window.width), pixel(y, grid.height, window.height),
+                              *depth, pixels);
+        });
+}
+
+}}  // namespace lightbin
