@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which options and tile size light a scene in the least time? advise() measures them on the scene itself, both the time to
-// build the lists and the time to shade with them. docs/advise.md shows its use.
+// Which options and tile size light a scene in the least time? advise() measures them on the scene itself, both the
+// time to build the lists and the time to shade with them. docs/advise.md shows its use.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -79,8 +79,9 @@ public:
     /// Returns a table of the plans for people to read, one per line.
     std::string text() const;
 
-    /// Returns a verdict on each part that a plan has or lacks. It compares the plan with the cheapest measured plan that
-    /// differs in the part. The two may differ in other parts as well, because without this part others may pay off.
+    /// Returns a verdict on each part that a plan has or lacks. It compares the plan with the cheapest measured plan
+    /// that differs in the part. The two may differ in other parts as well, because without this part others may pay
+    /// off.
     std::vector<Verdict> verdicts(const Plan& plan) const;
 
 private:
@@ -103,20 +104,21 @@ inline std::string to_string(const Advice& advice);
 template <Options base = Options{}, class Visit>
 decltype(auto) with_options(const Plan& plan, Visit&& visit);
 
-/// Applies a plan of advise_slices() as with_options() does. Some of its options need slices:
-/// inputs_for<options>({}, slices) makes the inputs of Binner::bin() for each.
+/// Applies a plan of advise_slices() as with_options() does. Some of its options need slices: inputs_for<options>({},
+/// slices) makes the inputs of Binner::bin() for each.
 template <Options base = Options{}, class Visit>
 decltype(auto) with_sliced_options(const Plan& plan, Visit&& visit);
 
-/// Measures what each way to light a view costs: without tiles; and with tiles of the view's size, of 2, 4 and 8 times that
-/// size, and of one tile as large as the screen, each with rectangles, silhouettes, and the depth tests that `bounds` allow.
-/// So pass the view with the smallest tiles that you would use. Errors are those of Binner::bin() for any of these.
+/// Measures what each way to light a view costs: without tiles; and with tiles of the view's size, of 2, 4 and 8 times
+/// that size, and of one tile as large as the screen, each with rectangles, silhouettes, and the depth tests that
+/// `bounds` allow. So pass the view with the smallest tiles that you would use. Errors are those of Binner::bin() for
+/// any of these.
 ///
-/// Call it once per scene, not once per frame, in an optimised build. It builds every grid 3 to 9 times on this thread and
-/// takes the shortest time: first with the lights as they are, to count entries and evaluations; then with the lights moved
-/// slightly sideways, since a scene that is built repeatedly is built faster than the frames of a program are. All in all
-/// it takes as long as some hundreds of builds of the view's grid without options, or a thousand if these are short. It
-/// allocates memory, and keeps none.
+/// Call it once per scene, not once per frame, in an optimised build. It builds every grid 3 to 9 times on this thread
+/// and takes the shortest time: first with the lights as they are, to count entries and evaluations; then with the
+/// lights moved slightly sideways, since a scene that is built repeatedly is built faster than the frames of a program
+/// are. All in all it takes as long as some hundreds of builds of the view's grid without options, or a thousand if
+/// these are short. It allocates memory, and keeps none.
 ///
 /// lights  as for Binner::bin()
 /// bounds  Z bounds of the view's own tiles; those of larger tiles are merged from them. Without any, no depth test is
@@ -143,19 +145,19 @@ struct WeighedSlices {
 };
 
 /// Measures, like advise(), the ways to light a view that need no depth pre-pass: without tiles; with rectangles; with
-/// silhouettes; with rectangles and z-bins; with clusters and rectangles, without depth test and with `box`; with clusters,
-/// silhouettes and `box`. The tile sizes are those of advise(). Each depth sample stands for an equal share of the pixels,
-/// which evaluate the list of their tile; with z-bins the part of it between the ranks of the depth's bin; with clusters the
-/// list of the cell. with_sliced_options() applies a plan. Errors are those of Binner::bin() for any of these, and
-/// fewer depths than samples.size says.
+/// silhouettes; with rectangles and z-bins; with clusters and rectangles, without depth test and with `box`; with
+/// clusters, silhouettes and `box`. The tile sizes are those of advise(). Each depth sample stands for an equal share
+/// of the pixels, which evaluate the list of their tile; with z-bins the part of it between the ranks of the depth's
+/// bin; with clusters the list of the cell. with_sliced_options() applies a plan. Errors are those of Binner::bin() for
+/// any of these, and fewer depths than samples.size says.
 ///
-/// Compared with what advise() finds for the same view with Z bounds, the result shows whether a depth pre-pass pays off. It
-/// takes longer than advise(), because clusters of the smallest tiles do.
+/// Compared with what advise() finds for the same view with Z bounds, the result shows whether a depth pre-pass pays
+/// off. It takes longer than advise(), because clusters of the smallest tiles do.
 template <Options base = Options{}, class Clock = std::chrono::steady_clock, class LightRange>
 Result<Advice> advise_slices(const View& view, const LightRange& lights, const WeighedSlices& slices,
                              const DepthSamples& samples, const Costs& costs = {});
 
 }}  // namespace lightbin
 
-#include <lightbin/detail/advise/advice.hpp>  // the definitions: texts and verdicts
-#include <lightbin/detail/advise/weigh.hpp>   // the definitions: measurements
+#include <lightbin/detail/advise/advice.hpp>  // texts and verdicts
+#include <lightbin/detail/advise/weigh.hpp>   // measurements

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Writes the lists of a light grid in another format: narrower ids, lists that end with a sentinel, or a bitmask per tile.
+// Writes the lists of a light grid in another format: narrower ids, lists that end with a sentinel, or a bitmask per
+// tile.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -19,7 +20,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// Returns how many lights the format can tell apart: one fewer where the sentinel takes an id, and 2^32 - 1 in a bitmask.
+/// Returns how many lights the format can tell apart: one fewer where the sentinel takes an id, and 2^32 - 1 in a
+/// bitmask.
 inline std::uint64_t countable_lights(const ListFormat& format) {
     const std::uint64_t values = std::uint64_t{1} << (8 * static_cast<unsigned>(format.ids));
     if (format.encoding == ListEncoding::bitmask) return 0xffffffff;
@@ -46,8 +48,8 @@ inline std::optional<Error> refuse(const ListFormat& format) {
 
 }  // namespace detail
 
-/// Returns how many bytes encode() needs for a grid of so many tiles and list entries, rounded up to a multiple of 4. If
-/// that exceeds 64 bits, returns 2^64 - 4.
+/// Returns how many bytes encode() needs for a grid of so many tiles and list entries, rounded up to a multiple of 4.
+/// If that exceeds 64 bits, returns 2^64 - 4.
 inline std::uint64_t encoded_bytes(const ListFormat& format, std::uint64_t tiles, std::uint64_t entries) {
     const std::uint64_t elements = format.encoding == ListEncoding::offset_count
                                        ? entries
@@ -101,14 +103,15 @@ template <class Id> void encode_bits(const LightGrid<Id>& grid, std::size_t byte
 
 }  // namespace detail
 
-/// Writes the lists of a grid to `out`, in this machine's byte order. `out` must hold encoded_bytes(format, tiles, entries)
-/// or more; bytes beyond the ids keep their values. With offset_count, shaders read grid.ranges() beside `out`.
+/// Writes the lists of a grid to `out`, in this machine's byte order. `out` must hold encoded_bytes(format, tiles,
+/// entries) or more; bytes beyond the ids keep their values. With offset_count, shaders read grid.ranges() beside
+/// `out`.
 ///
-/// Every list is complete, except that the sentinel format cuts a list longer than its capacity: the lowest `capacity` ids
-/// stay, and the result counts the entries that were cut.
+/// Every list is complete, except that the sentinel format cuts a list longer than its capacity: the lowest `capacity`
+/// ids stay, and the result counts the entries that were cut.
 ///
-/// Errors, after which `out` is unchanged: the format lacks its capacity or max_lights, or max_lights exceeds what its ids
-/// can tell apart; an id of the grid is too large for the format; `out` is too small.
+/// Errors, after which `out` is unchanged: the format lacks its capacity or max_lights, or max_lights exceeds what its
+/// ids can tell apart; an id of the grid is too large for the format; `out` is too small.
 template <class Id>
 Result<Encoded> encode(const LightGrid<Id>& grid, const ListFormat& format, std::span<std::byte> out) {
     if (const auto error = detail::refuse(format)) return *error;

@@ -37,12 +37,14 @@ constexpr const char* to_string(ListStorage value) {
 struct ShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     ListStorage storage = ListStorage::storage_buffer;
-    /// The format of the lists: the one given to encode(), or {.ids = Options::ids} for the lists of a Binner as they are.
+    /// The format of the lists: the one given to encode(), or {.ids = Options::ids} for the lists of a Binner as they
+    /// are.
     ListFormat format = {};
-    /// ListEncoding::offset_count: puts the table of {offset, count} in a uniform block, whatever `storage` the ids have.
+    /// ListEncoding::offset_count: puts the table of {offset, count} in a uniform block, whatever `storage` the ids
+    /// have.
     bool tiles_in_uniform_block = false;
-    /// texel_buffer, texture_2d: 8-bit and 16-bit ids are packed into 32-bit texels, as all other storages pack them. By
-    /// default each id has a texel of its own width.
+    /// texel_buffer, texture_2d: 8-bit and 16-bit ids are packed into 32-bit texels, as all other storages pack them.
+    /// By default each id has a texel of its own width.
     bool packed_ids = false;
 
     Slicing slicing = Slicing::none;  ///< the Binner's Options::slicing
@@ -51,9 +53,9 @@ struct ShaderOptions {
     bool flip_y = false;           ///< the shader counts pixel rows from the opposite end to the view's WindowOrigin
     bool viewport_corner = false;  ///< pixels are counted in the window; the constant `corner` is subtracted from them
     bool heat_map = false;         ///< adds the functions `count` and `heat`
-    /// The lanes of a wave (subgroup) loop together over the union of their lists, so that a light's data is read once for
-    /// all of them (Drobot 2017). GLSL 4.30 and ES 3.10 need GL_KHR_shader_subgroup_arithmetic, Vulkan 1.1, HLSL 6.0, WGSL
-    /// the device's feature `subgroups`.
+    /// The lanes of a wave (subgroup) loop together over the union of their lists, so that a light's data is read once
+    /// for all of them (Drobot 2017). GLSL 4.30 and ES 3.10 need GL_KHR_shader_subgroup_arithmetic, Vulkan 1.1, HLSL
+    /// 6.0, WGSL the device's feature `subgroups`.
     bool wave_loop = false;
     bool view_check = false;  ///< adds the function `check_view`, whose constants are bound at the slot `view`
     bool list_check = false;  ///< adds the loop `for_each_missing`
@@ -70,8 +72,8 @@ struct ShaderOptions {
     std::string_view prefix = "lightbin_";  ///< every name in the text begins with it
 };
 
-/// The values of the shader's constants `grid` and `corner`. A uniform block and push constants have this layout; without
-/// viewport_corner, its first 16 bytes.
+/// The values of the shader's constants `grid` and `corner`. A uniform block and push constants have this layout;
+/// without viewport_corner, its first 16 bytes.
 struct ShaderGrid {
     std::uint32_t tile_size, tiles_x, width, height;  ///< grid
     std::int32_t corner_x, corner_y;                  ///< corner
@@ -79,8 +81,8 @@ struct ShaderGrid {
 };
 static_assert(sizeof(ShaderGrid) == 32 && sizeof(ListRange) == 8);  // neither has padding
 
-/// Returns the constants of a view. The corner is only read with viewport_corner: it is the window pixel at the viewport's
-/// first column and row, as the shader counts pixels.
+/// Returns the constants of a view. The corner is only read with viewport_corner: it is the window pixel at the
+/// viewport's first column and row, as the shader counts pixels.
 inline ShaderGrid shader_grid(const View& view, int corner_x = 0, int corner_y = 0) {
     const Extent size = view.viewport();
     const auto u = [](int n) { return static_cast<std::uint32_t>(n); };
@@ -146,28 +148,28 @@ inline ShaderView shader_view(const View& view, float tolerance = 2) {
 ///     var other = lightbin_begin_missing(vec2u(pixel.xy), depth);
 ///     while (lightbin_next_missing(&other, light_count)) { if (other.lacked) { ... } }
 ///
-/// view_depth is the view depth of the shaded point, as Slices defines it; it is only read with slicing. With clusters the
-/// loop runs over the list of the pixel's tile in the slice of that depth. With z_bins it runs over the part of the tile's
-/// list between the least and the greatest rank of the depth's bin.
+/// view_depth is the view depth of the shaded point, as Slices defines it; it is only read with slicing. With clusters
+/// the loop runs over the list of the pixel's tile in the slice of that depth. With z_bins it runs over the part of the
+/// tile's list between the least and the greatest rank of the depth's bin.
 ///
-/// `break`, `continue` and `return` work in the loop bodies, and loops can be nested. Ids ascend, and each comes once. The
-/// list is empty for a pixel outside of the viewport, and for every pixel where `grid` is unset or its tile size differs
-/// from options.tile_size, so nothing outside of the table of tiles that `grid` describes is read. Tiles and lists must be
-/// of one build: what a table that points beyond the lists reads is up to the graphics API (Direct3D: 0; WebGPU: 0 or
-/// another entry; OpenGL, Vulkan: robust access has to be enabled).
+/// `break`, `continue` and `return` work in the loop bodies, and loops can be nested. Ids ascend, and each comes once.
+/// The list is empty for a pixel outside of the viewport, and for every pixel where `grid` is unset or its tile size
+/// differs from options.tile_size, so nothing outside of the table of tiles that `grid` describes is read. Tiles and
+/// lists must be of one build: what a table that points beyond the lists reads is up to the graphics API (Direct3D: 0;
+/// WebGPU: 0 or another entry; OpenGL, Vulkan: robust access has to be enabled).
 ///
-/// With wave_loop, `begin` and `next` step through the lights of the whole wave, so what depends on the id alone is uniform
-/// in it; cursor.own tells whether the lane's own list contains the light. No `else` can follow the loop body, and in WGSL
-/// the text must come first in its module.
+/// With wave_loop, `begin` and `next` step through the lights of the whole wave, so what depends on the id alone is
+/// uniform in it; cursor.own tells whether the lane's own list contains the light. No `else` can follow the loop body,
+/// and in WGSL the text must come first in its module.
 ///
 /// Two checks find mistakes in the set-up, by marking the pixels where something is wrong:
 ///
 ///     if (!lightbin_check_view(pixel, position)) colour = magenta;
 ///     lightbin_for_each_missing(light, light_count, pixel, depth) { if (shade(light.id) > 0) colour = magenta; }
 ///
-/// lightbin_check_view tells whether the View projects `position`, in view space, into this pixel (within the tolerance of
-/// shader_view()) and not before its near plane. lightbin_for_each_missing loops over every id below light_count that the
-/// pixel's list lacks, which is slow; no `else` can follow its body.
+/// lightbin_check_view tells whether the View projects `position`, in view space, into this pixel (within the tolerance
+/// of shader_view()) and not before its near plane. lightbin_for_each_missing loops over every id below light_count
+/// that the pixel's list lacks, which is slow; no `else` can follow its body.
 inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {});
 
 }}  // namespace lightbin

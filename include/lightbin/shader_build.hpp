@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Compute and fragment shaders that do the library's work on the GPU: reduce_shader() reduces a depth buffer to Z bounds,
-// build_shader() makes the light grid. Each text is a whole shader except for `#version`.
+// Compute and fragment shaders that do the library's work on the GPU: reduce_shader() reduces a depth buffer to Z
+// bounds, build_shader() makes the light grid. Each text is a whole shader except for `#version`.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -43,8 +43,8 @@ struct ReduceShaderOptions {
     std::string_view prefix = "lightbin_";  ///< every name in the text begins with it
 };
 
-/// The values of the constants `grid`, `planes` and `corner` of reduce_shader(). A uniform block has this layout; without
-/// viewport_corner, its first 32 bytes.
+/// The values of the constants `grid`, `planes` and `corner` of reduce_shader(). A uniform block has this layout;
+/// without viewport_corner, its first 32 bytes.
 struct ShaderReduce {
     std::uint32_t tile_size, tiles_x, width, height;  ///< grid
     float far_end, slope, margin, unused;             ///< planes
@@ -56,9 +56,9 @@ static_assert(sizeof(ShaderReduce) == 48);
 /// Returns the constants of a view. The corner is the texel at the viewport's first column and row.
 inline ShaderReduce shader_reduce(const View& view, int corner_x = 0, int corner_y = 0) {
     const ShaderGrid grid = shader_grid(view);
-    // Let e be a window depth's distance from the far plane's: 1 - depth, or with reversed Z depth itself. View depth is
-    // 1 / (far_end + slope e) in perspective and far_end - slope e in orthographic views. Both terms of the sum have the
-    // same sign, so nothing cancels.
+    // Let e be a window depth's distance from the far plane's: 1 - depth, or with reversed Z depth itself. View depth
+    // is 1 / (far_end + slope e) in perspective and far_end - slope e in orthographic views. Both terms of the sum have
+    // the same sign, so nothing cancels.
     const double from = static_cast<double>(view.near_depth()), to = static_cast<double>(view.far_depth());
     const bool flat = view.orthographic();
     const float far_end = static_cast<float>(flat ? to : 1 / to),
@@ -68,8 +68,9 @@ inline ShaderReduce shader_reduce(const View& view, int corner_x = 0, int corner
             slope,          margin,       0,          corner_x,    corner_y};
 }
 
-/// Returns a shader that reduces a depth texture to the minimum and maximum Z bounds of each tile, or an Error that names
-/// the limit that the options exceed. Its results satisfy what reduce_depth() promises; they are rounded as floats are.
+/// Returns a shader that reduces a depth texture to the minimum and maximum Z bounds of each tile, or an Error that
+/// names the limit that the options exceed. Its results satisfy what reduce_depth() promises; they are rounded as
+/// floats are.
 ///
 /// compute   one group of 64 threads per tile writes a vec2 to the storage buffer `z_bounds`: dispatch
 ///           (tiles_x, tiles_y, 1)
@@ -91,8 +92,8 @@ constexpr const char* to_string(BuildPass value) {
 }
 
 /// What build_shader() generates. The three passes need the same options except for `pass`. Every device with OpenGL ES
-/// 3.1, Vulkan or WebGPU can run them: each uses at most four storage buffers, by default at bindings below 4, and at most
-/// 128 threads per group.
+/// 3.1, Vulkan or WebGPU can run them: each uses at most four storage buffers, by default at bindings below 4, and at
+/// most 128 threads per group.
 struct BuildShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     BuildPass pass = BuildPass::count;
@@ -134,7 +135,8 @@ inline ShaderBuild shader_build(const View& view, std::uint32_t footprints, std:
 }
 
 /// A light in view, as build_shader() reads it: the tiles x0..x1 by y0..y1, both ends included, and its sphere. The
-/// sphere's x and y are view-space coordinates with signs such that the tile index grows with them; z is the view depth.
+/// sphere's x and y are view-space coordinates with signs such that the tile index grows with them; z is the view
+/// depth.
 struct ShaderFootprint {
     std::uint32_t id;
     std::uint16_t x0, y0, x1, y1;
@@ -143,8 +145,8 @@ struct ShaderFootprint {
 };
 static_assert(sizeof(ShaderFootprint) == 32);
 
-/// Returns the footprints of the lights in view by ascending id, the input of build_shader(). A spot's footprint has the
-/// rectangle of the cone and the least sphere around it. `lights` and errors are those of Binner::bin().
+/// Returns the footprints of the lights in view by ascending id, the input of build_shader(). A spot's footprint has
+/// the rectangle of the cone and the least sphere around it. `lights` and errors are those of Binner::bin().
 template <class LightRange>
 Result<std::vector<ShaderFootprint>> shader_footprints(const View& view, const LightRange& lights);
 
@@ -154,23 +156,24 @@ struct ShaderEdges {
     float low, high;
 };
 
-/// Returns the sides of all tile columns and then of all rows. For box, build_shader() reads them in the buffer `z_bounds`,
-/// after the Z bounds of all tiles, or with clusters after the depths of the slices.
+/// Returns the sides of all tile columns and then of all rows. For box, build_shader() reads them in the buffer
+/// `z_bounds`, after the Z bounds of all tiles, or with clusters after the depths of the slices.
 inline std::vector<ShaderEdges> shader_edges(const View& view);
 
-/// Returns the depths of the slices. With clusters, build_shader() reads them in `z_bounds` in place of the tiles' Z bounds.
-/// They include the slices' margin (see Slices::with_margin()); a light that just touches such a widened slice may be listed
-/// by only one of build_shader() and the Binner.
+/// Returns the depths of the slices. With clusters, build_shader() reads them in `z_bounds` in place of the tiles' Z
+/// bounds. They include the slices' margin (see Slices::with_margin()); a light that just touches such a widened slice
+/// may be listed by only one of build_shader() and the Binner.
 inline std::vector<ShaderEdges> shader_slabs(const Slices& slices);
 
 /// Returns one of the three shaders that build a light grid from footprints, or an Error that names the limit that the
-/// options exceed. A group of 64 threads tests every light against its tile. After the three passes, with a barrier between
-/// them, `tiles` and `lists` contain what LightGrid has in ranges() and ids() (32-bit ids), and `total` the number of
-/// entries of the complete lists; 2^32 - 1 stands for that number and every greater one.
+/// options exceed. A group of 64 threads tests every light against its tile. After the three passes, with a barrier
+/// between them, `tiles` and `lists` contain what LightGrid has in ranges() and ids() (32-bit ids), and `total` the
+/// number of entries of the complete lists; 2^32 - 1 stands for that number and every greater one.
 ///
-/// If `total` exceeds ShaderBuild::capacity, only the first `capacity` entries are listed, and total - capacity are not: the
-/// list of the first tile that does not fit is cut, and the lists of all tiles after it are empty. Nothing is written beyond
-/// the capacity. Build again with a larger buffer; where no buffer is large enough, with larger tiles or fewer slices.
+/// If `total` exceeds ShaderBuild::capacity, only the first `capacity` entries are listed, and total - capacity are
+/// not: the list of the first tile that does not fit is cut, and the lists of all tiles after it are empty. Nothing is
+/// written beyond the capacity. Build again with a larger buffer; where no buffer is large enough, with larger tiles or
+/// fewer slices.
 ///
 /// The entries of spheres are those of the Binner with the same options but for rounding:
 ///
@@ -181,13 +184,12 @@ inline std::vector<ShaderEdges> shader_slabs(const Slices& slices);
 /// clusters  as with box or, for `none`, as with interval, each cell having the depths of its slice
 ///
 /// Of a spot, these shaders test the least sphere around it (see least_sphere()), where the Binner tests the cone; the
-/// rectangle of tiles is the same. No spot that meets a cell is missing. Without depth test and clusters the entries are the
-/// Binner's. With interval, or clusters without box, every entry of the Binner is there, except those that only its rounding
-/// margins add, and there are more. With box neither has all entries of the other: the Binner tests the ball and the half
-/// spaces around the cone, which may both meet a box that lies beyond the least sphere.
+/// rectangle of tiles is the same. No spot that meets a cell is missing. Without depth test and clusters the entries
+/// are the Binner's. With interval, or clusters without box, every entry of the Binner is there, except those that only
+/// its rounding margins add, and there are more. With box neither has all entries of the other: the Binner tests the
+/// ball and the half spaces around the cone, which may both meet a box that lies beyond the least sphere.
 inline Result<ShaderText> build_shader(const BuildShaderOptions& options = {});
 
 }}  // namespace lightbin
 
-#include <lightbin/detail/shader/build.hpp>   // the definitions of build_shader() and its inputs
-#include <lightbin/detail/shader/reduce.hpp>  // the definition of reduce_shader()
+#include <lightbin/detail/shader/build.hpp>  // the definitions

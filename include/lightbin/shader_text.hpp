@@ -46,8 +46,8 @@ constexpr const char* to_string(ShaderResource value) {
                                    "byte_address", "texel_buffer", "texture_2d", "writable_buffer"});
 }
 
-/// Where a resource is bound: binding and set in GLSL, register number and space in HLSL, binding and group in WGSL. Texts
-/// for OpenGL 3.3 and ES 3.0 contain no bindings; there the program assigns samplers and blocks by name.
+/// Where a resource is bound: binding and set in GLSL, register number and space in HLSL, binding and group in WGSL.
+/// Texts for OpenGL 3.3 and ES 3.0 contain no bindings; there the program assigns samplers and blocks by name.
 struct ShaderSlot {
     int binding = 0;
     int set = 0;  ///< 0 except in Vulkan, hlsl_5_1 and wgsl

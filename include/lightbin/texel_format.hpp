@@ -66,8 +66,8 @@ constexpr const char* webgpu_format(TexelFormat format) {
     return detail::texel_names(format).webgpu;
 }
 
-/// Returns how many rows a 2D texture with `width` texels per row needs to hold `count` texels, at least 1. The last row may
-/// be partly filled.
+/// Returns how many rows a 2D texture with `width` texels per row needs to hold `count` texels, at least 1. The last
+/// row may be partly filled.
 constexpr std::size_t texture_rows(std::size_t count, std::size_t width) {
     return count == 0 ? 1 : (count - 1) / width + 1;
 }

@@ -3,15 +3,11 @@
 #pragma once
 
 #include <lightbin/advise.hpp>
-#include <lightbin/detail/base/abi_tag.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdio>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
@@ -25,14 +21,11 @@ inline std::string to_string(const Plan& plan) {
 
 inline std::string to_string(const Verdict& verdict) {
     const bool weighed = !verdict.instead.empty(), gains = verdict.saved_ns >= 0;
-    const char* const keep = !weighed ? "keep: no other was weighed"
-                             : gains  ? "keep: saves"
-                                      : "keep: costs only";
-    const char* const leave_out = !weighed ? "leave out: was not weighed"
-                                  : gains  ? "leave out: would cost"
-                                           : "leave out: would save only";
+    const char* said = verdict.keep ? "keep: no other was weighed" : "leave out: was not weighed";
+    if (weighed && verdict.keep) said = gains ? "keep: saves" : "keep: costs only";
+    if (weighed && !verdict.keep) said = gains ? "leave out: would cost" : "leave out: would save only";
     char line[100];
-    std::snprintf(line, sizeof line, "%-12s %s", verdict.part.c_str(), verdict.keep ? keep : leave_out);
+    std::snprintf(line, sizeof line, "%-12s %s", verdict.part.c_str(), said);
     std::string words = line;
     if (!weighed) return words + "\n";
     std::snprintf(line, sizeof line, " %.3f ms", std::fabs(verdict.saved_ns) * 1e-6);
@@ -41,8 +34,8 @@ inline std::string to_string(const Verdict& verdict) {
     return words + "instead: " + verdict.instead + "\n";
 }
 
-/// Sorts the plans by total time, by insertion: plans of equal time keep their order. (std::stable_sort causes warnings with
-/// some compilers.)
+/// Sorts the plans by total time, by insertion: plans of equal time keep their order. (std::stable_sort causes warnings
+/// with some compilers.)
 inline Advice::Advice(std::vector<Plan> plans) : plans_(std::move(plans)) {
     const auto is_cheaper = [](const Plan& a, const Plan& b) { return a.total_ns < b.total_ns; };
     for (auto plan = plans_.begin(); plan != plans_.end(); ++plan)

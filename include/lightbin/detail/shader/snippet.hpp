@@ -1,25 +1,58 @@
 // SPDX-License-Identifier: MIT
-// How shader_snippet() makes its text.
+// How shader_snippet() and shader_slices() make the text that reads the lists, and the buffer of slices.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/shader/slice_lookup.hpp>
+#include <lightbin/detail/base/platform.hpp>
 #include <lightbin/detail/shader/writer.hpp>
 #include <lightbin/encode.hpp>
-#include <lightbin/options.hpp>
 #include <lightbin/shader.hpp>
 
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
+#include <limits>
+#include <span>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 namespace detail {
 
-/// Returns the texel format of the lists. One texel holds one id in buffer textures and textures, unless the ids are packed.
+/// The coefficients of an estimate of a depth's slice: by_log2 * log2(depth) + by_depth * depth + offset.
+struct SliceGuess {
+    float by_log2, by_depth, offset;
+};
+
+/// Returns the line through the first and the last boundary, over the depth or over its logarithm, whichever is nearer
+/// to the other boundaries. But for rounding it is exact for the boundaries of Slices::linear() and
+/// Slices::exponential().
+inline SliceGuess best_guess(std::span<const float> boundaries) {
+    SliceGuess best = {0, 0, 0};
+    if (boundaries.empty()) return best;
+    double least_error = std::numeric_limits<double>::infinity();
+    for (const bool by_log2 : {false, true}) {
+        const auto scaled = [&](float depth) {
+            const double exact = static_cast<double>(depth);
+            return by_log2 ? std::log2(exact) : exact;
+        };
+        const double first = scaled(boundaries.front()), last = scaled(boundaries.back());
+        const double slope =
+            boundaries.size() == 1 ? 0 : (static_cast<double>(boundaries.size()) - 1) / (last - first);
+        const double offset = 1 - slope * first;
+        double error = 0;
+        for (std::size_t i = 0; i < boundaries.size(); ++i)
+            error += std::fabs(slope * scaled(boundaries[i]) + offset - static_cast<double>(i + 1));
+        if (!(error < least_error)) continue;  // also when NaN: depths of 0 or less have no logarithm
+        least_error = error;
+        const float factor = static_cast<float>(slope);
+        best = {by_log2 ? factor : 0, by_log2 ? 0 : factor, static_cast<float>(offset)};
+    }
+    return best;
+}
+
+/// Returns the size of shader_slices() in bytes for a number of slices; 0 if there are none.
+inline std::uint64_t slice_bytes(std::uint64_t slices) {
+    return slices == 0 ? 0 : 4 * (slices + 3);
+}
+
+/// Returns the texel format of the lists. One texel holds one id in buffer textures and textures, unless the ids are
+/// packed.
 inline TexelFormat list_texels(const ShaderOptions& options) {
     const bool one_id =
         !options.packed_ids && options.format.encoding != ListEncoding::bitmask &&
@@ -93,8 +126,8 @@ inline std::string tile_size_text(const ShaderOptions& options) {
     return options.tile_size == 0 ? "$grid.x" : number_text(static_cast<std::uint64_t>(options.tile_size));
 }
 
-/// Returns lines that convert `pixel`, as the shader counts pixels, to `here`, as the view counts them. A pixel left of or
-/// above the viewport wraps around to a large unsigned number, and so stays outside.
+/// Returns lines that convert `pixel`, as the shader counts pixels, to `here`, as the view counts them. A pixel left of
+/// or above the viewport wraps around to a large unsigned number, and so stays outside.
 inline std::string to_grid_lines(const ShaderOptions& options) {
     return std::string("    uvec2 here = pixel") + (options.viewport_corner ? " - uvec2($corner)" : "") +
            ";\n" + (options.flip_y ? "    here.y = $grid.w - 1u - here.y;\n" : "");
@@ -105,6 +138,31 @@ inline void add_tile(ShaderWriter& writer, const ShaderOptions& options) {
     const std::string size = tile_size_text(options);
     writer.add("\n// The tile that a pixel lies in.\nuvec2 $tile(uvec2 pixel) {\n" + to_grid_lines(options) +
                "    return here / " + (options.tile_size == 0 ? "max(" + size + ", 1u)" : size) + ";\n}\n");
+}
+
+/// Adds the function `slice`, which returns the slice of a view depth. It starts from the estimate, in which a device
+/// may round the logarithm as it likes, and steps from there until the boundaries enclose the depth. Boundaries and
+/// depth are compared as integers that are in the order of the floats, because devices may flush denormal floats to
+/// zero.
+inline void add_slice(ShaderWriter& writer) {
+    const auto word = [&](const std::string& index) { return writer.read("slices", index); };
+    const auto number = [&](const std::string& index) { return "uintBitsToFloat(" + word(index) + ")"; };
+    writer.add(
+        "\n// The slice that a view depth lies in.\nuint $slice(float view_depth) {\n    float guess = " +
+        number("0u") + " * log2(max(view_depth, 1e-37)) + " + number("1u") + " * view_depth + " +
+        number("2u") + ";\n    uint last = " + word("3u") +
+        R"(;
+    uint slice = min(uint(clamp(guess, 0.0, 1e9)), last);
+    uint bits = floatBitsToUint(view_depth);
+    uint key = bits | 0x80000000u;
+    if (bits > 0x80000000u) { key = ~bits; }
+    while (slice > 0u && key < )" +
+        word("slice + 3u") + R"() { slice -= 1u; }
+    while (slice < last && key >= )" +
+        word("slice + 4u") + R"() { slice += 1u; }
+    return slice;
+}
+)");
 }
 
 /// Adds the function `id_at`, which returns one id of the lists; from packed lists it extracts the byte or half word.
@@ -153,8 +211,8 @@ inline void add_begin(ShaderWriter& writer, const ShaderOptions& options) {
     else
         writer.add("        c.at = place * " + each + ";\n        c.end = c.at + " +
                    (bits && binned ? "(bin.y >> 5u) + 1u" : each) + ";\n");
-    // With z-bins the cursor skips to the first id of the bin's least rank or above: in a bitmask by the index of the word,
-    // in a list of known length by binary search, in one that a sentinel ends by linear search.
+    // With z-bins the cursor skips to the first id of the bin's least rank or above: in a bitmask by the index of the
+    // word, in a list of known length by binary search, in one that a sentinel ends by linear search.
     if (binned && bits)
         writer.add("        c.at += bin.x >> 5u;\n        c.id = bin.x & ~31u;\n        c.bits = " +
                    writer.read("lists", "c.at") +
@@ -172,8 +230,8 @@ inline void add_begin(ShaderWriter& writer, const ShaderOptions& options) {
     writer.add("    }\n    return c;\n}\n");
 }
 
-/// Adds the function `next`. It has a single return statement, as the compiler fxc takes an early return in shader model
-/// 5.1 for a result that was not set.
+/// Adds the function `next`. It has a single return statement, as the compiler fxc takes an early return in shader
+/// model 5.1 for a result that was not set.
 inline void add_next(ShaderWriter& writer, const ShaderOptions& options) {
     writer.add("\nbool $own_next(inout $own_cursor c) {\n");
     if (options.format.encoding == ListEncoding::bitmask) {
@@ -197,9 +255,9 @@ inline void add_next(ShaderWriter& writer, const ShaderOptions& options) {
     writer.add("    }\n    return more;\n}\n");
 }
 
-/// Adds `cursor`, `begin` and `next` for a wave. The wave's next light is the least id among the next lights of its lanes.
-inline void add_wave_cursor(ShaderWriter& writer) {
-    writer.add(R"(
+/// The struct `cursor` and the functions `begin` and `next` of a wave. The wave's next light is the least id among the
+/// next lights of its lanes.
+inline constexpr const char* wave_cursor = R"(
 struct $cursor {
     uint id;
     bool own;
@@ -227,8 +285,7 @@ bool $next(inout $cursor c) {
     c.own = c.more && own == c.id;
     return c.id != 0xffffffffu;
 }
-)");
-}
+)";
 
 /// Adds the functions `count` and `heat`. Only the plain offset_count lists tell their length without being walked.
 inline void add_heat_map(ShaderWriter& writer, const ShaderOptions& options) {
@@ -249,9 +306,8 @@ vec3 $heat(uvec2 pixel, float view_depth, float most) {
 )");
 }
 
-/// Adds the function `window`, the shader's light_window().
-inline void add_window(ShaderWriter& writer) {
-    writer.add(R"(
+/// The function `window`, the shader's light_window().
+inline constexpr const char* window_function = R"(
 // 1 at a light, falling smoothly to 0 at its range and beyond.
 float $window(float apart, float range) {
     float x = apart / range;
@@ -259,8 +315,7 @@ float $window(float apart, float range) {
     if (apart < range) { w = 1.0 - x * x * x * x; }
     return w * w;
 }
-)");
-}
+)";
 
 /// Adds the function `check_view`.
 inline void add_view_check(ShaderWriter& writer, const ShaderOptions& options) {
@@ -277,8 +332,8 @@ inline void add_view_check(ShaderWriter& writer, const ShaderOptions& options) {
 )");
 }
 
-/// Adds `missing`, `begin_missing`, `next_missing` and the loop over them. As the ids of a list ascend, one pass over all
-/// ids, with the list's cursor beside it, finds the ids that the list lacks.
+/// Adds `missing`, `begin_missing`, `next_missing` and the loop over them. As the ids of a list ascend, one pass over
+/// all ids, with the list's cursor beside it, finds the ids that the list lacks.
 inline void add_list_check(ShaderWriter& writer) {
     writer.add(R"(
 // A light, and whether the pixel's list lacks it.
@@ -316,6 +371,19 @@ bool $next_missing(inout $missing m, uint lights) {
 
 }  // namespace detail
 
+inline std::vector<std::uint32_t> shader_slices(const Slices& slices) {
+    const std::span<const float> boundaries = slices.boundaries();
+    const detail::SliceGuess guess = detail::best_guess(boundaries);
+    std::vector<std::uint32_t> words = {
+        detail::bit_cast<std::uint32_t>(guess.by_log2), detail::bit_cast<std::uint32_t>(guess.by_depth),
+        detail::bit_cast<std::uint32_t>(guess.offset), static_cast<std::uint32_t>(boundaries.size())};
+    for (const float boundary : boundaries) {
+        const std::uint32_t bits = detail::bit_cast<std::uint32_t>(boundary), sign = 0x80000000;
+        words.push_back(bits & sign ? ~bits : bits | sign);
+    }
+    return words;
+}
+
 inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     using namespace detail;
     if (const auto error = refuse(options)) return *error;
@@ -338,12 +406,12 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     if (options.format.encoding != ListEncoding::bitmask) add_id_at(writer, options);
     add_begin(writer, options);
     add_next(writer, options);
-    if (options.wave_loop) add_wave_cursor(writer);
+    if (options.wave_loop) writer.add(wave_cursor);
     writer.add_macro("for_each_light(cursor, pixel, view_depth)",
                      std::string("for ($cursor cursor = $begin(pixel, view_depth); $next(cursor);)") +
                          (options.wave_loop ? " if (cursor.own)" : ""));
     if (options.heat_map) add_heat_map(writer, options);
-    if (options.window) add_window(writer);
+    if (options.window) writer.add(window_function);
     if (options.view_check) add_view_check(writer, options);
     if (options.list_check) add_list_check(writer);
     // `own_` tells the cursor of one lane from that of its wave. Without waves there is one cursor, without `own_`.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Translates the shader texts from GLSL to each language. It handles the part of GLSL that the texts keep to: a
-// declaration holds one name, every branch and loop has braces, only `inout` parameters are assigned to, and there is no
-// `?:`. Two signs are not GLSL's: `$` stands for the prefix of names, and `&` marks an argument for an `inout` parameter.
+// declaration holds one name, every branch and loop has braces, only `inout` parameters are assigned to, and there is
+// no `?:`. Two signs are not GLSL's: `$` stands for the prefix of names, and `&` marks an argument for an `inout`
+// parameter.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>

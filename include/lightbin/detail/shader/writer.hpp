@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// ShaderWriter collects a shader text that is written in GLSL, declares resources in the wanted language, and translates
-// the whole in the end.
+// ShaderWriter collects a shader text that is written in GLSL, declares resources in the wanted language, and
+// translates the whole in the end.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -40,9 +40,9 @@ inline Dialect dialect(ShaderLanguage language) {
 }
 
 /// Whether every name of the texts is a valid identifier when it begins with `prefix`. ES limits identifiers to 1024
-/// characters, of which the longest name needs fewer than 24. GLSL reserves names that contain `__` or begin with `gl_`,
-/// and macros that begin with `GL_`. `vola` is refused because it makes the keyword `volatile` of the name `tile`; no other
-/// keyword of the languages ends in one of the names.
+/// characters, of which the longest name needs fewer than 24. GLSL reserves names that contain `__` or begin with
+/// `gl_`, and macros that begin with `GL_`. `vola` is refused because it makes the keyword `volatile` of the name
+/// `tile`; no other keyword of the languages ends in one of the names.
 inline bool is_prefix(std::string_view prefix) {
     constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
     return !prefix.empty() && prefix.size() <= 1000 && prefix.find_first_not_of(letters) == prefix.npos &&
@@ -93,13 +93,14 @@ struct ByLanguage {
     std::string glsl = {}, hlsl = {}, wgsl = {};
 };
 
-/// Lines that declare `endless`, infinity. WGSL refuses infinity as a constant, but not made from the bits in a variable.
+/// Lines that declare `endless`, infinity. WGSL refuses infinity as a constant, but not made from the bits in a
+/// variable.
 inline constexpr const char* infinity_lines = R"(    uint endless_bits = 0x7f800000u;
     float endless = uintBitsToFloat(endless_bits);
 )";
 
-/// Collects one shader text and its bindings. What declares a resource adds the declaration to the text and the resource to
-/// the bindings. In all text that is handed over `$` stands for the prefix.
+/// Collects one shader text and its bindings. What declares a resource adds the declaration to the text and the
+/// resource to the bindings. In all text that is handed over `$` stands for the prefix.
 class ShaderWriter {
 public:
     ShaderWriter(ShaderLanguage language, std::string_view prefix)
@@ -176,8 +177,8 @@ public:
              .wgsl = "texture_2d<u32>"});
     }
 
-    /// Declares constants, each at a multiple of 16 bytes. In OpenGL they are single uniforms; in the other APIs they form
-    /// one block, or push constants if `push` is set, which is named after the first constant.
+    /// Declares constants, each at a multiple of 16 bytes. In OpenGL they are single uniforms; in the other APIs they
+    /// form one block, or push constants if `push` is set, which is named after the first constant.
     void declare_constants(const std::vector<ShaderConstant>& constants, ShaderSlot slot, bool push) {
         const bool loose = !dialect_.hlsl && !dialect_.vulkan && !dialect_.wgsl;
         const std::string name = std::string(constants.front().name) + "_block";
@@ -234,8 +235,8 @@ public:
                                : "texelFetch(" + texture + ", " + at + ", " + sample + ")";
     }
 
-    /// Declares an array of uint in the memory that a work group shares. WGSL has a type of its own for atomic variables:
-    /// load_atomic(), store_atomic() and the atomic functions of GLSL are all that may access them.
+    /// Declares an array of uint in the memory that a work group shares. WGSL has a type of its own for atomic
+    /// variables: load_atomic(), store_atomic() and the atomic functions of GLSL are all that may access them.
     void declare_shared(const std::string& name, int count, bool atomic) {
         const std::string size = std::to_string(count), type = atomic ? "atomic<uint>" : "uint";
         add(dialect_.wgsl ? "var<workgroup> $" + name + " : array<" + type + ", " + size + ">;\n"
@@ -250,7 +251,8 @@ public:
         return dialect_.wgsl ? "atomicStore(&" + variable + ", " + value + ")" : variable + " = " + value;
     }
 
-    /// Adds the entry point of a compute shader with `threads` threads per group. It calls $run(group id, thread index).
+    /// Adds the entry point of a compute shader with `threads` threads per group. It calls $run(group id, thread
+    /// index).
     void add_compute_main(unsigned threads) {
         const std::string count = std::to_string(threads);
         add(dialect_.wgsl ? "\n@compute @workgroup_size(" + count +
@@ -307,9 +309,10 @@ private:
         return inside.empty() ? "" : "layout(" + inside.substr(0, inside.size() - 2) + ") ";
     }
 
-    /// Returns a letter for the numbering that a resource's binding belongs to: two resources of one letter can't have the
-    /// same binding. HLSL numbers by register type, which is the letter; OpenGL numbers uniform blocks (b), storage buffers
-    /// (s) and textures (t) apart; Vulkan and WebGPU number everything in a set together. '-' stands for no binding.
+    /// Returns a letter for the numbering that a resource's binding belongs to: two resources of one letter can't have
+    /// the same binding. HLSL numbers by register type, which is the letter; OpenGL numbers uniform blocks (b), storage
+    /// buffers (s) and textures (t) apart; Vulkan and WebGPU number everything in a set together. '-' stands for no
+    /// binding.
     char numbering_of(const ShaderBinding& binding) const {
         return (dialect_.hlsl                      ? "-b-ttttu"
                 : dialect_.vulkan || dialect_.wgsl ? "-b-bbbbb"
