@@ -79,9 +79,8 @@ public:
     /// Returns a table of the plans for people to read, one per line.
     std::string text() const;
 
-    /// Returns a verdict on each part that a plan has or lacks. It compares the plan with the cheapest measured plan
-    /// that differs in the part. The two may differ in other parts as well, because without this part others may pay
-    /// off.
+    /// Returns a verdict on each part that a plan has or lacks, against the cheapest measured plan that differs in the
+    /// part. That plan may differ in other parts as well, because without this part others may pay off.
     std::vector<Verdict> verdicts(const Plan& plan) const;
 
 private:
@@ -104,8 +103,8 @@ inline std::string to_string(const Advice& advice);
 template <Options base = Options{}, class Visit>
 decltype(auto) with_options(const Plan& plan, Visit&& visit);
 
-/// Applies a plan of advise_slices() as with_options() does. Some of its options need slices: inputs_for<options>({},
-/// slices) makes the inputs of Binner::bin() for each.
+/// Applies a plan of advise_slices() as with_options() does. Some of its options need slices, others don't:
+/// inputs_for<options>({}, slices) returns the inputs of Binner::bin() for each.
 template <Options base = Options{}, class Visit>
 decltype(auto) with_sliced_options(const Plan& plan, Visit&& visit);
 

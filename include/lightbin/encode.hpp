@@ -20,8 +20,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// Returns how many lights the format can tell apart: one fewer where the sentinel takes an id, and 2^32 - 1 in a
-/// bitmask.
+/// Returns how many lights a format can number. A sentinel takes one of the ids; a bitmask can number 2^32 - 1 lights.
 inline std::uint64_t countable_lights(const ListFormat& format) {
     const std::uint64_t values = std::uint64_t{1} << (8 * static_cast<unsigned>(format.ids));
     if (format.encoding == ListEncoding::bitmask) return 0xffffffff;
@@ -45,29 +44,6 @@ inline std::optional<Error> refuse(const ListFormat& format) {
         return Error{ErrorCode::max_lights_unknown};
     return std::nullopt;
 }
-
-}  // namespace detail
-
-/// Returns how many bytes encode() needs for a grid of so many tiles and list entries, rounded up to a multiple of 4.
-/// If that exceeds 64 bits, returns 2^64 - 4.
-inline std::uint64_t encoded_bytes(const ListFormat& format, std::uint64_t tiles, std::uint64_t entries) {
-    const std::uint64_t elements = format.encoding == ListEncoding::offset_count
-                                       ? entries
-                                       : detail::product_of_sizes(tiles, detail::elements_per_tile(format));
-    const std::uint64_t width =
-        format.encoding == ListEncoding::bitmask ? 4 : static_cast<std::uint64_t>(format.ids);
-    constexpr std::uint64_t limit = ~std::uint64_t{3};
-    return elements > limit / width ? limit : (elements * width + 3) / 4 * 4;
-}
-
-/// What encode() left out of lists that are longer than the capacity of the sentinel format.
-struct Encoded {
-    std::uint64_t entries_cut = 0;
-    std::uint32_t tiles_cut = 0;        ///< tiles whose list was cut
-    std::uint32_t capacity_needed = 0;  ///< length of the longest list, the least capacity that cuts nothing
-};
-
-namespace detail {
 
 template <class To, class Id>
 void encode_ids(const LightGrid<Id>& grid, const ListFormat& format, std::byte* out) {
@@ -102,6 +78,25 @@ template <class Id> void encode_bits(const LightGrid<Id>& grid, std::size_t byte
 }
 
 }  // namespace detail
+
+/// Returns how many bytes encode() needs for a grid of so many tiles and list entries, rounded up to a multiple of 4.
+/// If that exceeds 64 bits, returns 2^64 - 4.
+inline std::uint64_t encoded_bytes(const ListFormat& format, std::uint64_t tiles, std::uint64_t entries) {
+    const std::uint64_t elements = format.encoding == ListEncoding::offset_count
+                                       ? entries
+                                       : detail::product_of_sizes(tiles, detail::elements_per_tile(format));
+    const std::uint64_t width =
+        format.encoding == ListEncoding::bitmask ? 4 : static_cast<std::uint64_t>(format.ids);
+    constexpr std::uint64_t limit = ~std::uint64_t{3};
+    return elements > limit / width ? limit : (elements * width + 3) / 4 * 4;
+}
+
+/// What encode() left out of lists that are longer than the capacity of the sentinel format.
+struct Encoded {
+    std::uint64_t entries_cut = 0;
+    std::uint32_t tiles_cut = 0;        ///< tiles whose list was cut
+    std::uint32_t capacity_needed = 0;  ///< length of the longest list, the least capacity that cuts nothing
+};
 
 /// Writes the lists of a grid to `out`, in this machine's byte order. `out` must hold encoded_bytes(format, tiles,
 /// entries) or more; bytes beyond the ids keep their values. With offset_count, shaders read grid.ranges() beside

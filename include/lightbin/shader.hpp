@@ -2,20 +2,14 @@
 // Shader text that reads the lists of a light grid, in GLSL, HLSL and WGSL. docs/shader.md shows its use.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/enum_names.hpp>
-#include <lightbin/detail/project/camera.hpp>
 #include <lightbin/list_format.hpp>
 #include <lightbin/options.hpp>
-#include <lightbin/result.hpp>
 #include <lightbin/shader_text.hpp>
 #include <lightbin/slices.hpp>
 #include <lightbin/view.hpp>
 
 #include <cmath>
-#include <cstdint>
 #include <string_view>
-#include <vector>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
@@ -103,9 +97,9 @@ static_assert(sizeof(ShaderView) == 32);  // it has no padding
 /// Returns the constants of a view.
 ///
 /// tolerance  in pixels: how far from its pixel a position may be. Half a pixel is needed for positions taken at a
-///            sample. The rest is for rounding: a position at depth d, interpolated over a triangle whose corners are at a
-///            distance r, is wrong by up to about 2^-22 r / d of the image's height in pixels. A larger tolerance is only
-///            needed where r / d exceeds some thousand
+///            sample. The rest is for rounding: a position at depth d, interpolated over a triangle whose corners are
+///            at a distance r, is wrong by up to about 2^-22 r / d of the image's height in pixels. A larger tolerance
+///            is only needed where r / d exceeds some thousand
 inline ShaderView shader_view(const View& view, float tolerance = 2) {
     const detail::Camera& camera = detail::camera_of(view);
     const auto pixels = [&](double tiles) { return static_cast<float>(tiles * view.tile_size()); };

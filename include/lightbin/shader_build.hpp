@@ -3,20 +3,8 @@
 // bounds, build_shader() makes the light grid. Each text is a whole shader except for `#version`.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/enum_names.hpp>
-#include <lightbin/options.hpp>
-#include <lightbin/result.hpp>
 #include <lightbin/shader.hpp>
-#include <lightbin/shader_text.hpp>
-#include <lightbin/slices.hpp>
-#include <lightbin/view.hpp>
 #include <lightbin/z_bounds.hpp>
-
-#include <cmath>
-#include <cstdint>
-#include <string_view>
-#include <vector>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
@@ -69,8 +57,8 @@ inline ShaderReduce shader_reduce(const View& view, int corner_x = 0, int corner
 }
 
 /// Returns a shader that reduces a depth texture to the minimum and maximum Z bounds of each tile, or an Error that
-/// names the limit that the options exceed. Its results satisfy what reduce_depth() promises; they are rounded as
-/// floats are.
+/// names the limit that the options exceed. The bounds enclose all depths of the tile, as those of reduce_depth() do,
+/// and are wider by the rounding of 32-bit floats.
 ///
 /// compute   one group of 64 threads per tile writes a vec2 to the storage buffer `z_bounds`: dispatch
 ///           (tiles_x, tiles_y, 1)
@@ -97,8 +85,8 @@ constexpr const char* to_string(BuildPass value) {
 struct BuildShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     BuildPass pass = BuildPass::count;
-    DepthTest depth_test = DepthTest::none;  ///< all but split_box; with clusters all but interval, too
-    Slicing slicing = Slicing::none;         ///< none or clusters
+    DepthTest depth_test = DepthTest::none;  ///< none, interval or box; with clusters: none or box
+    Slicing slicing = Slicing::none;         ///< none or clusters; these shaders make no z-bins
     bool max_only = false;      ///< ignores the minimum Z bound, for transparent lights; no effect with clusters
     bool orthographic = false;  ///< View::orthographic(), needed for box
 
@@ -134,11 +122,10 @@ inline ShaderBuild shader_build(const View& view, std::uint32_t footprints, std:
             static_cast<float>(view.tiles_y())};
 }
 
-/// A light in view, as build_shader() reads it: the tiles x0..x1 by y0..y1, both ends included, and its sphere. The
-/// sphere's x and y are view-space coordinates with signs such that the tile index grows with them; z is the view
-/// depth.
+/// A light in view, as build_shader() reads it: its tiles x0..x1 by y0..y1, both ends included, and its sphere. The
+/// sphere's x and y are view-space coordinates, negated where the tile index falls with them; z is its view depth.
 struct ShaderFootprint {
-    std::uint32_t id;
+    std::uint32_t id;  ///< the light's position in the caller's array
     std::uint16_t x0, y0, x1, y1;
     float reach2;  ///< the squared radius, rounded up
     float x, y, z, radius;
@@ -175,13 +162,13 @@ inline std::vector<ShaderEdges> shader_slabs(const Slices& slices);
 /// written beyond the capacity. Build again with a larger buffer; where no buffer is large enough, with larger tiles or
 /// fewer slices.
 ///
-/// The entries of spheres are those of the Binner with the same options but for rounding:
+/// For spheres, the entries compare with those of the Binner as follows, by depth test or slicing:
 ///
 /// none      the same entries
 /// interval  the same entries, if the device rounds sums correctly
-/// box       the same but for the device's rounding of sums and products: no light of the exact set is missing, and no
-///           light is listed whose distance from the box exceeds its radius by more than 2^-19 of the radius
-/// clusters  as with box or, for `none`, as with interval, each cell having the depths of its slice
+/// box       the same entries but for the device's rounding of sums and products: no light that meets the cell is
+///           missing, and no light is listed whose distance from the box exceeds its radius by over 2^-19 of the radius
+/// clusters  with box as above, without depth test as with interval; the depths of a cell are those of its slice
 ///
 /// Of a spot, these shaders test the least sphere around it (see least_sphere()), where the Binner tests the cone; the
 /// rectangle of tiles is the same. No spot that meets a cell is missing. Without depth test and clusters the entries

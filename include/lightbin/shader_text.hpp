@@ -5,8 +5,8 @@
 
 #include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/enum_names.hpp>
-#include <lightbin/texel_format.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -46,6 +46,68 @@ constexpr const char* to_string(ShaderResource value) {
                                    "byte_address", "texel_buffer", "texture_2d", "writable_buffer"});
 }
 
+/// The components of a texel: one or two unsigned integers of 8, 16 or 32 bits, or one float.
+enum class TexelFormat : std::uint8_t { none, r8ui, r16ui, r32ui, rg32ui, r32f };
+
+constexpr const char* to_string(TexelFormat value) {
+    return detail::name_at(value, {"none", "r8ui", "r16ui", "r32ui", "rg32ui", "r32f"});
+}
+
+/// The arguments of glTexImage2D and glTexSubImage2D. glTexBuffer and glTexStorage2D need `internal` alone.
+struct GlFormat {
+    std::uint32_t internal, layout, type;
+};
+
+namespace detail {
+
+/// A texel format's size and its names in the graphics APIs.
+struct TexelNames {
+    std::uint32_t bytes;
+    GlFormat gl;
+    std::uint32_t vk, dxgi;
+    const char* webgpu;
+};
+
+constexpr TexelNames texel_names(TexelFormat format) {
+    constexpr std::uint32_t red = 0x1903, red_integer = 0x8d94, rg_integer = 0x8228;
+    constexpr std::uint32_t byte = 0x1401, half_word = 0x1403, word = 0x1405, real = 0x1406;
+    constexpr TexelNames names[] = {{0, {0, 0, 0}, 0, 0, ""},
+                                    {1, {0x8232, red_integer, byte}, 13, 62, "r8uint"},
+                                    {2, {0x8234, red_integer, half_word}, 74, 57, "r16uint"},
+                                    {4, {0x8236, red_integer, word}, 98, 42, "r32uint"},
+                                    {8, {0x823c, rg_integer, word}, 101, 17, "rg32uint"},
+                                    {4, {0x822e, red, real}, 100, 41, "r32float"}};
+    return names[static_cast<std::size_t>(format)];
+}
+
+}  // namespace detail
+
+/// Returns GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE and so on; for `none` zeros.
+constexpr GlFormat gl_format(TexelFormat format) {
+    return detail::texel_names(format).gl;
+}
+
+/// Returns VK_FORMAT_R8_UINT and so on; for `none` VK_FORMAT_UNDEFINED.
+constexpr std::uint32_t vk_format(TexelFormat format) {
+    return detail::texel_names(format).vk;
+}
+
+/// Returns DXGI_FORMAT_R8_UINT and so on; for `none` DXGI_FORMAT_UNKNOWN.
+constexpr std::uint32_t dxgi_format(TexelFormat format) {
+    return detail::texel_names(format).dxgi;
+}
+
+/// Returns a GPUTextureFormat, "r8uint" and so on; for `none` an empty string.
+constexpr const char* webgpu_format(TexelFormat format) {
+    return detail::texel_names(format).webgpu;
+}
+
+/// Returns how many rows a 2D texture with `width` texels per row needs to hold `count` texels, at least 1. The last
+/// row may be partly filled.
+constexpr std::size_t texture_rows(std::size_t count, std::size_t width) {
+    return count == 0 ? 1 : (count - 1) / width + 1;
+}
+
 /// Where a resource is bound: binding and set in GLSL, register number and space in HLSL, binding and group in WGSL.
 /// Texts for OpenGL 3.3 and ES 3.0 contain no bindings; there the program assigns samplers and blocks by name.
 struct ShaderSlot {
@@ -61,7 +123,7 @@ struct ShaderBinding {
     TexelFormat format = TexelFormat::none;  ///< see gl_format(), vk_format(), dxgi_format(), webgpu_format()
     std::uint32_t stride = 0;                ///< bytes per element or texel
     std::uint32_t bytes = 0;  ///< uniform blocks and push constants: the declared size; others: 0, any size will do
-    std::uint32_t width = 0;  ///< texture_2d: texels per row, see texture_rows(); 0: as many as the grid has tile columns
+    std::uint32_t width = 0;  ///< texture_2d: texels per row, see texture_rows(); 0: one per column of tiles
 };
 
 /// A shader text and its bindings, in the order of their declarations.

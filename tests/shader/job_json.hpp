@@ -4,7 +4,7 @@
 
 #include "job.hpp"
 
-#include <lightbin/texel_format.hpp>
+#include <lightbin/shader_text.hpp>
 
 #include <cstddef>
 #include <cstdint>

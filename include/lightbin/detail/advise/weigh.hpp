@@ -37,7 +37,7 @@ inline constexpr Options weighed_sliced[] = {
     {.footprint = Footprint::rectangle, .depth_test = DepthTest::box, .slicing = Slicing::clusters},
     {.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::clusters}};
 
-/// Returns `base` with the measured options taken from `row`.
+/// Returns `base` with the footprint, depth test and slicing of a table's row.
 constexpr Options weighed_options(Options base, const Options& row) {
     base.footprint = row.footprint;
     base.depth_test = row.depth_test;
@@ -45,7 +45,7 @@ constexpr Options weighed_options(Options base, const Options& row) {
     return base;
 }
 
-/// Finds a plan's options in a table from row i on, and calls visit() with them as a constant.
+/// Finds a plan's options among the rows of a table from row i on, and calls visit() with them as a constant.
 template <const auto& table, Options base, std::size_t i, class Visit>
 decltype(auto) with_options_from(const Plan& plan, Visit& visit) {
     constexpr Options options = weighed_options(base, table[i]);
@@ -81,15 +81,15 @@ template <class Visit> void for_each_drawn(const View& view, const ZBounds& boun
         }
 }
 
-/// The caller's view with its tiles, or with tiles each of which consists of several of them.
+/// A view with one of the tile sizes that are measured, and its Z bounds.
 struct WeighedGrid {
     View view;
-    ZBounds bounds;  ///< spans of the caller's arrays, or of the vectors below where the caller gave that side
+    ZBounds bounds;  ///< of the caller's tiles: the caller's arrays; of larger tiles: the vectors below
     std::vector<float> lowest, highest, gap_begin, gap_end;
 
-    /// Merges the Z bounds of the fine tiles. Each is taken to be drawn everywhere between its bounds but in its gap.
-    /// So the merged gap, around the middle of the merged bounds, is at most as wide as the one that reduce_depth()
-    /// would find.
+    /// Merges the Z bounds of the caller's fine tiles. A fine tile is assumed to show all depths between its bounds
+    /// except those in its gap. So a merged gap, which lies around the middle of the merged bounds, is at most as wide
+    /// as the one that reduce_depth() would find.
     WeighedGrid(const View& fine, const ZBounds& of_fine, int tile_size)
         : view(*fine.with_tile_size(tile_size)), bounds(of_fine), lowest(view.tile_count(), infinity),
           highest(view.tile_count(), -infinity), gap_begin(highest), gap_end(lowest) {
@@ -128,37 +128,24 @@ struct WeighedGrid {
     WeighedGrid(WeighedGrid&&) = default;  // the spans of a copy would point into the original
 };
 
-/// Returns the grids with tiles of the view's size, of 2, 4 and 8 times that size while that is smaller than the
-/// screen, and with one tile as large as the screen.
-inline std::vector<WeighedGrid> weighed_grids(const View& view, const ZBounds& bounds) {
+/// Measures each row of a table on each grid.
+///
+/// slices            null if no row of the table needs them
+/// for_each_visible  for_each_visible(visit) calls visit(x, y, depth, pixels) for every point with something to light:
+///                   its pixel, its depth (read only with slices), and the number of pixels that it stands for
+template <const auto& table, Options base, class Clock, class LightRange, class ForEachVisible>
+Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlices* slices,
+                     const LightRange& lights, const Costs& costs, ForEachVisible for_each_visible) {
+    // The grids: tiles of the view's size, of 2, 4 and 8 times that size while that is smaller than the screen, and one
+    // tile as large as the screen.
     std::vector<WeighedGrid> grids;
     const int whole = (std::max)({view.viewport().width, view.viewport().height, view.tile_size()});
     for (int size = view.tile_size(); size < whole && grids.size() < 4;
          size = size > whole / 2 ? whole : 2 * size)
         grids.emplace_back(view, bounds, size);
     grids.emplace_back(view, bounds, whole);
-    return grids;
-}
-
-/// Whether a depth test can be measured with the Z bounds that are given. In clusters it needs none.
-inline bool allowed(const Options& options, const ZBounds& bounds) {
-    if (options.depth_test == DepthTest::none || options.slicing == Slicing::clusters) return true;
-    if (options.depth_test == DepthTest::split_box)
-        return !bounds.gap_min.empty() && !bounds.gap_max.empty();
-    return !bounds.min.empty() || !bounds.max.empty();
-}
-
-/// Measures each row of a table on each grid.
-///
-/// slices            null if no row of the table needs them
-/// for_each_visible  for_each_visible(visit) calls visit(x, y, depth, pixels) for every pixel or sample with something to
-///                   light: its position, its depth (read with slices only), and the number of pixels that it stands for
-template <const auto& table, Options base, class Clock, class LightRange, class ForEachVisible>
-Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlices* slices,
-                     const LightRange& lights, const Costs& costs, ForEachVisible for_each_visible) {
-    const std::vector<WeighedGrid> grids = weighed_grids(view, bounds);
     decltype(weighed_binners<table, base>(std::make_index_sequence<std::size(table)>())) binners;
-    // Builds a plan's grid of the lights `moved` and keeps its time if it is the shortest; the first time also counts
+    // Builds a plan's lists and keeps the time if it is the shortest so far. The first call for a plan also counts its
     // entries and evaluations.
     const auto build = [&](Plan& plan, const auto& moved, bool first) -> std::optional<Error> {
         const WeighedGrid* grid = grids.data();
@@ -208,7 +195,11 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
     });
     for (const WeighedGrid& grid : grids)
         for (const Options& options : table) {
-            if (!allowed(options, grid.bounds)) continue;
+            const ZBounds& given = grid.bounds;
+            const bool can_test = options.depth_test == DepthTest::split_box
+                                      ? !given.gap_min.empty() && !given.gap_max.empty()
+                                      : !given.min.empty() || !given.max.empty();
+            if (options.depth_test != DepthTest::none && options.slicing == Slicing::none && !can_test) continue;
             Plan plan = {.footprint = options.footprint,
                          .depth_test = options.depth_test,
                          .slicing = options.slicing,
@@ -218,11 +209,11 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
             plans.push_back(plan);
         }
 
-    // The plans are built in turns, so that a slow moment of the machine slows all of them alike. The time above
-    // includes the allocation of memory. In each turn the lights are moved sideways, by up to 1/32 of the image's
-    // width, because branch predictors learn a scene that is built repeatedly, which may halve the time of some plans.
-    // After two turns a plan's time is assumed to be at most twice its true time, so only plans that may still become
-    // the cheapest go on.
+    // Each turn builds all plans, so that a slow moment of the machine slows all of them alike. The first builds,
+    // above, took longer because they allocated memory. In each turn the lights are moved sideways, by up to 1/32 of
+    // the image's width, because branch predictors learn a scene that is built repeatedly, which halves the time of
+    // some plans. After two turns a plan's time is assumed to be at most twice its true time, so plans that would not
+    // be the cheapest even at half their time are not built again.
     constexpr int turns = 8;
     for (int turn = 0;; ++turn) {
         double least = HUGE_VAL;
@@ -279,7 +270,7 @@ Result<Advice> advise_slices(const View& view, const LightRange& lights, const W
         return Error{ErrorCode::depth_buffer_too_small, count, samples.depths.size()};
     const double pixels =
         1.0 * window.width * window.height / static_cast<double>((std::max)(count, std::uint64_t{1}));
-    // The pixel at the middle of sample i of a row or column.
+    // Returns the pixel column (or row) at the middle of column (or row) i of the samples.
     const auto pixel = [](int i, int samples_across, int pixels_across) {
         return static_cast<int>((2 * std::int64_t{i} + 1) * pixels_across /
                                 (2 * std::int64_t{samples_across}));

@@ -17,8 +17,8 @@ namespace detail {
 
 /// Adds the function `sample`, which widens a tile's range of depths by one depth, as reduce_depth() does. Depths are
 /// compared by the bits of the float, taken as an integer: from 0 to 1 they are in the same order, and shader compilers
-/// may assume that no float is NaN. Depths below 0 and above 1 (0x3f800000) are clamped. NaN, whose bits are above
-/// infinity's (0x7f800000) but for the sign, could be any depth and widens the range to 0..1.
+/// may assume that no float is NaN. Depths below 0 and above 1 (0x3f800000) are clamped. NaN, which without its sign
+/// has bits above infinity's (0x7f800000), could be any depth and widens the range to 0..1.
 inline void add_depth_sample(ShaderWriter& writer, const ReduceShaderOptions& options) {
     writer.add(std::string("\nvoid $sample(inout uvec2 range, float depth) {\n") +
                "    uint bits = floatBitsToUint(depth);\n" +
@@ -45,13 +45,13 @@ inline void add_depth_sample(ShaderWriter& writer, const ReduceShaderOptions& op
 inline void add_view_depths(ShaderWriter& writer, const ReduceShaderOptions& options) {
     writer.add(std::string("\nvec2 $view_depths(uvec2 range) {\n") + infinity_lines);
     if (options.format == DepthFormat::float32)
-        // Widens the range by two units in the last place, which is at least what reduce_depth() allows. Denormal
-        // depths, which devices may flush to zero, become 0 or the least normal float.
+        // Widens the range by two units in the last place, at least as much as reduce_depth() does. No end is denormal,
+        // because devices may flush denormal floats to zero.
         writer.add(R"(    uint first = 0u;
     if (range.x >= 0x00800002u) { first = range.x - 2u; }
     vec2 ends = vec2(uintBitsToFloat(first), uintBitsToFloat(clamp(range.y + 2u, 0x00800000u, 0x3f800000u)));
 )");
-    else  // widens the range by a step, 2^-24 for the texel's rounding, 2^-25 for the sum's (exact with 24 bits)
+    else  // widens the range by a step of the format, 2^-24 for its rounding, and with 16 bits 2^-25 for the sum's
         writer.add(std::string("    float step = ") +
                    (options.format == DepthFormat::unorm24 ? "1.1920931e-7" : "1.535e-5") +
                    ";\n    vec2 ends = vec2(max(uintBitsToFloat(range.x) - step, 0.0), "
@@ -274,8 +274,8 @@ void $run(uvec2 group, uint thread) {
     if (x * x + y * y + d * d > f.reach2) { met = false; }
 )");
     writer.add("    return met;\n}\n\n");
-    // In perspective the sides of a column are slopes. Their view-space coordinates over the cell's depths lie between
-    // `least` and `greatest`.
+    // In perspective the sides of a cell are slopes. `least` and `greatest` return the ends of the interval that a side
+    // covers over the cell's depths.
     if (box && !options.orthographic)
         writer.add(R"(float $least(float side, vec2 z) {
     float depth = z.x;
@@ -296,8 +296,7 @@ float $greatest(float side, vec2 z) {
     if (clusters) writer.add("    uint slice = tile.y / uint($planes.z);\n    tile.y %= uint($planes.z);\n");
     std::string arguments = "tile";
     if (depths) {
-        // A bound that is NaN excludes nothing. NaN is recognised by its bits, as compilers may assume that no float is
-        // NaN.
+        // A Z bound that is NaN excludes nothing. NaN is recognised by its bits: compilers may assume no float is NaN.
         const auto if_nan = [](const char* end) {
             return "if ((floatBitsToUint(z." + std::string(end) + ") & 0x7fffffffu) > 0x7f800000u) ";
         };

@@ -7,6 +7,7 @@
 #include <lightbin/encode.hpp>
 #include <lightbin/shader.hpp>
 
+#include <array>
 #include <limits>
 #include <span>
 
@@ -14,16 +15,11 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 namespace detail {
 
-/// The coefficients of an estimate of a depth's slice: by_log2 * log2(depth) + by_depth * depth + offset.
-struct SliceGuess {
-    float by_log2, by_depth, offset;
-};
-
-/// Returns the line through the first and the last boundary, over the depth or over its logarithm, whichever is nearer
-/// to the other boundaries. But for rounding it is exact for the boundaries of Slices::linear() and
-/// Slices::exponential().
-inline SliceGuess best_guess(std::span<const float> boundaries) {
-    SliceGuess best = {0, 0, 0};
+/// Returns the coefficients a, b, c of an estimate of a depth's slice, a * log2(depth) + b * depth + c. It is the line
+/// through the first and the last boundary over depth or over its logarithm, whichever is nearer to the other
+/// boundaries; for Slices::linear() and exponential() it is exact but for rounding.
+inline std::array<float, 3> slice_estimate(std::span<const float> boundaries) {
+    std::array<float, 3> best = {0, 0, 0};
     if (boundaries.empty()) return best;
     double least_error = std::numeric_limits<double>::infinity();
     for (const bool by_log2 : {false, true}) {
@@ -46,13 +42,7 @@ inline SliceGuess best_guess(std::span<const float> boundaries) {
     return best;
 }
 
-/// Returns the size of shader_slices() in bytes for a number of slices; 0 if there are none.
-inline std::uint64_t slice_bytes(std::uint64_t slices) {
-    return slices == 0 ? 0 : 4 * (slices + 3);
-}
-
-/// Returns the texel format of the lists. One texel holds one id in buffer textures and textures, unless the ids are
-/// packed.
+/// Returns the texel format of the lists. In buffer textures and textures each id has a texel unless ids are packed.
 inline TexelFormat list_texels(const ShaderOptions& options) {
     const bool one_id =
         !options.packed_ids && options.format.encoding != ListEncoding::bitmask &&
@@ -77,53 +67,16 @@ inline std::vector<ShaderBuffer> list_buffers(const ShaderOptions& options) {
                        encoded_bytes(options.format, options.max_tiles, options.max_entries), width});
     if (options.slicing != Slicing::none)
         buffers.push_back({"slices", resource, options.slices, TexelFormat::r32ui,
-                           slice_bytes(options.max_slices), width});
+                           options.max_slices == 0 ? 0 : 4 * (options.max_slices + 3ull), width});
     if (options.slicing == Slicing::z_bins)
         buffers.push_back(
             {"bins", resource, options.bins, TexelFormat::rg32ui, 8ull * options.max_slices, width});
     return buffers;
 }
 
-inline std::optional<Error> refuse(const ShaderOptions& options) {
-    const Dialect dialect = detail::dialect(options.language);
-    if (auto error = refuse_common(options, {options.tiles, options.lists, options.grid, options.slices,
-                                             options.bins, options.view}))
-        return error;
-    if (options.storage == ListStorage::storage_buffer && !dialect.storage_buffers)
-        return Error{ErrorCode::no_storage_buffers};
-    if (options.storage == ListStorage::texel_buffer && (dialect.es || dialect.wgsl))
-        return Error{ErrorCode::no_texel_buffers};
-    if (options.storage == ListStorage::byte_address && !dialect.hlsl)
-        return Error{ErrorCode::no_byte_address_buffers};
-    if (options.wave_loop && (!dialect.storage_buffers || options.language == ShaderLanguage::hlsl_5_0))
-        return Error{ErrorCode::no_wave_operations};
-    if (options.tile_size < 0)
-        return Error{ErrorCode::tile_size_out_of_range, static_cast<std::uint64_t>(options.tile_size)};
-    if (options.storage == ListStorage::texture_2d &&
-        (options.texture_width < 1 || options.texture_width > 16384))
-        return Error{ErrorCode::texture_width_out_of_range, options.texture_width, 16384};
-
-    if (const auto error = refuse(options.format)) return error;
-    // A block is an array of 16-byte vectors. Direct3D limits it to 4096 of them.
-    const std::uint64_t limit =
-        options.uniform_block_bytes > 65536 && dialect.hlsl ? 65536 : options.uniform_block_bytes / 16 * 16;
-    const std::vector<ShaderBuffer> buffers = list_buffers(options);
-    for (const ShaderBuffer& buffer : buffers)
-        if (buffer.resource == ShaderResource::uniform_block && buffer.bytes == 0)
-            return Error{ErrorCode::block_size_unknown};
-    for (const ShaderBuffer& buffer : buffers)
-        if (buffer.resource == ShaderResource::uniform_block && buffer.bytes > limit)
-            return Error{ErrorCode::uniform_block_too_small, buffer.bytes, limit};
-    return std::nullopt;
-}
-
-inline std::string number_text(std::uint64_t number) {
-    return std::to_string(number) + "u";
-}
-
 /// Returns the expression of the tile size.
 inline std::string tile_size_text(const ShaderOptions& options) {
-    return options.tile_size == 0 ? "$grid.x" : number_text(static_cast<std::uint64_t>(options.tile_size));
+    return options.tile_size == 0 ? "$grid.x" : std::to_string(options.tile_size) + "u";
 }
 
 /// Returns lines that convert `pixel`, as the shader counts pixels, to `here`, as the view counts them. A pixel left of
@@ -201,7 +154,7 @@ inline void add_begin(ShaderWriter& writer, const ShaderOptions& options) {
     if (binned)
         writer.add("        uvec2 bin = " + writer.read("bins", "slice") + ";\n        c.last = bin.y;\n");
     writer.add("        uint place = tile.y * $grid.y + tile.x;\n");
-    const std::string each = number_text(elements_per_tile(format));
+    const std::string each = std::to_string(elements_per_tile(format)) + "u";
     if (table)
         writer.add("        uvec2 list = " +
                    (options.storage == ListStorage::texture_2d && !options.tiles_in_uniform_block
@@ -249,7 +202,7 @@ inline void add_next(ShaderWriter& writer, const ShaderOptions& options) {
         writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = $id_at(c.at);\n        "
                    "c.at += 1u;\n");
         if (options.format.encoding == ListEncoding::sentinel)
-            writer.add("        more = c.id != " + number_text(countable_lights(options.format)) + ";\n");
+            writer.add("        more = c.id != " + std::to_string(countable_lights(options.format)) + "u;\n");
     }
     if (options.slicing == Slicing::z_bins) writer.add("        more = more && c.id <= c.last;\n");
     writer.add("    }\n    return more;\n}\n");
@@ -287,7 +240,8 @@ bool $next(inout $cursor c) {
 }
 )";
 
-/// Adds the functions `count` and `heat`. Only the plain offset_count lists tell their length without being walked.
+/// Adds the functions `count` and `heat`. Only lists with a table and without z-bins have a length that can be read;
+/// the lights of other lists are counted one by one.
 inline void add_heat_map(ShaderWriter& writer, const ShaderOptions& options) {
     const bool counted =
         options.format.encoding == ListEncoding::offset_count && options.slicing != Slicing::z_bins;
@@ -373,10 +327,10 @@ bool $next_missing(inout $missing m, uint lights) {
 
 inline std::vector<std::uint32_t> shader_slices(const Slices& slices) {
     const std::span<const float> boundaries = slices.boundaries();
-    const detail::SliceGuess guess = detail::best_guess(boundaries);
-    std::vector<std::uint32_t> words = {
-        detail::bit_cast<std::uint32_t>(guess.by_log2), detail::bit_cast<std::uint32_t>(guess.by_depth),
-        detail::bit_cast<std::uint32_t>(guess.offset), static_cast<std::uint32_t>(boundaries.size())};
+    std::vector<std::uint32_t> words;
+    for (const float coefficient : detail::slice_estimate(boundaries))
+        words.push_back(detail::bit_cast<std::uint32_t>(coefficient));
+    words.push_back(static_cast<std::uint32_t>(boundaries.size()));
     for (const float boundary : boundaries) {
         const std::uint32_t bits = detail::bit_cast<std::uint32_t>(boundary), sign = 0x80000000;
         words.push_back(bits & sign ? ~bits : bits | sign);
@@ -386,19 +340,48 @@ inline std::vector<std::uint32_t> shader_slices(const Slices& slices) {
 
 inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     using namespace detail;
-    if (const auto error = refuse(options)) return *error;
     ShaderWriter writer(options.language, options.prefix);
-    // The wave's loop ends for all lanes at once, which WGSL compilers can't prove.
-    if (options.wave_loop && writer.dialect().wgsl)
+    const Dialect& dialect = writer.dialect();
+    if (const auto error = refuse_common(options, {options.tiles, options.lists, options.grid, options.slices,
+                                                   options.bins, options.view}))
+        return *error;
+    if (options.storage == ListStorage::storage_buffer && !dialect.storage_buffers)
+        return Error{ErrorCode::no_storage_buffers};
+    if (options.storage == ListStorage::texel_buffer && (dialect.es || dialect.wgsl))
+        return Error{ErrorCode::no_texel_buffers};
+    if (options.storage == ListStorage::byte_address && !dialect.hlsl)
+        return Error{ErrorCode::no_byte_address_buffers};
+    if (options.wave_loop && (!dialect.storage_buffers || options.language == ShaderLanguage::hlsl_5_0))
+        return Error{ErrorCode::no_wave_operations};
+    if (options.tile_size < 0)
+        return Error{ErrorCode::tile_size_out_of_range, static_cast<std::uint64_t>(options.tile_size)};
+    if (options.storage == ListStorage::texture_2d &&
+        (options.texture_width < 1 || options.texture_width > 16384))
+        return Error{ErrorCode::texture_width_out_of_range, options.texture_width, 16384};
+
+    if (const auto error = refuse(options.format)) return *error;
+    // A uniform block is declared as an array of 16-byte vectors, of which Direct3D allows 4096.
+    const std::uint64_t limit =
+        options.uniform_block_bytes > 65536 && dialect.hlsl ? 65536 : options.uniform_block_bytes / 16 * 16;
+    const std::vector<ShaderBuffer> buffers = list_buffers(options);
+    for (const ShaderBuffer& buffer : buffers)
+        if (buffer.resource == ShaderResource::uniform_block && buffer.bytes == 0)
+            return Error{ErrorCode::block_size_unknown};
+    for (const ShaderBuffer& buffer : buffers)
+        if (buffer.resource == ShaderResource::uniform_block && buffer.bytes > limit)
+            return Error{ErrorCode::uniform_block_too_small, buffer.bytes, limit};
+
+    // The loop ends for all lanes of a wave at once. WGSL compilers can't prove that, and would refuse subgroupMin.
+    if (options.wave_loop && dialect.wgsl)
         writer.add("enable subgroups;\ndiagnostic(off, subgroup_uniformity);\n");
-    else if (options.wave_loop && !writer.dialect().hlsl)
+    else if (options.wave_loop && !dialect.hlsl)
         writer.add("#extension GL_KHR_shader_subgroup_arithmetic : require\n");
     std::vector<ShaderConstant> constants = {{"uvec4", "grid"}};
     if (options.viewport_corner) constants.push_back({"ivec2", "corner"});
     writer.declare_constants(constants, options.grid, options.push_constants);
     if (options.view_check)
         writer.declare_constants({{"vec4", "image"}, {"vec4", "depths"}}, options.view, false);
-    for (const ShaderBuffer& buffer : list_buffers(options))
+    for (const ShaderBuffer& buffer : buffers)
         writer.declare(buffer);
 
     add_tile(writer, options);
@@ -414,7 +397,7 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     if (options.window) writer.add(window_function);
     if (options.view_check) add_view_check(writer, options);
     if (options.list_check) add_list_check(writer);
-    // `own_` tells the cursor of one lane from that of its wave. Without waves there is one cursor, without `own_`.
+    // The prefix `own_` tells the cursor of one lane from that of its wave. Without wave_loop it is not needed.
     if (!options.wave_loop) writer.replace("$own_", "$");
     return writer.finish();
 }

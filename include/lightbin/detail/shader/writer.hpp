@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: MIT
-// ShaderWriter collects a shader text that is written in GLSL, declares resources in the wanted language, and
-// translates the whole in the end.
+// ShaderWriter collects a shader text that is written in GLSL, and translates it to the wanted language in the end.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/shader/translate.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/shader_text.hpp>
-#include <lightbin/texel_format.hpp>
 
-#include <cstddef>
-#include <cstdint>
 #include <initializer_list>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 #include <lightbin/detail/base/warnings_off.inl>
 
@@ -25,8 +17,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// The family and the features of a shader language.
 struct Dialect {
     bool hlsl, es, vulkan, wgsl;
-    bool spaces;           ///< bindings have a descriptor set, register space or bind group
-    bool storage_buffers;  ///< storage buffers, compute shaders, bindings in the text, and the function findLSB
+    bool spaces;           ///< a binding has a descriptor set, register space or bind group beside its number
+    bool storage_buffers;  ///< has storage buffers, compute shaders, bindings in the text, and findLSB
 };
 
 inline Dialect dialect(ShaderLanguage language) {
@@ -39,10 +31,10 @@ inline Dialect dialect(ShaderLanguage language) {
             .storage_buffers = language != glsl_330 && language != essl_300};
 }
 
-/// Whether every name of the texts is a valid identifier when it begins with `prefix`. ES limits identifiers to 1024
-/// characters, of which the longest name needs fewer than 24. GLSL reserves names that contain `__` or begin with
-/// `gl_`, and macros that begin with `GL_`. `vola` is refused because it makes the keyword `volatile` of the name
-/// `tile`; no other keyword of the languages ends in one of the names.
+/// Whether `prefix` makes a valid identifier of every name in the shader texts. ES limits identifiers to 1024
+/// characters, of which the texts' own names need fewer than 24. GLSL reserves names that contain `__` or begin with
+/// `gl_`, and macros that begin with `GL_`. `vola` would make the keyword `volatile` of the name `tile`; no other
+/// keyword of the languages ends in one of the names.
 inline bool is_prefix(std::string_view prefix) {
     constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
     return !prefix.empty() && prefix.size() <= 1000 && prefix.find_first_not_of(letters) == prefix.npos &&
@@ -82,25 +74,21 @@ struct ShaderBuffer {
     std::uint32_t width;  ///< texture_2d: texels per row
 };
 
-/// A vector that the CPU sets, such as {"uvec4", "grid"}.
-struct ShaderConstant {
-    const char* type;
-    const char* name;
-};
+/// The type and the name of a vector that the CPU sets, such as {"uvec4", "grid"}.
+using ShaderConstant = std::pair<const char*, const char*>;
 
 /// A declaration, or the part of one, in the three language families.
 struct ByLanguage {
     std::string glsl = {}, hlsl = {}, wgsl = {};
 };
 
-/// Lines that declare `endless`, infinity. WGSL refuses infinity as a constant, but not made from the bits in a
-/// variable.
+/// Lines that declare `endless`, which is infinity. It is made from a variable because WGSL refuses it as a constant.
 inline constexpr const char* infinity_lines = R"(    uint endless_bits = 0x7f800000u;
     float endless = uintBitsToFloat(endless_bits);
 )";
 
-/// Collects one shader text and its bindings. What declares a resource adds the declaration to the text and the
-/// resource to the bindings. In all text that is handed over `$` stands for the prefix.
+/// Collects one shader text and its bindings. The declare functions add a declaration to the text and the resource to
+/// the bindings. In all texts that the writer is given, `$` stands for the prefix.
 class ShaderWriter {
 public:
     ShaderWriter(ShaderLanguage language, std::string_view prefix)
@@ -152,7 +140,7 @@ public:
                          " : array<" + type + ">"});
     }
 
-    /// Declares a read-only buffer in whichever kind of resource it lies. read() then reads its elements.
+    /// Declares a read-only buffer, whatever kind of resource it is. read() then returns how to read its elements.
     void declare(const ShaderBuffer& buffer) {
         buffers_.push_back(buffer);
         const std::string type = buffer.format == TexelFormat::rg32ui ? "uvec2" : "uint";
@@ -181,10 +169,10 @@ public:
     /// form one block, or push constants if `push` is set, which is named after the first constant.
     void declare_constants(const std::vector<ShaderConstant>& constants, ShaderSlot slot, bool push) {
         const bool loose = !dialect_.hlsl && !dialect_.vulkan && !dialect_.wgsl;
-        const std::string name = std::string(constants.front().name) + "_block";
+        const std::string name = std::string(constants.front().second) + "_block";
         std::string lines;
-        for (const ShaderConstant& constant : constants) {
-            const std::string own = constant.name, type = constant.type;
+        for (const auto& [constant_type, constant_name] : constants) {
+            const std::string own = constant_name, type = constant_type;
             lines += "    " + type + (dialect_.wgsl ? " " : " $") + own + ";\n";
             members_.push_back({"$" + own, "$" + name + "." + own});
             const std::uint32_t bytes = type == "ivec2" ? 8 : 16;
@@ -251,8 +239,7 @@ public:
         return dialect_.wgsl ? "atomicStore(&" + variable + ", " + value + ")" : variable + " = " + value;
     }
 
-    /// Adds the entry point of a compute shader with `threads` threads per group. It calls $run(group id, thread
-    /// index).
+    /// Adds the entry point of a compute shader with `threads` threads per group, which calls $run(group, thread).
     void add_compute_main(unsigned threads) {
         const std::string count = std::to_string(threads);
         add(dialect_.wgsl ? "\n@compute @workgroup_size(" + count +
@@ -309,10 +296,9 @@ private:
         return inside.empty() ? "" : "layout(" + inside.substr(0, inside.size() - 2) + ") ";
     }
 
-    /// Returns a letter for the numbering that a resource's binding belongs to: two resources of one letter can't have
-    /// the same binding. HLSL numbers by register type, which is the letter; OpenGL numbers uniform blocks (b), storage
-    /// buffers (s) and textures (t) apart; Vulkan and WebGPU number everything in a set together. '-' stands for no
-    /// binding.
+    /// Returns a letter for the kind of binding that a resource has. Two resources with the same letter can't have the
+    /// same number. HLSL: the register type. OpenGL: uniform blocks (b), storage buffers (s) and textures (t) are
+    /// numbered apart. Vulkan and WebGPU: all resources of a set are numbered together. '-': no binding.
     char numbering_of(const ShaderBinding& binding) const {
         return (dialect_.hlsl                      ? "-b-ttttu"
                 : dialect_.vulkan || dialect_.wgsl ? "-b-bbbbb"
