@@ -3,15 +3,12 @@
 // time to build the lists and the time to shade with them. docs/advise.md shows its use.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/options.hpp>
-#include <lightbin/result.hpp>
 #include <lightbin/slices.hpp>
 #include <lightbin/view.hpp>
 #include <lightbin/z_bounds.hpp>
 
 #include <chrono>
-#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,7 +35,7 @@ struct Plan {
     bool tiled = true;  ///< false: every pixel evaluates every light, and the next four members mean nothing
     Footprint footprint = Footprint::rectangle;
     DepthTest depth_test = DepthTest::none;
-    Slicing slicing = Slicing::none;  ///< set by advise_slices(), which was given the slices for it
+    Slicing slicing = Slicing::none;  ///< other values need the slices that advise_slices() was given
     int tile_size = 0;
     double build_ns = 0;        ///< the time to build the lists, plus Costs::z_bounds_ns if the plan has Z bounds
     double upload_ns = 0;       ///< the time to upload the lists
@@ -113,11 +110,10 @@ decltype(auto) with_sliced_options(const Plan& plan, Visit&& visit);
 /// `bounds` allow. So pass the view with the smallest tiles that you would use. Errors are those of Binner::bin() for
 /// any of these.
 ///
-/// Call it once per scene, not once per frame, in an optimised build. It builds every grid 3 to 9 times on this thread
-/// and takes the shortest time: first with the lights as they are, to count entries and evaluations; then with the
-/// lights moved slightly sideways, since a scene that is built repeatedly is built faster than the frames of a program
-/// are. All in all it takes as long as some hundreds of builds of the view's grid without options, or a thousand if
-/// these are short. It allocates memory, and keeps none.
+/// Call it once per scene, not once per frame, in an optimised build. It takes as long as some hundreds of plain builds
+/// of the view's grid, or a thousand if these are short. It builds every grid 3 to 9 times on this thread and takes the
+/// shortest time: first with the lights as they are, to count entries and evaluations; then with the lights moved
+/// slightly sideways, as a scene that is built repeatedly is built faster than a program's frames. It keeps no memory.
 ///
 /// lights  as for Binner::bin()
 /// bounds  Z bounds of the view's own tiles; those of larger tiles are merged from them. Without any, no depth test is
@@ -143,12 +139,12 @@ struct WeighedSlices {
     const Slices& z_bins;    ///< typically some hundreds
 };
 
-/// Measures, like advise(), the ways to light a view that need no depth pre-pass: without tiles; with rectangles; with
-/// silhouettes; with rectangles and z-bins; with clusters and rectangles, without depth test and with `box`; with
-/// clusters, silhouettes and `box`. The tile sizes are those of advise(). Each depth sample stands for an equal share
-/// of the pixels, which evaluate the list of their tile; with z-bins the part of it between the ranks of the depth's
-/// bin; with clusters the list of the cell. with_sliced_options() applies a plan. Errors are those of Binner::bin() for
-/// any of these, and fewer depths than samples.size says.
+/// Measures, like advise(), the ways to light a view that need no depth pre-pass: without tiles; rectangles or
+/// silhouettes; rectangles with z-bins; clusters with rectangles, with rectangles and `box`, with silhouettes and
+/// `box`. The tile sizes are those of advise(). Each depth sample stands for an equal share of the pixels, which
+/// evaluate the list of their tile; with z-bins its part between the ranks of the depth's bin; with clusters the list
+/// of the cell. with_sliced_options() applies a plan. Errors: those of Binner::bin(), and fewer depths than
+/// samples.size says.
 ///
 /// Compared with what advise() finds for the same view with Z bounds, the result shows whether a depth pre-pass pays
 /// off. It takes longer than advise(), because clusters of the smallest tiles do.

@@ -3,15 +3,11 @@
 // tile.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/checked_sizes.hpp>
 #include <lightbin/light_grid.hpp>
 #include <lightbin/list_format.hpp>
-#include <lightbin/result.hpp>
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <optional>
 #include <span>

@@ -31,34 +31,32 @@ constexpr const char* to_string(ListStorage value) {
 struct ShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     ListStorage storage = ListStorage::storage_buffer;
-    /// The format of the lists: the one given to encode(), or {.ids = Options::ids} for the lists of a Binner as they
-    /// are.
+    /// The format of the lists: the one given to encode(), or {.ids = Options::ids} for the lists of a Binner itself.
     ListFormat format = {};
-    /// ListEncoding::offset_count: puts the table of {offset, count} in a uniform block, whatever `storage` the ids
-    /// have.
+    /// With ListEncoding::offset_count: reads {offset, count} from a uniform block, and only the ids from `storage`.
     bool tiles_in_uniform_block = false;
-    /// texel_buffer, texture_2d: 8-bit and 16-bit ids are packed into 32-bit texels, as all other storages pack them.
-    /// By default each id has a texel of its own width.
+    /// With texel_buffer and texture_2d: reads ids of 8 and 16 bits from texels of 32 bits, packed as in the other
+    /// storages. By default each id has a texel of its own width.
     bool packed_ids = false;
 
-    Slicing slicing = Slicing::none;  ///< the Binner's Options::slicing
+    Slicing slicing = Slicing::none;  ///< the same as Options::slicing of the Binner that makes the lists
 
     int tile_size = 0;             ///< in pixels, fixed in the text; 0: read at run time from the constant `grid`
     bool flip_y = false;           ///< the shader counts pixel rows from the opposite end to the view's WindowOrigin
     bool viewport_corner = false;  ///< pixels are counted in the window; the constant `corner` is subtracted from them
-    bool heat_map = false;         ///< adds the functions `count` and `heat`
+    bool heat_map = false;         ///< adds the functions `count` and `heat`, the number of a pixel's lights and its colour
     /// The lanes of a wave (subgroup) loop together over the union of their lists, so that a light's data is read once
     /// for all of them (Drobot 2017). GLSL 4.30 and ES 3.10 need GL_KHR_shader_subgroup_arithmetic, Vulkan 1.1, HLSL
     /// 6.0, WGSL the device's feature `subgroups`.
     bool wave_loop = false;
     bool view_check = false;  ///< adds the function `check_view`, whose constants are bound at the slot `view`
-    bool list_check = false;  ///< adds the loop `for_each_missing`
-    bool window = false;      ///< adds the function `window`, which computes what light_window() does
+    bool list_check = false;  ///< adds the loop `for_each_missing` over the lights that a pixel's list lacks
+    bool window = false;      ///< adds the function `window`, which computes what light_window() does on the CPU
 
     std::uint32_t texture_width = 2048;  ///< texture_2d: texels per row, 1 to 16384; a power of two is fastest
-    std::uint32_t max_tiles = 0;         ///< uniform blocks: the most tiles of a grid, summed over its slices
-    std::uint32_t max_entries = 0;       ///< uniform blocks with offset_count: the most list entries of a grid
-    std::uint32_t max_slices = 0;        ///< uniform blocks with slicing: the most slices
+    std::uint32_t max_tiles = 0;    ///< uniform blocks: the greatest number of tiles, counted in every slice
+    std::uint32_t max_entries = 0;  ///< uniform blocks with offset_count: the greatest number of list entries
+    std::uint32_t max_slices = 0;   ///< uniform blocks with slicing: the greatest number of slices
     std::uint32_t uniform_block_bytes = 16384;  ///< the device's limit for one block; every device allows 16384
 
     ShaderSlot tiles = {0}, lists = {1}, grid = {2}, slices = {3}, bins = {4}, view = {5};
@@ -87,10 +85,11 @@ inline ShaderGrid shader_grid(const View& view, int corner_x = 0, int corner_y =
 /// the last slice, by which the shader guesses a depth's slice, and the boundaries, by which it corrects the guess.
 inline std::vector<std::uint32_t> shader_slices(const Slices& slices);
 
-/// The values of the constants `image` and `depths` that `check_view` reads. A uniform block has this layout.
+/// The values of the constants `image` and `depths` that `check_view` reads. `nearest` is a view depth, `tolerance` a
+/// number of pixels. A uniform block has this layout.
 struct ShaderView {
     float scale_x, scale_y, offset_x, offset_y;      ///< image: pixel = scale * x / depth + offset
-    float forward, perspective, nearest, tolerance;  ///< depths: depth = forward * z; 1 or 0; depth; pixels
+    float forward, perspective, nearest, tolerance;  ///< depths: view depth = forward * z; perspective is 1 or 0
 };
 static_assert(sizeof(ShaderView) == 32);  // it has no padding
 
@@ -146,8 +145,8 @@ inline ShaderView shader_view(const View& view, float tolerance = 2) {
 /// the loop runs over the list of the pixel's tile in the slice of that depth. With z_bins it runs over the part of the
 /// tile's list between the least and the greatest rank of the depth's bin.
 ///
-/// `break`, `continue` and `return` work in the loop bodies, and loops can be nested. Ids ascend, and each comes once.
-/// The list is empty for a pixel outside of the viewport, and for every pixel where `grid` is unset or its tile size
+/// `break`, `continue` and `return` work in the loop bodies, and loops can be nested. Ids ascend; each comes once. The
+/// list is empty for a pixel outside of the viewport, and for every pixel where `grid` is unset or its tile size
 /// differs from options.tile_size, so nothing outside of the table of tiles that `grid` describes is read. Tiles and
 /// lists must be of one build: what a table that points beyond the lists reads is up to the graphics API (Direct3D: 0;
 /// WebGPU: 0 or another entry; OpenGL, Vulkan: robust access has to be enabled).

@@ -85,10 +85,10 @@ constexpr const char* to_string(BuildPass value) {
 struct BuildShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     BuildPass pass = BuildPass::count;
-    DepthTest depth_test = DepthTest::none;  ///< none, interval or box; with clusters: none or box
+    DepthTest depth_test = DepthTest::none;  ///< split_box is refused; with clusters interval is, too
     Slicing slicing = Slicing::none;         ///< none or clusters; these shaders make no z-bins
     bool max_only = false;      ///< ignores the minimum Z bound, for transparent lights; no effect with clusters
-    bool orthographic = false;  ///< View::orthographic(), needed for box
+    bool orthographic = false;  ///< View::orthographic(); only read with box
 
     ShaderSlot footprints = {0}, z_bounds = {1}, tiles = {2}, lists = {3};
     ShaderSlot total = {3};  ///< the same as `lists` by default, as no pass uses both
@@ -157,10 +157,9 @@ inline std::vector<ShaderEdges> shader_slabs(const Slices& slices);
 /// between them, `tiles` and `lists` contain what LightGrid has in ranges() and ids() (32-bit ids), and `total` the
 /// number of entries of the complete lists; 2^32 - 1 stands for that number and every greater one.
 ///
-/// If `total` exceeds ShaderBuild::capacity, only the first `capacity` entries are listed, and total - capacity are
-/// not: the list of the first tile that does not fit is cut, and the lists of all tiles after it are empty. Nothing is
-/// written beyond the capacity. Build again with a larger buffer; where no buffer is large enough, with larger tiles or
-/// fewer slices.
+/// If `total` exceeds ShaderBuild::capacity, the last total - capacity entries are missing: the list of the first tile
+/// that does not fit is cut, and the lists of all tiles after it are empty. Nothing is written beyond the capacity.
+/// Build again with a larger buffer; where no buffer is large enough, with larger tiles or fewer slices.
 ///
 /// For spheres, the entries compare with those of the Binner as follows, by depth test or slicing:
 ///

@@ -82,22 +82,22 @@ constexpr TexelNames texel_names(TexelFormat format) {
 
 }  // namespace detail
 
-/// Returns GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE and so on; for `none` zeros.
+/// Returns OpenGL's names of a format, such as GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE; for `none` zeros.
 constexpr GlFormat gl_format(TexelFormat format) {
     return detail::texel_names(format).gl;
 }
 
-/// Returns VK_FORMAT_R8_UINT and so on; for `none` VK_FORMAT_UNDEFINED.
+/// Returns Vulkan's name of a format, such as VK_FORMAT_R8_UINT; for `none` VK_FORMAT_UNDEFINED.
 constexpr std::uint32_t vk_format(TexelFormat format) {
     return detail::texel_names(format).vk;
 }
 
-/// Returns DXGI_FORMAT_R8_UINT and so on; for `none` DXGI_FORMAT_UNKNOWN.
+/// Returns Direct3D's name of a format, such as DXGI_FORMAT_R8_UINT; for `none` DXGI_FORMAT_UNKNOWN.
 constexpr std::uint32_t dxgi_format(TexelFormat format) {
     return detail::texel_names(format).dxgi;
 }
 
-/// Returns a GPUTextureFormat, "r8uint" and so on; for `none` an empty string.
+/// Returns WebGPU's name of a format, a GPUTextureFormat such as "r8uint"; for `none` an empty string.
 constexpr const char* webgpu_format(TexelFormat format) {
     return detail::texel_names(format).webgpu;
 }
@@ -120,7 +120,7 @@ struct ShaderBinding {
     std::string name = {};  ///< of the uniform, sampler, block or buffer in the text
     ShaderResource resource = ShaderResource::uniform_vector;
     ShaderSlot slot = {};
-    TexelFormat format = TexelFormat::none;  ///< see gl_format(), vk_format(), dxgi_format(), webgpu_format()
+    TexelFormat format = TexelFormat::none;  ///< gl_format() and others return an API's name of it
     std::uint32_t stride = 0;                ///< bytes per element or texel
     std::uint32_t bytes = 0;  ///< uniform blocks and push constants: the declared size; others: 0, any size will do
     std::uint32_t width = 0;  ///< texture_2d: texels per row, see texture_rows(); 0: one per column of tiles

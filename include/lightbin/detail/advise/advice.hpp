@@ -34,8 +34,7 @@ inline std::string to_string(const Verdict& verdict) {
     return words + "instead: " + verdict.instead + "\n";
 }
 
-/// Sorts the plans by total time, by insertion: plans of equal time keep their order. (std::stable_sort causes warnings
-/// with some compilers.)
+/// Sorts the plans by insertion: those of equal time keep their order. (std::stable_sort warns with some compilers.)
 inline Advice::Advice(std::vector<Plan> plans) : plans_(std::move(plans)) {
     const auto is_cheaper = [](const Plan& a, const Plan& b) { return a.total_ns < b.total_ns; };
     for (auto plan = plans_.begin(); plan != plans_.end(); ++plan)

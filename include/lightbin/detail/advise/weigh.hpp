@@ -128,7 +128,7 @@ struct WeighedGrid {
     WeighedGrid(WeighedGrid&&) = default;  // the spans of a copy would point into the original
 };
 
-/// Measures each row of a table on each grid.
+/// Measures the options in each row of a table on grids of several tile sizes.
 ///
 /// slices            null if no row of the table needs them
 /// for_each_visible  for_each_visible(visit) calls visit(x, y, depth, pixels) for every point with something to light:

@@ -67,7 +67,7 @@ inline void add_view_depths(ShaderWriter& writer, const ReduceShaderOptions& opt
     vec2 depths = vec2(1.0 / w.x * 0.999998, endless);
     if (w.y > 0.0) { depths.y = 1.0 / w.y * 1.000002; }
 )");
-    // A single return statement: the compiler fxc takes an early return for a result that was not set, see add_next().
+    // A single return statement, because of the compiler fxc, see add_next().
     writer.add("    if (range.x > range.y) { depths = vec2(endless, -endless); }\n    return depths;\n}\n");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How shader_snippet() and shader_slices() make the text that reads the lists, and the buffer of slices.
+// How shader_snippet() makes the text that reads the lists, and shader_slices() the buffer for a depth's slice.
 #pragma once
 
 #include <lightbin/detail/base/platform.hpp>
@@ -94,9 +94,8 @@ inline void add_tile(ShaderWriter& writer, const ShaderOptions& options) {
 }
 
 /// Adds the function `slice`, which returns the slice of a view depth. It starts from the estimate, in which a device
-/// may round the logarithm as it likes, and steps from there until the boundaries enclose the depth. Boundaries and
-/// depth are compared as integers that are in the order of the floats, because devices may flush denormal floats to
-/// zero.
+/// may round the logarithm as it likes, and steps from there until the boundaries enclose the depth. They are compared
+/// as integers in the same order as the floats, because devices may flush denormal floats to zero.
 inline void add_slice(ShaderWriter& writer) {
     const auto word = [&](const std::string& index) { return writer.read("slices", index); };
     const auto number = [&](const std::string& index) { return "uintBitsToFloat(" + word(index) + ")"; };
@@ -183,8 +182,8 @@ inline void add_begin(ShaderWriter& writer, const ShaderOptions& options) {
     writer.add("    }\n    return c;\n}\n");
 }
 
-/// Adds the function `next`. It has a single return statement, as the compiler fxc takes an early return in shader
-/// model 5.1 for a result that was not set.
+/// Adds the function `next`. It has a single return statement, because in shader model 5.1 the compiler fxc complains
+/// of a result that was not set where a function returns early.
 inline void add_next(ShaderWriter& writer, const ShaderOptions& options) {
     writer.add("\nbool $own_next(inout $own_cursor c) {\n");
     if (options.format.encoding == ListEncoding::bitmask) {

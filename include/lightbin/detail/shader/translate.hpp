@@ -17,15 +17,11 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Whether a character can be part of a name or number. `$` can, as it stands for the prefix of a name.
-inline bool in_word(char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '$';
-}
-
-/// Returns the name or number that begins at position `at` of a text; empty if none does.
+/// Returns the name or number that begins at position `at` of a text; empty if none does. `$` is part of a name.
 inline std::string_view word_at(std::string_view text, std::size_t at) {
     std::size_t end = at;
-    while (end < text.size() && in_word(text[end]))
+    while (end < text.size() &&
+           (std::isalnum(static_cast<unsigned char>(text[end])) || text[end] == '_' || text[end] == '$'))
         ++end;
     return text.substr(at, end - at);
 }
