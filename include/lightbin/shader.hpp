@@ -44,7 +44,7 @@ struct ShaderOptions {
     int tile_size = 0;             ///< in pixels, fixed in the text; 0: read at run time from the constant `grid`
     bool flip_y = false;           ///< the shader counts pixel rows from the opposite end to the view's WindowOrigin
     bool viewport_corner = false;  ///< pixels are counted in the window; the constant `corner` is subtracted from them
-    bool heat_map = false;         ///< adds the functions `count` and `heat`, the number of a pixel's lights and its colour
+    bool heat_map = false;         ///< adds the functions `count` and `heat`, which show the number of lights
     /// The lanes of a wave (subgroup) loop together over the union of their lists, so that a light's data is read once
     /// for all of them (Drobot 2017). GLSL 4.30 and ES 3.10 need GL_KHR_shader_subgroup_arithmetic, Vulkan 1.1, HLSL
     /// 6.0, WGSL the device's feature `subgroups`.
@@ -124,8 +124,7 @@ inline ShaderView shader_view(const View& view, float tolerance = 2) {
 ///     bool lightbin_next(inout lightbin_cursor cursor);   // moves on to the next light; false: there is none
 ///     #define lightbin_for_each_light(cursor, pixel, view_depth)      // a loop over the pixel's lights
 ///     uint lightbin_count(uvec2 pixel, float view_depth);             // with heat_map: the number of lights
-///     vec3 lightbin_heat(uvec2 pixel, float view_depth, float most);  // with heat_map: the number as a colour, blue,
-///                                                                     // cyan, green, yellow, red (`most` or more)
+///     vec3 lightbin_heat(uvec2 pixel, float view_depth, float most);  // and as a colour from blue to red (`most`)
 ///     float lightbin_window(float apart, float range);                // with window: see light_window()
 ///     bool lightbin_check_view(uvec2 pixel, vec3 position);           // with view_check: see below
 ///     #define lightbin_for_each_missing(cursor, lights, pixel, view_depth)  // with list_check: see below

@@ -239,16 +239,14 @@ bool $next(inout $cursor c) {
 }
 )";
 
-/// Adds the functions `count` and `heat`. Only lists with a table and without z-bins have a length that can be read;
-/// the lights of other lists are counted one by one.
+/// Adds the functions `count` and `heat`. With a table and without z-bins, a list's length is read instead of counted.
 inline void add_heat_map(ShaderWriter& writer, const ShaderOptions& options) {
-    const bool counted =
+    const bool known =
         options.format.encoding == ListEncoding::offset_count && options.slicing != Slicing::z_bins;
     writer.add("\nuint $count(uvec2 pixel, float view_depth) {\n"
                "    $own_cursor c = $own_begin(pixel, view_depth);\n");
-    writer.add(counted
-                   ? "    return c.end - c.at;\n"
-                   : "    uint count = 0u;\n    while ($own_next(&c)) { count += 1u; }\n    return count;\n");
+    writer.add(known ? "    return c.end - c.at;\n"
+                     : "    uint count = 0u;\n    while ($own_next(&c)) { count += 1u; }\n    return count;\n");
     writer.add(R"(}
 
 vec3 $heat(uvec2 pixel, float view_depth, float most) {

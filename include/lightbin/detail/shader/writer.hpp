@@ -44,14 +44,14 @@ inline bool is_prefix(std::string_view prefix) {
 
 /// Checks the options that all shader texts have: the prefix, push_constants and the slots.
 template <class Options>
-std::optional<Error> refuse_common(const Options& options, std::initializer_list<ShaderSlot> slots) {
+std::optional<Error> refuse_common(const Options& options, std::initializer_list<ShaderSlot> all_slots) {
     const Dialect dialect = detail::dialect(options.language);
     if (!is_prefix(options.prefix)) return Error{ErrorCode::not_a_prefix};
     if (options.push_constants && !dialect.vulkan) return Error{ErrorCode::no_push_constants};
-    for (const ShaderSlot& slot : slots)
+    for (const ShaderSlot& slot : all_slots)
         for (const int number : {slot.binding, slot.set})
             if (number < 0) return Error{ErrorCode::slot_out_of_range, static_cast<std::uint64_t>(number)};
-    for (const ShaderSlot& slot : slots)
+    for (const ShaderSlot& slot : all_slots)
         if (slot.set != 0 && !dialect.spaces)
             return Error{ErrorCode::no_sets, static_cast<std::uint64_t>(slot.set)};
     return std::nullopt;
@@ -231,12 +231,12 @@ public:
                           : "shared uint $" + name + "[" + size + "];\n");
     }
 
-    std::string load_atomic(const std::string& variable) const {
-        return dialect_.wgsl ? "atomicLoad(&" + variable + ")" : variable;
+    std::string load_atomic(const std::string& at) const {
+        return dialect_.wgsl ? "atomicLoad(&" + at + ")" : at;
     }
 
-    std::string store_atomic(const std::string& variable, const std::string& value) const {
-        return dialect_.wgsl ? "atomicStore(&" + variable + ", " + value + ")" : variable + " = " + value;
+    std::string store_atomic(const std::string& at, const std::string& value) const {
+        return dialect_.wgsl ? "atomicStore(&" + at + ", " + value + ")" : at + " = " + value;
     }
 
     /// Adds the entry point of a compute shader with `threads` threads per group, which calls $run(group, thread).
