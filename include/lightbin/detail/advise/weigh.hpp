@@ -51,11 +51,9 @@ decltype(auto) with_options_from(const Plan& plan, Visit& visit) {
     constexpr Options options = weighed_options(base, table[i]);
     const bool found = plan.footprint == options.footprint && plan.depth_test == options.depth_test &&
                        plan.slicing == options.slicing;
-    if constexpr (i + 1 < std::size(table)) {
+    if constexpr (i + 1 < std::size(table))
         if (!found) return with_options_from<table, base, i + 1>(plan, visit);
-    } else {
-        LIGHTBIN_ASSERT(found);
-    }
+    LIGHTBIN_ASSERT(found);
     return visit.template operator()<options>();
 }
 
