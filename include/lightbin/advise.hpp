@@ -9,7 +9,6 @@
 #include <lightbin/z_bounds.hpp>
 
 #include <chrono>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -154,5 +153,6 @@ Result<Advice> advise_slices(const View& view, const LightRange& lights, const W
 
 }}  // namespace lightbin
 
-#include <lightbin/detail/advise/advice.hpp>  // texts and verdicts
-#include <lightbin/detail/advise/weigh.hpp>   // measurements
+// The definitions.
+#include <lightbin/detail/advise/advice.hpp>
+#include <lightbin/detail/advise/weigh.hpp>

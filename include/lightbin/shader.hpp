@@ -166,4 +166,5 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options = {});
 
 }}  // namespace lightbin
 
-#include <lightbin/detail/shader/snippet.hpp>  // the definitions
+// The definitions.
+#include <lightbin/detail/shader/snippet.hpp>

@@ -178,4 +178,5 @@ inline Result<ShaderText> build_shader(const BuildShaderOptions& options = {});
 
 }}  // namespace lightbin
 
-#include <lightbin/detail/shader/build.hpp>  // the definitions
+// The definitions.
+#include <lightbin/detail/shader/build.hpp>

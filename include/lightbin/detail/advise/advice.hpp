@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <utility>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 

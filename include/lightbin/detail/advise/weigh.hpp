@@ -13,7 +13,6 @@
 #include <iterator>
 #include <optional>
 #include <tuple>
-#include <utility>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
