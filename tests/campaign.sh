@@ -133,11 +133,7 @@ LIGHTBIN_TEST_SHARE=1 nice -n 19 $work/tiers >$work/tiers.log || failed="$failed
 
 echo "$me: every header alone, and the adversary"
 sh tests/guest/compile.sh g++ alone >$work/headers.log || failed="$failed $work/headers.log"
-for depth_test in none interval box split_box; do
-    g++ $common -O2 -DHUNT_DEPTH_TEST=$depth_test -c tests/hunt/engines.cpp -o $work/hunt_$depth_test.o
-done
-g++ $common -O2 -pthread tests/hunt/main.cpp tests/hunt/round.cpp tests/hunt/scene.cpp tests/hunt/camera.cpp tests/hunt/bounds.cpp \
-    tests/hunt/limits.cpp $work/hunt_*.o -o $work/hunt
+g++ $common -O2 tests/hunt/main.cpp tests/hunt/scene.cpp tests/hunt/camera.cpp -o $work/hunt
 nice -n 19 $work/hunt --seconds 300 --seed 1 >$work/hunt.log || failed="$failed $work/hunt.log"
 
 spots 14

@@ -329,8 +329,7 @@ RealPoint in_view_space(const Scene& scene, const Point& point) {
     return moved;
 }
 
-Scene make_scene(const Camera& camera, int space, std::uint32_t count, std::uint32_t large, Random& random,
-                 Tally& tally) {
+Scene make_scene(const Camera& camera, int space, std::uint32_t count, std::uint32_t large, Random& random) {
     Scene scene;
     std::string_view kind = space_kinds[space];
     // What a matrix adds to a radius is large where all else is next to nothing.
@@ -355,7 +354,6 @@ Scene make_scene(const Camera& camera, int space, std::uint32_t count, std::uint
         if ((empty || !maker.regular()) && light < touching) light = touching;
         if (small && light > 3) light = 0;
         const std::string_view name = light_kinds[light];
-        ++tally[light_kinds[light]];
         if (light < touching) {
             Point point;
             scene.lights.push_back(maker.touching(name, small, point));

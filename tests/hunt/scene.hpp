@@ -13,7 +13,7 @@ namespace hunt {
 
 using lightbin::Sphere;
 
-/// How often something was tried, by name.
+/// How often something was done, by name.
 using Tally = std::map<std::string, std::uint64_t>;
 
 inline constexpr const char* space_kinds[] = {"view",   "view space",    "rigid",     "far from origin",
@@ -63,8 +63,7 @@ bool surely_inside(const Sphere& light, const Point& point);
 RealPoint in_view_space(const Scene& scene, const Point& point);
 
 /// Makes `count` lights. At most `large` of them may cover the whole window, the others some tiles.
-Scene make_scene(const Camera& camera, int space, std::uint32_t count, std::uint32_t large, Random& random,
-                 Tally& tally);
+Scene make_scene(const Camera& camera, int space, std::uint32_t count, std::uint32_t large, Random& random);
 
 /// Appends more points: the extremes of some lights on screen, and points all over the view with the lights they
 /// are in.
