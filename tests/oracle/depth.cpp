@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// reduce_depth against exact view depths: every sample lies within its tile's bounds and outside of its gap, and the
+// reduce_depth against exact view depths, on every instruction set: every sample, and every fragment that may have left it, lies within its tile's bounds and outside of its gap, and the
 // bounds are no wider than float rounding and the format's step explain.
 #include "harness.hpp"
 
@@ -25,19 +25,26 @@ Rational step_of(DepthFormat format) {
     return 0;
 }
 
-/// What reading the depth buffer back gives for a fragment: the nearest value of the format, as the nearest
-/// float.
-float stored(const Rational& fragment, DepthFormat format) {
-    Rational value = fragment;
-    if (format != DepthFormat::float32) {
-        const Rational steps = fragment / step_of(format) + Rational(1) / 2;
-        const boost::multiprecision::mpz_int whole = numerator(steps) / denominator(steps);
-        value = Rational(whole) * step_of(format);
-    }
+/// The float next to a number: the nearest (0), one that is not above (-1), or not below (1).
+float float_next_to(const Rational& value, int direction) {
     float best = static_cast<float>(value.convert_to<double>());
     for (const float other : {std::nextafter(best, -inf), std::nextafter(best, inf)})
         if (abs(of(other) - value) < abs(of(best) - value)) best = other;
-    return best;
+    return direction * (of(best) - value) < 0 ? std::nextafter(best, static_cast<float>(direction) * inf) : best;
+}
+
+/// What reading the depth buffer back gives for a fragment: one of the format's two values beside it, as one of the two
+/// floats beside that; a denormal float may be flushed to zero.
+float stored(const Rational& fragment, DepthFormat format, Random& random) {
+    const int rounding = random.integer(-1, 1);
+    if (format == DepthFormat::float32) {
+        const float value = float_next_to(fragment, rounding);
+        return value < FLT_MIN && random.chance(0.3) ? 0.0f : value;
+    }
+    const Rational steps = fragment / step_of(format) + (rounding == 0 ? Rational(1) / 2 : Rational(0));
+    boost::multiprecision::mpz_int whole = numerator(steps) / denominator(steps);
+    if (rounding > 0 && Rational(whole) < steps) ++whole;
+    return float_next_to(Rational(whole) * step_of(format), random.integer(-1, 1));
 }
 
 /// View depth in the affinely extended numbers: nothing is +infinity.
@@ -137,7 +144,7 @@ public:
         const int steps = format == DepthFormat::unorm16 ? (1 << 16) - 1 : (1 << 24) - 1;
         for (std::size_t tile = 0; tile < view_.tile_count(); ++tile) {
             Rational f;
-            switch (tile % 4) {
+            switch (tile % 5) {
             case 0:
                 f = exact(random.uniform());
                 break;
@@ -148,13 +155,16 @@ public:
             case 2:
                 f = (random.integer(1, steps - 1) + Rational(1) / 2) / steps;
                 break;
-            default:
+            case 3:
                 f = (steps / 2 + random.integer(0, 40) + Rational(1) / 2) / steps;
                 break;
+            default:  // denormal floats
+                f = exact(random.power_of_two(-151, -120));
+                break;
             }
-            if (tile % 4 >= 2) f += exact(random.sign() * std::exp2(-random.integer(40, 60)));
+            if (tile % 5 == 2 || tile % 5 == 3) f += exact(random.sign() * std::exp2(-random.integer(40, 60)));
             fragment.push_back(clamped(f));
-            depth.push_back(stored(fragment.back(), format));
+            depth.push_back(stored(fragment.back(), format, random));
         }
         reduce({depth, 1, 0, format, false});
         for (std::size_t tile = 0; tile < fragment.size(); ++tile) {
@@ -177,7 +187,11 @@ private:
         REQUIRE(all.has_value());
         for (std::size_t tile = 0; tile < gap_min_.size(); ++tile)
             counts_.gaps += gap_min_[tile] < gap_max_[tile];
-        std::vector<float> alone(view_.tile_count(), nan);
+        std::vector<float> alone(view_.tile_count(), nan), other[4] = {alone, alone, alone, alone};
+        for (const lightbin::Isa isa : {lightbin::Isa::scalar, lightbin::Isa::simd128, lightbin::Isa::avx2}) {
+            REQUIRE(lightbin::reduce_depth(view_, buffer, {other[0], other[1], other[2], other[3]}, isa).has_value());
+            CHECK((other[0] == min_ && other[1] == max_ && other[2] == gap_min_ && other[3] == gap_max_));
+        }
         const auto only_min = lightbin::reduce_depth(view_, buffer, {.min = alone});
         REQUIRE(only_min.has_value());
         CHECK((alone == min_ && only_min->max.empty()));
@@ -285,7 +299,8 @@ void prove_depths(const std::string& kind, const Camera& camera) {
                     one_tile.odd_buffer(samples, format, skip, random);
             }
         pixels.odd_buffer(1, format, true, random);
-        pixels.fragments(format, random);
+        for (int i = 0; i < 3; ++i)
+            pixels.fragments(format, random);
     }
     MESSAGE(kind << ": " << counts.samples << " samples in " << counts.tiles << " tiles, " << counts.unknown
                  << " with NaN, " << counts.empty << " empty, " << counts.endless << " without end, "
