@@ -27,7 +27,7 @@ inline const std::vector<lightbin::Isa>& machine_tiers() {
     using lightbin::Isa;
     static const std::vector<Isa> tiers = [] {
         std::vector<Isa> found = {Isa::scalar};
-        for (const Isa isa : {Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon})
+        for (const Isa isa : {Isa::simd128, Isa::avx2, Isa::avx512})
             if (lightbin::machine_isa(isa) == isa) found.push_back(isa);
         return found;
     }();
@@ -36,7 +36,7 @@ inline const std::vector<lightbin::Isa>& machine_tiers() {
 inline lightbin::Isa widest_tier() {
     return machine_tiers().back();
 }
-/// Such as "scalar sse2 avx2".
+/// Such as "scalar simd128 avx2".
 inline std::string tier_names() {
     std::string all;
     for (const lightbin::Isa isa : machine_tiers())
