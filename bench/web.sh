@@ -35,7 +35,7 @@ measure() {
 }
 node="node --no-experimental-fetch"  # which its loader would take for a browser's
 memory="-sINITIAL_MEMORY=512MB -sEXIT_RUNTIME=1"
-simd="-msimd128 -msse2"
+simd="-msimd128"
 
 # shellcheck disable=SC2086  # several words
 {
@@ -46,7 +46,7 @@ simd="-msimd128 -msse2"
     echo "$me: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores; node $(node --version)"
     measure native $out/native >$out/results
     measure wasm $node $out/scalar.js >>$out/results
-    measure simd128 $node $out/simd.js | grep sse2 >>$out/results
+    measure simd128 $node $out/simd.js | awk '$3 == "simd128"' >>$out/results
     measure native $out/native threads >$out/threads
     measure simd128 $node $out/threads.js threads >>$out/threads
 }
@@ -57,9 +57,9 @@ awk '
     { which = $1 " " $2 " " $3; ratio[which] = $4; spread[which] = $5 }
     !seen[$2]++ { sets[++count] = $2 }
     END {
-        print "| lights | simd128 | SSE2, native | WebAssembly without | scalar, native |\n| --- | --- | --- | --- | --- |"
+        print "| lights | simd128 | simd128, native | WebAssembly without | scalar, native |\n| --- | --- | --- | --- | --- |"
         for (i = 1; i <= count; ++i)
-            print "| " sets[i] " | " cell("simd128 " sets[i] " sse2") " | " cell("native " sets[i] " sse2") " | " \
+            print "| " sets[i] " | " cell("simd128 " sets[i] " simd128") " | " cell("native " sets[i] " simd128") " | " \
                 cell("wasm " sets[i] " scalar") " | " cell("native " sets[i] " scalar") " |"
     }' $out/results
 echo

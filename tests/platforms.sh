@@ -180,8 +180,8 @@ prepare() {
 
 with g++-12 "-std=c++20"
 platform gcc "g++ 12, C++20" "" any
-platform no-avx "the same on an x86-64 without AVX (qemu, Nehalem)" qemu-user-static "scalar sse2" "qemu-x86_64-static -cpu Nehalem" "" "$all" gcc
-platform no-avx512 "the same without AVX-512 (qemu, Haswell)" qemu-user-static "scalar sse2 avx2" "qemu-x86_64-static -cpu Haswell" "" "$all" gcc
+platform no-avx "the same on an x86-64 without AVX (qemu, Nehalem)" qemu-user-static "scalar simd128" "qemu-x86_64-static -cpu Nehalem" "" "$all" gcc
+platform no-avx512 "the same without AVX-512 (qemu, Haswell)" qemu-user-static "scalar simd128 avx2" "qemu-x86_64-static -cpu Haswell" "" "$all" gcc
 with g++-12 "-std=c++23"
 platform gcc-23 "g++ 12, C++23" "" any "" "" "${all% oracle*}"
 with g++-12 "-m32 -msse2 -mfpmath=sse -std=c++20 -idirafter/usr/include/x86_64-linux-gnu"
@@ -205,12 +205,12 @@ with clang++-14 "-std=c++20 -nostdinc++ -isystem $libcxx/include/c++/v1" \
     "-nostdlib++ -L$libcxx/lib -Wl,-Bstatic -lc++ -lc++abi -Wl,-Bdynamic -ldl"
 platform libc++-14 "clang 14, libc++, C++20" clang-14 any
 with x86_64-w64-mingw32-g++-posix "-std=c++20" "-static"
-platform windows "Windows (Wine), MinGW g++ 12" "g++-mingw-w64-x86-64-posix wine wine64" "scalar sse2" wine .exe
+platform windows "Windows (Wine), MinGW g++ 12" "g++-mingw-w64-x86-64-posix wine wine64" "scalar simd128" wine .exe
 
 with aarch64-linux-gnu-g++ "-std=c++20" "-static"
-platform aarch64 "64-bit ARM (qemu), g++ 12" "g++-aarch64-linux-gnu qemu-user-static" "scalar neon" qemu-aarch64-static
+platform aarch64 "64-bit ARM (qemu), g++ 12" "g++-aarch64-linux-gnu qemu-user-static" "scalar simd128" qemu-aarch64-static
 with clang++-19 "--target=aarch64-linux-gnu -std=c++20" "-static"
-platform aarch64-clang "64-bit ARM (qemu), clang 19" "clang-19 g++-aarch64-linux-gnu qemu-user-static" "scalar neon" qemu-aarch64-static
+platform aarch64-clang "64-bit ARM (qemu), clang 19" "clang-19 g++-aarch64-linux-gnu qemu-user-static" "scalar simd128" qemu-aarch64-static
 with arm-linux-gnueabihf-g++ "-std=c++20 -mfpu=neon-vfpv4 -Wno-psabi" "-static"
 platform arm-32 "32-bit ARM (qemu), g++ 12" "g++-arm-linux-gnueabihf qemu-user-static" scalar qemu-arm-static
 with s390x-linux-gnu-g++ "-std=c++20" "-static"
@@ -221,13 +221,13 @@ platform s390x "big-endian: IBM Z (qemu), g++ 12" "g++-s390x-linux-gnu qemu-user
 export NODE_PATH=/usr/share/nodejs
 emscripten_link="-fexceptions -sINITIAL_MEMORY=1GB -sEXIT_RUNTIME=1"
 node="node --no-experimental-fetch"
-simd="-std=c++20 -fexceptions -msimd128 -msse2"
+simd="-std=c++20 -fexceptions -msimd128"
 with em++ "-std=c++20 -fexceptions" "$emscripten_link" ""
 platform wasm "WebAssembly (node), emscripten 3.1.6" "emscripten node-acorn nodejs" scalar "$node" .js "${all% threads}"
 with em++ "$simd" "$emscripten_link" ""
-platform wasm-simd "the same with simd128" "emscripten node-acorn nodejs" "scalar sse2" "$node" .js "${all% threads}"
+platform wasm-simd "the same with simd128" "emscripten node-acorn nodejs" "scalar simd128" "$node" .js "${all% threads}"
 with em++ "$simd" "$emscripten_link -sPTHREAD_POOL_SIZE=16"
-platform wasm-threads "the same with threads" "emscripten node-acorn nodejs" "scalar sse2" "$node" .js "lists threads"
+platform wasm-threads "the same with threads" "emscripten node-acorn nodejs" "scalar simd128" "$node" .js "lists threads"
 
 with g++-12 "-std=c++20 -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"
 platform address "address and undefined behaviour sanitizer, g++ 12" "" any

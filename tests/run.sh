@@ -13,7 +13,7 @@ quick=${1-}
 
 compilers="g++ clang-14 clang-19" # the last two to see that they have no warning to give either
 tools="cmake ninja-build pkgconf python3"
-emulators="g++-aarch64-linux-gnu qemu-user-static" # the NEON tier, and x86-64 without AVX and with AVX2
+emulators="g++-aarch64-linux-gnu qemu-user-static" # 64-bit ARM, and x86-64 without AVX and with AVX2
 x86_32="g++-12-multilib" # a machine of 32 bits
 microsoft="libc++-19-dev mingw-w64-x86-64-dev" # the libraries behind a compiler by Microsoft's rules
 libraries="doctest-dev libglm-dev libeigen3-dev"

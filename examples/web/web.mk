@@ -7,7 +7,7 @@ page := $(filter-out %.mk %.py,$(wildcard $(here)/*.*)) $(wildcard tests/fixture
 
 # Vectors, and exceptions as WebAssembly has them, which every browser since 2022 knows. No file is opened by its name,
 # and no texture is read.
-flags = -std=c++20 -fwasm-exceptions -msimd128 -msse2 -Wall -Wextra -Werror \
+flags = -std=c++20 -fwasm-exceptions -msimd128 -Wall -Wextra -Werror \
     -DTINYGLTF_NO_FS -DTINYGLTF_NO_STB_IMAGE -DTINYGLTF_NO_STB_IMAGE_WRITE -DTINYGLTF_NO_EXTERNAL_IMAGE \
     $(headers) -isystem $(objects)/include -O2
 headers := -Iinclude -Iexamples/tiled_forward -I$(here)/module

@@ -87,13 +87,9 @@ Lists on_all_tiers(const lightbin::View& view, const Scene& scene, bool flush,
                 complaints.push_back(to_string(isa) + std::string(" differs with ids of 16 bits"));
     };
     if constexpr (every_way) compare.template operator()<Isa::scalar>();
-#if defined(LIGHTBIN_X86)
     compare.template operator()<Isa::simd128>();
     compare.template operator()<Isa::avx2>();
     compare.template operator()<Isa::avx512>();
-#elif defined(LIGHTBIN_NEON)
-    compare.template operator()<Isa::simd128>();
-#endif
     for (const std::size_t workers : {3, 2, 16}) {
         if (workers != 3 && !every_way) break;
         if (built<options>(view, scene, flush, workers) != lists)

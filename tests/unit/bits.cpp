@@ -46,24 +46,17 @@ template <Options options> void compare() {
         }
 }
 
-template <Isa isa> void compare_tier() {
-    if (machine_isa(isa) != isa) return;
-    compare<Options{.isa = isa}>();
-    compare<Options{.ids = IdWidth::u16, .slicing = Slicing::z_bins, .isa = isa}>();
-    compare<Options{.footprint = Footprint::silhouette,
-                    .depth_test = DepthTest::box,
-                    .slicing = Slicing::z_bins,
-                    .isa = isa}>();
-}
-
 }  // namespace
 
 TEST_CASE("bitmasks without lists have the lists' lights, in every tier, on any number of threads") {
-    compare_tier<Isa::scalar>();
-    compare_tier<Isa::sse2>();
-    compare_tier<Isa::avx2>();
-    compare_tier<Isa::avx512>();
-    compare_tier<Isa::neon>();
+    test::on_machine_tiers([]<Isa isa>() {
+        compare<Options{.isa = isa}>();
+        compare<Options{.ids = IdWidth::u16, .slicing = Slicing::z_bins, .isa = isa}>();
+        compare<Options{.footprint = Footprint::silhouette,
+                        .depth_test = DepthTest::box,
+                        .slicing = Slicing::z_bins,
+                        .isa = isa}>();
+    });
 }
 
 TEST_CASE("bitmasks that don't fit are refused, and not a bit is written") {

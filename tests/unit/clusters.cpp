@@ -292,35 +292,3 @@ TEST_CASE("more pairs of a light and a slice than 32 bits number are refused") {
     CHECK(grid.error().code == ErrorCode::too_many_list_places);
     CHECK(grid.error().message().find("fewer slices") != std::string::npos);
 }
-
-TEST_CASE("two lights before one another are each in some clusters, once") {
-    const View view = test::view({1280, 640}, 64);
-    const std::vector<Sphere> lights = {{0, 0, -5, 1}, {0, 0, -3, 1}};
-    Binner<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}> binner;
-    const auto grid = binner.bin(view, lights, {.slices = *Slices::exponential(16, 5, 100)});
-    REQUIRE(grid);
-    std::size_t cells[2] = {};
-    for (const auto& list : test::to_lists(*grid))
-        for (std::uint32_t id : {0u, 1u}) {
-            const auto times = std::count(list.begin(), list.end(), id);
-            CHECK(times <= 1);
-            cells[id] += times == 1;
-        }
-    CHECK(cells[0] > 0);
-    CHECK(cells[1] > 0);
-}
-
-// OloEngine's: 2 x 2 tiles and 2 slices, 90 degrees, near 1, far 5.
-TEST_CASE("two small lights in opposite corners are in the first and the last cluster") {
-    const View view = *View::from_projection(glm::perspective(glm::radians(90.0f), 1.0f, 1.0f, 5.0f), {2, 2},
-                                             {.tile_size = 1, .origin = WindowOrigin::upper_left});
-    const std::vector<Sphere> lights = {{-1, 0.5f, -2, 0.1f}, {2, -0.5f, -4, 0.1f}};
-    Binner<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}> binner;
-    const auto grid = binner.bin(view, lights, {.slices = *Slices::linear(2, 1, 5)});
-    REQUIRE(grid);
-    const auto lists = test::to_lists(*grid);
-    for (std::size_t cell = 0; cell < 8; ++cell)
-        CHECK(lists[cell] == (cell == 0   ? std::vector<std::uint32_t>{0}
-                              : cell == 7 ? std::vector<std::uint32_t>{1}
-                                          : std::vector<std::uint32_t>{}));
-}

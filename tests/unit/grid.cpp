@@ -21,34 +21,6 @@ std::vector<float> random_floats(std::size_t count, float low, float high, std::
     return values;
 }
 
-/// Lists without those ids that `keep(tile, id)` says no to.
-template <class Keep> test::Lists filter(test::Lists lists, Keep keep) {
-    for (std::size_t tile = 0; tile < lists.size(); ++tile)
-        std::erase_if(lists[tile], [&](std::uint32_t id) { return !keep(tile, id); });
-    return lists;
-}
-
-}  // namespace
-
-TEST_CASE("offsets leave no gap and ids ascend within a tile") {
-    const View view = test::view({1919, 1079}, 16);
-    const auto lights = test::random_lights(3000, 10);
-    Binner<> binner;
-    const auto grid = binner.bin(view, lights);
-    REQUIRE(grid);
-    std::uint32_t next = 0;
-    for (const ListRange range : grid->ranges()) {
-        CHECK(range.offset == next);
-        next += range.count;
-        const auto ids = grid->ids().subspan(range.offset, range.count);
-        CHECK(std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<>()) == ids.end());
-    }
-    CHECK(next == grid->ids().size());
-    CHECK(next > 3000);
-}
-
-namespace {
-
 /// Lights whose rectangles are known: a picture of 2-pixel tiles seen straight on, a unit a pixel, and no edge of a
 /// light within a quarter of a pixel of a tile's.
 struct Plain {
@@ -102,10 +74,7 @@ TEST_CASE("lights straight on are listed where they are, in grids of any shape, 
             for (const std::size_t count : {0u, 1u, 2u, 15u, 16u, 60u}) {
                 if (++seed % test::share_of_cases(1) != 0) continue;
                 const Plain given(tiles_x, tiles_y, count, seed);
-                check_plain<Isa::scalar>(given);
-                check_plain<Isa::sse2>(given);
-                check_plain<Isa::avx2>(given);
-                check_plain<Isa::avx512>(given);
+                test::on_machine_tiers([&]<Isa isa>() { check_plain<isa>(given); });
             }
 }
 
@@ -125,10 +94,7 @@ TEST_CASE("lights straight on are listed where they are, more than 16 bits numbe
         for (std::vector<std::uint32_t>& list : given.expected)
             for (std::uint32_t& id : list)
                 id = ids[id];
-        check_plain<Isa::scalar>(given);
-        check_plain<Isa::sse2>(given);
-        check_plain<Isa::avx2>(given);
-        check_plain<Isa::avx512>(given);
+        test::on_machine_tiers([&]<Isa isa>() { check_plain<isa>(given); });
         check_plain<Isa::avx512, DepthTest::interval>(given);
     }
 }
@@ -150,62 +116,6 @@ TEST_CASE("16-bit ids are the same ids") {
     const View view = test::view({1280, 720}, 32);
     const auto lights = test::random_lights(65536, 14);  // as many as there are ids
     CHECK(test::lists<Options{.ids = IdWidth::u16}>(view, lights) == test::lists(view, lights));
-}
-
-TEST_CASE("coarser tiles hold the union of finer ones") {
-    const auto lights = test::random_lights(800, 15);
-    const auto fine = test::view({1024, 768}, 16), coarse = test::view({1024, 768}, 32);
-    const auto fine_lists = test::lists(fine, lights), coarse_lists = test::lists(coarse, lights);
-    test::Lists merged(coarse_lists.size());
-    for (int y = 0; y < fine.tiles_y(); ++y)
-        for (int x = 0; x < fine.tiles_x(); ++x) {
-            const auto& from = fine_lists[static_cast<std::size_t>(y * fine.tiles_x() + x)];
-            auto& to = merged[static_cast<std::size_t>(y / 2 * coarse.tiles_x() + x / 2)];
-            to.insert(to.end(), from.begin(), from.end());
-        }
-    for (auto& list : merged) {
-        std::sort(list.begin(), list.end());
-        list.erase(std::unique(list.begin(), list.end()), list.end());
-    }
-    CHECK(test::is_superset(coarse_lists, filter(merged, [](std::size_t, std::uint32_t) { return true; })));
-    CHECK(test::entries(coarse_lists) <= test::entries(merged) + test::entries(merged) / 1000);
-}
-
-TEST_CASE("both window origins show the same picture, one upside down") {
-    const glm::mat4 projection = glm::frustumRH_NO(-0.05f, 0.1f, -0.02f, 0.06f, 0.1f, 100.0f);
-    const auto lights = test::random_lights(500, 16);
-    const auto lower = *View::from_projection(projection, {640, 352}, {.tile_size = 16});
-    const auto upper =
-        *View::from_projection(projection, {640, 352}, {.tile_size = 16, .origin = WindowOrigin::upper_left});
-    const auto expected = test::lists(lower, lights);
-    const auto flipped = test::lists(upper, lights);
-    const std::size_t width = 640 / 16, height = 352 / 16;
-    for (std::size_t y = 0; y < height; ++y)
-        for (std::size_t x = 0; x < width; ++x)
-            CHECK(flipped[(height - 1 - y) * width + x] == expected[y * width + x]);
-}
-
-TEST_CASE("interval: minimum, maximum, both, each as [z - r, z + r] against the bounds") {
-    const View view = test::view({960, 540}, 16);
-    const auto lights = test::random_lights(1500, 17);
-    const auto everywhere = test::lists(view, lights);
-    const auto min = random_floats(view.tile_count(), 0.1f, 60.0f, 18);
-    auto max = random_floats(view.tile_count(), 10.0f, 80.0f, 19);  // some below their minimum: empty tiles
-    max[0] = min[0];
-    const auto z_min = [&](std::uint32_t id) { return -lights[id].z - lights[id].w; };
-    const auto z_max = [&](std::uint32_t id) { return -lights[id].z + lights[id].w; };
-
-    CHECK(test::lists<by_interval>(view, lights, ZBounds{}) == everywhere);
-    CHECK(test::lists<by_interval>(view, lights, ZBounds{.min = min, .max = {}}) ==
-          filter(everywhere, [&](std::size_t tile, std::uint32_t id) { return z_max(id) >= min[tile]; }));
-    CHECK(test::lists<by_interval>(view, lights, ZBounds{.min = {}, .max = max}) ==
-          filter(everywhere, [&](std::size_t tile, std::uint32_t id) { return z_min(id) <= max[tile]; }));
-    const auto both = test::lists<by_interval>(view, lights, ZBounds{.min = min, .max = max});
-    CHECK(both == filter(everywhere, [&](std::size_t tile, std::uint32_t id) {
-              return z_max(id) >= min[tile] && z_min(id) <= max[tile] && min[tile] <= max[tile];
-          }));
-    CHECK(test::entries(both) > 1000);
-    CHECK(test::entries(both) < test::entries(everywhere) / 2);
 }
 
 TEST_CASE("a NaN bound tests nothing; infinite bounds mean what they say") {
@@ -248,34 +158,6 @@ TEST_CASE("transparency lists: one call gives what two Binners give") {
     CHECK(transparent == test::lists<options>(view, lights, ZBounds{.min = {}, .max = max}));
     CHECK(test::is_superset(transparent, opaque));
     CHECK(test::entries(transparent) > test::entries(opaque));
-}
-
-TEST_CASE("a point is lit by the lights of its tile") {
-    const View view = test::view({960, 540}, 16);
-    const auto lights = test::random_lights(400, 60);
-    Binner<> binner;
-    const auto grid = binner.bin(view, lights);
-    REQUIRE(grid);
-    std::mt19937 random(61);
-    std::uniform_real_distribution<double> x(0, 960), y(0, 540), depth(0.2, 100);
-    std::size_t lit = 0;
-    for (int i = 0; i < 5000; ++i) {
-        const ImagePoint place = {x(random), y(random), depth(random)};
-        const ViewPoint point = view.view_point(place);
-        const auto tile = view.tile_at(view.image_point(point));
-        if (!tile) continue;  // at the very edge
-        const auto listed = grid->lights_in(tile->x, tile->y);
-        for (std::size_t light = 0; light < lights.size(); ++light) {
-            const glm::vec4& sphere = lights[light];
-            const double dx = point.x - static_cast<double>(sphere.x),
-                         dy = point.y - static_cast<double>(sphere.y),
-                         dz = point.z - static_cast<double>(sphere.z), radius = static_cast<double>(sphere.w);
-            if (dx * dx + dy * dy + dz * dz > radius * radius) continue;
-            ++lit;
-            CHECK(std::binary_search(listed.begin(), listed.end(), light));
-        }
-    }
-    CHECK(lit > 1000);
 }
 
 TEST_CASE("what became of the lights, and how long the lists are") {

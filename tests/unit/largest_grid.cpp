@@ -114,10 +114,7 @@ TEST_CASE("grids of the most rows or columns list every light where it is") {
                 if (side * static_cast<int>(count) > 200) continue;  // for time's sake
                 const Picture picture(tall ? side : View::max_side, tall ? View::max_side : side, count,
                                       ++seed);
-                check_tier<Isa::scalar>(picture, "scalar");
-                check_tier<Isa::sse2>(picture, "sse2");
-                check_tier<Isa::avx2>(picture, "avx2");
-                check_tier<Isa::avx512>(picture, "avx512");
+                test::on_machine_tiers([&]<Isa isa>() { check_tier<isa>(picture, to_string(isa)); });
             }
     }
 }

@@ -293,26 +293,6 @@ TEST_CASE("doubles out of the floats' range light everything; those that are bad
         CHECK(list == std::vector<std::uint32_t>{0, 1, 2});
 }
 
-TEST_CASE("world-space lights cover the view-space ones, and by little more") {
-    glm::mat4 to_view = glm::rotate(glm::mat4(1.0f), 0.7f, glm::normalize(glm::vec3(1, 2, 3)));
-    to_view = glm::translate(to_view, {100.0f, -20.0f, 3.0f});
-    const glm::mat4 to_world = glm::inverse(to_view);
-    const auto in_view = test::random_lights(2000, 2);
-    std::vector<glm::vec4> in_world;
-    for (const glm::vec4& s : in_view)
-        in_world.emplace_back(glm::vec3(to_world * glm::vec4(glm::vec3(s), 1.0f)), s.w);
-
-    const View view = test::view({1920, 1080}, 32);
-    const auto expected = test::entries(test::lists(view, in_view));
-    const auto moved = test::entries(test::lists(view, world_space(in_world, to_view)));
-    CHECK(static_cast<double>(moved) == doctest::Approx(static_cast<double>(expected)).epsilon(1e-3));
-
-    const glm::mat4 identity(1.0f);
-    const auto same = test::lists(view, world_space(in_view, identity));
-    CHECK(test::is_superset(same, test::lists(view, in_view)));
-    CHECK(test::entries(same) <= expected + expected / 1000);
-}
-
 TEST_CASE("spots are lights wherever spheres are, and bad ones are skipped and counted") {
     struct Lamp {
         glm::vec3 position, direction;
@@ -396,16 +376,6 @@ TEST_CASE("spheres around lights of other shapes") {
     }
 }
 
-TEST_CASE("a scaled world scales its lights") {
-    const glm::mat4 doubled = glm::scale(glm::mat4(1.0f), glm::vec3(2.0f));
-    const auto small = test::random_lights(1000, 3);
-    std::vector<glm::vec4> large;
-    for (const glm::vec4& s : small)
-        large.push_back(2.0f * s);
-    const View view = test::view({800, 600}, 32);
-    CHECK(test::is_superset(test::lists(view, world_space(small, doubled)), test::lists(view, large)));
-}
-
 TEST_CASE("a view matrix that is not affine is refused") {
     const auto lights = test::random_lights(4, 4);
     const View view = test::view({800, 600}, 32);
@@ -418,6 +388,7 @@ TEST_CASE("a view matrix that is not affine is refused") {
     CHECK(binner.bin(view, world_space(lights, bad)).error().code == ErrorCode::view_matrix_not_affine);
     bad = glm::mat4(1.0f);
     bad[3][0] = std::nanf("");
+    CHECK(binner.bin(view, world_space(lights, bad)).error().code == ErrorCode::view_matrix_not_affine);
 }
 
 TEST_CASE("a light whose move overflows covers everything rather than nothing") {

@@ -33,6 +33,18 @@ inline const std::vector<lightbin::Isa>& machine_tiers() {
     }();
     return tiers;
 }
+/// Calls visit.operator()<isa>() with each. A Binner takes an Isa that the machine lacks for a narrower one, so that it is
+/// not worth a visit.
+template <class Visit> void on_machine_tiers(Visit visit) {
+    using lightbin::Isa;
+    const auto visit_one = [&]<Isa isa>() {
+        if (lightbin::machine_isa(isa) == isa) visit.template operator()<isa>();
+    };
+    visit_one.template operator()<Isa::scalar>();
+    visit_one.template operator()<Isa::simd128>();
+    visit_one.template operator()<Isa::avx2>();
+    visit_one.template operator()<Isa::avx512>();
+}
 inline lightbin::Isa widest_tier() {
     return machine_tiers().back();
 }

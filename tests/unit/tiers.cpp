@@ -35,16 +35,11 @@ constexpr Options with(Options options, Isa isa) {
 /// Each instruction set, serial and shared among threads, against the serial scalar kernels.
 template <Options options> void compare(const View& view, const std::vector<glm::vec4>& lights) {
     const auto expected = bytes<with(options, Isa::scalar)>(view, lights, {});
-    const auto compare_tier = [&]<Isa isa>() {
-        if (machine_isa(isa) != isa) return;  // a Binner takes its Isa for a cap
+    test::on_machine_tiers([&]<Isa isa>() {
         for (const std::size_t workers : {1u, 2u, 3u, 7u})
             CHECK((bytes<with(options, isa)>(view, lights, {workers, test::on_threads, 0}) == expected));
         CHECK((bytes<with(options, isa)>(view, lights, {}) == expected));
-    };
-    compare_tier.template operator()<Isa::scalar>();
-    compare_tier.template operator()<Isa::simd128>();
-    compare_tier.template operator()<Isa::avx2>();
-    compare_tier.template operator()<Isa::avx512>();
+    });
 }
 
 constexpr Options plain = {}, box = {.depth_test = DepthTest::box}, split_box = {.depth_test = DepthTest::split_box},
