@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// threads: Binners with every kind of options, each on a thread of its own, for one View, the same lights, Z bounds and
+// threads: Binners with every kind of options, each on a thread of its own, for two Views, the same lights, Z bounds and
 // Slices, while another one's work is shared by a pool of threads. Every grid must be the one that is made alone; the
 // thread sanitizer says whether they shared more than that.
 #include "bench/pool.hpp"
@@ -18,16 +18,19 @@ namespace {
 using namespace lightbin;
 
 struct Scene {
-    View view;
+    View views[2];
     Slices slices;
     std::vector<Sphere> lights{};
     std::vector<float> min{}, max{};
 };
 
 Scene make_scene() {
-    const double projection[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, -1}, {0, 0, -0.2, 0}};
-    Scene scene = {*View::from_projection(projection, {512, 512}, {.tile_size = 16}),
-                   *Slices::linear(12, 0, 60)};
+    double projection[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, -1}, {0, 0, -0.2, 0}};
+    const auto view = [&](double shift) {  // an eye's, off-centre
+        projection[2][0] = shift;
+        return *View::from_projection(projection, {512, 512}, {.tile_size = 16});
+    };
+    Scene scene = {{view(-0.1), view(0.1)}, *Slices::linear(12, 0, 60)};
     std::uint32_t state = 1;
     const auto between = [&](float low, float high) {
         state = state * 1664525 + 1013904223;
@@ -37,7 +40,7 @@ Scene make_scene() {
         const float x = between(-50, 50), y = between(-50, 50), z = between(-70, 10);
         scene.lights.push_back({x, y, z, between(0.5f, 6)});
     }
-    for (std::size_t tile = 0; tile < scene.view.tile_count(); ++tile) {
+    for (std::size_t tile = 0; tile < scene.views[0].tile_count(); ++tile) {
         scene.min.push_back(between(1, 20));
         scene.max.push_back(between(20, 60));
     }
@@ -45,13 +48,14 @@ Scene make_scene() {
 }
 
 /// The grids that a Binner makes in some frames, one after another.
-template <Options options> std::vector<std::uint32_t> build(const Scene& scene, const Parallel& parallel) {
+template <Options options, int view = 0>
+std::vector<std::uint32_t> build(const Scene& scene, const Parallel& parallel) {
     const double to_view[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
     const auto inputs = inputs_for<options>({scene.min, scene.max, {}, {}}, scene.slices);
     Binner<options> binner;
     std::vector<std::uint32_t> all;
     for (int frame = 0; frame < 20; ++frame) {
-        const auto grid = binner.bin(scene.view, world_space(scene.lights, to_view), inputs, parallel);
+        const auto grid = binner.bin(scene.views[view], world_space(scene.lights, to_view), inputs, parallel);
         if (!grid) return {};
         for (const ListRange range : grid->ranges())
             all.insert(all.end(), {range.offset, range.count});
@@ -74,6 +78,7 @@ int main() {
     const auto clusters = build<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>;
     std::vector<Job> jobs = {
         {build<Options{}>, {}, {}},
+        {build<Options{}, 1>, {}, {}},
         {build<Options{.ids = IdWidth::u16, .depth_test = DepthTest::interval}>, {}, {}},
         {build<Options{.depth_test = DepthTest::box}>, {}, {}},
         {build<Options{.depth_test = DepthTest::box, .slicing = Slicing::z_bins}>, {}, {}},
