@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The file of verdicts, read as another engine's tests would read it: it is whole, every verdict is proven again, and no
-// rung of the library misses a pair that meets.
+// The file of verdicts, read as an engine's tests would read it: it is whole, and every verdict is proven again. That
+// lightbin misses no pair that meets is proven in tests/oracle/spots.cpp, of other spots in each run.
 #include "../../bench/exact/spot.hpp"
 #include "../../bench/exact/truth.hpp"
-
-#include <lightbin/binner.hpp>
-#include <lightbin/spot.hpp>
 
 #include <doctest/doctest.h>
 
@@ -24,6 +21,10 @@ struct Layer {
     float min, max;
 };
 
+struct Spot {
+    float x, y, z, radius, axis_x, axis_y, axis_z, cos_half_angle;
+};
+
 struct Part {
     std::string name;
     float matrix[4][4];  ///< [column][row]
@@ -31,7 +32,7 @@ struct Part {
     bool upper_left;
     int clip_depth, forward, tiles_x, tiles_y;
     std::vector<Layer> layers;
-    std::vector<lightbin::Spot> spots;
+    std::vector<Spot> spots;
     std::vector<std::vector<bool>> met;  ///< of each spot, layer by layer, row by row
 
     std::size_t tiles() const { return static_cast<std::size_t>(tiles_x * tiles_y); }
@@ -107,7 +108,7 @@ private:
         const int spots = integer("spots");
         for (int i = 0; i < spots; ++i) {
             expect("spot");
-            lightbin::Spot s;
+            Spot s;
             for (float* v : {&s.x, &s.y, &s.z, &s.radius, &s.axis_x, &s.axis_y, &s.axis_z, &s.cos_half_angle})
                 *v = number();
             p.spots.push_back(s);
@@ -130,28 +131,9 @@ private:
     std::ifstream file_;
 };
 
-const std::vector<Part>& all_parts() {
-    static const std::vector<Part> parts = Reader(SPOT_VERDICTS).parts();
-    return parts;
-}
-
 /// The declaration that an orthographic matrix needs: its depth grows the other way.
 bool reversed(const Part& p) {
     return p.matrix[2][3] == 0 && (p.matrix[2][2] > 0) != (p.forward > 0);
-}
-
-lightbin::View view_of(const Part& p) {
-    const auto view = lightbin::View::from_projection(
-        p.matrix, {p.width, p.height},
-        {.tile_size = p.tile_size,
-         .clip_depth =
-             p.clip_depth == 0 ? lightbin::ClipDepth::zero_to_one : lightbin::ClipDepth::minus_one_to_one,
-         .origin = p.upper_left ? lightbin::WindowOrigin::upper_left : lightbin::WindowOrigin::lower_left,
-         .reversed_z = reversed(p)});
-    REQUIRE(view.has_value());
-    REQUIRE(view->tiles_x() == p.tiles_x);
-    REQUIRE(view->tiles_y() == p.tiles_y);
-    return *view;
 }
 
 oracle::Camera camera_of(const Part& p) {
@@ -166,111 +148,12 @@ oracle::Camera camera_of(const Part& p) {
     return camera;
 }
 
-/// Pairs that meet, and how many of them were not listed.
-struct Count {
-    std::size_t met = 0, missed = 0;
-
-    /// Holds lists(tile), ids that ascend, against the layers of which a list must have the spots.
-    template <class Lists>
-    void add(const Part& p, const std::vector<std::size_t>& layers, const char* rung, Lists lists) {
-        for (std::size_t tile = 0; tile < p.tiles(); ++tile) {
-            const auto list = lists(tile);
-            for (std::size_t spot = 0; spot < p.spots.size(); ++spot) {
-                if (std::ranges::none_of(layers,
-                                         [&](std::size_t layer) { return p.meets(spot, layer, tile); }))
-                    continue;
-                ++met;
-                if (std::ranges::find(list, spot) == list.end() && ++missed <= 5)
-                    MESSAGE("MISS: " << rung << ", " << p.name << ", spot " << spot << ", tile " << tile);
-            }
-        }
-    }
-};
-
-/// A tile's list of a grid.
-template <class Grid> auto list_of(const Grid& grid, std::size_t cell) {
-    return grid.ids().subspan(grid.ranges()[cell].offset, grid.ranges()[cell].count);
-}
-
-template <lightbin::Options options> void count_plain(const Part& p, Count& count) {
-    lightbin::Binner<options> binner;
-    const auto grid = *binner.bin(view_of(p), lightbin::view_space(p.spots));
-    count.add(p, {0}, to_string(options.footprint), [&](std::size_t tile) { return list_of(grid, tile); });
-}
-
-/// Every layer as the Z bounds of all tiles; of split_box, two with the one between them left out.
-template <lightbin::Options options> void count_bounded(const Part& p, Count& count) {
-    constexpr bool split = options.depth_test == lightbin::DepthTest::split_box;
-    lightbin::Binner<options> binner;
-    const lightbin::View view = view_of(p);
-    const auto all_tiles = [&](float depth) { return std::vector<float>(p.tiles(), depth); };
-    for (std::size_t first = 1; first + (split ? 2 : 0) < p.layers.size(); ++first) {
-        const std::size_t last = first + (split ? 2 : 0);
-        const std::vector<float> min = all_tiles(p.layers[first].min), max = all_tiles(p.layers[last].max),
-                                 gap_min = all_tiles(p.layers[first].max),
-                                 gap_max = all_tiles(p.layers[last].min);
-        lightbin::ZBounds bounds = {.min = min, .max = max};
-        if (split) bounds.gap_min = gap_min, bounds.gap_max = gap_max;
-        const auto grid = *binner.bin(view, lightbin::view_space(p.spots), {.bounds = bounds});
-        count.add(p, {first, last}, to_string(options.depth_test),
-                  [&](std::size_t tile) { return list_of(grid, tile); });
-    }
-}
-
-template <lightbin::Options options> void count_sliced(const Part& p, Count& count) {
-    std::vector<float> boundaries;
-    for (std::size_t layer = 2; layer < p.layers.size(); ++layer)
-        boundaries.push_back(p.layers[layer].min);
-    const auto slices = *lightbin::Slices::from_boundaries(boundaries);
-    lightbin::Binner<options> binner;
-    const auto grid = *binner.bin(view_of(p), lightbin::view_space(p.spots), {.slices = slices});
-    for (std::size_t layer = 1; layer < p.layers.size(); ++layer)
-        count.add(p, {layer}, to_string(options.slicing), [&](std::size_t tile) {
-            if constexpr (options.slicing == lightbin::Slicing::clusters) {
-                return list_of(grid, (layer - 1) * p.tiles() + tile);
-            } else {
-                std::vector<std::size_t> ids;
-                for (const std::uint32_t rank :
-                     lightbin::lights_of_bin(list_of(grid, tile), grid.ranks().bins[layer - 1]))
-                    ids.push_back(grid.ranks().order[rank]);
-                return ids;
-            }
-        });
-}
-
-}  // namespace
-
-TEST_CASE("spot verdicts: no rung misses a pair that meets") {
-    using lightbin::DepthTest, lightbin::Footprint, lightbin::Options, lightbin::Slicing;
-    Count count;
-    for (const Part& p : all_parts()) {
-        count_plain<Options{}>(p, count);
-        count_plain<Options{.footprint = Footprint::silhouette}>(p, count);
-        count_bounded<Options{.depth_test = DepthTest::interval}>(p, count);
-        count_bounded<Options{.depth_test = DepthTest::box}>(p, count);
-        count_bounded<Options{.depth_test = DepthTest::split_box}>(p, count);
-        count_bounded<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box}>(p, count);
-        count_sliced<Options{.slicing = Slicing::clusters}>(p, count);
-        count_sliced<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>(p, count);
-        count_sliced<Options{
-            .footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::clusters}>(
-            p, count);
-        count_sliced<Options{.slicing = Slicing::z_bins}>(p, count);
-        count_sliced<Options{.footprint = Footprint::silhouette, .slicing = Slicing::z_bins}>(p, count);
-    }
-    MESSAGE(count.met << " pairs that meet, in all rungs");
-    CHECK(count.missed == 0);
-    CHECK(count.met > 100000);
-}
-
-namespace {
-
 /// A spot in the exact arithmetic's forms.
 struct Subject {
     oracle::ExactSpot spot;
     oracle::FlatBall ball;
 
-    Subject(const oracle::Oracle& exact, const lightbin::Spot& s)
+    Subject(const oracle::Oracle& exact, const Spot& s)
         : spot(oracle::exact_spot(s.x, s.y, s.z, s.radius, s.axis_x, s.axis_y, s.axis_z, s.cos_half_angle)) {
         const oracle::CameraBall seen = exact.in_camera(spot.ball);
         ball = {oracle::nearly(seen.x), oracle::nearly(seen.y), oracle::nearly(seen.depth),
@@ -289,7 +172,7 @@ void prove(const Part& p, Proof& proof) {
     REQUIRE(exact.tiles_y() == p.tiles_y);
     REQUIRE(exact.depth_sign() == p.forward);
     std::vector<Subject> subjects;
-    for (const lightbin::Spot& spot : p.spots)
+    for (const Spot& spot : p.spots)
         subjects.emplace_back(exact, spot);
     for (std::size_t layer = 0; layer < p.layers.size(); ++layer) {
         const oracle::Depths depths = exact.depths(p.layers[layer].min, p.layers[layer].max);
@@ -312,7 +195,7 @@ void prove(const Part& p, Proof& proof) {
 
 TEST_CASE("spot verdicts: proven again") {
     Proof proof;
-    for (const Part& p : all_parts())
+    for (const Part& p : Reader(SPOT_VERDICTS).parts())
         prove(p, proof);
     MESSAGE(proof.verdicts << " verdicts, " << proof.met << " of them that they meet");
     CHECK(proof.wrong == 0);
