@@ -118,148 +118,97 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 namespace kinds {
 
+/// On every screen a kind that is made of a symmetric lens of so many degrees, or of a box of so much height.
+inline std::vector<Camera> of_symmetric(const std::string& name, double degrees, void (*change)(Lens& lens)) {
+    return on_every_screen(name, [=](double aspect) {
+        Lens lens = symmetric_lens(aspect, degrees);
+        change(lens);
+        return lens;
+    });
+}
+inline std::vector<Camera> of_box(const std::string& name, double half_height, void (*change)(Lens& lens)) {
+    return on_every_screen(name, [=](double aspect) {
+        Lens lens = box_lens(aspect, half_height);
+        change(lens);
+        return lens;
+    });
+}
+
 inline std::vector<Camera> symmetric() {
-    auto cameras = on_every_screen("symmetric", [](double aspect) { return symmetric_lens(aspect, 60); });
+    auto cameras = of_symmetric("symmetric", 60, [](Lens&) {});
     // 90 degrees and a power-of-two grid: tile edges with slopes such as 3/4, which a ball can touch exactly.
     const Lens square{-1, 1, -1, 1, 0.125, 512};
     cameras.push_back(
         {"symmetric 90 degrees 256x256/32", projection(square), false, 256, 256, 32, false, false, false});
     return cameras;
 }
-
 inline std::vector<Camera> left_handed() {
-    return on_every_screen("left-handed [0,1]", [](double aspect) {
-        Lens lens = symmetric_lens(aspect, 60);
-        lens.looks_up_z = lens.zero_to_one = true;
-        return lens;
-    });
+    return of_symmetric("left-handed [0,1]", 60, [](Lens& lens) { lens.looks_up_z = lens.zero_to_one = true; });
 }
-
 inline std::vector<Camera> right_handed_zero_to_one() {
-    return on_every_screen("right-handed [0,1]", [](double aspect) {
-        Lens lens = symmetric_lens(aspect, 75);
-        lens.zero_to_one = true;
-        lens.near_plane = 1e-5;
-        return lens;
-    });
+    return of_symmetric("right-handed [0,1]", 75, [](Lens& lens) { lens.zero_to_one = true, lens.near_plane = 1e-5; });
 }
-
 inline std::vector<Camera> off_centre() {
     return on_every_screen(
         "off-centre", [](double aspect) { return Lens{-0.9 * aspect, 0.3 * aspect, -0.2, 0.7, 0.25, 500}; });
 }
-
 inline std::vector<Camera> jittered() {
-    return on_every_screen("jittered", [](double aspect) {
-        Lens lens = symmetric_lens(aspect, 60);
+    return of_symmetric("jittered", 60, [](Lens& lens) {
         const double x = 0.37 / 1920 * (lens.right - lens.left), y = -0.21 / 1080 * (lens.top - lens.bottom);
         lens.left += x, lens.right += x, lens.bottom += y, lens.top += y;
-        return lens;
     });
 }
-
 inline std::vector<Camera> infinite_far() {
-    return on_every_screen("infinite far", [](double aspect) {
-        Lens lens = symmetric_lens(aspect, 60);
-        lens.far_plane = infinite;
-        return lens;
-    });
+    return of_symmetric("infinite far", 60, [](Lens& lens) { lens.far_plane = infinite; });
 }
-
 inline std::vector<Camera> reversed() {
-    return on_every_screen("reversed [0,1]", [](double aspect) {
-        Lens lens = symmetric_lens(aspect, 60);
-        lens.zero_to_one = lens.reversed = true;
-        return lens;
-    });
+    return of_symmetric("reversed [0,1]", 60, [](Lens& lens) { lens.zero_to_one = lens.reversed = true; });
 }
-
 inline std::vector<Camera> reversed_minus_one_to_one() {
-    return on_every_screen("reversed [-1,1]", [](double aspect) {
-        Lens lens = symmetric_lens(aspect, 60);
-        lens.reversed = lens.looks_up_z = true;
-        return lens;
-    });
+    return of_symmetric("reversed [-1,1]", 60, [](Lens& lens) { lens.reversed = lens.looks_up_z = true; });
 }
-
 inline std::vector<Camera> reversed_infinite() {
-    return on_every_screen("reversed infinite", [](double aspect) {
-        Lens lens = symmetric_lens(aspect, 60);
-        lens.zero_to_one = lens.reversed = true;
-        lens.far_plane = infinite;
-        return lens;
+    return of_symmetric("reversed infinite", 60, [](Lens& lens) {
+        lens.zero_to_one = lens.reversed = true, lens.far_plane = infinite;
     });
 }
-
 inline std::vector<Camera> y_flip() {
-    return on_every_screen("y flip", [](double aspect) {
-        Lens lens = symmetric_lens(aspect, 60);
-        lens.flip_y = lens.zero_to_one = true;
-        lens.top *= 1.25;
-        return lens;
-    });
+    return of_symmetric("y flip", 60, [](Lens& lens) { lens.flip_y = lens.zero_to_one = true, lens.top *= 1.25; });
 }
-
 inline std::vector<Camera> x_flip() {
-    return on_every_screen("x flip", [](double aspect) {
-        Lens lens = symmetric_lens(aspect, 60);
-        lens.flip_x = true;
-        lens.left *= 0.75;
-        return lens;
-    });
+    return of_symmetric("x flip", 60, [](Lens& lens) { lens.flip_x = true, lens.left *= 0.75; });
 }
-
 inline std::vector<Camera> tiny_fov() {
-    return on_every_screen("tiny fov", [](double aspect) { return symmetric_lens(aspect, 0.05); });
+    return of_symmetric("tiny fov", 0.05, [](Lens&) {});
 }
-
 inline std::vector<Camera> wide_fov() {
-    return on_every_screen("wide fov", [](double aspect) { return symmetric_lens(aspect, 170); });
+    return of_symmetric("wide fov", 170, [](Lens&) {});
 }
-
 inline std::vector<Camera> scaled_matrix() {
-    return on_every_screen("scaled matrix", [](double aspect) {
-        Lens lens = symmetric_lens(aspect, 60);
-        lens.factor = 3.7e-3;
-        return lens;
-    });
+    return of_symmetric("scaled matrix", 60, [](Lens& lens) { lens.factor = 3.7e-3; });
 }
-
 inline std::vector<Camera> double_matrix() {
-    return on_every_screen("double matrix", [](double aspect) {
-        Lens lens = symmetric_lens(aspect, 60);
-        lens.left *= 0.99, lens.doubles = true;
-        return lens;
-    });
+    return of_symmetric("double matrix", 60, [](Lens& lens) { lens.left *= 0.99, lens.doubles = true; });
 }
-
 inline std::vector<Camera> screens_off_centre() {
     return on_every_screen("several screens off-centre", [](double aspect) {
         const double w = 0.1 * aspect, h = 0.1;
         return Lens{-19.7 * w, -18.7 * w, 7.3 * h, 8.3 * h, 0.1, 1000};
     });
 }
-
 inline std::vector<Camera> orthographic() {
-    return on_every_screen("orthographic", [](double aspect) { return box_lens(aspect, 32); });
+    return of_box("orthographic", 32, [](Lens&) {});
 }
-
 inline std::vector<Camera> orthographic_off_centre() {
-    return on_every_screen("orthographic off-centre", [](double aspect) {
-        Lens lens = box_lens(aspect, 40);
+    return of_box("orthographic off-centre", 40, [](Lens& lens) {
         lens.left += 100, lens.right += 100, lens.bottom -= 10, lens.top -= 10;
         lens.looks_up_z = lens.zero_to_one = true;
         lens.near_plane = 0;
-        return lens;
     });
 }
-
 inline std::vector<Camera> orthographic_reversed() {
-    return on_every_screen("orthographic reversed", [](double aspect) {
-        Lens lens = box_lens(aspect, 25);
-        lens.reversed = lens.zero_to_one = true;
-        lens.factor = 5;
-        return lens;
+    return of_box("orthographic reversed", 25, [](Lens& lens) {
+        lens.reversed = lens.zero_to_one = true, lens.factor = 5;
     });
 }
 
