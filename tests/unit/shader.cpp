@@ -70,42 +70,6 @@ TEST_CASE("each option brings its own lines and no others") {
     CHECK(has(bound, "binding = 9"));
 }
 
-TEST_CASE("the bindings tell what the text declares") {
-    const auto shader = shader_snippet({.language = ShaderLanguage::glsl_vulkan,
-                                        .storage = ListStorage::texel_buffer,
-                                        .format = {.ids = IdWidth::u16},
-                                        .tiles = {3, 1},
-                                        .lists = {4, 1},
-                                        .grid = {5, 1}});
-    REQUIRE(shader);
-    REQUIRE(shader->bindings.size() == 3);
-    const auto &grid = shader->bindings[0], &tiles = shader->bindings[1], &lists = shader->bindings[2];
-    CHECK(grid.resource == ShaderResource::uniform_block);
-    CHECK(grid.bytes == offsetof(ShaderGrid, corner_x));
-    CHECK(grid.slot.binding == 5);
-    CHECK(tiles.resource == ShaderResource::texel_buffer);
-    CHECK(tiles.format == TexelFormat::rg32ui);
-    CHECK(tiles.stride == sizeof(ListRange));
-    CHECK(lists.format == TexelFormat::r16ui);
-    CHECK(lists.stride == 2);
-    CHECK(lists.slot.set == 1);
-    for (const ShaderBinding& binding : shader->bindings)
-        CHECK(has(shader->text, binding.name.c_str()));
-}
-
-TEST_CASE("a binding tells a row's width where there are rows") {
-    for (const auto& [storage, width] : {std::pair(ListStorage::texture_2d, 100u),
-                                         {ListStorage::texel_buffer, 0u},
-                                         {ListStorage::storage_buffer, 0u},
-                                         {ListStorage::uniform_block, 0u}}) {
-        const auto shader =
-            shader_snippet({.storage = storage, .texture_width = 100, .max_tiles = 8, .max_entries = 8});
-        REQUIRE(shader);
-        CHECK(shader->bindings[2].name.starts_with("lightbin_lists"));
-        CHECK(shader->bindings[2].width == width);
-    }
-}
-
 TEST_CASE("a wrong option set is refused with a sentence that names the limit") {
     const std::string ids = refusal({.format = {.ids = IdWidth::u8, .max_lights = 300}});
     CHECK(has(ids, "300"));
@@ -154,18 +118,6 @@ TEST_CASE("a negative slot is refused with its sign, in every language and by ev
         CHECK(has(sentence(shader_snippet({.language = language, .view = {1, -3}})), "is -3"));
         CHECK(has(sentence(reduce_shader({.language = language, .grid = {-2147483647 - 1}})), "is -2147483648"));
         CHECK(has(sentence(build_shader({.language = language, .total = {3, -2}})), "is -2"));
-    }
-}
-
-TEST_CASE("every name declared carries the prefix") {
-    for (const ShaderLanguage language :
-         {ShaderLanguage::glsl_430, ShaderLanguage::hlsl_5_0, ShaderLanguage::wgsl}) {
-        const std::string text = text_of({.language = language, .heat_map = true, .prefix = "my_"});
-        CHECK(!has(text, "lightbin"));
-        for (const char* name : {"my_grid", "my_tiles", "my_lists", "my_cursor ", "my_begin(", "my_next(",
-                                 "my_count(", "my_heat("})
-            CHECK(has(text, name));
-        CHECK(has(text, "my_for_each_light(") == (language != ShaderLanguage::wgsl));  // which has no macros
     }
 }
 

@@ -34,44 +34,7 @@ ErrorCode refusal(const Matrix& matrix, lightbin::Extent viewport = full_hd, Vie
     return view.error().code;
 }
 
-void check_depths(const glm::mat4& matrix, const ViewOptions& options, double near, double far) {
-    const auto view = View::from_projection(matrix, full_hd, options);
-    REQUIRE(view);
-    CHECK(view->near_depth() == doctest::Approx(near).epsilon(1e-4));
-    if (std::isinf(far))
-        CHECK(view->far_depth() == static_cast<float>(far));
-    else
-        CHECK(view->far_depth() ==
-              doctest::Approx(far).epsilon(2e-2));  // a float matrix knows its far plane badly
-}
-
 }  // namespace
-
-TEST_CASE("near and far plane come out of the matrix") {
-    constexpr double none = std::numeric_limits<double>::infinity();
-    const ViewOptions gl = {}, zero_to_one = {.clip_depth = ClipDepth::zero_to_one};
-    constexpr float fov = 1.0f, aspect = 16.0f / 9, near = 0.25f, far = 512.0f;
-
-    check_depths(glm::perspectiveRH_NO(fov, aspect, near, far), gl, near, far);
-    check_depths(glm::perspectiveLH_NO(fov, aspect, near, far), gl, near, far);
-    check_depths(glm::perspectiveRH_ZO(fov, aspect, near, far), zero_to_one, near, far);
-    check_depths(glm::perspectiveLH_ZO(fov, aspect, near, far), zero_to_one, near, far);
-    check_depths(glm::infinitePerspective(fov, aspect, near), gl, near, none);
-    check_depths(glm::perspectiveRH_ZO(fov, aspect, far, near), zero_to_one, near, far);  // reversed Z
-    check_depths(glm::frustumRH_NO(-1.0f, 2.0f, -3.0f, 0.5f, near, far), gl, near, far);
-    check_depths(glm::orthoRH_NO(-4.0f, 4.0f, -3.0f, 3.0f, near, far), gl, near, far);
-    check_depths(glm::orthoLH_ZO(-4.0f, 4.0f, -3.0f, 3.0f, -near, far), zero_to_one, -near, far);
-    check_depths(glm::orthoRH_ZO(-4.0f, 4.0f, -3.0f, 3.0f, far, near),
-                 {.clip_depth = ClipDepth::zero_to_one, .reversed_z = true}, near, far);
-
-    glm::mat4 reversed_infinite(0.0f);
-    reversed_infinite[0][0] = reversed_infinite[1][1] = 1;
-    reversed_infinite[2][3] = -1;
-    reversed_infinite[3][2] = near;
-    check_depths(reversed_infinite, zero_to_one, near, none);
-    CHECK(View::from_projection(reversed_infinite, full_hd, zero_to_one)->reversed_z());
-    check_depths(3.0f * glm::perspectiveRH_NO(fov, aspect, near, far), gl, near, far);
-}
 
 TEST_CASE("the wrong clip depth can only be wrong on the side that is documented") {
     const auto matrix = glm::perspectiveRH_ZO(1.0f, 1.5f, 0.25f, 512.0f);
