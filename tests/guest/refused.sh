@@ -3,7 +3,7 @@
 set -eu
 compiler=$1
 here=$(cd "$(dirname "$0")" && pwd)
-
+. "$here/one_error.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -16,24 +16,15 @@ sed -n '/^#include/p' "$here/refused.cpp" >"$work/headers.hpp"
 "$compiler" -std=c++20 -I "$here/../../include" -x c++-header "$work/headers.hpp" -o "$work/headers.hpp.$compiled"
 
 compile() {
-    "$compiler" -std=c++20 -I "$here/../../include" -include "$work/headers.hpp" -fsyntax-only "$here/refused.cpp" "$@" 2>&1
+    "$compiler" -std=c++20 -I "$here/../../include" -include "$work/headers.hpp" -fsyntax-only "$here/refused.cpp" "$@"
 }
 compile -DMISTAKE=0
 
 mistakes=$(grep -oE 'MISTAKE == [0-9]+' "$here/refused.cpp" | grep -oE '[0-9]+')
 count=0
 for mistake in $mistakes; do
-    expected=$(sed -nE "s,.*MISTAKE == $mistake  // (.*),\1,p" "$here/refused.cpp")
-    if said=$(compile "-DMISTAKE=$mistake"); then
-        echo "$compiler accepts mistake $mistake" >&2
-        exit 1
-    fi
-    errors=$(echo "$said" | grep -E 'error:')
-    [ "$(echo "$errors" | wc -l)" -eq 1 ] && echo "$errors" | grep -qE "$expected" || {
-        echo "$compiler says of mistake $mistake:" >&2
-        echo "$said" >&2
-        exit 1
-    }
+    one_error error: "$(sed -nE "s,.*MISTAKE == $mistake  // (.*),\1,p" "$here/refused.cpp")" "mistake $mistake by $compiler" \
+        compile "-DMISTAKE=$mistake"
     count=$((count + 1))
 done
 [ "$mistake" -eq "$count" ]

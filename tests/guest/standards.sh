@@ -5,6 +5,7 @@ set -eu
 compiler=$1
 here=$(cd "$(dirname "$0")" && pwd)
 top=$here/../..
+. "$here/one_error.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -15,7 +16,7 @@ esac
 # said FLAG...: what the compiler says of file.cpp
 said() {
     # shellcheck disable=SC2086  # several flags
-    LC_ALL=C "$compiler" $warnings -I "$work/single" -I "$top/include" "$@" -fsyntax-only "$work/file.cpp" 2>&1
+    "$compiler" $warnings -I "$work/single" -I "$top/include" "$@" -fsyntax-only "$work/file.cpp" 2>&1
 }
 
 mkdir "$work/single"
@@ -34,16 +35,8 @@ EOF
     *) standards=c++17 ;;
     esac
     for standard in $standards; do
-        if words=$(said -std=$standard); then
-            echo "$compiler -std=$standard accepts <$header>" >&2
-            exit 1
-        fi
-        about=$(echo "$words" | grep -E 'error|warning' | grep -vE '^[0-9]+ errors? generated|^ ')
-        [ "$(echo "$about" | wc -l)" -eq 1 ] && echo "$about" | grep -q 'lightbin wants C++20, .* -std=c++20 .*/std:c++20' || {
-            echo "$compiler -std=$standard says of <$header>:" >&2
-            echo "$words" >&2
-            exit 1
-        }
+        one_error 'error|warning' 'lightbin wants C\+\+20, .* -std=c\+\+20 .*/std:c\+\+20' \
+            "<$header> by $compiler -std=$standard" said -std=$standard
         count=$((count + 1))
     done
 done
