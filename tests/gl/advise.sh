@@ -41,8 +41,14 @@ in_code { code = code $0 "\n"; next }
             kept[parts[i]] = verdict ~ /^keep/
         }
 }
-function has(name, word, where) {
-    if (kept[name] != (index(where, word) > 0)) complain(name " is not as the verdict has it in: " where)
+# Of pairs PART=WORD, with a bar between them: the word is there where the part is kept, and only there.
+function has(where, pairs,    count, pair, of, i) {
+    count = split(pairs, pair, "|")
+    for (i = 1; i <= count; ++i) {
+        split(pair[i], of, "=")
+        if (kept[of[1]] != (index(where, substr(pair[i], length(of[1]) + 2)) > 0))
+            complain(of[1] " is not as the verdict has it in: " where)
+    }
 }
 END {
     if (NR > 40) complain(NR " lines")
@@ -52,24 +58,11 @@ END {
         if (heads[names[i]] != 1) complain("no line of " names[i])
     if (total == "" || advised == "" || code == "") complain("something is missing")
     if (kept["pre-pass"] && kept["clusters"]) complain("a pre-pass and clusters")
-    has("tiles", " px, ", advised)
-    has("silhouettes", "silhouette", advised)
-    has("box", "box", advised)
-    has("split boxes", "split_box", advised)
-    has("clusters", "clusters", advised)
-    has("z-bins", "z_bins", advised)
-    has("tiles", "{.tile_size = " advised + 0 "}", code)
-    has("tiles", ", .tile_size = " advised + 0 "}", code)
-    has("silhouettes", "Footprint::silhouette", code)
-    has("split boxes", "DepthTest::split_box", code)
-    has("clusters", "Slicing::clusters", code)
-    has("z-bins", "Slicing::z_bins", code)
-    has("pre-pass", ".bounds = ", code)
-    has("minimum", " min", code)
-    has("maximum", "max = max", code)
-    has("16-bit ids", "IdWidth::u16", code)
-    has("threads", "lightbin::Parallel", code)
-    has("cones", "to_spot", code)
+    has(advised, "tiles= px, |silhouettes=silhouette|box=box|split boxes=split_box|clusters=clusters|z-bins=z_bins")
+    size = ".tile_size = " advised + 0 "}"
+    has(code, "tiles={" size "|tiles=, " size "|silhouettes=Footprint::silhouette|split boxes=DepthTest::split_box")
+    has(code, "clusters=Slicing::clusters|z-bins=Slicing::z_bins|pre-pass=.bounds = |minimum= min|maximum=max = max")
+    has(code, "16-bit ids=IdWidth::u16|threads=lightbin::Parallel|cones=to_spot")
     exit bad
 }' "$work/said"
 
