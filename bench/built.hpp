@@ -28,10 +28,10 @@ struct Built {
 /// Builds with the slices that the view has for them.
 template <lightbin::Options options, class Any>
 Built build(lightbin::Binner<options>& binner, const TiledView& view, const std::vector<Any>& lights,
-            const lightbin::ZBounds& bounds, const lightbin::Parallel& threads = {}) {
+            const lightbin::ZBounds& bounds) {
     constexpr bool z_bins = options.slicing == lightbin::Slicing::z_bins;
     const lightbin::Slices& slices = z_bins ? view.z_bins : view.clusters;
-    const auto grid = *binner.bin(view.view, lights, lightbin::inputs_for<options>(bounds, slices), threads);
+    const auto grid = *binner.bin(view.view, lights, lightbin::inputs_for<options>(bounds, slices));
     Built built = {grid.ranges(), grid.ranges().size_bytes() + grid.ids().size_bytes()};
     if constexpr (options.slicing != lightbin::Slicing::none) built.slices = &slices;
     if constexpr (options.ids == lightbin::IdWidth::u32) built.ids = grid.ids();
@@ -45,8 +45,8 @@ Built build(lightbin::Binner<options>& binner, const TiledView& view, const std:
 
 template <lightbin::Options options>
 Built build(lightbin::Binner<options>& binner, const TiledView& view, const LightSet& lights,
-            const lightbin::ZBounds& bounds, const lightbin::Parallel& threads = {}) {
-    return std::visit([&](const auto& any) { return build(binner, view, any, bounds, threads); }, lights);
+            const lightbin::ZBounds& bounds) {
+    return std::visit([&](const auto& any) { return build(binner, view, any, bounds); }, lights);
 }
 
 /// Light evaluations of all drawn pixels: with clusters those of the pixel's cell, with z-bins those of its tile whose

@@ -28,9 +28,6 @@
 #       spots, by half angle; and what building them takes, as a ratio to as many spheres whose lists are as long: of the
 #       cases with all of the WORDs in their names, as in `spots --time spots20/10000 box avx2`. A minute and a half, --quick
 #       ten seconds. Writes build/bench/spots_tightness.csv and spots_time.csv.
-#   ablation [--quick] [SCENE.glb ...]
-#       What each part of the library costs and saves: in how many kinds of scenes it pays. Writes build/bench/ablation.csv,
-#       a row for each part and scene.
 #   advise [--quick] [--avx2 | --sse2 | --scalar] [SCENE.glb ...]
 #       What the plan that advise() chooses costs beside the best of all, with Z bounds and without, the same of
 #       advise_slices(), and how long asking takes beside a plain build; on the machine's widest instruction set or the
@@ -56,7 +53,7 @@ cd "$(dirname "$0")/.."
 
 program=binning
 case ${1-} in
-binning | report | error | ablation | advise | frames | spots | stability)
+binning | report | error | advise | frames | spots | stability)
     program=$1
     shift
     ;;

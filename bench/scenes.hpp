@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Kinds of scene that ask different things of the binning: what the reports on error and on leaving out run
-// over. Each is a camera, triangles that make its depth buffer, and as many light sets as are asked for.
+// Kinds of scene that ask different things of the binning. Each is a camera, triangles that make its depth buffer, and as
+// many light sets as are asked for.
 #pragma once
 
 #include "dice.hpp"
@@ -348,7 +348,7 @@ inline std::vector<BenchScene> spot_scenes() {
     return {scenes::street_lamps(), scenes::stage(), scenes::car_park()};
 }
 
-/// The kinds of the ablation.
+/// One scene of each kind.
 inline std::vector<BenchScene> scene_kinds() {
     std::vector<BenchScene> kinds = {scenes::few_lights(),  scenes::field_with_depth(), scenes::top_down(),
                                      scenes::street(),      scenes::corridor(),         scenes::foliage(),
