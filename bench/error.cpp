@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
-// What each rung of the ladder lists beyond the exact set, and whether it misses any of it: every pair of a tile and a light
-// decided in exact arithmetic. Writes error.csv, and cluster_error.csv: the same of clusters.
+// What lists have beyond the exact set, and whether they miss any of it: every pair of a cell and a light decided in exact
+// arithmetic, of each method of the ladder and of clusters; and of single spots by half angle. Writes error.csv and
+// spots_error.csv.
 //
-// Columns of the first, a row for each scene (all views of it together), tile size and rung:
-//   misses          entries that the rung must have and lacks, in `verdicts` pairs of a tile and a light: every pair there
+// Columns of the first, a row for each scene (all views of it together), tile size and method:
+//   misses          entries that the method must have and lacks, in `verdicts` pairs of a cell and a light: every pair there
 //                   is (by_rationals: questions left to the rationals; open: such about spots that no certificate was found
 //                   for)
-//   exact           pairs whose light meets the tile's cell between its Z bounds, its gap left out
+//   exact           pairs whose light meets the cell between its Z bounds, its gap left out
 //   excess          entries / exact - 1
-//   margin          entries / entries of the same rung in exact arithmetic: what rounding outward adds; for
+//   margin          entries / entries of the same method in exact arithmetic: what rounding outward adds; for
 //                   silhouettes, also what keeping some lights' rectangles adds. Not where there are spots
 #include "arguments.hpp"
-#include "cluster_error.hpp"
 #include "console.hpp"
 #include "exact_pairs.hpp"
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
+#include "spots_error.hpp"
 #include "tiled_view.hpp"
 
 #include <cmath>
@@ -23,102 +24,164 @@
 
 namespace {
 
+using lightbin::Slicing;
+
+/// A row of error.csv.
+struct Row {
+    std::string scene;
+    std::size_t views;
+    int tile_size;
+    Method method;
+    Slicing slicing;
+    bool spots;
+    std::uint64_t misses = 0, verdicts = 0, by_rationals = 0, open = 0;
+    std::uint64_t entries = 0, exact = 0;
+    std::uint64_t unrounded = 0;  ///< entries in exact arithmetic
+
+    static double part(std::uint64_t a, std::uint64_t b) {
+        return static_cast<double>(a) / static_cast<double>(b);
+    }
+    double excess() const { return part(entries, exact) - 1; }
+    double margin() const { return spots ? std::nan("") : part(entries, unrounded); }
+
+    /// Adds what is true of a grid's cells, whose lists are list_of(tile).
+    template <class ListOf> void add(const ExactPairs& truth, ListOf list_of) {
+        verdicts += truth.verdicts, by_rationals += truth.by_rationals, open += truth.open;
+        const bool clusters = slicing == Slicing::clusters;
+        for (std::size_t tile = 0; tile < truth.tiles.size(); ++tile) {
+            const std::span<const std::uint32_t> list = list_of(tile);
+            entries += list.size();
+            for_each_listed(truth.tiles[tile], list, [&](const Pair& pair, bool listed) {
+                exact += (pair.facts & (clusters ? in_cell : in_split)) != 0;
+                unrounded += keeps(pair.facts);
+                misses += !listed && (pair.facts & (clusters ? in_cell : must_be_met(method.depth_test)));
+            });
+        }
+    }
+
+private:
+    /// Whether the method has this pair when nothing is rounded. Clusters test a light's depths, at least.
+    bool keeps(std::uint32_t facts) const {
+        constexpr std::uint32_t needed[] = {0, by_interval, by_box, by_split_box};
+        std::uint32_t depth = needed[static_cast<int>(method.depth_test)];
+        if (slicing == Slicing::clusters && depth == 0) depth = by_interval;
+        return (facts & depth) == depth &&
+               (method.footprint == Footprint::rectangle || (facts & in_pyramid) != 0);
+    }
+};
+
 struct Case {
     std::string name;
     std::vector<SeenScene> views;
 };
 
-struct Row {
-    std::uint64_t misses = 0, entries = 0, unrounded = 0;
-};
-
-/// Sums over a case's views.
-struct Report {
-    std::vector<Row> rows{std::size(ladder)};
-    std::uint64_t verdicts = 0, by_rationals = 0, exact = 0, open = 0;
-};
-
-/// Whether a rung has this pair when nothing is rounded, and whether it must.
-bool keeps(const Method& method, std::uint32_t facts) {
-    constexpr std::uint32_t needed[] = {0, by_interval, by_box, by_split_box};
-    const std::uint32_t depth = needed[static_cast<int>(method.depth_test)];
-    return (facts & depth) == depth &&
-           (method.footprint == Footprint::rectangle || (facts & in_pyramid) != 0);
+/// The rows of a case, a method each.
+std::vector<Row> rows_of(const Case& scene, int tile_size) {
+    std::vector<Row> rows;
+    for (const Method& method : ladder)
+        rows.push_back({scene.name, scene.views.size(), tile_size, method, Slicing::none,
+                        static_cast<bool>(scene.views[0].scene.spots)});
+    for (const SeenScene& seen : scene.views)
+        std::visit(
+            [&](const auto& lights) {
+                const TiledView view(seen.scene, seen.picture, tile_size);
+                const ExactPairs truth = ExactDecider(seen.scene.projection, seen.picture.size, tile_size)
+                                             .pairs(lights, view.bounds());
+                Ladder().for_each([&](std::size_t rung, auto& bin) {
+                    const auto grid = bin(view, lights);
+                    rows[rung].add(truth, [&](std::size_t tile) {
+                        return grid.ids().subspan(grid.ranges()[tile].offset, grid.ranges()[tile].count);
+                    });
+                });
+            },
+            seen.scene.light_set(0));
+    return rows;
 }
 
-/// Counts what the rungs list for one view against what they ought to.
-template <class Any>
-void count(const SeenScene& seen, const std::vector<Any>& lights, int tile_size, Report& report) {
-    const TiledView view(seen.scene, seen.picture, tile_size);
-    const ExactPairs truth =
-        ExactDecider(seen.scene.projection, seen.picture.size, tile_size).pairs(lights, view.bounds());
-    report.verdicts += truth.verdicts;
-    report.open += truth.open;
-    report.by_rationals += truth.by_rationals;
-    for (const std::vector<Pair>& pairs : truth.tiles)
-        for (const Pair& pair : pairs)
-            report.exact += (pair.facts & in_split) != 0;
-
-    Ladder().for_each([&](std::size_t rung, auto& bin) {
-        const Method& method = ladder[rung];
-        Row& row = report.rows[rung];
-        const auto grid = bin(view, lights);
-        row.entries += grid.ids().size();
-        for (std::size_t tile = 0; tile < truth.tiles.size(); ++tile) {
-            const lightbin::ListRange list = grid.ranges()[tile];
-            for_each_listed(truth.tiles[tile], grid.ids().subspan(list.offset, list.count),
-                            [&](const Pair& pair, bool listed) {
-                                row.unrounded += keeps(method, pair.facts);
-                                row.misses += !listed && (pair.facts & must_be_met(method.depth_test));
-                            });
-        }
-    });
+/// Of a field of lights, a row with the slab of each slice and one with the box of each cell.
+template <DepthTest depth_test>
+Row row_of_clusters(const std::string& name, const Lights& lights, ExactDecider& decider) {
+    constexpr int tile_size = 64;
+    const lightbin::Slices slices = cluster_slices();
+    const lightbin::View view = made_view(tile_size);
+    lightbin::Binner<lightbin::Options{.depth_test = depth_test, .slicing = Slicing::clusters}> binner;
+    const auto grid = *binner.bin(view, lights, {.slices = slices});
+    Row row = {name, 1, tile_size, {Footprint::rectangle, depth_test}, Slicing::clusters, false};
+    for (int slice = 0; slice < slices.count(); ++slice)
+        row.add(pairs_in(decider, view, slices, slice, lights), [&](std::size_t tile) {
+            const int x = int(tile) % grid.tiles_x(), y = int(tile) / grid.tiles_x();
+            return grid.lights_in(x, y, slice);
+        });
+    return row;
 }
 
-/// What is said of a rung, over all scenes and tile sizes.
-struct Said {
-    std::string scene;
-    int tile_size;
-    double excess, margin;  ///< margin: NaN where there are spots
-};
-
-void write(std::FILE* csv, const Case& scene, int tile_size, const Report& report,
-           std::vector<std::vector<Said>>& said) {
-    for (std::size_t rung = 0; rung < std::size(ladder); ++rung) {
-        const Row& row = report.rows[rung];
-        const auto part = [](auto a, auto b) { return static_cast<double>(a) / static_cast<double>(b); };
-        const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
-        const double excess = part(row.entries, report.exact) - 1,
-                     margin = scene.views[0].scene.spots ? std::nan("") : part(row.entries, row.unrounded);
-        std::fprintf(csv, "%s,%zu,%d,%s,%s,%llu,%llu,%llu,%llu,%llu,%llu,%.5f,%.6f\n", scene.name.c_str(),
-                     scene.views.size(), tile_size, to_string(ladder[rung].footprint),
-                     to_string(ladder[rung].depth_test), number(row.misses), number(report.verdicts),
-                     number(report.by_rationals), number(report.open), number(row.entries),
-                     number(report.exact), excess, margin);
-        said[rung].push_back({scene.name, tile_size, excess, margin});
+std::vector<Row> rows_of_clusters(bool quick) {
+    std::vector<Row> rows;
+    ExactDecider decider = made_decider(64);
+    for (const auto& [name, median] :
+         {std::pair("field4", field4_median), {"field20", field20_median}, {"field200", field200_median}}) {
+        const Lights lights = field(quick ? 500 : 4096, median, 1);
+        rows.push_back(row_of_clusters<DepthTest::none>(name, lights, decider));
+        rows.push_back(row_of_clusters<DepthTest::box>(name, lights, decider));
     }
+    return rows;
+}
+
+void write(std::FILE* csv, const std::vector<Row>& rows) {
+    const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
+    for (const Row& row : rows)
+        std::fprintf(csv, "%s,%zu,%d,%s,%s,%s,%llu,%llu,%llu,%llu,%llu,%llu,%.5f,%.6f\n", row.scene.c_str(),
+                     row.views, row.tile_size, to_string(row.method.footprint),
+                     to_string(row.method.depth_test), to_string(row.slicing), number(row.misses),
+                     number(row.verdicts), number(row.by_rationals), number(row.open), number(row.entries),
+                     number(row.exact), row.excess(), row.margin());
     std::fflush(csv);
 }
 
-/// A row a rung: the median of the scenes at each tile size, and the worst of all.
-std::vector<TableRow> table(const std::vector<std::vector<Said>>& said, const std::vector<int>& tile_sizes) {
-    std::vector<TableRow> rows = {{"footprint", "depth test"}};
+/// The rows of one method, of all scenes and tile sizes or one.
+std::vector<Row> of_method(const std::vector<Row>& rows, std::size_t rung, int tile_size = 0) {
+    std::vector<Row> its = rows;
+    std::erase_if(its, [&](const Row& row) {
+        return row.method.footprint != ladder[rung].footprint ||
+               row.method.depth_test != ladder[rung].depth_test ||
+               (tile_size != 0 && row.tile_size != tile_size);
+    });
+    return its;
+}
+
+double median_excess(const std::vector<Row>& rows) {
+    std::vector<double> excess;
+    for (const Row& row : rows)
+        excess.push_back(100 * row.excess());
+    return median(excess);
+}
+
+/// A row a method: the median of the scenes at each tile size, and the worst of all.
+std::vector<TableRow> table(const std::vector<Row>& rows, const std::vector<int>& tile_sizes) {
+    std::vector<TableRow> all = {{"footprint", "depth test"}};
     for (const int tile_size : tile_sizes)
-        rows[0].push_back(text("%d px", tile_size));
-    rows[0].push_back("worst");
-    for (std::size_t rung = 0; rung < said.size(); ++rung) {
+        all[0].push_back(text("%d px", tile_size));
+    all[0].push_back("worst");
+    for (std::size_t rung = 0; rung < std::size(ladder); ++rung) {
         TableRow row = {to_string(ladder[rung].footprint), to_string(ladder[rung].depth_test)};
-        for (const int tile_size : tile_sizes) {
-            std::vector<double> excess;
-            for (const Said& one : said[rung])
-                if (one.tile_size == tile_size) excess.push_back(one.excess);
-            row.push_back(text("%.1f %%", 100 * median(excess)));
-        }
-        const Said& worst = *std::ranges::max_element(said[rung], {}, &Said::excess);
-        row.push_back(text("%.1f %%, %s at %d px", 100 * worst.excess, worst.scene.c_str(), worst.tile_size));
-        rows.push_back(row);
+        for (const int tile_size : tile_sizes)
+            row.push_back(text("%.1f %%", median_excess(of_method(rows, rung, tile_size))));
+        const std::vector<Row> its = of_method(rows, rung);
+        const Row& worst = *std::ranges::max_element(its, {}, &Row::excess);
+        row.push_back(
+            text("%.1f %%, %s at %d px", 100 * worst.excess(), worst.scene.c_str(), worst.tile_size));
+        all.push_back(row);
     }
-    return rows;
+    return all;
+}
+
+std::vector<TableRow> table_of_clusters(const std::vector<Row>& rows) {
+    std::vector<TableRow> all = {{text("%d clusters of 64 px", cluster_slices().count())}, {"none"}, {"box"}};
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (i % 2 == 0) all[0].push_back(rows[i].scene);
+        all[1 + i % 2].push_back(text("%.0f %%", 100 * rows[i].excess()));
+    }
+    return all;
 }
 
 std::vector<Case> cases(const std::vector<std::string>& paths) {
@@ -145,46 +208,48 @@ int main(int argc, char** argv) try {
     Arguments arguments(argc, argv);
     const bool quick = arguments.take("--quick");
     std::FILE* const csv =
-        open_report("error.csv", "scene,views,tile_px,footprint,depth_test,misses,verdicts,by_rationals,"
-                                 "open,entries,exact,excess,margin");
+        open_report("error.csv", "scene,views,tile_px,footprint,depth_test,slicing,misses,verdicts,"
+                                 "by_rationals,open,entries,exact,excess,margin");
     std::vector<int> tile_sizes = {8, 16, 32, 64};
     if (quick) tile_sizes = {32, 64};
-    std::uint64_t misses = 0, verdicts = 0, open = 0;
-    std::vector<std::vector<Said>> said(std::size(ladder));
-    std::vector<TableRow> clusters;
+    std::vector<Row> rows, clusters;
+    SpotErrors spots;
     {
         Progress progress;
         for (const Case& scene : cases(arguments.scenes_or_fixtures()))
             for (const int tile_size : tile_sizes) {
                 progress(text("%s, %d px", scene.name.c_str(), tile_size));
-                Report report;
-                for (const SeenScene& seen : scene.views)
-                    std::visit([&](const auto& lights) { count(seen, lights, tile_size, report); },
-                               seen.scene.light_set(0));
-                write(csv, scene, tile_size, report, said);
-                verdicts += report.verdicts, open += report.open;
-                for (const Row& row : report.rows)
-                    misses += row.misses;
+                const std::vector<Row> its = rows_of(scene, tile_size);
+                write(csv, its);
+                rows.insert(rows.end(), its.begin(), its.end());
             }
-        std::fclose(csv);
         progress("clusters");
-        misses += report_cluster_errors(quick, clusters);
+        clusters = rows_of_clusters(quick);
+        write(csv, clusters);
+        progress("spots by half angle");
+        spots = measure_spots(quick ? 100 : 1000);
     }
+    std::fclose(csv);
     std::puts("Entries beyond the exact set, median of the scenes\n");
-    print_table(table(said, tile_sizes));
+    print_table(table(rows, tile_sizes));
     std::puts("");
-    print_table(clusters);
-    const auto over_all = [&](std::size_t rung, auto member) {
-        std::vector<double> values;
-        for (const Said& one : said[rung])
-            if (!std::isnan(one.*member)) values.push_back(one.*member);
-        return values;
-    };
+    print_table(table_of_clusters(clusters));
+    std::puts(
+        "\nEntries of a spot over exact pairs of a cell and it, by half angle; in brackets those of whole "
+        "spheres\n");
+    print_table(spots.table);
+
+    std::uint64_t misses = spots.misses, open = spots.open, verdicts = 0;
     double margin = 1;
-    for (std::size_t rung = 0; rung < 4; ++rung)  // of silhouettes it is also some rectangles
-        for (const double value : over_all(rung, &Said::margin))
-            margin = std::max(margin, value);
-    const auto half = [&](std::size_t rung) { return 100 * median(over_all(rung, &Said::excess)); };
+    for (const std::vector<Row>& some : {rows, clusters})
+        for (const Row& row : some) {
+            misses += row.misses;
+            if (row.slicing == Slicing::none && row.method.footprint == Footprint::rectangle && !row.spots)
+                margin = std::max(margin, row.margin());  // of silhouettes it is also some rectangles
+        }
+    for (const Row& row : of_method(rows, 0))
+        verdicts += row.verdicts, open += row.open;
+    const auto half = [&](std::size_t rung) { return median_excess(of_method(rows, rung)); };
     conclude({text("%llu entries missed, clusters counted in; %.2g pairs of a tile and a light were decided, "
                    "%llu left open.",
                    static_cast<unsigned long long>(misses), static_cast<double>(verdicts),
@@ -193,8 +258,11 @@ int main(int argc, char** argv) try {
                    "box %.1f %%, "
                    "split_box %.1f %%.",
                    half(0), half(1), half(2), half(3)),
-              text("Rounding outward adds %.3f %% at most to rectangles' entries.", 100 * (margin - 1))},
-             {"error.csv", "cluster_error.csv"});
+              text("Rounding outward adds %.3f %% at most to rectangles' entries.", 100 * (margin - 1)),
+              text("Whole spheres are listed %.1f to %.0f times as often as the spots in them, in the median "
+                   "%.1f.",
+                   percentile(spots.saved, 0), percentile(spots.saved, 1), median(spots.saved))},
+             {"error.csv", "spots_error.csv"});
     return misses == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 } catch (const std::exception& problem) {
     std::fprintf(stderr, "error: %s\n", problem.what());

@@ -10,12 +10,14 @@
 #include "raster.hpp"
 #include "spot_filter.hpp"
 
+#include <lightbin/slices.hpp>
 #include <lightbin/z_bounds.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -302,3 +304,14 @@ private:
     std::vector<Slopes> column_slopes_, row_slopes_;
     std::uint64_t spot_questions_ = 0, spots_by_rationals_ = 0, open_ = 0;
 };
+
+/// Every pair of a cell of this slice and a light, as of tiles with the slice's boundaries for Z bounds.
+template <class AnyLights>
+ExactPairs pairs_in(ExactDecider& decider, const lightbin::View& view, const lightbin::Slices& slices,
+                    int slice, const AnyLights& lights) {
+    constexpr float endless = std::numeric_limits<float>::infinity();
+    const auto boundary = [&](int i) { return slices.boundaries()[static_cast<std::size_t>(i)]; };
+    const std::vector<float> min(view.tile_count(), slice == 0 ? -endless : boundary(slice - 1)),
+        max(view.tile_count(), slice + 1 == slices.count() ? endless : boundary(slice));
+    return decider.pairs(lights, {.min = min, .max = max});
+}

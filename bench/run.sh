@@ -21,13 +21,9 @@
 #       what the picture loses by where lights end, and where they may for an RMSE of 1 %. A table with verdicts and a
 #       sentence a scene. Four minutes, --quick one. Writes build/bench/report.html and report.csv.
 #   error [--quick] [SCENE.glb ...]
-#       What each footprint and depth test lists beyond the exact set, and what it misses, each pair of a tile and a light
-#       decided in exact arithmetic; of clusters, too. Writes build/bench/error.csv and cluster_error.csv.
-#   spots [--quick] [--tightness | --time] [WORD ...]
-#       What each rung lists of spots beside the exact pairs, as the sphere of their range, as their least sphere and as
-#       spots, by half angle; and what building them takes, as a ratio to as many spheres whose lists are as long: of the
-#       cases with all of the WORDs in their names, as in `spots --time spots20/10000 box avx2`. A minute and a half, --quick
-#       ten seconds. Writes build/bench/spots_tightness.csv and spots_time.csv.
+#       What each footprint and depth test and clusters list beyond the exact set, and what they miss, each pair of a cell and
+#       a light decided in exact arithmetic; and of single spots by half angle, listed as the spheres of their ranges, as
+#       their least spheres and as spots. Writes build/bench/error.csv and spots_error.csv.
 #   advise [--quick] [--avx2 | --sse2 | --scalar] [SCENE.glb ...]
 #       What the plan that advise() chooses costs beside the best of all, with Z bounds and without, the same of
 #       advise_slices(), and how long asking takes beside a plain build; on the machine's widest instruction set or the
@@ -53,7 +49,7 @@ cd "$(dirname "$0")/.."
 
 program=binning
 case ${1-} in
-binning | report | error | advise | frames | spots | stability)
+binning | report | error | advise | frames | stability)
     program=$1
     shift
     ;;
@@ -61,7 +57,6 @@ esac
 options="--quick" words="scenes (.glb)" pattern='.*\.glb'
 case $program in
 binning) options="--quick --benchmark_..." ;;
-spots) options="--quick --tightness --time" words=words pattern='[^-].*' ;;
 advise) options="--quick --avx2 --sse2 --scalar" ;;
 frames) options="--quick --counts --pictures --into=..." ;;
 report) options="--quick --evaluation-ns" words="a number, scenes (.glb)" pattern='.*\.glb|[0-9.]+' ;;
