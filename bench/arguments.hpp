@@ -15,13 +15,16 @@ public:
     /// Whether an option is there. Takes it away.
     bool take(std::string_view option) { return std::erase(words_, option) > 0; }
 
-    /// The word after an option, or `otherwise`. Takes both away.
+    /// The value of an option, which stands behind its "=" or is the next word; or `otherwise`. Takes both away.
     std::string take(std::string_view option, std::string otherwise) {
-        const auto at = std::find(words_.begin(), words_.end(), option);
+        const auto at = std::ranges::find_if(
+            words_, [&](const std::string& word) { return word.substr(0, word.find('=')) == option; });
         if (at == words_.end()) return otherwise;
-        if (at + 1 == words_.end()) throw std::runtime_error(std::string(option) + " needs a value");
-        otherwise = at[1];
-        words_.erase(at, at + 2);
+        const std::size_t value = at->find('=');
+        if (value == std::string::npos && at + 1 == words_.end())
+            throw std::runtime_error(std::string(option) + " needs a value");
+        otherwise = value == std::string::npos ? at[1] : at->substr(value + 1);
+        words_.erase(at, at + (value == std::string::npos ? 2 : 1));
         return otherwise;
     }
 

@@ -1,35 +1,39 @@
 // SPDX-License-Identifier: MIT
-// A whole build, spheres in to lists out, against the flat baseline measured in turns in the same run, on rotating light
+// A whole build, lights in to lists out, against the flat baseline measured in turns in the same run, on rotating light
 // sets; with clusters and z-bins; from world space and structs against view-space vec4s; of several views; spots against
-// spheres. Says how many of the project's goals are met and which are missed by most, and writes binning.csv,
-// binning_slices.csv, binning_sources.csv, binning_views.csv, binning_spots.csv and binning_goals.csv.
+// spheres. Says how many of the project's goals are met and which are missed by most, and writes binning.csv and
+// binning_goals.csv.
+#include "arguments.hpp"
+#include "builds.hpp"
 #include "console.hpp"
 #include "flat.hpp"
 #include "gains.hpp"
 #include "glb_scenes.hpp"
 #include "goals.hpp"
 #include "lens.hpp"
-#include "measure.hpp"
 #include "memory.hpp"
-#include "reference.hpp"
-#include "several_views.hpp"
-#include "slicing.hpp"
 #include "sources.hpp"
-#include "spots_time.hpp"
+#include "spots_sets.hpp"
 #include "tiers.hpp"
+#include "turns.hpp"
 #include "world.hpp"
 
 #include <lightbin/binner.hpp>
+#include <lightbin/encode.hpp>
 
-#include <benchmark/benchmark.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <functional>
+#include <regex>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -44,156 +48,69 @@ using lightbin::Options;
 using lightbin::Slicing;
 
 double seconds_a_case = 0.3;
-std::vector<Result> results;
-std::vector<SlicingResult> slicing_results;
-std::vector<SourceResult> source_results;
-std::vector<SeveralViewsResult> several_views_results;
-std::vector<SpotTime> spot_times;
+std::vector<Timed> results;
 
-template <class Frame> using Make = std::function<std::vector<Frame>()>;
-
+/// What is timed on one instruction set, and the name that a filter finds it by.
 struct Case {
-    std::string set;
+    std::string name;
+    std::function<void()> time;
+};
+std::vector<Case> cases;
+
+template <class AnyFrame> using Make = std::function<std::vector<AnyFrame>()>;
+
+/// Light sets that are met in turn. They are made where they are asked for.
+template <class AnyFrame> struct Set {
+    std::string name;
     std::size_t lights;
-    int tile_size;
-    Make<Frame> frames;
-    int threads = 1;
-};
+    Make<AnyFrame> make;
 
-/// What `make` makes, kept while those who follow ask for the same.
-template <class Frame>
-const std::vector<Frame>& keep_frames(const std::string& key, const Make<Frame>& make) {
-    static std::vector<Frame> frames;
-    static std::string kept;
-    if (kept != key) {
-        frames.clear();
-        frames = make();
-        kept = key;
-    }
-    return frames;
-}
+    std::string full_name() const { return name + "/" + std::to_string(lights); }
 
-const std::vector<Frame>& frames_of(const Case& which) {
-    return keep_frames(which.set + "/" + std::to_string(which.lights), which.frames);
-}
-
-/// The frames of a case, ready to be built by lightbin and by the baseline.
-template <Options options> class Builds {
-public:
-    using Id = typename lightbin::Binner<options>::Id;
-
-    explicit Builds(const Case& which)
-        : frames_(frames_of(which)), tile_size_(which.tile_size), made_(which.tile_size) {
-        // One view for all frames that have it in common, as a program would: it stays in the cache.
-        for (std::size_t i = 0; i < frames_.size(); ++i) {
-            if (i == 0 || !frames_[i].lens.same(frames_[i - 1].lens)) {
-                views_.push_back(frames_[i].lens.view(tile_size_));
-                flat_views_.push_back(frames_[i].lens.flat_view(tile_size_));
-            }
-            view_of_.push_back(views_.size() - 1);
+    /// What `make` makes, kept while those who follow ask for the same.
+    const std::vector<AnyFrame>& frames() const {
+        static std::vector<AnyFrame> frames;
+        static std::string kept;
+        if (kept != full_name()) {
+            frames.clear();
+            frames = make();
+            kept = full_name();
         }
+        return frames;
     }
-
-    std::size_t count() const { return frames_.size(); }
-    const Lights& lights(std::size_t frame) const { return frames_[frame].lights; }
-    std::size_t table_bytes() const { return sizeof(lightbin::ListRange) * views_[0].tile_count(); }
-
-    lightbin::LightGrid<Id> ours(const lightbin::Parallel& threads, std::size_t frame) {
-        return *binner_.bin(views_[view_of_[frame]], frames_[frame].lights,
-                            lightbin::inputs_for<options>(made_.bounds), threads);
-    }
-    /// The baseline, which has the depth test `interval` too.
-    void theirs(std::size_t frame) {
-        flat_.build<options.depth_test == DepthTest::interval>(
-            flat_views_[view_of_[frame]], frames_[frame].lights, made_.min.data(), made_.max.data());
-    }
-    void verify_first(const lightbin::Parallel& threads) {
-        verify(frames_[0], tile_size_, ours(threads, 0), options, made_.bounds);
-    }
-
-private:
-    const std::vector<Frame>& frames_;
-    int tile_size_;
-    MadeBounds made_;
-    std::vector<lightbin::View> views_;
-    std::vector<FlatView> flat_views_;
-    std::vector<std::size_t> view_of_;  ///< of each frame
-    Flat<float> flat_;
-    lightbin::Binner<options> binner_;
 };
 
-/// Seconds of each turn.
-struct Times {
-    std::vector<double> ours, theirs, stores, clears, reads, ratios;
-    double entries = 0;        ///< that ours made in a turn, in the mean
-    std::size_t together = 1;  ///< frames a turn
-};
-
-/// Times one case. In turns: the baseline, ours, storing the list once, clearing the tile table, and of a million lights
-/// reading them. Each time a few frames together where one is too short for the clock. Whether ours comes first
-/// alternates, as the second finds the lights in the cache; reading them comes where ours does not.
-template <Options options>
-Times time_in_turns(Builds<options>& builds, std::size_t lights, const lightbin::Parallel& parallel) {
-    constexpr std::size_t id_size = sizeof(typename Builds<options>::Id);
-    Times times;
-    times.together = std::max<std::size_t>(1, 256 / std::max<std::size_t>(lights, 1));
-    std::vector<char> list, table(builds.table_bytes());
-    double spent = 0;
-    std::size_t turn = 0;
-    while (spent < seconds_a_case || times.ours.size() < 5) {
-        const std::size_t first = turn++ * times.together;
-        std::size_t written = 0;
-        const auto each = [&](auto work) {
-            for (std::size_t i = 0; i < times.together; ++i)
-                work((first + i) % builds.count());
-        };
-        const auto time_ours = [&] {
-            times.ours.push_back(seconds([&] {
-                each([&](std::size_t frame) { written += builds.ours(parallel, frame).ids().size(); });
-            }));
-        };
-        const auto time_reads = [&] {
-            if (lights >= 1000000)
-                times.reads.push_back(seconds([&] { read(builds.lights(first % builds.count())); }));
-        };
-        turn % 2 == 0 ? time_ours() : time_reads();
-        times.theirs.push_back(seconds([&] { each([&](std::size_t frame) { builds.theirs(frame); }); }));
-        turn % 2 == 1 ? time_ours() : time_reads();
-        times.entries += double(written);
-        written *= id_size;
-        list.resize(std::max(list.size(), written));
-        times.stores.push_back(seconds([&] {
-            const std::size_t share = written / parallel.workers();
-            parallel.run(parallel.workers(), [&](std::size_t i) { fill(list.data() + i * share, share); });
-        }));
-        times.clears.push_back(
-            seconds([&] { each([&](std::size_t) { fill(table.data(), table.size()); }); }));
-        times.ratios.push_back(times.ours.back() / times.theirs.back());
-        spent += times.ours.back() + times.theirs.back() + times.stores.back();
-    }
-    times.entries /= double(turn);
-    return times;
+/// The frames of a set of so many lights of a field, or beside the eye.
+template <class MakeLights>
+Set<Frame> made_set(const std::string& name, std::size_t count, MakeLights make, Lens lens = {}) {
+    return {
+        name, count, [=] {
+            return frames_in_turn(count, [&](std::uint32_t seed) { return Frame{lens, make(count, seed)}; });
+        }};
+}
+Set<Frame> field_set(const std::string& name, float median, std::size_t count) {
+    return made_set(name, count, [=](std::size_t n, std::uint32_t seed) { return field(n, median, seed); });
 }
 
-Result result_of(const Case& which, const Options& options, const Times& times) {
-    const double lights = double(std::max<std::size_t>(which.lights, 1) * times.together),
-                 ns = 1e9 * median(times.ours);
-    return {.set = which.set,
-            .lights = which.lights,
-            .tile_size = which.tile_size,
-            .footprint = to_string(options.footprint),
-            .depth_test = to_string(options.depth_test),
-            .tier = to_string(options.isa),
-            .threads = which.threads,
-            .ns_per_light = ns / lights,
-            .ns_per_entry = ns / std::max(times.entries, 1.0),
-            .ratio = ns / (1e9 * median(times.theirs)),
-            .spread = percentile(times.ratios, 0.9) - percentile(times.ratios, 0.1),
-            .entries_per_light = times.entries / lights,
-            .store_ratio = ns / (1e9 * median(times.stores)),
-            .clear_ratio = ns / (1e9 * median(times.clears)),
-            .read_ratio = times.reads.empty() ? 0 : ns / (1e9 * median(times.reads)),
-            .gains = {}};
+void add_result(const std::string& name, const Options& options, const char* to, const Turns& turns,
+                std::size_t of, std::size_t other, std::size_t lights) {
+    const double count = double(std::max<std::size_t>(lights, 1));
+    results.push_back({name, to_string(options.isa), to, turns.ratio(of, other), turns.spread(of, other),
+                       1e9 * turns.seconds_a_frame(of) / count, turns.made_a_frame(of) / count});
+}
+
+/// Stops the run where two works that ought to make the same lists make lists of another length.
+void check_same_length(const std::string& name, std::size_t ours, std::size_t theirs) {
+    if (std::abs(double(ours) - double(theirs)) > 0.01 * double(theirs) + 16)
+        throw std::runtime_error(name +
+                                 text(": %zu entries, and %zu of what it is held against", ours, theirs));
+}
+
+/// Adds a case for each instruction set that this machine has: time.operator()<options with that set>(name).
+template <Options options, class Time> void add_cases(const std::string& name, Time time) {
+    each_tier<options>([&]<Options one>() {
+        cases.push_back({name + "/" + to_string(one.isa), [=] { time.template operator()<one>(name); }});
+    });
 }
 
 /// lightbin's work on at most so many of oneTBB's threads.
@@ -208,202 +125,242 @@ private:
     tbb::task_arena arena_;
 };
 
-/// Verifies one case, times it, and where it has threads measures what they gain.
-template <Options options> void build(benchmark::State& state, const Case& which) {
-    TbbLoop loop(which.threads);
-    const lightbin::Parallel parallel =
-        which.threads > 1 ? lightbin::Parallel(std::size_t(which.threads), loop) : lightbin::Parallel();
-    Builds<options> builds(which);
-    builds.verify_first(parallel);
-    Times times;
-    for (auto _ : state) {
-        times = time_in_turns(builds, which.lights, parallel);
-        state.SetIterationTime(median(times.ours) / double(times.together));
+/// The views of frames. Those that frames have in common are one, as a program would have it: it stays in the cache.
+struct FrameViews {
+    FrameViews(const std::vector<Frame>& frames, int tile_size) : first(frames.data()) {
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            if (i == 0 || !frames[i].lens.same(frames[i - 1].lens)) {
+                views.push_back(frames[i].lens.view(tile_size));
+                flat_views.push_back(frames[i].lens.flat_view(tile_size));
+            }
+            view_of.push_back(views.size() - 1);
+        }
     }
-    Result result = result_of(which, options, times);
-    if (which.threads > 1)
-        result.gains =
-            measure_gains(parallel, seconds_a_case, [&](const lightbin::Parallel& threads, std::size_t turn) {
-                return builds.ours(threads, turn % builds.count()).ids().size_bytes();
-            });
-    results.push_back(result);
-}
+    const lightbin::View& view(const Frame& frame) const { return views[at(frame)]; }
+    const FlatView& flat_view(const Frame& frame) const { return flat_views[at(frame)]; }
+    std::size_t at(const Frame& frame) const { return view_of[static_cast<std::size_t>(&frame - first)]; }
 
-template <Options options> void build_slices(benchmark::State& state, const Case& which) {
-    const std::vector<Frame>& frames = frames_of(which);
-    for (auto _ : state) {
-        if constexpr (options.slicing == Slicing::clusters)
-            slicing_results.push_back(time_clusters<options>(which.set, frames, seconds_a_case));
-        else
-            slicing_results.push_back(time_z_bins<options>(which.set, frames, seconds_a_case));
-        state.SetIterationTime(1e-9 * slicing_results.back().ns_per_light * double(which.lights));
-    }
-}
-
-/// The same set in world space and in structs.
-struct SourceCase {
-    std::string set;
-    Make<WorldFrame> frames;
+    const Frame* first;
+    std::vector<lightbin::View> views;
+    std::vector<FlatView> flat_views;
+    std::vector<std::size_t> view_of;
 };
 
-template <Options options> void build_sources(benchmark::State& state, const SourceCase& which) {
-    const std::vector<WorldFrame>& frames = keep_frames(which.set, which.frames);
-    for (auto _ : state) {
-        source_results.push_back(time_sources<options>(which.set, 32, frames, seconds_a_case));
-        state.SetIterationTime(source_results.back().seconds[world_vec4s]);
+/// A build against the baseline, which has the depth test `interval` too; against clearing the tile table, and of a million
+/// lights against reading them. Then what threads gain, if there are several.
+template <Options options>
+void time_build(const std::string& name, const Set<Frame>& set, int tile_size, int thread_count) {
+    const std::vector<Frame>& frames = set.frames();
+    const FrameViews views(frames, tile_size);
+    TbbLoop loop(thread_count);
+    const lightbin::Parallel threads =
+        thread_count > 1 ? lightbin::Parallel(std::size_t(thread_count), loop) : lightbin::Parallel();
+    Build<options> build(tile_size);
+    const MadeBounds& made = build.made();
+    Flat<float> flat;
+    std::vector<char> table(sizeof(lightbin::ListRange) * views.views[0].tile_count());
+    std::vector<Work<Frame>> works = {
+        [&](const Frame& frame) { return build(views.view(frame), frame.lights, threads); },
+        [&](const Frame& frame) {
+            flat.build<options.depth_test == DepthTest::interval>(views.flat_view(frame), frame.lights,
+                                                                  made.min.data(), made.max.data());
+            return flat.indices.size();
+        },
+        [&](const Frame&) {
+            fill(table.data(), table.size());
+            return std::size_t{0};
+        }};
+    if (set.lights >= 1000000)
+        works.push_back([](const Frame& frame) {
+            read(frame.lights);
+            return std::size_t{0};
+        });
+    if (options.footprint == Footprint::rectangle &&
+        (options.depth_test == DepthTest::none || options.depth_test == DepthTest::interval))
+        check_same_length(name, works[0](frames[0]), works[1](frames[0]));
+    const Turns turns = take_turns(frames, seconds_a_case, works);
+    add_result(name, options, "flat", turns, 0, 1, set.lights);
+    add_result(name, options, "clearing", turns, 0, 2, set.lights);
+    if (works.size() > 3) add_result(name, options, "reading", turns, 0, 3, set.lights);
+    if (thread_count == 1) return;
+    const Gains gains =
+        measure_gains(threads, seconds_a_case, [&](const lightbin::Parallel& some_threads, std::size_t turn) {
+            const Frame& frame = frames[turn % frames.size()];
+            return build(views.view(frame), frame.lights, some_threads);
+        });
+    for (const auto& [to, gain] :
+         {std::pair("one", gains.awake), {"one, from sleep", gains.asleep}, {"one, arithmetic", gains.sums}})
+        results.push_back({name, to_string(options.isa), to, gain, 0});
+}
+
+/// Clusters against the baseline; z-bins against the same build without them, and bitmasks without lists against building
+/// lists and encoding those.
+template <Options options> void time_slices(const std::string& name, const Set<Frame>& set) {
+    constexpr bool clusters = options.slicing == Slicing::clusters;
+    constexpr Options without = [] {
+        Options plain = options;
+        plain.slicing = Slicing::none;
+        return plain;
+    }();
+    const std::vector<Frame>& frames = set.frames();
+    const lightbin::View view = Lens().view(usual_tile_size(options));
+    const FlatView flat_view = Lens().flat_view(32);
+    Build<options> build(usual_tile_size(options));
+    Build<without> plain(usual_tile_size(options));
+    Flat<float> flat;
+    const Work<Frame> ours = [&](const Frame&frame) { return build(view, frame.lights); },
+                      theirs = [&](const Frame&frame) {
+                          if (!clusters) return plain(view, frame.lights);
+                          flat.build<false>(flat_view, frame.lights, nullptr, nullptr);
+                          return flat.indices.size();
+                      };
+    add_result(name, options, clusters ? "flat" : "none", take_turns(frames, seconds_a_case, {ours, theirs}),
+               0, 1, set.lights);
+    if constexpr (options.slicing == Slicing::z_bins) {
+        if (set.lights > 1024) return;
+        const lightbin::ListFormat format = {.encoding = lightbin::ListEncoding::bitmask, .max_lights = 1024};
+        std::vector<std::uint32_t> bits(lightbin::encoded_bytes(format, view.tile_count(), 0) / 4);
+        const Work<Frame> write = [&](const Frame& frame) {
+            return build.binner()
+                .bin_bits(view, frame.lights, format.max_lights, bits, {.slices = build.slices()})
+                .has_value();
+        };
+        const Work<Frame> encode = [&](const Frame& frame) {
+            return lightbin::encode(build.grid(view, frame.lights), format,
+                                    std::as_writable_bytes(std::span(bits)))
+                .has_value();
+        };
+        add_result(name, options, "bits: encoding", take_turns(frames, seconds_a_case, {write, encode}), 0, 1,
+                   set.lights);
     }
 }
 
-template <Options options> void build_views(benchmark::State& state, const SourceCase& which) {
-    const std::vector<WorldFrame>& frames = keep_frames(which.set, which.frames);
-    for (auto _ : state) {
-        for (const SeveralViews& views : {two_eyes(frames[0].view.lens), cube_faces()})
-            several_views_results.push_back(
-                time_several_views<options>(views, which.set, 32, frames, seconds_a_case));
-        state.SetIterationTime(several_views_results.back().all);
+/// Each form of the lights against view-space vec4s and a loop of one's own. In a turn they take different frames, so that
+/// none finds its lights where another one left them in the cache.
+template <Options options> void time_sources(const std::string& name, const Set<WorldFrame>& set) {
+    const std::vector<WorldFrame>& frames = set.frames();
+    SourceBuilds<options> builds(frames[0].view.lens, 32);
+    std::vector<Work<WorldFrame>> works;
+    const int sources = frames[0].structs.empty() ? view_structs : loop_structs + 1;
+    for (int i = 0; i < sources; ++i) {
+        const Source source = Source(i);
+        works.push_back([&builds, source](const WorldFrame& frame) { return builds(source, frame); });
+        check_same_length(name, works.back()(frames[0]), works[0](frames[0]));
     }
-}
-
-void build_spots(benchmark::State& state, const SpotTimeCase& which) {
-    for (auto _ : state) {
-        spot_times.push_back(which.time(seconds_a_case));
-        state.SetIterationTime(1e-9 * spot_times.back().ns_per_spot * double(spot_times.back().lights));
-    }
-}
-
-/// Google Benchmark's lines: the case that was measured last, as progress.
-class Names : public benchmark::BenchmarkReporter {
-public:
-    bool ReportContext(const Context&) override { return true; }
-    void ReportRuns(const std::vector<Run>& runs) override { progress_(runs.back().run_name.function_name); }
-
-private:
-    Progress progress_;
-};
-
-/// What the usual build takes, of each made set: 4,096 lights, 32-pixel tiles, no depth test.
-std::string usual_ratios() {
-    std::string all;
-    for (const Result& r : results)
-        if (!r.set.ends_with("-u16") && r.lights == 4096 && r.tile_size == 32 && r.depth_test == "none" &&
-            r.footprint == "rectangle" && r.threads == 1 && r.tier == to_string(lightbin::machine_isa()))
-            all += text("%s %s %.2f (%.2f)", all.empty() ? "" : ",", r.set.c_str(), r.ratio, r.spread);
-    return all;
-}
-
-void print_verdict() {
-    Goals goals;
-    add_goals(results, goals);
-    add_scale_goals(results, goals);
-    add_slicing_goals(slicing_results, goals);
-    add_source_goals(source_results, goals);
-    add_spot_time_goals(spot_times, goals);
-    goals.write_csv("binning_goals.csv");
-    goals.print();
-    std::vector<std::string> verdict;
-    const std::string ratios = usual_ratios();
-    if (!ratios.empty())
-        verdict.push_back(std::string("A build as a ratio to the flat loop, by ") +
-                          to_string(lightbin::machine_isa()) + ", in brackets the spread:" + ratios + ".");
-    if (!goals.empty()) verdict.push_back(goals.sentence());
-    if (!results.empty()) verdict.push_back(slower_tiers(results));
-    if (const std::string gains = gains_of_threads(results); !gains.empty()) verdict.push_back(gains);
-    conclude(verdict, {"binning.csv", "binning_slices.csv", "binning_sources.csv", "binning_views.csv",
-                       "binning_spots.csv", "binning_goals.csv"});
-}
-
-/// `name` is what a filter finds it by.
-template <class Which>
-void add(const std::string& name, void (*run)(benchmark::State&, const Which&), const Which& which) {
-    benchmark::RegisterBenchmark(name.c_str(), run, which)->Iterations(1)->UseManualTime();
-}
-
-template <Options options> void add_build(const Case& which) {
-    visit_tier<options>([&]<Options one>() {
-        add(which.set + "/" + std::to_string(which.lights) + "/" + std::to_string(which.tile_size) + "px/" +
-                to_string(one.footprint) + "/" + to_string(one.depth_test) + "/" + to_string(one.isa) + "/" +
-                std::to_string(which.threads),
-            build<one>, which);
-    });
-}
-
-template <DepthTest depth_test = DepthTest::none, Footprint footprint = Footprint::rectangle,
-          IdWidth ids = IdWidth::u32>
-void add_tiers(const Case& which) {
-    each_tier<{.ids = ids, .footprint = footprint, .depth_test = depth_test}>(
-        [&]<Options one>() { add_build<one>(which); });
-}
-
-template <DepthTest depth_test = DepthTest::none> void add_sources(const SourceCase& which) {
-    each_tier<{.depth_test = depth_test}>([&]<Options one>() {
-        add("sources/" + which.set + "/" + to_string(depth_test) + "/" + to_string(one.isa),
-            build_sources<one>, which);
-    });
-}
-
-template <Slicing slicing, DepthTest depth_test = DepthTest::none> void add_slices(const Case& which) {
-    each_tier<{.depth_test = depth_test, .slicing = slicing}>([&]<Options one>() {
-        add("slices/" + which.set + "/" + std::to_string(which.lights) + "/" + to_string(slicing) + "/" +
-                to_string(depth_test) + "/" + to_string(one.isa),
-            build_slices<one>, which);
-    });
-}
-
-void add_views(const SourceCase& which) {
-    each_tier<{}>([&]<Options one>() {
-        add("views/" + which.set + "/" + to_string(one.isa), build_views<one>, which);
-    });
-}
-
-void add_rungs(const Case& which) {
-    add_tiers<DepthTest::interval>(which);
-    add_tiers<DepthTest::box>(which);
-    add_tiers<DepthTest::split_box>(which);
-    add_tiers<DepthTest::none, Footprint::silhouette>(which);
-    add_tiers<DepthTest::box, Footprint::silhouette>(which);
-}
-
-/// 2, 4, ... threads, as far as the machine has them.
-void add_threads(Case which) {
-    const int most = int(std::thread::hardware_concurrency());
-    for (which.threads = 2; which.threads <= most; which.threads *= 2) {
-#if defined(LIGHTBIN_X86)
-        add_build<Options{.isa = Isa::avx2}>(which);
-#endif
-        add_build<Options{}>(which);
-    }
-}
-
-/// Frames of `count` lights each of one of the made sets.
-template <class MakeLights> Make<Frame> made_frames(std::size_t count, Lens lens, MakeLights make) {
-    return [=] {
-        return frames_in_turn(count, [&](std::uint32_t seed) { return Frame{lens, make(count, seed)}; });
+    const Turns turns = take_turns(frames, seconds_a_case * sources, works, true);
+    const auto add = [&](std::size_t of, std::size_t to) {
+        add_result(name + "/" + source_names[of], options, source_names[to], turns, of, to, set.lights);
     };
+    for (std::size_t source = 0; source < works.size(); ++source)
+        add(source, view_vec4s);
+    add(world_vec4s, loop_vec4s);
+    if (works.size() > world_structs) add(world_structs, loop_structs);
+}
+
+/// Several views of world-space lights, binned one after the other by one Binner, against the first of them, of other
+/// frames.
+template <Options options> void time_views(const std::string& name, const Set<WorldFrame>& set) {
+    const std::vector<WorldFrame>& frames = set.frames();
+    for (const SeveralViews& views : several_views(frames[0].view.lens)) {
+        const lightbin::View view = views.lens.view(32);
+        Build<options> build(32);
+        const auto first_ones = [&](std::size_t count) {
+            return [&, count](const WorldFrame& frame) {
+                std::size_t entries = 0;
+                for (std::size_t i = 0; i < count; ++i)
+                    entries += build(
+                        view, lightbin::world_space(frame.lights, views.from_camera[i] * frame.view_matrix));
+                return entries;
+            };
+        };
+        const Turns turns = take_turns<WorldFrame>(
+            frames, 2 * seconds_a_case, {first_ones(views.from_camera.size()), first_ones(1)}, true);
+        add_result(name + "/" + views.name, options, "the first", turns, 0, 1, set.lights);
+    }
+}
+
+struct SpotSet {
+    const char* name;
+    std::size_t lights;
+    float median_range;
+};
+
+/// Spots against as many spheres whose lists are as long.
+template <Options options> void time_spots(const std::string& name, const SpotSet& set) {
+    constexpr int tile_size = usual_tile_size(options);
+    const lightbin::View view = Lens().view(tile_size);
+    static std::vector<SpotFrame> frames;
+    static std::string kept;  // the lists are the same on every instruction set
+    if (kept != name) {
+        Build<with(options, lightbin::compiled_isa)> widest(tile_size);
+        frames = matched_frames(set.lights, set.median_range,
+                                [&](const auto& lights) { return widest(view, lights); });
+        kept = name;
+    }
+    Build<options> build(tile_size);
+    const Turns turns =
+        take_turns<SpotFrame>(frames, seconds_a_case,
+                              {[&](const SpotFrame& frame) { return build(view, frame.lights); },
+                               [&](const SpotFrame& frame) { return build(view, frame.spheres); }});
+    add_result(name, options, "spheres", turns, 0, 1, set.lights);
+}
+
+template <Options options> std::string method_name() {
+    return std::string(to_string(options.footprint)) + "/" + to_string(options.depth_test);
+}
+
+template <Options options = Options{}>
+void add_builds(const Set<Frame>& set, int tile_size, const std::string& suffix = "") {
+    add_cases<options>(
+        set.name + suffix + text("/%zu/%dpx/", set.lights, tile_size) + method_name<options>(),
+        [=]<Options one>(const std::string& name) { time_build<one>(name, set, tile_size, 1); });
+}
+
+void add_rungs(const Set<Frame>& set, int tile_size) {
+    add_builds<Options{.depth_test = DepthTest::interval}>(set, tile_size);
+    add_builds<Options{.depth_test = DepthTest::box}>(set, tile_size);
+    add_builds<Options{.depth_test = DepthTest::split_box}>(set, tile_size);
+    add_builds<Options{.footprint = Footprint::silhouette}>(set, tile_size);
+    add_builds<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box}>(set, tile_size);
+}
+
+/// 2, 4, ... threads, as far as the machine has them, on the two widest instruction sets.
+void add_threads(const Set<Frame>& set, int tile_size) {
+    const int most = int(std::thread::hardware_concurrency());
+    for (int threads = 2; threads <= most; threads *= 2) {
+        const std::string name = set.full_name() + text("/%dpx/", tile_size) + method_name<Options{}>() +
+                                 text("/%d threads", threads);
+        const auto add = [&]<Options one>() {
+            cases.push_back(
+                {name + "/" + to_string(one.isa), [=] { time_build<one>(name, set, tile_size, threads); }});
+        };
+#if defined(LIGHTBIN_X86)
+        visit_tier<Options{.isa = Isa::avx2}>(add);
+#endif
+        visit_tier<Options{}>(add);
+    }
 }
 
 /// All that is timed of one of the made sets. median 0: the near set.
-void add_set(const std::string& set, float median, double footprint, bool quick) {
+void add_set(const std::string& name, float median, double footprint, bool quick) {
     const auto make = [median](std::size_t count, std::uint32_t seed) {
         return median > 0 ? field(count, median, seed) : near_eye(count, seed);
     };
     const auto add_number = [&](std::size_t n, bool in_goals) {
+        const Set<Frame> set = made_set(name, n, make);
         for (const int tile : {8, 16, 32, 64}) {
             const bool often = tile == 16 || tile == 32;
             if (tile != 32 && (!in_goals || (quick && !often))) continue;
             if (footprint * double(n) * 1024 / (tile * tile) > 6e7) continue;  // gigabytes of lists
-            const Case which = {set, n, tile, made_frames(n, {}, make)};
-            add_tiers(which);
+            add_builds(set, tile);
             if (in_goals && often && (median == field20_median || (n == 4096 && tile == 32)))
-                add_rungs(which);
-            if (tile == 32 && n == 10000)
-                add_tiers<DepthTest::none, Footprint::rectangle, IdWidth::u16>(
-                    {set + "-u16", n, tile, which.frames});
-            if (tile == 32 && (n == 256 || n >= 10000)) add_threads(which);
+                add_rungs(set, tile);
+            if (tile == 32 && n == 10000) add_builds<Options{.ids = IdWidth::u16}>(set, tile, "-u16");
+            if (tile == 32 && (n == 256 || n >= 10000)) add_threads(set, tile);
         }
         Lens uhd;
         uhd.screen = {3840, 2160};
-        if (footprint <= 20 && (n == 256 || n == 10000))
-            add_tiers({set + "-4k", n, 16, made_frames(n, uhd, make)});
+        if (footprint <= 20 && (n == 256 || n == 10000)) add_builds(made_set(name + "-4k", n, make, uhd), 16);
     };
     for (const std::size_t n : {256u, 1000u, 4096u, 10000u})
         if (!quick || n == 256 || n == 4096) add_number(n, true);
@@ -411,28 +368,70 @@ void add_set(const std::string& set, float median, double footprint, bool quick)
         if (!quick || n <= 1) add_number(n, false);
 }
 
+void add_scene(const std::string& path, bool quick) {
+    const std::vector<BenchScene> views = glb_scenes(path);
+    const std::size_t lights = views[0].lights(0).size();
+    const Set<Frame> set = {views[0].name.substr(0, views[0].name.rfind(':')), lights,
+                            [=] { return scene_frames(views, lights); }};
+    for (const int tile : {8, 16, 32, 64})
+        if (!quick || tile == 32) add_builds(set, tile);
+}
+
 /// Clusters and z-bins of the field sets.
+template <Slicing slicing, DepthTest depth_test = DepthTest::none> void add_slices(const Set<Frame>& set) {
+    add_cases<Options{.depth_test = depth_test, .slicing = slicing}>(
+        "slices/" + set.full_name() + "/" + to_string(slicing) + "/" + to_string(depth_test),
+        [=]<Options one>(const std::string& name) { time_slices<one>(name, set); });
+}
+
 void add_all_slices(bool quick) {
-    const auto set = [](const char* name, float median, std::size_t n) {
-        const auto make = [median](std::size_t count, std::uint32_t seed) {
-            return field(count, median, seed);
-        };
-        return Case{name, n, 0, made_frames(n, {}, make)};
-    };
-    const auto add_clusters = [](const Case& which) {
-        add_slices<Slicing::clusters>(which);
-        add_slices<Slicing::clusters, DepthTest::box>(which);
+    const auto add_clusters = [](const Set<Frame>& set) {
+        add_slices<Slicing::clusters>(set);
+        add_slices<Slicing::clusters, DepthTest::box>(set);
     };
     for (const std::size_t n : {256u, 1000u, 4096u, 10000u}) {
-        const Case which = set("field20", field20_median, n);
+        const Set<Frame> set = field_set("field20", field20_median, n);
         const bool round = n == 1000 || n == 10000;
-        if (!quick || round) add_clusters(which);
-        if (round) add_slices<Slicing::z_bins>(which);
+        if (!quick || round) add_clusters(set);
+        if (round) add_slices<Slicing::z_bins>(set);
     }
     if (quick) return;
-    add_clusters(set("field4", field4_median, 4096));
-    add_clusters(set("field200", field200_median, 4096));
-    add_slices<Slicing::z_bins>(set("field4", field4_median, 10000));
+    add_clusters(field_set("field4", field4_median, 4096));
+    add_clusters(field_set("field200", field200_median, 4096));
+    add_slices<Slicing::z_bins>(field_set("field4", field4_median, 10000));
+}
+
+template <DepthTest depth_test = DepthTest::none> void add_sources(const Set<WorldFrame>& set) {
+    add_cases<Options{.depth_test = depth_test}>(
+        "sources/" + set.name + "/" + to_string(depth_test),
+        [=]<Options one>(const std::string& name) { time_sources<one>(name, set); });
+}
+
+void add_views(const Set<WorldFrame>& set) {
+    add_cases<Options{}>("views/" + set.name,
+                         [=]<Options one>(const std::string& name) { time_views<one>(name, set); });
+}
+
+template <Options options> void add_spots(const SpotSet& set) {
+    add_cases<options>("spots/" + std::string(set.name) + text("/%zu/", set.lights) + method_name<options>() +
+                           "/" + to_string(options.slicing),
+                       [=]<Options one>(const std::string& name) { time_spots<one>(name, set); });
+}
+
+void add_all_spots(bool quick) {
+    for (const auto& [name, median_range] : {std::pair("spots20", spots20_median), {"spots4", spots4_median}})
+        for (const std::size_t count : {256u, 1000u, 4096u, 10000u}) {
+            if (quick && (count == 256 || count == 4096 || median_range == spots4_median)) continue;
+            const SpotSet set = {name, count, median_range};
+            add_spots<Options{}>(set);
+            add_spots<Options{.footprint = Footprint::silhouette}>(set);
+            add_spots<Options{.depth_test = DepthTest::interval}>(set);
+            add_spots<Options{.depth_test = DepthTest::box}>(set);
+            add_spots<Options{.depth_test = DepthTest::split_box}>(set);
+            add_spots<Options{.slicing = Slicing::clusters}>(set);
+            add_spots<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>(set);
+            add_spots<Options{.slicing = Slicing::z_bins}>(set);
+        }
 }
 
 /// Lights 99 % of which are out of view: behind the eye, or to the side.
@@ -443,70 +442,86 @@ Lights away(std::size_t count, std::uint32_t seed) {
     return lights;
 }
 
-int run(int argc, char** argv) {
-    bool quick = false;
-    std::vector<std::string> paths = {LIGHTBIN_SCENES "/nova.glb", LIGHTBIN_SCENES "/darkness.glb"};
-    std::vector<char*> rest = {argv[0]};
-    for (int i = 1; i < argc; ++i) {
-        const std::string word = argv[i];
-        if (word == "--quick")
-            quick = true;
-        else if (word.size() > 4 && word.ends_with(".glb"))
-            paths.push_back(word);
-        else
-            rest.push_back(argv[i]);
-    }
-    int count = int(rest.size());
-    rest.push_back(nullptr);
-    benchmark::Initialize(&count, rest.data());
-    if (benchmark::ReportUnrecognizedArguments(count, rest.data())) return 2;
+/// A million small lights against ten thousand, a light.
+void add_scale() {
+    const auto of = [](const Timed& row, const char* number) {
+        return row.to == "flat" && row.name == std::string("field4/") + number + "/32px/rectangle/none";
+    };
+    const std::vector<Timed> all = results;
+    for (const Timed& million : all)
+        for (const Timed& few : all)
+            if (of(million, "1000000") && of(few, "10000") && million.tier == few.tier)
+                results.push_back({million.name, million.tier, "10,000 lights",
+                                   million.ns_per_light / few.ns_per_light, 0});
+}
+
+/// What the usual build takes, of each made set: 4,096 lights, 32-pixel tiles, no depth test.
+std::string usual_ratios() {
+    std::string all;
+    for (const Timed& r : results)
+        if (r.name.find("/4096/32px/rectangle/none") != std::string::npos && r.to == "flat" &&
+            r.tier == to_string(lightbin::machine_isa()))
+            all += text("%s %s %.2f (%.2f)", all.empty() ? "" : ",",
+                        r.name.substr(0, r.name.find('/')).c_str(), r.ratio, r.spread);
+    return all;
+}
+
+void print_verdict() {
+    const Verdicts verdicts(results);
+    verdicts.write_csv("binning_goals.csv");
+    verdicts.print();
+    std::vector<std::string> words;
+    const std::string ratios = usual_ratios(), gains = gains_of_threads(results);
+    if (!ratios.empty())
+        words.push_back(std::string("A build as a ratio to the flat loop, by ") +
+                        to_string(lightbin::machine_isa()) + ", in brackets the spread:" + ratios + ".");
+    if (!verdicts.empty()) words.push_back(verdicts.sentence());
+    words.push_back(slower_tiers(results));
+    if (!gains.empty()) words.push_back(gains);
+    conclude(words, {"binning.csv", "binning_goals.csv"});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    Arguments arguments(argc, argv);
+    const bool quick = arguments.take("--quick");
+    const std::regex filter(arguments.take("--filter", ""));
     if (quick) seconds_a_case = 0.04;
 
     add_set("field4", field4_median, 4, quick);
     add_set("field20", field20_median, 20, quick);
     add_set("field200", field200_median, 200, quick);
     add_set("near", 0, 200, quick);
-    for (const std::string& path : paths) {
-        const std::vector<BenchScene> views = glb_scenes(path);
-        const std::string set = views[0].name.substr(0, views[0].name.rfind(':'));
-        const std::size_t lights = views[0].lights(0).size();
-        for (const int tile : {8, 16, 32, 64})
-            if (!quick || tile == 32)
-                add_tiers({set, lights, tile, [=] { return scene_frames(views, lights); }});
-    }
+    for (const char* const path : {LIGHTBIN_SCENES "/nova.glb", LIGHTBIN_SCENES "/darkness.glb"})
+        add_scene(path, quick);
+    for (const std::string& path : arguments.scenes())
+        add_scene(path, quick);
     add_all_slices(quick);
-    add_tiers({"away", 1000000, 32, made_frames(1000000, {}, away)});
-    const SourceCase field4 = {"field4", [] { return world_frames(10000, field4_median); }},
-                     field20 = {"field20", [] { return world_frames(10000, field20_median); }},
-                     many_lights = {"many_lights", many_lights_frames};
+    add_builds(made_set("away", 1000000, away), 32);
+    const Set<WorldFrame> field4 = {"field4", 10000, [] { return world_frames(10000, field4_median); }},
+                          field20 = {"field20", 10000, [] { return world_frames(10000, field20_median); }},
+                          many_lights = {"many_lights", 100000, many_lights_frames};
     add_sources(field4);
     add_sources(field20);
     add_sources<DepthTest::box>(field20);
     add_sources(many_lights);
     add_views(many_lights);
     add_views(field20);
-    for (const SpotTimeCase& which : spot_time_cases(quick))
-        add(which.name, build_spots, which);
+    add_all_spots(quick);
     {
-        Names names;
-        benchmark::RunSpecifiedBenchmarks(&names);
+        std::erase_if(cases, [&](const Case& which) { return !std::regex_search(which.name, filter); });
+        if (cases.empty()) throw std::runtime_error("no case has such a name");
+        for (Progress progress; const Case& which : cases) {
+            progress(which.name);
+            which.time();
+        }
     }
-    write_csv(results, "binning.csv");
-    write_slicing_csv(slicing_results, "binning_slices.csv");
-    write_sources_csv(source_results, "binning_sources.csv");
-    write_several_views_csv(several_views_results, "binning_views.csv");
-    write_spot_times(spot_times, "binning_spots.csv");
+    add_scale();
+    write_timed(results, "binning.csv");
     print_verdict();
     return EXIT_SUCCESS;
-}
-
-}  // namespace
-
-int main(int argc, char** argv) {
-    try {
-        return run(argc, argv);
-    } catch (const std::exception& problem) {
-        std::fprintf(stderr, "binning: %s\n", problem.what());
-        return EXIT_FAILURE;
-    }
+} catch (const std::exception& problem) {
+    std::fprintf(stderr, "binning: %s\n", problem.what());
+    return EXIT_FAILURE;
 }

@@ -16,7 +16,6 @@
 /// How many times as fast threads are as one alone.
 struct Gains {
     double awake, asleep;  ///< at a build, coming from other work or from sleep
-    double stores;         ///< at storing its light index list
     double sums;           ///< at arithmetic in registers that takes one thread as long
 };
 
@@ -31,8 +30,7 @@ inline void churn(std::size_t steps) {
     keep(sums);
 }
 
-/// In turns, the same by one thread alone and by all. `bin(threads, turn)` builds and returns how many
-/// bytes the list has.
+/// In turns, the same by one thread alone and by all. `bin(threads, turn)` builds.
 template <class Bin> Gains measure_gains(const lightbin::Parallel& parallel, double seconds_a_case, Bin bin) {
     double alone = 0;
     const auto gain = [&](bool asleep, auto work) {
@@ -52,16 +50,11 @@ template <class Bin> Gains measure_gains(const lightbin::Parallel& parallel, dou
         alone = median(times[0]);
         return alone / median(times[1]);
     };
-    Gains gains = {.awake = gain(false, bin), .asleep = gain(true, bin), .stores = 0, .sums = 0};
+    Gains gains = {.awake = gain(false, bin), .asleep = gain(true, bin), .sums = 0};
     const double steps = alone / seconds([] { churn(steps_a_ms); }) * steps_a_ms;
     gains.sums = gain(false, [&](const lightbin::Parallel& threads, std::size_t) {
         const std::size_t share = std::size_t(steps) / threads.workers();
         threads.run(threads.workers(), [&](std::size_t) { churn(share); });
-    });
-    std::vector<char> list(bin(parallel, 0));
-    gains.stores = gain(false, [&](const lightbin::Parallel& threads, std::size_t) {
-        const std::size_t share = list.size() / threads.workers();
-        threads.run(threads.workers(), [&](std::size_t i) { fill(list.data() + i * share, share); });
     });
     return gains;
 }

@@ -2,18 +2,15 @@
 # Measures: `sh bench/run.sh [PROGRAM] [options]` on Debian 12, as root or with sudo. Installs the packages that
 # are missing, builds in build/bench and runs there. Leave the machine alone while it runs.
 #
-#   binning [--quick] [SCENE.glb ...] [--benchmark_filter=REGEX]
+#   binning [--quick] [SCENE.glb ...] [--filter=REGEX]
 #       (the default) Whole builds as a ratio to the flat baseline; from world space and from structs as a ratio to
 #       view-space vec4s (^sources), of several views as a ratio to one (^views), with clusters and z-bins (^slices), of
-#       spots as a ratio to spheres (^spots). Says how many of the goals are met and what is missed by most, where a wider
-#       instruction set is slower than a narrower one, and what threads gain. About 6 minutes, --quick half a minute.
-#       Writes build/bench/binning_goals.csv, and what was timed. binning.csv: the sets
-#       fieldN have a mean footprint of N tiles of 32 pixels; `footprint` and `depth_test` are the options; box and
-#       split_box are held against the baseline without Z; for n = 0 the times are of a whole build. And
-#       binning_slices.csv: ratios of clusters to the baseline, of z-bins to the build without, of `encode`, to
-#       bitmasks, to the build. And binning_sources.csv: `source` is what the lights were; loop_... was moved to view
-#       space by a loop of the bench's own before it was binned. And binning_spots.csv, the times that `spots` takes;
-#       binning_views.csv, milliseconds of the first view's build and of all views'.
+#       spots as a ratio to spheres (^spots): all, or the cases whose names the expression matches. Says how many of the goals
+#       are met and what is missed by most, where a wider instruction set is slower than a narrower one, and what threads
+#       gain. About 6 minutes, --quick half a minute. Writes build/bench/binning_goals.csv, and what was timed, binning.csv:
+#       a row for each case, instruction set and thing that it is a ratio to. The sets fieldN have a mean footprint of N
+#       tiles of 32 pixels; box and split_box are held against the baseline without Z; a ratio to one thread says how many
+#       times as fast several are; for no light ns_per_light is a whole build's.
 #   report [--quick] [--evaluation-ns NUMBER] [SCENE.glb ...]
 #       Error against run time: of every method and tile size what a frame pays (Z bounds, build, upload, light evaluations
 #       of so many nanoseconds: if none are given, what this machine's GPU takes, or .02 where there is none) and how many
@@ -56,14 +53,14 @@ binning | report | error | advise | frames | stability)
 esac
 options="--quick" words="scenes (.glb)" pattern='.*\.glb'
 case $program in
-binning) options="--quick --benchmark_..." ;;
+binning) options="--quick --filter=..." ;;
 advise) options="--quick --avx2 --sse2 --scalar" ;;
 frames) options="--quick --counts --pictures --into=..." ;;
 report) options="--quick --evaluation-ns" words="a number, scenes (.glb)" pattern='.*\.glb|[0-9.]+' ;;
 esac
 takes "$program, $options, $words" "$(echo "$options" | sed 's/ /|/g; s/\.\.\./.*/')|$pattern" "$@"
 
-packages="g++ cmake ninja-build gnuplot-nox libglm-dev libbenchmark-dev libboost-dev libgmp-dev libtbb-dev libtinygltf-dev"
+packages="g++ cmake ninja-build gnuplot-nox libglm-dev libboost-dev libgmp-dev libtbb-dev libtinygltf-dev"
 targets=$program
 [ $program != report ] || targets="report evaluation"
 case $program in frames | report) packages="$packages libstb-dev libepoxy-dev libegl-dev libgl-dev libgl1-mesa-dri" ;; esac

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The synthetic sets of spots, seen by the camera of sets.hpp.
+// The synthetic sets of spots, seen by the camera of sets.hpp, and spheres whose lists are as long.
 #pragma once
 
 #include "dice.hpp"
+#include "lens.hpp"
 #include "sets.hpp"
 
 #include <lightbin/spot.hpp>
@@ -15,8 +16,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <vector>
-
-using Spots = std::vector<lightbin::Spot>;
 
 /// Any direction, each as likely as another.
 inline glm::vec3 any_direction(Dice& dice) {
@@ -43,8 +42,7 @@ inline Spots spot_field(std::size_t count, float median_range, std::uint32_t see
     return spots;
 }
 
-/// Medians at which a spot in view meets 4 and 20 tiles of 32 pixels in the mean: `spots` decides that of some, and says
-/// what came out.
+/// Medians at which a spot in view meets 4 and 20 tiles of 32 pixels in the mean.
 inline constexpr float spots4_median = 2.95f, spots20_median = 10.3f;
 
 /// Spots of one half angle, of sides .05 to .25 of their depth, with apexes in view.
@@ -58,4 +56,34 @@ inline Spots spots_of_angle(std::size_t count, float half_angle_in_degrees, std:
         spots.push_back(spot_in({x * depth, y * depth, -depth, range}, dice, half_angle_in_degrees));
     }
     return spots;
+}
+
+struct SpotFrame {
+    Spots lights;
+    Lights spheres;  ///< around the same centres
+};
+
+/// Frames of a set of spots, met in turn. The spheres are scaled until they make as many entries as the spots:
+/// entries(lights) of each.
+template <class Entries>
+std::vector<SpotFrame> matched_frames(std::size_t count, float median_range, Entries entries) {
+    std::vector<SpotFrame> frames = frames_in_turn(count, [&](std::uint32_t seed) {
+        return SpotFrame{spot_field(count, median_range, seed), field(count, median_range, seed)};
+    });
+    std::size_t wanted = 0;
+    for (const SpotFrame& frame : frames)
+        wanted += entries(frame.lights);
+    double low = 0.01, high = 4;
+    for (int step = 0; step < 20; ++step) {
+        const double scale = std::sqrt(low * high);
+        std::size_t made = 0;
+        for (SpotFrame& frame : frames) {
+            for (std::size_t i = 0; i < count; ++i)
+                frame.spheres[i].w = float(scale) * frame.lights[i].radius;
+            made += entries(frame.spheres);
+        }
+        if (std::abs(double(made) - double(wanted)) < 0.005 * double(wanted)) break;
+        (made < wanted ? low : high) = scale;
+    }
+    return frames;
 }

@@ -1,46 +1,57 @@
 // SPDX-License-Identifier: MIT
-// Two ways to build, timed in turns.
+// Several pieces of work, timed in turns.
 #pragma once
 
 #include "measure.hpp"
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
-/// Seconds of each turn.
+/// The seconds that each piece of work took in each turn, and what the pieces made.
 struct Turns {
-    std::vector<double> ours, theirs;
-    std::size_t together;  ///< frames a turn
+    std::vector<std::vector<double>> seconds;  ///< by work, then by turn
+    std::vector<std::size_t> made;             ///< by work: the sum of what it returned
+    std::size_t together = 1;                  ///< frames a turn
 
-    /// Of the medians.
-    double ratio() const { return median(ours) / median(theirs); }
-    /// 10th to 90th percentile of the turns' own ratios.
-    double spread() const {
+    /// The median of one work over the median of another.
+    double ratio(std::size_t of, std::size_t to) const { return median(seconds[of]) / median(seconds[to]); }
+    /// The distance from the 10th to the 90th percentile of the ratios of single turns.
+    double spread(std::size_t of, std::size_t to) const {
         std::vector<double> ratios;
-        for (std::size_t i = 0; i < ours.size(); ++i)
-            ratios.push_back(ours[i] / theirs[i]);
+        for (std::size_t i = 0; i < seconds[of].size(); ++i)
+            ratios.push_back(seconds[of][i] / seconds[to][i]);
         return percentile(ratios, 0.9) - percentile(ratios, 0.1);
+    }
+    /// Of one frame: the median of a work's time, and the mean of what it made.
+    double seconds_a_frame(std::size_t of) const { return median(seconds[of]) / double(together); }
+    double made_a_frame(std::size_t of) const {
+        return double(made[of]) / double(seconds[of].size() * together);
     }
 };
 
-/// Times two ways to build in turns, each turn on other frames, some together where one is too short for the clock. Which
-/// comes first alternates, as the second finds the lights in the cache.
-template <class AnyFrame, class Ours, class Theirs>
-Turns take_turns(const std::vector<AnyFrame>& frames, double seconds_a_case, Ours ours, Theirs theirs) {
-    Turns turns = {{}, {}, std::max<std::size_t>(1, 256 / frames[0].lights.size())};
+template <class AnyFrame> using Work = std::function<std::size_t(const AnyFrame&)>;
+
+/// Times all works in turns, each turn on other frames, some together where one is too short for the clock. The order is
+/// turned round after each turn, because a work finds the lights in the cache where another has just read them; with
+/// `apart`, each work of a turn has a frame of its own instead.
+template <class AnyFrame>
+Turns take_turns(const std::vector<AnyFrame>& frames, double seconds_in_all,
+                 const std::vector<Work<AnyFrame>>& works, bool apart = false) {
+    const std::size_t count = works.size(), lights = std::max<std::size_t>(frames[0].lights.size(), 1);
+    Turns turns = {std::vector<std::vector<double>>(count), std::vector<std::size_t>(count),
+                   std::max<std::size_t>(1, 256 / lights)};
     double spent = 0;
-    for (std::size_t turn = 0; spent < seconds_a_case || turn < 5; ++turn) {
-        const auto time = [&](std::vector<double>& times, auto& build) {
-            times.push_back(seconds([&] {
-                for (std::size_t i = 0; i < turns.together; ++i)
-                    build(frames[(turn * turns.together + i) % frames.size()]);
+    for (std::size_t turn = 0; spent < seconds_in_all || turn < 5; ++turn)
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t work = turn % 2 == 0 ? i : count - 1 - i,
+                              first = turn * turns.together + (apart ? work : 0);
+            turns.seconds[work].push_back(seconds([&] {
+                for (std::size_t k = 0; k < turns.together; ++k)
+                    turns.made[work] += works[work](frames[(first + k) % frames.size()]);
             }));
-            spent += times.back();
-        };
-        if (turn % 2 == 0) time(turns.ours, ours);
-        time(turns.theirs, theirs);
-        if (turn % 2 == 1) time(turns.ours, ours);
-    }
+            spent += turns.seconds[work].back();
+        }
     return turns;
 }

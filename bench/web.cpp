@@ -3,19 +3,18 @@
 // it, on rotating light sets. A line a case: set, instruction set, ratio, its spread. Or what two threads gain, coming from
 // other work or from sleep, and what they gain at mere arithmetic. bench/web.sh builds it for WebAssembly and for this
 // machine, and sets the two beside each other.
+#include "builds.hpp"
 #include "gains.hpp"
-#include "lens.hpp"
 #include "pool.hpp"
 #include "spots_sets.hpp"
 #include "tiers.hpp"
 #include "turns.hpp"
 
-#include <lightbin/lightbin.hpp>
-
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -26,11 +25,6 @@ using lightbin::Options;
 
 constexpr int tile_size = 32;
 double seconds_a_case = 1;
-
-struct SpotFrame {
-    Spots lights;
-    Lights spheres;  ///< of their whole ranges
-};
 
 /// What the flat loop, which knows no spots, makes lists of.
 const Lights& spheres_of(const Frame& frame) {
@@ -46,6 +40,7 @@ std::vector<Frame> field_frames(std::size_t count, float median_radius) {
     });
 }
 
+/// The spheres are those of the spots' whole ranges.
 std::vector<SpotFrame> spot_frames(std::size_t count, float median_range) {
     return frames_in_turn(count, [=](std::uint32_t seed) {
         const Spots spots = spot_field(count, median_range, seed);
@@ -56,59 +51,48 @@ std::vector<SpotFrame> spot_frames(std::size_t count, float median_range) {
 /// Times and prints a case, once the code that runs often has been compiled for speed, as browsers do.
 template <Options options, class AnyFrame>
 void time_builds(const char* set, const std::vector<AnyFrame>& frames) {
-    static const MadeBounds made(tile_size);
     const lightbin::View view = Lens().view(tile_size);
     const FlatView flat_view = Lens().flat_view(tile_size);
-    lightbin::Binner<options> binner;
+    Build<options> build(tile_size);
     Flat<float> flat;
-    const auto time = [&](double seconds) {
-        return take_turns(
-            frames, seconds,
-            [&](const AnyFrame& frame) {
-                static_cast<void>(
-                    *binner.bin(view, frame.lights, lightbin::inputs_for<options>(made.bounds)));
-            },
-            [&](const AnyFrame& frame) {
-                flat.build<false>(flat_view, spheres_of(frame), nullptr, nullptr);
-            });
-    };
-    time(seconds_a_case / 2);
-    const Turns turns = time(seconds_a_case);
-    std::printf("%s %s %.3f %.3f\n", set, to_string(options.isa), turns.ratio(), turns.spread());
+    const std::vector<Work<AnyFrame>> works = {
+        [&](const AnyFrame& frame) { return build(view, frame.lights); },
+        [&](const AnyFrame& frame) {
+            flat.build<false>(flat_view, spheres_of(frame), nullptr, nullptr);
+            return flat.indices.size();
+        }};
+    take_turns(frames, seconds_a_case / 2, works);
+    const Turns turns = take_turns(frames, seconds_a_case, works);
+    std::printf("%s %s %.3f %.3f\n", set, to_string(options.isa), turns.ratio(0, 1), turns.spread(0, 1));
     std::fflush(stdout);
 }
 
 /// On the instruction sets that WebAssembly has, too.
 template <DepthTest depth_test = DepthTest::none, class AnyFrame>
 void time_tiers(const char* set, const std::vector<AnyFrame>& frames) {
-    visit_tier<Options{.depth_test = depth_test, .isa = Isa::scalar}>(
-        [&]<Options one>() { time_builds<one>(set, frames); });
-    visit_tier<Options{.depth_test = depth_test, .isa = Isa::sse2}>(
-        [&]<Options one>() { time_builds<one>(set, frames); });
+    const auto time = [&]<Options one>() { time_builds<one>(set, frames); };
+    visit_tier<Options{.depth_test = depth_test, .isa = Isa::scalar}>(time);
+    visit_tier<Options{.depth_test = depth_test, .isa = Isa::sse2}>(time);
 }
 
 void time_threads() {
-    constexpr Options options = {.isa = Isa::sse2};
     const std::vector<Frame> frames = field_frames(100000, field20_median);
     const lightbin::View view = Lens().view(tile_size);
     Pool pool(2);
-    lightbin::Binner<options> binner;
-    const Gains gains = measure_gains(
-        {2, pool}, 4 * seconds_a_case, [&](const lightbin::Parallel& threads, std::size_t turn) {
-            return binner.bin(view, frames[turn % frames.size()].lights, {}, threads)->ids().size_bytes();
-        });
+    Build<Options{.isa = Isa::sse2}> build(tile_size);
+    const Gains gains = measure_gains({2, pool}, 4 * seconds_a_case,
+                                      [&](const lightbin::Parallel& threads, std::size_t turn) {
+                                          return build(view, frames[turn % frames.size()].lights, threads);
+                                      });
     std::printf("%.2f %.2f %.2f\n", gains.awake, gains.asleep, gains.sums);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    bool threads = false;
-    for (const std::string& word : std::vector<std::string>(argv + 1, argv + argc)) {
-        if (word == "--quick") seconds_a_case = 0.2;
-        threads = threads || word == "threads";
-    }
-    if (threads) {
+    const std::vector<std::string_view> words(argv + 1, argv + argc);
+    if (std::ranges::find(words, "--quick") != words.end()) seconds_a_case = 0.2;
+    if (std::ranges::find(words, "threads") != words.end()) {
         time_threads();
         return 0;
     }

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// A build of any options, with the Z bounds and the slices that all made sets have in common.
+#pragma once
+
+#include "lens.hpp"
+
+#include <lightbin/binner.hpp>
+
+#include <cstddef>
+
+/// Tiles of clusters are larger than those of the other methods.
+constexpr int usual_tile_size(const lightbin::Options& options) {
+    return options.slicing == lightbin::Slicing::clusters ? 64 : 32;
+}
+
+template <lightbin::Options options> class Build {
+public:
+    explicit Build(int tile_size)
+        : made_(tile_size),
+          slices_(options.slicing == lightbin::Slicing::clusters ? cluster_slices() : z_bin_slices()) {}
+
+    /// The grid of some lights, valid until the next call.
+    template <class AnyLights>
+    auto grid(const lightbin::View& view, const AnyLights& lights, const lightbin::Parallel& threads = {}) {
+        return *binner_.bin(view, lights, lightbin::inputs_for<options>(made_.bounds, slices_), threads);
+    }
+    /// How many entries the grid has.
+    template <class AnyLights>
+    std::size_t operator()(const lightbin::View& view, const AnyLights& lights,
+                           const lightbin::Parallel& threads = {}) {
+        return grid(view, lights, threads).ids().size();
+    }
+
+    lightbin::Binner<options>& binner() { return binner_; }
+    const MadeBounds& made() const { return made_; }
+    const lightbin::Slices& slices() const { return slices_; }
+
+private:
+    MadeBounds made_;
+    lightbin::Slices slices_;
+    lightbin::Binner<options> binner_;
+};
