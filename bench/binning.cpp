@@ -189,7 +189,7 @@ void time_build(const std::string& name, const Set<Frame>& set, int tile_size, i
             return build(views.view(frame), frame.lights, some_threads);
         });
     for (const auto& [to, gain] :
-         {std::pair("one", gains.awake), {"one, from sleep", gains.asleep}, {"one, arithmetic", gains.sums}})
+         {std::pair("one", gains.awake), {"one from sleep", gains.asleep}, {"one at arithmetic", gains.sums}})
         results.push_back({name, to_string(options.isa), to, gain, 0});
 }
 

@@ -99,7 +99,7 @@ inline constexpr Goal goals[] = {
             "field200/10000/32px/rectangle/none/2 threads to one", {1.5, 1.9}, true),
     // Sharing must never make a build slower; a twentieth is what the clock can tell.
     for_all(of_scale, "2 threads that slept, no slower:",
-            "(field20/10000|field4/256)/32px/rectangle/none/2 threads to one, from sleep", {0.95, 1}, true),
+            "(field20/10000|field4/256)/32px/rectangle/none/2 threads to one from sleep", {0.95, 1}, true),
 
     goal(clusters_to_flat, "256 lights of field20:", "slices/field20/256/clusters/(none|box) to flat",
          {1.4, 0.8}, {2, 1}),
@@ -269,6 +269,6 @@ inline std::string gains_of_threads(const std::vector<Timed>& rows) {
         return text("%.2f to %.2f", percentile(gains, 0), percentile(gains, 1));
     };
     if (range("one").empty()) return "";
-    return "Several threads are " + range("one") + " times as fast as one, from sleep " +
-           range("one, from sleep") + ", at mere arithmetic " + range("one, arithmetic") + ".";
+    return "Several threads are " + range("one") + " times as fast as one from sleep " +
+           range("one from sleep") + ", at mere arithmetic " + range("one at arithmetic") + ".";
 }
