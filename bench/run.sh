@@ -28,7 +28,7 @@
 #   stability [--quick]
 #       How far off the screen bounds of lights are under stiff and extreme conditions, by decade, in pixels: ours and the
 #       textbooks', in float and in double, against exact ones; what that misses, lists too much and takes. A miss by ours is
-#       an error. A table and a sentence a family; build/bench/stability.html is a page with plots. Writes stability.csv, too.
+#       an error. A line a family; build/bench/stability.html is a page with plots. Writes stability.csv, too.
 #       Some minutes, --quick half a one.
 #   frames [--quick] [--counts] [--pictures] [--into=FOLDER] [SCENE.glb ...]
 #       Whole frames in OpenGL by every technique of the papers, on the made scene and the named ones (or those of

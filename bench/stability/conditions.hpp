@@ -107,15 +107,21 @@ inline Light ending_in_view(const Aim& aim, Random& random, double d, double r) 
     return aim.light(c[0], c[1], d, r);
 }
 
-inline Scene ordinary(Random& random, double, std::size_t lights) {
-    Scene scene = scene_of(lens_of());
+/// The same 1 to 180 units away, of a part of the picture.
+inline Light ordinary_light(const Aim& aim, Random& random, double unit = 1) {
+    const double d = unit * random.power_of_two(0, 7.5);
+    return ending_in_view(aim, random, d, std::min(aim.half_height(d), d) * random.power_of_two(-6, -1));
+}
+
+inline Scene field_of_view(Random& random, double degrees, std::size_t lights) {
+    Scene scene = scene_of(lens_of(degrees));
     const Aim aim(scene.camera);
-    for (std::size_t i = 0; i < lights; ++i) {
-        const double d = random.power_of_two(0, 7.5);
-        scene.lights.push_back(
-            ending_in_view(aim, random, d, aim.half_height(d) * random.power_of_two(-6, -1)));
-    }
+    for (std::size_t i = 0; i < lights; ++i)
+        scene.lights.push_back(ordinary_light(aim, random));
     return scene;
+}
+inline Scene ordinary(Random& random, double, std::size_t lights) {
+    return field_of_view(random, 60, lights);
 }
 
 inline Scene grazing(Random& random, double tangent, std::size_t lights) {
@@ -184,11 +190,8 @@ inline Scene world_scale(Random& random, double scale, std::size_t lights) {
     lens.near_plane *= scale, lens.far_plane *= scale;
     Scene scene = scene_of(lens);
     const Aim aim(scene.camera);
-    for (std::size_t i = 0; i < lights; ++i) {
-        const double d = scale * random.power_of_two(0, 7.5);
-        scene.lights.push_back(
-            ending_in_view(aim, random, d, aim.half_height(d) * random.power_of_two(-6, -1)));
-    }
+    for (std::size_t i = 0; i < lights; ++i)
+        scene.lights.push_back(ordinary_light(aim, random, scale));
     return scene;
 }
 
@@ -222,8 +225,7 @@ inline Scene far_from_origin(Random& random, double distance, std::size_t lights
         }
     scene.world = view;
     for (std::size_t i = 0; i < lights; ++i) {
-        const double d = 100 * random.power_of_two(0, 7.5);
-        const Light at = ending_in_view(aim, random, d, aim.half_height(d) * random.power_of_two(-6, -1));
+        const Light at = ordinary_light(aim, random, 100);
         const double in_view[3] = {static_cast<double>(at.x), static_cast<double>(at.y),
                                    static_cast<double>(at.z)};
         float world[3];
@@ -234,17 +236,6 @@ inline Scene far_from_origin(Random& random, double distance, std::size_t lights
             world[row] = static_cast<float>(sum);
         }
         scene.lights.push_back({world[0], world[1], world[2], at.w});
-    }
-    return scene;
-}
-
-inline Scene field_of_view(Random& random, double degrees, std::size_t lights) {
-    Scene scene = scene_of(lens_of(degrees));
-    const Aim aim(scene.camera);
-    for (std::size_t i = 0; i < lights; ++i) {
-        const double d = random.power_of_two(0, 7.5);
-        scene.lights.push_back(
-            ending_in_view(aim, random, d, std::min(aim.half_height(d), d) * random.power_of_two(-6, -1)));
     }
     return scene;
 }
@@ -340,17 +331,14 @@ inline std::vector<Family> all_families() {
          ordinary},
         {"grazing", "eye grazing a sphere", "tangent's length / radius",
          "The eye is just outside of a large sphere beside it: the tangent is short beside the radius.",
-         "The tangent's square is a difference of squares as large as the radius's: near the surface all its "
-         "digits are "
-         "rounding, or it is less than 0 and its root NaN.",
+         "The tangent's square is a difference of squares as large as the radius's: near the surface all "
+         "its digits are rounding, or it is less than 0 and its root NaN.",
          decades(0, -12, -1), grazing},
         {"eye_plane", "reaching the eye's plane", "(z - r) / r",
          "A sphere in front of the eye reaches back almost to the plane through it, across the view axis. "
-         "(Floats end at "
-         "1e-7.)",
-         "Where one tangent is almost in that plane the other's slope is a small difference of large numbers "
-         "over a smaller "
-         "one.",
+         "(Floats end at 1e-7.)",
+         "Where one tangent is almost in that plane the other's slope is a small difference of large "
+         "numbers over a smaller one.",
          decades(0, -7, -1), eye_plane},
         {"near_front", "ending at the near plane", "(z - r - near) / r",
          "A sphere in front of the near plane all but touches it.",
@@ -361,17 +349,14 @@ inline std::vector<Family> all_families() {
          "The cap's size is the root of a difference of squares that are as large as the sphere's.",
          decades(0, -12, -1), near_behind},
         {"far_over_near", "far over near", "far / near",
-         "1,024 slices from near to far, each as many times as deep as the one before; lights begin and end "
-         "at their "
-         "boundaries. Errors are in slices.",
+         "1,024 slices from near to far, each as many times as deep as the one before; lights begin and "
+         "end at their boundaries. Errors are in slices.",
          "A logarithm's rounding moves a depth across a boundary. Where far is infinite the textbooks' "
-         "formulas have no "
-         "slices, ours end at a depth of the caller's.",
+         "formulas have no slices, ours end at a depth of the caller's.",
          infinite_too, nullptr, far_over_near},
         {"slices", "slices ulps apart", "ulps a slice",
          "64 slices so many units in the last place of a depth deep; lights begin and end at their "
-         "boundaries. Errors are in "
-         "slices.",
+         "boundaries. Errors are in slices.",
          "The slice's number is a small difference of logarithms times a large factor.", decades(5, 0, -1),
          nullptr, slices_apart},
         {"scale", "scale of the world", "scale", "The ordinary scene, all lengths times the same factor.",
@@ -379,9 +364,8 @@ inline std::vector<Family> all_families() {
          decades(-30, 30, 5), world_scale},
         {"origin", "eye far from the origin", "eye to origin",
          "Lights in world space, 100 to 18,000 units from an eye that is so far from the origin.",
-         "A view matrix of floats rounds its translation, and the products that are added to it, to the size "
-         "of that "
-         "distance.",
+         "A view matrix of floats rounds its translation, and the products that are added to it, to the "
+         "size of that distance.",
          decades(0, 9), far_from_origin},
         {"fov", "field of view", "degrees", "The ordinary scene through lenses from 1e-3 to 179.99 degrees.",
          "In a narrow one a pixel is a millionth of a slope; in a wide one, slopes in view are thousands.",
@@ -392,8 +376,8 @@ inline std::vector<Family> all_families() {
          tile_count},
         {"cones", "half angles of spots", "degrees",
          "Spots from 2^-24 degrees, where the cosine is 1 and the spot a ray, to 2^-24 short of 90. Tiles "
-         "are pixels. There "
-         "are no textbook formulas of a spot's own bounds: theirs are of a sphere or a box around it.",
+         "are pixels. There are no textbook formulas of a spot's own bounds: theirs are of a sphere or a "
+         "box around it.",
          "The sine of a small angle is all cancelled in a cosine; close to 90 degrees a cone's box grows "
          "without end.",
          angles, cone_angle, nullptr, false, true},

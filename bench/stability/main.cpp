@@ -7,9 +7,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <exception>
-#include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 using namespace stability;
@@ -25,39 +23,34 @@ int main(int count, char** words) try {
                                                 : Effort{256, 64, 16, 50000, 0.03};
     const std::vector<Family> families = all_families();
     std::vector<Measured> all;
-    std::printf("%-32s%24s%37s%26s\n", "",
-                "error in pixels (slices):", "missed: without, and with our margin:", "ns a light:");
-    print_row("stiff or extreme: where float is worst", heads);
     std::uint64_t misses = 0, unlike = 0, denied = 0, checked = 0;
-    for (const Family& family : families) {
-        Measured measured{&family, {}};
-        for (const Condition& condition : family.conditions) {
-            measured.results.push_back(Measure(family, condition, effort).run());
-            const Result& result = measured.results.back();
-            misses += result.ours.missed_same, unlike += result.unlike;
-            denied += result.denied, checked += result.checked;
-            const auto complain = [&](std::uint64_t n, const char* what) {
-                if (n > 0)
-                    std::fprintf(stderr, "%s, %s: %llu %s\n", family.title.c_str(), condition.label.c_str(),
-                                 static_cast<unsigned long long>(n), what);
-            };
-            complain(result.ours.missed_same, "tiles or slices missed by the library");
-            complain(result.unlike, "rectangles that bench/stability/ours.hpp does not explain");
-            complain(result.denied, "exact bounds that rational arithmetic denies");
+    {
+        Progress progress;
+        for (const Family& family : families) {
+            all.push_back({&family, {}});
+            for (const Condition& condition : family.conditions) {
+                progress(family.title + ", " + condition.label);
+                const Result result = Measure(family, condition, effort).run();
+                misses += result.ours.missed_same, unlike += result.unlike;
+                denied += result.denied, checked += result.checked;
+                const auto complain = [&](std::uint64_t n, const char* what) {
+                    if (n > 0)
+                        std::fprintf(stderr, "%s, %s: %llu %s\n", family.title.c_str(),
+                                     condition.label.c_str(), static_cast<unsigned long long>(n), what);
+                };
+                complain(result.ours.missed_same, "tiles or slices missed by the library");
+                complain(result.unlike, "rectangles that bench/stability/ours.hpp does not explain");
+                complain(result.denied, "exact bounds that rational arithmetic denies");
+                all.back().results.push_back(result);
+            }
         }
-        all.push_back(std::move(measured));
-        print_row(family.title, cells(all.back(), all.back().worst()));
     }
-    std::printf("\n");
-    for (const Measured& measured : all)
-        std::printf("%s\n", sentence(measured).c_str());
-    std::printf("\n");
-    const std::vector<std::string> answer = verdict(all, misses);
-    for (const std::string& line : answer)
-        std::printf("%s\n", line.c_str());
-    std::printf("%llu exact bounds were checked in rationals.\n", static_cast<unsigned long long>(checked));
+    print_table(table(all));
+    std::vector<std::string> answer = verdict(all, misses);
     write_csv(all);
     write_page(all, answer);
+    answer.push_back(std::to_string(checked) + " exact bounds were checked in rationals.");
+    conclude(answer, {"stability.csv"});
     return misses + unlike + denied == 0 ? 0 : 1;
 } catch (const std::exception& error) {
     std::fprintf(stderr, "stability: %s\n", error.what());

@@ -14,6 +14,7 @@
 #include <lightbin/binner.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <cmath>
 #include <cstddef>
@@ -22,6 +23,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -74,6 +76,131 @@ struct Bounds {
     double low[2], high[2];
 };
 
+/// The nearest and the farthest slice, or where in them a light's depths are.
+struct SliceRange {
+    int first, last;
+};
+struct SlicePlaces {
+    double first, last;
+};
+
+/// A light in the camera's axes.
+template <class Real> struct InCamera { Real c[2], z, r; };
+
+/// A light as a renderer that computes in Real has it there.
+template <class Real> InCamera<Real> in_camera(const Scene& scene, std::size_t i) {
+    const Light& light = scene.lights[i];
+    Real p[3] = {Real(light.x), Real(light.y), Real(light.z)};
+    if (scene.world) {
+        Real moved[3];
+        for (int row = 0; row < 3; ++row) {
+            const auto m = [&](int column) { return static_cast<Real>((*scene.world)[column][row]); };
+            moved[row] = m(0) * p[0] + m(1) * p[1] + m(2) * p[2] + m(3);
+        }
+        std::copy(moved, moved + 3, p);
+    }
+    return {{p[0], p[1]}, -p[2], Real(light.w)};  // all cameras here look down -z
+}
+template <class Real> textbook::SpotOf<Real> spot_in(const Scene& scene, std::size_t i) {
+    const Light &at = scene.lights[i], &cone = scene.cones[i];
+    return {{Real(at.x), Real(at.y), -Real(at.z)},
+            Real(at.w),
+            {Real(cone.x), Real(cone.y), -Real(cone.z)},
+            Real(cone.w)};
+}
+
+/// A textbook's formula in one precision, for the bounds of lights or for slices.
+struct ScreenFormula {
+    const char *name, *precision;
+    bool knows_near_plane;
+    /// The bounds of light i.
+    Bounds (*bounds)(const Scene&, std::size_t i, const oracle::ScreenBounds&);
+    /// Both axes of each light, from floats in memory to the sum of four bounds.
+    double (*sum)(const Scene&, double near_depth);
+};
+struct SliceFormula {
+    const char *name, *precision;
+    SlicePlaces (*places)(const DepthScene&, const Light&);
+    int (*sum)(const DepthScene&);
+};
+
+template <class Formula, class Real>
+std::array<textbook::Slopes<Real>, 2> slopes_of(const Scene& scene, std::size_t i, Real n) {
+    if constexpr (requires { Formula::knows_near_plane; }) {
+        const InCamera<Real> light = in_camera<Real>(scene, i);
+        return {Formula::slopes(light.c[0], light.z, light.r, n),
+                Formula::slopes(light.c[1], light.z, light.r, n)};
+    } else {
+        const textbook::SpotOf<Real> spot = spot_in<Real>(scene, i);
+        return {Formula::slopes(spot, 0, n), Formula::slopes(spot, 1, n)};
+    }
+}
+
+template <class Formula, class Real> ScreenFormula screen_formula() {
+    bool knows_near_plane = true;
+    if constexpr (requires { Formula::knows_near_plane; }) knows_near_plane = Formula::knows_near_plane;
+    return {Formula::name, std::is_same_v<Real, float> ? "float" : "double", knows_near_plane,
+            [](const Scene& scene, std::size_t i, const oracle::ScreenBounds& exact) {
+                const auto slopes = slopes_of<Formula, Real>(scene, i, exact.near_depth().convert_to<Real>());
+                Bounds bounds;
+                for (const std::size_t axis : {0u, 1u}) {
+                    const Real scale = static_cast<Real>(exact.scale(static_cast<int>(axis))),
+                               offset = static_cast<Real>(exact.offset(static_cast<int>(axis)));
+                    bounds.low[axis] = static_cast<double>(slopes[axis].low * scale + offset);
+                    bounds.high[axis] = static_cast<double>(slopes[axis].high * scale + offset);
+                }
+                return bounds;
+            },
+            [](const Scene& scene, double near_depth) {
+                Real sum = 0;
+                for (std::size_t i = 0; i < scene.lights.size(); ++i)
+                    for (const textbook::Slopes<Real>& slopes :
+                         slopes_of<Formula, Real>(scene, i, static_cast<Real>(near_depth)))
+                        sum += slopes.low + slopes.high;
+                return static_cast<double>(sum);
+            }};
+}
+
+inline SliceRange within(const DepthScene& scene, const SlicePlaces& places) {
+    const auto slice = [&](double place) {
+        return static_cast<int>(std::clamp(std::floor(place), 0.0, scene.slices - 1.0));
+    };
+    return {slice(places.first), slice(places.last)};
+}
+
+template <class Formula, class Real> SliceFormula slice_formula() {
+    static constexpr auto places = [](const DepthScene& scene, const Light& light) -> SlicePlaces {
+        const Real z = -Real(light.z), r = Real(light.w);
+        const auto place = [&](Real depth) {
+            return static_cast<double>(
+                Formula::slice(depth, Real(scene.near_depth), Real(scene.last), scene.slices));
+        };
+        return {place(z - r), place(z + r)};
+    };
+    return {Formula::name, std::is_same_v<Real, float> ? "float" : "double", places,
+            [](const DepthScene& scene) {
+                int sum = 0;
+                for (const Light& light : scene.lights) {
+                    const SliceRange range = within(scene, places(scene, light));
+                    sum += range.first + range.last;
+                }
+                return sum;
+            }};
+}
+
+template <class... Formulas> std::vector<ScreenFormula> screen_formulas() {
+    std::vector<ScreenFormula> all;
+    ((all.push_back(screen_formula<Formulas, float>()), all.push_back(screen_formula<Formulas, double>())),
+     ...);
+    return all;
+}
+template <class... Formulas> std::vector<SliceFormula> slice_formulas() {
+    std::vector<SliceFormula> all;
+    ((all.push_back(slice_formula<Formulas, float>()), all.push_back(slice_formula<Formulas, double>())),
+     ...);
+    return all;
+}
+
 class Measure {
 public:
     Measure(const Family& family, const Condition& condition, const Effort& effort)
@@ -92,11 +219,13 @@ private:
     //--------------------------------------------------------------------------------------------------------
     // Screen bounds.
 
-    /// A light in the camera's axes.
-    template <class Real> struct InCamera { Real c[2], z, r; };
-
     void screens() {
         result_.ours.formula = "lightbin", result_.ours.precision = "mixed";
+        formulas_ =
+            family_.spots
+                ? screen_formulas<textbook::LeastSphere, textbook::ConeBox>()
+                : screen_formulas<textbook::MaraMcGuire, textbook::Quadratic, textbook::LengyelLauritzen>();
+        name_tallies(formulas_);
         std::vector<Scene> scenes, turns;
         for (std::size_t i = 0; i < effort_.scenes; ++i)
             scenes.push_back(family_.make(random_, value_, effort_.lights));
@@ -108,12 +237,12 @@ private:
         for (const Scene& scene : scenes)
             screen(scene);
         time_ours(turns);
-        if (family_.spots) {
-            time_textbook<textbook::LeastSphere>(turns), time_textbook<textbook::ConeBox>(turns);
-        } else {
-            time_textbook<textbook::MaraMcGuire>(turns), time_textbook<textbook::Quadratic>(turns),
-                time_textbook<textbook::LengyelLauritzen>(turns);
-        }
+        for (std::size_t k = 0; k < formulas_.size(); ++k)
+            if (Tally& tally = result_.textbooks[k]; tally.used())
+                tally.ns = time(turns, [&](const Scene& scene) {
+                    volatile double kept = formulas_[k].sum(scene, std::abs(scene.camera.m[3][2]) / 2);
+                    static_cast<void>(kept);
+                });
     }
 
     static lightbin::View view_of(const Scene& scene) {
@@ -184,16 +313,11 @@ private:
             const bool in_view = truth[0].first <= truth[0].last && truth[1].first <= truth[1].last;
             count_ours(scene, truth, in_view, projected.rects[i], reasons[i]);
             if (beyond) continue;
-            std::size_t place = 0;
-            if (spot) {
-                compare_spot<textbook::LeastSphere>(place, scene, i, bounds, truth, in_view, margins);
-                compare_spot<textbook::ConeBox>(place, scene, i, bounds, truth, in_view, margins);
-            } else {
-                const bool cut = ball.depth - ball.radius <= *oracle.range().min;
-                compare<textbook::MaraMcGuire>(place, scene, i, bounds, cut, truth, in_view, margins);
-                compare<textbook::Quadratic>(place, scene, i, bounds, cut, truth, in_view, margins);
-                compare<textbook::LengyelLauritzen>(place, scene, i, bounds, cut, truth, in_view, margins);
-            }
+            const bool cut = !spot && ball.depth - ball.radius <= *oracle.range().min;
+            for (std::size_t k = 0; k < formulas_.size(); ++k)
+                if (!cut || formulas_[k].knows_near_plane)
+                    add_textbook(result_.textbooks[k], scene.camera, formulas_[k].bounds(scene, i, bounds),
+                                 truth, in_view, margins);
         }
     }
 
@@ -274,88 +398,26 @@ private:
         tally.missed_bare += whole - area(common(exact, tiles(scene.camera, bare, nullptr)));
     }
 
-    Tally& textbook_tally(std::size_t& place, const char* name, const char* precision) {
-        if (place == result_.textbooks.size()) {
-            result_.textbooks.emplace_back();
-            result_.textbooks.back().formula = name, result_.textbooks.back().precision = precision;
+    template <class Formula> void name_tallies(const std::vector<Formula>& formulas) {
+        for (const Formula& formula : formulas) {
+            Tally& tally = result_.textbooks.emplace_back();
+            tally.formula = formula.name, tally.precision = formula.precision;
         }
-        return result_.textbooks[place++];
     }
 
-    /// A light as a renderer that computes in Real has it in the camera's axes.
-    template <class Real> static InCamera<Real> in_camera(const Scene& scene, const Light& light) {
-        Real p[3] = {Real(light.x), Real(light.y), Real(light.z)};
-        if (scene.world) {
-            Real moved[3];
-            for (int row = 0; row < 3; ++row) {
-                const auto m = [&](int column) { return static_cast<Real>((*scene.world)[column][row]); };
-                moved[row] = m(0) * p[0] + m(1) * p[1] + m(2) * p[2] + m(3);
-            }
-            std::copy(moved, moved + 3, p);
-        }
-        return {{p[0], p[1]}, -p[2], Real(light.w)};  // all cameras here look down -z
-    }
-
-    template <class Real, class SlopesOf>
-    void add_textbook(Tally& tally, const Scene& scene, const oracle::ScreenBounds& exact,
-                      const oracle::AxisExtent* truth, bool in_view, const double* margins,
-                      SlopesOf slopes_of) {
-        Bounds bounds;
-        for (const int axis : {0, 1}) {
-            const textbook::Slopes<Real> slopes = slopes_of(axis);
-            const Real scale = static_cast<Real>(exact.scale(axis)),
-                       offset = static_cast<Real>(exact.offset(axis));
-            bounds.low[axis] = static_cast<double>(slopes.low * scale + offset);
-            bounds.high[axis] = static_cast<double>(slopes.high * scale + offset);
-        }
-        const TileRect rect = rect_of(truth, in_view), bare = tiles(scene.camera, bounds, nullptr);
+    static void add_textbook(Tally& tally, const Camera& camera, const Bounds& bounds,
+                             const oracle::AxisExtent* truth, bool in_view, const double* margins) {
+        const TileRect rect = rect_of(truth, in_view), bare = tiles(camera, bounds, nullptr);
         const std::uint64_t whole = area(rect), met = area(common(rect, bare));
         ++tally.lights;
         tally.exact += whole;
         tally.missed_bare += whole - met;
-        tally.missed_same += whole - area(common(rect, tiles(scene.camera, bounds, margins)));
+        tally.missed_same += whole - area(common(rect, tiles(camera, bounds, margins)));
         tally.extra += area(bare) - met;
-        const int sides[] = {scene.camera.width, scene.camera.height};
+        const int sides[] = {camera.width, camera.height};
         if (in_view)
             for (const int axis : {0, 1})
                 add_error(tally, truth[axis], bounds.low[axis], bounds.high[axis], sides[axis]);
-    }
-
-    template <class Formula, class Real>
-    void compare_in(std::size_t& place, const char* precision, const Scene& scene, std::size_t i,
-                    const oracle::ScreenBounds& exact, bool cut, const oracle::AxisExtent* truth,
-                    bool in_view, const double* margins) {
-        Tally& tally = textbook_tally(place, Formula::name, precision);
-        if (cut && !Formula::knows_near_plane) return;
-        const InCamera<Real> light = in_camera<Real>(scene, scene.lights[i]);
-        const Real n = exact.near_depth().convert_to<Real>();
-        add_textbook<Real>(tally, scene, exact, truth, in_view, margins,
-                           [&](int axis) { return Formula::slopes(light.c[axis], light.z, light.r, n); });
-    }
-    template <class Formula, class... Rest> void compare(std::size_t& place, const Rest&... rest) {
-        compare_in<Formula, float>(place, "float", rest...);
-        compare_in<Formula, double>(place, "double", rest...);
-    }
-
-    template <class Real> static textbook::SpotOf<Real> spot_in(const Scene& scene, std::size_t i) {
-        const Light &at = scene.lights[i], &cone = scene.cones[i];
-        return {{Real(at.x), Real(at.y), -Real(at.z)},
-                Real(at.w),
-                {Real(cone.x), Real(cone.y), -Real(cone.z)},
-                Real(cone.w)};
-    }
-    template <class Formula, class Real>
-    void compare_spot_in(std::size_t& place, const char* precision, const Scene& scene, std::size_t i,
-                         const oracle::ScreenBounds& exact, const oracle::AxisExtent* truth, bool in_view,
-                         const double* margins) {
-        const textbook::SpotOf<Real> spot = spot_in<Real>(scene, i);
-        const Real n = exact.near_depth().convert_to<Real>();
-        add_textbook<Real>(textbook_tally(place, Formula::name, precision), scene, exact, truth, in_view,
-                           margins, [&](int axis) { return Formula::slopes(spot, axis, n); });
-    }
-    template <class Formula, class... Rest> void compare_spot(std::size_t& place, const Rest&... rest) {
-        compare_spot_in<Formula, float>(place, "float", rest...);
-        compare_spot_in<Formula, double>(place, "double", rest...);
     }
 
     //--------------------------------------------------------------------------------------------------------
@@ -397,56 +459,24 @@ private:
         });
     }
 
-    template <class Formula> void time_textbook(const std::vector<Scene>& scenes) {
-        time_textbook_in<Formula, float>(scenes, "float");
-        time_textbook_in<Formula, double>(scenes, "double");
-    }
-    /// Both axes of each light, from floats in memory to the sum of four bounds.
-    template <class Formula, class Real>
-    void time_textbook_in(const std::vector<Scene>& scenes, const char* precision) {
-        const auto tally =
-            std::find_if(result_.textbooks.begin(), result_.textbooks.end(), [&](const Tally& t) {
-                return t.formula == Formula::name && t.precision == precision;
-            });
-        if (tally == result_.textbooks.end() || !tally->used()) return;
-        tally->ns = time(scenes, [&](const Scene& scene) {
-            const Real n = static_cast<Real>(view_near(scene));
-            Real sum = 0;
-            for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-                const auto add = [&](auto slopes_of) {
-                    for (const int axis : {0, 1}) {
-                        const textbook::Slopes<Real> slopes = slopes_of(axis);
-                        sum += slopes.low + slopes.high;
-                    }
-                };
-                if constexpr (requires { Formula::knows_near_plane; }) {
-                    const InCamera<Real> light = in_camera<Real>(scene, scene.lights[i]);
-                    add([&](int axis) { return Formula::slopes(light.c[axis], light.z, light.r, n); });
-                } else {
-                    const textbook::SpotOf<Real> spot = spot_in<Real>(scene, i);
-                    add([&](int axis) { return Formula::slopes(spot, axis, n); });
-                }
-            }
-            volatile Real kept = sum;
-            static_cast<void>(kept);
-        });
-    }
-    static double view_near(const Scene& scene) { return std::abs(scene.camera.m[3][2]) / 2; }
-
     //--------------------------------------------------------------------------------------------------------
     // Slices.
 
     void depths() {
         result_.ours.formula = "lightbin", result_.ours.precision = "float";
+        slice_formulas_ = slice_formulas<textbook::LogScaleBias, textbook::LogRatio>();
+        name_tallies(slice_formulas_);
         std::vector<DepthScene> scenes;
         for (std::size_t i = 0; i < effort_.scenes; ++i) {
             scenes.push_back(family_.make_depths(random_, value_, effort_.lights));
             depth_scene(scenes.back());
         }
-        time_slices<textbook::LogScaleBias, float>(scenes, 0);
-        time_slices<textbook::LogScaleBias, double>(scenes, 1);
-        time_slices<textbook::LogRatio, float>(scenes, 2);
-        time_slices<textbook::LogRatio, double>(scenes, 3);
+        for (std::size_t k = 0; k < slice_formulas_.size(); ++k)
+            if (Tally& tally = result_.textbooks[k]; tally.used())
+                tally.ns = time(scenes, [&](const DepthScene& scene) {
+                    volatile int kept = slice_formulas_[k].sum(scene);
+                    static_cast<void>(kept);
+                });
         Clusters clusters;
         std::vector<std::pair<lightbin::View, lightbin::Slices>> made;
         for (const DepthScene& scene : scenes)
@@ -477,14 +507,6 @@ private:
         return *slices;
     }
 
-    /// The nearest and the farthest slice, or where in them a light's depths are.
-    struct SliceRange {
-        int first, last;
-    };
-    struct SlicePlaces {
-        double first, last;
-    };
-
     /// `needed` are the slices of depths within the light, where a boundary's slice is the one behind it, as a shader finds
     /// it; `touched` also has the one that a light ends at. Either serves.
     static void add_slices(Tally& tally, const SliceRange& needed, const SliceRange& touched,
@@ -505,23 +527,6 @@ private:
     static void add_error(Tally& tally, double first_inward, double last_inward) {
         tally.inward = std::max({tally.inward, first_inward, last_inward});
         tally.error = std::max({tally.error, std::abs(first_inward), std::abs(last_inward)});
-    }
-
-    static SliceRange within(const DepthScene& scene, const SlicePlaces& places) {
-        const auto slice = [&](double place) {
-            return static_cast<int>(std::clamp(std::floor(place), 0.0, scene.slices - 1.0));
-        };
-        return {slice(places.first), slice(places.last)};
-    }
-
-    template <class Formula, class Real>
-    static SlicePlaces textbook_places(const DepthScene& scene, const Light& light) {
-        const Real z = -Real(light.z), r = Real(light.w);
-        const auto place = [&](Real depth) {
-            return static_cast<double>(
-                Formula::slice(depth, Real(scene.near_depth), Real(scene.last), scene.slices));
-        };
-        return {place(z - r), place(z + r)};
     }
 
     /// The textbooks' law, with 64 bits: the logarithm of 1 + x loses nothing where x is small.
@@ -565,38 +570,15 @@ private:
             const int beside = touched.first - found[i].first;  // nothing, between the two
             add_error(result_.ours, beside > 0 ? -beside : std::max(0, found[i].first - needed.first),
                       needed.last - found[i].last);
-            std::size_t place = 0;
+            if (std::isinf(scene.far_plane)) continue;  // there is no such law
             const SlicePlaces exact = {exact_place(scene, z - r), exact_place(scene, z + r)};
-            compare_slices<textbook::LogScaleBias, float>(place, "float", scene, scene.lights[i], exact);
-            compare_slices<textbook::LogScaleBias, double>(place, "double", scene, scene.lights[i], exact);
-            compare_slices<textbook::LogRatio, float>(place, "float", scene, scene.lights[i], exact);
-            compare_slices<textbook::LogRatio, double>(place, "double", scene, scene.lights[i], exact);
-        }
-    }
-
-    template <class Formula, class Real>
-    void compare_slices(std::size_t& place, const char* precision, const DepthScene& scene,
-                        const Light& light, const SlicePlaces& exact) {
-        Tally& tally = textbook_tally(place, Formula::name, precision);
-        if (std::isinf(scene.far_plane)) return;  // there is no such law
-        const SlicePlaces places = textbook_places<Formula, Real>(scene, light);
-        add_slices(tally, within(scene, exact), within(scene, exact), within(scene, places));
-        add_error(tally, places.first - exact.first, exact.last - places.last);
-    }
-
-    template <class Formula, class Real>
-    void time_slices(const std::vector<DepthScene>& scenes, std::size_t place) {
-        Tally& tally = result_.textbooks[place];
-        if (!tally.used()) return;
-        tally.ns = time(scenes, [&](const DepthScene& scene) {
-            int sum = 0;
-            for (const Light& light : scene.lights) {
-                const SliceRange range = within(scene, textbook_places<Formula, Real>(scene, light));
-                sum += range.first + range.last;
+            for (std::size_t k = 0; k < slice_formulas_.size(); ++k) {
+                const SlicePlaces places = slice_formulas_[k].places(scene, scene.lights[i]);
+                Tally& tally = result_.textbooks[k];
+                add_slices(tally, within(scene, exact), within(scene, exact), within(scene, places));
+                add_error(tally, places.first - exact.first, exact.last - places.last);
             }
-            volatile int kept = sum;
-            static_cast<void>(kept);
-        });
+        }
     }
 
     const Family& family_;
@@ -604,6 +586,8 @@ private:
     Effort effort_;
     Random random_;
     std::uint64_t asked_ = 0;
+    std::vector<ScreenFormula> formulas_;
+    std::vector<SliceFormula> slice_formulas_;
     Result result_;
 };
 
