@@ -7,17 +7,16 @@
 #include "runner.hpp"
 
 #include "../arguments.hpp"
+#include "../console.hpp"
 
 #include <gl_context.hpp>
 #include <picture.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace {
@@ -34,32 +33,14 @@ void write_picture(const Job& job, const Scene& scene, const RunSettings& run, c
     write_png(picture, name);
 }
 
-class Progress {
-public:
-    explicit Progress(std::size_t views) : views_(views) {}
-    void say(const std::string& what) {
-        const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start_;
-        std::fprintf(stderr, "\rframes: view %zu of %zu, %.0f s: %-70.70s", ++done_, views_, passed.count(),
-                     what.c_str());
-    }
-    ~Progress() { std::fprintf(stderr, "\r%110s\r", ""); }
-
-private:
-    std::size_t views_, done_ = 0;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 std::vector<Row> draw_all(std::vector<SceneJobs> plan, RunSettings run, bool pictures, LeftOut& left_out) {
-    std::size_t views = 0;
-    for (const SceneJobs& scene : plan)
-        views += scene.jobs.size();
-    Progress progress(views);
+    Progress progress;
     std::vector<Row> rows;
     for (SceneJobs& jobs : plan) {
         const OffscreenContext context(0);  // each scene's goes with all that is in it
         Runner runner(jobs.scene, run, context.glsl(), left_out);
         for (const Job& job : jobs.jobs) {
-            progress.say(jobs.scene.name + ", " + job.table + ", " + job.camera.name);
+            progress(jobs.scene.name + ", " + job.table + ", " + job.camera.name);
             if (!job.lights.empty()) jobs.scene.lights = job.lights;
             const std::vector<Row> made = runner.run(job.table, job.camera, job.techniques, job.settings);
             rows.insert(rows.end(), made.begin(), made.end());
@@ -67,20 +48,6 @@ std::vector<Row> draw_all(std::vector<SceneJobs> plan, RunSettings run, bool pic
         }
     }
     return rows;
-}
-
-void print(const std::vector<Row>& rows) {
-    std::vector<std::pair<std::string, std::string>> tables;
-    for (const Row& row : rows)
-        if (std::ranges::find(tables, std::pair(row.scene, row.table)) == tables.end())
-            tables.emplace_back(row.scene, row.table);
-    for (const auto& [scene, table] : tables) {
-        std::vector<Row> its;
-        for (const Row& row : rows)
-            if (row.scene == scene && row.table == table) its.push_back(row);
-        const std::string title = scene + ": " + table;
-        table == "MSAA" ? print_samples(title, its) : print_techniques(title, its);
-    }
 }
 
 bool pictures_are_as_stated(const std::vector<Row>& rows) {
@@ -117,17 +84,17 @@ int run(Arguments arguments) {
         std::fflush(stdout);
     }
     const std::vector<SceneJobs> plan = make_plan(arguments.scenes_or_fixtures(), quick);
-    write_csv("frames", {});  // or a folder that can't be written to is noticed in the end
+    write_csv({});  // or a folder that can't be written to is noticed in the end
     LeftOut left_out;
     const std::vector<Row> rows =
         with_computed_memory(draw_all(plan, run, pictures, left_out), sample_counts);
-    print(rows);
+    print_rows(rows);
     print_conclusions(rows);
     if (!left_out.lines().empty()) std::printf("\n");
     for (const std::string& line : left_out.lines())
         std::printf("%s\n", line.c_str());
-    write_csv("frames", rows);
-    write_paths("frames_paths", rows);
+    write_csv(rows);
+    write_paths(rows);
     return pictures_are_as_stated(rows) ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

@@ -3,18 +3,21 @@
 
 #include "cases.hpp"
 
+#include "../console.hpp"
+
 #include <algorithm>
 #include <cstdio>
-#include <stdexcept>
+#include <functional>
 #include <utility>
 
 namespace {
 
 template <class Key> auto grouped(const std::vector<Row>& rows, Key key_of) {
-    std::vector<std::pair<decltype(key_of(rows.front())), std::vector<Row>>> groups;
+    using Group = std::pair<std::decay_t<std::invoke_result_t<Key, const Row&>>, std::vector<Row>>;
+    std::vector<Group> groups;
     for (const Row& row : rows) {
-        const auto key = key_of(row);
-        auto group = std::ranges::find(groups, key, [](const auto& g) { return g.first; });
+        const auto key = std::invoke(key_of, row);
+        auto group = std::ranges::find(groups, key, &Group::first);
         if (group == groups.end()) group = groups.insert(groups.end(), {key, {}});
         group->second.push_back(row);
     }
@@ -34,19 +37,63 @@ template <class Value> Spread spread_of(const std::vector<Row>& rows, Value valu
     return spread;
 }
 
-class File {
-public:
-    explicit File(const std::string& path) : file_(std::fopen(path.c_str(), "w")) {
-        if (!file_) throw std::runtime_error("cannot write '" + path + "'");
-    }
-    ~File() { std::fclose(file_); }
-    File(const File&) = delete;
-    File& operator=(const File&) = delete;
-    operator std::FILE*() const { return file_; }
+double milliseconds(const Row& row) {
+    return row.frame.median;
+}
+double millions(const Row& row) {
+    return static_cast<double>(row.evaluations) * 1e-6;
+}
+double megabytes(const Row& row) {
+    return static_cast<double>(row.bytes) * 1e-6;
+}
+double percent_different(const Row& row) {
+    return 100.0 * static_cast<double>(row.different) / static_cast<double>(row.pixels);
+}
 
-private:
-    std::FILE* file_;
-};
+/// A row a technique: means over the views, in brackets the least and the most. Of one view, those of its frames.
+std::vector<TableRow> by_technique(const std::vector<Row>& rows) {
+    std::vector<TableRow> table = {{"", "ms", "million evaluations", "MB", "differs"}};
+    for (const auto& [name, views] : grouped(rows, &Row::technique)) {
+        Spread ms = spread_of(views, milliseconds);
+        if (views.size() == 1) ms = {ms.mean, views[0].frame.least, views[0].frame.most};
+        const Spread evaluations = spread_of(views, millions),
+                     different = spread_of(views, percent_different);
+        const double by = spread_of(views, [](const Row& row) { return 1.0 * row.difference; }).most;
+        table.push_back(
+            {name, ms.most > 0 ? text("%8.1f (%7.1f /%7.1f)", ms.mean, ms.least, ms.most) : "not timed",
+             evaluations.most > 0
+                 ? text("%9.3f (%8.3f /%8.3f)", evaluations.mean, evaluations.least, evaluations.most)
+                 : "not counted",
+             text("%8.1f", spread_of(views, megabytes).most),
+             different.most > 0 ? text("%6.2f %% by %.0f", different.most, by) : "nowhere"});
+    }
+    return table;
+}
+
+/// A row for each number of lights and samples, a column a technique, as Pettineo has them: milliseconds, million
+/// evaluations, megabytes and the part of the pixels that are not the reference's.
+std::vector<TableRow> by_samples(std::vector<Row> rows) {
+    std::vector<TableRow> table = {{"lights, MSAA"}};
+    const auto techniques = grouped(rows, &Row::technique);
+    for (const auto& [name, its] : techniques)
+        table[0].push_back("| " + name);
+    table.push_back({""});
+    table[1].resize(table[0].size(), "|      ms  million      MB   differs");
+    const auto key = [](const Row& row) { return std::pair(row.lights, row.samples); };
+    std::ranges::sort(rows, {}, key);
+    for (const auto& [number, line] : grouped(rows, key)) {
+        table.push_back({text("%8zu, %4d", number.first, number.second)});
+        for (const auto& [name, its] : techniques) {
+            const auto row = std::ranges::find(line, name, &Row::technique);
+            table.back().push_back(row == line.end() ? "| left out"
+                                   : row->computed
+                                       ? text("| %23.1f  computed", megabytes(*row))
+                                       : text("| %7.1f %8.3f %7.1f %7.2f %%", milliseconds(*row),
+                                              millions(*row), megabytes(*row), percent_different(*row)));
+        }
+    }
+    return table;
+}
 
 // As RFC 4180 has it.
 std::string quoted(const std::string& text) {
@@ -56,77 +103,20 @@ std::string quoted(const std::string& text) {
     return made + '"';
 }
 
-double millions(const Row& row) {
-    return static_cast<double>(row.evaluations) * 1e-6;
-}
-
 }  // namespace
 
-void print_techniques(const std::string& title, const std::vector<Row>& rows) {
-    if (rows.empty()) return;
-    std::printf("\n%s\n%-52s %26s %30s %8s %16s\n", title.c_str(), "", "ms", "million evaluations", "MB",
-                "differs");
-    for (const auto& [name, views] : grouped(rows, [](const Row& row) { return row.technique; })) {
-        Spread ms = spread_of(views, [](const Row& row) { return row.frame.median; });
-        if (views.size() == 1) ms = {ms.mean, views[0].frame.least, views[0].frame.most};
-        const Spread evaluations = spread_of(views, millions);
-        const Spread different = spread_of(views, [](const Row& row) {
-            return 100.0 * static_cast<double>(row.different) / static_cast<double>(row.pixels);
-        });
-        const Spread difference =
-            spread_of(views, [](const Row& row) { return static_cast<double>(row.difference); });
-        const Spread bytes = spread_of(views, [](const Row& row) { return static_cast<double>(row.bytes); });
-        std::printf("%-52s", name.c_str());
-        if (ms.most > 0)
-            std::printf(" %8.1f (%7.1f /%7.1f)", ms.mean, ms.least, ms.most);
-        else
-            std::printf(" %27s", "not timed");
-        if (evaluations.most > 0)
-            std::printf(" %9.3f (%8.3f /%8.3f)", evaluations.mean, evaluations.least, evaluations.most);
-        else
-            std::printf(" %30s", "not counted");
-        std::printf(" %8.1f", bytes.most * 1e-6);
-        if (different.most == 0)
-            std::printf(" %16s\n", "nowhere");
-        else
-            std::printf(" %6.2f %% by %3.0f\n", different.most, difference.most);
+void print_rows(const std::vector<Row>& rows) {
+    for (const auto& [key, its] :
+         grouped(rows, [](const Row& row) { return std::pair(row.scene, row.table); })) {
+        std::printf("\n%s: %s\n", key.first.c_str(), key.second.c_str());
+        print_table(key.second == "MSAA" ? by_samples(its) : by_technique(its));
     }
 }
 
-void print_samples(const std::string& title, std::vector<Row> rows) {
-    if (rows.empty()) return;
-    std::printf("\n%s\n%-14s", title.c_str(), "lights, MSAA");
-    const auto columns = grouped(rows, [](const Row& row) { return row.technique; });
-    for (const auto& [name, column] : columns)
-        std::printf(" | %-34s", name.c_str());
-    std::printf("\n%-14s", "");
-    for (std::size_t i = 0; i < columns.size(); ++i)
-        std::printf(" | %8s %8s %6s %9s", "ms", "million", "MB", "differs");
-    std::printf("\n");
-    std::ranges::sort(rows, {}, [](const Row& r) { return std::pair(r.lights, r.samples); });
-    for (const auto& [key, line] :
-         grouped(rows, [](const Row& r) { return std::pair(r.lights, r.samples); })) {
-        std::printf("%8zu, %4d", key.first, key.second);
-        for (const auto& [name, column] : columns) {
-            const auto row = std::ranges::find(line, name, &Row::technique);
-            if (row == line.end())
-                std::printf(" | %34s", "left out");
-            else if (row->computed)
-                std::printf(" | %8s %8s %6.1f %9s", "", "", static_cast<double>(row->bytes) * 1e-6,
-                            "computed");
-            else
-                std::printf(" | %8.1f %8.3f %6.1f %7.2f %%", row->frame.median, millions(*row),
-                            static_cast<double>(row->bytes) * 1e-6,
-                            100.0 * static_cast<double>(row->different) / static_cast<double>(row->pixels));
-        }
-        std::printf("\n");
-    }
-}
-
-void write_csv(const std::string& name, const std::vector<Row>& rows) {
-    const File file(name + ".csv");
-    std::fprintf(file, "table,scene,view,lights,technique,samples,evaluations,ms,least_ms,most_ms,bytes,"
-                       "bytes_are,pixels,different_pixels,largest_difference,passes\n");
+void write_csv(const std::vector<Row>& rows) {
+    std::FILE* const file =
+        open_report("frames.csv", "table,scene,view,lights,technique,samples,evaluations,ms,least_ms,most_ms,"
+                                  "bytes,bytes_are,pixels,different_pixels,largest_difference,passes");
     for (const Row& row : rows) {
         std::fprintf(file, "%s,%s,%s,%zu,%s,%d,%llu,%.3f,%.3f,%.3f,%zu,%s,%zu,%zu,%d,", row.table.c_str(),
                      quoted(row.scene).c_str(), quoted(row.view).c_str(), row.lights, row.technique.c_str(),
@@ -138,11 +128,11 @@ void write_csv(const std::string& name, const std::vector<Row>& rows) {
                          pass.c_str(), times.median, times.least, times.most);
         std::fprintf(file, "\n");
     }
+    std::fclose(file);
 }
 
-void write_paths(const std::string& name, const std::vector<Row>& rows) {
-    const File file(name + ".csv");
-    std::fprintf(file, "panel,frame,technique,million_evaluations,ms\n");
+void write_paths(const std::vector<Row>& rows) {
+    std::FILE* const file = open_report("frames_paths.csv", "panel,frame,technique,million_evaluations,ms");
     std::string panel, first;
     int view = 0;
     for (const Row& row : rows) {
@@ -158,4 +148,5 @@ void write_paths(const std::string& name, const std::vector<Row>& rows) {
         std::fprintf(file, "\"%s\",%d,%s,%.6f,%.3f\n", its.c_str(), frame < 0 ? view : frame,
                      row.technique.c_str(), millions(row), row.frame.median);
     }
+    std::fclose(file);
 }
