@@ -21,9 +21,7 @@
 #include <cmath>
 #include <ctime>
 #include <exception>
-#include <functional>
 #include <limits>
-#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -45,7 +43,7 @@ std::size_t turns = 15;
 struct Candidate {
     Plan plan;
     IdWidth ids;
-    std::function<Built(const TiledView&, const Lights&)> build;
+    BuildLists build;
     double build_us = 0, evaluations = 0;
 
     double total_us(double evaluation_ns) const { return build_us + evaluations * evaluation_ns * 1e-3; }
@@ -55,16 +53,13 @@ struct Candidate {
 template <Isa isa> std::vector<Candidate> candidates() {
     std::vector<Candidate> all;
     const auto add = [&]<lightbin::Options options> {
-        const auto binner = std::make_shared<lightbin::Binner<options>>();
         for (const int tile_size : tile_sizes)
             all.push_back({.plan = {.footprint = options.footprint,
                                     .depth_test = options.depth_test,
                                     .slicing = options.slicing,
                                     .tile_size = tile_size},
                            .ids = options.ids,
-                           .build = [binner](const TiledView& view, const Lights& lights) {
-                               return build<options>(*binner, view, lights, view.bounds());
-                           }});
+                           .build = builder<options>()});
     };
     const auto add_method = [&]<Method method> {
         constexpr auto with = [](IdWidth ids, Slicing slicing) {
@@ -108,11 +103,11 @@ template <class Work> double own_seconds(Work work) {
 }
 
 /// Times all candidates in turns, each turn with another light set.
-void time(std::vector<Candidate>& candidates, const Views& views, std::span<const Lights> sets,
-          std::size_t turns) {
+void time(std::vector<Candidate>& candidates, const Views& views, std::span<const LightSet> sets,
+          std::size_t turn_count) {
     std::vector<std::vector<double>> times(candidates.size());
     std::vector<int> together(candidates.size(), 1);  // builds too short for the clock
-    for (std::size_t turn = 0; turn < turns + 1; ++turn)
+    for (std::size_t turn = 0; turn < turn_count + 1; ++turn)
         for (std::size_t i = 0; i < candidates.size(); ++i) {
             if (!candidates[i].plan.tiled) continue;
             const TiledView& view = views.of(candidates[i].plan.tile_size);
@@ -205,7 +200,7 @@ lightbin::Advice ask(const TiledView& view, const Picture& picture, const Lights
 template <Isa isa> void judge(const BenchScene& scene, Report& report) {
     const Picture picture = rasterise(scene, screen);
     const Views views(scene, picture);
-    std::vector<Lights> sets;
+    std::vector<LightSet> sets;
     for (std::uint32_t seed = 0; seed < turns; ++seed)
         sets.push_back(scene.lights(seed));
 
@@ -215,7 +210,8 @@ template <Isa isa> void judge(const BenchScene& scene, Report& report) {
         const TiledView& view = views.of(candidate.plan.tile_size);
         candidate.evaluations = all_evaluations(view, picture, candidate.build(view, sets[0]));
     }
-    const std::vector<lightbin::ListRange> one(1, {0, static_cast<std::uint32_t>(sets[0].size())});
+    const Lights& lights = std::get<Lights>(sets[0]);
+    const std::vector<lightbin::ListRange> one(1, {0, static_cast<std::uint32_t>(lights.size())});
     for (const IdWidth ids : {IdWidth::u16, IdWidth::u32})
         sweep.push_back({{.tiled = false}, ids, {}, 0, views.of(screen.width).all_evaluations(one)});
     const auto measured = [&](const Plan& plan, IdWidth ids) -> const Candidate& {
@@ -233,7 +229,7 @@ template <Isa isa> void judge(const BenchScene& scene, Report& report) {
     for (const Known known : {Known::bounds, Known::nothing, Known::samples})
         for (const double cost : evaluation_costs) {
             const double start = time_now();
-            const lightbin::Advice advice = ask<isa>(finest, picture, sets[0], cost, known);
+            const lightbin::Advice advice = ask<isa>(finest, picture, lights, cost, known);
             const double asking = 1e6 * (time_now() - start) / plain_us;
             report.asking.push_back(asking);
             const Candidate& choice = measured(advice.best(), ids_of(known));

@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <span>
 #include <variant>
 #include <vector>
@@ -47,6 +49,16 @@ template <lightbin::Options options>
 Built build(lightbin::Binner<options>& binner, const TiledView& view, const LightSet& lights,
             const lightbin::ZBounds& bounds) {
     return std::visit([&](const auto& any) { return build(binner, view, any, bounds); }, lights);
+}
+
+using BuildLists = std::function<Built(const TiledView&, const LightSet&)>;
+
+/// Builds with a Binner of its own, and the view's Z bounds where the options take them.
+template <lightbin::Options options> BuildLists builder() {
+    const auto binner = std::make_shared<lightbin::Binner<options>>();
+    return [=](const TiledView& view, const LightSet& lights) {
+        return build(*binner, view, lights, view.bounds());
+    };
 }
 
 /// Light evaluations of all drawn pixels: with clusters those of the pixel's cell, with z-bins those of its tile whose

@@ -81,20 +81,20 @@ std::vector<Row> rows_of(const Case& scene, int tile_size) {
     for (const Method& method : ladder)
         rows.push_back({scene.name, scene.views.size(), tile_size, method, Slicing::none,
                         static_cast<bool>(scene.views[0].scene.spots)});
-    for (const SeenScene& seen : scene.views)
-        std::visit(
-            [&](const auto& lights) {
-                const TiledView view(seen.scene, seen.picture, tile_size);
-                const ExactPairs truth = ExactDecider(seen.scene.projection, seen.picture.size, tile_size)
-                                             .pairs(lights, view.bounds());
-                Ladder().for_each([&](std::size_t rung, auto& bin) {
-                    const auto grid = bin(view, lights);
-                    rows[rung].add(truth, [&](std::size_t tile) {
-                        return grid.ids().subspan(grid.ranges()[tile].offset, grid.ranges()[tile].count);
-                    });
-                });
-            },
-            seen.scene.light_set(0));
+    const std::vector<BuildLists> builders = ladder_builders();
+    for (const SeenScene& seen : scene.views) {
+        const TiledView view(seen.scene, seen.picture, tile_size);
+        const LightSet lights = seen.scene.light_set(0);
+        ExactDecider decider(seen.scene.projection, seen.picture.size, tile_size);
+        const ExactPairs truth =
+            std::visit([&](const auto& any) { return decider.pairs(any, view.bounds()); }, lights);
+        for (std::size_t rung = 0; rung < rows.size(); ++rung) {
+            const Built built = builders[rung](view, lights);
+            rows[rung].add(truth, [&](std::size_t tile) {
+                return built.ids.subspan(built.ranges[tile].offset, built.ranges[tile].count);
+            });
+        }
+    }
     return rows;
 }
 

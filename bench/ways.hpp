@@ -25,7 +25,7 @@ struct Way {
     bool ours;                   ///< or as engines do it
     bool variant;                ///< of another, to tell what a part of it pays; in no table
     Form form;
-    std::function<Built(const TiledView&, const LightSet&)> build;
+    BuildLists build;
 
     bool needs_bounds() const { return bounds != lightbin::DepthTest::none; }
 };
@@ -74,13 +74,10 @@ private:
     template <lightbin::Options options>
     void add(const char* method, bool variant = false, Form form = Form::as_they_are) {
         constexpr bool clusters = options.slicing == lightbin::Slicing::clusters;
-        const auto binner = std::make_shared<lightbin::Binner<options>>();
         for (const int tile_size : {8, 16, 32, 64})
             if (tile_size > 8 || !clusters)  // of 8 pixels they would be 777,600 cells
                 all_.push_back({method, tile_size, clusters ? lightbin::DepthTest::none : options.depth_test,
-                                true, variant, form, [=](const TiledView& view, const LightSet& lights) {
-                                    return ::build<options>(*binner, view, lights, view.bounds());
-                                }});
+                                true, variant, form, builder<options>()});
     }
 
     template <class Loop, bool with_bounds> void add_engines(const char* method) {
