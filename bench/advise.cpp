@@ -5,9 +5,8 @@
 // advise_slices() against those with slices, too. They see the first light set alone, advise_slices() the depth of one
 // pixel in 64.
 //
-//   advise_plans.csv   a row a plan that was weighed: build time and evaluations by advise(), and by the sweep
-//   advise.csv         a row for each scene and cost of an evaluation: the choice, the best plan, and the regret, their
-//                      ratio: as swept, and, where that is over the limit, of the two timed again by themselves
+// advise.csv has a row for each scene and cost of an evaluation: the choice, the best plan, and the regret, their ratio: as
+// swept, and, where that is over the limit, of the two timed again by themselves.
 #include "arguments.hpp"
 #include "built.hpp"
 #include "console.hpp"
@@ -175,7 +174,7 @@ struct Regret {
 };
 
 struct Report {
-    std::FILE *plans_csv, *csv;
+    std::FILE* csv;
     std::vector<Regret> regrets;
     std::vector<double> asking;  ///< over the plain build at the view's tile size
 };
@@ -248,12 +247,6 @@ template <Isa isa> void judge(const BenchScene& scene, Report& report) {
             std::fprintf(report.csv, "%s,%s,%g,%s,%.2f,%s,%.2f,%.4f,%.4f,%.1f\n", scene.name.c_str(),
                          known_names[static_cast<int>(known)], cost, chosen.c_str(), choice.total_us(cost),
                          cheapest.c_str(), best.total_us(cost), swept, regret, asking);
-            for (const Plan& plan : advice.plans()) {
-                const Candidate& c = measured(plan, ids_of(known));
-                std::fprintf(report.plans_csv, "%s,%s,%g,%s,%.2f,%.2f,%.0f,%.0f\n", scene.name.c_str(),
-                             known_names[static_cast<int>(known)], cost, words(plan, ids_of(known)).c_str(),
-                             plan.build_ns * 1e-3, c.build_us, plan.evaluations, c.evaluations);
-            }
         }
 }
 
@@ -283,7 +276,7 @@ void print(const Report& report) {
                   worst.scene + text(", %g ns an evaluation).", worst.cost),
               text("Asking takes as long as %.0f plain builds in the median, %.0f at worst.",
                    median(report.asking), *std::ranges::max_element(report.asking))},
-             {"advise.csv", "advise_plans.csv"});
+             {"advise.csv"});
 }
 
 /// Calls visit.operator()<isa>() for one of the instruction sets with a build model.
@@ -313,19 +306,16 @@ int main(int argc, char** argv) try {
     for (const std::string& file : arguments.scenes_or_fixtures())
         for (BenchScene& scene : glb_scenes(file))
             all.push_back(std::move(scene));
-    Report report = {
-        .plans_csv = open_report("advise_plans.csv",
-                                 "scene,bounds,evaluation_ns,plan,asked_us,us,asked_evaluations,evaluations"),
-        .csv = open_report("advise.csv", "scene,bounds,evaluation_ns,choice,choice_us,best,best_us,"
-                                         "swept_regret,regret,asking"),
-        .regrets = {},
-        .asking = {}};
+    Report report = {.csv =
+                         open_report("advise.csv", "scene,bounds,evaluation_ns,choice,choice_us,best,best_us,"
+                                                   "swept_regret,regret,asking"),
+                     .regrets = {},
+                     .asking = {}};
     for (Progress progress; const BenchScene& scene : all) {
         progress(scene.name);
         with_isa(isa, [&]<Isa tier> { judge<tier>(scene, report); });
     }
     print(report);
-    std::fclose(report.plans_csv);
     std::fclose(report.csv);
 } catch (const std::exception& problem) {
     std::fprintf(stderr, "advise: %s\n", problem.what());

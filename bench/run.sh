@@ -24,7 +24,7 @@
 #   advise [--quick] [--avx2 | --sse2 | --scalar] [SCENE.glb ...]
 #       What the plan that advise() chooses costs beside the best of all, with Z bounds and without, the same of
 #       advise_slices(), and how long asking takes beside a plain build; on the machine's widest instruction set or the
-#       named one. Writes build/bench/advise.csv and advise_plans.csv.
+#       named one. Writes build/bench/advise.csv.
 #   stability [--quick]
 #       How far off the screen bounds of lights are under stiff and extreme conditions, by decade, in pixels: ours and the
 #       textbooks', in float and in double, against exact ones; what that misses, lists too much and takes. A miss by ours is
