@@ -14,7 +14,6 @@
 #include <lightbin/binner.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cfloat>
 #include <cmath>
 #include <cstddef>
@@ -87,8 +86,9 @@ struct SlicePlaces {
 /// A light in the camera's axes.
 template <class Real> struct InCamera { Real c[2], z, r; };
 
-/// A light as a renderer that computes in Real has it there.
-template <class Real> InCamera<Real> in_camera(const Scene& scene, std::size_t i) {
+/// A light as a renderer that computes in Real has it there. Inlined, as in a renderer's loop: this is timed.
+template <class Real>
+[[gnu::always_inline]] inline InCamera<Real> in_camera(const Scene& scene, std::size_t i) {
     const Light& light = scene.lights[i];
     Real p[3] = {Real(light.x), Real(light.y), Real(light.z)};
     if (scene.world) {
@@ -116,23 +116,25 @@ struct ScreenFormula {
     /// The bounds of light i.
     Bounds (*bounds)(const Scene&, std::size_t i, const oracle::ScreenBounds&);
     /// Both axes of each light, from floats in memory to the sum of four bounds.
-    double (*sum)(const Scene&, double near_depth);
+    double (*sum)(const Scene&);
 };
 struct SliceFormula {
     const char *name, *precision;
     SlicePlaces (*places)(const DepthScene&, const Light&);
-    int (*sum)(const DepthScene&);
+    double (*sum)(const DepthScene&);
 };
 
-template <class Formula, class Real>
-std::array<textbook::Slopes<Real>, 2> slopes_of(const Scene& scene, std::size_t i, Real n) {
+/// Calls use(axis, slopes) for both axes of light i.
+template <class Formula, class Real, class Use>
+void with_slopes(const Scene& scene, std::size_t i, Real n, Use use) {
     if constexpr (requires { Formula::knows_near_plane; }) {
         const InCamera<Real> light = in_camera<Real>(scene, i);
-        return {Formula::slopes(light.c[0], light.z, light.r, n),
-                Formula::slopes(light.c[1], light.z, light.r, n)};
+        for (const int axis : {0, 1})
+            use(axis, Formula::slopes(light.c[axis], light.z, light.r, n));
     } else {
         const textbook::SpotOf<Real> spot = spot_in<Real>(scene, i);
-        return {Formula::slopes(spot, 0, n), Formula::slopes(spot, 1, n)};
+        for (const int axis : {0, 1})
+            use(axis, Formula::slopes(spot, axis, n));
     }
 }
 
@@ -141,22 +143,23 @@ template <class Formula, class Real> ScreenFormula screen_formula() {
     if constexpr (requires { Formula::knows_near_plane; }) knows_near_plane = Formula::knows_near_plane;
     return {Formula::name, std::is_same_v<Real, float> ? "float" : "double", knows_near_plane,
             [](const Scene& scene, std::size_t i, const oracle::ScreenBounds& exact) {
-                const auto slopes = slopes_of<Formula, Real>(scene, i, exact.near_depth().convert_to<Real>());
                 Bounds bounds;
-                for (const std::size_t axis : {0u, 1u}) {
-                    const Real scale = static_cast<Real>(exact.scale(static_cast<int>(axis))),
-                               offset = static_cast<Real>(exact.offset(static_cast<int>(axis)));
-                    bounds.low[axis] = static_cast<double>(slopes[axis].low * scale + offset);
-                    bounds.high[axis] = static_cast<double>(slopes[axis].high * scale + offset);
-                }
+                with_slopes<Formula>(scene, i, exact.near_depth().convert_to<Real>(),
+                                     [&](int axis, const textbook::Slopes<Real>& slopes) {
+                                         const Real scale = static_cast<Real>(exact.scale(axis)),
+                                                    offset = static_cast<Real>(exact.offset(axis));
+                                         bounds.low[axis] = static_cast<double>(slopes.low * scale + offset);
+                                         bounds.high[axis] =
+                                             static_cast<double>(slopes.high * scale + offset);
+                                     });
                 return bounds;
             },
-            [](const Scene& scene, double near_depth) {
+            [](const Scene& scene) {
+                const Real near_depth = static_cast<Real>(std::abs(scene.camera.m[3][2]) / 2);
                 Real sum = 0;
                 for (std::size_t i = 0; i < scene.lights.size(); ++i)
-                    for (const textbook::Slopes<Real>& slopes :
-                         slopes_of<Formula, Real>(scene, i, static_cast<Real>(near_depth)))
-                        sum += slopes.low + slopes.high;
+                    with_slopes<Formula>(scene, i, near_depth,
+                                         [&](int, const auto& slopes) { sum += slopes.low + slopes.high; });
                 return static_cast<double>(sum);
             }};
 }
@@ -178,7 +181,7 @@ template <class Formula, class Real> SliceFormula slice_formula() {
         return {place(z - r), place(z + r)};
     };
     return {Formula::name, std::is_same_v<Real, float> ? "float" : "double", places,
-            [](const DepthScene& scene) {
+            [](const DepthScene& scene) -> double {
                 int sum = 0;
                 for (const Light& light : scene.lights) {
                     const SliceRange range = within(scene, places(scene, light));
@@ -186,19 +189,6 @@ template <class Formula, class Real> SliceFormula slice_formula() {
                 }
                 return sum;
             }};
-}
-
-template <class... Formulas> std::vector<ScreenFormula> screen_formulas() {
-    std::vector<ScreenFormula> all;
-    ((all.push_back(screen_formula<Formulas, float>()), all.push_back(screen_formula<Formulas, double>())),
-     ...);
-    return all;
-}
-template <class... Formulas> std::vector<SliceFormula> slice_formulas() {
-    std::vector<SliceFormula> all;
-    ((all.push_back(slice_formula<Formulas, float>()), all.push_back(slice_formula<Formulas, double>())),
-     ...);
-    return all;
 }
 
 class Measure {
@@ -221,10 +211,15 @@ private:
 
     void screens() {
         result_.ours.formula = "lightbin", result_.ours.precision = "mixed";
-        formulas_ =
-            family_.spots
-                ? screen_formulas<textbook::LeastSphere, textbook::ConeBox>()
-                : screen_formulas<textbook::MaraMcGuire, textbook::Quadratic, textbook::LengyelLauritzen>();
+        using namespace textbook;
+        if (family_.spots)
+            formulas_ = {screen_formula<LeastSphere, float>(), screen_formula<LeastSphere, double>(),
+                         screen_formula<ConeBox, float>(), screen_formula<ConeBox, double>()};
+        else
+            formulas_ = {
+                screen_formula<MaraMcGuire, float>(),      screen_formula<MaraMcGuire, double>(),
+                screen_formula<Quadratic, float>(),        screen_formula<Quadratic, double>(),
+                screen_formula<LengyelLauritzen, float>(), screen_formula<LengyelLauritzen, double>()};
         name_tallies(formulas_);
         std::vector<Scene> scenes, turns;
         for (std::size_t i = 0; i < effort_.scenes; ++i)
@@ -237,12 +232,7 @@ private:
         for (const Scene& scene : scenes)
             screen(scene);
         time_ours(turns);
-        for (std::size_t k = 0; k < formulas_.size(); ++k)
-            if (Tally& tally = result_.textbooks[k]; tally.used())
-                tally.ns = time(turns, [&](const Scene& scene) {
-                    volatile double kept = formulas_[k].sum(scene, std::abs(scene.camera.m[3][2]) / 2);
-                    static_cast<void>(kept);
-                });
+        time_textbooks(formulas_, turns);
     }
 
     static lightbin::View view_of(const Scene& scene) {
@@ -321,13 +311,20 @@ private:
         }
     }
 
-    /// How far apart two bounds are within the picture. One that is NaN is off by all of it.
-    static void add_error(Tally& tally, const oracle::AxisExtent& truth, double low, double high, int side) {
-        const auto within = [&](double at) { return std::clamp(at, 0.0, double(side)); };
-        const double low_inward = std::isnan(low) ? side : within(low) - truth.low,
-                     high_inward = std::isnan(high) ? side : truth.high - within(high);
-        tally.error = std::max({tally.error, std::abs(low_inward), std::abs(high_inward)});
+    /// How far apart bounds are within the picture. One that is NaN is off by all of it.
+    static void add_error(Tally& tally, const Camera& camera, const oracle::AxisExtent* truth,
+                          const Bounds& bounds) {
+        const int sides[] = {camera.width, camera.height};
+        for (const int axis : {0, 1}) {
+            const double side = sides[axis], low = bounds.low[axis], high = bounds.high[axis];
+            add_error(tally, std::isnan(low) ? side : std::clamp(low, 0.0, side) - truth[axis].low,
+                      std::isnan(high) ? side : truth[axis].high - std::clamp(high, 0.0, side));
+        }
+    }
+    /// By how much the two ends of a range lie too far inward.
+    static void add_error(Tally& tally, double low_inward, double high_inward) {
         tally.inward = std::max({tally.inward, low_inward, high_inward});
+        tally.error = std::max({tally.error, std::abs(low_inward), std::abs(high_inward)});
     }
 
     /// The tiles of bounds, in the viewport.
@@ -363,39 +360,41 @@ private:
         return {{truth[0].first, truth[1].first}, {truth[0].last, truth[1].last}};
     }
 
+    /// Adds a light: its exact tiles, those without a margin and with the library's, and those that are listed.
+    static void add_tiles(Tally& tally, const TileRect& exact, const TileRect& bare, const TileRect& same,
+                          const TileRect& listed) {
+        const std::uint64_t whole = area(exact);
+        ++tally.lights;
+        tally.exact += whole;
+        tally.missed_bare += whole - area(common(exact, bare));
+        tally.missed_same += whole - area(common(exact, same));
+        tally.extra += area(listed) - area(common(exact, listed));
+    }
+
     void count_ours(const Scene& scene, const oracle::AxisExtent* truth, bool in_view,
                     const TileRect& emitted, const Behind& reason) {
         Tally& tally = result_.ours;
         const TileRect exact = rect_of(truth, in_view);
-        const std::uint64_t whole = area(exact), met = area(common(exact, emitted));
-        ++tally.lights;
-        tally.exact += whole;
-        tally.missed_same += whole - met;
-        tally.extra += area(emitted) - met;
-        const int sides[] = {scene.camera.width, scene.camera.height};
+        Bounds bare;
+        for (const int axis : {0, 1}) {
+            bare.low[axis] = reason.low[axis] * scene.camera.tile;
+            bare.high[axis] = reason.high[axis] * scene.camera.tile;
+        }
+        add_tiles(tally, exact, family_.spots ? emitted : tiles(scene.camera, bare, nullptr), emitted,
+                  emitted);
         if (family_.spots) {
             // Tiles are pixels.
-            tally.missed_bare = tally.missed_same;
             for (const int axis : {0, 1})
-                if (in_view && area(emitted) > 0) {
-                    const double low = truth[axis].first - emitted.first[axis],
-                                 high = emitted.last[axis] - truth[axis].last;
-                    tally.error = std::max({tally.error, std::abs(low), std::abs(high)});
-                    tally.inward = std::max({tally.inward, -low, -high});
-                }
+                if (in_view && area(emitted) > 0)
+                    add_error(tally, emitted.first[axis] - truth[axis].first,
+                              truth[axis].last - emitted.last[axis]);
             return;
         }
         result_.unlike += !(reason.rect == emitted);
         if (!in_view) return;
         ++result_.asked;
         result_.careful += reason.careful;
-        Bounds bare;
-        for (const int axis : {0, 1}) {
-            bare.low[axis] = reason.low[axis] * scene.camera.tile,
-            bare.high[axis] = reason.high[axis] * scene.camera.tile;
-            add_error(tally, truth[axis], bare.low[axis], bare.high[axis], sides[axis]);
-        }
-        tally.missed_bare += whole - area(common(exact, tiles(scene.camera, bare, nullptr)));
+        add_error(tally, scene.camera, truth, bare);
     }
 
     template <class Formula> void name_tallies(const std::vector<Formula>& formulas) {
@@ -407,17 +406,9 @@ private:
 
     static void add_textbook(Tally& tally, const Camera& camera, const Bounds& bounds,
                              const oracle::AxisExtent* truth, bool in_view, const double* margins) {
-        const TileRect rect = rect_of(truth, in_view), bare = tiles(camera, bounds, nullptr);
-        const std::uint64_t whole = area(rect), met = area(common(rect, bare));
-        ++tally.lights;
-        tally.exact += whole;
-        tally.missed_bare += whole - met;
-        tally.missed_same += whole - area(common(rect, tiles(camera, bounds, margins)));
-        tally.extra += area(bare) - met;
-        const int sides[] = {camera.width, camera.height};
-        if (in_view)
-            for (const int axis : {0, 1})
-                add_error(tally, truth[axis], bounds.low[axis], bounds.high[axis], sides[axis]);
+        const TileRect bare = tiles(camera, bounds, nullptr);
+        add_tiles(tally, rect_of(truth, in_view), bare, tiles(camera, bounds, margins), bare);
+        if (in_view) add_error(tally, camera, truth, bounds);
     }
 
     //--------------------------------------------------------------------------------------------------------
@@ -442,6 +433,16 @@ private:
         return median(rounds) / double(lights) * 1e9;
     }
 
+    template <class Formula, class AnyScene>
+    void time_textbooks(const std::vector<Formula>& formulas, const std::vector<AnyScene>& scenes) {
+        for (std::size_t k = 0; k < formulas.size(); ++k)
+            if (Tally& tally = result_.textbooks[k]; tally.used())
+                tally.ns = time(scenes, [&](const AnyScene& scene) {
+                    volatile double kept = formulas[k].sum(scene);
+                    static_cast<void>(kept);
+                });
+    }
+
     void time_ours(const std::vector<Scene>& scenes) {
         struct Turn {
             const Scene& scene;
@@ -464,19 +465,16 @@ private:
 
     void depths() {
         result_.ours.formula = "lightbin", result_.ours.precision = "float";
-        slice_formulas_ = slice_formulas<textbook::LogScaleBias, textbook::LogRatio>();
+        using namespace textbook;
+        slice_formulas_ = {slice_formula<LogScaleBias, float>(), slice_formula<LogScaleBias, double>(),
+                           slice_formula<LogRatio, float>(), slice_formula<LogRatio, double>()};
         name_tallies(slice_formulas_);
         std::vector<DepthScene> scenes;
         for (std::size_t i = 0; i < effort_.scenes; ++i) {
             scenes.push_back(family_.make_depths(random_, value_, effort_.lights));
             depth_scene(scenes.back());
         }
-        for (std::size_t k = 0; k < slice_formulas_.size(); ++k)
-            if (Tally& tally = result_.textbooks[k]; tally.used())
-                tally.ns = time(scenes, [&](const DepthScene& scene) {
-                    volatile int kept = slice_formulas_[k].sum(scene);
-                    static_cast<void>(kept);
-                });
+        time_textbooks(slice_formulas_, scenes);
         Clusters clusters;
         std::vector<std::pair<lightbin::View, lightbin::Slices>> made;
         for (const DepthScene& scene : scenes)
@@ -524,11 +522,6 @@ private:
         tally.missed_same += missed;
         tally.extra += size(found) - common(touched);
     }
-    static void add_error(Tally& tally, double first_inward, double last_inward) {
-        tally.inward = std::max({tally.inward, first_inward, last_inward});
-        tally.error = std::max({tally.error, std::abs(first_inward), std::abs(last_inward)});
-    }
-
     /// The textbooks' law, with 64 bits: the logarithm of 1 + x loses nothing where x is small.
     static double exact_place(const DepthScene& scene, double depth) {
         const double near_depth = static_cast<double>(scene.near_depth);
