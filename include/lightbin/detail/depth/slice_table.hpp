@@ -44,7 +44,7 @@ struct DepthBuckets {
 struct LightDepths {
     static constexpr std::uint32_t size = 64;
     float nearest[size], farthest[size];
-    std::uint16_t first_bucket[size], last_bucket[size];
+    std::uint32_t first_bucket[size], last_bucket[size];
 };
 
 /// The slices between boundaries, which ascend and are finite.
@@ -89,7 +89,7 @@ public:
                 LightDepths depths;
                 kernel(buckets_, z_sign, lights, lights.ids + i, count, depths);
                 if (margin > 0) widen(depths, count);
-                const std::uint16_t *first = depths.first_bucket, *last = depths.last_bucket;
+                const std::uint32_t *first = depths.first_bucket, *last = depths.last_bucket;
                 for (std::uint32_t j = 0; j < count && conservative; ++j)
                     found(i + j, before_.data()[first[j]], before_.data()[last[j] + 1u]);
                 for (std::uint32_t j = 0; j < count && !conservative; ++j) {
@@ -102,7 +102,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t max_buckets = 0x8000;  // store_tiles() of some tiers packs signed numbers of 16 bits
+    static constexpr std::size_t max_buckets = 0x8000;  // bounds the memory of the table
 
     static double widened(float depth, float fraction) {
         const double exact = static_cast<double>(depth);
@@ -113,8 +113,8 @@ private:
         for (std::uint32_t i = 0; i < count; ++i) {
             depths.nearest[i] = nearer(depths.nearest[i]);
             depths.farthest[i] = farther(depths.farthest[i]);
-            depths.first_bucket[i] = static_cast<std::uint16_t>(buckets_.index_of(depths.nearest[i]));
-            depths.last_bucket[i] = static_cast<std::uint16_t>(buckets_.index_of(depths.farthest[i]));
+            depths.first_bucket[i] = static_cast<std::uint32_t>(buckets_.index_of(depths.nearest[i]));
+            depths.last_bucket[i] = static_cast<std::uint32_t>(buckets_.index_of(depths.farthest[i]));
         }
     }
 

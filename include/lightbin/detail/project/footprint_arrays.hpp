@@ -106,7 +106,7 @@ struct ProjectCounts {
 /// The tile rectangles of a chunk: of as many lights as are projected before those out of view are dropped.
 struct ChunkRects {
     static constexpr std::uint32_t size = 64;
-    alignas(64) std::uint16_t x0[size], y0[size], x1[size], y1[size];
+    std::uint32_t x0[size], y0[size], x1[size], y1[size];
 };
 
 /// The footprints of all lights in view, or of those that intersect one depth slice.

@@ -16,8 +16,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 /// A chunk of lights while they are projected. A light's index is counted from the chunk's first light.
 struct ProjectedChunk {
     ChunkRects rects;
-    unsigned visible[ChunkRects::size / lanes];  ///< for each vector of lights a word, with a bit per light in view
-    std::uint16_t fallback[ChunkRects::size];    ///< the indices of the lights that need double precision
+    std::uint64_t visible;                       ///< a bit for each light in view
+    std::uint32_t fallback[ChunkRects::size];    ///< the indices of the lights that need double precision
     std::uint32_t fallback_count;
 };
 
@@ -98,8 +98,8 @@ inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, D
 /// Stores the first and the last tile, along an image axis, that the bounds low..high of each light touch, enlarged by
 /// the axis' margin. Returns `visible` without the lights that lie outside the viewport.
 template <class Real, class Reals, class Mask>
-inline Mask tile_span(const ImageAxis& axis, Reals low, Reals high, Mask visible, std::uint16_t* first,
-                      std::uint16_t* last) {
+inline Mask tile_span(const ImageAxis& axis, Reals low, Reals high, Mask visible, std::uint32_t* first,
+                      std::uint32_t* last) {
     const Real scale = static_cast<Real>(axis.scale), offset = static_cast<Real>(axis.offset),
                margin = static_cast<Real>(axis.margin);
     low = mul(low, broadcast(scale)) + offset - margin;
@@ -128,8 +128,8 @@ LIGHTBIN_INLINE void put_vector(const Camera& camera, const ImageBounds<Floats>&
                                 unsigned fallback, unsigned valid, std::uint32_t i, ProjectedChunk& chunk) {
     for (; fallback != 0; fallback &= fallback - 1)
         chunk.fallback[chunk.fallback_count++] =
-            static_cast<std::uint16_t>(i + static_cast<unsigned>(std::countr_zero(fallback)));
-    chunk.visible[i / lanes] = movemask(tile_rects<float>(camera, bounds, float_safe, chunk.rects, i)) & valid;
+            i + static_cast<std::uint32_t>(std::countr_zero(fallback));
+    chunk.visible |= std::uint64_t{movemask(tile_rects<float>(camera, bounds, float_safe, chunk.rects, i)) & valid} << i;
 }
 
 /// Appends the footprints of a chunk's lights that are in view.
@@ -138,9 +138,23 @@ LIGHTBIN_INLINE void put_vector(const Camera& camera, const ImageBounds<Floats>&
 /// here   the number of its lights
 inline void append_chunk(const ProjectedChunk& chunk, std::uint32_t first, std::uint32_t here,
                          const FootprintArrays& out, ProjectCounts& counts) {
-    for (std::uint32_t i = 0; i < here; i += lanes)
-        if (const unsigned visible = chunk.visible[i / lanes]; visible != 0)
-            append_visible(out, counts, first, visible, chunk.rects, i);
+    std::uint32_t ids[ChunkRects::size], end = counts.visible;
+    for (std::uint32_t i = 0; i < ChunkRects::size; ++i)
+        ids[i] = first + i;
+    for (std::uint32_t i = 0; i < here; i += 16) {
+        const unsigned visible = static_cast<unsigned>(chunk.visible >> i & 0xffff);
+        if (visible == 0) continue;
+        append_16(out.ids + end, ids + i, visible);
+        append_16(out.x0 + end, chunk.rects.x0 + i, visible);
+        append_16(out.y0 + end, chunk.rects.y0 + i, visible);
+        append_16(out.x1 + end, chunk.rects.x1 + i, visible);
+        append_16(out.y1 + end, chunk.rects.y1 + i, visible);
+        end += static_cast<std::uint32_t>(std::popcount(visible));
+    }
+    for (; counts.visible < end; ++counts.visible) {
+        const std::uint32_t i = counts.visible;
+        counts.area += (out.x1[i] - out.x0[i] + std::uint64_t{1}) * (out.y1[i] - out.y0[i] + 1u);
+    }
 }
 
 /// Projects in double the lights of a chunk that are listed in chunk.fallback: those that cross the near plane or
@@ -152,7 +166,7 @@ inline void project_in_double(const Camera& camera, const Sphere* spheres, Proje
                               ProjectCounts& counts) {
     for (std::uint32_t begin = 0, used; begin < chunk.fallback_count; begin += used) {
         used = min_of(chunk.fallback_count - begin, double_lanes);
-        const std::uint16_t* const indices = chunk.fallback + begin;
+        const std::uint32_t* const indices = chunk.fallback + begin;
         Floats floats[4];
         load_listed_spheres(spheres, indices, used, floats[0], floats[1], floats[2], floats[3]);
         const Doubles x = widened(floats[0], 0) * static_cast<double>(camera.x.sign);
@@ -188,7 +202,7 @@ inline void project_in_double(const Camera& camera, const Sphere* spheres, Proje
             chunk.rects.y0[to] = rects.y0[i];
             chunk.rects.x1[to] = rects.x1[i];
             chunk.rects.y1[to] = rects.y1[i];
-            chunk.visible[to / lanes] |= (in_view >> i & 1) << to % lanes;
+            chunk.visible |= std::uint64_t{in_view >> i & 1} << to;
         }
     }
 }
@@ -249,7 +263,7 @@ inline void project(const Camera& camera, const LightSource& source, std::uint32
         Sphere* const own = source.out_spheres != nullptr ? source.out_spheres + first : buffer;
         const Sphere* const given = source.spheres != nullptr ? source.spheres + first : own;
         if (source.copy != nullptr) source.copy(source.lights, first, here, own, nullptr);
-        chunk.fallback_count = 0;
+        chunk.visible = chunk.fallback_count = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
             const Sphere* from = given + i;
             const std::uint32_t used = min_of(lanes, here - i);
@@ -269,7 +283,6 @@ inline void project(const Camera& camera, const LightSource& source, std::uint32
             const auto safe = safe_in_float(size, r);
             const auto culled = both(safe, out_of_view(view, x, y, z, r, nearest, farthest, size));
             const unsigned valid = (1u << used) - 1;
-            chunk.visible[i / lanes] = 0;
             if ((~movemask(culled) & valid) == 0) continue;
             auto in_float = and_not(safe, culled);
             ImageBounds<Floats> bounds = {{x - r, y - r}, {x + r, y + r}};

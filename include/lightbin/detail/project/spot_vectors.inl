@@ -133,10 +133,10 @@ inline void store_planes(ViewSpot* to, const SpotLanes& spots) {
         for (unsigned i = 0; i < 3; ++i) {
             // In arrange_cells()' array, z has its 64 low ends at 0, x at 128 and y at 256; 64 high ends follow each.
             const float low = static_cast<float>(i == 2 ? 0 : 128 + 128 * i);
-            std::uint16_t corners[lanes];
+            std::uint32_t corners[lanes];
             store_tiles(corners, select(less(n[i], Floats{}), broadcast(low + 64), broadcast(low)));
             for (std::uint32_t lane = 0; lane < lanes; ++lane)
-                to[lane].corners[plane][i] = corners[lane];
+                to[lane].corners[plane][i] = static_cast<std::uint16_t>(corners[lane]);
         }
     }
 }

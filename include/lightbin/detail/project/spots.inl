@@ -84,7 +84,7 @@ inline void project_spots_in_double(const Camera& camera, const Sphere* balls, c
     project_in_double(camera, balls, chunk, counts);
     ProjectedChunk second;
     ProjectCounts counted_before;  // the second projection counts the same bad input again
-    fill_items(second.visible, ChunkRects::size / lanes, 0);
+    second.visible = 0;
     second.fallback_count = chunk.fallback_count;
     copy_items(chunk.fallback, chunk.fallback_count, second.fallback);
     project_in_double(camera, least, second, counted_before);
@@ -95,9 +95,9 @@ inline void project_spots_in_double(const Camera& camera, const Sphere* balls, c
         rects.y0[i] = max_of(rects.y0[i], second.rects.y0[i]);
         rects.x1[i] = min_of(rects.x1[i], second.rects.x1[i]);
         rects.y1[i] = min_of(rects.y1[i], second.rects.y1[i]);
-        const bool visible = (second.visible[i / lanes] >> i % lanes & 1) != 0 && rects.x0[i] <= rects.x1[i] &&
+        const bool visible = (second.visible >> i & 1) != 0 && rects.x0[i] <= rects.x1[i] &&
                              rects.y0[i] <= rects.y1[i];
-        if (!visible) chunk.visible[i / lanes] &= ~(1u << i % lanes);
+        if (!visible) chunk.visible &= ~(std::uint64_t{1} << i);
     }
 }
 
@@ -153,7 +153,7 @@ inline void project_spots(const Camera& camera, const LightSource& source, std::
             balls[i] = balls[0];
             cones[i] = cones[0];
         }
-        chunk.fallback_count = 0;
+        chunk.visible = chunk.fallback_count = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
             SpotLanes spots;
             load_spots(camera, transform, balls + i, cones + i, spots);
@@ -167,7 +167,6 @@ inline void project_spots(const Camera& camera, const LightSource& source, std::
             const auto culled =
                 both(safe, out_of_view(view, apex[0], apex[1], apex[2], spots.radius, nearest, farthest, size));
             const unsigned valid = (1u << min_of(lanes, here - i)) - 1;
-            chunk.visible[i / lanes] = 0;
             if ((~movemask(culled) & valid) == 0) continue;
             if (source.out_spots != nullptr) store_spots(source.out_spots + first + i, spots, nearest, farthest);
             if (source.with_planes) store_planes(source.out_spots + first + i, spots);

@@ -82,50 +82,13 @@ inline Floats ascending_bits(Floats values) {
     const __m256i bits = _mm256_castps_si256(values);
     return _mm256_cvtepi32_ps(_mm256_xor_si256(bits, _mm256_srli_epi32(_mm256_srai_epi32(bits, 31), 1)));
 }
-inline void store_tiles(std::uint16_t* tiles, Floats values) {
-    const __m256i whole = _mm256_cvttps_epi32(values);
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(tiles),
-                     _mm_packs_epi32(_mm256_castsi256_si128(whole), _mm256_extracti128_si256(whole, 1)));
+inline void store_tiles(std::uint32_t* tiles, Floats values) {
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(tiles), _mm256_cvttps_epi32(values));
 }
-inline void store_tiles(std::uint16_t* tiles, Doubles values) {
-    const __m128i whole = _mm256_cvttpd_epi32(values);
-    _mm_storel_epi64(reinterpret_cast<__m128i*>(tiles), _mm_packs_epi32(whole, whole));
+inline void store_tiles(std::uint32_t* tiles, Doubles values) {
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(tiles), _mm256_cvttpd_epi32(values));
 }
 
-/// As the general append_visible, with shuffles by the table.
-inline void append_visible(const FootprintArrays& out, ProjectCounts& counts,
-                                           std::uint32_t first_id, unsigned visible, const ChunkRects& rects,
-                                           std::uint32_t first) {
-    const __m128i places = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_bits.of + visible));
-    const __m128i twice = _mm_add_epi8(places, places);
-    const __m128i bytes = _mm_add_epi8(_mm_unpacklo_epi8(twice, twice), _mm_set1_epi16(0x100));
-    const __m128i x0 = _mm_load_si128(reinterpret_cast<const __m128i*>(rects.x0 + first));
-    const __m128i y0 = _mm_load_si128(reinterpret_cast<const __m128i*>(rects.y0 + first));
-    const __m128i x1 = _mm_load_si128(reinterpret_cast<const __m128i*>(rects.x1 + first));
-    const __m128i y1 = _mm_load_si128(reinterpret_cast<const __m128i*>(rects.y1 + first));
-    const std::uint32_t at = counts.visible, count = static_cast<std::uint32_t>(std::popcount(visible));
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(out.x0 + at), _mm_shuffle_epi8(x0, bytes));
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(out.y0 + at), _mm_shuffle_epi8(y0, bytes));
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(out.x1 + at), _mm_shuffle_epi8(x1, bytes));
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(out.y1 + at), _mm_shuffle_epi8(y1, bytes));
-    const __m256i first_of_all = _mm256_set1_epi32(static_cast<int>(first_id + first));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.ids + at),
-                        _mm256_add_epi32(_mm256_cvtepu8_epi32(places), first_of_all));
-    counts.visible += count;
-
-    const __m256i one = _mm256_set1_epi32(1);
-    const __m256i width = _mm256_add_epi32(_mm256_cvtepu16_epi32(_mm_sub_epi16(x1, x0)), one);
-    const __m256i height = _mm256_add_epi32(_mm256_cvtepu16_epi32(_mm_sub_epi16(y1, y0)), one);
-    const __m256i lane_bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-    const __m256i kept = _mm256_cmpeq_epi32(
-        _mm256_and_si256(_mm256_set1_epi32(static_cast<int>(visible)), lane_bits), lane_bits);
-    const __m256i area = _mm256_and_si256(_mm256_mullo_epi32(width, height), kept);  // at most 2^30 each
-    const __m256i sums = _mm256_add_epi64(_mm256_cvtepu32_epi64(_mm256_castsi256_si128(area)),
-                                          _mm256_cvtepu32_epi64(_mm256_extracti128_si256(area, 1)));
-    const __m128i sum = _mm_add_epi64(_mm256_castsi256_si128(sums), _mm256_extracti128_si256(sums, 1));
-    counts.area += static_cast<std::uint64_t>(_mm_cvtsi128_si64(sum)) +
-                   static_cast<std::uint64_t>(_mm_extract_epi64(sum, 1));
-}
 inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
     const __m128i pairs =
         _mm_or_si128(_mm256_cvttpd_epi32(first), _mm_slli_epi32(_mm256_cvttpd_epi32(last), 16));

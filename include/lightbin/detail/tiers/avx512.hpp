@@ -103,46 +103,17 @@ inline Floats ascending_bits(Floats values) {
     const __m512i bits = _mm512_castps_si512(values);
     return _mm512_cvtepi32_ps(_mm512_xor_si512(bits, _mm512_srli_epi32(_mm512_srai_epi32(bits, 31), 1)));
 }
-inline void store_tiles(std::uint16_t* tiles, Floats values) {
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(tiles),
-                        _mm512_cvtusepi32_epi16(_mm512_cvttps_epi32(values)));
+inline void store_tiles(std::uint32_t* tiles, Floats values) {
+    _mm512_storeu_si512(tiles, _mm512_cvttps_epi32(values));
 }
-inline void store_tiles(std::uint16_t* tiles, Doubles values) {
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(tiles), _mm256_cvtepi32_epi16(_mm512_cvttpd_epi32(values)));
+inline void store_tiles(std::uint32_t* tiles, Doubles values) {
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(tiles), _mm512_cvttpd_epi32(values));
 }
 
 inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
     const __m256i pairs =
         _mm256_or_si256(_mm512_cvttpd_epi32(first), _mm256_slli_epi32(_mm512_cvttpd_epi32(last), 16));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(spans), pairs);
-}
-
-/// As the general append_visible, with compress instructions.
-inline void append_visible(const FootprintArrays& out, ProjectCounts& counts,
-                                           std::uint32_t first_id, unsigned visible, const ChunkRects& rects,
-                                           std::uint32_t first) {
-    const __mmask16 kept = static_cast<__mmask16>(visible);
-    const __m256i x0 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.x0 + first));
-    const __m256i y0 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.y0 + first));
-    const __m256i x1 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.x1 + first));
-    const __m256i y1 = _mm256_load_si256(reinterpret_cast<const __m256i*>(rects.y1 + first));
-    const std::uint32_t at = counts.visible;
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.x0 + at), _mm256_maskz_compress_epi16(kept, x0));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.y0 + at), _mm256_maskz_compress_epi16(kept, y0));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.x1 + at), _mm256_maskz_compress_epi16(kept, x1));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.y1 + at), _mm256_maskz_compress_epi16(kept, y1));
-    const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-    const __m512i ids = _mm512_add_epi32(lane, _mm512_set1_epi32(static_cast<int>(first_id + first)));
-    _mm512_storeu_si512(out.ids + at, _mm512_maskz_compress_epi32(kept, ids));
-    counts.visible += static_cast<std::uint32_t>(std::popcount(visible));
-
-    const __m512i one = _mm512_set1_epi32(1);
-    const __m512i width = _mm512_add_epi32(_mm512_cvtepu16_epi32(_mm256_sub_epi16(x1, x0)), one);
-    const __m512i height = _mm512_add_epi32(_mm512_cvtepu16_epi32(_mm256_sub_epi16(y1, y0)), one);
-    const __m512i area = _mm512_maskz_mullo_epi32(kept, width, height);  // at most 2^30 each
-    const __m512i sums = _mm512_add_epi64(_mm512_cvtepu32_epi64(_mm512_castsi512_si256(area)),
-                                          _mm512_cvtepu32_epi64(_mm512_extracti64x4_epi64(area, 1)));
-    counts.area += static_cast<std::uint64_t>(_mm512_reduce_add_epi64(sums));
 }
 
 inline void split_16_bytes(const std::uint8_t* bytes, std::uint64_t* words) {

@@ -57,22 +57,4 @@ void load_listed_spheres(const Sphere* spheres, const Index* indices, std::uint3
     load_spheres(some, x, y, z, radius);
 }
 
-/// Appends those of a vector of a chunk's lights, from `first` on, whose bit in `visible` is set. Every lane is written,
-/// and the place moves on for those in view: no branch to predict.
-template <class Counts>
-void append_visible(const FootprintArrays& out, Counts& counts, std::uint32_t first_id,
-                           unsigned visible, const ChunkRects& rects, std::uint32_t first) {
-    for (std::uint32_t i = first; i < first + lanes; ++i, visible >>= 1) {
-        const std::uint32_t at = counts.visible, in_view = visible & 1;
-        out.ids[at] = first_id + i;
-        out.x0[at] = rects.x0[i];
-        out.y0[at] = rects.y0[i];
-        out.x1[at] = rects.x1[i];
-        out.y1[at] = rects.y1[i];
-        counts.visible += in_view;
-        counts.area +=
-            in_view * ((rects.x1[i] - rects.x0[i] + 1u) * std::uint64_t{rects.y1[i] - rects.y0[i] + 1u});
-    }
-}
-
 }}}}  // namespace lightbin::detail

@@ -16,7 +16,7 @@
 //   minimum, maximum               of two vectors; where a lane of the first is NaN, the second's
 //   widened(floats, half)          half 0 or 1 of Floats as Doubles
 //   load_spheres, store_spheres    `lanes` spheres as four vectors, and back
-//   store_tiles, store_spans       coordinates of tiles, rounded down to 16 bits; pairs of them
+//   store_tiles, store_spans       coordinates of tiles, rounded down to whole numbers; pairs of them as 16 bits
 //   ascending_bits                 the bits of floats as numbers in the order of the floats, as floats
 //   split_bits(bytes, words)       for each of the 8 bits of 64 bytes the word of that bit in each: a transpose of 64x8 bits
 //   split_16_bytes(bytes, words)   the same of 16 bytes

@@ -49,12 +49,11 @@ inline Floats ascending_bits(Floats values) {
     const uint32x4_t but_sign = vshrq_n_u32(vreinterpretq_u32_s32(vshrq_n_s32(bits, 31)), 1);
     return vcvtq_f32_s32(veorq_s32(bits, vreinterpretq_s32_u32(but_sign)));
 }
-inline void store_tiles(std::uint16_t* tiles, Floats values) {
-    vst1_u16(tiles, vmovn_u32(vcvtq_u32_f32(values)));
+inline void store_tiles(std::uint32_t* tiles, Floats values) {
+    vst1q_u32(tiles, vcvtq_u32_f32(values));
 }
-inline void store_tiles(std::uint16_t* tiles, Doubles values) {
-    tiles[0] = static_cast<std::uint16_t>(vgetq_lane_f64(values, 0));
-    tiles[1] = static_cast<std::uint16_t>(vgetq_lane_f64(values, 1));
+inline void store_tiles(std::uint32_t* tiles, Doubles values) {
+    vst1_u32(tiles, vmovn_u64(vcvtq_u64_f64(values)));
 }
 inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
     const uint64x2_t pairs = vorrq_u64(vcvtq_u64_f64(first), vshlq_n_u64(vcvtq_u64_f64(last), 16));

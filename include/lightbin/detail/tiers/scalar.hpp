@@ -48,8 +48,8 @@ inline float ascending_bits(float value) {
     const std::int32_t bits = bit_cast<std::int32_t>(value);
     return static_cast<float>(bits ^ (bits >> 31 & 0x7fffffff));
 }
-template <class Real> void store_tiles(std::uint16_t* tiles, Real value) {
-    *tiles = static_cast<std::uint16_t>(value);
+template <class Real> void store_tiles(std::uint32_t* tiles, Real value) {
+    *tiles = static_cast<std::uint32_t>(value);
 }
 inline void store_spans(RowSpan* spans, double first, double last) {
     *spans = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(last)};

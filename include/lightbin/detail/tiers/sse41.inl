@@ -47,14 +47,11 @@ inline Floats ascending_bits(Floats values) {
     const __m128i bits = _mm_castps_si128(values);
     return _mm_cvtepi32_ps(_mm_xor_si128(bits, _mm_srli_epi32(_mm_srai_epi32(bits, 31), 1)));
 }
-inline void store_tiles(std::uint16_t* tiles, Floats values) {
-    const __m128i whole = _mm_cvttps_epi32(values);
-    _mm_storel_epi64(reinterpret_cast<__m128i*>(tiles), _mm_packs_epi32(whole, whole));
+inline void store_tiles(std::uint32_t* tiles, Floats values) {
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(tiles), _mm_cvttps_epi32(values));
 }
-inline void store_tiles(std::uint16_t* tiles, Doubles values) {
-    const __m128i whole = _mm_cvttpd_epi32(values);
-    const int both_tiles = _mm_cvtsi128_si32(_mm_packs_epi32(whole, whole));
-    std::memcpy(tiles, &both_tiles, sizeof both_tiles);
+inline void store_tiles(std::uint32_t* tiles, Doubles values) {
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(tiles), _mm_cvttpd_epi32(values));
 }
 inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
     const __m128i pairs = _mm_or_si128(_mm_cvttpd_epi32(first), _mm_slli_epi32(_mm_cvttpd_epi32(last), 16));

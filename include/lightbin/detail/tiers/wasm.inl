@@ -76,13 +76,11 @@ inline Floats ascending_bits(Floats values) {
     return reinterpret_cast<Floats>(
         wasm_f32x4_convert_i32x4(wasm_v128_xor(bits, wasm_u32x4_shr(wasm_i32x4_shr(bits, 31), 1))));
 }
-inline void store_tiles(std::uint16_t* tiles, Floats values) {
-    const v128_t whole = wasm_i32x4_trunc_sat_f32x4(reinterpret_cast<v128_t>(values));
-    wasm_v128_store64_lane(tiles, wasm_u16x8_narrow_i32x4(whole, whole), 0);
+inline void store_tiles(std::uint32_t* tiles, Floats values) {
+    wasm_v128_store(tiles, wasm_i32x4_trunc_sat_f32x4(reinterpret_cast<v128_t>(values)));
 }
-inline void store_tiles(std::uint16_t* tiles, Doubles values) {
-    const v128_t whole = wasm_i32x4_trunc_sat_f64x2_zero(reinterpret_cast<v128_t>(values));
-    wasm_v128_store32_lane(tiles, wasm_u16x8_narrow_i32x4(whole, whole), 0);
+inline void store_tiles(std::uint32_t* tiles, Doubles values) {
+    wasm_v128_store64_lane(tiles, wasm_i32x4_trunc_sat_f64x2_zero(reinterpret_cast<v128_t>(values)), 0);
 }
 inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
     const v128_t from = wasm_i32x4_trunc_sat_f64x2_zero(reinterpret_cast<v128_t>(first)),
