@@ -9,6 +9,11 @@ namespace {
 
 using Long = long double;
 
+// The first six are made to touch something.
+constexpr const char* light_kinds[] = {
+    "touches an edge", "touches a corner", "touches a depth", "touches all ways", "crosses near", "beyond far", "around",
+    "eye inside", "tiny", "huge", "denormal", "infinite", "bad input", "on an axis", "largest", "the same again", "nasty"};
+
 Long dot(const Point& a, const Point& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

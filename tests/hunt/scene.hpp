@@ -19,23 +19,6 @@ using Tally = std::map<std::string, std::uint64_t>;
 inline constexpr const char* space_kinds[] = {"view",   "view space",    "rigid",     "far from origin",
                                               "scaled", "mirrored",      "sheared",   "squashed",
                                               "flat",   "extreme scale", "vast scale"};
-inline constexpr const char* light_kinds[] = {"touches an edge",
-                                              "touches a corner",
-                                              "touches a depth",
-                                              "touches all ways",
-                                              "crosses near",
-                                              "beyond far",
-                                              "around",
-                                              "eye inside",
-                                              "tiny",
-                                              "huge",
-                                              "denormal",
-                                              "infinite",
-                                              "bad input",
-                                              "on an axis",
-                                              "largest",
-                                              "the same again",
-                                              "nasty"};
 inline constexpr std::uint32_t light_counts[] = {0,   1,    2,    3,    7,     8,     9,     16,    31,  33,
                                                  63,  64,   65,   100,  127,   129,   255,   256,   257, 300,
                                                  513, 1000, 4097, 8193, 65535, 65536, 65537, 131073};
