@@ -44,7 +44,7 @@ struct Bounds {
     std::vector<float> sides[4];  ///< minimum, maximum, and those of the gap
 };
 
-/// Whether something at a point's depth is, beyond doubt, what the bounds say may be there.
+/// Returns whether the bounds of a tile, beyond doubt, include a depth.
 bool surely_within(const Bounds& bounds, bool with_gaps, std::size_t tile, Real depth) {
     const auto& [min, max, gap_min, gap_max] = bounds.sides;
     if (!min.empty() && !max.empty() && min[tile] > max[tile]) return false;
@@ -56,7 +56,7 @@ bool surely_within(const Bounds& bounds, bool with_gaps, std::size_t tile, Real 
            surely_at_most(static_cast<Long>(gap_max[tile]), depth);
 }
 
-/// Bounds of the caller's own making, as tight as the points allow.
+/// Makes Z bounds as a caller may have them: those of a tile hold some of the points in the tile, and hardly more.
 Bounds make_bounds(std::string_view name, const lightbin::View& view, const std::vector<Placed>& points, Random& random) {
     Bounds bounds;
     if (name == "absent") return bounds;
@@ -103,7 +103,7 @@ Bounds make_bounds(std::string_view name, const lightbin::View& view, const std:
     return bounds;
 }
 
-/// By a law, or anywhere, with boundaries at and beside the points' depths.
+/// Makes slices by a law, or with boundaries anywhere, often at the points' depths or a float beside.
 lightbin::Slices make_slices(const std::vector<Placed>& points, int count, Random& random) {
     using lightbin::Slices;
     const float least = static_cast<float>(random.log_between(0x1p-10, 0x1p6)),
@@ -132,7 +132,7 @@ struct Input {
     std::uint64_t seed;  ///< of how the work is shared
 };
 
-/// A grid in memory of its own.
+/// A copy of a LightGrid, which lives on when its Binner makes another.
 struct Grid {
     std::vector<lightbin::ListRange> ranges;
     std::vector<std::uint32_t> ids, order;
@@ -144,7 +144,7 @@ struct Grid {
     }
 };
 
-/// Runs bodies on this thread, forward, backward or shuffled.
+/// A loop for lightbin::Parallel that runs the bodies on the calling thread, forward, backward or shuffled.
 struct Runner {
     template <class Body> void operator()(std::size_t n, const Body& body) const {
         std::vector<std::size_t> order(n);
@@ -160,7 +160,7 @@ struct Runner {
     std::uint64_t seed;
 };
 
-/// The Binner of these options; it lives on from call to call, but for large grids.
+/// Bins with a Binner that lives on from call to call, unless its grid is large.
 template <lightbin::Options options> lightbin::Result<Grid> bin(const Input& input) {
     static std::unique_ptr<lightbin::Binner<options>> binner;
     Random random(input.seed);
@@ -183,14 +183,15 @@ template <lightbin::Options options> lightbin::Result<Grid> bin(const Input& inp
     return out;
 }
 
-/// What a Binner does, on each instruction set.
-struct Rung {
+/// A Binner's options, compiled for each instruction set.
+struct BinnerKind {
     std::string name;
     DepthTest depth_test;
     Slicing slicing;
     lightbin::Result<Grid> (*bins[4])(const Input&);
 
-    template <lightbin::Footprint footprint, DepthTest depth_test, Slicing slicing = Slicing::none> static Rung of() {
+    template <lightbin::Footprint footprint, DepthTest depth_test, Slicing slicing = Slicing::none>
+    static BinnerKind of() {
         constexpr auto on = [](Isa isa) {
             return lightbin::Options{.footprint = footprint, .depth_test = depth_test, .slicing = slicing, .isa = isa};
         };
@@ -201,23 +202,23 @@ struct Rung {
     }
 };
 
-const std::vector<Rung>& rungs() {
+const std::vector<BinnerKind>& binner_kinds() {
     using enum lightbin::Footprint;
     using enum DepthTest;
-    static const std::vector<Rung> all = {
-        Rung::of<rectangle, none>(),
-        Rung::of<rectangle, interval>(),
-        Rung::of<rectangle, box>(),
-        Rung::of<rectangle, split_box>(),
-        Rung::of<silhouette, none>(),
-        Rung::of<silhouette, interval>(),
-        Rung::of<silhouette, box>(),
-        Rung::of<silhouette, split_box>(),
-        Rung::of<rectangle, none, Slicing::clusters>(),
-        Rung::of<rectangle, box, Slicing::clusters>(),
-        Rung::of<silhouette, box, Slicing::clusters>(),
-        Rung::of<rectangle, none, Slicing::z_bins>(),
-        Rung::of<silhouette, none, Slicing::z_bins>(),
+    static const std::vector<BinnerKind> all = {
+        BinnerKind::of<rectangle, none>(),
+        BinnerKind::of<rectangle, interval>(),
+        BinnerKind::of<rectangle, box>(),
+        BinnerKind::of<rectangle, split_box>(),
+        BinnerKind::of<silhouette, none>(),
+        BinnerKind::of<silhouette, interval>(),
+        BinnerKind::of<silhouette, box>(),
+        BinnerKind::of<silhouette, split_box>(),
+        BinnerKind::of<rectangle, none, Slicing::clusters>(),
+        BinnerKind::of<rectangle, box, Slicing::clusters>(),
+        BinnerKind::of<silhouette, box, Slicing::clusters>(),
+        BinnerKind::of<rectangle, none, Slicing::z_bins>(),
+        BinnerKind::of<silhouette, none, Slicing::z_bins>(),
     };
     return all;
 }
@@ -225,7 +226,7 @@ const std::vector<Rung>& rungs() {
 /// What a hunt has come to so far.
 struct Report {
     Tally tally;               ///< views of each kind, and points looked for
-    std::uint64_t points = 0;  ///< looked for in lists, all rungs together
+    std::uint64_t points = 0;  ///< looked for in lists, all kinds of Binners together
     std::uint64_t grids = 0;
     std::vector<std::string> faults;
 };
@@ -272,13 +273,12 @@ public:
         place_points();
         bounds_ = make_bounds(bounds_kind, *view_, placed_, random_);
         const bool costly = tiles > 20'000 || scene_.lights.size() > 2000;
-        for (const Rung& rung : rungs())
-            if (!costly || random_.one_in(3)) hunt(rung, costly);
+        for (const BinnerKind& kind : binner_kinds())
+            if (!costly || random_.one_in(3)) hunt(kind, costly);
     }
 
 private:
-    /// Where lights that should be small cover much all the same, shrinks them or in the end leaves them out, as the
-    /// round would take minutes and gigabytes.
+    /// Shrinks lights, and in the end drops some, while their rectangles cover more tiles than a round has time for.
     void keep_small(std::uint32_t large) {
         for (int tries = 0; large < scene_.lights.size(); ++tries) {
             const auto rectangles =
@@ -329,40 +329,40 @@ private:
         }
     }
 
-    /// One grid of the rung that is looked into, and others, of other instruction sets and threads, that must be the same.
-    void hunt(const Rung& rung, bool costly) {
-        const bool clusters = rung.slicing == Slicing::clusters;
+    /// Looks into one grid of the kind. Grids of other instruction sets and numbers of threads must be the same bytes.
+    void hunt(const BinnerKind& kind, bool costly) {
+        const bool clusters = kind.slicing == Slicing::clusters;
         const bool few = clusters && view_->tile_count() * scene_.lights.size() > 20'000;
         const lightbin::Slices slices =
             make_slices(placed_, few ? random_.from_to(1, 5) : random_.pick({1, 2, 7, 24, 65, 1024}), random_);
         if (clusters && view_->tile_count() * static_cast<std::size_t>(slices.count()) > 1'000'000) return;
         const Input input = {view_, &scene_, bounds_.spans(), &slices, random_.bits()};
         const int first = random_.below(4);
-        const auto grid = rung.bins[first](input);
+        const auto grid = kind.bins[first](input);
         ++report_.grids;
         if (!grid) {
             using lightbin::ErrorCode;
             if (grid.error().code != ErrorCode::too_many_entries && grid.error().code != ErrorCode::too_many_list_places)
-                fault("refused: " + grid.error().message() + "; " + rung.name);
+                fault("refused: " + grid.error().message() + "; " + kind.name);
             return;
         }
-        if (const std::string wrong = look(*grid, slices, rung); !wrong.empty()) fault(wrong + "; " + rung.name);
+        if (const std::string wrong = look(*grid, slices, kind); !wrong.empty()) fault(wrong + "; " + kind.name);
         for (int tier = 0; tier < 4; ++tier) {
             if (costly ? !random_.one_in(3) : tier == first && random_.coin()) continue;
-            const auto other = rung.bins[tier]({view_, &scene_, bounds_.spans(), &slices, random_.bits()});
+            const auto other = kind.bins[tier]({view_, &scene_, bounds_.spans(), &slices, random_.bits()});
             ++report_.grids;
             const auto same = [](const auto& a, const auto& b) {
                 return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
             };
             if (!other || !same(other->ranges, grid->ranges) || !same(other->ids, grid->ids) ||
                 !same(other->order, grid->order) || !same(other->bins, grid->bins))
-                fault("another grid on instruction set " + std::to_string(tier) + "; " + rung.name);
+                fault("another grid on instruction set " + std::to_string(tier) + "; " + kind.name);
         }
     }
 
-    /// What is wrong with a grid; empty: nothing.
-    std::string look(const Grid& grid, const lightbin::Slices& slices, const Rung& rung) {
-        const bool clusters = rung.slicing == Slicing::clusters, ranked = rung.slicing == Slicing::z_bins;
+    /// Returns what is wrong with a grid, or an empty string.
+    std::string look(const Grid& grid, const lightbin::Slices& slices, const BinnerKind& kind) {
+        const bool clusters = kind.slicing == Slicing::clusters, ranked = kind.slicing == Slicing::z_bins;
         const std::size_t tiles = view_->tile_count(), count = static_cast<std::size_t>(slices.count());
         const auto bad = static_cast<std::uint32_t>(std::ranges::count_if(scene_.lights, is_bad));
         const std::uint32_t visible = grid.counts.lights - grid.counts.culled - grid.counts.rejected;
@@ -394,13 +394,13 @@ private:
                                                 slices.boundaries().begin());
             };
             const std::size_t slice = slice_of(depth.low());
-            if (rung.slicing != Slicing::none ? slice != slice_of(depth.high())
-                                              : rung.depth_test != DepthTest::none &&
-                                                    !surely_within(bounds_, rung.depth_test == DepthTest::split_box,
+            if (kind.slicing != Slicing::none ? slice != slice_of(depth.high())
+                                              : kind.depth_test != DepthTest::none &&
+                                                    !surely_within(bounds_, kind.depth_test == DepthTest::split_box,
                                                                    point.tile, depth))
                 continue;
             ++report_.points;
-            ++report_.tally["points, " + rung.name];
+            ++report_.tally["points, " + kind.name];
             const std::uint32_t light = point.inside.light, id = ranked ? rank_of[light] : light;
             const auto list = grid.of(point.tile + (clusters ? slice * tiles : 0));
             if (std::ranges::binary_search(list, id) &&
@@ -431,15 +431,15 @@ private:
     Bounds bounds_;
 };
 
-/// Kinds that had no turn.
+/// Counts the kinds of cameras, grids, spaces, bounds and Binners that no round has had.
 std::size_t left_out(Tally& tally) {
     const auto name = [&](const auto& kinds) {
         for (const char* kind : kinds)
             tally[kind];
     };
     name(camera_kinds), name(grid_kinds), name(space_kinds), name(bounds_kinds);
-    for (const Rung& rung : rungs())
-        tally["points, " + rung.name];
+    for (const BinnerKind& kind : binner_kinds())
+        tally["points, " + kind.name];
     return static_cast<std::size_t>(std::ranges::count(tally, 0, [](const auto& times) { return times.second; }));
 }
 

@@ -34,7 +34,7 @@ struct Picture {
     std::vector<glm::vec4> spheres;
 };
 
-/// The tiles of each axis that a light reaches, first to end - 1.
+/// The columns x0 to x_end - 1 and the rows y0 to y_end - 1 of tiles that a light's rectangle meets.
 struct Reach {
     std::uint32_t id;
     int x0, x_end, y0, y_end;
@@ -56,8 +56,8 @@ std::vector<Reach> reaches(const Picture& picture) {
     return all;
 }
 
-/// Whether a tile's list is what it must be: all lights whose disc has the tile's middle, in none whose rectangle does
-/// not meet it; with rectangles, all of those.
+/// Returns whether every tile's list is right: it has all lights whose disc contains the tile's centre, and none whose
+/// rectangle misses the tile. With `rectangles` it has exactly the lights whose rectangles meet the tile.
 template <class Id>
 bool right(const Picture& picture, const std::vector<Reach>& lights, const LightGrid<Id>& grid, bool rectangles,
            const std::string& name) {
