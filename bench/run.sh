@@ -5,7 +5,7 @@
 #   binning [--quick] [SCENE.glb ...] [--filter=REGEX]
 #       (the default) Whole builds as a ratio to the flat baseline; from world space and from structs as a ratio to
 #       view-space vec4s (^sources), of several views as a ratio to one (^views), with clusters and z-bins (^slices), of
-#       spots as a ratio to spheres (^spots): all, or the cases whose names the expression matches. Says how many of the goals
+#       spots as a ratio to spheres (^spots): all, or those whose names the expression matches, which it prints. Says how many goals
 #       are met and what is missed by most, where a wider instruction set is slower than a narrower one, and what threads
 #       gain. About 6 minutes, --quick half a minute. Writes build/bench/binning_goals.csv, and what was timed, binning.csv:
 #       a row for each case, instruction set and thing that it is a ratio to. The sets fieldN have a mean footprint of N
