@@ -286,8 +286,8 @@ template <class Visit> void with_isa(Isa isa, Visit visit) {
         return visit.template operator()<Isa::avx512>();
     case Isa::avx2:
         return visit.template operator()<Isa::avx2>();
-    case Isa::sse2:
-        return visit.template operator()<Isa::sse2>();
+    case Isa::simd128:
+        return visit.template operator()<Isa::simd128>();
     default:
         return visit.template operator()<Isa::scalar>();
     }
@@ -299,7 +299,7 @@ int main(int argc, char** argv) try {
     Arguments arguments(argc, argv);
     if (arguments.take("--quick")) turns = 5;
     Isa isa = lightbin::machine_isa();
-    for (const Isa named : {Isa::scalar, Isa::sse2, Isa::avx2})
+    for (const Isa named : {Isa::scalar, Isa::simd128, Isa::avx2})
         if (arguments.take(std::string("--") + to_string(named))) isa = lightbin::machine_isa(named);
 
     std::vector<BenchScene> all = scene_kinds();

@@ -34,7 +34,7 @@ inline void write_timed(const std::vector<Timed>& rows, const char* path) {
 }
 
 /// The widest first.
-inline constexpr const char* goal_tiers[] = {"avx512", "avx2", "sse2", "scalar"};
+inline constexpr const char* goal_tiers[] = {"avx512", "avx2", "simd128", "scalar"};
 
 /// A goal for the worst of the rows whose "NAME to TO" the expression matches; for each text that its first brackets match,
 /// a goal of its own. MANY stands for 1,000 to 99,999 lights. Where it is there, 200 to 899 lights have a goal as well, which
@@ -50,9 +50,9 @@ inline constexpr const char *to_flat = "builds to the flat loop", *of_scale = "s
                             *z_bins_to_none = "z-bins to none", *what_lights_are = "what the lights are",
                             *spots_to_spheres = "spots to spheres";
 
-constexpr Goal goal(const char* group, const char* rows, double avx512, double avx2, double sse2 = 0,
+constexpr Goal goal(const char* group, const char* rows, double avx512, double avx2, double simd128 = 0,
                     double scalar = 0) {
-    return {group, rows, {avx512, avx2, sse2, scalar}};
+    return {group, rows, {avx512, avx2, simd128, scalar}};
 }
 constexpr Goal for_all(const char* group, const char* rows, double must, bool more_is_better = false) {
     return {group, rows, {must, must, must, must}, more_is_better};

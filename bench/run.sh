@@ -21,7 +21,7 @@
 #       What each footprint and depth test and clusters list beyond the exact set, and what they miss, each pair of a cell and
 #       a light decided in exact arithmetic; and of single spots by half angle, listed as the spheres of their ranges, as
 #       their least spheres and as spots. Writes build/bench/error.csv and spots_error.csv.
-#   advise [--quick] [--avx2 | --sse2 | --scalar] [SCENE.glb ...]
+#   advise [--quick] [--avx2 | --simd128 | --scalar] [SCENE.glb ...]
 #       What the plan that advise() chooses costs beside the best of all, with Z bounds and without, the same of
 #       advise_slices(), and how long asking takes beside a plain build; on the machine's widest instruction set or the
 #       named one. Writes build/bench/advise.csv.
@@ -54,7 +54,7 @@ esac
 options="--quick" words="scenes (.glb)" pattern='.*\.glb'
 case $program in
 binning) options="--quick --filter=..." ;;
-advise) options="--quick --avx2 --sse2 --scalar" ;;
+advise) options="--quick --avx2 --simd128 --scalar" ;;
 frames) options="--quick --counts --pictures --into=..." ;;
 report) options="--quick --evaluation-ns" words="a number, scenes (.glb)" pattern='.*\.glb|[0-9.]+' ;;
 esac

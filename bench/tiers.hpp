@@ -18,7 +18,7 @@ template <lightbin::Options options, class Visit> void visit_tier(Visit visit) {
 template <lightbin::Options options, class Visit> void each_tier(Visit visit) {
     visit_tier<with(options, lightbin::Isa::scalar)>(visit);
 #if defined(LIGHTBIN_X86)
-    visit_tier<with(options, lightbin::Isa::sse2)>(visit);
+    visit_tier<with(options, lightbin::Isa::simd128)>(visit);
     visit_tier<with(options, lightbin::Isa::avx2)>(visit);
 #endif
     visit_tier<options>(visit);

@@ -72,14 +72,14 @@ template <DepthTest depth_test = DepthTest::none, class AnyFrame>
 void time_tiers(const char* set, const std::vector<AnyFrame>& frames) {
     const auto time = [&]<Options one>() { time_builds<one>(set, frames); };
     visit_tier<Options{.depth_test = depth_test, .isa = Isa::scalar}>(time);
-    visit_tier<Options{.depth_test = depth_test, .isa = Isa::sse2}>(time);
+    visit_tier<Options{.depth_test = depth_test, .isa = Isa::simd128}>(time);
 }
 
 void time_threads() {
     const std::vector<Frame> frames = field_frames(100000, field20_median);
     const lightbin::View view = Lens().view(tile_size);
     Pool pool(2);
-    Build<Options{.isa = Isa::sse2}> build(tile_size);
+    Build<Options{.isa = Isa::simd128}> build(tile_size);
     const Gains gains = measure_gains({2, pool}, 4 * seconds_a_case,
                                       [&](const lightbin::Parallel& threads, std::size_t turn) {
                                           return build(view, frames[turn % frames.size()].lights, threads);
