@@ -92,7 +92,7 @@ inline Behind behind(const lightbin::detail::Camera& camera, const lightbin::Sph
         return result;
     const lightbin::detail::ImageAxis* const axes[] = {&camera.x, &camera.y};
     bool seen = true;
-    std::uint16_t first[2], last[2];
+    std::uint32_t first[2], last[2];
     if (usable && camera.min_float_depth < nearest) {
         const float e = nearest * farthest, per_e = 1 / e;
         for (const std::size_t i : {0u, 1u}) {

@@ -58,12 +58,6 @@ TEST_CASE("this machine has the tiers that it is said to have") {
     if (wanted) CHECK(test::tier_names() == std::string(wanted));
 }
 
-TEST_CASE("each tier scatters by its own text, the scalar one without vectors") {
-    const auto scalar = detail::scatter_kernel<std::uint32_t>(Isa::scalar);
-    for (const Isa isa : test::machine_tiers())
-        if (isa != Isa::scalar) CHECK_UNARY(detail::scatter_kernel<std::uint32_t>(isa) != scalar);
-}
-
 TEST_CASE("threads write their own parts only") {
     const View view = test::view({1280, 720}, 16);
     const auto lights = test::random_lights(3000, 51);

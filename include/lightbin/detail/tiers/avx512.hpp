@@ -145,16 +145,19 @@ template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* 
     return out + std::popcount(mask);
 }
 
-/// 0, 1, 2 ...
-inline constexpr auto counting_bytes = [] {
-    std::array<std::uint8_t, 64> bytes = {};
+/// The bytes 0, 1, 2 ... 63.
+struct CountingBytes {
+    std::uint8_t of[64];
+};
+inline constexpr CountingBytes counting_bytes = [] {
+    CountingBytes bytes = {};
     for (unsigned i = 0; i < 64; ++i)
-        bytes[i] = static_cast<std::uint8_t>(i);
+        bytes.of[i] = static_cast<std::uint8_t>(i);
     return bytes;
 }();
 /// The positions of a word's set bits modulo `period`, a power of two: a byte each, in ascending order.
 template <int period> __m512i set_positions(std::uint64_t word) {
-    const __m512i positions = _mm512_and_si512(_mm512_loadu_si512(counting_bytes.data()), _mm512_set1_epi8(period - 1));
+    const __m512i positions = _mm512_and_si512(_mm512_loadu_si512(counting_bytes.of), _mm512_set1_epi8(period - 1));
     return _mm512_mask_compress_epi8(fresh_zeros(), word, positions);
 }
 /// Stores sixteen ids at `out`.

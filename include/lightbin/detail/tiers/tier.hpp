@@ -15,7 +15,6 @@
 #include <lightbin/spot.hpp>
 #include <lightbin/view.hpp>
 
-#include <array>
 #include <bit>
 #include <cfloat>
 #include <cstddef>
