@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Blocks of 8x8 tiles, for which lights are listed first, and the working memory of the kernels that do so. A band is a row of
-// blocks: 8 rows of tiles.
+// Blocks of 8x8 tiles: the binning kernels first list the lights of each block, and then emit its tiles. A band is a row of blocks,
+// that is 8 rows of tiles. Here are the types, the working memory and the bit operations of these kernels.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -17,59 +17,61 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Whether the tiles of a light within its rectangle have to be found by a silhouette or a depth test.
+/// Whether a silhouette or a depth test decides in which tiles of its rectangle a light is listed.
 template <Footprint footprint, DepthTest depth_test>
 inline constexpr bool has_tests = footprint != Footprint::rectangle || depth_test != DepthTest::none;
 
-/// Whether a kernel reads the spots themselves. Where it does not, spots and spheres share one kernel.
+/// Whether a binning kernel reads the spots' cones. Kernels without a depth test read footprints only, and so serve spheres and
+/// spots alike.
 template <DepthTest depth_test> inline constexpr bool reads_spots = depth_test != DepthTest::none;
 
-/// Whether a depth test needs the boxes around cells.
+/// Whether a depth test compares lights with the boxes around cells, rather than with their depths alone.
 template <DepthTest depth_test>
 inline constexpr bool with_boxes = depth_test == DepthTest::box || depth_test == DepthTest::split_box;
 
-/// The list of the lights that meet a block: elements begin..begin + count - 1 of Scratch::list_ids, list_columns and
-/// list_rows.
+/// The list of the lights whose rectangles meet a block: elements begin..begin + count - 1 of Scratch::list_ids, list_columns
+/// and list_rows.
 struct BlockList {
     std::uint32_t begin, count;
 
-    /// The size rounded up to 8 or a multiple of 16: lights are emitted by as many.
+    /// The size rounded up to what is emitted at once: 8 lights, or a multiple of 16.
     std::uint32_t padded_count() const { return count <= 8 ? 8 : (count + 15) & ~15u; }
 };
 
-/// Working memory of the binning kernels, kept from call to call.
+/// The working memory of one thread's binning kernels, kept from call to call so that it is allocated once.
 struct Scratch {
-    Buffer<std::uint32_t> corners;  ///< of scatter.inl: a difference array over the tiles
+    Buffer<std::uint32_t> corners;  ///< the difference array over the tiles from which count_rows() sums counts
 
-    // The lights of several bands, see lists.inl.
-    Buffer<std::uint32_t> light_indices;  ///< 0, 1, 2 ...
+    // The lists of several bands, see BandLists.
+    Buffer<std::uint32_t> light_indices;  ///< the numbers 0, 1, 2 ...
     Buffer<std::uint8_t> band_x0, band_x1, band_rows;
     Buffer<std::uint32_t> band_ids, band_sizes;
 
     // The lists of one band's blocks.
     Buffer<BlockList> lists;
-    Buffer<std::uint32_t> list_ids;                  ///< light ids; until the tests are done, indices into the footprint arrays
-    Buffer<std::uint8_t> list_columns, list_rows;    ///< a bit for each of the block's columns, rows that the light's rectangle covers
-    Buffer<std::uint64_t> tile_masks;                ///< of one list: a bit for each of the block's 64 tiles that the light is in
-    Buffer<std::uint8_t> row_columns;                ///< see row_columns_of()
+    Buffer<std::uint32_t> list_ids;       ///< the lights' ids or, until they are tested, their indices in the footprint arrays
+    Buffer<std::uint8_t> list_columns;    ///< for each light a byte, with a bit for each of the block's columns in its rectangle
+    Buffer<std::uint8_t> list_rows;       ///< for each light a byte, with a bit for each of the block's rows in its rectangle
+    Buffer<std::uint64_t> tile_masks;     ///< for each light of one list a word, with a bit for each of the block's tiles it is in
+    Buffer<std::uint8_t> row_columns;     ///< the result of the tests for all lists, see row_columns_of()
 
-    // The lights of one row of a block, see pick_row().
+    // The lights that pick_row() copies out of a long list, and the words that split_bits() makes of them.
     Buffer<std::uint32_t> row_ids;
     Buffer<std::uint8_t> picked_columns;
     Buffer<std::uint64_t> row_words;
 
-    Buffer<float> slab_ends;  ///< of SlabBoxes
+    Buffer<float> slab_ends;  ///< the memory that SlabBoxes::ends points to
 
-    /// What the emission reads of a list: for each of the block's 8 rows in turn a byte a light, with a bit for each column
-    /// whose tile in this row the light is in. Rows are list.padded_count() bytes apart, filled up with 0. Readable, and to be
-    /// written in this order, in whole vectors.
+    /// Returns the table from which a list's tiles are emitted. For each of the block's 8 rows of tiles it has one byte for each
+    /// light, with a bit for each of the row's 8 tiles that the light is in. Rows begin list.padded_count() bytes apart, and the
+    /// bytes behind the last light are 0. Vectors may be read and written past a row's end, if rows are written in order.
     std::uint8_t* row_columns_of(const BlockList& list) const {
         return row_columns.data() + std::size_t{8} * list.begin;
     }
 };
 
-/// An upper bound on the padded sizes of all lists of a kernel together, which it counts in 32 bits: one element for each light
-/// and each block that its rectangle can meet, wherever the first block begins, and the padding.
+/// Returns an upper bound on the padded sizes of all block lists of a slice together. Kernels count them in 32 bits. It is one
+/// element for each light and each block that its rectangle can meet, wherever the first band begins, and the padding of all lists.
 inline std::uint64_t list_size_bound(const Camera& camera, const FootprintSlice& lit) {
     const std::uint64_t width = static_cast<std::uint64_t>(camera.x.tiles) / 8 + 3,
                         height = static_cast<std::uint64_t>(camera.y.tiles) / 8 + 3;
@@ -81,8 +83,8 @@ inline std::uint64_t list_size_bound(const Camera& camera, const FootprintSlice&
     return size;
 }
 
-/// Writes `count` tiles without lights whose lists begin at `offset`: some one by one, then copies of all so far, as memcpy() writes
-/// whole vectors.
+/// Writes the ranges of `count` tiles without lights, all at `offset` of the index list. The first 16 are written one by one, and the
+/// rest are copies of all that were written so far, as memcpy() is faster than a loop.
 inline void fill_empty(ListRange* tiles, std::size_t count, std::uint32_t offset) {
     std::size_t filled = min_of<std::size_t>(count, 16);
     fill_items(tiles, filled, {offset, 0});
@@ -92,13 +94,13 @@ inline void fill_empty(ListRange* tiles, std::size_t count, std::uint32_t offset
     }
 }
 
-/// A bit for each of the 8 tiles from `begin` on that first..last contains. The two ranges must meet.
+/// Returns a bit for each of the 8 tiles begin..begin + 7 that lies in first..last. The two ranges must overlap.
 inline unsigned covered(unsigned first, unsigned last, unsigned begin) {
     const unsigned low = first > begin ? first - begin : 0, high = last - begin < 7 ? last - begin : 7;
     return ((2u << high) - 1) & (~0u << low);
 }
 
-/// Reads 8 bytes as a word whose lowest byte is the first, in either byte order of the machine's memory.
+/// Returns the word whose lowest byte is the first of 8 bytes in memory, on little-endian and big-endian machines alike.
 inline std::uint64_t load_8_bytes(const std::uint8_t* bytes) {
     std::uint64_t word = 0;
     if constexpr (std::endian::native == std::endian::little)
@@ -109,7 +111,7 @@ inline std::uint64_t load_8_bytes(const std::uint8_t* bytes) {
     return word;
 }
 
-/// Writes a word as 8 bytes, the lowest first, in either byte order of the machine's memory.
+/// Stores a word as 8 bytes with the lowest first, on little-endian and big-endian machines alike.
 inline void store_8_bytes(std::uint8_t* bytes, std::uint64_t word) {
     if constexpr (std::endian::native == std::endian::little)
         std::memcpy(bytes, &word, 8);
@@ -118,7 +120,7 @@ inline void store_8_bytes(std::uint8_t* bytes, std::uint64_t word) {
             bytes[i] = static_cast<std::uint8_t>(word);
 }
 
-/// Replaces each set bit i of a byte by the byte 0xff at byte i.
+/// Returns a word whose byte i is 0xff where bit i is set, and 0 elsewhere.
 inline std::uint64_t spread_bits(std::uint8_t bits) {
     const std::uint64_t one_each = bits * std::uint64_t{0x0101010101010101} & 0x8040201008040201;
     return ((one_each + 0x7f7f7f7f7f7f7f7f) >> 7 & 0x0101010101010101) * 0xff;
@@ -134,14 +136,14 @@ inline std::uint64_t transpose_bits(std::uint64_t x) {
     return x ^ t ^ t << 28;
 }
 
-/// Swaps the bytes of `mask` in b with the bytes `distance` bits above them in a.
+/// Swaps the bytes of b that `mask` selects with the bytes of a that lie `distance` bits higher: a step of transpose_bytes().
 template <unsigned distance> void swap_bytes(std::uint64_t& a, std::uint64_t& b, std::uint64_t mask) {
     const std::uint64_t t = (a >> distance ^ b) & mask;
     a ^= t << distance;
     b ^= t;
 }
 
-/// Transposes 8x8 bytes: byte j of word i becomes byte i of word j. The same method as transpose_bits(), on eight words.
+/// Transposes 8x8 bytes: byte j of word i becomes byte i of word j. Halves, quarters and eighths are swapped, as by transpose_bits().
 inline void transpose_bytes(std::uint64_t (&words)[8]) {
     for (unsigned i = 0; i < 4; ++i)
         swap_bytes<32>(words[i], words[i + 4], 0x00000000ffffffff);

@@ -35,7 +35,8 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 inline constexpr float flushed = 0x1p-120f;
 
-/// Writes a tile's two edges along an axis, as slopes or coordinates, `low` rounded down and `high` up.
+/// Finds a tile's two edges along an image axis, `low` rounded down and `high` rounded up: slopes with a perspective projection,
+/// view-space coordinates with an orthographic one.
 inline void tile_edges(const ImageAxis& axis, int tile, float& low, float& high) {
     constexpr double most = static_cast<double>(FLT_MAX);
     const double error = 0x1p-48 * (abs_of(axis.offset) + axis.tiles + 1);
@@ -47,29 +48,28 @@ inline void tile_edges(const ImageAxis& axis, int tile, float& low, float& high)
     high = to > most ? infinity : static_cast<float>(max_of(to, -most));
 }
 
-/// The boxes around the cells of a slice, which share their depths z0 to z1.
+/// The boxes around all cells of a depth slice. They share their depths z0 to z1 and differ only by column and by row.
 struct SlabBoxes {
-    /// Vectors are read and written up to this many elements past the last.
+    /// How many elements past the last one vectors read and write.
     static constexpr std::size_t padding = 16;
 
-    const float* ends[4] = {};  ///< low x and high x by column of tiles, low y and high y by row
+    const float* ends[4] = {};  ///< low and high x for each column of tiles, low and high y for each row
     float z0 = 0, z1 = 0;
 };
 
-/// The squared radius of a sphere, rounded up as above.
+/// Returns the squared radius of a sphere, enlarged by the margin that the head of this file derives.
 inline float reach2_of(float radius) {
     return rounded(rounded(radius * radius) * (1 + 0x1p-20f)) + 0x1p-125f;
 }
 
-/// Planes of 64 floats that a depth test reads of a block, see arrange_cells().
+/// How many arrays of 64 floats, one number for each of a block's tiles, a depth test reads: see arrange_cells().
 template <DepthTest depth_test>
 inline constexpr unsigned cell_planes = depth_test == DepthTest::split_box ? 12
                                         : depth_test == DepthTest::box     ? 6
-                                                                                : depth_test == DepthTest::interval ? 2
-                                                                            : 1;
-inline constexpr unsigned next_box = 64 * cell_planes<DepthTest::box>;  ///< the distance of split_box's second box
+                                                                           : 2;
+inline constexpr unsigned next_box = 64 * cell_planes<DepthTest::box>;  ///< floats from the first box of split_box's cells to the second
 
-/// A light as the depth tests see it: the tile index grows with x and y, and z is the view depth.
+/// A sphere as the depth tests read it: x and y are signed so that tile indices grow with them, and z is the view depth.
 struct TestedLight {
     TestedLight() = default;
     TestedLight(const Camera& camera, const Sphere& light)
@@ -78,7 +78,7 @@ struct TestedLight {
           reach2(reach2_of(light.radius)) {}
 
     float x, y, z;
-    float nearest, farthest;  ///< rounding is monotone: comparing them with float bounds never loses a light
+    float nearest, farthest;  ///< view depths; rounding is monotone, so no light is lost by comparing these with Z bounds
     float reach2;             ///< see reach2_of()
 };
 }}}  // namespace lightbin::detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a depth test reads of a block's tiles: their Z bounds, and the boxes around their cells (cell_boxes.hpp). Included once
-// a tier.
+// Prepares what the depth tests compare lights with: the Z bounds of a block's 64 tiles, and the boxes around their cells, whose
+// rounding cell_boxes.hpp derives. Included once for each tier.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>
@@ -8,18 +8,19 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// The low ends of boxes along an image axis, from the tiles' low edges and the boxes' nearest and farthest depths.
-/// cell_boxes.hpp derives the rounding.
+/// Returns the low ends of boxes along an image axis.
+///
+/// edges        the tiles' low edges, see tile_edges()
+/// front, back  the boxes' nearest and farthest depths with a perspective projection, 1 with an orthographic one
 inline Floats low_ends(Floats edges, Floats front, Floats back) {
     return mul(edges, select(less(edges, broadcast(0.0f)), back, front)) - broadcast(flushed);
 }
-/// The high ends of boxes along an image axis, from the tiles' high edges.
+/// Returns the high ends of boxes along an image axis, from the tiles' high edges; else as low_ends().
 inline Floats high_ends(Floats edges, Floats front, Floats back) {
     return mul(edges, select(less(broadcast(0.0f), edges), back, front)) + broadcast(flushed);
 }
 
-/// Stores a vector of boxes of the depths z0 to z1, a plane of 64 floats for each of their six sides: z0, z1, low x, high x, low y,
-/// high y.
+/// Stores a vector of boxes in six arrays of 64 floats: the depths z0 and z1, low x, high x, low y and high y.
 inline void store_box(const Camera& camera, float* box, Floats x0, Floats x1, Floats y0, Floats y1, Floats z0,
                       Floats z1) {
     const Floats front = camera.orthographic ? broadcast(1.0f) : z0, back = camera.orthographic ? broadcast(1.0f) : z1;
@@ -31,13 +32,13 @@ inline void store_box(const Camera& camera, float* box, Floats x0, Floats x1, Fl
     store_floats(box + 320, high_ends(y1, front, back));
 }
 
-/// Stores the boxes around a vector of cells; with split_box those in front of the cells' gaps and then those behind them.
+/// Stores the boxes around a vector of cells. With split_box each cell has two, in front of its gap and behind it.
 ///
-/// Boxes are clamped to the near and the far plane. That loses nothing: a light in view meets a cell's depths if and only if it
-/// meets the clamped depths.
+/// Boxes are clamped to the near and the far plane. That loses no light: one that is in view meets a cell's depths if and only if
+/// it meets the clamped depths.
 ///
-/// x0, x1, y0, y1  the tiles' edges
-/// bounds          the cells' Z bounds: minimum, maximum, gap_min, gap_max
+/// x0, x1, y0, y1  the tiles' low and high edges along x and y
+/// bounds          the cells' Z bounds: minimum, maximum and, with split_box, gap_min and gap_max
 template <DepthTest depth_test>
 inline void store_boxes(const Camera& camera, float* boxes, Floats x0, Floats x1, Floats y0, Floats y1,
                         const Floats (&bounds)[4]) {
@@ -57,22 +58,22 @@ inline void store_boxes(const Camera& camera, float* boxes, Floats x0, Floats x1
     }
 }
 
-/// Copies 8 floats, of which memory may hold only the first `count`, 1 or more: the rest repeat the last one.
+/// Copies `count` floats, 1 to 8, and repeats the last one up to 8.
 inline void copy_8_floats(const float* from, unsigned count, float* to) {
     if (count == 8) return static_cast<void>(std::memcpy(to, from, 8 * sizeof *to));
     for (unsigned i = 0; i < 8; ++i)
         to[i] = from[min_of(i, count - 1)];
 }
 
-/// Stores 8 floats, and perhaps 8 more.
+/// Stores a number 8 times or, with vectors of sixteen floats, 16 times.
 inline void fill_8_floats(float* to, float value) {
     for (unsigned i = 0; i < 8; i += lanes)
         store_floats(to + i, broadcast(value));
 }
 
-/// Writes what a depth test reads of the tiles of the block that begins at column 8 x and row `top`, in planes of 64 floats:
-/// the tiles' minimum and maximum depths, for boxes followed by the ends along x and y; split_box has the planes of a second box.
-/// Returns a bit for each tile whose Z bounds are not empty.
+/// Stores what a depth test compares lights with, for the block that begins at column 8 x and row `top`, in arrays of one float for
+/// each of its 64 tiles. With DepthTest::interval these are the minimum and maximum depths; with the other tests the six arrays of
+/// store_box(), twice for split_box. Returns a bit for each tile whose Z bounds are not empty.
 template <DepthTest depth_test, class Id>
 std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, float* cells) {
     constexpr bool boxes = with_boxes<depth_test>;
@@ -82,14 +83,14 @@ std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, flo
     const unsigned columns = min_of(8u, static_cast<unsigned>(width) - 8 * x);
     const float absent[] = {job.slab[0], job.slab[1], infinity, -infinity};
     float bounds[sides][64 + lanes], y_edges[2][64 + lanes];
-    float x_edges[2][16];  // those of the block's columns, twice, as a vector may have two rows of tiles
+    float x_edges[2][16];  // the edges of the block's 8 columns, twice: a vector of sixteen holds two rows of tiles
     if constexpr (boxes)
         for (unsigned side = 0; side < 2; ++side) {
             copy_8_floats(job.edges[side] + 8 * x, columns, x_edges[side]);
             copy_8_floats(x_edges[side], 8, x_edges[side] + 8);
         }
     for (unsigned row = 0; row < 8; ++row) {
-        const unsigned first = 8 * row, y = top + min_of(row, rows - 1);  // below the last row, that row again
+        const unsigned first = 8 * row, y = top + min_of(row, rows - 1);  // rows below the grid repeat its last row
         for (unsigned side = 0; side < sides; ++side)
             if (job.bounds[side] != nullptr)
                 copy_8_floats(job.bounds[side] + y * width + 8 * x, columns, bounds[side] + first);
@@ -110,14 +111,14 @@ std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, flo
                                     load_floats(x_edges[1] + tile % 8), load_floats(y_edges[0] + tile),
                                     load_floats(y_edges[1] + tile), of_tiles);
         } else {
-            store_floats(cells + tile, maximum(of_tiles[0], broadcast(-infinity)));  // NaN excludes no light
+            store_floats(cells + tile, maximum(of_tiles[0], broadcast(-infinity)));  // so that NaN excludes no light
             store_floats(cells + 64 + tile, minimum(of_tiles[1], broadcast(infinity)));
         }
     }
     return drawn & ~std::uint64_t{0} >> 8 * (8 - rows);
 }
 
-/// Returns the boxes of a slice's cells: those of store_boxes(), which differ by column and by row only.
+/// Returns the boxes of a slice's cells. They are the boxes that store_boxes() would store for these cells.
 template <class Id> SlabBoxes arrange_slab(const BinJob<Id>& job, Scratch& scratch) {
     const Camera& camera = *job.camera;
     SlabBoxes slab;

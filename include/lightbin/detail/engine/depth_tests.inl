@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Step 2 of binning: which of a block's 64 tiles each of its lights is in. Included once a tier.
+// Step 2 of binning: finds in which of a block's 64 tiles each of its lights is listed. Included once for each tier.
 //
-// With a silhouette or a depth test it is found as a mask a light, with a bit for each tile: the tiles of its rectangle, and-ed
-// with those within its silhouette's row spans and with those whose cells it meets.
+// A silhouette and a depth test work on a word for each light, with a bit for each tile: the tiles of the light's rectangle, and-ed
+// with the tiles in its silhouette's row spans and with the tiles whose cells it meets.
 //
 //     bit  0  1 ..  7      . . . . . . . .      rows that the rectangle covers     0 1 1 1 0 0 0 0
 //          8  9 .. 15      . . # # # # . .      columns                            0 0 1 1 1 1 0 0
@@ -10,7 +10,7 @@
 //         56 57 .. 63      . . # # # # . .      Each pair of a light and a tile is tested once.
 //                          . . . . . . . .
 //
-// Step 3 reads a byte a light for each row of tiles, see Scratch::row_columns_of().
+// The result is the table that Scratch::row_columns_of() describes, from which emit.inl emits the tiles.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/engine/cells.inl>
@@ -19,12 +19,12 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// The distances of coordinates from the intervals low to high, 0 within them.
+/// Returns the distances of coordinates from the intervals low to high. They are 0 inside an interval.
 inline Floats distance(Floats coordinate, Floats low, Floats high) {
     return maximum(maximum(low - coordinate, coordinate - high), broadcast(0.0f));
 }
 
-/// The squared distances of a point from a vector of boxes, see store_box().
+/// Returns the squared distances of a point from a vector of boxes, whose arrays store_box() lays out.
 inline Floats distance2(const float* boxes, float x, float y, float z) {
     const Floats along_z = distance(broadcast(z), load_floats(boxes), load_floats(boxes + 64)),
                  along_x = distance(broadcast(x), load_floats(boxes + 128), load_floats(boxes + 192)),
@@ -32,13 +32,15 @@ inline Floats distance2(const float* boxes, float x, float y, float z) {
     return mul(along_x, along_x) + mul(along_y, along_y) + mul(along_z, along_z);
 }
 
-/// A mask of the boxes of a vector that a sphere misses. Always inline: returned by a call, GCC 12 drops half of such a mask.
+/// Returns a mask of the boxes in a vector that a sphere misses. It is always inlined because GCC 12 loses half of such a mask when
+/// a call returns it.
 LIGHTBIN_INLINE auto boxes_missed(const float* boxes, const TestedLight& light) {
     return less(broadcast(light.reach2), distance2(boxes, light.x, light.y, light.z));
 }
 
-/// A mask of the boxes of a vector that a spot misses: the ball misses the box, or one of the four planes around the cone has the
-/// whole box outside, which its corner that lies deepest inside decides. (Unreal tests one such plane, chosen for each box.)
+/// Returns a mask of the boxes in a vector that a spot misses: those that its ball misses, and those that lie outside one of the four
+/// planes around its cone. A box lies outside a plane if its deepest corner does, the corner farthest along the plane's inner side.
+/// (Unreal tests one such plane, chosen for each box.)
 LIGHTBIN_INLINE auto boxes_missed(const float* boxes, const TestedSpot& light) {
     const ViewSpot& spot = *light.spot;
     auto missed = less(broadcast(reach2_of(spot.ball.radius)), distance2(boxes, spot.ball.x, spot.ball.y, spot.ball.z));
@@ -52,7 +54,9 @@ LIGHTBIN_INLINE auto boxes_missed(const float* boxes, const TestedSpot& light) {
     return missed;
 }
 
-/// A bit for each of a vector of tiles whose cell the light meets. `cells` are those of arrange_cells(), from the first tile on.
+/// Returns a bit for each tile in a vector whose cell a light meets.
+///
+/// cells  the arrays of arrange_cells(), from the vector's first tile on
 template <DepthTest depth_test, class Light> std::uint64_t tiles_met(const float* cells, const Light& light) {
     const Floats nearest = broadcast(light.nearest), farthest = broadcast(light.farthest);
     std::uint64_t met = 0;
@@ -64,14 +68,14 @@ template <DepthTest depth_test, class Light> std::uint64_t tiles_met(const float
     return met;
 }
 
-/// What a depth test reads of a block's tiles, see arrange_cells().
+/// What a depth test compares a block's lights with.
 template <DepthTest depth_test> struct BlockCells {
     float planes[64 * cell_planes<depth_test>];
     std::uint64_t drawn;   ///< a bit for each tile whose Z bounds are not empty
-    DepthInterval depths;  ///< of all cells in vectors with a drawn tile
+    DepthInterval depths;  ///< the depths of all cells in those vectors of tiles that have a drawn tile
 };
 
-/// The nearest and farthest depths of the cells in vectors of tiles with any bit in `drawn`.
+/// Returns the depths of all cells in those vectors of tiles that have a bit in `drawn`.
 template <DepthTest depth_test> DepthInterval depth_range(const float* cells, std::uint64_t drawn) {
     float min[lanes], max[lanes];
     Floats nearest = broadcast(infinity), farthest = broadcast(-infinity);
@@ -89,11 +93,11 @@ template <DepthTest depth_test> DepthInterval depth_range(const float* cells, st
     return range;
 }
 
-/// Adds to met[i] the tiles whose cells light i meets, for those of 64 lights whose bit in `chosen` is set. Tests only vectors of
-/// tiles of which any is in the light's rectangle. Tiles are the outer loop, lights the inner: a vector of cells then stays in
-/// registers, and no short loop over a light's own vectors has its end mispredicted.
+/// Sets in met[i] the bits of the tiles whose cells light i meets, for each of 64 lights whose bit in `chosen` is set. A light is
+/// tested against a vector of tiles only if one of them is in its rectangle. Vectors of tiles are the outer loop and lights the inner
+/// one: the cells then stay in registers, and there is no short loop over each light's own vectors, whose end would be mispredicted.
 ///
-/// columns, rows  the lights' bytes, see Scratch
+/// columns, rows  the lights' bytes of Scratch::list_columns and list_rows
 template <DepthTest depth_test, class Light>
 void meet_tiles(const BlockCells<depth_test>& cells, const Light* lights, const std::uint8_t* columns,
                 const std::uint8_t* rows, std::uint64_t chosen, std::uint64_t* met) {
@@ -114,8 +118,10 @@ void meet_tiles(const BlockCells<depth_test>& cells, const Light* lights, const 
     }
 }
 
-/// A mask of those of a block's `tiles` that are within the row spans of light i of the footprint arrays. The block begins at
-/// column 8 x and row `top`.
+/// Returns those of the bits `tiles` whose tiles are within the row spans of a light's silhouette.
+///
+/// i       the light's index in the footprint arrays
+/// x, top  the block begins at column 8 x and row `top`
 inline std::uint64_t silhouette_tiles(const FootprintArrays& lights, std::uint32_t i, unsigned x, unsigned top,
                                       std::uint64_t tiles) {
     if (tiles == 0 || lights.span_begin[i] == FootprintArrays::whole_rectangle) return tiles;
@@ -130,8 +136,10 @@ inline std::uint64_t silhouette_tiles(const FootprintArrays& lights, std::uint32
     return tiles & spanned;
 }
 
-/// The depth test of up to 64 lights of a block, given by their indices in the footprint arrays and their bytes of columns and
-/// rows: a mask a light of the tiles whose cells it meets.
+/// Tests up to 64 lights of a block against its cells. Stores in met[i] a bit for each tile whose cell light i meets.
+///
+/// indices        of the lights in the footprint arrays
+/// columns, rows  the lights' bytes of Scratch::list_columns and list_rows
 template <DepthTest depth_test, bool spots, class Id>
 void meet_64_lights(const BinJob<Id>& job, const BlockCells<depth_test>& cells, const std::uint32_t* indices,
                     const std::uint8_t* columns, const std::uint8_t* rows, std::uint32_t count, std::uint64_t* met) {
@@ -139,21 +147,22 @@ void meet_64_lights(const BinJob<Id>& job, const BlockCells<depth_test>& cells, 
     std::uint64_t in_range = 0;
     for (std::uint32_t j = 0; j < count; ++j) {
         const std::uint32_t id = job.lights.ids[indices[j]];
-        // Constructed in place: a copy would have to wait for what was just written in parts.
+        // Constructed in place: copying what was just stored in parts would stall on store forwarding.
         if constexpr (spots)
             std::construct_at(tested + j, *job.camera, job.lights.spots[id]);
         else
             std::construct_at(tested + j, *job.camera, load_sphere(job.lights.spheres + id));
         met[j] = 0;
-        // Most lights that miss all of the block's cells lie beyond all of their depths.
+        // Most lights that miss all of the block's cells lie outside the depths of all cells together.
         const bool missed = (tested[j].farthest < cells.depths.min) | (cells.depths.max < tested[j].nearest);
         in_range |= std::uint64_t{!missed} << j;
     }
     if (in_range != 0) meet_tiles(cells, tested, columns, rows, in_range, met);
 }
 
-/// Stores the bytes of Scratch::row_columns_of() for lights that are in all tiles of their rectangles or, by_slab, in those of them
-/// that are among store_met_boxes()'s.
+/// Stores the table of Scratch::row_columns_of() for a list whose lights are in all tiles of their rectangles.
+///
+/// by_slab  whether they are only in those of these tiles whose bits store_met_boxes() has set
 template <bool by_slab> void store_rectangles(Scratch& scratch, const BlockList& list) {
     const std::uint32_t padded = list.padded_count();
     std::uint8_t* const columns = scratch.list_columns.data() + list.begin;
@@ -169,7 +178,8 @@ template <bool by_slab> void store_rectangles(Scratch& scratch, const BlockList&
         }
 }
 
-/// Stores the bytes of Scratch::row_columns_of() for lights with masks: transposes 8x8 bytes, of 8 lights and 8 rows.
+/// Stores the table of Scratch::row_columns_of() out of the list's words in Scratch::tile_masks. A word has a byte for each row, so
+/// the words of 8 lights are transposed as 8x8 bytes.
 inline void store_masks(Scratch& scratch, const BlockList& list) {
     const std::uint32_t padded = list.padded_count();
     std::uint64_t* const masks = scratch.tile_masks.data();
@@ -184,13 +194,14 @@ inline void store_masks(Scratch& scratch, const BlockList& list) {
     }
 }
 
-/// Tests a list's spheres against the boxes of a slice, in the block that begins at column 8 x and row `top`. Stores the boxes that
-/// they meet in scratch.tile_masks, in the form of Scratch::row_columns_of().
+/// Tests a list's spheres against the boxes of a slice, for the block that begins at column 8 x and row `top`. Stores a table like that
+/// of Scratch::row_columns_of(), with a bit for each box that is met, in the memory of Scratch::tile_masks.
 ///
-/// The boxes have the same depths and differ only by column and by row, so the squared distance to each is a sum of one along x by
-/// column, one along y by row and one along z: 17 numbers and a comparison a tile. A box is missed where
-/// less(reach2 - z2 - y2, x2);  see cell_boxes.hpp on rounding. NaN, where reach2 and a distance are infinite, misses nothing.
-/// Depths are not compared: only lights that meet the slice's depths are in its lists.
+/// The boxes of a slice differ only by column and by row, so the squared distance of a sphere from a box is the sum of x2, which
+/// depends on the column, y2, which depends on the row, and z2. These are 17 numbers for 64 tiles, each of which then takes one
+/// comparison: a box is missed if  reach2 - z2 - y2 < x2;  cell_boxes.hpp derives the rounding. Where reach2 and a distance are
+/// infinite the difference is NaN, and the box counts as met. Depths need no test of their own: a slice's lists hold only lights
+/// that meet its depths.
 template <class Id>
 void store_met_boxes(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab, unsigned x, unsigned top,
                      const BlockList& list) {
@@ -226,8 +237,8 @@ void store_met_boxes(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& s
     }
 }
 
-/// Finds the mask of each light of a list of indices, of the block that begins at column 8 x and row `top`. Drops the lights that
-/// are in none of its tiles, and makes ids of the indices of the others.
+/// Stores in Scratch::tile_masks the tiles of each light of a list, for the block that begins at column 8 x and row `top`. Removes
+/// lights that are in none of its tiles from the list, and replaces the indices of the others by their ids.
 template <Footprint footprint, DepthTest depth_test, bool spots, class Id>
 void mask_lights(const BinJob<Id>& job, Scratch& scratch, unsigned x, unsigned top, BlockList& list) {
     [[maybe_unused]] BlockCells<depth_test> cells;
@@ -259,12 +270,12 @@ void mask_lights(const BinJob<Id>& job, Scratch& scratch, unsigned x, unsigned t
     list.count = left;
 }
 
-/// Lists the lights of each block of the band that begins at tile row `top`, with the bytes of Scratch::row_columns_of(). Returns
-/// the lists, one a block, or null if they are all empty.
+/// Lists the lights of each block in the band that begins at tile row `top`, and fills the table of Scratch::row_columns_of() for
+/// each list. Returns the lists, one for each block, or null if no light meets the band.
 ///
-/// slab   with by_slab: the boxes of the slice's cells
-/// bands  kept from band to band: the bands listed so far
-/// end    the last tile row + 1 that will be asked for
+/// slab   the boxes of the slice's cells, if by_slab
+/// bands  the lists of bands, kept from call to call: several bands are listed at once
+/// end    the end of the tile rows that the caller will ask for
 template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>
 const BlockList* list_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab, BandLists& bands,
                              unsigned top, unsigned end) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Step 3 of binning: the lists of the tiles. Tiles are taken in row-major order, so the index list is written strictly in
-// sequence: no count pass over tiles, no scatter, no sort. Included once a tier.
+// Step 3 of binning: emits the lists of the tiles. Tiles are visited in row-major order, so the index list is written strictly in
+// sequence, without counting, scattering or sorting. Included once for each tier.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/engine/depth_tests.inl>
@@ -8,14 +8,15 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// Lights of a block for one of its rows of tiles: their ids, and a byte a light with a bit for each column whose tile it is in.
+/// The lights of one row of a block's tiles: for each light its id, and a byte with a bit for each tile that it is in.
 struct RowLights {
     const std::uint32_t* ids;
     const std::uint8_t* columns;
     std::uint32_t count;
 };
 
-/// Returns the lights of a row out of a list: the whole list or, where few of its lights are in the row, a copy of those.
+/// Returns the lights of a row: all lights of the block's list or, if the list is long and few of its lights are in the row, a copy
+/// of these few.
 inline RowLights pick_row(Scratch& scratch, const BlockList& list, unsigned row) {
     const RowLights all = {scratch.list_ids.data() + list.begin,
                            scratch.row_columns_of(list) + std::size_t{row} * list.padded_count(), list.count};
@@ -43,8 +44,8 @@ inline RowLights pick_row(Scratch& scratch, const BlockList& list, unsigned row)
     return {ids, columns, picked};
 }
 
-/// Appends those of `count` ids, up to 64, whose bit is set. Returns the end. Branches rather than a loop, whose end would be
-/// mispredicted more often.
+/// Appends to `out` those of `count` ids, up to 64, whose bit in `chosen` is set. Returns the end. It has branches in place of a loop,
+/// whose end would be mispredicted more often.
 template <class Id> LIGHTBIN_INLINE Id* append_64(Id* out, const std::uint32_t* ids, std::uint64_t chosen, std::uint32_t count) {
     out = append_16(out, ids, static_cast<unsigned>(chosen & 0xffff));
     if (count <= 16) return out;
@@ -55,12 +56,12 @@ template <class Id> LIGHTBIN_INLINE Id* append_64(Id* out, const std::uint32_t* 
     return append_16(out, ids + 48, static_cast<unsigned>(chosen >> 48));
 }
 
-/// Emits a block's tiles of one row: appends the lights of each to the index list and writes its range. Returns the list's end.
-/// Not inline: in a longer function compilers keep what it needs on the stack.
+/// Emits one row of a block's tiles: appends each tile's ids to the index list, and writes the tile's range. Returns the end of the
+/// index list. It is not inlined, as compilers would keep its variables on the stack in a longer function.
 ///
-/// columns  the number of tiles
-/// offset   of `out` in the index list
-/// words    for each 64 lights a word a column, with a bit a light
+/// columns  the number of tiles, up to 8
+/// offset   the offset of `out` in the whole index list
+/// words    for each 64 lights 8 words, one for each tile, with a bit for each light
 template <bool up_to_64, class Id>
 LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset, const RowLights& row,
                                  const std::uint64_t* words) {
@@ -81,7 +82,9 @@ LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned columns, st
 }
 
 #if !defined(LIGHTBIN_TIER_EMITS_SHORT)
-/// The same of up to 8 or 16 lights, given by their bytes of columns.
+/// Emits one row of a block's tiles, as emit_tiles() does, for lists of up to `at_most` lights, 8 or 16.
+///
+/// row_columns  for each light a byte with a bit for each tile that it is in
 template <unsigned at_most, class Id>
 LIGHTBIN_NOINLINE Id* emit_short(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset, const std::uint32_t* ids,
                                  const std::uint8_t* row_columns) {
@@ -101,7 +104,10 @@ LIGHTBIN_NOINLINE Id* emit_short(Id* out, ListRange* tiles, unsigned columns, st
 }
 #endif
 
-/// Emits a row of tiles, number `row` of its band. Returns the end of the index list.
+/// Emits a row of tiles of the whole grid. Returns the end of the index list.
+///
+/// lists  one for each block of the band
+/// row    the row's number in the band, 0 to 7
 template <class Id>
 Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t offset, Scratch& scratch,
              const BlockList* lists, unsigned row) {
@@ -133,7 +139,8 @@ Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t offset, 
     return out;
 }
 
-/// Bins the tile rows of `share`. Returns the number of entries. May write BinShare::slack elements past them.
+/// Bins the tile rows of a share: lists blocks, tests lights and emits tiles, band by band. Returns the number of entries. May write
+/// up to BinShare::slack elements past them.
 template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>
 std::uint64_t bin_blocks(const BinJob<Id>& job, Scratch& scratch, const BinShare<Id>& share) {
     const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles);
@@ -165,7 +172,7 @@ std::uint64_t bin_blocks(const BinJob<Id>& job, Scratch& scratch, const BinShare
     return offset - share.offset;
 }
 
-/// Counts the entries of the grid without writing it.
+/// Returns how many entries the grid will have, without writing it.
 template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>
 std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scratch) {
     const unsigned end = static_cast<unsigned>(job.camera->y.tiles);
@@ -182,8 +189,8 @@ std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scratch) {
     return entries;
 }
 
-/// Writes bitmasks of the tiles in rows begin..end-1, without lists: `stride` words a tile, of which bit b of word w is light
-/// 32 w + b.
+/// Writes a bitmask of lights for each tile in the rows begin..end-1. A tile has `stride` words, and bit b of its word w stands for the
+/// light with the id 32 w + b.
 template <Footprint footprint, DepthTest depth_test, class Id, bool spots>
 void write_bits(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end, std::uint32_t* bits,
                 std::size_t stride) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Step 1 of binning: which lights meet which block of 8x8 tiles. Included once a tier.
+// Step 1 of binning: lists the lights of each block of 8x8 tiles. Included once for each tier.
 //
-//   1. Vectors of lights against each band of 8 tile rows: a saturating subtraction and two byte shuffles give a byte a light
-//      with a bit for each of the band's rows that the light's rectangle covers, 0 if it misses the band. Lights that meet the
-//      band are appended to its list.
-//   2. The same with a band's list and the 8 columns of each of its blocks.
+//   1. Each vector of lights is compared with each band of 8 tile rows. A saturating subtraction and two byte shuffles make a byte
+//      for each light, with a bit for each of the band's rows that its rectangle covers. Lights whose byte is not 0 are appended
+//      to the band's list.
+//   2. A band's list is compared with the 8 columns of each of its blocks in the same way.
 //
-// No branch depends on what a light covers. Coordinates are bytes, so wide grids are listed by panels of 248 tile columns, and
-// coordinates count from the panel's and the first band's begin.
+// No branch depends on which tiles a light covers. Coordinates are bytes that count from the first band and from the begin of a panel
+// of 248 tile columns; a wider grid has several panels.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>
@@ -17,18 +17,19 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 
 inline constexpr unsigned panel_blocks = 31;  // the width of a panel
 
-/// The lights of the bands in tile rows begin..end-1, in a list for each band and panel: list number band * panels + panel has
-/// sizes[list] lights from element list * capacity on.
+/// The lights of several bands, the tile rows begin..end-1, in one list for each band and panel. List number band * panels + panel
+/// has sizes[list] lights, at element list * capacity and after it.
 struct BandLists {
     unsigned begin = 0, end = 0;
     std::size_t panels = 0, count = 0, capacity = 0;
-    std::uint8_t *x0 = nullptr, *x1 = nullptr;  ///< the columns x0..x1-1 that the light covers
-    std::uint8_t* rows = nullptr;               ///< a bit for each row of the band that it covers
-    std::uint32_t* ids = nullptr;               ///< its id or, with tests, its index in the footprint arrays
+    std::uint8_t *x0 = nullptr, *x1 = nullptr;  ///< each light covers the columns x0..x1-1 of the panel, cut off at 255
+    std::uint8_t* rows = nullptr;               ///< for each light a byte with a bit for each row of the band that it covers
+    std::uint32_t* ids = nullptr;               ///< each light's id or, if it will be tested, its index in the footprint arrays
     std::uint32_t* sizes = nullptr;
 };
 
-/// For each light that covers the tiles first..end-1, a bit for each of the 8 tiles from `begin` on that it covers.
+/// Returns for each light, which covers the tiles first..end-1 along an image axis, a byte with a bit for each of the 8 tiles
+/// begin..begin + 7 that it covers.
 inline Bytes covered_bytes(Bytes first, Bytes end, unsigned begin) {
     static constexpr std::uint8_t from[16] = {255, 254, 252, 248, 240, 224, 192, 128};
     static constexpr std::uint8_t before[16] = {0, 1, 3, 7, 15, 31, 63, 127, 255};
@@ -36,15 +37,15 @@ inline Bytes covered_bytes(Bytes first, Bytes end, unsigned begin) {
     return shuffle(from, minimum(subtract(first, start), eight)) & shuffle(before, minimum(subtract(end, start), eight));
 }
 
-/// A mask of the first `count` bytes of a vector, or of all.
+/// Returns the mask of the first `count` bytes of a vector, or of all bytes if `count` is larger than a vector.
 inline ByteMask first_bytes(std::size_t count) {
     const ByteMask all = static_cast<ByteMask>(~ByteMask{0});
     return count < byte_lanes ? static_cast<ByteMask>(~(all << count)) : all;
 }
 
-/// Appends a vector of the lights from index i on, `count` or as many as it has, to the lists of the bands that they meet.
+/// Appends the lights from index i on, `count` of them but no more than a vector holds, to the lists of the bands that they meet.
 ///
-/// ids  of all lights, or their indices
+/// ids  what is listed of each light: its id, or its index in the footprint arrays
 inline void add_to_bands(const FootprintArrays& lights, const std::uint32_t* ids, const BandLists& bands,
                          std::uint32_t i, std::size_t count) {
     const BandLists to = bands;  // a local copy, so that compilers need not reload it after each store of bytes
@@ -71,9 +72,9 @@ inline void add_to_bands(const FootprintArrays& lights, const std::uint32_t* ids
     }
 }
 
-/// Lists as many bands from tile row `begin` on as one pass over the lights has memory for.
+/// Lists the lights of as many bands, from tile row `begin` on, as max_band_entries allows in one pass over the lights.
 ///
-/// tested  list the lights' indices in the footprint arrays, which the tests need, rather than their ids
+/// tested  whether to list the lights' indices in the footprint arrays, which the tests need, rather than their ids
 template <bool tested, class Id>
 void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end, BandLists& to) {
     const std::size_t width = (static_cast<std::size_t>(job.camera->x.tiles) + 7) / 8;
@@ -104,7 +105,7 @@ void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigne
             add_to_bands(job.lights, ids, to, i, run.end - i);
 }
 
-/// How many lights a band's lists have together.
+/// Returns how many lights a band's lists have together.
 inline std::size_t band_size(const BandLists& bands, std::size_t band) {
     std::size_t size = 0;
     for (std::size_t panel = 0; panel < bands.panels; ++panel)
@@ -112,7 +113,8 @@ inline std::size_t band_size(const BandLists& bands, std::size_t band) {
     return size;
 }
 
-/// Makes the list of block x of a band, from element `begin` on, out of the band's list for the block's panel. Returns its size.
+/// Makes the list of the block at column 8 x of a band, out of the band's list for that panel. Its lights are stored from element
+/// `begin` of Scratch::list_ids, list_columns and list_rows on. Returns how many there are.
 inline std::uint32_t list_block(Scratch& scratch, const BandLists& bands, std::size_t band, unsigned x,
                                 std::uint32_t begin) {
     const std::size_t list = band * bands.panels + x / panel_blocks, size = bands.sizes[list];

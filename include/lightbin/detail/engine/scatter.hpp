@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Binning by count, prefix sum and fill (Tiled Shading, section 6.1): for small lights and nearly empty grids, and on machines
-// without vectors. Needs no tier.
+// Scattering: binning by counting, prefix sums and filling (Tiled Shading, section 6.1), for rectangles without tests. It is the faster
+// method for small lights and nearly empty grids, and on machines without vectors. Its text needs no tier.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -17,8 +17,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Writes the ranges of the tile rows begin..end-1: each tile's number of lights, and as its offset where its list ends. The first
-/// tile's list begins at `offset`. Returns where the last list ends.
+/// Writes the ranges of the tile rows begin..end-1: the number of lights of each tile, and where its list ends in the index list, from
+/// which fill_rows() will count down to where it begins. The first tile's list begins at `offset`. Returns where the last list ends.
 ///
 /// The counts come from a difference array: each rectangle adds 1 at two of its corners and subtracts 1 at the other two, so that
 /// prefix sums along columns and rows give the number of rectangles over each tile. A second one counts the rectangles over each
@@ -64,9 +64,14 @@ std::uint32_t count_rows(const BinJob<Id>& job, Scratch& scratch, unsigned begin
     return offset;
 }
 
-/// Prepends an id to the lists of a rectangle's tiles, `columns` in each row: their offsets move from their ends to their
-/// begins. The usual numbers of columns have loops of their own, chosen by one branch a light: the end of a loop over any number
-/// would be mispredicted in each row (1.5 to 1.8 times the time).
+/// Prepends an id to the list of each tile in a rectangle, and moves the tile's offset down to it.
+///
+/// row, end  the rectangle's first tile, and the end of the grid's row below the rectangle
+/// pitch     tiles from one row of the grid to the next
+/// columns   tiles in each of the rectangle's rows
+///
+/// Each of the usual numbers of columns has its own loop, chosen by one branch for the whole light. A loop over any number would be
+/// mispredicted at the end of each row, which takes 1.5 to 1.8 times as long.
 template <std::size_t fixed = 1, class Id>
 void prepend_id(Id* list, ListRange* row, const ListRange* end, std::size_t pitch, std::size_t columns, Id id) {
     if constexpr (fixed <= 8)
@@ -76,8 +81,8 @@ void prepend_id(Id* list, ListRange* row, const ListRange* end, std::size_t pitc
             list[--row[x].offset] = id;
 }
 
-/// Prepends all ids to the lists of the tile rows begin..end-1, the last light first, so that ids ascend. Not inline: within
-/// another loop it takes a tenth longer.
+/// Prepends all lights' ids to the lists of the tile rows begin..end-1, the last light first, so that ids ascend in each list. It is
+/// not inlined, as it takes a tenth longer inside another loop.
 template <class Id>
 LIGHTBIN_NOINLINE void fill_rows(const BinJob<Id>& job, Id* list, std::size_t begin, std::size_t end) {
     const FootprintArrays lights = job.lights;  // a local copy, as above
@@ -91,7 +96,7 @@ LIGHTBIN_NOINLINE void fill_rows(const BinJob<Id>& job, Id* list, std::size_t be
         }
 }
 
-/// Bins no light or one: without sums, as the whole list is one id repeated. Returns the number of entries.
+/// Bins one light or none. It needs no prefix sums, as the whole index list is one id repeated. Returns the number of entries.
 template <class Id>
 std::uint64_t scatter_one(const BinJob<Id>& job, const FootprintRun& run, const BinShare<Id>& share) {
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
@@ -112,7 +117,7 @@ std::uint64_t scatter_one(const BinJob<Id>& job, const FootprintRun& run, const 
     return offset - share.offset;
 }
 
-/// Bins the tile rows of `share` by the lights' rectangles alone. Returns the number of entries. Writes nothing past them.
+/// Bins the tile rows of a share by scattering. Returns the number of entries, and writes nothing past them.
 template <class Id>
 std::uint64_t scatter_lights(const BinJob<Id>& job, Scratch& scratch, const BinShare<Id>& share) {
     const FootprintRun run = job.runs[0];

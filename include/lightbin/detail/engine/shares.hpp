@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How binning is shared among threads: each share is a range of tile rows, or of slices, and everything in it, so shares have
-// nothing in common but the lights that they read.
+// How binning is divided among threads: each share is a range of tile rows, or of slices, with everything in it. So shares write
+// separate memory and have only the lights in common, which they read.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -18,11 +18,11 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// The tile rows, or slices, begin..end-1.
 struct Share {
     unsigned begin, end;
-    std::uint64_t entries;  ///< how many there are at most: the tiles of all rectangles in it. Once it is built, how many there are
+    std::uint64_t entries;  ///< an upper bound, the tiles of all rectangles in the share; the number of entries once it is built
 };
 
-/// Divides `steps` tile rows or slices into shares of about equal work, no more than there are steps. The work of a step is the
-/// tiles of its rectangles, area(step), and `overhead`.
+/// Divides `steps` tile rows or slices into shares of about equal work. There must be no more shares than steps. The work of a step is
+/// area(step), the number of tiles of rectangles in it, plus `overhead`.
 template <class Area> void share_steps(Items<Share> shares, std::size_t steps, std::uint64_t overhead, Area area) {
     const std::size_t count = shares.size();
     std::uint64_t work = 0, done = 0;
@@ -43,8 +43,8 @@ template <class Area> void share_steps(Items<Share> shares, std::size_t steps, s
     }
 }
 
-/// Divides a grid's tile rows into shares. The tiles of rectangles in each row come from a difference array over the rows: each run
-/// of lights fills one of its own, so that threads can.
+/// Divides a grid's tile rows into shares of about equal work. How many tiles of rectangles each row has is summed up from difference
+/// arrays over the rows, one for each run of footprints, so that threads can fill them in parallel.
 ///
 /// sums  memory for the difference arrays
 template <class Id>
@@ -70,10 +70,13 @@ void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
                 [&](std::size_t row) { return row_area[row]; });
 }
 
-/// Has build(share, out) make the index list of each share, numbers counting from 0: the first one's in `list`, the others' in
-/// memory of their own, from which they are copied to their places behind it. Returns the number of all entries.
+/// Builds all shares in parallel, and joins their index lists. The first share's is built in `list`; the others are built in memory of
+/// their own and copied behind it, and the offsets in their ranges are moved up accordingly. Returns the number of all entries.
 ///
-/// ranges  the grid's ranges, `width` for each step
+/// ranges  the grid's ranges, `width` for each tile row or slice
+/// memory  the memory of the other shares' lists, kept from call to call
+/// build   build(share, i, out) builds share i, writes its index list to `out` with offsets that count from 0, and returns its
+///         number of entries
 template <class Id, class Build>
 std::uint64_t build_shares(const Parallel& parallel, Items<Share> shares, ListRange* ranges, std::size_t width,
                            Buffer<Buffer<Id>>& memory, Id* list, Build build) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The tiers' kernels side by side, and the choice between them.
+// Which kernel runs: the choice of a tier by the instruction set, and of a binning method by the number of tiles.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -17,7 +17,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Calls pick(Tier) with the tier of an instruction set that the machine has.
+/// Returns pick(Tier()) of the tier for an instruction set. The machine must have it.
 template <class Pick> auto with_tier(Isa isa, Pick pick) {
 #if defined(LIGHTBIN_X86)
     if (isa == Isa::avx512) return pick(avx512::Tier{});
@@ -41,7 +41,8 @@ template <bool spots> DepthBucketsKernel depth_buckets_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.template depth_buckets_kernel<spots>(); });
 }
 
-/// For rows of `columns` samples or more: the kernel of this tier or, where its vectors are wider than that, of a lower one.
+/// Returns the kernel that reduces depth samples in rows of `columns`: the widest one, up to the instruction set, whose vectors are
+/// no longer than a row.
 template <bool by_split> DepthKernel depth_kernel(Isa isa, std::size_t columns) {
     if (with_tier(isa, [=](auto tier) { return columns >= tier.vector; }))
         return with_tier(isa, [](auto tier) { return tier.template depth_kernel<by_split>(); });
@@ -55,10 +56,10 @@ BitsKernel<Id> bits_kernel(Isa isa) {
     });
 }
 
-/// The fastest kernel for lights whose rectangles have `area` tiles in all.
+/// Returns the fastest binning kernel for lights whose rectangles have `area` tiles in all.
 ///
-/// by_slab  boxes are those of a slice, see slab_tiles_met()
-/// spots    the lights are spots
+/// by_slab  whether lights are tested against the boxes of a slice, see store_met_boxes()
+/// spots    whether the lights are spots
 template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>
 BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint64_t area) {
     if constexpr (!has_tests<footprint, depth_test>)
