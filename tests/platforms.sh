@@ -181,6 +181,7 @@ prepare() {
 with g++-12 "-std=c++20"
 platform gcc "g++ 12, C++20" "" any
 platform no-avx "the same on an x86-64 without AVX (qemu, Nehalem)" qemu-user-static "scalar simd128" "qemu-x86_64-static -cpu Nehalem" "" "$all" gcc
+platform no-sse4 "the same on an x86-64 without SSE4.1 (qemu, Conroe)" qemu-user-static "scalar" "qemu-x86_64-static -cpu Conroe" "" "$all" gcc
 platform no-avx512 "the same without AVX-512 (qemu, Haswell)" qemu-user-static "scalar simd128 avx2" "qemu-x86_64-static -cpu Haswell" "" "$all" gcc
 with g++-12 "-std=c++23"
 platform gcc-23 "g++ 12, C++23" "" any "" "" "${all% oracle*}"

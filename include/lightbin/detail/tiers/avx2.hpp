@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The AVX2 tier's vectors: most desktop machines and consoles. Eight lights at a time.
+// The tier of 256-bit vectors, which hold eight lights: AVX2, which most desktop machines and consoles have.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -39,12 +39,11 @@ inline constexpr std::uint32_t lanes = 8, double_lanes = 4;
 #undef LIGHTBIN_LESS_EQUAL
 #undef LIGHTBIN_SELECT
 
-/// Half 0 or 1 of the lanes.
 inline Doubles widened(Floats a, unsigned half) {
     return _mm256_cvtps_pd(half == 0 ? _mm256_castps256_ps128(a) : _mm256_extractf128_ps(a, 1));
 }
 
-/// Four by four, in either half of the vectors.
+/// Transposes 4x4 floats in each half of four vectors.
 inline void transpose(Floats& a, Floats& b, Floats& c, Floats& d) {
     const Floats low = _mm256_unpacklo_ps(a, b), high = _mm256_unpackhi_ps(a, b);
     const Floats low_after = _mm256_unpacklo_ps(c, d), high_after = _mm256_unpackhi_ps(c, d);
@@ -111,7 +110,7 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     }
 }
 
-/// Appends those of eight ids whose bit is set, and up to 8 elements without meaning. Returns the end.
+/// Appends to `out` those of eight ids whose bit in `mask` is set. Returns the end, behind which it may write up to 8 elements.
 template <class Id> LIGHTBIN_INLINE Id* append_8(Id* out, const std::uint32_t* ids, unsigned mask) {
     const __m256i chosen = _mm256_permutevar8x32_epi32(
         _mm256_loadu_si256(reinterpret_cast<const __m256i*>(ids)),
@@ -127,7 +126,7 @@ template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* 
     return append_8(append_8(out, ids, mask & 0xff), ids + 8, mask >> 8);
 }
 
-/// A vector of 32 bytes, and a mask of a bit each.
+/// A vector of 32 bytes.
 struct Bytes {
     __m256i v;
 };

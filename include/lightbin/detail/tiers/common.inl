@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the vectors of all tiers have in common, written once. Included once a tier, after its vectors and masks.
-// Reals is either type of vector.
+// Functions that all tiers have in common. A tier that has a better way overloads them for its own types, as templates are chosen last.
+// Included once for each tier, before all kernels.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/in_editor.hpp>
@@ -8,10 +8,11 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// A bit a lane.
+/// A mask's bits, see movemask(), with every lane set.
 inline constexpr std::uint64_t every_lane = (std::uint64_t{1} << lanes) - 1;
 
-// By way of registers: gcc 12 copies a class that holds one in halves, for which the next load has to wait.
+// Loads and stores take the compiler's own type of register: GCC 12 copies a class that contains one in two halves, and the next load
+// would have to wait for both.
 inline Floats load_floats(const float* from) {
     FloatRegister values;
     std::memcpy(&values, from, sizeof values);
@@ -29,7 +30,7 @@ inline void store_doubles(double* to, DoubleRegister values) {
     std::memcpy(to, &values, sizeof values);
 }
 
-// Masks, where a tier has no other way.
+// Logic of masks, for tiers whose masks have the operators & | ^.
 template <class Mask> inline Mask both(Mask a, Mask b) {
     return static_cast<Mask>(a & b);
 }
@@ -40,14 +41,14 @@ template <class Mask> inline Mask and_not(Mask a, Mask b) {
     return static_cast<Mask>(a & (a ^ b));
 }
 
-/// As select, of what no processor predicts: the scalar tier has its own of floats, without a branch.
+/// Selects by a mask that no branch predictor could guess. The scalar tier overloads it for floats, without a branch.
 template <class Mask, class Reals>
 inline Reals select_unpredicted(Mask mask, Reals a, Reals b) {
     return select(mask, a, b);
 }
 
-/// Loads the spheres at the first `count` of `indices`, or as many as a vector has; if those are fewer, the last lanes repeat the
-/// last sphere.
+/// Loads the spheres with `count` indices, but no more than a vector holds, as four vectors. If they are fewer, the last sphere fills
+/// the other lanes.
 template <class Index>
 void load_listed_spheres(const Sphere* spheres, const Index* indices, std::uint32_t count, Floats& x, Floats& y, Floats& z,
                          Floats& radius) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What kernels ask of vectors, of those that have the operators of numbers: numbers themselves, one a vector, and those of
-// NEON, which compilers give them. Included once such a tier.
+// Vector functions for types that have the operators of numbers themselves: plain numbers in the scalar tier, and the vector types of
+// GCC and Clang in NEON and WebAssembly.
 
 template <class Reals> Reals mul(Reals a, Reals b) {
     return rounded(a * b);
@@ -14,7 +14,7 @@ template <class Reals> auto less_equal(Reals a, Reals b) {
 template <class Mask, class Reals> Reals select(Mask mask, Reals a, Reals b) {
     return mask ? a : b;
 }
-// With NaN in `a`, b: NEON's own instructions for it give NaN.
+// Where a is NaN these return b, as the kernels need. NEON's instructions for minimum and maximum would return NaN.
 template <class Reals> Reals minimum(Reals a, Reals b) {
     return a < b ? a : b;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The scalar tier: what every other tier must equal, byte for byte.
+// The tier of plain numbers, for machines without a tier of their own. Every other tier must give the same bytes as this one.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -25,7 +25,7 @@ template <class Real> Real sqrt(Real a) {
 inline unsigned movemask(bool mask) {
     return mask;
 }
-// By bits, as of an array of both clang 14 reads another call's where it makes vectors for WebAssembly.
+// Selects by bit operations. From an array of both values clang 14 reads those of another call where it vectorizes for WebAssembly.
 inline float select_unpredicted(bool mask, float a, float b) {
     const std::uint32_t if_set = 0u - std::uint32_t{mask};
     return bit_cast<float>((bit_cast<std::uint32_t>(a) & if_set) | (bit_cast<std::uint32_t>(b) & ~if_set));
@@ -68,7 +68,7 @@ inline void split_16_bytes(const std::uint8_t* bytes, std::uint64_t* words) {
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     split_bytes<64>(bytes, words);
 }
-/// Each id is written, and the end moves on past those whose bit is set: no branch to mispredict.
+/// Every id is stored, but the end moves on only if its bit is set, so that no branch can be mispredicted.
 template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
     for (unsigned i = 0; mask != 0; ++i, mask >>= 1) {
         *out = static_cast<Id>(ids[i]);
@@ -80,7 +80,7 @@ template <class Id> LIGHTBIN_INLINE Id* append_8(Id* out, const std::uint32_t* i
     return append_16(out, ids, mask);
 }
 
-/// A vector of one byte, and a mask of one bit.
+/// A vector of one byte.
 using Bytes = std::uint8_t;
 using ByteMask = std::uint8_t;
 inline constexpr std::uint32_t byte_lanes = 1;

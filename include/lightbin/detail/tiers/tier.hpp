@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What every tier includes: the types and the standard headers that its kernels' text, the .inl files, works with, and
-// the types of the kernels.
+// What every tier includes: the headers that the kernels' texts (.inl) need, the types of the kernels, and a table for shuffles.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -40,8 +39,8 @@ template <class Id>
 using BitsKernel = void (*)(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end,
                             std::uint32_t* bits, std::size_t stride);
 
-/// For each byte, the positions of its set bits in ascending order, a byte each from the lowest: what moves the chosen elements of
-/// eight together when it is the index of a shuffle.
+/// For each value of a byte, the positions of its set bits in ascending order, one in each byte of a word. As indices of a shuffle they
+/// move those of eight elements together whose bit is set.
 struct SetBits {
     std::uint64_t of[256];
 };

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// A class of vectors with the operators of its elements, of x86's registers. Included twice a tier, for floats and for
-// doubles, which give
+// A class around an x86 vector register, with the operators of its elements. A tier includes this file twice, for floats and for
+// doubles, and defines before it
 //
-//   LIGHTBIN_VECTOR            the class's name
-//   LIGHTBIN_ELEMENT           float or double
-//   LIGHTBIN_REGISTER          the compiler's type for the register
-//   LIGHTBIN_MASK              the type of masks, if that is a bit a lane, and not another register
-//   LIGHTBIN_OP(name)          the intrinsic of add, sub, mul, div, sqrt, min, max, set1, xor, andnot; and, or, movemask
+//   LIGHTBIN_VECTOR    the name of the class
+//   LIGHTBIN_ELEMENT   float or double
+//   LIGHTBIN_REGISTER  the compiler's type of register
+//   LIGHTBIN_MASK      the type of masks, if they have one bit for each lane; else masks are registers
+//   LIGHTBIN_OP(name)  the intrinsic for add, sub, mul, div, sqrt, min, max, set1, xor, andnot; and, or, movemask
 //
-// and, of either, LIGHTBIN_LESS(a, b), LIGHTBIN_LESS_EQUAL(a, b) and LIGHTBIN_SELECT(mask, a, b).
+// and, for both types of elements, LIGHTBIN_LESS(a, b), LIGHTBIN_LESS_EQUAL(a, b) and LIGHTBIN_SELECT(mask, a, b).
 
 #if !defined(LIGHTBIN_MASK)
-#define LIGHTBIN_MASK LIGHTBIN_REGISTER  // all ones or all zeros a lane
+#define LIGHTBIN_MASK LIGHTBIN_REGISTER  // the bits of each lane are all 1 or all 0
 inline LIGHTBIN_MASK both(LIGHTBIN_MASK a, LIGHTBIN_MASK b) {
     return LIGHTBIN_OP(and)(a, b);
 }
@@ -57,7 +57,7 @@ inline LIGHTBIN_VECTOR sqrt(LIGHTBIN_VECTOR a) {
     return LIGHTBIN_OP(sqrt)(a.v);
 }
 
-/// A product that is rounded before it is added to anything, see rounded().
+/// Returns a product that is rounded before anything is added to it, see rounded().
 inline LIGHTBIN_VECTOR mul(LIGHTBIN_VECTOR a, LIGHTBIN_VECTOR b) {
     LIGHTBIN_VECTOR product = a * b;
     LIGHTBIN_FORGET(product.v);
