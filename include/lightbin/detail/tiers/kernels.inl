@@ -80,7 +80,10 @@ struct Tier {
 
     template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>
     static BinKernel<Id> bin_kernel() {
-        return bin_blocks<footprint, depth_test, Id, by_slab, spots>;
+        if constexpr (lanes == 1 && !has_tests<footprint, depth_test>)
+            return scatter_lights<Id>;  // as scatter_is_faster() says of the scalar tier
+        else
+            return bin_blocks<footprint, depth_test, Id, by_slab, spots>;
     }
     template <Footprint footprint, DepthTest depth_test, class Id, bool spots> static BitsKernel<Id> bits_kernel() {
         return write_bits<footprint, depth_test, Id, spots>;

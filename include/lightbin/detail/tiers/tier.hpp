@@ -8,6 +8,7 @@
 #include <lightbin/detail/depth/slice_table.hpp>
 #include <lightbin/detail/engine/block.hpp>
 #include <lightbin/detail/engine/costs.hpp>
+#include <lightbin/detail/engine/scatter.hpp>
 #include <lightbin/detail/engine/cell_boxes.hpp>
 #include <lightbin/detail/project/footprint_arrays.hpp>
 #include <lightbin/sphere.hpp>
