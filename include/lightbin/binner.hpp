@@ -2,33 +2,11 @@
 // Binner: makes light grids in one call. It owns the grids and the scratch memory that making them takes.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/checked_sizes.hpp>
-#include <lightbin/detail/base/float_environment.hpp>
 #include <lightbin/detail/depth/binner_inputs.hpp>
 #include <lightbin/detail/depth/ranked_footprints.hpp>
 #include <lightbin/detail/depth/sliced_footprints.hpp>
-#include <lightbin/detail/engine/block.hpp>
 #include <lightbin/detail/engine/grid_lists.hpp>
-#include <lightbin/detail/project/footprints.hpp>
-#include <lightbin/isa.hpp>
-#include <lightbin/light_grid.hpp>
-#include <lightbin/lights.hpp>
 #include <lightbin/list_format.hpp>
-#include <lightbin/options.hpp>
-#include <lightbin/parallel.hpp>
-#include <lightbin/result.hpp>
-#include <lightbin/slices.hpp>
-#include <lightbin/view.hpp>
-#include <lightbin/z_bounds.hpp>
-
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <type_traits>
-#include <utility>
 
 #include <lightbin/detail/base/warnings_off.inl>
 

@@ -2,12 +2,10 @@
 // Instruction sets: those that the compiler made kernels for, and the widest that this machine runs.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/enum_names.hpp>
 #include <lightbin/detail/base/platform.hpp>
 
 #include <cstdint>
-#include <initializer_list>
 
 #if defined(_MSC_VER)
 #include <intrin.h>

@@ -2,15 +2,12 @@
 // The output: a light grid (Tiled Shading, Figure 1). It has an offset and a count per tile, and one light index list.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/base/enum_names.hpp>
 #include <lightbin/result.hpp>
 
 #include <array>
 #include <bit>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {

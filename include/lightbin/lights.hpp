@@ -2,19 +2,8 @@
 // Lights as the caller has them: arrays of vec4, Sphere, Spot or the caller's own structs, in view space or world space.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/project/sphere_around.hpp>
 #include <lightbin/detail/project/to_light.hpp>
 #include <lightbin/detail/project/world_to_view.hpp>
-#include <lightbin/matrix.hpp>
-#include <lightbin/sphere.hpp>
-#include <lightbin/spot.hpp>
-
-#include <concepts>
-#include <optional>
-#include <span>
-#include <type_traits>
-#include <utility>
 
 #include <lightbin/detail/base/warnings_off.inl>
 

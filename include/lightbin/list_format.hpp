@@ -2,11 +2,7 @@
 // The format of the lists of lights. A shader that reads lists must be made for the format that a Binner or encode() wrote.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/enum_names.hpp>
 #include <lightbin/light_grid.hpp>
-
-#include <cstdint>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 

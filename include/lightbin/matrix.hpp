@@ -17,14 +17,11 @@
 // row_vectors, and in numbers 4, 8 and 12 with row_major, counted from 1.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/math.hpp>
 #include <lightbin/result.hpp>
 
 #include <concepts>
-#include <cstdint>
 #include <type_traits>
-#include <utility>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 

@@ -2,12 +2,8 @@
 // The options of a Binner. They are template arguments, so an option that is off leaves no code in the program.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/enum_names.hpp>
 #include <lightbin/isa.hpp>
 #include <lightbin/light_grid.hpp>
-
-#include <cstdint>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 

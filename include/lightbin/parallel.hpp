@@ -2,7 +2,6 @@
 // Lets a call use the caller's threads. lightbin starts no threads of its own.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/float_environment.hpp>
 
 #include <cstddef>

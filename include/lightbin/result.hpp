@@ -2,10 +2,8 @@
 // Errors that a running program can meet are returned as values with a text. Bugs in the calling program are assertions.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/error_code.hpp>
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>

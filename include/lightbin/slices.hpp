@@ -3,19 +3,10 @@
 // Deferred and Forward Shading", HPG 2012) or serve as z-bins.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/algorithms.hpp>
-#include <lightbin/detail/base/buffer.hpp>
-#include <lightbin/detail/base/float_environment.hpp>
-#include <lightbin/detail/base/math.hpp>
-#include <lightbin/detail/base/rounding.hpp>
 #include <lightbin/detail/depth/slice_table.hpp>
 #include <lightbin/result.hpp>
 
-#include <cstddef>
-#include <cstdint>
 #include <span>
-#include <utility>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 

@@ -2,7 +2,6 @@
 // Sphere: the region that a light can reach. And the usual falloff of a light: its range, and a window that ends it there.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/math.hpp>
 #include <lightbin/detail/base/rounding.hpp>
 

@@ -2,13 +2,8 @@
 // Spot: a sphere cut by a cone. And the least spheres around spots, tubes and rectangles.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/algorithms.hpp>
-#include <lightbin/detail/base/math.hpp>
-#include <lightbin/detail/base/platform.hpp>
-#include <lightbin/detail/base/rounding.hpp>
 #include <lightbin/detail/project/sphere_around.hpp>
-#include <lightbin/sphere.hpp>
 
 #include <lightbin/detail/base/warnings_off.inl>
 

@@ -2,17 +2,8 @@
 // Stage 1: reads a projection matrix, and fixes the tile grid of a viewport.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/enum_names.hpp>
-#include <lightbin/detail/project/camera.hpp>
 #include <lightbin/detail/project/projection.hpp>
-#include <lightbin/matrix.hpp>
-#include <lightbin/result.hpp>
-#include <lightbin/view_summary.hpp>
-
-#include <cstddef>
-#include <cstdint>
-#include <optional>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 

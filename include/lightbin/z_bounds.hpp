@@ -2,22 +2,7 @@
 // Z bounds: the minimum and maximum view depth of what is drawn in each tile, reduced from a depth buffer.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/algorithms.hpp>
-#include <lightbin/detail/base/checked_sizes.hpp>
-#include <lightbin/detail/base/enum_names.hpp>
-#include <lightbin/detail/base/float_environment.hpp>
-#include <lightbin/detail/base/rounding.hpp>
 #include <lightbin/detail/depth/tile_extremes.hpp>
-#include <lightbin/isa.hpp>
-#include <lightbin/result.hpp>
-#include <lightbin/view.hpp>
-
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <utility>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 

@@ -4,7 +4,7 @@
 // function the linker would keep either copy, whose instructions might not exist on the machine. Passing a lightbin type
 // between such units is a linker error.
 //
-// All other headers include this one first, so it also refuses compilers that are not set to C++20. It does so by
+// Every other header includes this one before all others, itself or through its first include, so it also refuses compilers that are not set to C++20. It does so by
 // including a file that does not exist, which ends every compiler with one error that shows the file's name. After an
 // #error gcc and clang would go on to report hundreds of errors.
 #pragma once

@@ -2,14 +2,10 @@
 // Buffer: memory that is kept from call to call and is not initialised.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/base/checked_sizes.hpp>
 #include <lightbin/detail/base/platform.hpp>
 
-#include <cstddef>
-#include <cstdint>
-#include <type_traits>
 #include <utility>
 
 #include <lightbin/detail/base/warnings_off.inl>

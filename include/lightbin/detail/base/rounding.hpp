@@ -3,7 +3,6 @@
 // with NaN, so compiler modes that break either are refused here.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/platform.hpp>
 
 #include <cfloat>

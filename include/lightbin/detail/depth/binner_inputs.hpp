@@ -2,14 +2,8 @@
 // The members of Binner's Inputs: an input that is missing, or that the options do not read, is refused at compile time.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/platform.hpp>
-#include <lightbin/result.hpp>
 #include <lightbin/slices.hpp>
 #include <lightbin/z_bounds.hpp>
-
-#include <optional>
-#include <type_traits>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 

@@ -5,18 +5,12 @@
 // and suits exponential ones.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/base/buffer.hpp>
 #include <lightbin/detail/base/float_environment.hpp>
 #include <lightbin/detail/base/math.hpp>
-#include <lightbin/detail/base/platform.hpp>
 #include <lightbin/detail/base/rounding.hpp>
 
 #include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 

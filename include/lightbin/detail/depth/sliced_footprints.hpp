@@ -3,24 +3,8 @@
 // of which clusters are made.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/algorithms.hpp>
-#include <lightbin/detail/base/buffer.hpp>
-#include <lightbin/detail/base/rounding.hpp>
-#include <lightbin/detail/depth/slice_table.hpp>
-#include <lightbin/detail/project/footprint_arrays.hpp>
 #include <lightbin/detail/project/footprints.hpp>
-#include <lightbin/detail/tiers/kernels.hpp>
-#include <lightbin/isa.hpp>
-#include <lightbin/options.hpp>
-#include <lightbin/result.hpp>
 #include <lightbin/slices.hpp>
-#include <lightbin/view.hpp>
-
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <optional>
 
 #include <lightbin/detail/base/warnings_off.inl>
 

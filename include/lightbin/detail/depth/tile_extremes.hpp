@@ -2,13 +2,7 @@
 // Reduces rows of depth samples to the extreme samples of each tile.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/algorithms.hpp>
-#include <lightbin/detail/base/rounding.hpp>
 #include <lightbin/detail/tiers/kernels.hpp>
-#include <lightbin/isa.hpp>
-
-#include <cstddef>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 

@@ -2,18 +2,9 @@
 // The structs that the stages and their kernels hand to each other.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/base/buffer.hpp>
-#include <lightbin/detail/base/rounding.hpp>
 #include <lightbin/detail/project/view_spot.hpp>
 #include <lightbin/detail/project/world_to_view.hpp>
-#include <lightbin/light_grid.hpp>
-#include <lightbin/sphere.hpp>
-#include <lightbin/view.hpp>
-
-#include <cstddef>
-#include <cstdint>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 

@@ -3,21 +3,9 @@
 // silhouettes the spans of tiles in each tile row.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/algorithms.hpp>
-#include <lightbin/detail/base/buffer.hpp>
-#include <lightbin/detail/engine/costs.hpp>
-#include <lightbin/detail/project/footprint_arrays.hpp>
 #include <lightbin/detail/tiers/kernels.hpp>
 #include <lightbin/lights.hpp>
-#include <lightbin/options.hpp>
 #include <lightbin/parallel.hpp>
-#include <lightbin/result.hpp>
-#include <lightbin/view.hpp>
-
-#include <cstddef>
-#include <cstdint>
-#include <optional>
 
 #include <lightbin/detail/base/warnings_off.inl>
 

@@ -3,19 +3,12 @@
 // mapping between view depth and window depth.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/base/float_environment.hpp>
-#include <lightbin/detail/base/math.hpp>
-#include <lightbin/detail/base/platform.hpp>
 #include <lightbin/detail/base/rounding.hpp>
 #include <lightbin/detail/project/camera.hpp>
 #include <lightbin/matrix.hpp>
-#include <lightbin/result.hpp>
 #include <lightbin/view_summary.hpp>
-
-#include <cstdint>
-#include <optional>
 
 #include <lightbin/detail/base/warnings_off.inl>
 

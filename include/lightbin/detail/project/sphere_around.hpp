@@ -2,14 +2,7 @@
 // Float spheres around spheres that were computed in double, rounded outward.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/math.hpp>
-#include <lightbin/detail/base/platform.hpp>
-#include <lightbin/detail/base/rounding.hpp>
 #include <lightbin/sphere.hpp>
-
-#include <cfloat>
-#include <cstring>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 

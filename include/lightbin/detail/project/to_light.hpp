@@ -3,14 +3,10 @@
 // readable compile error.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/project/sphere_around.hpp>
-#include <lightbin/sphere.hpp>
 #include <lightbin/spot.hpp>
 
 #include <concepts>
 #include <span>
-#include <type_traits>
 #include <utility>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {

@@ -10,13 +10,7 @@
 // spots given in world space the errors of the transform are added, see world_to_view.hpp.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/engine/cell_boxes.hpp>
-#include <lightbin/detail/project/camera.hpp>
-#include <lightbin/sphere.hpp>
-
-#include <cstdint>
-#include <type_traits>
 
 #include <lightbin/detail/base/warnings_off.inl>
 

@@ -17,17 +17,10 @@
 // cone with the given half angle around the image of the axis under A.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/base/float_environment.hpp>
-#include <lightbin/detail/base/math.hpp>
-#include <lightbin/detail/base/platform.hpp>
-#include <lightbin/detail/base/rounding.hpp>
 #include <lightbin/matrix.hpp>
-#include <lightbin/result.hpp>
 #include <lightbin/sphere.hpp>
-
-#include <optional>
 
 #include <lightbin/detail/base/warnings_off.inl>
 
