@@ -41,27 +41,6 @@ struct Matrix {
 
 namespace detail {
 
-// The matrix types of other libraries are recognized by their members, without including those libraries.
-template <class M>
-concept SubscriptMatrix = requires(const M& m) {
-    { m[0][0] } -> std::convertible_to<double>;
-};
-template <class M>
-concept EigenLikeMatrix = requires(const M& m) {
-    { m.matrix()(0, 0) } -> std::convertible_to<double>;
-    m.matrix().rows() + m.matrix().cols();
-};
-template <class M>
-concept DirectXLikeMatrix = requires(const M& m) {
-    m._11 + m._44;
-    { m.m[0][0] } -> std::convertible_to<double>;
-};
-template <class M>
-concept OpenSceneGraphLikeMatrix = requires(const M& m) {
-    { m(0, 0) } -> std::convertible_to<double>;
-    m.getTrans();
-    m.ptr();
-};
 /// M is an array of numbers, or a pointer to numbers, without a matrix type.
 template <class M>
 concept SixteenNumbers = requires(const M& m) {
@@ -79,21 +58,22 @@ template <class At> Matrix from_entries(const At& at) {
     return result;
 }
 
-/// Converts a matrix of any type in the table at the top of matrix.hpp.
+/// Converts a matrix of any type in the table at the top of matrix.hpp. The types of other libraries are recognized by
+/// their members, without including those libraries.
 template <class M> Matrix to_matrix(const M& m) {
-    if constexpr (SubscriptMatrix<M>) {
+    if constexpr (requires { { m[0][0] } -> std::convertible_to<double>; }) {
         if constexpr (std::is_array_v<M>)
             static_assert(std::extent_v<M, 0> == 4 && std::extent_v<M, 1> == 4,
                           "lightbin: this matrix is not 4x4");
         else if constexpr (requires { M::length(); })  // GLM's
             static_assert(M::length() == 4, "lightbin: this matrix is not 4x4");
         return from_entries([&]<int column, int row>() { return m[column][row]; });
-    } else if constexpr (EigenLikeMatrix<M>) {
+    } else if constexpr (requires { { m.matrix()(0, 0) } -> std::convertible_to<double>; m.matrix().cols(); }) {  // Eigen's
         LIGHTBIN_ASSERT(m.matrix().rows() == 4 && m.matrix().cols() == 4);
         return from_entries([&]<int column, int row>() { return m.matrix()(row, column); });
-    } else if constexpr (DirectXLikeMatrix<M>) {
+    } else if constexpr (requires { m._11 + m._44; { m.m[0][0] } -> std::convertible_to<double>; }) {  // DirectXMath's
         return from_entries([&]<int column, int row>() { return m.m[column][row]; });
-    } else if constexpr (OpenSceneGraphLikeMatrix<M>) {
+    } else if constexpr (requires { { m(0, 0) } -> std::convertible_to<double>; m.getTrans(); }) {  // OpenSceneGraph's
         return from_entries([&]<int column, int row>() { return m(column, row); });
     } else {
         static_assert(

@@ -4,9 +4,9 @@
 // function the linker would keep either copy, whose instructions might not exist on the machine. Passing a lightbin type
 // between such units is a linker error.
 //
-// Every other header includes this one before all others, itself or through its first include, so it also refuses compilers that are not set to C++20. It does so by
-// including a file that does not exist, which ends every compiler with one error that shows the file's name. After an
-// #error gcc and clang would go on to report hundreds of errors.
+// Each other header begins by including this one, itself or by another header. So this header also refuses compilers
+// that are not set to C++20, by including a file that does not exist: that ends every compiler with one error that shows
+// the file's name, while after an #error gcc and clang would go on to report hundreds of errors.
 #pragma once
 
 #if (defined(_MSVC_LANG) ? _MSVC_LANG : __cplusplus) <= 201703L
@@ -14,14 +14,14 @@
 #endif
 
 // The name consists of the highest level of vector instructions that the flags allow, such as sse41, and of each other
-// extension that they allow, written as the number of its LIGHTBIN_LINE below and its letter within that line. Included
-// is every extension that a compiler may use of its own accord for plain C++ and announces by a macro. Left out are
-// extensions that only intrinsics reach, those for checksums, ciphers and 16-bit floats, hints that older processors
-// ignore (prefetches, control-flow marks), and those of WebAssembly, where an engine refuses a module as a whole.
-// tests/guest/flavours.sh has a list of all that are left out.
+// extension that they allow, written as the number of its LIGHTBIN_LINE below and its letter within that line. The name
+// has every extension that a compiler may use of its own accord for plain C++ and announces by a macro. It leaves out
+// the extensions that tests/guest/flavours.sh lists: those that only intrinsics reach, those for checksums, ciphers and
+// 16-bit floats, hints that older processors ignore (prefetches, control-flow marks), and those of WebAssembly, where an
+// engine refuses a module as a whole.
 
-// LIGHTBIN_IF(macro, name, other) expands to `name` if the macro is 1 (RISC-V: 1000000), to `name` and the digit if it
-// is 2 or 3, and to `other` if it is not defined.
+// LIGHTBIN_IF(macro, name, other) expands to `name` if the macro is 1 (RISC-V: 1000000), to `name` and the digit if the
+// macro is 2 or 3, and to `other` if the macro is not defined.
 #define LIGHTBIN_IF(macro, name, other) LIGHTBIN_IF_VALUE(macro, name, other)
 #define LIGHTBIN_IF_VALUE(value, name, other) LIGHTBIN_IF_FOUND(LIGHTBIN_FOUND_##value(name), other)
 #define LIGHTBIN_IF_FOUND(found, other) LIGHTBIN_SECOND(found, other, )
@@ -42,19 +42,19 @@
 // extension. The macro is expanded wherever the namespace is named; the long form would cost each compiled file 15 ms.
 // clang-format off
 #if defined(__arm__) || defined(__aarch64__)
-#define LIGHTBIN_INSTRUCTION_SET LIGHTBIN_PASTE(LIGHTBIN_RUNG, \
+#define LIGHTBIN_INSTRUCTION_SET LIGHTBIN_PASTE(LIGHTBIN_LEVEL, \
     LIGHTBIN_LINE(1, __ARM_FEATURE_ATOMICS, __ARM_FEATURE_QRDMX, __ARM_FEATURE_COMPLEX, __ARM_FEATURE_DOTPROD, \
                      __ARM_FEATURE_MATMUL_INT8, __ARM_FEATURE_SHA3, __ARM_FEATURE_RCPC, __ARM_FEATURE_PAUTH), \
     LIGHTBIN_LINE(2, __ARM_FEATURE_MOPS, __ARM_FEATURE_CSSC, __ARM_FEATURE_FAMINMAX, __ARM_FEATURE_SVE2p1, \
                      __ARM_FEATURE_SVE_MATMUL_FP64, __ARM_FEATURE_FP16_SCALAR_ARITHMETIC, __ARM_FEATURE_PAUTH_LR, \
                      __ARM_FEATURE_SVE), , , , , )
 #if defined(__arm__)
-#define LIGHTBIN_RUNG LIGHTBIN_PASTE(arm, __ARM_ARCH, _, LIGHTBIN_LINE(0, __ARM_NEON, __ARM_FEATURE_FMA, __ARM_FEATURE_IDIV, \
+#define LIGHTBIN_LEVEL LIGHTBIN_PASTE(arm, __ARM_ARCH, _, LIGHTBIN_LINE(0, __ARM_NEON, __ARM_FEATURE_FMA, __ARM_FEATURE_IDIV, \
     __ARM_FEATURE_DSP, __ARM_FEATURE_MVE, __ARM_FEATURE_NUMERIC_MAXMIN, __ARM_FPV5__, __SOFTFP__), , , , )
 #elif defined(__ARM_FEATURE_SVE_BITS)
-#define LIGHTBIN_RUNG LIGHTBIN_PASTE(LIGHTBIN_IF(__ARM_FEATURE_SVE2, sve2_, sve_), __ARM_FEATURE_SVE_BITS, _, , , , , )
+#define LIGHTBIN_LEVEL LIGHTBIN_PASTE(LIGHTBIN_IF(__ARM_FEATURE_SVE2, sve2_, sve_), __ARM_FEATURE_SVE_BITS, _, , , , , )
 #else
-#define LIGHTBIN_RUNG LIGHTBIN_IF(__ARM_FEATURE_SVE2, sve2_, LIGHTBIN_IF(__ARM_FEATURE_SVE, sve_, baseline))
+#define LIGHTBIN_LEVEL LIGHTBIN_IF(__ARM_FEATURE_SVE2, sve2_, LIGHTBIN_IF(__ARM_FEATURE_SVE, sve_, baseline))
 #endif
 #elif defined(__wasm__)  // the kernels depend on this macro
 #define LIGHTBIN_INSTRUCTION_SET LIGHTBIN_IF(__wasm_simd128__, simd128, baseline)
@@ -75,16 +75,10 @@
             LIGHTBIN_IF(__SSE3__, sse3_, baseline))))))), \
     LIGHTBIN_LINE(1, __FMA__, __BMI__, __BMI2__, __LZCNT__, __POPCNT__, __MOVBE__, __GFNI__, __SSE4A__), \
     LIGHTBIN_LINE(2, __FMA4__, __XOP__, __TBM__, __AVXVNNI__, __AVXVNNIINT8__, __AVXVNNIINT16__, __AVXIFMA__, __APX_F__), \
-    LIGHTBIN_LINES_OF_AVX512, LIGHTBIN_IF(__CMPCCXADD__, 0a, ), LIGHTBIN_IF(__RAOINT__, 0b, ), LIGHTBIN_IF(__EVEX512__, 0c, ), )
-#if defined(__AVX512F__)
-#define LIGHTBIN_LINES_OF_AVX512 LIGHTBIN_PASTE( \
     LIGHTBIN_LINE(3, __AVX512CD__, __AVX512BW__, __AVX512DQ__, __AVX512VL__, \
                      __AVX512IFMA__, __AVX512VBMI__, __AVX512VBMI2__, __AVX512VNNI__), \
-    LIGHTBIN_LINE(4, __AVX512BITALG__, __AVX512VPOPCNTDQ__, __AVX512FP16__, __AVX10_1__, __AVX10_2__, , , ), \
-    , , , , , )
-#else
-#define LIGHTBIN_LINES_OF_AVX512
-#endif
+    LIGHTBIN_LINE(4, __AVX512BITALG__, __AVX512VPOPCNTDQ__, __AVX512FP16__, __AVX10_1__, __AVX10_2__, \
+                     __CMPCCXADD__, __RAOINT__, __EVEX512__), , , )
 #else
 #define LIGHTBIN_INSTRUCTION_SET baseline
 #endif

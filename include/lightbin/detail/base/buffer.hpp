@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Buffer: memory that is kept from call to call and is not initialised.
+// Buffer: memory that the stages keep from call to call.
 #pragma once
 
 #include <lightbin/detail/base/algorithms.hpp>
@@ -38,12 +38,8 @@ public:
     T* reserve(std::uint64_t size, std::size_t used) {
         if (size > size_) {
             Buffer larger(sum_of_sizes(size, size));
-            used = min_of(used, size_);
-            if constexpr (std::is_trivially_copyable_v<T>)
-                copy_items(memory_, used, larger.memory_);
-            else
-                for (std::size_t i = 0; i < used; ++i)
-                    larger.memory_[i] = std::move(memory_[i]);
+            for (std::size_t i = 0; i < min_of(used, size_); ++i)
+                larger.memory_[i] = std::move(memory_[i]);
             swap(larger);
         }
         return memory_;
@@ -52,12 +48,8 @@ public:
     T* data() const { return memory_; }
 
     void swap(Buffer& other) noexcept {
-        T* const memory = other.memory_;
-        const std::size_t size = other.size_;
-        other.memory_ = memory_;
-        other.size_ = size_;
-        memory_ = memory;
-        size_ = size;
+        std::swap(memory_, other.memory_);
+        std::swap(size_, other.size_);
     }
 
 private:

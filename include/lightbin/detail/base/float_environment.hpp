@@ -34,9 +34,7 @@ public:
         constexpr unsigned flags = 0x3f, by_default = 0x1f80;  // all exceptions masked, rounding to nearest
         if ((callers_ & ~flags) != by_default) LIGHTBIN_SET_ENVIRONMENT(by_default);
     }
-    ~DefaultFloatEnvironment() {
-        LIGHTBIN_SET_ENVIRONMENT(callers_);
-    }
+    ~DefaultFloatEnvironment() { LIGHTBIN_SET_ENVIRONMENT(callers_); }
 
 private:
     unsigned callers_;
@@ -48,9 +46,7 @@ private:
         std::fegetenv(&callers_);
         std::fesetenv(FE_DFL_ENV);
     }
-    ~DefaultFloatEnvironment() {
-        std::fesetenv(&callers_);
-    }
+    ~DefaultFloatEnvironment() { std::fesetenv(&callers_); }
 
 private:
     std::fenv_t callers_;
