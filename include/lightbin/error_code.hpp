@@ -67,140 +67,95 @@ enum class ErrorCode : std::uint8_t {
     not_a_prefix,
 };
 
+namespace detail {
+
+/// A sentence for each ErrorCode, in the order of their values.
+inline constexpr const char* error_sentences[] = {
+    // View::from_projection
+    "the projection matrix has a NaN or infinite entry",
+    ("the matrix is neither a perspective nor an orthographic projection: its w row must read z alone, or be a "
+     "positive constant alone. Pass the projection alone, not projection times view (lights in world space go "
+     "through world_space()), and not the view matrix"),
+    ("the matrix is a projection when it is transposed: pass lightbin::matrix(numbers, layout) with the other "
+     "layout, row_major or column_major, or your type as it is where matrix.hpp lists it"),
+    ("the perspective matrix does not have its eye at the origin of view space: pass the projection alone, not "
+     "projection times view (lights in world space go through world_space())"),
+    ("the projection rotates or shears the image (its x row reads y, its y row reads x, or an orthographic row "
+     "reads z). Pass the projection alone, not projection times view, and not the view matrix; where the projection "
+     "itself turns the image, apply that to the pixels"),
+    ("the projection has an oblique near plane (its z row reads x or y): pass the projection without it; its tiles "
+     "are the same and its near plane misses no light"),
+    ("the perspective projection has no near plane in front of the eye: was it made with a near distance of 0 or "
+     "less? Check the matrix's z row and ViewOptions::clip_depth"),
+    "the near plane is closer to the eye than 2^-126, the least normal float: move it away, or use smaller units",
+    ("the orthographic projection's near and far plane must be at depths that floats hold: check the matrix's z "
+     "row, which must read z"),
+    "the projection scales x or y by zero, or by more than 2^80 or less than 2^-80 tiles a unit",
+    ("the projection moves the image by more than 2^80 tiles in x or y: check the x and y of the matrix's third "
+     "column, or of an orthographic one's fourth"),
+    "the viewport's sides must be 0 to {available} pixels, and one is {given}",
+    "the tile size must be at least 1 pixel, and is {given}",
+    // lights
+    ("the world-to-view matrix is not affine: its entries must be finite and its last row 0 0 0 1. Pass the view "
+     "matrix alone, not projection times view"),
+    ("the world-to-view matrix is transposed, its last column is 0 0 0 1: pass lightbin::matrix(numbers, layout) "
+     "with the other layout, row_major or column_major, or your type as it is where matrix.hpp lists it"),
+    "{needed} lights are too many for the id type, which counts to {available}: use wider Options::ids or fewer lights",
+    // light grid
+    ("the light index list would need {needed} entries, and 32-bit offsets reach {available}: use larger tiles, "
+     "fewer slices, or Z bounds"),
+    ("the lights may meet slices, or blocks of 8x8 tiles, {needed} times, and binning counts to {available}: use "
+     "fewer slices, larger tiles or fewer lights"),
+    "the buffer for list ranges holds {available} ranges, and {needed} are needed",
+    "the buffer for light ids holds {available} ids and {needed} are needed",
+    // Z bounds
+    "a Z bounds buffer holds {available} tiles, and the view has {needed}",
+    "the depth buffer holds {available} samples and {needed} are needed",
+    "a depth buffer has 1 to 8 samples a pixel, not {given}",
+    "the depth buffer's row pitch is {available} samples and a row of pixels has {needed}",
+    ("the Z bounds leave out the background, in front of which transparent geometry is seen, too: have "
+     "reduce_depth() write ZBoundsBuffers::transparent_max, or count the background"),
+    // slices
+    "there must be at least 1 slice, not {given}",
+    "two or more slices need a range of finite depths: 0 < first < last for exponential(), begin < end for linear()",
+    ("the boundaries of slices must be finite and ascend, and boundary {needed}, counted from 0, does not (of "
+     "exponential() and linear(): too few floats in their range for so many slices)"),
+    "tiles times slices are {needed} cells, and 32-bit numbers reach {available}: use larger tiles or fewer slices",
+    // encodings and shader text
+    "the lists' format numbers {available} lights and {needed} are needed: use wider ids, or a larger max_lights",
+    "the buffer for the encoded lists holds {available} bytes and {needed} are needed",
+    "the buffer for bitmasks holds {available} words of 32 bits and {needed} are needed",
+    "sentinel lists need ListFormat::capacity, the lights a tile can hold",
+    "bitmasks need ListFormat::max_lights, which fixes the words a tile",
+    ("uniform blocks have a fixed size: ShaderOptions::max_tiles must be given, max_entries for offsets and counts, "
+     "and max_slices for slicing"),
+    ("a uniform block would need {needed} bytes and holds {available}: use larger tiles, narrower ids or another "
+     "storage, or raise uniform_block_bytes to what the device has"),
+    ("GLSL 3.30 and GLSL ES 3.00 have no storage buffers and no compute shaders: read the lists from texel_buffer "
+     "(not ES), texture_2d or uniform_block, reduce depth in a fragment shader, and build grids with a Binner"),
+    "GLSL ES and WGSL have no buffer textures: use texture_2d, uniform_block or (not ES 3.00) storage_buffer",
+    "byte_address buffers are HLSL's: use storage_buffer",
+    "ShaderSlot::binding and set must be 0 or more, and one is {given}",
+    "this language has no descriptor sets, register spaces or groups: ShaderSlot::set must be 0 and is {given}",
+    "push constants are Vulkan GLSL's: set ShaderOptions::push_constants to false",
+    "GLSL ES 3.00 has no multisample textures: resolve the depth buffer first",
+    "build_shader() has the depth tests none, interval and box, but not split_box",
+    ("build_shader() slices depth into clusters alone, with DepthTest::none or DepthTest::box: z-bins are made by a "
+     "Binner"),
+    "wave loops need GLSL 4.30, ES 3.10, Vulkan, HLSL 6 (hlsl_5_1) or WGSL",
+    "ShaderOptions::texture_width must be 1 to {available} texels, and is {needed}",
+    "two resources of the shader are bound to binding {needed} of set {available}",
+    ("ShaderOptions::prefix must begin a name in every language: a letter, then letters, digits and single "
+     "underscores, 1000 at most, not gl_ or GL_, and not vola, which would make volatile"),
+};
+static_assert(sizeof error_sentences / sizeof *error_sentences == static_cast<int>(ErrorCode::not_a_prefix) + 1);
+
+}  // namespace detail
+
 /// Returns one English sentence that names the cause and a remedy. Placeholders {needed}, {available} and {given}
 /// stand for the numbers of an Error, which Error::message() fills in; {given} is Error::needed as a signed number.
 constexpr const char* to_string(ErrorCode code) {
-    switch (code) {
-    case ErrorCode::matrix_not_finite:
-        return "the projection matrix has a NaN or infinite entry";
-    case ErrorCode::not_a_projection:
-        return "the matrix is neither a perspective nor an orthographic projection: its w row must read z alone, or be "
-               "a positive constant alone. Pass the projection alone, not projection times view (lights in world space "
-               "go through world_space()), and not the view matrix";
-    case ErrorCode::projection_transposed:
-        return "the matrix is a projection when it is transposed: pass lightbin::matrix(numbers, layout) with the other "
-               "layout, row_major or column_major, or your type as it is where matrix.hpp lists it";
-    case ErrorCode::eye_not_at_origin:
-        return "the perspective matrix does not have its eye at the origin of view space: pass the projection alone, "
-               "not projection times view (lights in world space go through world_space())";
-    case ErrorCode::image_axes_rotated:
-        return "the projection rotates or shears the image (its x row reads y, its y row reads x, or an orthographic "
-               "row reads z). Pass the projection alone, not projection times view, and not the view matrix; where the "
-               "projection itself turns the image, apply that to the pixels";
-    case ErrorCode::oblique_depth:
-        return "the projection has an oblique near plane (its z row reads x or y): pass the projection without it; its "
-               "tiles are the same and its near plane misses no light";
-    case ErrorCode::no_near_plane:
-        return "the perspective projection has no near plane in front of the eye: was it made with a near distance of 0 "
-               "or less? Check the matrix's z row and ViewOptions::clip_depth";
-    case ErrorCode::near_plane_too_close:
-        return "the near plane is closer to the eye than 2^-126, the least normal float: move it away, or use smaller "
-               "units";
-    case ErrorCode::depth_range_not_finite:
-        return "the orthographic projection's near and far plane must be at depths that floats hold: check the matrix's "
-               "z row, which must read z";
-    case ErrorCode::degenerate_scale:
-        return "the projection scales x or y by zero, or by more than 2^80 or less than 2^-80 tiles a unit";
-    case ErrorCode::image_offset_out_of_range:
-        return "the projection moves the image by more than 2^80 tiles in x or y: check the x and y of the matrix's "
-               "third column, or of an orthographic one's fourth";
-    case ErrorCode::viewport_out_of_range:
-        return "the viewport's sides must be 0 to {available} pixels, and one is {given}";
-    case ErrorCode::tile_size_out_of_range:
-        return "the tile size must be at least 1 pixel, and is {given}";
-    case ErrorCode::view_matrix_not_affine:
-        return "the world-to-view matrix is not affine: its entries must be finite and its last row 0 0 0 1. Pass the "
-               "view matrix alone, not projection times view";
-    case ErrorCode::view_matrix_transposed:
-        return "the world-to-view matrix is transposed, its last column is 0 0 0 1: pass lightbin::matrix(numbers, "
-               "layout) with the other layout, row_major or column_major, or your type as it is where matrix.hpp lists "
-               "it";
-    case ErrorCode::too_many_lights:
-        return "{needed} lights are too many for the id type, which counts to {available}: use wider Options::ids or "
-               "fewer lights";
-    case ErrorCode::too_many_entries:
-        return "the light index list would need {needed} entries, and 32-bit offsets reach {available}: use larger "
-               "tiles, fewer slices, or Z bounds";
-    case ErrorCode::too_many_list_places:
-        return "the lights may meet slices, or blocks of 8x8 tiles, {needed} times, and binning counts to {available}: "
-               "use fewer slices, larger tiles or fewer lights";
-    case ErrorCode::range_buffer_too_small:
-        return "the buffer for list ranges holds {available} ranges, and {needed} are needed";
-    case ErrorCode::id_buffer_too_small:
-        return "the buffer for light ids holds {available} ids and {needed} are needed";
-    case ErrorCode::z_bounds_too_small:
-        return "a Z bounds buffer holds {available} tiles, and the view has {needed}";
-    case ErrorCode::depth_buffer_too_small:
-        return "the depth buffer holds {available} samples and {needed} are needed";
-    case ErrorCode::samples_out_of_range:
-        return "a depth buffer has 1 to 8 samples a pixel, not {given}";
-    case ErrorCode::row_pitch_too_small:
-        return "the depth buffer's row pitch is {available} samples and a row of pixels has {needed}";
-    case ErrorCode::no_transparent_max:
-        return "the Z bounds leave out the background, in front of which transparent geometry is seen, too: have "
-               "reduce_depth() write ZBoundsBuffers::transparent_max, or count the background";
-    case ErrorCode::no_slices:
-        return "there must be at least 1 slice, not {given}";
-    case ErrorCode::slice_range_empty:
-        return "two or more slices need a range of finite depths: 0 < first < last for exponential(), begin < end for "
-               "linear()";
-    case ErrorCode::slices_do_not_ascend:
-        return "the boundaries of slices must be finite and ascend, and boundary {needed}, counted from 0, does not (of "
-               "exponential() and linear(): too few floats in their range for so many slices)";
-    case ErrorCode::too_many_cells:
-        return "tiles times slices are {needed} cells, and 32-bit numbers reach {available}: use larger tiles or fewer "
-               "slices";
-    case ErrorCode::ids_too_narrow:
-        return "the lists' format numbers {available} lights and {needed} are needed: use wider ids, or a larger "
-               "max_lights";
-    case ErrorCode::list_buffer_too_small:
-        return "the buffer for the encoded lists holds {available} bytes and {needed} are needed";
-    case ErrorCode::bit_buffer_too_small:
-        return "the buffer for bitmasks holds {available} words of 32 bits and {needed} are needed";
-    case ErrorCode::capacity_unknown:
-        return "sentinel lists need ListFormat::capacity, the lights a tile can hold";
-    case ErrorCode::max_lights_unknown:
-        return "bitmasks need ListFormat::max_lights, which fixes the words a tile";
-    case ErrorCode::block_size_unknown:
-        return "uniform blocks have a fixed size: ShaderOptions::max_tiles must be given, max_entries for offsets and "
-               "counts, and max_slices for slicing";
-    case ErrorCode::uniform_block_too_small:
-        return "a uniform block would need {needed} bytes and holds {available}: use larger tiles, narrower ids or "
-               "another storage, or raise uniform_block_bytes to what the device has";
-    case ErrorCode::no_storage_buffers:
-        return "GLSL 3.30 and GLSL ES 3.00 have no storage buffers and no compute shaders: read the lists from "
-               "texel_buffer (not ES), texture_2d or uniform_block, reduce depth in a fragment shader, and build grids "
-               "with a Binner";
-    case ErrorCode::no_texel_buffers:
-        return "GLSL ES and WGSL have no buffer textures: use texture_2d, uniform_block or (not ES 3.00) "
-               "storage_buffer";
-    case ErrorCode::no_byte_address_buffers:
-        return "byte_address buffers are HLSL's: use storage_buffer";
-    case ErrorCode::slot_out_of_range:
-        return "ShaderSlot::binding and set must be 0 or more, and one is {given}";
-    case ErrorCode::no_sets:
-        return "this language has no descriptor sets, register spaces or groups: ShaderSlot::set must be 0 and is "
-               "{given}";
-    case ErrorCode::no_push_constants:
-        return "push constants are Vulkan GLSL's: set ShaderOptions::push_constants to false";
-    case ErrorCode::no_multisample_textures:
-        return "GLSL ES 3.00 has no multisample textures: resolve the depth buffer first";
-    case ErrorCode::no_such_slicing_shader:
-        return "build_shader() slices depth into clusters alone, with DepthTest::none or DepthTest::box: z-bins are "
-               "made by a Binner";
-    case ErrorCode::no_wave_operations:
-        return "wave loops need GLSL 4.30, ES 3.10, Vulkan, HLSL 6 (hlsl_5_1) or WGSL";
-    case ErrorCode::no_split_box_shader:
-        return "build_shader() has the depth tests none, interval and box, but not split_box";
-    case ErrorCode::texture_width_out_of_range:
-        return "ShaderOptions::texture_width must be 1 to {available} texels, and is {needed}";
-    case ErrorCode::bindings_overlap:
-        return "two resources of the shader are bound to binding {needed} of set {available}";
-    case ErrorCode::not_a_prefix:
-        return "ShaderOptions::prefix must begin a name in every language: a letter, then letters, digits and single "
-               "underscores, 1000 at most, not gl_ or GL_, and not vola, which would make volatile";
-    }
-    return "unknown error";
+    return code <= ErrorCode::not_a_prefix ? detail::error_sentences[static_cast<int>(code)] : "unknown error";
 }
 
 }}  // namespace lightbin
