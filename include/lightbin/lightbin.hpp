@@ -49,15 +49,5 @@
 // GPU Pro 4, 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.
 #pragma once
 
-#include <lightbin/binner.hpp>
-#include <lightbin/isa.hpp>
-#include <lightbin/light_grid.hpp>
-#include <lightbin/lights.hpp>
-#include <lightbin/options.hpp>
-#include <lightbin/parallel.hpp>
-#include <lightbin/result.hpp>
-#include <lightbin/slices.hpp>
-#include <lightbin/spot.hpp>
+#include <lightbin/binner.hpp>  // includes the other headers of steps 1 to 4
 #include <lightbin/version.hpp>
-#include <lightbin/view.hpp>
-#include <lightbin/z_bounds.hpp>

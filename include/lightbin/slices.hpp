@@ -10,15 +10,6 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-class Slices;
-
-namespace detail {
-
-/// The lookup table that maps a depth to its slice.
-const SliceTable& table_of(const Slices& slices);
-
-}  // namespace detail
-
 /// Adjacent intervals of view depth without a gap between them. The first slice begins at the near plane, the last one
 /// ends at the far plane, and a boundary separates each slice from the next.
 class Slices {
@@ -26,9 +17,8 @@ public:
     /// Returns slices whose depth grows geometrically, so that perspective cells are about as deep as they are wide.
     /// The first slice ends at depth `first`. Each further slice ends at the depth where it begins times a constant,
     /// chosen so that the last one would end at depth `last`; in fact the last slice reaches to the far plane.
-    ///
-    /// Errors: count is less than 1. With two slices or more: not 0 < first < last, `last` is infinite, or two boundaries
-    /// round to the same float.
+    /// Errors: count is less than 1. With two slices or more: not 0 < first < last, `last` is infinite, or two
+    /// boundaries round to the same float.
     static Result<Slices> exponential(int count, float first, float last) {
         if (count > 1 && !(0 < first && first < last && detail::is_finite(last)))
             return Error{ErrorCode::slice_range_empty};
@@ -39,10 +29,7 @@ public:
     }
 
     /// Returns slices that divide the depths from `begin` to `end` into equal parts. The first slice still begins at
-    /// the near plane, and the last one reaches to the far plane.
-    ///
-    /// Errors: count is less than 1. With two slices or more: not begin < end, one of them is infinite, or two boundaries
-    /// round to the same float.
+    /// the near plane, and the last one reaches to the far plane. Errors: those of exponential(), for begin < end.
     static Result<Slices> linear(int count, float begin, float end) {
         if (count > 1 && !(begin < end && detail::is_finite(begin) && detail::is_finite(end)))
             return Error{ErrorCode::slice_range_empty};
@@ -69,8 +56,8 @@ public:
         LIGHTBIN_ASSERT(0 <= margin && margin <= 0.5f);
         const double exact = static_cast<double>(margin);
         Slices result(*this);
-        // If a depth d is looked up as e, with |e - d| <= margin |d|, then d lies within margin / (1 - margin) |e| of e. The
-        // factor 1 + 2^-20 covers rounding.
+        // If a depth d is looked up as e, with |e - d| <= margin |d|, then d lies within margin / (1 - margin) |e| of e.
+        // The factor 1 + 2^-20 covers rounding.
         result.table_.margin = detail::float_above(exact / (1 - exact) * (1 + 0x1p-20));
         return result;
     }
@@ -80,7 +67,6 @@ public:
         std::swap(table_, other.table_);
         return *this;
     }
-    ~Slices() = default;
 
     int count() const { return static_cast<int>(table_.boundaries().size()) + 1; }
 
@@ -101,7 +87,8 @@ public:
     }
 
 private:
-    friend const detail::SliceTable& detail::table_of(const Slices& slices);
+    /// The lookup table that maps a depth to its slice, for the stages.
+    friend const detail::SliceTable& table_of(const Slices& slices) { return slices.table_; }
 
     explicit Slices(detail::Items<const float> boundaries) : table_(boundaries) {}
 
@@ -121,9 +108,5 @@ private:
 
     detail::SliceTable table_;
 };
-
-inline const detail::SliceTable& detail::table_of(const Slices& slices) {
-    return slices.table_;
-}
 
 }}  // namespace lightbin

@@ -55,8 +55,8 @@ struct ViewPoint {
     double x, y, z;
 };
 
-/// A point of the image: x and y in pixels from the corner that WindowOrigin names, and its view depth. Pixel (i, j)
-/// reaches from (i, j) to (i + 1, j + 1), and its centre is (i + 0.5, j + 0.5).
+/// A point of the image: x and y in pixels from the corner that WindowOrigin names, and its view depth. The centre of
+/// pixel (i, j) is (i + 0.5, j + 0.5).
 struct ImagePoint {
     double x, y, depth;
 };
@@ -90,7 +90,8 @@ public:
 
     /// Returns the view of the same projection and viewport with tiles of another size. Errors: those of from_projection().
     Result<View> with_tile_size(int tile_size) const {
-        return make(projection_.matrix, viewport_, {tile_size, clip_depth(), origin_, reversed_z()});
+        const auto clip_depth = static_cast<ClipDepth>(projection_.depth.zero_to_one);
+        return make(projection_.matrix, viewport_, {tile_size, clip_depth, origin_, reversed_z()});
     }
 
     Extent viewport() const { return viewport_; }
@@ -104,8 +105,7 @@ public:
     bool orthographic() const { return projection_.camera.orthographic; }
     bool reversed_z() const { return projection_.depth.reversed; }
 
-    /// Returns what was read from the matrix and what looks like a mistake. Print it with
-    /// std::puts(to_string(view.summary()).c_str()).
+    /// Returns what was read from the matrix, to be printed with std::puts(to_string(view.summary()).c_str()).
     ViewSummary summary() const {
         return projection_.summary(viewport_.width, viewport_.height, tile_size_);
     }
@@ -123,7 +123,7 @@ public:
         return depths;
     }
 
-    /// Returns the window depth of a view depth, up to rounding. NaN for an infinite view depth.
+    /// Window depth of a view depth, up to rounding. NaN for an infinite view depth.
     float window_depth(double view_depth) const { return projection_.depth.window_depth(view_depth); }
 
     /// Returns where in the image a point of view space lies, inside or outside of the viewport, up to the rounding of
@@ -144,14 +144,14 @@ public:
                 static_cast<double>(camera.z_sign) * point.depth};
     }
 
-    /// Returns the tile that holds pixel (x, y), or nothing if the pixel is outside of the viewport.
+    /// Returns the tile that holds a pixel, or nothing if the pixel is outside of the viewport.
     std::optional<TilePosition> tile_of_pixel(int x, int y) const {
         if (x < 0 || x >= viewport_.width || y < 0 || y >= viewport_.height) return std::nullopt;
         return TilePosition{x / tile_size_, y / tile_size_};
     }
 
-    /// Returns the tile that holds an image point, for LightGrid::lights_in(). Returns nothing if the point is outside of
-    /// the viewport, or not in front of a perspective view's eye.
+    /// Returns the tile that holds an image point, for LightGrid::lights_in(), or nothing if the point is outside of the
+    /// viewport or not in front of a perspective view's eye.
     std::optional<TilePosition> tile_at(const ImagePoint& point) const {
         const bool inside =
             point.x >= 0 && point.x < viewport_.width && point.y >= 0 && point.y < viewport_.height;
@@ -181,10 +181,6 @@ private:
                                       options.origin == WindowOrigin::lower_left, options.reversed_z))
             return Error{*code};
         return view;
-    }
-
-    ClipDepth clip_depth() const {
-        return projection_.depth.zero_to_one ? ClipDepth::zero_to_one : ClipDepth::minus_one_to_one;
     }
 
     /// Pixel coordinate of a slope x / depth (orthographic: of a view-space coordinate x) on one image axis.

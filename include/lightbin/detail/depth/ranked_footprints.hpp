@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The ranking stage, between projection and binning: from footprints and depth slices to the footprints in order of
-// depth, and for each slice, which is a z-bin here, the range of their ranks (Drobot, "Improved Culling for Tiled and
-// Clustered Rendering", SIGGRAPH 2017).
+// The ranking stage, between projection and binning: sorts footprints by depth, and finds for each depth slice, which
+// is a z-bin here, the range of their ranks (Drobot, "Improved Culling for Tiled and Clustered Rendering", SIGGRAPH
+// 2017).
 #pragma once
 
 #include <lightbin/detail/project/footprints.hpp>
@@ -39,7 +39,7 @@ public:
             last_bins[i] = last;
             ++ends[first];
         };
-        detail::table_of(slices).find(detail::depth_buckets_kernel<spots>(isa), true, detail::camera_of(view).z_sign,
+        table_of(slices).find(detail::depth_buckets_kernel<spots>(isa), true, detail::camera_of(view).z_sign,
                                       footprints.arrays(), footprints.runs(), found);
 
         // A counting sort: ends_ has the number of lights that begin in each bin, then the rank of the first of them,
@@ -60,15 +60,12 @@ public:
         return {};
     }
 
-    /// Tiles have one list each for all depths.
     int slices() const { return 1; }
     detail::FootprintSlice slice(std::size_t) const { return {arrays_, {&run_, 1}, run_.end, area_}; }
-    template <class Ranks = LightRanks> Ranks ranks() const {
-        return {{order_.data(), run_.end}, {bins_.data(), bin_count_}};
-    }
+    LightRanks ranks() const { return {{order_.data(), run_.end}, {bins_.data(), bin_count_}}; }
 
 private:
-    /// Writes the sorted footprints, one array after another, so that the memory that is read in random order is small.
+    /// Writes the sorted footprints, one array after another, so that few cache lines are read in random order at a time.
     template <bool spots> void gather_lights(const detail::FootprintArrays& lights) {
         arrays_ = buffers_.reserve(run_.end, with_spans);
         std::uint32_t* const order = order_.reserve(run_.end);
@@ -100,7 +97,7 @@ private:
             to[rank] = from[sources[rank]];
     }
 
-    /// Finds the range of ranks in each bin, from the least to the greatest rank of the lights that meet it.
+    /// Finds the least and the greatest rank of the lights that meet each bin.
     void find_ranges() {
         const std::uint32_t *const sources = sources_.data(), *const last_bins = last_bins_.data();
         BinRange* const bins = bins_.reserve(bin_count_);
@@ -132,8 +129,8 @@ private:
 
     /// The first and the last bin that each light meets, by its footprint's index before sorting.
     detail::Buffer<std::uint32_t> first_bins_, last_bins_;
-    detail::Buffer<std::uint32_t> sources_;  ///< for each rank, its footprint's index before sorting
-    detail::Buffer<std::uint32_t> order_;    ///< for each rank, the id of its light
+    detail::Buffer<std::uint32_t> sources_;  ///< for each rank, the index of the footprint before sorting
+    detail::Buffer<std::uint32_t> order_;    ///< for each rank, the id of the light
     detail::Buffer<std::uint32_t> ends_;     ///< for each bin, the number of lights that begin in it or an earlier one
     detail::Buffer<BinRange> bins_;
     detail::FootprintBuffers buffers_;

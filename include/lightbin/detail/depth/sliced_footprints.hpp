@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The slicing stage, between projection and binning: from footprints and depth slices to the footprints in each slice,
-// of which clusters are made.
+// The slicing stage, between projection and binning: finds the footprints in each depth slice, of which clusters are
+// made.
 #pragma once
 
 #include <lightbin/detail/project/footprints.hpp>
@@ -25,7 +25,7 @@ public:
                                const Slices& slices) {
         constexpr std::uint64_t max_count = (std::numeric_limits<std::uint32_t>::max)();
         const detail::FootprintArrays& lights = footprints.arrays();
-        table_ = &detail::table_of(slices);
+        table_ = &table_of(slices);
         run_count_ = static_cast<std::size_t>(slices.count());
         const std::uint64_t cells = std::uint64_t{view.tile_count()} * run_count_;
         if (cells > max_count) return Error{ErrorCode::too_many_cells, cells, max_count};
@@ -62,7 +62,7 @@ public:
     }
 
 private:
-    /// The slices first..last.
+    /// The slices first..last that a light meets.
     struct SliceRange {
         std::uint32_t first, last;
     };
@@ -115,7 +115,7 @@ private:
 
     const detail::SliceTable* table_ = nullptr;  ///< the caller's Slices', during a call
     detail::Buffer<SliceRange> met_;             ///< the slices of each footprint
-    detail::Buffer<SliceRun> runs_;              ///< of each slice, and one more
+    detail::Buffer<SliceRun> runs_;              ///< one per slice, and one more
     detail::FootprintBuffers buffers_;
     detail::FootprintArrays arrays_ = {};
     std::size_t run_count_ = 0;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Turns the elements of the caller's array into Spheres or Spots, and reports elements that cannot be turned into one by a
-// readable compile error.
+// Turns the elements of the caller's array into Spheres or Spots.
 #pragma once
 
 #include <lightbin/spot.hpp>
@@ -45,7 +44,6 @@ struct AsLight {
 
 namespace detail {
 
-/// The type that call() returns if the callable cannot be called with the light.
 struct NotCalled {};
 
 /// Calls a function, a function object or a pointer to a member with a light. Returns NotCalled if it cannot be called.
@@ -71,20 +69,14 @@ template <class Light> constexpr auto& referred(Light& light) {
         return light;
 }
 
-/// A contiguous range with data() and size().
-template <class Range>
-concept Array = requires(const Range& range) {
-    std::span(std::data(range), std::size(range));
-};
-
 /// True if `to_light` does not accept an array element of type Light itself, so that it is called with the object that the
 /// element points or refers to.
 template <class ToLight, class Light>
 inline constexpr bool by_reference =
     std::same_as<decltype(call(std::declval<const ToLight&>(), std::declval<const Light&>())), NotCalled>;
 
-/// Calls `to_light` with an array element, or with the object that the element refers to. Returns NotCalled if `to_light`
-/// accepts neither.
+/// Calls `to_light` with an array element, or with the object that the element refers to. Returns NotCalled if
+/// `to_light` accepts neither.
 template <class ToLight, class Light>
 constexpr decltype(auto) make_light(const ToLight& to_light, const Light& light) {
     if constexpr (by_reference<ToLight, Light>)
@@ -121,11 +113,12 @@ template <class Light, class ToLight> constexpr auto checked_to_light(const ToLi
 /// Returns a span of the caller's array. If it is not contiguous, that is a compile error with a readable message, and
 /// an empty span is returned so that no further errors follow.
 template <class Range> auto checked_array(const Range& lights) {
+    constexpr bool contiguous = requires { std::span(std::data(lights), std::size(lights)); };
     static_assert(
-        Array<Range>,
+        contiguous,
         "lightbin: lights are an array, a std::vector, a std::span or another range whose elements lie one "
         "after another, with data() and size()");
-    if constexpr (Array<Range>)
+    if constexpr (contiguous)
         return std::span<const std::remove_cvref_t<decltype(*std::data(lights))>>(std::data(lights),
                                                                                   std::size(lights));
     else if constexpr (requires { *std::begin(lights); })

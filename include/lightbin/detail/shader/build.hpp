@@ -181,7 +181,7 @@ inline std::vector<ShaderEdges> shader_edges(const View& view) {
 }
 
 inline std::vector<ShaderEdges> shader_slabs(const Slices& slices) {
-    const detail::SliceTable& table = detail::table_of(slices);
+    const detail::SliceTable& table = table_of(slices);
     std::vector<ShaderEdges> slabs;
     float low = -detail::infinity;
     for (const float boundary : table.boundaries()) {
