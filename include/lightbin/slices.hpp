@@ -29,7 +29,8 @@ public:
     }
 
     /// Returns slices that divide the depths from `begin` to `end` into equal parts. The first slice still begins at
-    /// the near plane, and the last one reaches to the far plane. Errors: those of exponential(), for begin < end.
+    /// the near plane, and the last one reaches to the far plane. Errors: those of exponential(), with
+    /// begin < end in place of 0 < first < last.
     static Result<Slices> linear(int count, float begin, float end) {
         if (count > 1 && !(begin < end && detail::is_finite(begin) && detail::is_finite(end)))
             return Error{ErrorCode::slice_range_empty};
@@ -46,10 +47,10 @@ public:
                         [=](std::size_t i) { return boundaries[i]; });
     }
 
-    /// Returns the same slices for readers whose lookup is inexact: a shader that computes the slice by a rounding
-    /// formula of its own, or from a rounded depth. Such a reader may find for a depth d the slice of any depth from d
-    /// - margin |d| to d + margin |d|. Lights are then listed in every slice that may be found for one of their depths.
-    /// Readers that use slice_at() or shader_slices() need no margin.
+    /// Returns these slices for readers whose lookup is inexact: shaders that compute the slice by a rounding formula of
+    /// their own, or from a rounded depth, and so may find for a depth d the slice of any depth from d - margin |d| to
+    /// d + margin |d|. Lights are then listed in every slice that may be found for one of their depths. Readers that use
+    /// slice_at() or shader_slices() need no margin.
     ///
     /// margin  from 0 to 1/2; docs/depth.md says which is enough
     Slices with_margin(float margin) const {

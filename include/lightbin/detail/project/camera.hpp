@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The constants of a View that the projection and the depth tests read.
+// Camera: the constants of a View that the projection and the depth tests read.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -28,19 +28,16 @@ struct ImageAxis {
     int tiles = 0;
 };
 
-/// What the projection of lights has to know of a View.
+/// The constants of a View.
 struct Camera {
     ImageAxis x, y;
     float z_sign = 1;      ///< view depth = z_sign * z, so that it grows away from the eye
     float near_depth = 0;  ///< view depth of the near plane, rounded down
     float far_depth = 0;   ///< view depth of the far plane, rounded up; +inf where there is none
-    /// Spheres that lie wholly beyond this view depth can be projected in float: near_depth, or float_safe_min if
-    /// larger.
-    float min_float_depth = 0;
+    float min_float_depth = 0;  ///< view depth beyond which whole spheres can be projected in float
     bool orthographic = false;
 };
 
-/// The constants of a view. Defined in view.hpp.
 const Camera& camera_of(const View& view);
 
 }  // namespace detail

@@ -44,14 +44,13 @@ struct FootprintArrays {
     std::uint32_t* ids;
     std::uint16_t *x0, *y0, *x1, *y1;
 
-    /// With Footprint::silhouette, parallel to the arrays above: the index in `spans` of the light's tile row y0,
-    /// which the spans of the rows up to y1 follow. Or whole_rectangle, if there are no spans and every tile of the
-    /// rectangle counts.
+    /// With Footprint::silhouette, for each footprint: the index in `spans` of the span of tile row y0, which the spans
+    /// of the rows up to y1 follow; or whole_rectangle, if the footprint has no spans and covers its whole rectangle.
     std::uint32_t* span_begin = nullptr;
     const RowSpan* spans = nullptr;
 
-    /// With silhouettes or a depth test, all lights in view space, by id: spheres, to be read with load_sphere(), or
-    /// spots.
+    /// With silhouettes or a depth test, all lights in view space, indexed by id: spots, or spheres that are read with
+    /// load_sphere().
     const Sphere* spheres = nullptr;
     const ViewSpot* spots = nullptr;
 
@@ -61,7 +60,6 @@ struct FootprintArrays {
     }
 };
 
-/// The memory of footprint arrays, reused from call to call.
 class FootprintBuffers {
 public:
     /// Returns arrays for `count` footprints and the padding, without spans, spheres and spots.
@@ -117,14 +115,14 @@ template <class Id> struct BinJob : FootprintSlice {
     ListRange* tiles;        ///< of the whole grid
 };
 
-/// The share of one call of a binning kernel: the tile rows begin..end-1, whose bands of 8 rows count from `begin`.
+/// The tile rows begin..end-1, which one call of a binning kernel bins in bands of 8 rows that count from `begin`.
 template <class Id> struct BinShare {
     /// Kernels store whole vectors, and so may write up to this many elements past the end of their index list.
     static constexpr std::size_t slack = 64;
 
     unsigned begin, end;
-    Id* out;               ///< where their index list begins in memory
-    std::uint32_t offset;  ///< and in the whole grid's index list
+    Id* out;               ///< where the index list of these rows begins in memory
+    std::uint32_t offset;  ///< where it begins in the whole grid's index list
 };
 
 }}}  // namespace lightbin::detail

@@ -13,8 +13,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 namespace detail {
 
-/// Returns why lights can't be binned, or nothing if they can: their view matrix is refused, or there are more than
-/// ids can number.
+/// Returns why lights can't be binned, or nothing if they can.
 template <class Light, class ToLight>
 std::optional<Error> refuse(const Lights<Light, ToLight>& lights, std::uint64_t max_lights = 0xffffffff) {
     if (lights.to_view)
@@ -39,18 +38,18 @@ void copy_lights(const void* lights, std::size_t first, std::size_t count, Spher
 
 }  // namespace detail
 
-/// The footprints of the lights in view, in ascending order of id. Memory is reused from call to call.
+/// The footprints of the lights in view, in ascending order of id.
 ///
 /// footprint     silhouette: with row spans
-/// with_spheres  keep the lights in view space, spheres or spots, for a depth test; row spans keep them anyway
+/// with_spheres  keep the lights in view space, spheres or spots, for a depth test; silhouettes keep them anyway
 template <Footprint footprint, bool with_spheres> class Footprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette, keeps_lights = with_spheres || with_spans;
 
 public:
-    /// Projects all lights with an instruction set's kernels. A light's rectangle then holds each tile that the part
-    /// of its sphere beyond the near plane is projected to, and is the smallest such rectangle but for the view's
-    /// rounding margin. The same is true of a spot whose whole sphere lies beyond the near plane. The rectangle of any
-    /// other spot is where those of its sphere and of its least_sphere() intersect.
+    /// Projects all lights. A light's rectangle then holds each tile that the part of its sphere, or spot, beyond the
+    /// near plane is projected to, and is the smallest such rectangle but for the view's rounding margin. For a spot
+    /// whose sphere does not lie wholly beyond the near plane, it is the intersection of the rectangles of its sphere and
+    /// of its least_sphere().
     ///
     /// force_parallel  use the caller's threads even if projecting is too little work to wake them up for, because a
     ///                 stage that follows has enough
@@ -93,7 +92,6 @@ public:
     const detail::FootprintArrays& arrays() const { return arrays_; }
     detail::Items<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
 
-    /// Without slices, all depths are one slice.
     int slices() const { return 1; }
     detail::FootprintSlice slice(std::size_t) const { return {arrays_, runs(), visible(), area()}; }
 

@@ -9,9 +9,9 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// A Sphere that is bad input: skipped and counted.
 inline constexpr Sphere bad_sphere = {0, 0, 0, -1};
 
-/// Returns a float sphere that contains a sphere of doubles. The centre is rounded to nearest, and the radius is enlarged by
-/// the distance that this moves the centre. A sphere that floats represent exactly stays as it is; a centre beyond the range
-/// of floats gives a sphere that covers everything; bad input stays bad.
+/// Returns a float sphere that contains a sphere of doubles. The centre is rounded to nearest, and the radius is enlarged
+/// by the distance that this moves the centre. A sphere that floats represent exactly stays as it is; a centre beyond the
+/// range of floats gives a sphere that covers everything.
 inline Sphere sphere_around(double x, double y, double z, double radius) {
     if (!is_finite(x) || !is_finite(y) || !is_finite(z) || !(radius >= 0)) return bad_sphere;
     constexpr double most = static_cast<double>(FLT_MAX);
@@ -32,12 +32,10 @@ inline Sphere load_sphere(const Sphere* from) {
     return sphere;
 }
 
-/// A point or vector of doubles.
 struct Triple {
     double x, y, z;
 };
 
-/// Converts any point type with members x, y and z.
 template <class Point> Triple triple(const Point& p) {
     return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
 }

@@ -21,8 +21,7 @@ struct ProjectedChunk {
     std::uint32_t fallback_count;
 };
 
-/// Bounds of a vector of lights along the image axes, x and y: slopes, or view-space coordinates with an orthographic
-/// projection.
+/// Bounds of a vector of lights along the image axes, x and y: slopes (orthographic: view-space coordinates).
 template <class Reals> struct ImageBounds { Reals low[2], high[2]; };
 
 /// Finds the slopes of the tangents from the eye, the origin, to discs with the centre (c, z) and the radius r, which
@@ -110,8 +109,7 @@ inline Mask tile_span(const ImageAxis& axis, Reals low, Reals high, Mask visible
     return both(visible, both(less_equal(zero, high), less_equal(low, broadcast(static_cast<Real>(axis.limit)))));
 }
 
-/// Stores the tile rectangles of a vector of lights, from element i of `rects` on. Returns `visible` without the
-/// lights that lie outside the viewport.
+/// Stores the tile rectangles of a vector of lights, from element i of `rects` on, as tile_span() does for one axis.
 template <class Real, class Reals, class Mask>
 LIGHTBIN_INLINE Mask tile_rects(const Camera& camera, const ImageBounds<Reals>& bounds, Mask visible, ChunkRects& rects,
                                 std::uint32_t i) {
@@ -120,9 +118,8 @@ LIGHTBIN_INLINE Mask tile_rects(const Camera& camera, const ImageBounds<Reals>& 
 }
 
 /// Stores the tile rectangles of a vector of lights of a chunk, from index i on, and which of them are in view. Lights
-/// whose bit in `fallback` is set are listed for the double-precision path instead.
-///
-/// valid  a bit for each lane that holds a light of the chunk
+/// whose bit in `fallback` is set are listed for the double-precision path instead. `valid` has a bit for each lane that
+/// holds a light of the chunk.
 template <class Mask>
 LIGHTBIN_INLINE void put_vector(const Camera& camera, const ImageBounds<Floats>& bounds, Mask float_safe,
                                 unsigned fallback, unsigned valid, std::uint32_t i, ProjectedChunk& chunk) {
@@ -132,10 +129,7 @@ LIGHTBIN_INLINE void put_vector(const Camera& camera, const ImageBounds<Floats>&
     chunk.visible |= std::uint64_t{movemask(tile_rects<float>(camera, bounds, float_safe, chunk.rects, i)) & valid} << i;
 }
 
-/// Appends the footprints of a chunk's lights that are in view.
-///
-/// first  the id of the chunk's first light
-/// here   the number of its lights
+/// Appends the footprints of those lights of a chunk that are in view. The chunk has `here` lights from id `first` on.
 inline void append_chunk(const ProjectedChunk& chunk, std::uint32_t first, std::uint32_t here,
                          const FootprintArrays& out, ProjectCounts& counts) {
     std::uint32_t ids[ChunkRects::size], end = counts.visible;
@@ -159,9 +153,9 @@ inline void append_chunk(const ProjectedChunk& chunk, std::uint32_t first, std::
 
 /// Projects in double the lights of a chunk that are listed in chunk.fallback: those that cross the near plane or
 /// contain the eye, tiny, huge and infinite ones, and bad input, which it counts. Sets the bits in chunk.visible of
-/// those in view.
+/// the listed lights that are in view.
 ///
-/// spheres  of all lights of the chunk, in view space
+/// spheres  the spheres of all lights of the chunk, in view space
 inline void project_in_double(const Camera& camera, const Sphere* spheres, ProjectedChunk& chunk,
                               ProjectCounts& counts) {
     for (std::uint32_t begin = 0, used; begin < chunk.fallback_count; begin += used) {
@@ -207,8 +201,8 @@ inline void project_in_double(const Camera& camera, const Sphere* spheres, Proje
     }
 }
 
-/// The camera's numbers that cull lights, each broadcast to a vector once: narrow vectors would take as long to
-/// broadcast them again for every vector of lights as to cull those.
+/// The camera's numbers that cull lights, each broadcast to a vector once: with narrow vectors, broadcasting them for
+/// every vector of lights would take as long as the culling.
 struct ViewLanes {
     explicit ViewLanes(const Camera& camera)
         : sign_x(broadcast(camera.x.sign)), sign_y(broadcast(camera.y.sign)), sign_z(broadcast(camera.z_sign)),
@@ -221,8 +215,7 @@ struct ViewLanes {
 
 /// Returns which lights of a vector are certain to lie outside the view frustum, of those that are safe in float.
 ///
-/// x, y, z, r         the lights' spheres, after the camera's signs: tile indices grow with x and y, and z is the view
-///                    depth
+/// x, y, z, r         the lights' spheres after the camera's signs: tile indices grow with x and y; z is the view depth
 /// nearest, farthest  the lights' view depths
 /// size               |x| + |y| + |z| + r
 ///
@@ -236,17 +229,15 @@ LIGHTBIN_INLINE auto out_of_view(const ViewLanes& view, Floats x, Floats y, Floa
     return either(either(less(farthest, view.front), less(view.back, nearest)), less(size * 0x1p-21f, outside - r));
 }
 
-/// Returns which lights of a vector can be projected in float without overflow and underflow. False for NaN.
-///
-/// size  |x| + |y| + |z| + r
+/// Returns which lights of a vector, with size = |x| + |y| + |z| + r, can be projected in float without overflow and
+/// underflow. False for NaN.
 LIGHTBIN_INLINE auto safe_in_float(Floats size, Floats r) {
     return both(less_equal(size, broadcast(float_safe_max)), less_equal(broadcast(float_safe_min), r));
 }
 
-/// Appends the footprints of those of the spheres first..first + count - 1 that are in view.
-///
-/// Spheres are projected in float where the error bounds of tangent_slopes() hold: where nothing overflows or
-/// underflows and the whole sphere lies beyond the near plane. Others are projected in double, with all that hold NaN.
+/// Appends the footprints of those of the spheres first..first + count - 1 that are in view. Spheres are projected in
+/// float where the error bounds of tangent_slopes() hold: where nothing overflows or underflows and the whole sphere lies
+/// beyond the near plane. All other spheres, and those with a NaN, are projected in double.
 inline void project(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
                     const FootprintArrays& out, ProjectCounts& counts) {
     ProjectedChunk chunk;
@@ -254,8 +245,7 @@ inline void project(const Camera& camera, const LightSource& source, std::uint32
     const TransformLanes transform(source.to_view);
     const ViewLanes view(camera);
     const bool transformed = source.to_view != nullptr;
-    // Copies are made of a few lights at a time, so that the next ones are fetched from memory while these are
-    // projected.
+    // Few lights are copied at a time, so that the next ones are fetched from memory while these are projected.
     const std::uint32_t batch = source.copy != nullptr ? 32 : ChunkRects::size;
     for (std::uint32_t here; count > 0; count -= here, first += here) {
         here = min_of(count, batch);
