@@ -26,7 +26,7 @@ template <DepthTest depth_test, Slicing slicing = Slicing::none> struct Inputs {
         detail::bounds_left_out<reads_bounds>();
 };
 
-/// Returns Inputs with the bounds if the options read bounds, else without them. For templates whose options vary, such as
+/// Returns Inputs with the bounds if the options read bounds, else without. For templates whose options vary, such as
 /// callables given to with_options() of advise.hpp.
 template <Options options>
 requires(options.slicing == Slicing::none) Inputs<options.depth_test> inputs_for([[maybe_unused]] const ZBounds& bounds) {
@@ -57,12 +57,10 @@ template <class Id> struct TransparencyGrids { LightGrid<Id> opaque, transparent
 
 /// Bins lights into screen tiles.
 ///
-/// A Binner keeps its memory from call to call: it allocates only where an input needs more memory than all before, or where
+/// A Binner keeps its memory from call to call: it allocates only where an input needs more memory than all before, or
 /// another kernel or number of threads is chosen for it. If a call throws, the Binner has no grid, and later calls work as
-/// usual. Not thread-safe: use one Binner per thread.
-///
-/// During a call, the library and the caller's callables compute in the floating-point environment that threads start with:
-/// rounding to nearest, no traps, denormal numbers kept. The caller's environment is restored afterwards.
+/// usual. Not thread-safe: use one Binner per thread. During a call, the library and the caller's callables compute in the
+/// floating-point environment that threads start with: rounding to nearest, no traps, denormal numbers kept.
 template <Options options = Options{}> class Binner {
     static_assert(options.ids != IdWidth::u8,
                   "lightbin: a Binner's ids have 16 or 32 bits: take Options{.ids = IdWidth::u16} and have "
@@ -93,16 +91,15 @@ public:
     ///          {.slices = ..., .bounds = ...} with z_bins and a depth test; else nothing
     /// threads  a Parallel, to share the work among the caller's threads. The grid does not depend on it.
     ///
-    /// Afterwards every tile lists, in ascending order, every light whose sphere, or spot, meets the tile's cell; no
-    /// light is missed. Errors: more lights than Id can number; more than 2^32 - 1 entries, cells, or pairs of a light
-    /// and a slice or block of 8x8 tiles; a world_space() matrix that is not affine; Z bounds shorter than
-    /// view.tile_count().
+    /// Afterwards every tile lists, in ascending order, every light whose sphere, or spot, meets the tile's cell. Errors:
+    /// more lights than Id can number; more than 2^32 - 1 entries, cells, or pairs of a light and a slice or block of 8x8
+    /// tiles; a world_space() matrix that is not affine; Z bounds shorter than view.tile_count().
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     Result<LightGrid<Id>> bin(const View& view, const LightRange& lights, const Inputs& inputs = {},
                               const Threads& threads = {}) {
         const detail::DefaultFloatEnvironment environment;
         if (const auto error = project(view, lights, inputs, threads)) return *error;
-        return build<spots<LightRange>>(lists_, view, bounds_of(inputs), threads);
+        return build<spots<LightRange>>(lists_, view, inputs.bounds, threads);
     }
 
     /// Returns two grids, for opaque and for transparent geometry, and projects the lights once for both. They are
@@ -150,7 +147,7 @@ public:
         const std::uint64_t numbered = z_bins ? footprints_.visible() : footprints_.lights();
         if (numbered > max_lights) return Error{ErrorCode::ids_too_narrow, numbered, max_lights};
         if (const auto error = lists_.template write_bits<spots<LightRange>>(
-                isa_, view, visible(), bounds_of(inputs), scratch_, threads, bits.data(),
+                isa_, view, visible(), inputs.bounds, scratch_, threads, bits.data(),
                 static_cast<std::size_t>(each)))
             return *error;
         return LightBits{counts(), ranks()};
@@ -168,7 +165,7 @@ private:
     static constexpr bool spots =
         std::remove_cvref_t<decltype(detail::as_lights(std::declval<const LightRange&>()))>::spots;
 
-    /// Projects the lights to footprints and, where slices are read, orders the footprints by depth.
+    /// Projects the lights to footprints and, if slices are read, orders the footprints by depth.
     template <class LightRange>
     std::optional<Error> project(const View& view, const LightRange& lights,
                                  [[maybe_unused]] const Inputs& inputs, const Parallel& threads) {
@@ -185,7 +182,7 @@ private:
             return {};
     }
 
-    /// Returns the footprints of the lights in view, ordered by depth if slices are read.
+    /// The footprints of the lights in view, ordered by depth if slices are read.
     const auto& visible() const {
         if constexpr (Inputs::reads_slices)
             return ordered_;
@@ -193,14 +190,7 @@ private:
             return footprints_;
     }
 
-    static ZBounds bounds_of([[maybe_unused]] const Inputs& inputs) {
-        if constexpr (with_depth)
-            return inputs.bounds;
-        else
-            return {};
-    }
-
-    /// Builds the lists of the projected lights into `lists` and returns the grid of them.
+    /// Builds the lists of the projected lights into `lists` and returns their grid.
     template <bool of_spots, class Threads>
     Result<LightGrid<Id>> build(Lists& lists, const View& view, const ZBounds& bounds,
                                 const Threads& threads) {
@@ -232,9 +222,9 @@ private:
     }
 
     Isa isa_ = Isa::scalar;
-    detail::Buffer<detail::Scratch> scratch_;  ///< one per worker
+    detail::Buffer<detail::Scratch> scratch_;  ///< working memory, one Scratch per worker
     Footprints<options.footprint, with_depth || options.slicing != Slicing::none> footprints_;
-    Ordered ordered_;  ///< the footprints ordered by depth
+    Ordered ordered_;
     Lists lists_;
     std::conditional_t<with_depth, Lists, Nothing> transparent_;
 };

@@ -28,8 +28,7 @@ struct ListRange {
     std::uint32_t offset, count;
 };
 
-/// How many lights a grid was made of, and how many of them it leaves out. Each of the other lights, of which there are
-/// lights - rejected - culled, has at least one tile in its footprint.
+/// How many lights a grid was made of, and how many of them it leaves out. Each of the others has a tile in its footprint.
 struct LightCounts {
     std::uint32_t lights = 0;
     std::uint32_t rejected = 0;  ///< lights left out as bad input: see Sphere and Spot
@@ -67,7 +66,7 @@ public:
     int tiles_y() const { return tiles_y_; }
     int slices() const { return slices_; }  ///< 1 unless made with Slicing::clusters
 
-    /// The range of ids() that each tile lists: tiles_x() * tiles_y() ranges, row-major. With clusters that many for each
+    /// The range of ids() that each tile lists: tiles_x() * tiles_y() ranges, row-major; with clusters as many for each
     /// slice, one slice after another. Each range begins where the one before it ends.
     std::span<const ListRange> ranges() const { return ranges_; }
 
@@ -120,7 +119,6 @@ template <class Id> std::span<const Id> lights_of_bin(std::span<const Id> list, 
     return {begin, detail::first_not(begin, end, [&](Id id) { return id <= bin.greatest; })};
 }
 
-/// Statistics of the lengths of a grid's lists.
 struct ListLengths {
     std::uint32_t longest = 0;
     /// histogram[0] counts the tiles without lights, histogram[k] those with 2^(k-1) to 2^k - 1 lights.

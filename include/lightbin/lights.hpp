@@ -5,8 +5,6 @@
 #include <lightbin/detail/project/to_light.hpp>
 #include <lightbin/detail/project/world_to_view.hpp>
 
-#include <lightbin/detail/base/warnings_off.inl>
-
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// What view_space() and world_space() return: a span of the caller's array, the callable that makes a Sphere or a Spot
@@ -50,8 +48,8 @@ template <class Light, class ToLight> struct Lights {
     }
 };
 
-/// What view_space() and world_space() return for a temporary array, such as a std::vector that a function returned:
-/// the array was moved in here and lives as long as this object. (Of a temporary std::span only the span is copied.)
+/// What view_space() and world_space() return for a temporary array, such as a std::vector that a function returned. The
+/// array was moved into `array`. (Of a temporary std::span only the span is copied.)
 template <class Range, class ToLight> struct OwnedLights {
     Range array;
     ToLight to_light;
@@ -62,10 +60,9 @@ template <class Range, class ToLight> struct OwnedLights {
 /// it is, so it must live until the Binner's call returns. A temporary array is moved into the returned object.
 ///
 /// lights    a contiguous range of any type: structs, pointers or smart pointers to them, std::reference_wrapper
-/// to_light  a callable or a pointer to a member that makes a Sphere or a Spot of an element. If it does not take an element
-///           itself, it is called with the object that the element points to, and a null pointer is bad input: that light is
-///           skipped and counted. A to_light that takes pointers is called with null pointers, too. It is copied, and called
-///           as const.
+/// to_light  a callable or a pointer to a member that makes a Sphere or a Spot of an element. If it does not take an
+///           element itself, it is called with the object that the element points to, and a null pointer is bad input. A
+///           to_light that takes pointers is called with null pointers, too. It is copied, and called as const.
 template <class Range, class ToLight = AsLight>
 auto view_space(Range&& lights, const ToLight& to_light = {}) {
     constexpr bool temporary = !std::is_lvalue_reference_v<Range>,
@@ -82,13 +79,12 @@ auto view_space(Range&& lights, const ToLight& to_light = {}) {
         return Lights<typename decltype(array)::value_type, Checked>{array, checked, {}};
 }
 
-/// Describes lights that are in world space. They are transformed by `view_matrix` as they are read, and their spheres and
-/// cones are enlarged by the rounding of the transform, so that no light is missed by it.
+/// Describes lights that are in world space. They are transformed by `view_matrix` as they are read, and enlarged by a
+/// bound on the rounding error of the transform.
 ///
 /// lights, to_light  as for view_space()
-/// view_matrix       world space to view space, any type that matrix.hpp lists. Must be affine: rotation, translation, scale.
-///                   A matrix that is far from rotation and uniform scale would distort cones: with it, spots are transformed
-///                   as the least spheres around them.
+/// view_matrix       world space to view space, any type that matrix.hpp lists. Must be affine. If it is far from a
+///                   rotation and uniform scale, it would distort cones, and the least spheres around spots are transformed.
 template <class Range, class ViewMatrix, class ToLight = AsLight>
 auto world_space(Range&& lights, const ViewMatrix& view_matrix, const ToLight& to_light = {}) {
     auto result = view_space(static_cast<Range&&>(lights), to_light);
@@ -112,8 +108,8 @@ template <class Range, class ToLight> auto as_lights(const OwnedLights<Range, To
     return result;
 }
 
-/// Returns a pointer to the caller's array as Spheres if its elements are Spheres or float vec4s of the same layout, so that
-/// kernels can read the array directly; else null. Elements must be read by load_sphere().
+/// Returns a pointer to the caller's array if its elements are Spheres or float vec4s of the same layout, so that kernels
+/// can read the array directly, by load_sphere(); else null.
 template <class Light, class ToLight> const Sphere* as_they_are(const Lights<Light, ToLight>& lights) {
     if constexpr (std::is_same_v<ToLight, AsLight> && !Lights<Light, ToLight>::spots &&
                   sizeof(Light) == sizeof(Sphere) && std::is_trivially_copyable_v<Light>) {
@@ -134,5 +130,3 @@ template <class Light, class ToLight> const Sphere* as_they_are(const Lights<Lig
 
 }  // namespace detail
 }}  // namespace lightbin
-
-#include <lightbin/detail/base/warnings_on.inl>

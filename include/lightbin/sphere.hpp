@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sphere: the region that a light can reach. And the usual falloff of a light: its range, and a window that ends it there.
+// Sphere, the region that a light can reach, and the usual falloff of a light to nothing at its range.
 #pragma once
 
 #include <lightbin/detail/base/math.hpp>
@@ -30,11 +30,9 @@ inline float light_range(float intensity, float cutoff) {
 }
 
 /// Returns the factor by which to multiply a light so that it fades smoothly to nothing at its range: 1 at the light,
-/// (1 - (distance / range)^4)^2 in between, and exactly 0 from the range on. Without such a window the light that is left at
-/// the range is cut off at tile borders, and seams show. With ShaderOptions::window shaders get a function for the same
-/// factor. Range +inf gives 1.
-///
-/// Source: Karis, Real Shading in Unreal Engine 4, SIGGRAPH 2013.
+/// (1 - (distance / range)^4)^2 in between, and exactly 0 from the range on (Karis, Real Shading in Unreal Engine 4,
+/// SIGGRAPH 2013). Without such a window the light that is left at the range is cut off at tile borders, and seams show.
+/// With ShaderOptions::window shaders get a function for the same factor. Range +inf gives 1.
 inline float light_window(float distance, float range) {
     if (!(distance < range)) return 0;
     const float x = distance / range, w = 1 - x * x * x * x;

@@ -11,8 +11,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// The region that a spot light can reach: the points of a sphere that lie in a cone from its centre. In memory two vec4s.
 ///
-/// axis_x, axis_y, axis_z  the direction in which the light shines, of any length but zero. Only the direction counts, so the
-///                         axis need not be normalised, and a unit vector's rounding in length does no harm.
+/// axis_x, axis_y, axis_z  the direction in which the light shines, of any length but zero
 /// cos_half_angle          cosine of the angle between the axis and the cone's side, from 1 (a ray) over 0 (a half sphere)
 ///                         to -1 (a whole sphere). glTF: cos(outerConeAngle); Unity: cosine of half the spotAngle.
 ///
@@ -38,10 +37,9 @@ struct Spot {
     operator Sphere() const;
 };
 
-/// Returns the least sphere that contains all points of a spot, up to rounding. Its radius exceeds the exact one by at
-/// most 2^-22 (|x| + |y| + |z| + radius) + 2^-123 and never exceeds the spot's own. Returns the spot's own sphere where
-/// no smaller one was found, for half angles of 90 degrees or more, and for an infinite radius. A bad spot gives a bad
-/// Sphere.
+/// Returns the least sphere that contains all points of a spot, up to rounding: its radius exceeds the exact one by at
+/// most 2^-22 (|x| + |y| + |z| + radius) + 2^-123 and never exceeds the spot's own. Half angles of 90 degrees or more and
+/// an infinite radius give the spot's own sphere; a bad spot gives a bad Sphere.
 inline Sphere least_sphere(const Spot& spot) {
     const detail::Triple axis = {static_cast<double>(spot.axis_x), static_cast<double>(spot.axis_y),
                                  static_cast<double>(spot.axis_z)};
@@ -71,9 +69,9 @@ inline Spot::operator Sphere() const {
     return least_sphere(*this);
 }
 
-/// Returns the least sphere, up to rounding, that contains all points within `radius` of the line segment from `a` to `b`: a
-/// tube with round ends. Its radius exceeds the exact one by at most 2^-22 of the sum of that radius and the absolute values
-/// of the centre's coordinates, and 2^-123.
+/// Returns the least sphere that contains all points within `radius` of the line segment from `a` to `b`: a tube with
+/// round ends. Up to rounding: the sphere's radius exceeds the exact one by at most 2^-22 of the sum of the exact radius
+/// and the absolute values of the centre's coordinates, plus 2^-123.
 ///
 /// a, b    any type with members x, y and z, floats or doubles. NaN or infinite coordinates give a bad Sphere
 /// radius  +inf gives a sphere that covers everything; negative or NaN, a bad Sphere
@@ -86,14 +84,11 @@ template <class Point> Sphere tube_sphere(const Point& a, const Point& b, float 
         half + static_cast<double>(radius));
 }
 
-/// Returns the least sphere, up to rounding, that contains all points within `range` of a rectangle, such as an area
-/// light. Its radius exceeds the exact one by as little as that of tube_sphere().
+/// Returns the least sphere that contains all points within `range` of a rectangle, such as an area light. Types,
+/// rounding and bad input are as for tube_sphere().
 ///
-/// centre          any type with members x, y and z, floats or doubles. NaN or infinite coordinates in this or the next two
-///                 arguments give a bad Sphere
-/// half_x, half_y  vectors from the centre to the middles of two adjacent sides. If they are not at right angles, the shape is
-///                 a parallelogram
-/// range           +inf gives a sphere that covers everything; negative or NaN, a bad Sphere
+/// half_x, half_y  vectors from the centre to the middles of two adjacent sides. If they are not at right angles, the
+///                 shape is a parallelogram
 template <class Point>
 Sphere rectangle_sphere(const Point& centre, const Point& half_x, const Point& half_y, float range) {
     const detail::Triple c = detail::triple(centre), u = detail::triple(half_x), v = detail::triple(half_y);

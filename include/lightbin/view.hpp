@@ -146,8 +146,7 @@ public:
 
     /// Returns the tile that holds a pixel, or nothing if the pixel is outside of the viewport.
     std::optional<TilePosition> tile_of_pixel(int x, int y) const {
-        if (x < 0 || x >= viewport_.width || y < 0 || y >= viewport_.height) return std::nullopt;
-        return TilePosition{x / tile_size_, y / tile_size_};
+        return tile_at({x + 0.0, y + 0.0, 1});
     }
 
     /// Returns the tile that holds an image point, for LightGrid::lights_in(), or nothing if the point is outside of the

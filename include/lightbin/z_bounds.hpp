@@ -27,16 +27,13 @@ struct ZBounds {
 /// Memory that reduce_depth() writes Z bounds to: View::tile_count() floats for each bound that is wanted, an empty span for
 /// the others. Gaps are written if gap_min and gap_max are both given.
 struct ZBoundsBuffers {
-    std::span<float> min = {}, max = {};
-    std::span<float> gap_min = {}, gap_max = {};
-    std::span<float> transparent_max = {};
+    std::span<float> min = {}, max = {}, gap_min = {}, gap_max = {}, transparent_max = {};
 };
 
-/// The number format of a depth buffer. It decides how far a sample may be from the exact window depth of the fragment that
-/// wrote it, and so how much reduce_depth() widens the bounds. The bounds are right for every rounding that graphics APIs
-/// allow: the stored value may be either of the format's two values next to the fragment's depth, and an integer read as a
-/// float either of the two floats next to its value. They are not right for larger differences, such as a buffer with fewer
-/// bits than the format named, or depths moved by a polygon offset.
+/// The number format of a depth buffer. It decides by how much reduce_depth() widens the bounds to allow for rounding: a
+/// stored value may be either of the format's two values next to the fragment's exact window depth, and an integer read as
+/// a float either of the two floats next to its value. The bounds do not allow for larger differences, such as in a buffer
+/// with fewer bits than the format named, or of depths moved by a polygon offset.
 enum class DepthFormat : std::uint8_t {
     float32,  ///< a 32-bit float; denormal numbers may have been flushed to zero
     unorm24,  ///< a 24-bit integer n that stands for the depth n / (2^24 - 1)
@@ -56,8 +53,8 @@ struct DepthBuffer {
     std::size_t row_pitch = 0;  ///< floats from the start of one row to the next; 0: viewport width * samples
     DepthFormat format = DepthFormat::float32;
     /// Treats samples at the far end of the depth range (1, or 0 with reversed Z) as background, where nothing is
-    /// drawn: they count for ZBounds::transparent_max alone. Right for buffers that were cleared to that value and
-    /// drawn with a strict depth comparison. If false, such a sample is something drawn at the far plane.
+    /// drawn, and which counts for ZBounds::transparent_max alone. Right for buffers that were cleared to that value and
+    /// drawn with a strict depth comparison.
     bool skip_background = false;
 };
 
@@ -84,20 +81,17 @@ inline DepthInterval fragment_depths(const View& view, Extremes window, DepthFor
 
 }  // namespace detail
 
-/// Reduces a depth buffer to Z bounds, which are written to `out`. The returned ZBounds refer to that memory.
-///
-/// Afterwards the view depth of every sample lies within its tile's bounds, which are rounded outward and widened by the
-/// rounding of the DepthFormat. A tile where nothing is drawn has min = +inf and max = -inf. Samples outside 0..1 are
-/// clamped; a NaN sample makes its tile reach from the near to the far plane. A tile's gap lies between the two samples next
-/// to the middle of its depth range, one on either side of it.
+/// Reduces a depth buffer to Z bounds in the memory of `out`, and returns them. The view depth of every sample lies within
+/// its tile's bounds, which are rounded outward and widened by the rounding of the DepthFormat. A tile where nothing is
+/// drawn has min = +inf and max = -inf. Samples outside 0..1 are clamped; a NaN sample makes its tile reach from the near
+/// to the far plane. A tile's gap lies between the two samples next to the middle of its depth range, one on either side.
 ///
 /// isa  use no wider instructions than these; the result is the same
 ///
 /// Errors: a sample count outside 1 to 8; a row pitch shorter than a row; too few samples; an `out` span that is
 /// neither empty nor as long as View::tile_count().
 ///
-/// Source: Tiled Shading, section 6.3 (minimum and maximum depth of a tile); Harada, "A 2.5D Culling for Forward+", SIGGRAPH
-/// Asia 2012 (depths with a gap).
+/// Sources: Tiled Shading, section 6.3; for gaps, Harada, "A 2.5D Culling for Forward+", SIGGRAPH Asia 2012.
 inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer, const ZBoundsBuffers& out,
                                     Isa isa = compiled_isa) {
     const detail::DefaultFloatEnvironment environment;
@@ -136,8 +130,8 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
                 const DepthInterval depths = detail::fragment_depths(view, range, buffer.format);
                 if (!out.min.empty()) out.min[first_tile + tile] = depths.min;
                 if (!out.max.empty()) out.max[first_tile + tile] = depths.max;
-                // Until the second pass, gap_min holds the window depth at which the tile is split: the middle of its depth
-                // range, or NaN where a sample is NaN, so that the tile gets no gap.
+                // Until the second pass, gap_min holds the window depth at which the tile is split: the middle of its
+                // depth range, or NaN where a sample is NaN, so that the tile gets no gap.
                 const double middle =
                     0.5 * (static_cast<double>(depths.min) + static_cast<double>(depths.max));
                 if (gaps)

@@ -7,8 +7,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// The type of an input that the Binner's options do not read. Passing such an input is a compile error with a readable
-/// message.
+/// The type of an input that the Binner's options do not read. Passing such an input is a compile error.
 struct NotRead {
     NotRead() = default;
     template <class Given> NotRead(const Given&) {
@@ -17,9 +16,10 @@ struct NotRead {
             "lightbin: this Binner does not read this input: bounds want an Options::depth_test, and "
             "slices an Options::slicing; clusters read no bounds");
     }
+    operator ZBounds() const { return {}; }
 };
 
-/// The default of Inputs::bounds. Leaving out bounds that the options read is a compile error with a readable message.
+/// The default of Inputs::bounds. Leaving out bounds that the options read is a compile error.
 template <bool read> auto bounds_left_out() {
     static_assert(
         !read, "lightbin: this Binner's depth test needs Z bounds: bin(view, lights, {.bounds = ...}), with "
@@ -53,7 +53,7 @@ struct NoSlices {
     operator SlicesInput() const;
 };
 
-/// The default of Inputs::slices. Leaving out slices that the options read is a compile error with a readable message.
+/// The default of Inputs::slices. Leaving out slices that the options read is a compile error.
 template <bool read> auto slices_left_out() {
     static_assert(!read,
                   "lightbin: this Binner slices depth: bin(view, lights, {.slices = *slices}), with what "

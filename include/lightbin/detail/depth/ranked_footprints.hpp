@@ -7,8 +7,6 @@
 #include <lightbin/detail/project/footprints.hpp>
 #include <lightbin/slices.hpp>
 
-#include <lightbin/detail/base/warnings_off.inl>
-
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// Footprints sorted by the first bin that their light meets, and in the caller's order within a bin. A footprint's
@@ -143,5 +141,3 @@ private:
 };
 
 }}  // namespace lightbin
-
-#include <lightbin/detail/base/warnings_on.inl>

@@ -6,8 +6,6 @@
 #include <lightbin/detail/project/footprints.hpp>
 #include <lightbin/slices.hpp>
 
-#include <lightbin/detail/base/warnings_off.inl>
-
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// The footprints of the lights that intersect each slice, in ascending order of id. Memory is reused between calls.
@@ -122,5 +120,3 @@ private:
 };
 
 }}  // namespace lightbin
-
-#include <lightbin/detail/base/warnings_on.inl>

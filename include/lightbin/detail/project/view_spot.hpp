@@ -12,8 +12,6 @@
 
 #include <lightbin/detail/engine/cell_boxes.hpp>
 
-#include <lightbin/detail/base/warnings_off.inl>
-
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 /// The half space of the points p with  x p_x + y p_y + z p_z <= offset.
@@ -49,5 +47,3 @@ struct TestedSpot {
 template <bool spots> using Tested = std::conditional_t<spots, TestedSpot, TestedLight>;
 
 }}}  // namespace lightbin::detail
-
-#include <lightbin/detail/base/warnings_on.inl>
