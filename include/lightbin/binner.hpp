@@ -150,7 +150,7 @@ public:
                 isa_, view, visible(), inputs.bounds, scratch_, threads, bits.data(),
                 static_cast<std::size_t>(each)))
             return *error;
-        return LightBits{counts(), ranks()};
+        return LightBits{counts(), visible().ranks()};
     }
 
 private:
@@ -197,19 +197,12 @@ private:
         if (const auto error = lists.template build<of_spots>(isa_, view, visible(), bounds, scratch_, threads))
             return *error;
         return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), counts(),
-                             visible().slices(), ranks());
+                             visible().slices(), visible().ranks());
     }
 
     LightCounts counts() const {
         const auto all = static_cast<std::uint32_t>(footprints_.lights());
         return {all, footprints_.rejected(), all - footprints_.rejected() - footprints_.visible()};
-    }
-
-    LightRanks ranks() const {
-        if constexpr (z_bins)
-            return ordered_.ranks();
-        else
-            return {};
     }
 
     void swap(Binner& other) noexcept {

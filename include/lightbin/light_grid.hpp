@@ -78,10 +78,8 @@ public:
     /// slice < slices().
     std::span<const Id> lights_in(int x, int y, int slice = 0) const {
         LIGHTBIN_ASSERT(x >= 0 && x < tiles_x_ && y >= 0 && y < tiles_y_ && slice >= 0 && slice < slices_);
-        const std::size_t row = static_cast<std::size_t>(slice) * static_cast<std::size_t>(tiles_y_) +
-                                static_cast<std::size_t>(y);
-        const ListRange range =
-            ranges_[row * static_cast<std::size_t>(tiles_x_) + static_cast<std::size_t>(x)];
+        const std::int64_t row = slice * std::int64_t{tiles_y_} + y;
+        const ListRange range = ranges_[static_cast<std::size_t>(row * tiles_x_ + x)];
         return ids_.subspan(range.offset, range.count);
     }
 

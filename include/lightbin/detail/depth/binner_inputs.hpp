@@ -48,17 +48,12 @@ private:
     std::optional<Slices> own_;
 };
 
-/// Stands in for slices that were left out. Its conversion is never called, as slices_left_out() has reported the error.
-struct NoSlices {
-    operator SlicesInput() const;
-};
-
 /// The default of Inputs::slices. Leaving out slices that the options read is a compile error.
-template <bool read> auto slices_left_out() {
+template <bool read> std::conditional_t<read, SlicesInput, NotRead> slices_left_out() {
     static_assert(!read,
                   "lightbin: this Binner slices depth: bin(view, lights, {.slices = *slices}), with what "
                   "Slices::exponential() or linear() returns");
-    return std::conditional_t<read, NoSlices, NotRead>();
+    if constexpr (!read) return {};
 }
 
 }}}  // namespace lightbin::detail

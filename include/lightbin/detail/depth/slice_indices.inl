@@ -17,35 +17,28 @@ inline Floats bucket_of(const DepthBuckets& buckets, Floats depth) {
     return minimum(maximum(bucket, broadcast(0.0f)), broadcast(buckets.last));
 }
 
-/// Finds the least and the greatest view depth of the lights with `lanes` ids. Rounding is monotone, so a light whose
-/// exact depths meet an interval between two floats meets it with its rounded ones.
-template <bool spots>
-inline void load_depths(const FootprintArrays& lights, float z_sign, const std::uint32_t* ids, Floats& nearest,
-                        Floats& farthest) {
-    if constexpr (spots) {
-        float ends[2][lanes];
-        for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-            ends[0][lane] = lights.spots[ids[lane]].nearest;
-            ends[1][lane] = lights.spots[ids[lane]].farthest;
-        }
-        nearest = load_floats(ends[0]);
-        farthest = load_floats(ends[1]);
-    } else {
-        Floats x, y, z, radius;
-        load_listed_spheres(lights.spheres, ids, lanes, x, y, z, radius);
-        z = z * broadcast(z_sign);
-        nearest = z - radius;
-        farthest = z + radius;
-    }
-}
-
-/// Finds the view depths of the lights with `count` ids, and the buckets of these. Whole vectors of ids are read.
+/// Finds the least and the greatest view depths of the lights with `count` ids, and the buckets of these depths. Whole
+/// vectors of ids are read. Rounding is monotone, so a light whose exact depths meet an interval between two floats meets
+/// it with its rounded ones.
 template <bool spots>
 inline void find_depth_buckets(const DepthBuckets& buckets, float z_sign, const FootprintArrays& lights,
                                const std::uint32_t* ids, std::uint32_t count, LightDepths& out) {
     for (std::uint32_t i = 0; i < count; i += lanes) {
         Floats nearest, farthest;
-        load_depths<spots>(lights, z_sign, ids + i, nearest, farthest);
+        if constexpr (spots) {
+            for (std::uint32_t lane = i; lane < i + lanes; ++lane) {
+                out.nearest[lane] = lights.spots[ids[lane]].nearest;
+                out.farthest[lane] = lights.spots[ids[lane]].farthest;
+            }
+            nearest = load_floats(out.nearest + i);
+            farthest = load_floats(out.farthest + i);
+        } else {
+            Floats x, y, z, radius;
+            load_listed_spheres(lights.spheres, ids + i, lanes, x, y, z, radius);
+            z = z * broadcast(z_sign);
+            nearest = z - radius;
+            farthest = z + radius;
+        }
         store_floats(out.nearest + i, nearest);
         store_floats(out.farthest + i, farthest);
         store_tiles(out.first_bucket + i, bucket_of(buckets, nearest));

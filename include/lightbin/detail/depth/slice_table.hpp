@@ -82,7 +82,12 @@ public:
                 const std::uint32_t count = min_of(run.end - i, LightDepths::size);
                 LightDepths depths;
                 kernel(buckets_, z_sign, lights, lights.ids + i, count, depths);
-                if (margin > 0) widen(depths, count);
+                for (std::uint32_t j = 0; j < count && margin > 0; ++j) {
+                    depths.nearest[j] = nearer(depths.nearest[j]);
+                    depths.farthest[j] = farther(depths.farthest[j]);
+                    depths.first_bucket[j] = static_cast<std::uint32_t>(buckets_.index_of(depths.nearest[j]));
+                    depths.last_bucket[j] = static_cast<std::uint32_t>(buckets_.index_of(depths.farthest[j]));
+                }
                 const std::uint32_t *first = depths.first_bucket, *last = depths.last_bucket;
                 for (std::uint32_t j = 0; j < count && conservative; ++j)
                     found(i + j, before_.data()[first[j]], before_.data()[last[j] + 1u]);
@@ -101,15 +106,6 @@ private:
     static double widened(float depth, float fraction) {
         const double exact = static_cast<double>(depth);
         return exact + abs_of(exact) * static_cast<double>(fraction);  // a product of two floats is exact in double
-    }
-
-    void widen(LightDepths& depths, std::uint32_t count) const {
-        for (std::uint32_t i = 0; i < count; ++i) {
-            depths.nearest[i] = nearer(depths.nearest[i]);
-            depths.farthest[i] = farther(depths.farthest[i]);
-            depths.first_bucket[i] = static_cast<std::uint32_t>(buckets_.index_of(depths.nearest[i]));
-            depths.last_bucket[i] = static_cast<std::uint32_t>(buckets_.index_of(depths.farthest[i]));
-        }
     }
 
     /// Returns how many boundaries lie before a depth, which is in `bucket`.

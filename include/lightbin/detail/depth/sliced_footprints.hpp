@@ -48,6 +48,7 @@ public:
         return {};
     }
 
+    LightRanks ranks() const { return {}; }
     int slices() const { return static_cast<int>(run_count_); }
     detail::FootprintSlice slice(std::size_t i) const {
         const SliceRun& run = runs_.data()[i];

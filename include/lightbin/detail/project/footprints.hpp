@@ -80,33 +80,14 @@ public:
             if (source.copy != nullptr || source.to_view != nullptr)
                 arrays_.spheres = source.out_spheres = spheres_.reserve(capacity);
         // A single light is projected faster alone than in a vector that is filled up with copies of it.
-        const Isa kernel_isa = lights_ > 1 ? isa : Isa::scalar;
-        run_parts(view, source, detail::project_kernel<spots>(kernel_isa), threads);
-        if constexpr (with_spans) add_spans(detail::row_span_kernel<spots>(isa), view, threads);
-    }
-
-    std::size_t lights() const { return lights_; }               ///< lights given
-    std::uint32_t visible() const { return counts_.visible; }    ///< lights in view
-    std::uint32_t rejected() const { return counts_.rejected; }  ///< lights that are bad input, see Sphere
-    std::uint64_t area() const { return counts_.area; }          ///< tiles in all rectangles
-    const detail::FootprintArrays& arrays() const { return arrays_; }
-    detail::Items<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
-
-    int slices() const { return 1; }
-    detail::FootprintSlice slice(std::size_t) const { return {arrays_, runs(), visible(), area()}; }
-
-private:
-    static constexpr std::size_t chunk = detail::ChunkRects::size;
-
-    /// Projects the lights in parts of whole chunks, each to a run of its own.
-    void run_parts(const View& view, const detail::LightSource& source, detail::ProjectKernel kernel,
-                   const Parallel& threads) {
-        const std::size_t chunks = lights_ / chunk + 1, parts = run_count_;
+        const auto kernel = detail::project_kernel<spots>(lights_ > 1 ? isa : Isa::scalar);
+        // Each part consists of whole chunks, and its footprints are a run of their own.
         const auto first_of = [&](std::size_t part) {
+            const std::uint64_t chunks = lights_ / chunk + 1;
             return static_cast<std::size_t>(
-                detail::min_of<std::uint64_t>(std::uint64_t{chunks} * part / parts * chunk, lights_));
+                detail::min_of<std::uint64_t>(chunks * part / run_count_ * chunk, lights_));
         };
-        threads.run(parts, [&](std::size_t part) {
+        threads.run(run_count_, [&](std::size_t part) {
             const std::size_t first = first_of(part), end = first_of(part + 1);
             const std::size_t to = first + part * detail::FootprintArrays::padding;
             detail::ProjectCounts sum;
@@ -121,14 +102,29 @@ private:
             runs_.data()[part] = run;
         });
         counts_ = {};
-        for (std::size_t part = 0; part < parts; ++part) {
+        for (std::size_t part = 0; part < run_count_; ++part) {
             const detail::ProjectCounts& counts = part_counts_.data()[part];
             counts_.visible += counts.visible;
             counts_.rejected += counts.rejected;
             counts_.area += counts.area;
             counts_.rows += counts.rows;
         }
+        if constexpr (with_spans) add_spans(detail::row_span_kernel<spots>(isa), view, threads);
     }
+
+    std::size_t lights() const { return lights_; }               ///< lights given
+    std::uint32_t visible() const { return counts_.visible; }    ///< lights in view
+    std::uint32_t rejected() const { return counts_.rejected; }  ///< lights that are bad input, see Sphere
+    std::uint64_t area() const { return counts_.area; }          ///< tiles in all rectangles
+    const detail::FootprintArrays& arrays() const { return arrays_; }
+    detail::Items<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
+
+    int slices() const { return 1; }
+    detail::FootprintSlice slice(std::size_t) const { return {arrays_, runs(), visible(), area()}; }
+    LightRanks ranks() const { return {}; }
+
+private:
+    static constexpr std::size_t chunk = detail::ChunkRects::size;
 
     /// Finds the row spans of all footprints, those of each part one after another.
     void add_spans(detail::RowSpanKernel kernel, const View& view, const Parallel& threads) {
