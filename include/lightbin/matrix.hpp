@@ -12,9 +12,8 @@
 //   OGRE, rows of one's own                   row of M v            matrix(&m[0][0], MatrixLayout::row_major)
 //
 // The rows of a matrix for row vectors (v M) are the columns of the same transform for column vectors (M v), so column_major
-// and row_vectors are the same numbers in memory. A float[4][4] of rows is accepted as it is, but read as its transpose. To
-// see which layout sixteen numbers have, look at a view matrix: its translation is in numbers 13 to 15 with column_major and
-// row_vectors, and in numbers 4, 8 and 12 with row_major, counted from 1.
+// and row_vectors are the same numbers in memory: a view matrix has its translation in numbers 13 to 15, counted from 1, and
+// with row_major in numbers 4, 8 and 12. A float[4][4] of rows is accepted as it is, but read as its transpose.
 #pragma once
 
 #include <lightbin/detail/base/math.hpp>
@@ -41,7 +40,7 @@ struct Matrix {
 
 namespace detail {
 
-/// M is an array of numbers, or a pointer to numbers, without a matrix type.
+/// An array of numbers, or a pointer to numbers.
 template <class M>
 concept SixteenNumbers = requires(const M& m) {
     { m[0] } -> std::convertible_to<double>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A summary of what a View read from its matrix, for a person: printed once, it shows the usual mistakes with matrices.
+// A summary of what a View read from its matrix, to be printed: it shows the usual mistakes with matrices.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -24,14 +24,12 @@ struct ViewSummary {
 
     // The flags below say what is seldom meant. A View with one of them set is right all the same if it is meant.
 
-    /// The matrix is a perspective one, and its entry of 1 is where a transposed matrix has it.
-    bool looks_transposed;
+    bool looks_transposed;  ///< the matrix is a perspective one, and its entry of 1 is where a transposed matrix has it
     /// The matrix is orthographic and scales nothing: it may be an identity, or the view matrix.
     bool looks_like_view_matrix;
     /// The image is upside down and mirrored, as by a field of view in degrees where radians are wanted.
     bool looks_turned;
-    /// All depths of an orthographic projection are behind the eye: is ViewOptions::reversed_z right?
-    bool looks_behind;
+    bool looks_behind;  ///< all depths of an orthographic projection are behind the eye: is ViewOptions::reversed_z right?
     /// No depth of a perspective projection with reversed Z reaches NDC -1, so that its far plane is taken to be at
     /// infinity: should ViewOptions::clip_depth be zero_to_one?
     bool looks_zero_to_one;

@@ -34,7 +34,7 @@ struct DepthBuckets {
     }
 };
 
-/// The least and greatest view depths of some lights, and the buckets of these depths. Kernels write whole vectors.
+/// The least and greatest view depths of up to `size` lights, and the buckets of these depths. Kernels write whole vectors.
 struct LightDepths {
     static constexpr std::uint32_t size = 64;
     float nearest[size], farthest[size];
@@ -65,8 +65,8 @@ public:
     float nearer(float depth) const { return margin > 0 ? float_below(widened(depth, -margin)) : depth; }
     float farther(float depth) const { return margin > 0 ? float_above(widened(depth, margin)) : depth; }
 
-    /// Calls found(i, first, last) for each footprint i of the runs, whose light's view depths, ends included, meet
-    /// the slices first..last. Writes ids into the padding behind each run.
+    /// Calls found(i, first, last) for each footprint i of the runs, where first..last are the slices that its light's view
+    /// depths meet, ends included. Writes ids into the padding behind each run.
     ///
     /// kernel        find_depth_buckets() of a tier
     /// conservative  the slices may be one more at either end, where that is faster to find

@@ -16,8 +16,8 @@ struct Extremes {
     }
 };
 
-/// Returns the extremes of `so_far` and of `count` ranges from lower[i] to upper[i]. Four independent chains of minima and
-/// maxima let the processor overlap them.
+/// Returns the extremes of `so_far` and of `count` ranges from lower[i] to upper[i]. The four chains of minima and maxima are
+/// independent, so that the processor overlaps them.
 inline Extremes extremes(const float* lower, const float* upper, std::size_t count, Extremes so_far) {
     Extremes chains[4] = {so_far, so_far, so_far, so_far};
     std::size_t i = 0;
@@ -31,7 +31,7 @@ inline Extremes extremes(const float* lower, const float* upper, std::size_t cou
     return chains[0];
 }
 
-/// Reduces one row of tiles and calls finish(tile, extremes) for each tile. The kernel first reduces each pixel column
+/// Reduces one row of tiles and calls finish(tile, extremes) for each tile. The kernel first reduces each column of samples
 /// to its extremes, as many columns at once as fit in a buffer on the stack; then the columns of each tile are reduced.
 ///
 /// tile_columns  samples across a tile

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reads a projection matrix: refuses what is no supported kind of projection, and derives the camera's constants and the
-// mapping between view depth and window depth.
+// Reads a projection matrix: refuses unsupported ones, and derives the camera and the mapping of view to window depth.
 #pragma once
 
 #include <lightbin/detail/base/algorithms.hpp>
@@ -47,7 +46,7 @@ struct DepthMap {
         return top / bottom * (1.0 + (top < 0 ? -outward : outward) * 0x1p-51);
     }
 
-    /// View depths of the near plane and of the far plane, not rounded outward.
+    // View depths of the planes, not rounded outward.
     double near_plane() const { return view_depth(device_depth(reversed ? 1 : 0), 0); }
     double far_plane() const { return view_depth(device_depth(reversed ? 0 : 1), 0); }
 
@@ -72,8 +71,7 @@ inline std::optional<ErrorCode> wrong_shape(const Matrix& m) {
     return {};
 }
 
-/// Whether the 1 or -1 of a perspective matrix, which should be the z entry of its w row, is where a transposed matrix has
-/// it: the constant of its z row.
+/// Whether the 1 or -1 of a perspective matrix, the z entry of its w row, is instead where a transposed matrix has it.
 inline bool one_is_transposed(const Matrix& m) {
     return abs_of(m[3][2]) == 1 && abs_of(m[2][3]) != 1;
 }
@@ -130,7 +128,7 @@ struct Projection {
     /// y_up        tile rows count up from the side of the image where device y is -1
     /// reversed_z  read for orthographic matrices alone: a perspective matrix shows it
     ///
-    /// Not inline, so that the compiler moves no operation of this function out of the default floating-point environment.
+    /// Not inlined, so that the compiler moves no operation of it out of the life of `environment`.
     LIGHTBIN_NOINLINE std::optional<ErrorCode> read(int width, int height, int tile_size, bool y_up,
                                                     bool reversed_z) {
         const DefaultFloatEnvironment environment;
@@ -170,8 +168,8 @@ struct Projection {
     ViewSummary summary(int width, int height, int tile_size) const {
         const bool flat = camera.orthographic;
         const Matrix& m = matrix;
-        // The image's extent between ndc -1 and 1 on one axis. It is computed from the matrix because the camera's image
-        // axes have a scale of 0 for an empty viewport.
+        // The image's extent between ndc -1 and 1 on one axis, from the matrix because ImageAxis::scale is 0 for an empty
+        // viewport.
         const auto size = [&](int axis) {
             const double w = flat ? depth.w_offset : depth.w_scale,
                          offset = flat ? m[3][axis] : static_cast<double>(camera.z_sign) * m[2][axis];

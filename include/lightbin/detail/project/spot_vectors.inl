@@ -62,9 +62,8 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
         tolerance = mul(spots.radius, broadcast(0x1p-18f)) + (centre_error + mul(spots.radius, transform.cone_error));
         safe = both(safe, less_equal(transform.cone_error, broadcast(1.0f)));
     }
-    // Other spots count as whole spheres: those with a half angle of 90 degrees or more, and those that have sizes
-    // float can't compute with or a cone that the transform does not map to a cone. The latter are replaced by smaller
-    // spheres.
+    // Spots with a half angle of 90 degrees or more count as whole spheres. Spots that have sizes float can't compute with,
+    // or a cone that the transform does not map to a cone, are replaced by the least spheres around them.
     const auto with_cone = and_not(safe, less_equal(cosine, broadcast(0.0f)));
     const Floats per_length = 1.0f / sqrt(mul(axis[0], axis[0]) + mul(axis[1], axis[1]) + mul(axis[2], axis[2]));
     for (unsigned i = 0; i < 3; ++i) {
@@ -83,8 +82,8 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
     }
 }
 
-/// Returns how far spots reach from their apexes in a direction: the radius where the direction is inside the cone,
-/// else as far as the rim, or 0 if the apex is farther.
+/// Returns how far spots reach from their apexes in a direction: the radius where the direction is inside the cone, else
+/// the distance to the rim, or 0 if the rim lies behind the apex.
 ///
 /// along, across  the lengths of the cone's unit axis along the direction and perpendicular to it
 inline Floats spot_reach(const SpotLanes& spots, Floats along, Floats across) {

@@ -13,9 +13,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// Stores, in view space, the balls and the least_sphere()s of a vector of spots, the smallest spheres around each. The
-/// centre of a least sphere is within 8u of |x| + |y| + |z| + r of the exact one, where u = 2^-24, and its radius is
-/// enlarged by 16u.
+/// Stores, in view space, the balls of a vector of spots and the least spheres around the spots. Let u = 2^-24 and
+/// S = |x| + |y| + |z| + r: the centre of a least sphere is within 8u S of the exact one, and its radius is 16u S larger.
 inline void store_both_spheres(const Camera& camera, const SpotLanes& spots, Sphere* balls, Sphere* least) {
     const auto narrow = less_equal(broadcast(0.5f), mul(spots.cosine, spots.cosine));
     const Floats half = mul(spots.radius, broadcast(0.5f)) / spots.cosine, along = mul(spots.radius, spots.cosine);
@@ -30,7 +29,7 @@ inline void store_both_spheres(const Camera& camera, const SpotLanes& spots, Sph
                   (spots.apex[2] + mul(step, spots.axis[2])) * z, select(smaller, radius, spots.radius));
 }
 
-/// The terms that are needed for the bounds along both image axes, for the rims of a vector of spots.
+/// The terms of narrow_slopes() that both image axes share, for the rims of a vector of spots.
 struct RimLanes {
     Floats per_z;      ///< the reciprocal of the apex's view depth
     Floats axis_z;     ///< the depth coordinate of the cone's unit axis
@@ -101,7 +100,7 @@ inline void project_spots_in_double(const Camera& camera, const Sphere* balls, c
     }
 }
 
-/// Finds the bounds of spots with an orthographic projection.
+/// Finds the bounds of spots along the image axes, with an orthographic projection.
 LIGHTBIN_INLINE void find_coordinates(const SpotLanes& spots, ImageBounds<Floats>& bounds) {
     for (unsigned i = 0; i < 2; ++i) {
         const Floats along = spots.axis[i], other = spots.axis[1 - i];
@@ -111,7 +110,7 @@ LIGHTBIN_INLINE void find_coordinates(const SpotLanes& spots, ImageBounds<Floats
     }
 }
 
-/// Finds the bounds of spots whose balls lie beyond the near plane, with a perspective projection.
+/// Finds the bounds along the image axes, with a perspective projection, of spots whose balls lie beyond the near plane.
 ///
 /// size      |x| + |y| + |z| + r of the ball
 /// nearest   the spot's least view depth; at least 2^-16 of `size`
@@ -141,8 +140,8 @@ LIGHTBIN_INLINE void find_slopes(const SpotLanes& spots, Floats size, Floats nea
 inline void project_spots(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
                           const FootprintArrays& out, ProjectCounts& counts) {
     ProjectedChunk chunk;
-    // At first the spots as they are given: the balls, and vec4s with the cones' axes and cosines. Those of spots that
-    // are projected in double are overwritten by their balls and least spheres in view space.
+    // The spots as they are given: balls, and vec4s of the cones' axes and cosines. For spots that are projected in double
+    // they are overwritten by the balls and the least spheres in view space.
     Sphere balls[ChunkRects::size], cones[ChunkRects::size];
     const TransformLanes transform(source.to_view);
     const ViewLanes view(camera);

@@ -23,9 +23,8 @@ concept Vec4Of = requires(const Light& light) {
 
 }  // namespace detail
 
-/// The default way to make a Sphere or a Spot of a light. A type that is, derives from or converts to Spot or Sphere is
-/// converted. A vec4 of floats becomes the Sphere with centre (x, y, z) and radius w; a vec4 of doubles becomes such a
-/// Sphere rounded outward.
+/// The default way to make a Sphere or a Spot of a light: what converts to Spot or Sphere is converted, and a vec4 of floats,
+/// or of doubles rounded outward, becomes the Sphere with centre (x, y, z) and radius w.
 struct AsLight {
     template <class Light>
     requires(std::convertible_to<const Light&, Sphere> || std::convertible_to<const Light&, Spot> ||
@@ -58,8 +57,7 @@ template <class Callable, class Light> constexpr decltype(auto) call(const Calla
         return NotCalled();
 }
 
-/// Returns the object that a pointer, a smart pointer or a std::reference_wrapper refers to. Anything else is returned
-/// itself.
+/// Returns the object that a pointer, smart pointer or std::reference_wrapper refers to, or else the argument itself.
 template <class Light> constexpr auto& referred(Light& light) {
     if constexpr (requires { requires std::is_lvalue_reference_v<decltype(*light)>; })
         return *light;
@@ -69,8 +67,7 @@ template <class Light> constexpr auto& referred(Light& light) {
         return light;
 }
 
-/// True if `to_light` does not accept an array element of type Light itself, so that it is called with the object that the
-/// element points or refers to.
+/// Whether `to_light` can only be called with the object that an array element of type Light points or refers to.
 template <class ToLight, class Light>
 inline constexpr bool by_reference =
     std::same_as<decltype(call(std::declval<const ToLight&>(), std::declval<const Light&>())), NotCalled>;
@@ -85,8 +82,8 @@ constexpr decltype(auto) make_light(const ToLight& to_light, const Light& light)
         return call(to_light, light);
 }
 
-/// Returns `to_light`. If it cannot make lights of type Light, that is a compile error with a readable message, and a
-/// stand-in is returned so that no further errors follow.
+/// Returns `to_light`. If it cannot make lights of type Light, that is a compile error, and a stand-in is returned so that
+/// no further errors follow.
 template <class Light, class ToLight> constexpr auto checked_to_light(const ToLight& to_light) {
     using Made = decltype(make_light(to_light, std::declval<const Light&>()));
     constexpr bool can_be_called = !std::same_as<Made, NotCalled>;
@@ -110,8 +107,8 @@ template <class Light, class ToLight> constexpr auto checked_to_light(const ToLi
     }
 }
 
-/// Returns a span of the caller's array. If it is not contiguous, that is a compile error with a readable message, and
-/// an empty span is returned so that no further errors follow.
+/// Returns a span of the caller's array. If it is not contiguous, that is a compile error, and an empty span is returned so
+/// that no further errors follow.
 template <class Range> auto checked_array(const Range& lights) {
     constexpr bool contiguous = requires { std::span(std::data(lights), std::size(lights)); };
     static_assert(
