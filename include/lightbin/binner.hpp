@@ -12,8 +12,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// The inputs of Binner::bin() beside the lights. Inputs that the options read must be given; giving any other is a compile
-/// error.
+/// The inputs of Binner::bin() beside the lights. Those that the options read, and no others, must be given.
 template <DepthTest depth_test, Slicing slicing = Slicing::none> struct Inputs {
     static constexpr bool reads_slices = slicing != Slicing::none,
                           reads_bounds = depth_test != DepthTest::none && slicing != Slicing::clusters;
@@ -127,14 +126,12 @@ public:
         return TransparencyGrids<Id>{*opaque, *transparent};
     }
 
-    /// Writes a bitmask per tile to `bits`, without making lists: (max_lights + 31) / 32 words per tile, where bit b of
-    /// word w is set if the tile's list would have id 32 w + b. The result equals encode() of bin()'s grid with
-    /// {.encoding = ListEncoding::bitmask, .max_lights = max_lights}, and is faster up to about a thousand lights.
-    /// Returns the counts of lights and, with z_bins, the ranks, which are valid until the next call.
+    /// Writes a bitmask per tile to `bits`, without making lists: those that encode() makes of bin()'s grid with
+    /// {.encoding = ListEncoding::bitmask, .max_lights = max_lights}. This is faster up to about a thousand lights. Returns
+    /// the counts of lights and, with z_bins, the ranks, which are valid until the next call.
     ///
-    /// Errors: those of bin() except for entries, which are not counted; fewer words in `bits` than view.tile_count()
-    /// tiles need; more lights than max_lights (with z_bins, more lights in view). After either of the last two no bit
-    /// was written.
+    /// Errors: those of bin() except for entries, which are not counted; fewer words in `bits` than (max_lights + 31) / 32
+    /// per tile; more lights than max_lights (with z_bins, more lights in view). After the last two no bit was written.
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     requires(!clusters) Result<LightBits> bin_bits(const View& view, const LightRange& lights,
                                                    std::uint32_t max_lights, std::span<std::uint32_t> bits,

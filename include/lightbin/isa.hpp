@@ -74,8 +74,7 @@ inline Isa processor_isa() {
 }  // namespace detail
 #endif
 
-/// Returns the widest instruction set up to `cap` that this build contains and this machine runs: the one that a Binner with
-/// Options::isa = cap uses.
+/// Returns the widest instruction set up to `cap` that this build contains and this machine runs, as Binners use it.
 inline Isa machine_isa(Isa cap = compiled_isa) {
     if (cap > compiled_isa) cap = compiled_isa;
 #if defined(LIGHTBIN_X86)

@@ -26,14 +26,13 @@ struct Spot {
     float x, y, z, radius;
     float axis_x, axis_y, axis_z, cos_half_angle;
 
-    /// Returns a spot that covers a whole sphere, for a callable that returns a Spot although some of its lights are
-    /// spheres.
+    /// A spot that covers a whole sphere, for callables that return Spots although some of their lights are spheres.
     static constexpr Spot whole(const Sphere& sphere) {
         return {sphere.x, sphere.y, sphere.z, sphere.radius, 0, 0, 1, -1};
     }
 
-    /// Converts to least_sphere(*this), for functions that take only spheres. A Binner takes spots themselves, in an
-    /// array or returned by a callable, and lists fewer tiles for them than for their spheres.
+    /// Converts to least_sphere(*this), for functions that take only spheres. A Binner takes spots themselves, and lists
+    /// fewer tiles for them than for these spheres.
     operator Sphere() const;
 };
 

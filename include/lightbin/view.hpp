@@ -7,9 +7,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// The range of clip-space depth, a setting of the graphics API that a matrix does not show. A View with a wrong value
-/// takes the near plane to be too near with minus_one_to_one, which is safe, and too far away with zero_to_one, which may
-/// miss lights.
+/// The range of clip-space depth, a setting of the graphics API that a matrix does not show. With minus_one_to_one in place
+/// of zero_to_one the near plane seems too near, which is safe; the other way round it seems too far, and lights are missed.
 enum class ClipDepth : std::uint8_t {
     minus_one_to_one,  ///< OpenGL
     zero_to_one,       ///< Direct3D, Vulkan, Metal, WebGPU, OpenGL with glClipControl
@@ -115,8 +114,8 @@ public:
     /// View depth of the far plane, rounded up; +inf if the projection has no far plane.
     float far_depth() const { return projection_.camera.far_depth; }
 
-    /// Returns the least and greatest view depth of all points whose window depth lies in [lower, upper], rounded outward.
-    /// Window depth is what a depth buffer stores: 0 and 1 are the two ends of the clip-depth range.
+    /// Returns the least and greatest view depth of all points whose window depth, which a depth buffer stores, lies in
+    /// [lower, upper], rounded outward. 0 and 1 are the two ends of the clip-depth range.
     DepthInterval view_depths(double lower, double upper) const {
         DepthInterval depths = {};
         projection_.depth.view_depths(lower, upper, depths.min, depths.max);
@@ -135,8 +134,7 @@ public:
         return {pixels(camera.x, point.x / distance), pixels(camera.y, point.y / distance), depth};
     }
 
-    /// Returns the point of view space that an image point shows: the inverse of image_point(). The viewport must not be
-    /// empty.
+    /// Returns the point of view space that an image point shows, the inverse of image_point(). Wants a non-empty viewport.
     ViewPoint view_point(const ImagePoint& point) const {
         const detail::Camera& camera = projection_.camera;
         const double distance = camera.orthographic ? 1 : point.depth;

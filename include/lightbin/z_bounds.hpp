@@ -17,8 +17,8 @@ struct ZBounds {
     /// between gap_min and gap_max. A tile with gap_min >= gap_max, or NaN in either, has no gap.
     std::span<const float> gap_min = {};
     std::span<const float> gap_max = {};
-    /// Read by Binner::bin_transparency(): maxima in which the background counts as drawn at the far plane, since
-    /// transparent geometry is also seen in front of the background. If empty, `max` is used.
+    /// Read by Binner::bin_transparency(): maxima in which the background counts as drawn at the far plane, as transparent
+    /// geometry is also seen in front of the background. If empty, `max` is used.
     std::span<const float> transparent_max = {};
     /// `min`, `max` and the gaps were made without the background. bin_transparency() then requires transparent_max.
     bool background_skipped = false;
@@ -138,12 +138,11 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
                     out.gap_min[first_tile + tile] =
                         range.lower > -detail::infinity ? view.window_depth(middle) : none;
             });
-        const auto set_transparent_max = [&](std::size_t tile, detail::Extremes range) {
-            out.transparent_max[first_tile + tile] = detail::fragment_depths(view, range, buffer.format).max;
-        };
         if (!out.transparent_max.empty())
-            detail::reduce_tile_row<false>(isa, samples, size * samples_a_pixel, none, nullptr,
-                                           set_transparent_max);
+            detail::reduce_tile_row<false>(
+                isa, samples, size * samples_a_pixel, none, nullptr, [&](std::size_t tile, detail::Extremes range) {
+                    out.transparent_max[first_tile + tile] = detail::fragment_depths(view, range, buffer.format).max;
+                });
         if (!gaps) continue;
         detail::reduce_tile_row<true>(
             isa, samples, size * samples_a_pixel, skipped, out.gap_min.data() + first_tile,

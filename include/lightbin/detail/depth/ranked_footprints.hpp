@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The ranking stage, between projection and binning: sorts footprints by depth, and finds for each depth slice, which
-// is a z-bin here, the range of their ranks (Drobot, "Improved Culling for Tiled and Clustered Rendering", SIGGRAPH
-// 2017).
+// is a z-bin here, the range of their ranks (see Slicing::z_bins).
 #pragma once
 
 #include <lightbin/detail/project/footprints.hpp>

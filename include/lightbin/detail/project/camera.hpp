@@ -12,8 +12,7 @@ namespace detail {
 
 /// How one image axis, x or y, maps view space to tiles. A point with the coordinate c, multiplied by `sign`, and the
 /// view depth d is projected to  scale * (c / d) + offset  tiles with a perspective projection, and to
-/// scale * c + offset  with an orthographic one. Off-centre, jittered and flipped projections differ in these numbers
-/// only.
+/// scale * c + offset  with an orthographic one.
 struct ImageAxis {
     double scale = 0;  ///< greater than 0
     double offset = 0;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Row spans: which tiles of each tile row a light's silhouette touches, computed in double. This file has the row spans
-// of spheres; spot_rows.inl has those of spots. Included once per tier.
+// Row spans: which tiles of each tile row a sphere's silhouette touches, computed in double. Included once per tier.
 //
 // A plane  y = v z  through the eye is a line in the image at the height v. It cuts a sphere with the centre (x, y, z)
 // and the radius r in a disc, whose projection reaches over the slopes
@@ -43,10 +42,8 @@ inline double max_row_slope(const Camera& camera) {
     return (abs_of(camera.y.offset) + camera.y.tiles) / camera.y.scale;
 }
 
-/// Writes the coefficients of spheres from lane `at` on. Returns a bit for each sphere whose silhouette is an ellipse:
-/// that lies wholly beyond the near plane.
-///
-/// x, y, z  after the camera's signs: tile indices grow with x and y, and z is the view depth
+/// Writes the coefficients of spheres with the centres (x, y, z), after the camera's signs, from lane `at` on. Returns a bit
+/// for each sphere whose silhouette is an ellipse, as the sphere lies wholly beyond the near plane.
 inline unsigned row_terms(const Camera& camera, Doubles x, Doubles y, Doubles z, Doubles r, RowTerms& terms,
                           unsigned at) {
     const double scale = camera.x.scale, offset = camera.x.offset, max_slope = max_row_slope(camera);
@@ -89,8 +86,7 @@ inline unsigned row_terms(const Camera& camera, Doubles x, Doubles y, Doubles z,
     return movemask(whole) << at;
 }
 
-/// Finds where the silhouette of light i begins and ends, in tiles, in a vector of tile rows, whose edges have the
-/// slopes v0 and v1.
+/// Finds where silhouette i begins and ends, in tiles, in a vector of tile rows, whose edges have the slopes v0 and v1.
 LIGHTBIN_INLINE void silhouette_ends(const RowTerms& terms, std::uint32_t i, Doubles v0, Doubles v1, Doubles& begin,
                                      Doubles& end) {
     const Doubles y = broadcast(terms.y[i]), y_v = broadcast(terms.y_v[i]), z = broadcast(terms.z[i]),
@@ -124,8 +120,7 @@ struct SphereRows {
         return known;
     }
 
-    /// Stores the spans of light i in a vector of tile rows, whose edges have the slopes v0 and v1, clamped to the
-    /// tile columns leftmost..rightmost.
+    /// Stores the spans of light i as silhouette_ends() finds them, clamped to the tile columns leftmost..rightmost.
     LIGHTBIN_INLINE void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost,
                                RowSpan* to) const {
         Doubles begin, end;
@@ -138,9 +133,7 @@ struct SphereRows {
 
 /// Writes the row spans of a run of footprints, from spans[to] on; whole vectors are stored. A footprint gets no spans
 /// where they could exclude no tile, because it is one tile wide or high, where its silhouette is not known, and where
-/// an index of 32 bits can't tell where they begin. A span of a sphere has at least one tile.
-///
-/// Rows  SphereRows or SpotRows
+/// an index of 32 bits can't tell where they begin. A span of a sphere has at least one tile. Rows: SphereRows or SpotRows.
 template <class Rows>
 inline void row_spans(const Camera& camera, const FootprintArrays& lights, FootprintRun run, RowSpan* spans,
                       std::uint64_t to) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The projection of spheres to tile rectangles, a vector of lights at a time. All tiers do the same operations in the
-// same order, so they give the same bytes; the scalar tier's vectors hold one light. Included once per tier.
+// The projection of spheres to tile rectangles, a vector of lights at a time. All tiers do the same operations in the same
+// order, so they give the same bytes. Included once per tier.
 //
 // Each image axis is a problem in two dimensions: the edges of tiles are planes  x = s z  through the eye with the
 // slope s, and a sphere appears as a disc with the centre (c, z), where c is x or y and z the view depth. Its bounds
@@ -79,8 +79,8 @@ inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, D
     const Doubles squares = mul(a, a) + mul(z, z), t2 = squares - mul(r, r);
     const Doubles error = (squares + mul(r, r)) * 0x1p-50 / t2 + 0x1p-48;  // of a tangent's slope, relative
     const auto has_tangent = both(less(zero, t2), less_equal(error, broadcast(0x1p-20)));
-    // Of the two forms of each root, this takes the one whose sums have terms of one sign, as tangent_slopes() does.
-    // If the sphere reaches behind the eye, z <= r, the outer tangent points backward and bounds nothing.
+    // As in tangent_slopes(), sums have terms of one sign. If the sphere reaches behind the eye, z <= r, the outer tangent
+    // points backward and bounds nothing.
     const Doubles az = mul(a, z), rt = mul(r, sqrt(t2)), e = mul(z - r, z + r);
     const auto behind = less(z, zero);
     const Doubles outer = (az + rt) / e;
@@ -109,7 +109,8 @@ inline Mask tile_span(const ImageAxis& axis, Reals low, Reals high, Mask visible
     return both(visible, both(less_equal(zero, high), less_equal(low, broadcast(static_cast<Real>(axis.limit)))));
 }
 
-/// Stores the tile rectangles of a vector of lights, from element i of `rects` on, as tile_span() does for one axis.
+/// Stores the tile rectangles of a vector of lights, from element i of `rects` on. Returns `visible` without the
+/// lights that lie outside the viewport.
 template <class Real, class Reals, class Mask>
 LIGHTBIN_INLINE Mask tile_rects(const Camera& camera, const ImageBounds<Reals>& bounds, Mask visible, ChunkRects& rects,
                                 std::uint32_t i) {

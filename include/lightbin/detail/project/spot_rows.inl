@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The row spans of spots: the silhouettes of their balls, cut off at the lines that bound their cones. Included once
-// per tier.
+// The row spans of spots: silhouettes of the balls, cut off at the lines that bound the cones. Included once per tier.
 //
 // Two planes through the eye touch a cone, unless the eye is inside it. In the image they are two lines through the
 // apex. Let t be the half angle, a the unit axis, u the unit vector from the eye to the apex, b = a - (a.u) u and
@@ -33,17 +32,14 @@ struct WedgeTerms {
 /// What find_wedges() reads of a vector of spots.
 struct WedgeLanes {
     Doubles apex[3], axis[3], sine;
-    /// Bound on the scalar product of a plane's normal and any point of the spot; with a perspective projection
-    /// divided by the point's view depth.
-    Doubles tolerance;
+    Doubles tolerance;  ///< bound on n.p of any point p of the spot; perspective: divided by the view depth of p
 };
 
 inline Doubles dot(const Doubles (&a)[3], const Doubles (&b)[3]) {
     return mul(a[0], b[0]) + mul(a[1], b[1]) + mul(a[2], b[2]);
 }
 
-/// Finds the lines that bound the cones of spots, and stores them from lane `at` on. Where there are none the limit is
-/// infinite.
+/// Finds the lines that bound the cones of spots, and stores them from lane `at` on, with infinite limits if there are none.
 inline void find_wedges(const Camera& camera, const WedgeLanes& spots, unsigned at, WedgeTerms& terms) {
     const Doubles zero = broadcast(0.0), one = broadcast(1.0), none = broadcast(static_cast<double>(infinity));
     Doubles u[3] = {zero, zero, one};
@@ -118,7 +114,7 @@ struct SpotRows {
         return ~0u;
     }
 
-    /// Stores spans as SphereRows::store() does; those that are empty as 1..0.
+    /// Stores the spans of light i, clamped to the tile columns leftmost..rightmost. Empty spans are stored as 1..0.
     void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost, RowSpan* to) const {
         Doubles begin = leftmost, end = rightmost + 1.0;
         if ((balls_known >> i & 1) != 0) {

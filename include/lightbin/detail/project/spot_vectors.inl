@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Spots transformed from how the caller gives them to view space, a vector at a time, and stored as ViewSpots for the
-// later stages; view_spot.hpp derives the bound on their rounding errors. Included once per tier.
+// The transform of spots to view space, a vector at a time; view_spot.hpp derives the bound on rounding errors. Included
+// once per tier.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/project/world_to_view.inl>
@@ -8,7 +8,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// A vector of spots in view space; each member is one of ViewSpot's.
+/// A vector of spots in view space, with members of ViewSpot.
 struct SpotLanes {
     Floats apex[3], radius, axis[3], cosine, sine, tolerance;
 };
@@ -83,7 +83,7 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
 }
 
 /// Returns how far spots reach from their apexes in a direction: the radius where the direction is inside the cone, else
-/// the distance to the rim, or 0 if the rim lies behind the apex.
+/// the distance to the rim, or 0 if the apex lies farther in that direction than the rim.
 ///
 /// along, across  the lengths of the cone's unit axis along the direction and perpendicular to it
 inline Floats spot_reach(const SpotLanes& spots, Floats along, Floats across) {
@@ -140,7 +140,7 @@ inline void store_planes(ViewSpot* to, const SpotLanes& spots) {
     }
 }
 
-/// Stores a vector of spots, all but what store_planes() stores.
+/// Stores a vector of spots, except the planes and corners, which store_planes() stores.
 inline void store_spots(ViewSpot* to, const SpotLanes& spots, Floats nearest, Floats farthest) {
     Sphere vec4s[lanes];
     store_spheres(vec4s, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);

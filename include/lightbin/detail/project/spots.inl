@@ -100,16 +100,6 @@ inline void project_spots_in_double(const Camera& camera, const Sphere* balls, c
     }
 }
 
-/// Finds the bounds of spots along the image axes, with an orthographic projection.
-LIGHTBIN_INLINE void find_coordinates(const SpotLanes& spots, ImageBounds<Floats>& bounds) {
-    for (unsigned i = 0; i < 2; ++i) {
-        const Floats along = spots.axis[i], other = spots.axis[1 - i];
-        const Floats across = sqrt(mul(other, other) + mul(spots.axis[2], spots.axis[2]));
-        bounds.low[i] = spots.apex[i] - spot_reach(spots, -along, across);
-        bounds.high[i] = spots.apex[i] + spot_reach(spots, along, across);
-    }
-}
-
 /// Finds the bounds along the image axes, with a perspective projection, of spots whose balls lie beyond the near plane.
 ///
 /// size      |x| + |y| + |z| + r of the ball
@@ -172,7 +162,11 @@ inline void project_spots(const Camera& camera, const LightSource& source, std::
             auto in_float = and_not(safe, culled);
             ImageBounds<Floats> bounds;
             if (camera.orthographic) {
-                find_coordinates(spots, bounds);
+                for (unsigned x = 0; x < 2; ++x) {
+                    const Floats across = sqrt(mul(axis[1 - x], axis[1 - x]) + mul(axis[2], axis[2]));
+                    bounds.low[x] = apex[x] - spot_reach(spots, -axis[x], across);
+                    bounds.high[x] = apex[x] + spot_reach(spots, axis[x], across);
+                }
             } else {
                 in_float = both(in_float, both(less(broadcast(camera.min_float_depth), apex[2] - spots.radius),
                                                less(size * 0x1p-16f, nearest)));

@@ -20,7 +20,7 @@ struct SpotPlane {
 };
 
 /// A spot in view space, after the camera's signs: tile indices grow with x and y, and z is the view depth. A spot
-/// that is a whole sphere has the axis 0, the sine 1 and no tolerance, so that no plane excludes anything of it.
+/// that is a whole sphere has the axis 0, the sine 1 and the tolerance 0, so that no plane excludes any of it.
 struct ViewSpot {
     Sphere ball;                           ///< its centre is the cone's apex
     float axis_x, axis_y, axis_z, cosine;  ///< the cone's unit axis; the cosine of the half angle, from 0 to 1
@@ -29,8 +29,8 @@ struct ViewSpot {
     float tolerance;          ///< how far points of the exact spot can lie outside this one
     /// With a depth test against boxes, four half spaces around the cone, whose planes touch the apex but for rounding.
     SpotPlane planes[4];
-    /// For each of these half spaces, which corner of a box lies deepest inside: where the corner's x, y and z begin
-    /// in the array of a block's boxes that arrange_cells() makes.
+    /// For each half space, which corner of a box lies deepest inside: where the corner's x, y and z begin in the array
+    /// of a block's boxes that arrange_cells() makes.
     std::uint16_t corners[4][3];
 };
 

@@ -38,9 +38,7 @@ struct FloatTransform {
     /// How far a point of a transformed spot can lie outside the cone around the transformed axis, divided by the spot's
     /// transformed radius; +inf where no bound is known.
     float cone_error;
-    /// Float is precise enough where |x| + |y| + |z|, relative to the origin, is at most this. Less than 0 where it
-    /// never is.
-    float max_distance = -1;
+    float max_distance = -1;  ///< float is precise enough where |x| + |y| + |z|, relative to `origin`, is at most this
 };
 
 /// A matrix that transforms lights from world space to view space.
@@ -79,9 +77,8 @@ public:
     }
     const FloatTransform& in_float() const { return in_float_; }
 
-    /// Returns the image of a sphere, computed in double; bad input is returned as it is. Not inlined, because within
-    /// a tier's kernel compilers would fuse its products and sums into that tier's fused multiply-adds, which round
-    /// differently.
+    /// Returns the image of a sphere, computed in double; bad input is returned as it is. Not inlined, because compilers
+    /// would fuse its products and sums into the fused multiply-adds of a tier, which round differently.
     LIGHTBIN_NOINLINE Sphere operator()(const Sphere& light) const {
         if (!is_finite(light.x) || !is_finite(light.y) || !is_finite(light.z) || !(light.radius >= 0)) return light;
         const double x = static_cast<double>(light.x), y = static_cast<double>(light.y),
@@ -100,7 +97,7 @@ public:
                 radius <= static_cast<double>(FLT_MAX) ? static_cast<float>(radius) : infinity};
     }
 
-    /// Returns the image of a direction, to which no translation is added, rounded to nearest, with radius 0.
+    /// Returns the image of a direction, rounded to nearest, as the centre of a Sphere. No translation is added.
     Sphere direction(float x, float y, float z) const {
         float image[3];
         for (int row = 0; row < 3; ++row)

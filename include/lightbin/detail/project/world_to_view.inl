@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The transform from world space to view space in float, a vector of spheres at a time; world_to_view.hpp derives its
-// error bounds. Included once per tier.
+// The transform from world space to view space, a vector of spheres at a time; world_to_view.hpp derives its error bounds.
+// Included once per tier.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>
@@ -30,7 +30,7 @@ struct TransformLanes {
     Floats origin[3], columns[3][3], origin_image[3], stretch, error_rate, error_at_origin, cone_error, max_distance;
 };
 
-/// Replaces the images of those spheres of a vector whose bit in `which` is set by their images in double.
+/// Replaces the images of those spheres of a vector whose bit in `which` is set by images that are computed in double.
 LIGHTBIN_NOINLINE inline void transform_in_double(const WorldToView& to_view, unsigned which, const Floats (&given)[4],
                                                   Floats (&images)[4]) {
     Sphere before[lanes], after[lanes];
@@ -46,8 +46,7 @@ inline Floats transformed_row(const TransformLanes& transform, unsigned row, Flo
     return mul(x, transform.columns[0][row]) + mul(y, transform.columns[1][row]) + mul(z, transform.columns[2][row]);
 }
 
-/// Transforms a vector of spheres, those outside the range of the float path in double. Always inlined, because a call
-/// would pass the vectors through memory.
+/// Transforms a vector of spheres. Always inlined, because a call would pass the vectors through memory.
 LIGHTBIN_INLINE void transform_spheres(const TransformLanes& transform, Floats& x, Floats& y, Floats& z,
                                        Floats& radius) {
     const Floats dx = x - transform.origin[0], dy = y - transform.origin[1], dz = z - transform.origin[2];
