@@ -15,7 +15,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// The instruction sets that have their own kernels. The kernels of all of them give the same bytes.
 enum class Isa : std::uint8_t {
-    scalar,   ///< every machine
+    scalar,   ///< one number at a time, on every machine
     simd128,  ///< vectors of 128 bits: SSE4.1 on x86-64, NEON on 64-bit ARM, simd128 of WebAssembly (-msimd128)
     avx2,
     avx512,  ///< with VBMI2 and BITALG: Ice Lake, Zen 4 and later

@@ -44,7 +44,7 @@ struct BinRange {
 /// What Slicing::z_bins adds to a grid: the lights in order of depth, and the ranks in each z-bin.
 struct LightRanks {
     std::span<const std::uint32_t> order;  ///< for each rank, the position of its light in the caller's array
-    std::span<const BinRange> bins;        ///< one per slice
+    std::span<const BinRange> bins;        ///< the ranks in each z-bin, one BinRange per slice
 };
 
 /// What Binner::bin_bits() returns. The bitmasks are in the caller's memory.

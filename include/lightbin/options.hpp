@@ -9,7 +9,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// How a light's footprint is computed: the tiles that its projection covers.
 enum class Footprint : std::uint8_t {
-    rectangle,   ///< the tiles of its bounding rectangle (the papers' method)
+    rectangle,   ///< the tiles of the projection's bounding rectangle (as in Tiled Shading)
     silhouette,  ///< one exact span of tiles per tile row, without the corners of the rectangle
 };
 
@@ -17,8 +17,8 @@ enum class Footprint : std::uint8_t {
 enum class DepthTest : std::uint8_t {
     none,       ///< no test: a light is listed in all tiles of its footprint
     interval,   ///< the light's depths, z - r to z + r, must meet the tile's Z bounds (Tiled Shading, section 6.3)
-    box,        ///< as interval, and the light must meet the view-space box around the tile's cell
-    split_box,  ///< as box, with two boxes, in front of and behind the tile's depth gap (see ZBounds)
+    box,        ///< `interval`, and the light must meet the view-space box around the tile's cell
+    split_box,  ///< `box` with two boxes, one in front of and one behind the tile's depth gap (see ZBounds)
 };
 
 /// How the Slices given to bin() narrow the lights of a tile by depth. No depth buffer is needed.

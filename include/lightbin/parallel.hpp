@@ -39,7 +39,7 @@ public:
     template <class Run>
     Parallel(std::size_t workers, Run&& run, double start_ns = 50000)
         : workers_(workers > 1 ? workers : 1), start_ns_(start_ns) {
-        using Function = std::decay_t<Run>;  // for a function, too, a pointer to it
+        using Function = std::decay_t<Run>;  // a function decays to a pointer to it
         if constexpr (std::is_function_v<std::remove_pointer_t<Function>>) {
             run_.function = reinterpret_cast<void (*)()>(Function(run));
             start_ = [](CallersRun callers, std::size_t n, Body body) {

@@ -108,12 +108,12 @@ private:
         // The greatest rank is that of the last light that begins in the bin or an earlier one, or if it ends before
         // the bin that of the light before it, and so on. skip[rank] is how many lights directly before that one are
         // known to have ended, so that each of them is passed only once.
-        std::uint32_t* const skip = first_bins_.data();  // what it held is no longer needed
+        std::uint32_t* const skip = first_bins_.data();  // reused: the first bins are no longer needed
         detail::fill_items(skip, run_.end, 0);
         for (std::size_t bin = 0; bin < bin_count_; ++bin) {
             const std::uint32_t count = ends_.data()[bin];
             if (count <= bins[bin].least) {
-                bins[bin] = {1, 0};  // empty
+                bins[bin] = {1, 0};  // least > greatest: no light meets the bin
                 continue;
             }
             std::uint32_t rank = count - 1;

@@ -112,7 +112,7 @@ private:
     template <class IsBefore> std::uint32_t before(std::size_t bucket, IsBefore is_before) const {
         const float* const boundaries = boundaries_.data();
         std::uint32_t slice = before_.data()[bucket];
-        slice += is_before(boundaries[slice]);  // seldom more than one, so that the loop's branch is predicted
+        slice += is_before(boundaries[slice]);  // one boundary at most as a rule, so that the loop's branch is predicted
         while (is_before(boundaries[slice]))
             ++slice;
         return slice;
@@ -128,7 +128,7 @@ private:
         buckets_.begin = count_ == 0 ? 0 : buckets_.coordinate(all[0]);
         const float length = count_ == 0 ? 0 : buckets_.coordinate(all[count_ - 1]) - buckets_.begin;
         buckets_.scale = buckets_.last / length;
-        if (!is_finite(buckets_.scale)) buckets_.scale = 0;  // with one boundary or none, or all next to each other
+        if (!is_finite(buckets_.scale)) buckets_.scale = 0;  // where `length` is 0 or tiny
 
         std::uint32_t* const counts = before_.reserve(buckets + 1);
         fill_items(counts, buckets + 1, 0);
@@ -142,9 +142,9 @@ private:
     }
 
     Buffer<float> boundaries_;      ///< the boundaries, and NaN behind them
-    std::size_t count_;             ///< of boundaries
-    Buffer<std::uint32_t> before_;  ///< the number of boundaries before each bucket, and at the end of all
-    std::size_t shared_ = 0;        ///< boundaries that are in the bucket of an earlier one
+    std::size_t count_;             ///< the number of boundaries
+    Buffer<std::uint32_t> before_;  ///< the number of boundaries before each bucket, and last of all boundaries
+    std::size_t shared_ = 0;        ///< the number of boundaries whose bucket has an earlier one, too
     DepthBuckets buckets_;
 };
 

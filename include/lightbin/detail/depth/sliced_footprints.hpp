@@ -112,9 +112,9 @@ private:
         if constexpr (with_spans) arrays_.span_begin[to] = lights.span_begin[i];
     }
 
-    const detail::SliceTable* table_ = nullptr;  ///< the caller's Slices', during a call
+    const detail::SliceTable* table_ = nullptr;  ///< the table of the caller's Slices, set by order()
     detail::Buffer<SliceRange> met_;             ///< the slices of each footprint
-    detail::Buffer<SliceRun> runs_;              ///< one per slice, and one more
+    detail::Buffer<SliceRun> runs_;              ///< the run of each slice, and an empty one
     detail::FootprintBuffers buffers_;
     detail::FootprintArrays arrays_ = {};
     std::size_t run_count_ = 0;

@@ -14,7 +14,7 @@ namespace detail {
 /// view depth d is projected to  scale * (c / d) + offset  tiles with a perspective projection, and to
 /// scale * c + offset  with an orthographic one.
 struct ImageAxis {
-    double scale = 0;  ///< greater than 0
+    double scale = 0;  ///< tiles per unit of slope (orthographic: of length); greater than 0
     double offset = 0;
     float sign = 1;    ///< 1, or -1 where tile indices grow as the view-space coordinate falls
     float margin = 0;  ///< bound on the error, in tiles, of a coordinate inside the viewport that is computed in float

@@ -39,7 +39,7 @@ struct FootprintRun {
 /// can be read and written, as kernels load and store whole vectors.
 struct FootprintArrays {
     static constexpr std::size_t padding = 64;
-    static constexpr std::uint32_t whole_rectangle = 0xffffffff;  ///< a value of span_begin
+    static constexpr std::uint32_t whole_rectangle = 0xffffffff;  ///< the span_begin of a footprint without spans
 
     std::uint32_t* ids;
     std::uint16_t *x0, *y0, *x1, *y1;
@@ -103,16 +103,16 @@ struct FootprintSlice {
     FootprintArrays lights;
     Items<const FootprintRun> runs;
     std::uint32_t visible;                  ///< footprints in all runs
-    std::uint64_t area;                     ///< tiles in their rectangles
+    std::uint64_t area;                     ///< tiles in the rectangles of all these footprints
     float slab[2] = {-infinity, infinity};  ///< the slice's depths, which depth tests use in place of absent Z bounds
 };
 
 /// What the binning kernels read, and the table that they write.
 template <class Id> struct BinJob : FootprintSlice {
     const Camera* camera;
-    const float* bounds[4];  ///< of ZBounds: min, max, gap_min, gap_max; null for an absent one
-    const float* edges[4];   ///< of the tiles, for boxes: low x, high x, low y, high y; see cell_boxes.hpp
-    ListRange* tiles;        ///< of the whole grid
+    const float* bounds[4];  ///< the ZBounds min, max, gap_min, gap_max; null for an absent one
+    const float* edges[4];   ///< the tiles' edges, for boxes: low x, high x, low y, high y; see cell_boxes.hpp
+    ListRange* tiles;        ///< the whole grid's ranges, to be written
 };
 
 /// The tile rows begin..end-1, which one call of a binning kernel bins in bands of 8 rows that count from `begin`.
@@ -122,7 +122,7 @@ template <class Id> struct BinShare {
 
     unsigned begin, end;
     Id* out;               ///< where the index list of these rows begins in memory
-    std::uint32_t offset;  ///< where it begins in the whole grid's index list
+    std::uint32_t offset;  ///< where the index list of these rows begins in the whole grid's
 };
 
 }}}  // namespace lightbin::detail

@@ -22,7 +22,7 @@ std::optional<Error> refuse(const Lights<Light, ToLight>& lights, std::uint64_t 
     return {};
 }
 
-/// Makes spheres or spots of the caller's lights: what LightSource::copy points to.
+/// Writes the spheres or spots that `lights`, a Lights, makes of its array. LightSource::copy points to this function.
 template <class Light, class ToLight>
 void copy_lights(const void* lights, std::size_t first, std::size_t count, Sphere* to, [[maybe_unused]] Sphere* cones) {
     const auto& from = *static_cast<const Lights<Light, ToLight>*>(lights);

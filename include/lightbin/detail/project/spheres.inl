@@ -77,7 +77,7 @@ inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, D
 
     // The squared length of the tangent is not positive if the eye is on the sphere or inside.
     const Doubles squares = mul(a, a) + mul(z, z), t2 = squares - mul(r, r);
-    const Doubles error = (squares + mul(r, r)) * 0x1p-50 / t2 + 0x1p-48;  // of a tangent's slope, relative
+    const Doubles error = (squares + mul(r, r)) * 0x1p-50 / t2 + 0x1p-48;  // relative error of a tangent's slope
     const auto has_tangent = both(less(zero, t2), less_equal(error, broadcast(0x1p-20)));
     // As in tangent_slopes(), sums have terms of one sign. If the sphere reaches behind the eye, z <= r, the outer tangent
     // points backward and bounds nothing.

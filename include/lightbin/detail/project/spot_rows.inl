@@ -32,7 +32,7 @@ struct WedgeTerms {
 /// What find_wedges() reads of a vector of spots.
 struct WedgeLanes {
     Doubles apex[3], axis[3], sine;
-    Doubles tolerance;  ///< bound on n.p of any point p of the spot; perspective: divided by the view depth of p
+    Doubles tolerance;  ///< bound on n.p for planes' normals n and points p of the spot; perspective: divided by p's depth
 };
 
 inline Doubles dot(const Doubles (&a)[3], const Doubles (&b)[3]) {
@@ -136,9 +136,9 @@ struct SpotRows {
     }
 
     RowTerms ball;         ///< the silhouettes of the balls
-    unsigned balls_known;  ///< a bit for each ball that has one
+    unsigned balls_known;  ///< a bit for each spot whose ball has its silhouette in `ball`
     WedgeTerms wedges;
-    double low, high;  ///< the camera's offset, in tiles, rounded down and up
+    double low, high;  ///< the offset of the camera's x axis, in tiles, rounded down and up
 };
 
 }}}}  // namespace lightbin::detail

@@ -24,8 +24,8 @@ struct SpotPlane {
 struct ViewSpot {
     Sphere ball;                           ///< its centre is the cone's apex
     float axis_x, axis_y, axis_z, cosine;  ///< the cone's unit axis; the cosine of the half angle, from 0 to 1
-    float nearest, farthest;  ///< view depths; rounding is monotone, so comparing floats with them is exact
-    float sine;               ///< of the half angle
+    float nearest, farthest;  ///< least and greatest view depth; rounding is monotone, so comparing floats with them is exact
+    float sine;               ///< sine of the half angle
     float tolerance;          ///< how far points of the exact spot can lie outside this one
     /// With a depth test against boxes, four half spaces around the cone, whose planes touch the apex but for rounding.
     SpotPlane planes[4];
