@@ -39,14 +39,7 @@ private:
     static void fill_in(std::string& text, const char* name, std::uint64_t number, bool negative) {
         const auto at = text.find(name);
         if (at == std::string::npos) return;
-        char digits[21], *first = digits + sizeof digits;  // 64 bits have at most 20 digits, or 19 and a minus sign
-        *--first = 0;
-        do {
-            *--first = static_cast<char>('0' + number % 10);
-            number /= 10;
-        } while (number != 0);
-        if (negative) *--first = '-';
-        text.replace(at, std::string(name).size(), first);
+        text.replace(at, std::string(name).size(), (negative ? "-" : "") + std::to_string(number));
     }
 };
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// DefaultFloatEnvironment: sets the thread's floating-point environment (rounding mode, traps, flushing of denormal
-// numbers) to the one that threads start with, for the duration of a library call. Kernels need it because their error
-// margins are derived for rounding to nearest, and because they divide by zero and compare NaN in lanes whose results
-// they ignore, which must not trap.
+// DefaultFloatEnvironment: the floating-point environment that threads start with, for the duration of a library call.
+// Kernels need it because their error margins are derived for rounding to nearest, and because they divide by zero and
+// compare NaN in lanes whose results they ignore, which must not trap.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -22,8 +21,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// While an object of this class lives, the thread rounds to nearest, traps nothing and keeps denormal numbers. Its
-/// destructor restores the caller's environment and exception flags. Takes about ten nanoseconds.
+/// While an object of this class lives, the thread rounds to nearest, traps nothing and keeps denormal numbers. The
+/// destructor restores the caller's environment and exception flags. Both together take about ten nanoseconds.
 class DefaultFloatEnvironment {
 public:
     DefaultFloatEnvironment(const DefaultFloatEnvironment&) = delete;
