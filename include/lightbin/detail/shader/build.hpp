@@ -132,7 +132,7 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options) {
         writer.add("\nvec2 $reduce(uvec2 tile) {\n" + area +
                    "    for (uint i = 0u; i < size.x * size.y; i += 1u) { $pixel(&range, first, size, i); }\n"
                    "    return $view_depths(range);\n}\n\n");
-        writer.add(dialect.wgsl
+        writer.add(dialect.webgpu
                        ? "@fragment\nfn main(@builtin(position) position : vec4f) -> @location(0) vec2f {\n"
                          "    return $reduce(vec2u(position.xy));\n}\n"
                    : dialect.hlsl ? "float2 main(float4 position : SV_Position) : SV_Target {\n"

@@ -74,139 +74,6 @@ inline std::vector<ShaderBuffer> list_buffers(const ShaderOptions& options) {
     return buffers;
 }
 
-/// Returns the expression of the tile size.
-inline std::string tile_size_text(const ShaderOptions& options) {
-    return options.tile_size == 0 ? "$grid.x" : std::to_string(options.tile_size) + "u";
-}
-
-/// Returns lines that convert `pixel`, as the shader counts pixels, to `here`, as the view counts them. A pixel left of
-/// or above the viewport wraps around to a large unsigned number, and so stays outside.
-inline std::string to_grid_lines(const ShaderOptions& options) {
-    return std::string("    uvec2 here = pixel") + (options.viewport_corner ? " - uvec2($corner)" : "") +
-           ";\n" + (options.flip_y ? "    here.y = $grid.w - 1u - here.y;\n" : "");
-}
-
-/// Adds the function `tile`. It divides by at least 1, because the tile size is 0 while the constants are unset.
-inline void add_tile(ShaderWriter& writer, const ShaderOptions& options) {
-    const std::string size = tile_size_text(options);
-    writer.add("\n// The tile that a pixel lies in.\nuvec2 $tile(uvec2 pixel) {\n" + to_grid_lines(options) +
-               "    return here / " + (options.tile_size == 0 ? "max(" + size + ", 1u)" : size) + ";\n}\n");
-}
-
-/// Adds the function `slice`, which returns the slice of a view depth. It starts from the estimate, in which a device
-/// may round the logarithm as it likes, and steps from there until the boundaries enclose the depth. They are compared
-/// as integers in the same order as the floats, because devices may flush denormal floats to zero.
-inline void add_slice(ShaderWriter& writer) {
-    const auto word = [&](const std::string& index) { return writer.read("slices", index); };
-    const auto number = [&](const std::string& index) { return "uintBitsToFloat(" + word(index) + ")"; };
-    writer.add(
-        "\n// The slice that a view depth lies in.\nuint $slice(float view_depth) {\n    float guess = " +
-        number("0u") + " * log2(max(view_depth, 1e-37)) + " + number("1u") + " * view_depth + " +
-        number("2u") + ";\n    uint last = " + word("3u") +
-        R"(;
-    uint slice = min(uint(clamp(guess, 0.0, 1e9)), last);
-    uint bits = floatBitsToUint(view_depth);
-    uint key = bits | 0x80000000u;
-    if (bits > 0x80000000u) { key = ~bits; }
-    while (slice > 0u && key < )" +
-        word("slice + 3u") + R"() { slice -= 1u; }
-    while (slice < last && key >= )" +
-        word("slice + 4u") + R"() { slice += 1u; }
-    return slice;
-}
-)");
-}
-
-/// Adds the function `id_at`, which returns one id of the lists; from packed lists it extracts the byte or half word.
-inline void add_id_at(ShaderWriter& writer, const ShaderOptions& options) {
-    const IdWidth ids = options.format.ids;
-    const bool whole = ids == IdWidth::u32 || list_texels(options) != TexelFormat::r32ui;
-    writer.add("\nuint $id_at(uint at) {\n    return " +
-               (whole ? writer.read("lists", "at")
-                : ids == IdWidth::u16
-                    ? "(" + writer.read("lists", "at >> 1u") + " >> ((at & 1u) * 16u)) & 0xffffu"
-                    : "(" + writer.read("lists", "at >> 2u") + " >> ((at & 3u) * 8u)) & 0xffu") +
-               ";\n}\n");
-}
-
-/// Adds the struct `cursor` and the function `begin`. For a pixel outside of the grid it reads nothing and divides by
-/// nothing: the constants may be unset, or describe a smaller image or other tiles.
-inline void add_begin(ShaderWriter& writer, const ShaderOptions& options) {
-    const ListFormat& format = options.format;
-    const bool table = format.encoding == ListEncoding::offset_count,
-               bits = format.encoding == ListEncoding::bitmask, binned = options.slicing == Slicing::z_bins;
-    writer.add("\nstruct $own_cursor {\n    uint id;\n    uint at;\n    uint end;\n");
-    if (bits) writer.add("    uint bits;\n");
-    if (binned) writer.add("    uint last;\n");
-    writer.add("};\n\n$own_cursor $own_begin(uvec2 pixel, float view_depth) {\n" + to_grid_lines(options) +
-               "    $own_cursor c;\n    c.at = 0u;\n    c.end = 0u;\n" +
-               (bits && !binned ? "    c.id = 0xffffffe0u;  // 32 before the first\n" : "    c.id = 0u;\n"));
-    if (bits) writer.add("    c.bits = 0u;\n");
-    if (binned) writer.add("    c.last = 0u;\n");
-    const std::string tile_size = tile_size_text(options);
-    writer.add("    if (here.x < $grid.z && here.y < $grid.w" +
-               (options.tile_size == 0 ? "" : " && $grid.x == " + tile_size) +
-               ") {\n        uvec2 tile = here / " + tile_size + ";\n");
-    if (options.slicing != Slicing::none) writer.add("        uint slice = $slice(view_depth);\n");
-    if (options.slicing == Slicing::clusters)
-        writer.add("        tile.y += slice * (($grid.w - 1u) / " + tile_size + " + 1u);\n");
-    if (binned)
-        writer.add("        uvec2 bin = " + writer.read("bins", "slice") + ";\n        c.last = bin.y;\n");
-    writer.add("        uint place = tile.y * $grid.y + tile.x;\n");
-    const std::string each = std::to_string(elements_per_tile(format)) + "u";
-    if (table)
-        writer.add("        uvec2 list = " +
-                   (options.storage == ListStorage::texture_2d && !options.tiles_in_uniform_block
-                        ? writer.read_texel("$tiles", "ivec2(int(tile.x), int(tile.y))") + ".xy"
-                        : writer.read("tiles", "place")) +
-                   ";\n        c.at = list.x;\n        c.end = list.x + list.y;\n");
-    else
-        writer.add("        c.at = place * " + each + ";\n        c.end = c.at + " +
-                   (bits && binned ? "(bin.y >> 5u) + 1u" : each) + ";\n");
-    // With z-bins the cursor skips to the first id of the bin's least rank or above: in a bitmask by the index of the
-    // word, in a list of known length by binary search, in one that a sentinel ends by linear search.
-    if (binned && bits)
-        writer.add("        c.at += bin.x >> 5u;\n        c.id = bin.x & ~31u;\n        c.bits = " +
-                   writer.read("lists", "c.at") +
-                   " & (0xffffffffu << (bin.x & 31u));\n        c.at += 1u;\n");
-    else if (binned && table)
-        writer.add(R"(        uint end = c.end;
-        while (c.at < end) {
-            uint middle = c.at + ((end - c.at) >> 1u);
-            if ($id_at(middle) < bin.x) { c.at = middle + 1u; }
-            else { end = middle; }
-        }
-)");
-    else if (binned)
-        writer.add("        while (c.at < c.end && $id_at(c.at) < bin.x) { c.at += 1u; }\n");
-    writer.add("    }\n    return c;\n}\n");
-}
-
-/// Adds the function `next`. It has a single return statement, because in shader model 5.1 the compiler fxc complains
-/// of a result that was not set where a function returns early.
-inline void add_next(ShaderWriter& writer, const ShaderOptions& options) {
-    writer.add("\nbool $own_next(inout $own_cursor c) {\n");
-    if (options.format.encoding == ListEncoding::bitmask) {
-        // The upper 27 bits of c.id are the index of the current word, c.bits its bits that are still to come. Without
-        // findLSB the exponent of the lowest bit, converted to float, is its index.
-        writer.add("    c.id &= ~31u;\n    while (c.bits == 0u && c.at < c.end) {\n        c.bits = " +
-                   writer.read("lists", "c.at") +
-                   ";\n        c.at += 1u;\n        c.id += 32u;\n    }\n"
-                   "    bool more = c.bits != 0u;\n    if (more) {\n        c.id += " +
-                   (writer.dialect().storage_buffers
-                        ? "uint(findLSB(c.bits))"
-                        : "(floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u") +
-                   ";\n        c.bits &= c.bits - 1u;\n");
-    } else {
-        writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = $id_at(c.at);\n        "
-                   "c.at += 1u;\n");
-        if (options.format.encoding == ListEncoding::sentinel)
-            writer.add("        more = c.id != " + std::to_string(countable_lights(options.format)) + "u;\n");
-    }
-    if (options.slicing == Slicing::z_bins) writer.add("        more = more && c.id <= c.last;\n");
-    writer.add("    }\n    return more;\n}\n");
-}
-
 /// The struct `cursor` and the functions `begin` and `next` of a wave. The wave's next light is the least id among the
 /// next lights of its lanes.
 inline constexpr const char* wave_cursor = R"(
@@ -239,23 +106,42 @@ bool $next(inout $cursor c) {
 }
 )";
 
-/// Adds the functions `count` and `heat`. With a table and without z-bins, a list's length is read instead of counted.
-inline void add_heat_map(ShaderWriter& writer, const ShaderOptions& options) {
-    const bool known =
-        options.format.encoding == ListEncoding::offset_count && options.slicing != Slicing::z_bins;
-    writer.add("\nuint $count(uvec2 pixel, float view_depth) {\n"
-               "    $own_cursor c = $own_begin(pixel, view_depth);\n");
-    writer.add(known ? "    return c.end - c.at;\n"
-                     : "    uint count = 0u;\n    while ($own_next(&c)) { count += 1u; }\n    return count;\n");
-    writer.add(R"(}
+/// The function `slice`, which returns the slice of a view depth. It starts from the estimate, in which a device may
+/// round the logarithm as it likes, and steps from there until the boundaries enclose the depth. They are compared as
+/// integers in the same order as the floats, because devices may flush denormal floats to zero.
+inline constexpr const char* slice_function = "\n// The slice that a view depth lies in."
+    "\nuint $slice(float view_depth) {\n    float guess = uintBitsToFloat($slices[0u]) * log2(max(view_depth, 1e-37)) + "
+    "uintBitsToFloat($slices[1u]) * view_depth + uintBitsToFloat($slices[2u]);" R"(
+    uint last = $slices[3u];
+    uint slice = min(uint(clamp(guess, 0.0, 1e9)), last);
+    uint bits = floatBitsToUint(view_depth);
+    uint key = bits | 0x80000000u;
+    if (bits > 0x80000000u) { key = ~bits; }
+    while (slice > 0u && key < $slices[slice + 3u]) { slice -= 1u; }
+    while (slice < last && key >= $slices[slice + 4u]) { slice += 1u; }
+    return slice;
+}
+)";
+
+/// The end of the function `count`, and the function `heat`.
+inline constexpr const char* heat_function = R"(}
 
 vec3 $heat(uvec2 pixel, float view_depth, float most) {
     float heat = float($count(pixel, view_depth)) / most;
     vec3 colour = vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat);
     return clamp(colour, vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
 }
-)");
+)";
+
+/// The function `check_view` from where it knows `here`.
+inline constexpr const char* view_check_lines = R"(    float depth = $depths.x * position.z;
+    float w = 1.0;
+    if ($depths.y > 0.0) { w = depth; }
+    vec2 at = $image.xy * position.xy / w + $image.zw;
+    vec2 apart = abs(at - (vec2(here) + 0.5));
+    return apart.x < $depths.w && apart.y < $depths.w && depth >= $depths.z;
 }
+)";
 
 /// The function `window`, the shader's light_window().
 inline constexpr const char* window_function = R"(
@@ -268,25 +154,9 @@ float $window(float apart, float range) {
 }
 )";
 
-/// Adds the function `check_view`.
-inline void add_view_check(ShaderWriter& writer, const ShaderOptions& options) {
-    writer.add(
-        "\n// Whether the View has a position of view space in this pixel, and not before its near plane.\n"
-        "bool $check_view(uvec2 pixel, vec3 position) {\n" +
-        to_grid_lines(options) + R"(    float depth = $depths.x * position.z;
-    float w = 1.0;
-    if ($depths.y > 0.0) { w = depth; }
-    vec2 at = $image.xy * position.xy / w + $image.zw;
-    vec2 apart = abs(at - (vec2(here) + 0.5));
-    return apart.x < $depths.w && apart.y < $depths.w && depth >= $depths.z;
-}
-)");
-}
-
-/// Adds `missing`, `begin_missing`, `next_missing` and the loop over them. As the ids of a list ascend, one pass over
+/// The struct `missing` and the functions `begin_missing` and `next_missing`. As the ids of a list ascend, one pass over
 /// all ids, with the list's cursor beside it, finds the ids that the list lacks.
-inline void add_list_check(ShaderWriter& writer) {
-    writer.add(R"(
+inline constexpr const char* list_check_functions = R"(
 // A light, and whether the pixel's list lacks it.
 struct $missing {
     uint id;
@@ -313,12 +183,7 @@ bool $next_missing(inout $missing m, uint lights) {
     m.listed = listed;
     return m.id < lights;
 }
-)");
-    writer.add_macro(
-        "for_each_missing(cursor, lights, pixel, view_depth)",
-        "for ($missing cursor = $begin_missing(pixel, view_depth); $next_missing(cursor, lights);) "
-        "if (cursor.lacked)");
-}
+)";
 
 }  // namespace detail
 
@@ -344,7 +209,7 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
         return *error;
     if (options.storage == ListStorage::storage_buffer && !dialect.storage_buffers)
         return Error{ErrorCode::no_storage_buffers};
-    if (options.storage == ListStorage::texel_buffer && (dialect.es || dialect.wgsl))
+    if (options.storage == ListStorage::texel_buffer && (dialect.es || dialect.webgpu))
         return Error{ErrorCode::no_texel_buffers};
     if (options.storage == ListStorage::byte_address && !dialect.hlsl)
         return Error{ErrorCode::no_byte_address_buffers};
@@ -369,7 +234,7 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
             return Error{ErrorCode::uniform_block_too_small, buffer.bytes, limit};
 
     // The loop ends for all lanes of a wave at once. WGSL compilers can't prove that, and would refuse subgroupMin.
-    if (options.wave_loop && dialect.wgsl)
+    if (options.wave_loop && dialect.webgpu)
         writer.add("enable subgroups;\ndiagnostic(off, subgroup_uniformity);\n");
     else if (options.wave_loop && !dialect.hlsl)
         writer.add("#extension GL_KHR_shader_subgroup_arithmetic : require\n");
@@ -381,19 +246,118 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     for (const ShaderBuffer& buffer : buffers)
         writer.declare(buffer);
 
-    add_tile(writer, options);
-    if (options.slicing != Slicing::none) add_slice(writer);
-    if (options.format.encoding != ListEncoding::bitmask) add_id_at(writer, options);
-    add_begin(writer, options);
-    add_next(writer, options);
+    // Lines that convert `pixel`, as the shader counts pixels, to `here`, as the view counts them. A pixel left of or
+    // above the viewport wraps around to a large unsigned number, and so stays outside.
+    const std::string here = std::string("    uvec2 here = pixel") +
+                             (options.viewport_corner ? " - uvec2($corner);\n" : ";\n") +
+                             (options.flip_y ? "    here.y = $grid.w - 1u - here.y;\n" : "");
+    // `tile` divides by at least 1, because the tile size is 0 while the constants are unset.
+    const bool fixed = options.tile_size != 0;
+    const std::string size = fixed ? std::to_string(options.tile_size) + "u" : "$grid.x";
+    writer.add("\n// The tile that a pixel lies in.\nuvec2 $tile(uvec2 pixel) {\n" + here + "    return here / " +
+               (fixed ? size : "max(" + size + ", 1u)") + ";\n}\n");
+    const bool sliced = options.slicing != Slicing::none, binned = options.slicing == Slicing::z_bins;
+    if (sliced) writer.add(slice_function);
+
+    // `id_at` returns one id of the lists; from packed lists it extracts the byte or half word.
+    const ListFormat& format = options.format;
+    const bool table = format.encoding == ListEncoding::offset_count,
+               bits = format.encoding == ListEncoding::bitmask;
+    const bool whole = format.ids == IdWidth::u32 || list_texels(options) != TexelFormat::r32ui;
+    if (!bits)
+        writer.add(std::string("\nuint $id_at(uint at) {\n    return ") +
+                   (whole                        ? "$lists[at]"
+                    : format.ids == IdWidth::u16 ? "($lists[at >> 1u] >> ((at & 1u) * 16u)) & 0xffffu"
+                                                 : "($lists[at >> 2u] >> ((at & 3u) * 8u)) & 0xffu") +
+                   ";\n}\n");
+
+    // The struct `cursor` and the function `begin`. For a pixel outside of the grid it reads nothing and divides by
+    // nothing: the constants may be unset, or describe a smaller image or other tiles.
+    writer.add("\nstruct $own_cursor {\n    uint id;\n    uint at;\n    uint end;\n");
+    if (bits) writer.add("    uint bits;\n");
+    if (binned) writer.add("    uint last;\n");
+    writer.add("};\n\n$own_cursor $own_begin(uvec2 pixel, float view_depth) {\n" + here +
+               "    $own_cursor c;\n    c.at = 0u;\n    c.end = 0u;\n" +
+               (bits && !binned ? "    c.id = 0xffffffe0u;  // 32 before the first\n" : "    c.id = 0u;\n"));
+    if (bits) writer.add("    c.bits = 0u;\n");
+    if (binned) writer.add("    c.last = 0u;\n");
+    writer.add("    if (here.x < $grid.z && here.y < $grid.w" + (fixed ? " && $grid.x == " + size : "") +
+               ") {\n        uvec2 tile = here / " + size + ";\n");
+    if (sliced) writer.add("        uint slice = $slice(view_depth);\n");
+    if (sliced && !binned)
+        writer.add("        tile.y += slice * (($grid.w - 1u) / " + size + " + 1u);\n");
+    if (binned) writer.add("        uvec2 bin = $bins[slice];\n        c.last = bin.y;\n");
+    writer.add("        uint place = tile.y * $grid.y + tile.x;\n");
+    const std::string each = std::to_string(elements_per_tile(format)) + "u";
+    if (table)
+        writer.add("        uvec2 list = " +
+                   (options.storage == ListStorage::texture_2d && !options.tiles_in_uniform_block
+                        ? writer.read_texel("$tiles", "ivec2(int(tile.x), int(tile.y))") + ".xy"
+                        : "$tiles[place]") +
+                   ";\n        c.at = list.x;\n        c.end = list.x + list.y;\n");
+    else
+        writer.add("        c.at = place * " + each + ";\n        c.end = c.at + " +
+                   (bits && binned ? "(bin.y >> 5u) + 1u" : each) + ";\n");
+    // With z-bins the cursor skips to the first id of the bin's least rank or above: in a bitmask by the index of the
+    // word, in a list of known length by binary search, in one that a sentinel ends by linear search.
+    if (binned && bits)
+        writer.add("        c.at += bin.x >> 5u;\n        c.id = bin.x & ~31u;\n        c.bits = $lists[c.at] & "
+                   "(0xffffffffu << (bin.x & 31u));\n        c.at += 1u;\n");
+    else if (binned && table)
+        writer.add(R"(        uint end = c.end;
+        while (c.at < end) {
+            uint middle = c.at + ((end - c.at) >> 1u);
+            if ($id_at(middle) < bin.x) { c.at = middle + 1u; }
+            else { end = middle; }
+        }
+)");
+    else if (binned)
+        writer.add("        while (c.at < c.end && $id_at(c.at) < bin.x) { c.at += 1u; }\n");
+
+    // The function `next` has a single return statement, because in shader model 5.1 the compiler fxc complains of a
+    // result that was not set where a function returns early.
+    writer.add("    }\n    return c;\n}\n\nbool $own_next(inout $own_cursor c) {\n");
+    if (bits)
+        // The upper 27 bits of c.id are the index of the current word, c.bits its bits that are still to come. Without
+        // findLSB the exponent of the lowest bit, converted to float, is its index.
+        writer.add(R"(    c.id &= ~31u;
+    while (c.bits == 0u && c.at < c.end) {
+        c.bits = $lists[c.at];
+        c.at += 1u;
+        c.id += 32u;
+    }
+    bool more = c.bits != 0u;
+    if (more) {
+        c.id += )" + std::string(dialect.storage_buffers
+                                    ? "uint(findLSB(c.bits))"
+                                    : "(floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u") +
+                   ";\n        c.bits &= c.bits - 1u;\n");
+    else
+        writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = $id_at(c.at);\n        c.at += 1u;\n");
+    if (!bits && !table)
+        writer.add("        more = c.id != " + std::to_string(countable_lights(format)) + "u;\n");
+    if (binned) writer.add("        more = more && c.id <= c.last;\n");
+    writer.add("    }\n    return more;\n}\n");
+
     if (options.wave_loop) writer.add(wave_cursor);
-    writer.add_macro("for_each_light(cursor, pixel, view_depth)",
-                     std::string("for ($cursor cursor = $begin(pixel, view_depth); $next(cursor);)") +
-                         (options.wave_loop ? " if (cursor.own)" : ""));
-    if (options.heat_map) add_heat_map(writer, options);
+    if (!dialect.webgpu)
+        writer.add(std::string("\n#define $for_each_light(cursor, pixel, view_depth) for ($cursor cursor = "
+                               "$begin(pixel, view_depth); $next(cursor);)") +
+                   (options.wave_loop ? " if (cursor.own)\n" : "\n"));
+    if (options.heat_map)  // with a table and without z-bins, a list's length is read instead of counted
+        writer.add("\nuint $count(uvec2 pixel, float view_depth) {\n    $own_cursor c = $own_begin(pixel, view_depth);\n" +
+                   std::string(table && !binned ? "    return c.end - c.at;\n"
+                                                : "    uint count = 0u;\n    while ($own_next(&c)) { count += 1u; }\n"
+                                                  "    return count;\n") +
+                   heat_function);
     if (options.window) writer.add(window_function);
-    if (options.view_check) add_view_check(writer, options);
-    if (options.list_check) add_list_check(writer);
+    if (options.view_check)
+        writer.add("\n// Whether the View has a position of view space in this pixel, and not before its near plane.\n"
+                   "bool $check_view(uvec2 pixel, vec3 position) {\n" + here + view_check_lines);
+    if (options.list_check) writer.add(list_check_functions);
+    if (options.list_check && !dialect.webgpu)
+        writer.add("\n#define $for_each_missing(cursor, lights, pixel, view_depth) for ($missing cursor = "
+                   "$begin_missing(pixel, view_depth); $next_missing(cursor, lights);) if (cursor.lacked)\n");
     // The prefix `own_` tells the cursor of one lane from that of its wave. Without wave_loop it is not needed.
     if (!options.wave_loop) writer.replace("$own_", "$");
     return writer.finish();

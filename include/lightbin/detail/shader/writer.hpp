@@ -16,20 +16,15 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 /// The family and the features of a shader language.
 struct Dialect {
-    bool hlsl, es, vulkan, wgsl;
-    bool spaces;           ///< a binding has a descriptor set, register space or bind group beside its number
-    bool storage_buffers;  ///< has storage buffers, compute shaders, bindings in the text, and findLSB
-};
-
-inline Dialect dialect(ShaderLanguage language) {
     using enum ShaderLanguage;
-    return {.hlsl = language == hlsl_5_0 || language == hlsl_5_1,
-            .es = language == essl_300 || language == essl_310,
-            .vulkan = language == glsl_vulkan,
-            .wgsl = language == wgsl,
-            .spaces = language == glsl_vulkan || language == hlsl_5_1 || language == wgsl,
-            .storage_buffers = language != glsl_330 && language != essl_300};
-}
+    ShaderLanguage language;
+    bool hlsl = language == hlsl_5_0 || language == hlsl_5_1, es = language == essl_300 || language == essl_310,
+         vulkan = language == glsl_vulkan, webgpu = language == wgsl;
+    /// A binding has a descriptor set, register space or bind group beside its number.
+    bool spaces = vulkan || webgpu || language == hlsl_5_1;
+    /// The language has storage buffers, compute shaders, bindings in the text, and findLSB.
+    bool storage_buffers = language != glsl_330 && language != essl_300;
+};
 
 /// Whether `prefix` makes a valid identifier of every name in the shader texts. ES limits identifiers to 1024
 /// characters, of which the texts' own names need fewer than 24. GLSL reserves names that contain `__` or begin with
@@ -45,7 +40,7 @@ inline bool is_prefix(std::string_view prefix) {
 /// Checks the options that all shader texts have: the prefix, push_constants and the slots.
 template <class Options>
 std::optional<Error> refuse_common(const Options& options, std::initializer_list<ShaderSlot> all_slots) {
-    const Dialect dialect = detail::dialect(options.language);
+    const Dialect dialect = {options.language};
     if (!is_prefix(options.prefix)) return Error{ErrorCode::not_a_prefix};
     if (options.push_constants && !dialect.vulkan) return Error{ErrorCode::no_push_constants};
     for (const ShaderSlot& slot : all_slots)
@@ -92,28 +87,35 @@ inline constexpr const char* infinity_lines = R"(    uint endless_bits = 0x7f800
 class ShaderWriter {
 public:
     ShaderWriter(ShaderLanguage language, std::string_view prefix)
-        : dialect_(detail::dialect(language)), prefix_(prefix) {}
+        : dialect_{language}, prefix_(prefix) {}
 
     const Dialect& dialect() const { return dialect_; }
 
-    /// Appends text in the part of GLSL that translate.hpp describes.
-    void add(std::string_view glsl) { shader_.text += glsl; }
+    /// Appends text in the part of GLSL that translate.hpp describes. `$name[i]` reads element i of the ShaderBuffer
+    /// `name`, whatever kind of resource it is.
+    void add(std::string glsl) {
+        for (const ShaderBuffer& buffer : buffers_) {
+            const std::string name = "$" + buffer.name + "[";
+            for (std::size_t at = 0; (at = glsl.find(name, at)) != glsl.npos;) {
+                const std::size_t index = at + name.size(), end = glsl.find(']', index);
+                const std::string element = read(buffer, glsl.substr(index, end - index));
+                glsl.replace(at, end + 1 - at, element);
+                at += element.size();
+            }
+        }
+        shader_.text += glsl;
+    }
 
     /// Replaces every `from` in the text so far by `to`.
     void replace(std::string_view from, std::string_view to) {
         shader_.text = replaced(std::move(shader_.text), from, to);
     }
 
-    /// Defines a macro, except in WGSL, which has none.
-    void add_macro(const std::string& call, const std::string& text) {
-        if (!dialect_.wgsl) add("\n#define $" + call + " " + text + "\n");
-    }
-
     /// Declares a resource by the text of the writer's language. `@` in the text stands for the layout, register or
     /// attribute that binds the resource. binding.name lacks the prefix.
     void declare(ShaderBinding binding, const ByLanguage& text) {
-        const std::string& own = dialect_.hlsl ? text.hlsl : dialect_.wgsl ? text.wgsl : text.glsl;
-        add(replaced(own, "@", binding_text(binding)) + ";\n");
+        const std::string& own = dialect_.hlsl ? text.hlsl : dialect_.webgpu ? text.wgsl : text.glsl;
+        shader_.text += replaced(own, "@", binding_text(binding)) + ";\n";
         binding.name.insert(0, prefix_);
         shader_.bindings.push_back(std::move(binding));
     }
@@ -129,7 +131,7 @@ public:
     /// Declares a storage buffer, an array of `type`. `access` is "readonly", "writeonly", or "" for both.
     void declare_storage(const std::string& name, const std::string& type, const std::string& access,
                          ShaderSlot slot, std::uint32_t stride) {
-        const bool writable = access != "readonly", block = !dialect_.hlsl && !dialect_.wgsl;
+        const bool writable = access != "readonly", block = !dialect_.hlsl && !dialect_.webgpu;
         const ShaderResource resource =
             writable ? ShaderResource::writable_buffer : ShaderResource::storage_buffer;
         declare({name + (block ? "_block" : ""), resource, slot, TexelFormat::none, stride},
@@ -140,7 +142,7 @@ public:
                          " : array<" + type + ">"});
     }
 
-    /// Declares a read-only buffer, whatever kind of resource it is. read() then returns how to read its elements.
+    /// Declares a read-only buffer, whatever kind of resource it is.
     void declare(const ShaderBuffer& buffer) {
         buffers_.push_back(buffer);
         const std::string type = buffer.format == TexelFormat::rg32ui ? "uvec2" : "uint";
@@ -151,7 +153,7 @@ public:
             // Each array element takes 16 bytes in a uniform block, so the array is one of uvec4.
             const auto vectors = static_cast<std::uint32_t>((buffer.bytes + 15) / 16);
             const std::string name = "$" + buffer.name, count = std::to_string(vectors);
-            return declare_block(buffer.name + (dialect_.wgsl ? "" : "_block"), buffer.slot, false,
+            return declare_block(buffer.name + (dialect_.webgpu ? "" : "_block"), buffer.slot, false,
                                  16 * vectors, "    uvec4 " + name + "[" + count + "];\n",
                                  "@var<uniform> " + name + " : array<vec4u, " + count + ">");
         }
@@ -168,12 +170,12 @@ public:
     /// Declares constants, each at a multiple of 16 bytes. In OpenGL they are single uniforms; in the other APIs they
     /// form one block, or push constants if `push` is set, which is named after the first constant.
     void declare_constants(const std::vector<ShaderConstant>& constants, ShaderSlot slot, bool push) {
-        const bool loose = !dialect_.hlsl && !dialect_.vulkan && !dialect_.wgsl;
+        const bool loose = !dialect_.hlsl && !dialect_.vulkan && !dialect_.webgpu;
         const std::string name = std::string(constants.front().second) + "_block";
         std::string lines;
         for (const auto& [constant_type, constant_name] : constants) {
             const std::string own = constant_name, type = constant_type;
-            lines += "    " + type + (dialect_.wgsl ? " " : " $") + own + ";\n";
+            lines += "    " + type + (dialect_.webgpu ? " " : " $") + own + ";\n";
             members_.push_back({"$" + own, "$" + name + "." + own});
             const std::uint32_t bytes = type == "ivec2" ? 8 : 16;
             if (loose)
@@ -186,12 +188,62 @@ public:
                               name + "_members");
     }
 
-    /// Returns the expression that reads the element `index` of a declared ShaderBuffer, a uint or a uvec2.
-    std::string read(std::string_view buffer_name, const std::string& index) const {
-        const ShaderBuffer* found = buffers_.data();
-        while (found->name != buffer_name)
-            ++found;
-        const ShaderBuffer& buffer = *found;
+    /// Returns the expression that reads a texel of a texture at `at`, an ivec2; of a multisampled texture, one sample.
+    std::string read_texel(const std::string& texture, const std::string& at,
+                           const std::string& sample = "0") const {
+        return dialect_.hlsl
+                   ? texture + ".Load(" + (sample == "0" ? "int3(" + at + ", 0)" : at + ", " + sample) + ")"
+               : dialect_.webgpu ? "textureLoad(" + texture + ", " + at + ", " + sample + ")"
+                               : "texelFetch(" + texture + ", " + at + ", " + sample + ")";
+    }
+
+    /// Declares an array of uint in the memory that a work group shares. WGSL has a type of its own for atomic
+    /// variables: load_atomic(), store_atomic() and the atomic functions of GLSL are all that may access them.
+    void declare_shared(const std::string& name, int count, bool atomic) {
+        const std::string size = std::to_string(count), type = atomic ? "atomic<uint>" : "uint";
+        add(dialect_.webgpu ? "var<workgroup> $" + name + " : array<" + type + ", " + size + ">;\n"
+                          : "shared uint $" + name + "[" + size + "];\n");
+    }
+
+    std::string load_atomic(const std::string& at) const {
+        return dialect_.webgpu ? "atomicLoad(&" + at + ")" : at;
+    }
+
+    std::string store_atomic(const std::string& at, const std::string& value) const {
+        return dialect_.webgpu ? "atomicStore(&" + at + ", " + value + ")" : at + " = " + value;
+    }
+
+    /// Adds the entry point of a compute shader with `threads` threads per group, which calls $run(group, thread).
+    void add_compute_main(unsigned threads) {
+        const std::string count = std::to_string(threads);
+        add(dialect_.webgpu ? "\n@compute @workgroup_size(" + count +
+                                ")\nfn main(@builtin(workgroup_id) group : vec3u, "
+                                "@builtin(local_invocation_index) thread : u32) {\n"
+                                "    $run(group.xy, thread);\n}\n"
+            : dialect_.hlsl
+                ? "\n[numthreads(" + count +
+                      ", 1, 1)]\nvoid main(uint3 group : SV_GroupID, uint thread : SV_GroupIndex) {\n"
+                      "    $run(group.xy, thread);\n}\n"
+                : "\nlayout(local_size_x = " + count +
+                      ") in;\nvoid main() {\n    $run(gl_WorkGroupID.xy, gl_LocalInvocationIndex);\n}\n");
+    }
+
+    /// Returns the text in the writer's language, or an Error if two resources are bound to one slot.
+    Result<ShaderText> finish() {
+        shader_.text = replaced(dialect_.webgpu ? WgslTranslation(shader_.text, members_).text()
+                                              : translate(shader_.text, dialect_.hlsl, dialect_.es),
+                                "$", prefix_);
+        for (const ShaderBinding& a : shader_.bindings)
+            for (const ShaderBinding& b : shader_.bindings)
+                if (&a < &b && clash(a, b))
+                    return Error{ErrorCode::bindings_overlap, static_cast<std::uint64_t>(a.slot.binding),
+                                 static_cast<std::uint64_t>(a.slot.set)};
+        return shader_;
+    }
+
+private:
+    /// Returns the expression that reads the element `index` of a buffer, a uint or a uvec2.
+    std::string read(const ShaderBuffer& buffer, const std::string& index) const {
         const bool pairs = buffer.format == TexelFormat::rg32ui;
         const std::string name = "$" + buffer.name;
         const auto word = [&](const std::string& i) {
@@ -214,60 +266,6 @@ public:
         return name + "[" + index + "]";
     }
 
-    /// Returns the expression that reads a texel of a texture at `at`, an ivec2; of a multisampled texture, one sample.
-    std::string read_texel(const std::string& texture, const std::string& at,
-                           const std::string& sample = "0") const {
-        return dialect_.hlsl
-                   ? texture + ".Load(" + (sample == "0" ? "int3(" + at + ", 0)" : at + ", " + sample) + ")"
-               : dialect_.wgsl ? "textureLoad(" + texture + ", " + at + ", " + sample + ")"
-                               : "texelFetch(" + texture + ", " + at + ", " + sample + ")";
-    }
-
-    /// Declares an array of uint in the memory that a work group shares. WGSL has a type of its own for atomic
-    /// variables: load_atomic(), store_atomic() and the atomic functions of GLSL are all that may access them.
-    void declare_shared(const std::string& name, int count, bool atomic) {
-        const std::string size = std::to_string(count), type = atomic ? "atomic<uint>" : "uint";
-        add(dialect_.wgsl ? "var<workgroup> $" + name + " : array<" + type + ", " + size + ">;\n"
-                          : "shared uint $" + name + "[" + size + "];\n");
-    }
-
-    std::string load_atomic(const std::string& at) const {
-        return dialect_.wgsl ? "atomicLoad(&" + at + ")" : at;
-    }
-
-    std::string store_atomic(const std::string& at, const std::string& value) const {
-        return dialect_.wgsl ? "atomicStore(&" + at + ", " + value + ")" : at + " = " + value;
-    }
-
-    /// Adds the entry point of a compute shader with `threads` threads per group, which calls $run(group, thread).
-    void add_compute_main(unsigned threads) {
-        const std::string count = std::to_string(threads);
-        add(dialect_.wgsl ? "\n@compute @workgroup_size(" + count +
-                                ")\nfn main(@builtin(workgroup_id) group : vec3u, "
-                                "@builtin(local_invocation_index) thread : u32) {\n"
-                                "    $run(group.xy, thread);\n}\n"
-            : dialect_.hlsl
-                ? "\n[numthreads(" + count +
-                      ", 1, 1)]\nvoid main(uint3 group : SV_GroupID, uint thread : SV_GroupIndex) {\n"
-                      "    $run(group.xy, thread);\n}\n"
-                : "\nlayout(local_size_x = " + count +
-                      ") in;\nvoid main() {\n    $run(gl_WorkGroupID.xy, gl_LocalInvocationIndex);\n}\n");
-    }
-
-    /// Returns the text in the writer's language, or an Error if two resources are bound to one slot.
-    Result<ShaderText> finish() {
-        shader_.text = replaced(dialect_.wgsl ? WgslTranslation(shader_.text, members_).text()
-                                              : translate(shader_.text, dialect_.hlsl, dialect_.es),
-                                "$", prefix_);
-        for (const ShaderBinding& a : shader_.bindings)
-            for (const ShaderBinding& b : shader_.bindings)
-                if (&a < &b && clash(a, b))
-                    return Error{ErrorCode::bindings_overlap, static_cast<std::uint64_t>(a.slot.binding),
-                                 static_cast<std::uint64_t>(a.slot.set)};
-        return shader_;
-    }
-
-private:
     void declare_block(const std::string& name, ShaderSlot slot, bool push, std::uint32_t bytes,
                        const std::string& lines, const std::string& wgsl) {
         declare({name, push ? ShaderResource::push_constants : ShaderResource::uniform_block, slot,
@@ -281,7 +279,7 @@ private:
     std::string binding_text(const ShaderBinding& binding) const {
         const std::string number = std::to_string(binding.slot.binding),
                           set = std::to_string(binding.slot.set);
-        if (dialect_.wgsl) return "@group(" + set + ") @binding(" + number + ") ";
+        if (dialect_.webgpu) return "@group(" + set + ") @binding(" + number + ") ";
         if (dialect_.hlsl)
             return std::string(" : register(") + numbering_of(binding) + number +
                    (dialect_.spaces ? ", space" + set : "") + ")";
@@ -301,7 +299,7 @@ private:
     /// numbered apart. Vulkan and WebGPU: all resources of a set are numbered together. '-': no binding.
     char numbering_of(const ShaderBinding& binding) const {
         return (dialect_.hlsl                      ? "-b-ttttu"
-                : dialect_.vulkan || dialect_.wgsl ? "-b-bbbbb"
+                : dialect_.vulkan || dialect_.webgpu ? "-b-bbbbb"
                                                    : "-b-s-tts")[static_cast<std::size_t>(binding.resource)];
     }
 
