@@ -204,23 +204,21 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     using namespace detail;
     ShaderWriter writer(options.language, options.prefix);
     const Dialect& dialect = writer.dialect();
-    if (const auto error = refuse_common(options, {options.tiles, options.lists, options.grid, options.slices,
-                                                   options.bins, options.view}))
+    const bool textures = options.storage == ListStorage::texture_2d;
+    if (const auto error = refuse_common(
+            options, {options.tiles, options.lists, options.grid, options.slices, options.bins, options.view},
+            {{options.storage == ListStorage::storage_buffer && !dialect.storage_buffers,
+              {ErrorCode::no_storage_buffers}},
+             {options.storage == ListStorage::texel_buffer && (dialect.es || dialect.webgpu),
+              {ErrorCode::no_texel_buffers}},
+             {options.storage == ListStorage::byte_address && !dialect.hlsl, {ErrorCode::no_byte_address_buffers}},
+             {options.wave_loop && (!dialect.storage_buffers || options.language == ShaderLanguage::hlsl_5_0),
+              {ErrorCode::no_wave_operations}},
+             {options.tile_size < 0,
+              {ErrorCode::tile_size_out_of_range, static_cast<std::uint64_t>(options.tile_size)}},
+             {textures && (options.texture_width < 1 || options.texture_width > 16384),
+              {ErrorCode::texture_width_out_of_range, options.texture_width, 16384}}}))
         return *error;
-    if (options.storage == ListStorage::storage_buffer && !dialect.storage_buffers)
-        return Error{ErrorCode::no_storage_buffers};
-    if (options.storage == ListStorage::texel_buffer && (dialect.es || dialect.webgpu))
-        return Error{ErrorCode::no_texel_buffers};
-    if (options.storage == ListStorage::byte_address && !dialect.hlsl)
-        return Error{ErrorCode::no_byte_address_buffers};
-    if (options.wave_loop && (!dialect.storage_buffers || options.language == ShaderLanguage::hlsl_5_0))
-        return Error{ErrorCode::no_wave_operations};
-    if (options.tile_size < 0)
-        return Error{ErrorCode::tile_size_out_of_range, static_cast<std::uint64_t>(options.tile_size)};
-    if (options.storage == ListStorage::texture_2d &&
-        (options.texture_width < 1 || options.texture_width > 16384))
-        return Error{ErrorCode::texture_width_out_of_range, options.texture_width, 16384};
-
     if (const auto error = refuse(options.format)) return *error;
     // A uniform block is declared as an array of 16-byte vectors, of which Direct3D allows 4096.
     const std::uint64_t limit =
@@ -291,7 +289,7 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     const std::string each = std::to_string(elements_per_tile(format)) + "u";
     if (table)
         writer.add("        uvec2 list = " +
-                   (options.storage == ListStorage::texture_2d && !options.tiles_in_uniform_block
+                   (textures && !options.tiles_in_uniform_block
                         ? writer.read_texel("$tiles", "ivec2(int(tile.x), int(tile.y))") + ".xy"
                         : "$tiles[place]") +
                    ";\n        c.at = list.x;\n        c.end = list.x + list.y;\n");

@@ -37,9 +37,11 @@ inline bool is_prefix(std::string_view prefix) {
            !prefix.starts_with("gl_") && !prefix.starts_with("GL_") && prefix != "vola";
 }
 
-/// Checks the options that all shader texts have: the prefix, push_constants and the slots.
+/// Returns the first error among those of the options that all shader texts have (the prefix, push_constants and the
+/// slots) and of `others`, which pairs an error with whether there is that error.
 template <class Options>
-std::optional<Error> refuse_common(const Options& options, std::initializer_list<ShaderSlot> all_slots) {
+std::optional<Error> refuse_common(const Options& options, std::initializer_list<ShaderSlot> all_slots,
+                                   std::initializer_list<std::pair<bool, Error>> others) {
     const Dialect dialect = {options.language};
     if (!is_prefix(options.prefix)) return Error{ErrorCode::not_a_prefix};
     if (options.push_constants && !dialect.vulkan) return Error{ErrorCode::no_push_constants};
@@ -49,6 +51,8 @@ std::optional<Error> refuse_common(const Options& options, std::initializer_list
     for (const ShaderSlot& slot : all_slots)
         if (slot.set != 0 && !dialect.spaces)
             return Error{ErrorCode::no_sets, static_cast<std::uint64_t>(slot.set)};
+    for (const auto& [refused, error] : others)
+        if (refused) return error;
     return std::nullopt;
 }
 
