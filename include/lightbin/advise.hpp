@@ -154,5 +154,4 @@ Result<Advice> advise_slices(const View& view, const LightRange& lights, const W
 }}  // namespace lightbin
 
 // The definitions.
-#include <lightbin/detail/advise/advice.hpp>
 #include <lightbin/detail/advise/weigh.hpp>

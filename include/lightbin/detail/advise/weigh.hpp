@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How advise() and advise_slices() measure plans.
+// How advise() and advise_slices() measure plans, and how Advice orders plans, judges their parts and prints them.
 #pragma once
 
 #include <lightbin/advise.hpp>
@@ -10,11 +10,94 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <optional>
 #include <tuple>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
+
+inline std::string to_string(const Plan& plan) {
+    if (!plan.tiled) return "every light in every pixel";
+    std::string words = std::to_string(plan.tile_size) + " px, " + to_string(plan.footprint);
+    if (plan.depth_test != DepthTest::none) words += std::string(", ") + to_string(plan.depth_test);
+    if (plan.slicing != Slicing::none) words += std::string(", ") + to_string(plan.slicing);
+    return words;
+}
+
+inline std::string to_string(const Verdict& verdict) {
+    const bool weighed = !verdict.instead.empty(), gains = verdict.saved_ns >= 0;
+    const char* said = verdict.keep ? "keep: no other was weighed" : "leave out: was not weighed";
+    if (weighed && verdict.keep) said = gains ? "keep: saves" : "keep: costs only";
+    if (weighed && !verdict.keep) said = gains ? "leave out: would cost" : "leave out: would save only";
+    char line[100];
+    std::snprintf(line, sizeof line, "%-12s %s", verdict.part.c_str(), said);
+    std::string words = line;
+    if (!weighed) return words + "\n";
+    std::snprintf(line, sizeof line, " %.3f ms", std::fabs(verdict.saved_ns) * 1e-6);
+    words += line;
+    words.resize((std::max)(words.size() + 1, std::size_t{50}), ' ');
+    return words + "instead: " + verdict.instead + "\n";
+}
+
+/// Sorts the plans by insertion: those of equal time keep their order. (std::stable_sort warns with some compilers.)
+inline Advice::Advice(std::vector<Plan> plans) : plans_(std::move(plans)) {
+    const auto is_cheaper = [](const Plan& a, const Plan& b) { return a.total_ns < b.total_ns; };
+    for (auto plan = plans_.begin(); plan != plans_.end(); ++plan)
+        std::rotate(std::upper_bound(plans_.begin(), plan, *plan, is_cheaper), plan, plan + 1);
+}
+
+inline std::string Advice::text() const {
+    std::string lines = "   cost  tile  footprint   depth test  slicing      entries   build us  "
+                        "M evaluations   total us\n";
+    for (const Plan& plan : plans()) {
+        char tile[16] = "-", line[160];
+        if (plan.tiled) std::snprintf(tile, sizeof tile, "%d", plan.tile_size);
+        std::snprintf(line, sizeof line, "%7.2f  %4s  %-10s  %-10s  %-8s  %10llu  %9.1f  %13.3f  %9.1f\n",
+                      plan.total_ns / (std::max)(best().total_ns, 1.0), tile,
+                      plan.tiled ? to_string(plan.footprint) : "no tiling",
+                      plan.tiled ? to_string(plan.depth_test) : "-",
+                      plan.tiled ? to_string(plan.slicing) : "-",
+                      static_cast<unsigned long long>(plan.entries), plan.build_ns * 1e-3,
+                      plan.evaluations * 1e-6, plan.total_ns * 1e-3);
+        lines += line;
+    }
+    return lines;
+}
+
+inline std::vector<Verdict> Advice::verdicts(const Plan& plan) const {
+    constexpr std::pair<const char*, bool (*)(const Plan&)> parts[] = {
+        {"tiles", [](const Plan& p) { return p.tiled; }},
+        {"pre-pass", [](const Plan& p) { return p.has_z_bounds(); }},
+        {"box", [](const Plan& p) { return p.tiled && p.depth_test >= DepthTest::box; }},
+        {"split boxes", [](const Plan& p) { return p.tiled && p.depth_test == DepthTest::split_box; }},
+        {"clusters", [](const Plan& p) { return p.tiled && p.slicing == Slicing::clusters; }},
+        {"z-bins", [](const Plan& p) { return p.tiled && p.slicing == Slicing::z_bins; }},
+        {"silhouettes", [](const Plan& p) { return p.tiled && p.footprint == Footprint::silhouette; }}};
+    std::vector<Verdict> all;
+    for (const auto& [part, has] : parts) {
+        Verdict verdict = {.part = part, .keep = has(plan), .instead = {}};
+        for (const Plan& other : plans()) {
+            if (has(other) == verdict.keep) continue;
+            verdict.other = other;
+            verdict.instead = to_string(other);
+            verdict.saved_ns = other.total_ns - plan.total_ns;
+            break;
+        }
+        all.push_back(std::move(verdict));
+    }
+    return all;
+}
+
+inline std::string to_string(const Advice& advice) {
+    char line[160];
+    std::snprintf(line, sizeof line, "%.3f ms a frame: %s; the cheapest of %zu plans\n",
+                  advice.best().total_ns * 1e-6, to_string(advice.best()).c_str(), advice.plans().size());
+    std::string lines = line;
+    for (const Verdict& verdict : advice.verdicts(advice.best()))
+        lines += to_string(verdict);
+    return lines;
+}
 
 namespace detail {
 
@@ -55,10 +138,6 @@ decltype(auto) with_options_from(const Plan& plan, Visit& visit) {
     LIGHTBIN_ASSERT(found);
     return visit.template operator()<options>();
 }
-
-/// The return type is a tuple of one Binner for each row of a table.
-template <const auto& table, Options base, std::size_t... i>
-auto weighed_binners(std::index_sequence<i...>) -> std::tuple<Binner<weighed_options(base, table[i])>...>;
 
 /// Returns one side of a tile's Z bounds, or `unbounded` if that side is not given or NaN.
 inline float bound(std::span<const float> side, std::size_t tile, float unbounded) {
@@ -127,11 +206,10 @@ struct WeighedGrid {
 
 /// Measures the options in each row of a table on grids of several tile sizes.
 ///
-/// slices            null if no row of the table needs them
 /// for_each_visible  for_each_visible(visit) calls visit(x, y, depth, pixels) for every point with something to light:
 ///                   its pixel, its depth (read only with slices), and the number of pixels that it stands for
 template <const auto& table, Options base, class Clock, class LightRange, class ForEachVisible>
-Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlices* slices,
+Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlices& slices,
                      const LightRange& lights, const Costs& costs, ForEachVisible for_each_visible) {
     // The grids: tiles of the view's size, of 2, 4 and 8 times that size while that is smaller than the screen, and one
     // tile as large as the screen.
@@ -141,7 +219,9 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
          size = size > whole / 2 ? whole : 2 * size)
         grids.emplace_back(view, bounds, size);
     grids.emplace_back(view, bounds, whole);
-    decltype(weighed_binners<table, base>(std::make_index_sequence<std::size(table)>())) binners;
+    auto binners = []<std::size_t... i>(std::index_sequence<i...>) {
+        return std::tuple<Binner<weighed_options(base, table[i])>...>();
+    }(std::make_index_sequence<std::size(table)>());
     // Builds a plan's lists and keeps the time if it is the shortest so far. The first call for a plan also counts its
     // entries and evaluations.
     const auto build = [&](Plan& plan, const auto& moved, bool first) -> std::optional<Error> {
@@ -151,17 +231,10 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
         const auto with = [&]<Options options>() -> std::optional<Error> {
             constexpr bool with_bounds =
                 options.depth_test != DepthTest::none && options.slicing == Slicing::none;
-            const Slices* const by = options.slicing == Slicing::none       ? nullptr
-                                     : options.slicing == Slicing::clusters ? &slices->clusters
-                                                                            : &slices->z_bins;
-            const auto inputs = [&] {
-                if constexpr (options.slicing == Slicing::none)
-                    return inputs_for<options>(grid->bounds);
-                else
-                    return inputs_for<options>({}, *by);
-            };
+            const Slices& by = options.slicing == Slicing::clusters ? slices.clusters : slices.z_bins;
             const auto start = Clock::now();
-            const auto built = std::get<Binner<options>>(binners).bin(grid->view, moved, inputs());
+            const auto built = std::get<Binner<options>>(binners).bin(grid->view, moved,
+                                                                      inputs_for<options>(grid->bounds, by));
             const std::chrono::duration<double, std::nano> time = Clock::now() - start;
             if (!built) return built.error();
             plan.build_ns = (std::min)(plan.build_ns, time.count() + (with_bounds ? costs.z_bounds_ns : 0));
@@ -172,9 +245,9 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
                                                  ranks.order.size_bytes() + ranks.bins.size_bytes());
             plan.entries = built->ids().size();
             for_each_visible([&](int x, int y, float depth, double pixels) {
-                const int slice = by != nullptr ? by->slice_at(depth) : 0,
-                          layer = options.slicing == Slicing::clusters ? slice : 0;
-                auto list = built->lights_in(x / plan.tile_size, y / plan.tile_size, layer);
+                const int slice = options.slicing == Slicing::none ? 0 : by.slice_at(depth);
+                auto list = built->lights_in(x / plan.tile_size, y / plan.tile_size,
+                                             options.slicing == Slicing::clusters ? slice : 0);
                 if constexpr (options.slicing == Slicing::z_bins)
                     list = lights_of_bin(list, ranks.bins[static_cast<std::size_t>(slice)]);
                 plan.evaluations += pixels * static_cast<double>(list.size());
@@ -250,7 +323,8 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
 
     const Extent window = view.viewport();
     const int size = view.tile_size();
-    return detail::weigh<detail::weighed, base, Clock>(view, bounds, nullptr, lights, costs, [&](auto visit) {
+    const Slices one = *Slices::from_boundaries({});  // read by no plan
+    return detail::weigh<detail::weighed, base, Clock>(view, bounds, {one, one}, lights, costs, [&](auto visit) {
         detail::for_each_drawn(view, bounds, [&](int x, int y, std::size_t, float low, float) {
             visit(x, y, low, 1.0 * (std::min)(size, window.width - x) * (std::min)(size, window.height - y));
         });
@@ -273,7 +347,7 @@ Result<Advice> advise_slices(const View& view, const LightRange& lights, const W
                                 (2 * std::int64_t{samples_across}));
     };
     return detail::weigh<detail::weighed_sliced, base, Clock>(
-        view, {}, &slices, lights, costs, [&](auto visit) {
+        view, {}, slices, lights, costs, [&](auto visit) {
             if (view.tile_count() == 0) return;
             const float* depth = samples.depths.data();
             for (int y = 0; y < grid.height; ++y)
