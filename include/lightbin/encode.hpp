@@ -44,17 +44,14 @@ inline std::optional<Error> refuse(const ListFormat& format) {
 template <class To, class Id>
 void encode_ids(const LightGrid<Id>& grid, const ListFormat& format, std::byte* out) {
     const auto put = [&](std::size_t at, To id) { std::memcpy(out + at * sizeof(To), &id, sizeof(To)); };
-    if (format.encoding == ListEncoding::offset_count) {
-        for (std::size_t i = 0; i < grid.ids().size(); ++i)
-            put(i, static_cast<To>(grid.ids()[i]));
-        return;
-    }
+    const bool sentinels = format.encoding == ListEncoding::sentinel;
     std::size_t at = 0;
     for (const ListRange range : grid.ranges()) {
-        const std::uint32_t kept = (std::min)(range.count, format.capacity);
+        const std::uint32_t kept = sentinels ? (std::min)(range.count, format.capacity) : range.count;
+        const std::size_t first = sentinels ? at : range.offset;
         for (std::uint32_t i = 0; i < kept; ++i)
-            put(at + i, static_cast<To>(grid.ids()[range.offset + i]));
-        if (kept < format.capacity) put(at + kept, static_cast<To>(~To{0}));
+            put(first + i, static_cast<To>(grid.ids()[range.offset + i]));
+        if (sentinels && kept < format.capacity) put(first + kept, static_cast<To>(~To{0}));
         at += format.capacity;
     }
 }
@@ -108,9 +105,7 @@ Result<Encoded> encode(const LightGrid<Id>& grid, const ListFormat& format, std:
     if (const auto error = detail::refuse(format)) return *error;
     const std::uint64_t bytes = encoded_bytes(format, grid.ranges().size(), grid.ids().size());
     if (out.size() < bytes) return Error{ErrorCode::list_buffer_too_small, bytes, out.size()};
-    const std::uint64_t countable = countable_lights(format);
-    const std::uint64_t limit =
-        format.max_lights ? (std::min<std::uint64_t>)(format.max_lights, countable) : countable;
+    const std::uint64_t limit = format.max_lights ? format.max_lights : countable_lights(format);
 
     Encoded encoded;
     std::uint64_t needed = 0;  // the greatest id + 1

@@ -58,48 +58,34 @@ struct GlFormat {
     std::uint32_t internal, layout, type;
 };
 
-namespace detail {
-
-/// A texel format's size and its names in the graphics APIs.
-struct TexelNames {
-    std::uint32_t bytes;
-    GlFormat gl;
-    std::uint32_t vk, dxgi;
-    const char* webgpu;
-};
-
-constexpr TexelNames texel_names(TexelFormat format) {
-    constexpr std::uint32_t red = 0x1903, red_integer = 0x8d94, rg_integer = 0x8228;
-    constexpr std::uint32_t byte = 0x1401, half_word = 0x1403, word = 0x1405, real = 0x1406;
-    constexpr TexelNames names[] = {{0, {0, 0, 0}, 0, 0, ""},
-                                    {1, {0x8232, red_integer, byte}, 13, 62, "r8uint"},
-                                    {2, {0x8234, red_integer, half_word}, 74, 57, "r16uint"},
-                                    {4, {0x8236, red_integer, word}, 98, 42, "r32uint"},
-                                    {8, {0x823c, rg_integer, word}, 101, 17, "rg32uint"},
-                                    {4, {0x822e, red, real}, 100, 41, "r32float"}};
-    return names[static_cast<std::size_t>(format)];
-}
-
-}  // namespace detail
-
 /// Returns OpenGL's names of a format, such as GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE; for `none` zeros.
 constexpr GlFormat gl_format(TexelFormat format) {
-    return detail::texel_names(format).gl;
+    constexpr std::uint32_t red = 0x1903, red_integer = 0x8d94, rg_integer = 0x8228;
+    constexpr std::uint32_t byte = 0x1401, half_word = 0x1403, word = 0x1405, real = 0x1406;
+    constexpr GlFormat names[] = {{0, 0, 0},
+                                  {0x8232, red_integer, byte},
+                                  {0x8234, red_integer, half_word},
+                                  {0x8236, red_integer, word},
+                                  {0x823c, rg_integer, word},
+                                  {0x822e, red, real}};
+    return names[static_cast<std::size_t>(format)];
 }
 
 /// Returns Vulkan's name of a format, such as VK_FORMAT_R8_UINT; for `none` VK_FORMAT_UNDEFINED.
 constexpr std::uint32_t vk_format(TexelFormat format) {
-    return detail::texel_names(format).vk;
+    constexpr std::uint32_t names[] = {0, 13, 74, 98, 101, 100};
+    return names[static_cast<std::size_t>(format)];
 }
 
 /// Returns Direct3D's name of a format, such as DXGI_FORMAT_R8_UINT; for `none` DXGI_FORMAT_UNKNOWN.
 constexpr std::uint32_t dxgi_format(TexelFormat format) {
-    return detail::texel_names(format).dxgi;
+    constexpr std::uint32_t names[] = {0, 62, 57, 42, 17, 41};
+    return names[static_cast<std::size_t>(format)];
 }
 
 /// Returns WebGPU's name of a format, a GPUTextureFormat such as "r8uint"; for `none` an empty string.
 constexpr const char* webgpu_format(TexelFormat format) {
-    return detail::texel_names(format).webgpu;
+    return detail::name_at(format, {"", "r8uint", "r16uint", "r32uint", "rg32uint", "r32float"});
 }
 
 /// Returns how many rows a 2D texture with `width` texels per row needs to hold `count` texels, at least 1. The last

@@ -42,149 +42,6 @@ inline std::array<float, 3> slice_estimate(std::span<const float> boundaries) {
     return best;
 }
 
-/// Returns the texel format of the lists. In buffer textures and textures each id has a texel unless ids are packed.
-inline TexelFormat list_texels(const ShaderOptions& options) {
-    const bool one_id =
-        !options.packed_ids && options.format.encoding != ListEncoding::bitmask &&
-        (options.storage == ListStorage::texel_buffer || options.storage == ListStorage::texture_2d);
-    return one_id && options.format.ids == IdWidth::u8    ? TexelFormat::r8ui
-           : one_id && options.format.ids == IdWidth::u16 ? TexelFormat::r16ui
-                                                          : TexelFormat::r32ui;
-}
-
-/// Returns the buffers that the text reads.
-inline std::vector<ShaderBuffer> list_buffers(const ShaderOptions& options) {
-    using enum ShaderResource;
-    constexpr ShaderResource by_storage[] = {storage_buffer, texel_buffer, texture_2d, uniform_block,
-                                             byte_address};
-    const ShaderResource resource = by_storage[static_cast<std::size_t>(options.storage)];
-    const std::uint32_t width = resource == texture_2d ? options.texture_width : 0;
-    std::vector<ShaderBuffer> buffers;
-    if (options.format.encoding == ListEncoding::offset_count)
-        buffers.push_back({"tiles", options.tiles_in_uniform_block ? uniform_block : resource, options.tiles,
-                           TexelFormat::rg32ui, 8ull * options.max_tiles, 0});
-    buffers.push_back({"lists", resource, options.lists, list_texels(options),
-                       encoded_bytes(options.format, options.max_tiles, options.max_entries), width});
-    if (options.slicing != Slicing::none)
-        buffers.push_back({"slices", resource, options.slices, TexelFormat::r32ui,
-                           options.max_slices == 0 ? 0 : 4 * (options.max_slices + 3ull), width});
-    if (options.slicing == Slicing::z_bins)
-        buffers.push_back(
-            {"bins", resource, options.bins, TexelFormat::rg32ui, 8ull * options.max_slices, width});
-    return buffers;
-}
-
-/// The struct `cursor` and the functions `begin` and `next` of a wave. The wave's next light is the least id among the
-/// next lights of its lanes.
-inline constexpr const char* wave_cursor = R"(
-struct $cursor {
-    uint id;
-    bool own;
-    bool more;
-    $own_cursor ahead;
-};
-
-$cursor $begin(uvec2 pixel, float view_depth) {
-    $cursor c;
-    c.id = 0u;
-    c.own = false;
-    $own_cursor ahead = $own_begin(pixel, view_depth);
-    c.more = $own_next(&ahead);
-    c.ahead = ahead;
-    return c;
-}
-
-bool $next(inout $cursor c) {
-    $own_cursor ahead = c.ahead;
-    if (c.own) { c.more = $own_next(&ahead); }
-    c.ahead = ahead;
-    uint own = 0xffffffffu;
-    if (c.more) { own = ahead.id; }
-    c.id = subgroupMin(own);
-    c.own = c.more && own == c.id;
-    return c.id != 0xffffffffu;
-}
-)";
-
-/// The function `slice`, which returns the slice of a view depth. It starts from the estimate, in which a device may
-/// round the logarithm as it likes, and steps from there until the boundaries enclose the depth. They are compared as
-/// integers in the same order as the floats, because devices may flush denormal floats to zero.
-inline constexpr const char* slice_function = "\n// The slice that a view depth lies in."
-    "\nuint $slice(float view_depth) {\n    float guess = uintBitsToFloat($slices[0u]) * log2(max(view_depth, 1e-37)) + "
-    "uintBitsToFloat($slices[1u]) * view_depth + uintBitsToFloat($slices[2u]);" R"(
-    uint last = $slices[3u];
-    uint slice = min(uint(clamp(guess, 0.0, 1e9)), last);
-    uint bits = floatBitsToUint(view_depth);
-    uint key = bits | 0x80000000u;
-    if (bits > 0x80000000u) { key = ~bits; }
-    while (slice > 0u && key < $slices[slice + 3u]) { slice -= 1u; }
-    while (slice < last && key >= $slices[slice + 4u]) { slice += 1u; }
-    return slice;
-}
-)";
-
-/// The end of the function `count`, and the function `heat`.
-inline constexpr const char* heat_function = R"(}
-
-vec3 $heat(uvec2 pixel, float view_depth, float most) {
-    float heat = float($count(pixel, view_depth)) / most;
-    vec3 colour = vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat);
-    return clamp(colour, vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
-}
-)";
-
-/// The function `check_view` from where it knows `here`.
-inline constexpr const char* view_check_lines = R"(    float depth = $depths.x * position.z;
-    float w = 1.0;
-    if ($depths.y > 0.0) { w = depth; }
-    vec2 at = $image.xy * position.xy / w + $image.zw;
-    vec2 apart = abs(at - (vec2(here) + 0.5));
-    return apart.x < $depths.w && apart.y < $depths.w && depth >= $depths.z;
-}
-)";
-
-/// The function `window`, the shader's light_window().
-inline constexpr const char* window_function = R"(
-// 1 at a light, falling smoothly to 0 at its range and beyond.
-float $window(float apart, float range) {
-    float x = apart / range;
-    float w = 0.0;
-    if (apart < range) { w = 1.0 - x * x * x * x; }
-    return w * w;
-}
-)";
-
-/// The struct `missing` and the functions `begin_missing` and `next_missing`. As the ids of a list ascend, one pass over
-/// all ids, with the list's cursor beside it, finds the ids that the list lacks.
-inline constexpr const char* list_check_functions = R"(
-// A light, and whether the pixel's list lacks it.
-struct $missing {
-    uint id;
-    bool lacked;
-    bool more;
-    $own_cursor listed;
-};
-
-$missing $begin_missing(uvec2 pixel, float view_depth) {
-    $own_cursor listed = $own_begin(pixel, view_depth);
-    $missing m;
-    m.id = 0xffffffffu;
-    m.lacked = false;
-    m.more = $own_next(&listed);
-    m.listed = listed;
-    return m;
-}
-
-bool $next_missing(inout $missing m, uint lights) {
-    m.id += 1u;
-    $own_cursor listed = m.listed;
-    m.lacked = !(m.more && listed.id == m.id);
-    if (!m.lacked) { m.more = $own_next(&listed); }
-    m.listed = listed;
-    return m.id < lights;
-}
-)";
-
 }  // namespace detail
 
 inline std::vector<std::uint32_t> shader_slices(const Slices& slices) {
@@ -204,6 +61,7 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     using namespace detail;
     ShaderWriter writer(options.language, options.prefix);
     const Dialect& dialect = writer.dialect();
+    const ListFormat& format = options.format;
     const bool textures = options.storage == ListStorage::texture_2d;
     if (const auto error = refuse_common(
             options, {options.tiles, options.lists, options.grid, options.slices, options.bins, options.view},
@@ -219,16 +77,40 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
              {textures && (options.texture_width < 1 || options.texture_width > 16384),
               {ErrorCode::texture_width_out_of_range, options.texture_width, 16384}}}))
         return *error;
-    if (const auto error = refuse(options.format)) return *error;
+    if (const auto error = refuse(format)) return *error;
     // A uniform block is declared as an array of 16-byte vectors, of which Direct3D allows 4096.
     const std::uint64_t limit =
         options.uniform_block_bytes > 65536 && dialect.hlsl ? 65536 : options.uniform_block_bytes / 16 * 16;
-    const std::vector<ShaderBuffer> buffers = list_buffers(options);
+    using enum ShaderResource;
+    constexpr ShaderResource by_storage[] = {storage_buffer, texel_buffer, texture_2d, uniform_block,
+                                             byte_address};
+    const ShaderResource resource = by_storage[static_cast<std::size_t>(options.storage)];
+    const bool table = format.encoding == ListEncoding::offset_count,
+               bits = format.encoding == ListEncoding::bitmask;
+    // In buffer textures and textures each id has a texel unless ids are packed.
+    const bool one_id = !options.packed_ids && !bits && (resource == texel_buffer || textures);
+    const TexelFormat texel = one_id && format.ids == IdWidth::u8    ? TexelFormat::r8ui
+                              : one_id && format.ids == IdWidth::u16 ? TexelFormat::r16ui
+                                                                     : TexelFormat::r32ui;
+    const bool sliced = options.slicing != Slicing::none, binned = options.slicing == Slicing::z_bins;
+    const std::uint32_t width = textures ? options.texture_width : 0;
+    std::vector<ShaderBuffer> buffers;
+    if (table)
+        buffers.push_back({"tiles", options.tiles_in_uniform_block ? uniform_block : resource, options.tiles,
+                           TexelFormat::rg32ui, 8ull * options.max_tiles, 0});
+    buffers.push_back({"lists", resource, options.lists, texel,
+                       encoded_bytes(format, options.max_tiles, options.max_entries), width});
+    if (sliced)
+        buffers.push_back({"slices", resource, options.slices, TexelFormat::r32ui,
+                           options.max_slices == 0 ? 0 : 4 * (options.max_slices + 3ull), width});
+    if (binned)
+        buffers.push_back(
+            {"bins", resource, options.bins, TexelFormat::rg32ui, 8ull * options.max_slices, width});
     for (const ShaderBuffer& buffer : buffers)
-        if (buffer.resource == ShaderResource::uniform_block && buffer.bytes == 0)
+        if (buffer.resource == uniform_block && buffer.bytes == 0)
             return Error{ErrorCode::block_size_unknown};
     for (const ShaderBuffer& buffer : buffers)
-        if (buffer.resource == ShaderResource::uniform_block && buffer.bytes > limit)
+        if (buffer.resource == uniform_block && buffer.bytes > limit)
             return Error{ErrorCode::uniform_block_too_small, buffer.bytes, limit};
 
     // The loop ends for all lanes of a wave at once. WGSL compilers can't prove that, and would refuse subgroupMin.
@@ -254,19 +136,30 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     const std::string size = fixed ? std::to_string(options.tile_size) + "u" : "$grid.x";
     writer.add("\n// The tile that a pixel lies in.\nuvec2 $tile(uvec2 pixel) {\n" + here + "    return here / " +
                (fixed ? size : "max(" + size + ", 1u)") + ";\n}\n");
-    const bool sliced = options.slicing != Slicing::none, binned = options.slicing == Slicing::z_bins;
-    if (sliced) writer.add(slice_function);
+    // `slice` returns the slice of a view depth. It starts from the estimate, in which a device may round the logarithm
+    // as it likes, and steps from there until the boundaries enclose the depth. They are compared as integers in the
+    // same order as the floats, because devices may flush denormal floats to zero.
+    if (sliced)
+        writer.add("\n// The slice that a view depth lies in.\nuint $slice(float view_depth) {\n    float guess = "
+                   "uintBitsToFloat($slices[0u]) * log2(max(view_depth, 1e-37)) + "
+                   "uintBitsToFloat($slices[1u]) * view_depth + uintBitsToFloat($slices[2u]);" R"(
+    uint last = $slices[3u];
+    uint slice = min(uint(clamp(guess, 0.0, 1e9)), last);
+    uint bits = floatBitsToUint(view_depth);
+    uint key = bits | 0x80000000u;
+    if (bits > 0x80000000u) { key = ~bits; }
+    while (slice > 0u && key < $slices[slice + 3u]) { slice -= 1u; }
+    while (slice < last && key >= $slices[slice + 4u]) { slice += 1u; }
+    return slice;
+}
+)");
 
     // `id_at` returns one id of the lists; from packed lists it extracts the byte or half word.
-    const ListFormat& format = options.format;
-    const bool table = format.encoding == ListEncoding::offset_count,
-               bits = format.encoding == ListEncoding::bitmask;
-    const bool whole = format.ids == IdWidth::u32 || list_texels(options) != TexelFormat::r32ui;
     if (!bits)
         writer.add(std::string("\nuint $id_at(uint at) {\n    return ") +
-                   (whole                        ? "$lists[at]"
-                    : format.ids == IdWidth::u16 ? "($lists[at >> 1u] >> ((at & 1u) * 16u)) & 0xffffu"
-                                                 : "($lists[at >> 2u] >> ((at & 3u) * 8u)) & 0xffu") +
+                   (one_id || format.ids == IdWidth::u32 ? "$lists[at]"
+                    : format.ids == IdWidth::u16          ? "($lists[at >> 1u] >> ((at & 1u) * 16u)) & 0xffffu"
+                                                          : "($lists[at >> 2u] >> ((at & 3u) * 8u)) & 0xffu") +
                    ";\n}\n");
 
     // The struct `cursor` and the function `begin`. For a pixel outside of the grid it reads nothing and divides by
@@ -337,7 +230,37 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     if (binned) writer.add("        more = more && c.id <= c.last;\n");
     writer.add("    }\n    return more;\n}\n");
 
-    if (options.wave_loop) writer.add(wave_cursor);
+    // The cursor of a wave. The wave's next light is the least id among the next lights of its lanes.
+    if (options.wave_loop)
+        writer.add(R"(
+struct $cursor {
+    uint id;
+    bool own;
+    bool more;
+    $own_cursor ahead;
+};
+
+$cursor $begin(uvec2 pixel, float view_depth) {
+    $cursor c;
+    c.id = 0u;
+    c.own = false;
+    $own_cursor ahead = $own_begin(pixel, view_depth);
+    c.more = $own_next(&ahead);
+    c.ahead = ahead;
+    return c;
+}
+
+bool $next(inout $cursor c) {
+    $own_cursor ahead = c.ahead;
+    if (c.own) { c.more = $own_next(&ahead); }
+    c.ahead = ahead;
+    uint own = 0xffffffffu;
+    if (c.more) { own = ahead.id; }
+    c.id = subgroupMin(own);
+    c.own = c.more && own == c.id;
+    return c.id != 0xffffffffu;
+}
+)");
     if (!dialect.webgpu)
         writer.add(std::string("\n#define $for_each_light(cursor, pixel, view_depth) for ($cursor cursor = "
                                "$begin(pixel, view_depth); $next(cursor);)") +
@@ -347,12 +270,66 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
                    std::string(table && !binned ? "    return c.end - c.at;\n"
                                                 : "    uint count = 0u;\n    while ($own_next(&c)) { count += 1u; }\n"
                                                   "    return count;\n") +
-                   heat_function);
-    if (options.window) writer.add(window_function);
+                   R"(}
+
+vec3 $heat(uvec2 pixel, float view_depth, float most) {
+    float heat = float($count(pixel, view_depth)) / most;
+    vec3 colour = vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat);
+    return clamp(colour, vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
+}
+)");
+    if (options.window)  // the shader's light_window()
+        writer.add(R"(
+// 1 at a light, falling smoothly to 0 at its range and beyond.
+float $window(float apart, float range) {
+    float x = apart / range;
+    float w = 0.0;
+    if (apart < range) { w = 1.0 - x * x * x * x; }
+    return w * w;
+}
+)");
     if (options.view_check)
         writer.add("\n// Whether the View has a position of view space in this pixel, and not before its near plane.\n"
-                   "bool $check_view(uvec2 pixel, vec3 position) {\n" + here + view_check_lines);
-    if (options.list_check) writer.add(list_check_functions);
+                   "bool $check_view(uvec2 pixel, vec3 position) {\n" + here +
+                   R"(    float depth = $depths.x * position.z;
+    float w = 1.0;
+    if ($depths.y > 0.0) { w = depth; }
+    vec2 at = $image.xy * position.xy / w + $image.zw;
+    vec2 apart = abs(at - (vec2(here) + 0.5));
+    return apart.x < $depths.w && apart.y < $depths.w && depth >= $depths.z;
+}
+)");
+    // As the ids of a list ascend, one pass over all ids, with the list's cursor beside it, finds the ids that the list
+    // lacks.
+    if (options.list_check)
+        writer.add(R"(
+// A light, and whether the pixel's list lacks it.
+struct $missing {
+    uint id;
+    bool lacked;
+    bool more;
+    $own_cursor listed;
+};
+
+$missing $begin_missing(uvec2 pixel, float view_depth) {
+    $own_cursor listed = $own_begin(pixel, view_depth);
+    $missing m;
+    m.id = 0xffffffffu;
+    m.lacked = false;
+    m.more = $own_next(&listed);
+    m.listed = listed;
+    return m;
+}
+
+bool $next_missing(inout $missing m, uint lights) {
+    m.id += 1u;
+    $own_cursor listed = m.listed;
+    m.lacked = !(m.more && listed.id == m.id);
+    if (!m.lacked) { m.more = $own_next(&listed); }
+    m.listed = listed;
+    return m.id < lights;
+}
+)");
     if (options.list_check && !dialect.webgpu)
         writer.add("\n#define $for_each_missing(cursor, lights, pixel, view_depth) for ($missing cursor = "
                    "$begin_missing(pixel, view_depth); $next_missing(cursor, lights);) if (cursor.lacked)\n");

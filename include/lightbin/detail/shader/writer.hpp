@@ -8,6 +8,7 @@
 #include <lightbin/result.hpp>
 #include <lightbin/shader_text.hpp>
 
+#include <array>
 #include <cctype>
 #include <initializer_list>
 #include <optional>
@@ -143,22 +144,19 @@ private:
         }
     }
 
-    void declare(std::string_view type, std::string_view name) {
-        const std::string what(type);
-        if (in_struct_) {
-            wgsl_ += std::string(name) + " : " + what;
-        } else if (in_parameters_) {
-            wgsl_ += std::string(name) + " : " + (by_pointer_ ? "ptr<function, " + what + ">" : what);
-            if (by_pointer_) names_.push_back({std::string(name), "(*" + std::string(name) + ")"});
-            by_pointer_ = false;
-        } else if (depth_ == 0) {
-            wgsl_ += "fn " + std::string(name);
+    void declare(std::string_view type, std::string_view its_name) {
+        const std::string what(type), name(its_name);
+        if (depth_ == 0 && !in_parameters_) {
+            wgsl_ += "fn " + name;
             result_ = what;
             in_parameters_ = true;
             names_.resize(constants_);
-        } else {
-            wgsl_ += "var " + std::string(name) + " : " + what;
+            return;
         }
+        wgsl_ += (in_struct_ || in_parameters_ ? "" : "var ") + name + " : " +
+                 (by_pointer_ ? "ptr<function, " + what + ">" : what);
+        if (by_pointer_) names_.push_back({name, "(*" + name + ")"});
+        by_pointer_ = false;
     }
 
     std::string_view renamed(std::string_view word) const {
@@ -311,7 +309,7 @@ public:
     void declare(const ShaderBuffer& buffer) {
         buffers_.push_back(buffer);
         const std::string type = buffer.format == TexelFormat::rg32ui ? "uvec2" : "uint";
-        const std::uint32_t stride = texel_names(buffer.format).bytes;
+        const std::uint32_t stride = std::array{0u, 1u, 2u, 4u, 8u}[static_cast<std::size_t>(buffer.format)];
         if (buffer.resource == ShaderResource::storage_buffer)
             return declare_storage(buffer.name, type, "readonly", buffer.slot, stride);
         if (buffer.resource == ShaderResource::uniform_block) {
@@ -393,14 +391,16 @@ public:
                       ") in;\nvoid main() {\n    $run(gl_WorkGroupID.xy, gl_LocalInvocationIndex);\n}\n");
     }
 
-    /// Returns the text in the writer's language, or an Error if two resources are bound to one slot.
+    /// Returns the text in the writer's language, or an Error if two resources are bound to one slot. Languages without
+    /// bindings in the text have no slots.
     Result<ShaderText> finish() {
         shader_.text = replaced(dialect_.webgpu ? WgslTranslation(shader_.text, members_).text()
                                               : translate(shader_.text, dialect_.hlsl, dialect_.es),
                                 "$", prefix_);
         for (const ShaderBinding& a : shader_.bindings)
             for (const ShaderBinding& b : shader_.bindings)
-                if (&a < &b && clash(a, b))
+                if (dialect_.storage_buffers && &a < &b && numbering_of(a) != '-' &&
+                    numbering_of(a) == numbering_of(b) && a.slot.binding == b.slot.binding && a.slot.set == b.slot.set)
                     return Error{ErrorCode::bindings_overlap, static_cast<std::uint64_t>(a.slot.binding),
                                  static_cast<std::uint64_t>(a.slot.set)};
         return shader_;
@@ -466,12 +466,6 @@ private:
         return (dialect_.hlsl                      ? "-b-ttttu"
                 : dialect_.vulkan || dialect_.webgpu ? "-b-bbbbb"
                                                    : "-b-s-tts")[static_cast<std::size_t>(binding.resource)];
-    }
-
-    /// Whether two resources have the same binding. Languages without bindings in the text have no clashes.
-    bool clash(const ShaderBinding& a, const ShaderBinding& b) const {
-        return dialect_.storage_buffers && numbering_of(a) != '-' && numbering_of(a) == numbering_of(b) &&
-               a.slot.binding == b.slot.binding && a.slot.set == b.slot.set;
     }
 
     Dialect dialect_;
