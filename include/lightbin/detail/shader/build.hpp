@@ -16,7 +16,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options) {
     using namespace detail;
     ShaderWriter writer(options.language, options.prefix);
-    const Dialect& dialect = writer.dialect();
+    const Dialect& dialect = writer.dialect;
     const bool compute = options.stage == ShaderStage::compute, many = options.samples > 1;
     if (const auto error = refuse_common(
             options, {options.depth, options.z_bounds, options.grid},
@@ -56,11 +56,14 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options) {
 }
 
 vec2 $view_depths(uvec2 range) {
-)" + std::string(infinity_lines));
+    uint endless_bits = 0x7f800000u;
+    float endless = uintBitsToFloat(endless_bits);
+)");
     // `view_depths` converts a tile's range of window depths to view depths, rounded outward. In units of u = 2^-24 the
     // relative errors are: 3u in `far_end` and `slope`, since View's depths are floats; 2u in their product and sum; 1u
     // in e, which is exact where it is small; up to 5u in the device's reciprocal. That is 11u, and the factors allow
-    // 2^-19 = 32u. Orthographic views allow 2^-20 of the sum of the two planes' depths.
+    // 2^-19 = 32u. Orthographic views allow 2^-20 of the sum of the two planes' depths. Infinity is made from a variable,
+    // because WGSL refuses it as a constant.
     if (options.format == DepthFormat::float32)
         // Widens the range by two units in the last place, at least as much as reduce_depth() does. No end is denormal,
         // because devices may flush denormal floats to zero.
@@ -104,17 +107,18 @@ void $pixel(inout uvec2 range, uvec2 first, uvec2 size, uint i) {
     uvec2 range = uvec2(0xffffffffu, 0u);
 )");
     if (compute) {
-        writer.add("    if (thread == 0u) {\n        " + writer.store_atomic("$range_ends[0]", "range.x") +
-                   ";\n        " + writer.store_atomic("$range_ends[1]", "range.y") + R"(;
+        writer.add(R"(    if (thread == 0u) {
+        atomicStore(&$range_ends[0], range.x);
+        atomicStore(&$range_ends[1], range.y);
     }
     sync_group();
     for (uint i = thread; i < size.x * size.y; i += 64u) { $pixel(&range, first, size, i); }
     atomicMin(&$range_ends[0], range.x);
     atomicMax(&$range_ends[1], range.y);
     sync_group();
-    if (thread == 0u) { $z_bounds[tile.y * $grid.y + tile.x] = $view_depths(uvec2()" +
-                   writer.load_atomic("$range_ends[0]") + ", " + writer.load_atomic("$range_ends[1]") +
-                   ")); }\n}\n");
+    if (thread == 0u) {)"
+                   " $z_bounds[tile.y * $grid.y + tile.x] = "
+                   "$view_depths(uvec2(atomicLoad(&$range_ends[0]), atomicLoad(&$range_ends[1]))); }\n}\n");
         writer.add_compute_main(64);
         return writer.finish();
     }
@@ -187,7 +191,7 @@ inline Result<ShaderText> build_shader(const BuildShaderOptions& options) {
                max_only = options.max_only && !clusters, fill = options.pass == BuildPass::fill;
     if (const auto error = refuse_common(
             options, {options.footprints, options.z_bounds, options.tiles, options.lists, options.total, options.grid},
-            {{!writer.dialect().storage_buffers, {ErrorCode::no_storage_buffers}},
+            {{!writer.dialect.storage_buffers, {ErrorCode::no_storage_buffers}},
              {options.depth_test == DepthTest::split_box, {ErrorCode::no_split_box_shader}},
              {options.slicing == Slicing::z_bins || (clusters && options.depth_test == DepthTest::interval),
               {ErrorCode::no_such_slicing_shader}}}))
@@ -283,12 +287,11 @@ float $greatest(float side, vec2 z) {
     std::string arguments = "tile";
     if (depths) {
         // A Z bound that is NaN excludes nothing. NaN is recognised by its bits: compilers may assume no float is NaN.
-        const auto if_nan = [](const char* end) {
-            return "if ((floatBitsToUint(z." + std::string(end) + ") & 0x7fffffffu) > 0x7f800000u) ";
-        };
-        writer.add(infinity_lines + ("    vec2 z = $z_bounds[" + std::string(clusters ? "slice" : "place")) +
-                   "];\n    " + (max_only ? "z.x = -endless;" : if_nan("x") + "{ z.x = -endless; }") +
-                   "\n    " + if_nan("y") + "{ z.y = endless; }\n    bool lit = z.x <= z.y;\n");
+        const std::string nan = ") & 0x7fffffffu) > 0x7f800000u) ";
+        writer.add("    uint endless_bits = 0x7f800000u;\n    float endless = uintBitsToFloat(endless_bits);\n    vec2 z = " +
+                   std::string(clusters ? "$z_bounds[slice];\n    " : "$z_bounds[place];\n    ") +
+                   (max_only ? "z.x = -endless;" : "if ((floatBitsToUint(z.x" + nan + "{ z.x = -endless; }") +
+                   "\n    if ((floatBitsToUint(z.y" + nan + "{ z.y = endless; }\n    bool lit = z.x <= z.y;\n");
         arguments += ", z";
     }
     if (box) {  // the cell's view-space box, as engine/cell_boxes.hpp computes it
@@ -305,27 +308,24 @@ float $greatest(float side, vec2 z) {
         arguments += ", cell";
     }
     if (fill) writer.add("    uvec2 list = $tiles[place];\n");
-    writer.add("    uint count = 0u;\n    for (uint first = 0u; first < $grid.z; first += 64u) {\n"
-               "        if (thread < 2u) { " +
-               writer.store_atomic("$hits[thread]", "0u") + R"(; }
+    writer.add(R"(    uint count = 0u;
+    for (uint first = 0u; first < $grid.z; first += 64u) {
+        if (thread < 2u) { atomicStore(&$hits[thread], 0u); }
         sync_group();
         uint i = first + thread;
         bool hit = false;
-        if ()" +
-               (depths ? "lit && " : "") + "i < $grid.z) { hit = $meets($footprints[i], " + arguments +
-               R"(); }
+        if ()" + std::string(depths ? "lit && " : "") + "i < $grid.z) { hit = $meets($footprints[i], " + arguments + R"(); }
         if (hit) { atomicOr(&$hits[thread >> 5u], 1u << (thread & 31u)); }
         sync_group();
 )");
-    const std::string low_hits = writer.load_atomic("$hits[0]"), high_hits = writer.load_atomic("$hits[1]");
     if (fill)
-        writer.add(
-            "        uint before = (1u << (thread & 31u)) - 1u;\n        uint rank = count + uint(bitCount(" +
-            writer.load_atomic("$hits[thread >> 5u]") +
-            " & before));\n        if (thread >= 32u) { rank += uint(bitCount(" + low_hits +
-            ")); }\n        if (hit && rank < list.y) { $lists[list.x + rank] = $footprints[i].id; }\n");
-    writer.add("        count += uint(bitCount(" + low_hits + ")) + uint(bitCount(" + high_hits +
-               "));\n        sync_group();\n    }\n");
+        writer.add(R"(        uint before = (1u << (thread & 31u)) - 1u;
+        uint rank = count + uint(bitCount(atomicLoad(&$hits[thread >> 5u]) & before));
+        if (thread >= 32u) { rank += uint(bitCount(atomicLoad(&$hits[0]))); }
+        if (hit && rank < list.y) { $lists[list.x + rank] = $footprints[i].id; }
+)");
+    writer.add("        count += uint(bitCount(atomicLoad(&$hits[0]))) + uint(bitCount(atomicLoad(&$hits[1])));\n"
+               "        sync_group();\n    }\n");
     if (!fill) writer.add("    if (thread == 0u) { $tiles[place] = uvec2(0u, count); }\n");
     writer.add("}\n");
     writer.add_compute_main(64);

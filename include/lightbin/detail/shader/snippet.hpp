@@ -60,7 +60,7 @@ inline std::vector<std::uint32_t> shader_slices(const Slices& slices) {
 inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     using namespace detail;
     ShaderWriter writer(options.language, options.prefix);
-    const Dialect& dialect = writer.dialect();
+    const Dialect& dialect = writer.dialect;
     const ListFormat& format = options.format;
     const bool textures = options.storage == ListStorage::texture_2d;
     if (const auto error = refuse_common(

@@ -63,6 +63,13 @@ inline ShaderWord shader_word(std::string_view word) {
     return {word, word, word};
 }
 
+/// Returns `text` with every `from` replaced by `to`.
+inline std::string replaced(std::string text, std::string_view from, std::string_view to) {
+    for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+        text.replace(at, from.size(), to);
+    return text;
+}
+
 /// Translates to HLSL, or to GLSL for OpenGL, Vulkan or ES. In ES every declaration is marked highp, since a fragment
 /// shader's integers may have only 16 bits otherwise. (A default precision would change the user's code, too.)
 inline std::string translate(std::string_view glsl, bool hlsl, bool es) {
@@ -73,6 +80,12 @@ inline std::string translate(std::string_view glsl, bool hlsl, bool es) {
         if (word.empty()) {
             const char sign = glsl[at++];
             if (sign != '&' || word_at(glsl, at).empty()) text += sign;
+            continue;
+        }
+        if (word == "atomicLoad" || word == "atomicStore") {  // (&variable) or (&variable, value); only WGSL has them
+            const std::size_t end = glsl.find(')', at);
+            text += replaced(std::string(glsl.substr(at + 2, end - at - 2)), ", ", " = ");
+            at = end + 1;
             continue;
         }
         const ShaderWord row = shader_word(word);
@@ -215,13 +228,6 @@ std::optional<Error> refuse_common(const Options& options, std::initializer_list
     return std::nullopt;
 }
 
-/// Returns `text` with every `from` replaced by `to`.
-inline std::string replaced(std::string text, std::string_view from, std::string_view to) {
-    for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
-        text.replace(at, from.size(), to);
-    return text;
-}
-
 /// A read-only buffer whose elements are uint or uvec2.
 struct ShaderBuffer {
     std::string name;
@@ -240,22 +246,17 @@ struct ByLanguage {
     std::string glsl = {}, hlsl = {}, wgsl = {};
 };
 
-/// Lines that declare `endless`, which is infinity. It is made from a variable because WGSL refuses it as a constant.
-inline constexpr const char* infinity_lines = R"(    uint endless_bits = 0x7f800000u;
-    float endless = uintBitsToFloat(endless_bits);
-)";
-
 /// Collects one shader text and its bindings. The declare functions add a declaration to the text and the resource to
 /// the bindings. In all texts that the writer is given, `$` stands for the prefix.
 class ShaderWriter {
 public:
     ShaderWriter(ShaderLanguage language, std::string_view prefix)
-        : dialect_{language}, prefix_(prefix) {}
+        : dialect{language}, prefix_(prefix) {}
 
-    const Dialect& dialect() const { return dialect_; }
+    const Dialect dialect;
 
-    /// Appends text in the part of GLSL that the head of this file describes. `$name[i]` reads element i of the ShaderBuffer
-    /// `name`, whatever kind of resource it is.
+    /// Appends text in the part of GLSL that the head of this file describes. `$name[i]` reads element i of the
+    /// ShaderBuffer `name`, whatever kind of resource it is.
     void add(std::string glsl) {
         for (const ShaderBuffer& buffer : buffers_) {
             const std::string name = "$" + buffer.name + "[";
@@ -277,7 +278,7 @@ public:
     /// Declares a resource by the text of the writer's language. `@` in the text stands for the layout, register or
     /// attribute that binds the resource. binding.name lacks the prefix.
     void declare(ShaderBinding binding, const ByLanguage& text) {
-        const std::string& own = dialect_.hlsl ? text.hlsl : dialect_.webgpu ? text.wgsl : text.glsl;
+        const std::string& own = dialect.hlsl ? text.hlsl : dialect.webgpu ? text.wgsl : text.glsl;
         shader_.text += replaced(own, "@", binding_text(binding)) + ";\n";
         binding.name.insert(0, prefix_);
         shader_.bindings.push_back(std::move(binding));
@@ -285,7 +286,7 @@ public:
 
     /// Declares a texture or another resource that has an opaque type.
     void declare_opaque(ShaderBinding binding, const ByLanguage& type) {
-        const std::string name = " $" + binding.name, highp = dialect_.es ? "highp " : "";
+        const std::string name = " $" + binding.name, highp = dialect.es ? "highp " : "";
         declare(std::move(binding), {.glsl = "@uniform " + highp + type.glsl + name,
                                      .hlsl = type.hlsl + name + "@",
                                      .wgsl = "@var" + name + " : " + type.wgsl});
@@ -294,7 +295,7 @@ public:
     /// Declares a storage buffer, an array of `type`. `access` is "readonly", "writeonly", or "" for both.
     void declare_storage(const std::string& name, const std::string& type, const std::string& access,
                          ShaderSlot slot, std::uint32_t stride) {
-        const bool writable = access != "readonly", block = !dialect_.hlsl && !dialect_.webgpu;
+        const bool writable = access != "readonly", block = !dialect.hlsl && !dialect.webgpu;
         const ShaderResource resource =
             writable ? ShaderResource::writable_buffer : ShaderResource::storage_buffer;
         declare({name + (block ? "_block" : ""), resource, slot, TexelFormat::none, stride},
@@ -316,7 +317,7 @@ public:
             // Each array element takes 16 bytes in a uniform block, so the array is one of uvec4.
             const auto vectors = static_cast<std::uint32_t>((buffer.bytes + 15) / 16);
             const std::string name = "$" + buffer.name, count = std::to_string(vectors);
-            return declare_block(buffer.name + (dialect_.webgpu ? "" : "_block"), buffer.slot, false,
+            return declare_block(buffer.name + (dialect.webgpu ? "" : "_block"), buffer.slot, false,
                                  16 * vectors, "    uvec4 " + name + "[" + count + "];\n",
                                  "@var<uniform> " + name + " : array<vec4u, " + count + ">");
         }
@@ -333,12 +334,12 @@ public:
     /// Declares constants, each at a multiple of 16 bytes. In OpenGL they are single uniforms; in the other APIs they
     /// form one block, or push constants if `push` is set, which is named after the first constant.
     void declare_constants(const std::vector<ShaderConstant>& constants, ShaderSlot slot, bool push) {
-        const bool loose = !dialect_.hlsl && !dialect_.vulkan && !dialect_.webgpu;
+        const bool loose = !dialect.hlsl && !dialect.vulkan && !dialect.webgpu;
         const std::string name = std::string(constants.front().second) + "_block";
         std::string lines;
         for (const auto& [constant_type, constant_name] : constants) {
             const std::string own = constant_name, type = constant_type;
-            lines += "    " + type + (dialect_.webgpu ? " " : " $") + own + ";\n";
+            lines += "    " + type + (dialect.webgpu ? " " : " $") + own + ";\n";
             members_.push_back({"$" + own, "$" + name + "." + own});
             const std::uint32_t bytes = type == "ivec2" ? 8 : 16;
             if (loose)
@@ -354,36 +355,28 @@ public:
     /// Returns the expression that reads a texel of a texture at `at`, an ivec2; of a multisampled texture, one sample.
     std::string read_texel(const std::string& texture, const std::string& at,
                            const std::string& sample = "0") const {
-        return dialect_.hlsl
+        return dialect.hlsl
                    ? texture + ".Load(" + (sample == "0" ? "int3(" + at + ", 0)" : at + ", " + sample) + ")"
-               : dialect_.webgpu ? "textureLoad(" + texture + ", " + at + ", " + sample + ")"
+               : dialect.webgpu ? "textureLoad(" + texture + ", " + at + ", " + sample + ")"
                                : "texelFetch(" + texture + ", " + at + ", " + sample + ")";
     }
 
     /// Declares an array of uint in the memory that a work group shares. WGSL has a type of its own for atomic
-    /// variables: load_atomic(), store_atomic() and the atomic functions of GLSL are all that may access them.
+    /// variables, which only atomicLoad(), atomicStore() and the atomic functions of GLSL may access.
     void declare_shared(const std::string& name, int count, bool atomic) {
         const std::string size = std::to_string(count), type = atomic ? "atomic<uint>" : "uint";
-        add(dialect_.webgpu ? "var<workgroup> $" + name + " : array<" + type + ", " + size + ">;\n"
+        add(dialect.webgpu ? "var<workgroup> $" + name + " : array<" + type + ", " + size + ">;\n"
                           : "shared uint $" + name + "[" + size + "];\n");
-    }
-
-    std::string load_atomic(const std::string& at) const {
-        return dialect_.webgpu ? "atomicLoad(&" + at + ")" : at;
-    }
-
-    std::string store_atomic(const std::string& at, const std::string& value) const {
-        return dialect_.webgpu ? "atomicStore(&" + at + ", " + value + ")" : at + " = " + value;
     }
 
     /// Adds the entry point of a compute shader with `threads` threads per group, which calls $run(group, thread).
     void add_compute_main(unsigned threads) {
         const std::string count = std::to_string(threads);
-        add(dialect_.webgpu ? "\n@compute @workgroup_size(" + count +
+        add(dialect.webgpu ? "\n@compute @workgroup_size(" + count +
                                 ")\nfn main(@builtin(workgroup_id) group : vec3u, "
                                 "@builtin(local_invocation_index) thread : u32) {\n"
                                 "    $run(group.xy, thread);\n}\n"
-            : dialect_.hlsl
+            : dialect.hlsl
                 ? "\n[numthreads(" + count +
                       ", 1, 1)]\nvoid main(uint3 group : SV_GroupID, uint thread : SV_GroupIndex) {\n"
                       "    $run(group.xy, thread);\n}\n"
@@ -394,12 +387,12 @@ public:
     /// Returns the text in the writer's language, or an Error if two resources are bound to one slot. Languages without
     /// bindings in the text have no slots.
     Result<ShaderText> finish() {
-        shader_.text = replaced(dialect_.webgpu ? WgslTranslation(shader_.text, members_).text()
-                                              : translate(shader_.text, dialect_.hlsl, dialect_.es),
+        shader_.text = replaced(dialect.webgpu ? WgslTranslation(shader_.text, members_).text()
+                                              : translate(shader_.text, dialect.hlsl, dialect.es),
                                 "$", prefix_);
         for (const ShaderBinding& a : shader_.bindings)
             for (const ShaderBinding& b : shader_.bindings)
-                if (dialect_.storage_buffers && &a < &b && numbering_of(a) != '-' &&
+                if (dialect.storage_buffers && &a < &b && numbering_of(a) != '-' &&
                     numbering_of(a) == numbering_of(b) && a.slot.binding == b.slot.binding && a.slot.set == b.slot.set)
                     return Error{ErrorCode::bindings_overlap, static_cast<std::uint64_t>(a.slot.binding),
                                  static_cast<std::uint64_t>(a.slot.set)};
@@ -426,7 +419,7 @@ private:
                                         width + ")") +
                    components;
         }
-        if (buffer.resource == ShaderResource::texel_buffer && !dialect_.hlsl)
+        if (buffer.resource == ShaderResource::texel_buffer && !dialect.hlsl)
             return "texelFetch(" + name + ", int(" + index + "))" + components;
         return name + "[" + index + "]";
     }
@@ -444,18 +437,18 @@ private:
     std::string binding_text(const ShaderBinding& binding) const {
         const std::string number = std::to_string(binding.slot.binding),
                           set = std::to_string(binding.slot.set);
-        if (dialect_.webgpu) return "@group(" + set + ") @binding(" + number + ") ";
-        if (dialect_.hlsl)
+        if (dialect.webgpu) return "@group(" + set + ") @binding(" + number + ") ";
+        if (dialect.hlsl)
             return std::string(" : register(") + numbering_of(binding) + number +
-                   (dialect_.spaces ? ", space" + set : "") + ")";
+                   (dialect.spaces ? ", space" + set : "") + ")";
         if (binding.resource == ShaderResource::push_constants) return "layout(push_constant) ";
         std::string inside = binding.resource == ShaderResource::uniform_block ? "std140, "
                              : binding.resource == ShaderResource::storage_buffer ||
                                      binding.resource == ShaderResource::writable_buffer
                                  ? "std430, "
                                  : "";
-        if (dialect_.spaces) inside += "set = " + set + ", ";
-        if (dialect_.storage_buffers) inside += "binding = " + number + ", ";
+        if (dialect.spaces) inside += "set = " + set + ", ";
+        if (dialect.storage_buffers) inside += "binding = " + number + ", ";
         return inside.empty() ? "" : "layout(" + inside.substr(0, inside.size() - 2) + ") ";
     }
 
@@ -463,12 +456,11 @@ private:
     /// same number. HLSL: the register type. OpenGL: uniform blocks (b), storage buffers (s) and textures (t) are
     /// numbered apart. Vulkan and WebGPU: all resources of a set are numbered together. '-': no binding.
     char numbering_of(const ShaderBinding& binding) const {
-        return (dialect_.hlsl                      ? "-b-ttttu"
-                : dialect_.vulkan || dialect_.webgpu ? "-b-bbbbb"
+        return (dialect.hlsl                      ? "-b-ttttu"
+                : dialect.vulkan || dialect.webgpu ? "-b-bbbbb"
                                                    : "-b-s-tts")[static_cast<std::size_t>(binding.resource)];
     }
 
-    Dialect dialect_;
     std::string prefix_;
     ShaderText shader_;  // in GLSL until finish()
     std::vector<ShaderBuffer> buffers_;
