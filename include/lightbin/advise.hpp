@@ -8,6 +8,7 @@
 #include <lightbin/view.hpp>
 #include <lightbin/z_bounds.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <vector>
@@ -49,7 +50,13 @@ struct Plan {
 };
 
 /// Returns a plan in words, such as "16 px, rectangle, box".
-inline std::string to_string(const Plan& plan);
+inline std::string to_string(const Plan& plan) {
+    if (!plan.tiled) return "every light in every pixel";
+    std::string words = std::to_string(plan.tile_size) + " px, " + to_string(plan.footprint);
+    if (plan.depth_test != DepthTest::none) words += std::string(", ") + to_string(plan.depth_test);
+    if (plan.slicing != Slicing::none) words += std::string(", ") + to_string(plan.slicing);
+    return words;
+}
 
 /// What a plan gains from one of its parts, or would lose with a part that it lacks.
 struct Verdict {
@@ -66,7 +73,12 @@ inline std::string to_string(const Verdict& verdict);
 /// Every plan that was measured, the cheapest first.
 class Advice {
 public:
-    explicit Advice(std::vector<Plan> plans);
+    /// Sorts the plans by insertion: those of equal time keep their order. (std::stable_sort warns with some compilers.)
+    explicit Advice(std::vector<Plan> plans) : plans_(std::move(plans)) {
+        const auto is_cheaper = [](const Plan& a, const Plan& b) { return a.total_ns < b.total_ns; };
+        for (auto plan = plans_.begin(); plan != plans_.end(); ++plan)
+            std::rotate(std::upper_bound(plans_.begin(), plan, *plan, is_cheaper), plan, plan + 1);
+    }
 
     const Plan& best() const { return plans_[0]; }
     std::span<const Plan> plans() const& { return plans_; }

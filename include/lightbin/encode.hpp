@@ -9,8 +9,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <optional>
-#include <span>
 
 #include <lightbin/detail/base/warnings_off.inl>
 

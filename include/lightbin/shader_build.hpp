@@ -150,7 +150,17 @@ inline std::vector<ShaderEdges> shader_edges(const View& view);
 /// Returns the depths of the slices. With clusters, build_shader() reads them in `z_bounds` in place of the tiles' Z
 /// bounds. They include the slices' margin (see Slices::with_margin()); a light that just touches such a widened slice
 /// may be listed by only one of build_shader() and the Binner.
-inline std::vector<ShaderEdges> shader_slabs(const Slices& slices);
+inline std::vector<ShaderEdges> shader_slabs(const Slices& slices) {
+    const detail::SliceTable& table = detail::table_of(slices);
+    std::vector<ShaderEdges> slabs;
+    float low = -detail::infinity;
+    for (const float boundary : table.boundaries()) {
+        slabs.push_back({low, table.farther(boundary)});
+        low = table.nearer(boundary);
+    }
+    slabs.push_back({low, detail::infinity});
+    return slabs;
+}
 
 /// Returns one of the three shaders that build a light grid from footprints, or an Error that names the limit that the
 /// options exceed. A group of 64 threads tests every light against its tile. After the three passes, with a barrier

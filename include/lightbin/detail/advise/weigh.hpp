@@ -4,26 +4,13 @@
 
 #include <lightbin/advise.hpp>
 #include <lightbin/binner.hpp>
-#include <lightbin/light_grid.hpp>
-#include <lightbin/lights.hpp>
 
-#include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <cstdio>
-#include <iterator>
-#include <optional>
 #include <tuple>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
-
-inline std::string to_string(const Plan& plan) {
-    if (!plan.tiled) return "every light in every pixel";
-    std::string words = std::to_string(plan.tile_size) + " px, " + to_string(plan.footprint);
-    if (plan.depth_test != DepthTest::none) words += std::string(", ") + to_string(plan.depth_test);
-    if (plan.slicing != Slicing::none) words += std::string(", ") + to_string(plan.slicing);
-    return words;
-}
 
 inline std::string to_string(const Verdict& verdict) {
     const bool weighed = !verdict.instead.empty(), gains = verdict.saved_ns >= 0;
@@ -38,13 +25,6 @@ inline std::string to_string(const Verdict& verdict) {
     words += line;
     words.resize((std::max)(words.size() + 1, std::size_t{50}), ' ');
     return words + "instead: " + verdict.instead + "\n";
-}
-
-/// Sorts the plans by insertion: those of equal time keep their order. (std::stable_sort warns with some compilers.)
-inline Advice::Advice(std::vector<Plan> plans) : plans_(std::move(plans)) {
-    const auto is_cheaper = [](const Plan& a, const Plan& b) { return a.total_ns < b.total_ns; };
-    for (auto plan = plans_.begin(); plan != plans_.end(); ++plan)
-        std::rotate(std::upper_bound(plans_.begin(), plan, *plan, is_cheaper), plan, plan + 1);
 }
 
 inline std::string Advice::text() const {

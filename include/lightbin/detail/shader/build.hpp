@@ -164,23 +164,10 @@ inline std::vector<ShaderEdges> shader_edges(const View& view) {
     const detail::Camera& camera = detail::camera_of(view);
     for (const detail::ImageAxis* axis : {&camera.x, &camera.y})
         for (int tile = 0; tile < axis->tiles; ++tile) {
-            ShaderEdges sides;
-            detail::tile_edges(*axis, tile, sides.low, sides.high);
-            edges.push_back(sides);
+            edges.emplace_back();
+            detail::tile_edges(*axis, tile, edges.back().low, edges.back().high);
         }
     return edges;
-}
-
-inline std::vector<ShaderEdges> shader_slabs(const Slices& slices) {
-    const detail::SliceTable& table = table_of(slices);
-    std::vector<ShaderEdges> slabs;
-    float low = -detail::infinity;
-    for (const float boundary : table.boundaries()) {
-        slabs.push_back({low, table.farther(boundary)});
-        low = table.nearer(boundary);
-    }
-    slabs.push_back({low, detail::infinity});
-    return slabs;
 }
 
 inline Result<ShaderText> build_shader(const BuildShaderOptions& options) {
@@ -198,8 +185,9 @@ inline Result<ShaderText> build_shader(const BuildShaderOptions& options) {
         return *error;
 
     std::vector<ShaderConstant> constants = {{"uvec4", "grid"}};
+    if ((box || clusters) && options.pass != BuildPass::offsets) constants.push_back({"vec4", "planes"});
+    writer.declare_constants(constants, options.grid, options.push_constants);
     if (options.pass == BuildPass::offsets) {
-        writer.declare_constants(constants, options.grid, options.push_constants);
         writer.declare_storage("tiles", "uvec2", "", options.tiles, 8);
         writer.declare_storage("total", "uint", "writeonly", options.total, 4);
         writer.add("\n");
@@ -238,11 +226,7 @@ void $run(uvec2 group, uint thread) {
         return writer.finish();
     }
 
-    if (box || clusters) constants.push_back({"vec4", "planes"});
-    writer.declare_constants(constants, options.grid, options.push_constants);
-    writer.add(
-        "struct $footprint {\n    uint id;\n    uint low;\n    uint high;\n    float reach2;\n    vec4 "
-        "sphere;\n};\n");
+    writer.add("struct $footprint {\n    uint id;\n    uint low;\n    uint high;\n    float reach2;\n    vec4 sphere;\n};\n");
     writer.declare_storage("footprints", "$footprint", "readonly", options.footprints, 32);
     if (depths) writer.declare_storage("z_bounds", "vec2", "readonly", options.z_bounds, 8);
     writer.declare_storage("tiles", "uvec2", fill ? "readonly" : "writeonly", options.tiles, 8);
@@ -267,19 +251,11 @@ void $run(uvec2 group, uint thread) {
     // In perspective the sides of a cell are slopes. `least` and `greatest` return the ends of the interval that a side
     // covers over the cell's depths.
     if (box && !options.orthographic)
-        writer.add(R"(float $least(float side, vec2 z) {
+        for (const bool least : {true, false})
+            writer.add(std::string(least ? "float $least(" : "float $greatest(") + R"(float side, vec2 z) {
     float depth = z.x;
-    if (side < 0.0) { depth = z.y; }
-    return side * depth - 7.5231638e-37;
-}
-
-float $greatest(float side, vec2 z) {
-    float depth = z.x;
-    if (side > 0.0) { depth = z.y; }
-    return side * depth + 7.5231638e-37;
-}
-
-)");
+    if (side )" + (least ? "<" : ">") + R"( 0.0) { depth = z.y; }
+    return side * depth )" + (least ? "-" : "+") + " 7.5231638e-37;\n}\n\n");
     writer.declare_shared("hits", 2, true);
     writer.add("\nvoid $run(uvec2 group, uint thread) {\n    uvec2 tile = group;\n"
                "    uint place = tile.y * $grid.x + tile.x;\n");

@@ -9,7 +9,6 @@
 
 #include <array>
 #include <limits>
-#include <span>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
@@ -23,17 +22,13 @@ inline std::array<float, 3> slice_estimate(std::span<const float> boundaries) {
     if (boundaries.empty()) return best;
     double least_error = std::numeric_limits<double>::infinity();
     for (const bool by_log2 : {false, true}) {
-        const auto scaled = [&](float depth) {
-            const double exact = static_cast<double>(depth);
-            return by_log2 ? std::log2(exact) : exact;
-        };
-        const double first = scaled(boundaries.front()), last = scaled(boundaries.back());
-        const double slope =
-            boundaries.size() == 1 ? 0 : (static_cast<double>(boundaries.size()) - 1) / (last - first);
-        const double offset = 1 - slope * first;
-        double error = 0;
-        for (std::size_t i = 0; i < boundaries.size(); ++i)
-            error += std::fabs(slope * scaled(boundaries[i]) + offset - static_cast<double>(i + 1));
+        const auto scaled = [&](double depth) { return by_log2 ? std::log2(depth) : depth; };
+        const double first = scaled(boundaries.front()), last = scaled(boundaries.back()),
+                     steps = static_cast<double>(boundaries.size()) - 1;
+        const double slope = steps == 0 ? 0 : steps / (last - first), offset = 1 - slope * first;
+        double error = 0, index = 0;
+        for (const float boundary : boundaries)
+            error += std::fabs(slope * scaled(boundary) + offset - ++index);
         if (!(error < least_error)) continue;  // also when NaN: depths of 0 or less have no logarithm
         least_error = error;
         const float factor = static_cast<float>(slope);

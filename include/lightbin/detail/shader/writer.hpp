@@ -10,10 +10,7 @@
 
 #include <array>
 #include <cctype>
-#include <initializer_list>
-#include <optional>
 #include <string_view>
-#include <utility>
 
 #include <lightbin/detail/base/warnings_off.inl>
 
