@@ -151,7 +151,7 @@ inline std::vector<ShaderEdges> shader_edges(const View& view);
 /// bounds. They include the slices' margin (see Slices::with_margin()); a light that just touches such a widened slice
 /// may be listed by only one of build_shader() and the Binner.
 inline std::vector<ShaderEdges> shader_slabs(const Slices& slices) {
-    const detail::SliceTable& table = detail::table_of(slices);
+    const detail::SliceTable& table = table_of(slices);
     std::vector<ShaderEdges> slabs;
     float low = -detail::infinity;
     for (const float boundary : table.boundaries()) {
