@@ -24,7 +24,7 @@ struct Sphere {
 /// cutoff     0 or less gives an infinite range
 inline float light_range(float intensity, float cutoff) {
     if (intensity <= 0) return 0;
-    if (cutoff <= 0 || (intensity > FLT_MAX && cutoff > 0)) return detail::infinity;
+    if (cutoff <= 0 || (intensity > FLT_MAX && !detail::is_nan(cutoff))) return detail::infinity;
     return detail::float_above(detail::root_of(static_cast<double>(intensity) / static_cast<double>(cutoff)) *
                                (1 + 0x1p-50));
 }

@@ -32,6 +32,9 @@ inline double arctan_of(double a) {
 inline double power_of(double base, double exponent) {
     return LIGHTBIN_MATH(pow)(base, exponent);
 }
+template <class Real> bool is_nan(Real a) {
+    return LIGHTBIN_MATH(isnan)(a);
+}
 template <class Real> bool is_finite(Real a) {
     return LIGHTBIN_MATH(isfinite)(a);
 }
