@@ -73,7 +73,7 @@ inline std::string to_string(const Verdict& verdict);
 /// Every plan that was measured, the cheapest first.
 class Advice {
 public:
-    /// Sorts the plans by insertion: those of equal time keep their order. (std::stable_sort warns with some compilers.)
+    /// Sorts the plans by insertion: plans of equal time keep their order. (std::stable_sort warns in some compilers.)
     explicit Advice(std::vector<Plan> plans) : plans_(std::move(plans)) {
         const auto is_cheaper = [](const Plan& a, const Plan& b) { return a.total_ns < b.total_ns; };
         for (auto plan = plans_.begin(); plan != plans_.end(); ++plan)
@@ -122,9 +122,8 @@ decltype(auto) with_sliced_options(const Plan& plan, Visit&& visit);
 /// any of these.
 ///
 /// Call it once per scene, not once per frame, in an optimised build. It takes as long as some hundreds of plain builds
-/// of the view's grid, or a thousand if these are short. It builds every grid 3 to 9 times on this thread and takes the
-/// shortest time: first with the lights as they are, to count entries and evaluations; then with the lights moved
-/// slightly sideways, as a scene that is built repeatedly is built faster than a program's frames. It keeps no memory.
+/// of the view's grid, or a thousand if these are short: it builds every grid 3 to 9 times on this thread, with the
+/// lights moved slightly sideways each time but the first, and takes the shortest time. It keeps no memory.
 ///
 /// lights  as for Binner::bin()
 /// bounds  Z bounds of the view's own tiles; those of larger tiles are merged from them. Without any, no depth test is

@@ -173,13 +173,11 @@ struct WeighedGrid {
             draw(low, end < begin ? end : high);
             draw(end < begin ? begin : low, high);
         });
-        const auto merged = [](std::span<const float> given, const std::vector<float>& side) {
-            return given.empty() ? given : std::span<const float>(side);
-        };
-        bounds = {.min = merged(of_fine.min, lowest),
-                  .max = merged(of_fine.max, highest),
-                  .gap_min = merged(of_fine.gap_min, gap_begin),
-                  .gap_max = merged(of_fine.gap_max, gap_end)};
+        if (!bounds.min.empty()) bounds.min = lowest;
+        if (!bounds.max.empty()) bounds.max = highest;
+        if (!bounds.gap_min.empty()) bounds.gap_min = gap_begin;
+        if (!bounds.gap_max.empty()) bounds.gap_max = gap_end;
+        bounds.transparent_max = {};  // is not merged, as bin() does not read it
     }
     WeighedGrid(WeighedGrid&&) = default;  // the spans of a copy would point into the original
 };
@@ -246,10 +244,10 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
     for (const WeighedGrid& grid : grids)
         for (const Options& options : table) {
             const ZBounds& given = grid.bounds;
-            const bool can_test = options.depth_test == DepthTest::split_box
-                                      ? !given.gap_min.empty() && !given.gap_max.empty()
-                                      : !given.min.empty() || !given.max.empty();
-            if (options.depth_test != DepthTest::none && options.slicing == Slicing::none && !can_test) continue;
+            const bool lacks_bounds = options.depth_test == DepthTest::split_box
+                                          ? given.gap_min.empty() || given.gap_max.empty()
+                                          : given.min.empty() && given.max.empty();
+            if (options.depth_test != DepthTest::none && options.slicing == Slicing::none && lacks_bounds) continue;
             Plan plan = {.footprint = options.footprint,
                          .depth_test = options.depth_test,
                          .slicing = options.slicing,
@@ -322,9 +320,8 @@ Result<Advice> advise_slices(const View& view, const LightRange& lights, const W
     const double pixels =
         1.0 * window.width * window.height / static_cast<double>((std::max)(count, std::uint64_t{1}));
     // Returns the pixel column (or row) at the middle of column (or row) i of the samples.
-    const auto pixel = [](int i, int samples_across, int pixels_across) {
-        return static_cast<int>((2 * std::int64_t{i} + 1) * pixels_across /
-                                (2 * std::int64_t{samples_across}));
+    const auto pixel = [](std::int64_t i, std::int64_t samples_across, int pixels_across) {
+        return static_cast<int>((2 * i + 1) * pixels_across / (2 * samples_across));
     };
     return detail::weigh<detail::weighed_sliced, base, Clock>(
         view, {}, slices, lights, costs, [&](auto visit) {

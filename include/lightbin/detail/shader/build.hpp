@@ -6,10 +6,7 @@
 #include <lightbin/detail/engine/cell_boxes.hpp>
 #include <lightbin/detail/project/footprints.hpp>
 #include <lightbin/detail/shader/writer.hpp>
-#include <lightbin/lights.hpp>
 #include <lightbin/shader_build.hpp>
-
-#include <type_traits>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
@@ -62,8 +59,8 @@ vec2 $view_depths(uvec2 range) {
     // `view_depths` converts a tile's range of window depths to view depths, rounded outward. In units of u = 2^-24 the
     // relative errors are: 3u in `far_end` and `slope`, since View's depths are floats; 2u in their product and sum; 1u
     // in e, which is exact where it is small; up to 5u in the device's reciprocal. That is 11u, and the factors allow
-    // 2^-19 = 32u. Orthographic views allow 2^-20 of the sum of the two planes' depths. Infinity is made from a variable,
-    // because WGSL refuses it as a constant.
+    // 2^-19 = 32u. Orthographic views allow 2^-20 of the sum of the two planes' depths. Infinity is made from a
+    // variable, because WGSL refuses it as a constant.
     if (options.format == DepthFormat::float32)
         // Widens the range by two units in the last place, at least as much as reduce_depth() does. No end is denormal,
         // because devices may flush denormal floats to zero.
@@ -85,7 +82,7 @@ vec2 $view_depths(uvec2 range) {
     vec2 depths = vec2(1.0 / w.x * 0.999998, endless);
     if (w.y > 0.0) { depths.y = 1.0 / w.y * 1.000002; }
 )");
-    // `view_depths` has a single return statement, because of the compiler fxc, see `next` in snippet.hpp. `pixel` widens
+    // `view_depths` has a single return statement because of the compiler fxc, see `next` in snippet.hpp. `pixel` widens
     // a tile's range by the samples of pixel i. The tile's pixels are numbered row by row.
     writer.add(R"(    if (range.x > range.y) { depths = vec2(endless, -endless); }
     return depths;
@@ -226,7 +223,8 @@ void $run(uvec2 group, uint thread) {
         return writer.finish();
     }
 
-    writer.add("struct $footprint {\n    uint id;\n    uint low;\n    uint high;\n    float reach2;\n    vec4 sphere;\n};\n");
+    writer.add("struct $footprint {\n    uint id;\n    uint low;\n    uint high;\n    float reach2;\n"
+               "    vec4 sphere;\n};\n");
     writer.declare_storage("footprints", "$footprint", "readonly", options.footprints, 32);
     if (depths) writer.declare_storage("z_bounds", "vec2", "readonly", options.z_bounds, 8);
     writer.declare_storage("tiles", "uvec2", fill ? "readonly" : "writeonly", options.tiles, 8);
@@ -264,8 +262,8 @@ void $run(uvec2 group, uint thread) {
     if (depths) {
         // A Z bound that is NaN excludes nothing. NaN is recognised by its bits: compilers may assume no float is NaN.
         const std::string nan = ") & 0x7fffffffu) > 0x7f800000u) ";
-        writer.add("    uint endless_bits = 0x7f800000u;\n    float endless = uintBitsToFloat(endless_bits);\n    vec2 z = " +
-                   std::string(clusters ? "$z_bounds[slice];\n    " : "$z_bounds[place];\n    ") +
+        writer.add("    uint endless_bits = 0x7f800000u;\n    float endless = uintBitsToFloat(endless_bits);\n"
+                   "    vec2 z = $z_bounds[" + std::string(clusters ? "slice" : "place") + "];\n    " +
                    (max_only ? "z.x = -endless;" : "if ((floatBitsToUint(z.x" + nan + "{ z.x = -endless; }") +
                    "\n    if ((floatBitsToUint(z.y" + nan + "{ z.y = endless; }\n    bool lit = z.x <= z.y;\n");
         arguments += ", z";
@@ -290,7 +288,8 @@ void $run(uvec2 group, uint thread) {
         sync_group();
         uint i = first + thread;
         bool hit = false;
-        if ()" + std::string(depths ? "lit && " : "") + "i < $grid.z) { hit = $meets($footprints[i], " + arguments + R"(); }
+        if ()" + std::string(depths ? "lit && " : "") +
+               "i < $grid.z) { hit = $meets($footprints[i], " + arguments + R"(); }
         if (hit) { atomicOr(&$hits[thread >> 5u], 1u << (thread & 31u)); }
         sync_group();
 )");

@@ -219,7 +219,8 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
                                     : "(floatBitsToUint(float(c.bits & (~c.bits + 1u))) >> 23u) - 127u") +
                    ";\n        c.bits &= c.bits - 1u;\n");
     else
-        writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = $id_at(c.at);\n        c.at += 1u;\n");
+        writer.add("    bool more = c.at < c.end;\n    if (more) {\n        c.id = $id_at(c.at);\n"
+                   "        c.at += 1u;\n");
     if (!bits && !table)
         writer.add("        more = c.id != " + std::to_string(countable_lights(format)) + "u;\n");
     if (binned) writer.add("        more = more && c.id <= c.last;\n");
@@ -261,7 +262,8 @@ bool $next(inout $cursor c) {
                                "$begin(pixel, view_depth); $next(cursor);)") +
                    (options.wave_loop ? " if (cursor.own)\n" : "\n"));
     if (options.heat_map)  // with a table and without z-bins, a list's length is read instead of counted
-        writer.add("\nuint $count(uvec2 pixel, float view_depth) {\n    $own_cursor c = $own_begin(pixel, view_depth);\n" +
+        writer.add("\nuint $count(uvec2 pixel, float view_depth) {\n"
+                   "    $own_cursor c = $own_begin(pixel, view_depth);\n" +
                    std::string(table && !binned ? "    return c.end - c.at;\n"
                                                 : "    uint count = 0u;\n    while ($own_next(&c)) { count += 1u; }\n"
                                                   "    return count;\n") +
@@ -329,8 +331,7 @@ bool $next_missing(inout $missing m, uint lights) {
         writer.add("\n#define $for_each_missing(cursor, lights, pixel, view_depth) for ($missing cursor = "
                    "$begin_missing(pixel, view_depth); $next_missing(cursor, lights);) if (cursor.lacked)\n");
     // The prefix `own_` tells the cursor of one lane from that of its wave. Without wave_loop it is not needed.
-    if (!options.wave_loop) writer.replace("$own_", "$");
-    return writer.finish();
+    return writer.finish(options.wave_loop ? "$own_" : "$");
 }
 
 }}  // namespace lightbin

@@ -267,11 +267,6 @@ public:
         shader_.text += glsl;
     }
 
-    /// Replaces every `from` in the text so far by `to`.
-    void replace(std::string_view from, std::string_view to) {
-        shader_.text = replaced(std::move(shader_.text), from, to);
-    }
-
     /// Declares a resource by the text of the writer's language. `@` in the text stands for the layout, register or
     /// attribute that binds the resource. binding.name lacks the prefix.
     void declare(ShaderBinding binding, const ByLanguage& text) {
@@ -369,21 +364,19 @@ public:
     /// Adds the entry point of a compute shader with `threads` threads per group, which calls $run(group, thread).
     void add_compute_main(unsigned threads) {
         const std::string count = std::to_string(threads);
-        add(dialect.webgpu ? "\n@compute @workgroup_size(" + count +
-                                ")\nfn main(@builtin(workgroup_id) group : vec3u, "
-                                "@builtin(local_invocation_index) thread : u32) {\n"
-                                "    $run(group.xy, thread);\n}\n"
-            : dialect.hlsl
-                ? "\n[numthreads(" + count +
-                      ", 1, 1)]\nvoid main(uint3 group : SV_GroupID, uint thread : SV_GroupIndex) {\n"
-                      "    $run(group.xy, thread);\n}\n"
-                : "\nlayout(local_size_x = " + count +
-                      ") in;\nvoid main() {\n    $run(gl_WorkGroupID.xy, gl_LocalInvocationIndex);\n}\n");
+        add(dialect.webgpu ? "\n@compute @workgroup_size(" + count + ")\nfn main(@builtin(workgroup_id) group : vec3u, "
+                             "@builtin(local_invocation_index) thread : u32) {\n"
+            : dialect.hlsl ? "\n[numthreads(" + count + ", 1, 1)]\n"
+                             "void main(uint3 group : SV_GroupID, uint thread : SV_GroupIndex) {\n"
+                           : "\nlayout(local_size_x = " + count + ") in;\nvoid main() {\n");
+        add(dialect.webgpu || dialect.hlsl ? "    $run(group.xy, thread);\n}\n"
+                                           : "    $run(gl_WorkGroupID.xy, gl_LocalInvocationIndex);\n}\n");
     }
 
     /// Returns the text in the writer's language, or an Error if two resources are bound to one slot. Languages without
-    /// bindings in the text have no slots.
-    Result<ShaderText> finish() {
+    /// bindings in the text have no slots. The names that begin with `$own_` begin with `own` instead.
+    Result<ShaderText> finish(std::string_view own = "$own_") {
+        shader_.text = replaced(std::move(shader_.text), "$own_", own);
         shader_.text = replaced(dialect.webgpu ? WgslTranslation(shader_.text, members_).text()
                                               : translate(shader_.text, dialect.hlsl, dialect.es),
                                 "$", prefix_);
@@ -439,11 +432,10 @@ private:
             return std::string(" : register(") + numbering_of(binding) + number +
                    (dialect.spaces ? ", space" + set : "") + ")";
         if (binding.resource == ShaderResource::push_constants) return "layout(push_constant) ";
-        std::string inside = binding.resource == ShaderResource::uniform_block ? "std140, "
-                             : binding.resource == ShaderResource::storage_buffer ||
-                                     binding.resource == ShaderResource::writable_buffer
-                                 ? "std430, "
-                                 : "";
+        const bool storage = binding.resource == ShaderResource::storage_buffer ||
+                             binding.resource == ShaderResource::writable_buffer;
+        std::string inside = storage ? "std430, " : "";
+        if (binding.resource == ShaderResource::uniform_block) inside = "std140, ";
         if (dialect.spaces) inside += "set = " + set + ", ";
         if (dialect.storage_buffers) inside += "binding = " + number + ", ";
         return inside.empty() ? "" : "layout(" + inside.substr(0, inside.size() - 2) + ") ";
