@@ -32,7 +32,7 @@ struct Costs {
 /// One way to light a view, and its costs per frame. with_options() or with_sliced_options() applies the options, and
 /// View::with_tile_size() the tile size.
 struct Plan {
-    bool tiled = true;  ///< false: every pixel evaluates every light, and the next four members mean nothing
+    bool tiled = true;  ///< false: every pixel evaluates every light, and all members up to tile_size mean nothing
     Footprint footprint = Footprint::rectangle;
     DepthTest depth_test = DepthTest::none;
     Slicing slicing = Slicing::none;  ///< other values need the slices that advise_slices() was given
@@ -42,7 +42,7 @@ struct Plan {
     std::uint64_t entries = 0;  ///< the length of the light index list
     /// The list lengths summed over all pixels with something to light; without Z bounds multiplied by Costs::overdraw.
     double evaluations = 0;
-    double total_ns = 0;  ///< build_ns + upload_ns + evaluations * Costs::evaluation_ns
+    double total_ns = 0;  ///< the time of a frame: build_ns + upload_ns + evaluations * Costs::evaluation_ns
 
     bool has_z_bounds() const {
         return tiled && depth_test != DepthTest::none && slicing != Slicing::clusters;

@@ -23,7 +23,7 @@ struct ReduceShaderOptions {
     bool orthographic = false;  ///< View::orthographic()
     DepthFormat format = DepthFormat::float32;
     bool skip_background = false;  ///< ignores pixels at the far plane, see DepthBuffer::skip_background
-    bool flip_y = false;           ///< the texture's rows run from the opposite end to the view's WindowOrigin
+    bool flip_y = false;           ///< row 0 of the texture is at the end of the image opposite to the view's WindowOrigin
     bool viewport_corner = false;  ///< the viewport begins at the texel `corner`, not at the texture's first one
 
     ShaderSlot depth = {0}, z_bounds = {1}, grid = {2};
@@ -86,12 +86,12 @@ struct BuildShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     BuildPass pass = BuildPass::count;
     DepthTest depth_test = DepthTest::none;  ///< split_box is refused; with clusters interval is, too
-    Slicing slicing = Slicing::none;         ///< none or clusters; these shaders make no z-bins
-    bool max_only = false;      ///< ignores the minimum Z bound, for transparent lights; no effect with clusters
-    bool orthographic = false;  ///< View::orthographic(); only read with box
+    Slicing slicing = Slicing::none;         ///< z_bins are refused: these shaders make none
+    bool max_only = false;      ///< tests the maximum Z bound alone, for transparent surfaces; not read with clusters
+    bool orthographic = false;  ///< View::orthographic(); only read with DepthTest::box
 
     ShaderSlot footprints = {0}, z_bounds = {1}, tiles = {2}, lists = {3};
-    ShaderSlot total = {3};  ///< the same as `lists` by default, as no pass uses both
+    ShaderSlot total = {3};  ///< by default the slot of `lists`, as no pass uses both
     ShaderSlot grid = {4};
     bool push_constants = false;            ///< Vulkan: the constants are push constants
     std::string_view prefix = "lightbin_";  ///< every name in the text begins with it
@@ -100,7 +100,7 @@ struct BuildShaderOptions {
 /// The values of the constants `grid` and, with box or clusters, `planes` of build_shader(). A uniform block has this
 /// layout; without `planes`, its first 16 bytes.
 struct ShaderBuild {
-    /// grid: tile columns; tile rows of all slices together; number of lights; ids that fit in the buffer `lists`
+    /// The constant `grid`: tile columns; tile rows of all slices together; number of lights; ids that fit in the buffer `lists`
     std::uint32_t tiles_x, rows, footprints, capacity;
     float near_depth, far_depth, tiles_y, unused = {};  ///< planes
 };

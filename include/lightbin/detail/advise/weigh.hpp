@@ -140,7 +140,7 @@ template <class Visit> void for_each_drawn(const View& view, const ZBounds& boun
 /// A view with one of the tile sizes that are measured, and its Z bounds.
 struct WeighedGrid {
     View view;
-    ZBounds bounds;  ///< the caller's arrays, or for larger tiles than the caller's the vectors below
+    ZBounds bounds;  ///< the caller's Z bounds; if the tiles are larger than the caller's, views of the vectors below
     std::vector<float> lowest, highest, gap_begin, gap_end;
 
     /// Merges the Z bounds of the caller's fine tiles. A fine tile is assumed to show all depths between its bounds

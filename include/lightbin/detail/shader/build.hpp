@@ -246,8 +246,8 @@ void $run(uvec2 group, uint thread) {
     if (x * x + y * y + d * d > f.reach2) { met = false; }
 )");
     writer.add("    return met;\n}\n\n");
-    // In perspective the sides of a cell are slopes. `least` and `greatest` return the ends of the interval that a side
-    // covers over the cell's depths.
+    // In perspective the sides of a cell are slopes. `least` and `greatest` return the least and the greatest view-space
+    // coordinate of a side over the cell's depths.
     if (box && !options.orthographic)
         for (const bool least : {true, false})
             writer.add(std::string(least ? "float $least(" : "float $greatest(") + R"(float side, vec2 z) {
