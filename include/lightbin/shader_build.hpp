@@ -23,7 +23,7 @@ struct ReduceShaderOptions {
     bool orthographic = false;  ///< View::orthographic()
     DepthFormat format = DepthFormat::float32;
     bool skip_background = false;  ///< ignores pixels at the far plane, see DepthBuffer::skip_background
-    bool flip_y = false;           ///< row 0 of the texture is at the end of the image opposite to the view's WindowOrigin
+    bool flip_y = false;           ///< the texture's row 0 is at the image's opposite end to the view's WindowOrigin
     bool viewport_corner = false;  ///< the viewport begins at the texel `corner`, not at the texture's first one
 
     ShaderSlot depth = {0}, z_bounds = {1}, grid = {2};
@@ -100,7 +100,7 @@ struct BuildShaderOptions {
 /// The values of the constants `grid` and, with box or clusters, `planes` of build_shader(). A uniform block has this
 /// layout; without `planes`, its first 16 bytes.
 struct ShaderBuild {
-    /// The constant `grid`: tile columns; tile rows of all slices together; number of lights; ids that fit in the buffer `lists`
+    /// grid: tile columns; tile rows, summed over the slices; number of lights; ids that fit in the buffer `lists`
     std::uint32_t tiles_x, rows, footprints, capacity;
     float near_depth, far_depth, tiles_y, unused = {};  ///< planes
 };

@@ -82,8 +82,8 @@ vec2 $view_depths(uvec2 range) {
     vec2 depths = vec2(1.0 / w.x * 0.999998, endless);
     if (w.y > 0.0) { depths.y = 1.0 / w.y * 1.000002; }
 )");
-    // `view_depths` has a single return statement because of the compiler fxc, see `next` in snippet.hpp. `pixel` widens
-    // a tile's range by the samples of pixel i. The tile's pixels are numbered row by row.
+    // `view_depths` has a single return statement because of the compiler fxc, see `next` in snippet.hpp. `pixel`
+    // widens a tile's range by the samples of pixel i. The tile's pixels are numbered row by row.
     writer.add(R"(    if (range.x > range.y) { depths = vec2(endless, -endless); }
     return depths;
 }
@@ -246,8 +246,8 @@ void $run(uvec2 group, uint thread) {
     if (x * x + y * y + d * d > f.reach2) { met = false; }
 )");
     writer.add("    return met;\n}\n\n");
-    // In perspective the sides of a cell are slopes. `least` and `greatest` return the least and the greatest view-space
-    // coordinate of a side over the cell's depths.
+    // In perspective the sides of a cell are slopes. `least` and `greatest` return the least and the greatest
+    // view-space coordinate of a side over the cell's depths.
     if (box && !options.orthographic)
         for (const bool least : {true, false})
             writer.add(std::string(least ? "float $least(" : "float $greatest(") + R"(float side, vec2 z) {

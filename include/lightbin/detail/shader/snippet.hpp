@@ -22,7 +22,9 @@ inline std::array<float, 3> slice_estimate(std::span<const float> boundaries) {
     if (boundaries.empty()) return best;
     double least_error = std::numeric_limits<double>::infinity();
     for (const bool by_log2 : {false, true}) {
-        const auto scaled = [&](double depth) { return by_log2 ? std::log2(depth) : depth; };
+        const auto scaled = [&](float depth) {
+            return by_log2 ? std::log2(static_cast<double>(depth)) : static_cast<double>(depth);
+        };
         const double first = scaled(boundaries.front()), last = scaled(boundaries.back()),
                      steps = static_cast<double>(boundaries.size()) - 1;
         const double slope = steps == 0 ? 0 : steps / (last - first), offset = 1 - slope * first;

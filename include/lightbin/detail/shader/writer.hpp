@@ -394,21 +394,16 @@ private:
     std::string read(const ShaderBuffer& buffer, const std::string& index) const {
         const bool pairs = buffer.format == TexelFormat::rg32ui;
         const std::string name = "$" + buffer.name;
-        const auto word = [&](const std::string& i) {
-            return name + "[(" + i + ") >> 2u][(" + i + ") & 3u]";
-        };
+        const auto word = [&](const std::string& i) { return name + "[(" + i + ") >> 2u][(" + i + ") & 3u]"; };
         if (buffer.resource == ShaderResource::uniform_block)
             return pairs ? "uvec2(" + word("2u * " + index) + ", " + word("2u * " + index + " + 1u") + ")"
                          : word(index);
         if (buffer.resource == ShaderResource::byte_address)
             return name + (pairs ? ".Load2(8u * (" : ".Load(4u * (") + index + "))";
         const std::string components = pairs ? ".xy" : ".x";
-        if (buffer.resource == ShaderResource::texture_2d) {
-            const std::string width = std::to_string(buffer.width) + "u)";
-            return read_texel(name, "ivec2(int((" + index + ") % " + width + ", int((" + index + ") / " +
-                                        width + ")") +
-                   components;
-        }
+        const std::string at = "int((" + index + ")", width = std::to_string(buffer.width) + "u)";
+        if (buffer.resource == ShaderResource::texture_2d)
+            return read_texel(name, "ivec2(" + at + " % " + width + ", " + at + " / " + width + ")") + components;
         if (buffer.resource == ShaderResource::texel_buffer && !dialect.hlsl)
             return "texelFetch(" + name + ", int(" + index + "))" + components;
         return name + "[" + index + "]";
