@@ -123,7 +123,8 @@ inline Behind behind(const lightbin::detail::Camera& camera, const lightbin::Sph
             seen = scalar::tile_span<double>(*axes[i], low, high, seen, first + i, last + i);
         }
     }
-    if (seen) result.rect = {{first[0], first[1]}, {last[0], last[1]}};
+    const auto tile = [](std::uint32_t number) { return static_cast<int>(number); };
+    if (seen) result.rect = {{tile(first[0]), tile(first[1])}, {tile(last[0]), tile(last[1])}};
     return result;
 }
 

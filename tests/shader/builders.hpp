@@ -133,7 +133,7 @@ private:
 inline Job builder_job(const lightbin::ShaderText& shader, lightbin::ShaderLanguage language,
                        std::string_view prefix, const BuilderData& data, std::string_view result) {
     Job job;
-    job.hlsl = lightbin::detail::dialect(language).hlsl;
+    job.hlsl = lightbin::detail::Dialect{language}.hlsl;
     job.text = version_line(language) + shader.text;
     for (const lightbin::ShaderBinding& binding : shader.bindings) {
         if (binding.name.starts_with(std::string(prefix) + std::string(result)))
@@ -396,7 +396,7 @@ inline std::vector<Job> sum_jobs(lightbin::ShaderLanguage language) {
 inline std::vector<Job> build_jobs(lightbin::ShaderLanguage language) {
     using namespace lightbin;
     std::vector<Job> jobs;
-    if (!detail::dialect(language).storage_buffers) return jobs;
+    if (!detail::Dialect{language}.storage_buffers) return jobs;
     jobs = sum_jobs(language);
     struct Size {
         int width, height, tile_size;

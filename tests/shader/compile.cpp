@@ -54,12 +54,12 @@ public:
     }
 
     bool takes(ShaderLanguage language, EShLanguage stage, const std::string& text) {
-        const lightbin::detail::Dialect dialect = lightbin::detail::dialect(language);
+        const lightbin::detail::Dialect dialect = lightbin::detail::Dialect{language};
         if (dialect.hlsl || dialect.vulkan) {
             ++valid;
             return is_valid(text, stage, dialect.hlsl);
         }
-        if (!dialect.wgsl) return compiles(text, stage, error_);
+        if (!dialect.webgpu) return compiles(text, stage, error_);
         error_ = WgslWords::problem(text);
         return error_.empty();
     }
@@ -91,7 +91,7 @@ std::string newest(std::string text, ShaderLanguage language) {
 }
 
 void compile_language(Compiler& compiler, ShaderLanguage language) {
-    const bool computes = lightbin::detail::dialect(language).storage_buffers;
+    const bool computes = lightbin::detail::Dialect{language}.storage_buffers;
     unsigned turn = 0;
     const auto compile = [&](EShLanguage stage, const std::string& text) {
         compiler.compile(language, stage, ++turn & 1 ? text : newest(text, language));

@@ -42,7 +42,7 @@ int main(int count, char** arguments) {
         const int glsl = count == 2 ? std::atoi(arguments[1]) : 430;
         const OffscreenContext context(glsl);
         const ShaderLanguage language = glsl_language(glsl);
-        const bool computes = lightbin::detail::dialect(language).storage_buffers;
+        const bool computes = lightbin::detail::Dialect{language}.storage_buffers;
         for (const lightbin::ShaderOptions& options : every_reader(language)) {
             if (options.wave_loop) continue;  // Mesa's software renderer has no subgroups in OpenGL
             const auto snippet = shader_snippet(options);

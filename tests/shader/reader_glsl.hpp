@@ -88,7 +88,7 @@ inline std::string reader_checks(const lightbin::ShaderOptions& options, std::ui
 /// What reader_text() returns, in GLSL or HLSL.
 inline std::string reader_glsl(const lightbin::ShaderOptions& options, const lightbin::ShaderText& snippet,
                                Stage stage, std::uint32_t width, std::uint32_t height) {
-    const lightbin::detail::Dialect dialect = lightbin::detail::dialect(options.language);
+    const lightbin::detail::Dialect dialect = lightbin::detail::Dialect{options.language};
     const std::string prefix(options.prefix), binding = std::to_string(result_binding);
     const auto pair = [](auto x, auto y) {
         return "uvec2(" + std::to_string(x) + "u, " + std::to_string(y) + "u)";

@@ -44,13 +44,13 @@ inline std::string name_of(const lightbin::ShaderOptions& options) {
 /// Every place and writing of the lists that a language has; the other options are as given.
 inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderOptions options) {
     using namespace lightbin;
-    const detail::Dialect dialect = detail::dialect(options.language);
+    const detail::Dialect dialect = detail::Dialect{options.language};
     std::vector<ShaderOptions> every;
     for (const ListStorage storage :
          {ListStorage::storage_buffer, ListStorage::texel_buffer, ListStorage::texture_2d,
           ListStorage::uniform_block, ListStorage::byte_address}) {
         if ((storage == ListStorage::storage_buffer && !dialect.storage_buffers) ||
-            (storage == ListStorage::texel_buffer && (dialect.es || dialect.wgsl)) ||
+            (storage == ListStorage::texel_buffer && (dialect.es || dialect.webgpu)) ||
             (storage == ListStorage::byte_address && !dialect.hlsl))
             continue;
         options.storage = storage;
@@ -94,7 +94,7 @@ inline lightbin::ShaderOptions with_switches(lightbin::ShaderOptions options, un
 /// share a number: glslang puts the registers t, u and b of HLSL in one row.
 inline std::vector<lightbin::ShaderOptions> every_list(lightbin::ShaderLanguage language,
                                                        lightbin::Slicing slicing) {
-    const lightbin::detail::Dialect dialect = lightbin::detail::dialect(language);
+    const lightbin::detail::Dialect dialect = lightbin::detail::Dialect{language};
     const int set = dialect.spaces ? 1 : 0;
     lightbin::ShaderOptions options;
     options.language = language;
@@ -241,7 +241,7 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
     if (!snippet || !encode(*grid, options.format, lists)) return job;  // no text: the runner refuses it
 
     job.stage = stage;
-    job.hlsl = detail::dialect(options.language).hlsl;
+    job.hlsl = detail::Dialect{options.language}.hlsl;
     job.width = static_cast<std::uint32_t>(screen.width + beyond);
     job.height = static_cast<std::uint32_t>(screen.height + beyond);
     job.corner = {corner_x, corner_y};
@@ -324,7 +324,7 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
                                     {33, 17, 64}, {1, 1, 1},    {1, 1, 64}};
     constexpr ScreenSize large = {1919, 1079, 32};
     std::vector<ReaderRun> runs;
-    const bool computes = lightbin::detail::dialect(language).storage_buffers;
+    const bool computes = lightbin::detail::Dialect{language}.storage_buffers;
     unsigned turn = 0;
     const auto add_list = [&](const lightbin::ShaderOptions& list, unsigned place, unsigned flip,
                               Stage stage) {

@@ -27,7 +27,7 @@ inline std::array<float, 3> slice_estimate(std::span<const float> boundaries) {
         };
         const double first = scaled(boundaries.front()), last = scaled(boundaries.back()),
                      steps = static_cast<double>(boundaries.size()) - 1;
-        const double slope = steps == 0 ? 0 : steps / (last - first), offset = 1 - slope * first;
+        const double slope = !(steps > 0) ? 0 : steps / (last - first), offset = 1 - slope * first;
         double error = 0, index = 0;
         for (const float boundary : boundaries)
             error += std::fabs(slope * scaled(boundary) + offset - ++index);
