@@ -3,17 +3,7 @@
 // that is 8 rows of tiles. Here are the types, the working memory and the bit operations of these kernels.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/algorithms.hpp>
-#include <lightbin/detail/base/buffer.hpp>
 #include <lightbin/detail/project/footprint_arrays.hpp>
-#include <lightbin/light_grid.hpp>
-#include <lightbin/options.hpp>
-
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 

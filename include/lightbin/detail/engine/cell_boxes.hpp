@@ -21,16 +21,9 @@
 //   then, as a squared radius that is flushed leaves 2^-125 - 0 - 0, which is not.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/algorithms.hpp>
-#include <lightbin/detail/base/math.hpp>
-#include <lightbin/detail/base/platform.hpp>
-#include <lightbin/detail/base/rounding.hpp>
 #include <lightbin/options.hpp>
 #include <lightbin/sphere.hpp>
 #include <lightbin/view.hpp>
-
-#include <cstddef>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 inline constexpr float flushed = 0x1p-120f;

@@ -3,12 +3,8 @@
 // bench/binning on a Zen 4 and a Zen 5.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/isa.hpp>
-
-#include <cstddef>
-#include <cstdint>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 

@@ -2,27 +2,8 @@
 // The binning stage: makes the light grid out of footprints and Z bounds.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/buffer.hpp>
-#include <lightbin/detail/engine/block.hpp>
-#include <lightbin/detail/engine/cell_boxes.hpp>
-#include <lightbin/detail/engine/costs.hpp>
 #include <lightbin/detail/engine/shares.hpp>
-#include <lightbin/detail/project/footprint_arrays.hpp>
-#include <lightbin/detail/tiers/kernels.hpp>
-#include <lightbin/light_grid.hpp>
-#include <lightbin/options.hpp>
-#include <lightbin/parallel.hpp>
-#include <lightbin/result.hpp>
-#include <lightbin/view.hpp>
 #include <lightbin/z_bounds.hpp>
-
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <optional>
-#include <span>
-#include <type_traits>
 
 #include <lightbin/detail/base/warnings_off.inl>
 

@@ -3,17 +3,8 @@
 // method for small lights and nearly empty grids, and on machines without vectors. Its text needs no tier.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/algorithms.hpp>
-#include <lightbin/detail/base/platform.hpp>
 #include <lightbin/detail/engine/block.hpp>
 #include <lightbin/detail/engine/costs.hpp>
-#include <lightbin/detail/project/footprint_arrays.hpp>
-#include <lightbin/light_grid.hpp>
-
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 

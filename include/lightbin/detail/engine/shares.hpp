@@ -3,15 +3,9 @@
 // separate memory and have only the lights in common, which they read.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/algorithms.hpp>
-#include <lightbin/detail/base/buffer.hpp>
 #include <lightbin/detail/engine/costs.hpp>
 #include <lightbin/detail/project/footprint_arrays.hpp>
 #include <lightbin/parallel.hpp>
-
-#include <cstddef>
-#include <cstdint>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 

@@ -2,26 +2,9 @@
 // What every tier includes: the headers that the kernels' texts (.inl) need, the types of the kernels, and a table for shuffles.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
-#include <lightbin/detail/base/algorithms.hpp>
-#include <lightbin/detail/base/platform.hpp>
 #include <lightbin/detail/depth/slice_table.hpp>
-#include <lightbin/detail/engine/block.hpp>
-#include <lightbin/detail/engine/costs.hpp>
 #include <lightbin/detail/engine/scatter.hpp>
-#include <lightbin/detail/engine/cell_boxes.hpp>
-#include <lightbin/detail/project/footprint_arrays.hpp>
-#include <lightbin/sphere.hpp>
 #include <lightbin/spot.hpp>
-#include <lightbin/view.hpp>
-
-#include <bit>
-#include <cfloat>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <type_traits>
-#include <utility>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
