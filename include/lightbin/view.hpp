@@ -3,7 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/base/enum_names.hpp>
-#include <lightbin/detail/project/projection.hpp>
+#include <lightbin/detail/view/projection.hpp>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 

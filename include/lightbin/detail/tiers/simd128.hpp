@@ -27,11 +27,11 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 inline constexpr std::uint32_t lanes = 4, double_lanes = 2;
 
 #if defined(LIGHTBIN_X86)
-#include <lightbin/detail/tiers/sse41.inl>
+#include <lightbin/detail/tiers/simd128/sse41.inl>
 #elif defined(LIGHTBIN_NEON)
-#include <lightbin/detail/tiers/neon.inl>
+#include <lightbin/detail/tiers/simd128/neon.inl>
 #else
-#include <lightbin/detail/tiers/wasm.inl>
+#include <lightbin/detail/tiers/simd128/wasm.inl>
 #endif
 
 /// A vector of 16 bytes.

@@ -5,7 +5,7 @@
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/base/float_environment.hpp>
 #include <lightbin/detail/base/rounding.hpp>
-#include <lightbin/detail/project/camera.hpp>
+#include <lightbin/detail/view/camera.hpp>
 #include <lightbin/matrix.hpp>
 #include <lightbin/view_summary.hpp>
 
