@@ -63,8 +63,8 @@ struct Verdict {
     std::string part;     ///< the part's name, such as "box"
     bool keep = false;    ///< whether the plan has the part
     Plan other = {};      ///< the cheapest measured plan that differs from the plan in this part
-    std::string instead;  ///< `other` in words; empty if no measured plan differs in this part
-    double saved_ns = 0;  ///< the time of a frame by `other` minus that by the plan
+    std::string instead;  ///< the plan `other` in words; empty if no measured plan differs in this part
+    double saved_ns = 0;  ///< the time of a frame with the plan `other` minus that with the plan itself
 };
 
 /// Returns a line such as "box          keep: saves 1.200 ms                instead: 16 px, rectangle, interval".
@@ -140,7 +140,7 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
 struct DepthSamples {
     /// Row by row, from the view's window origin. NaN or infinity marks a point with nothing to light.
     std::span<const float> depths;
-    Extent size;  ///< columns and rows, such as those of a depth buffer of an eighth of the resolution
+    Extent size;  ///< how many columns and rows of samples, such as an eighth of the viewport's width and height
 };
 
 /// The slices that advise_slices() uses for Slicing::clusters and Slicing::z_bins.

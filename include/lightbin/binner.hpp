@@ -179,7 +179,7 @@ private:
             return {};
     }
 
-    /// The footprints of the lights in view, ordered by depth if slices are read.
+    /// Returns the footprints of the lights in view; with z-bins or clusters, sorted by depth bin or slice.
     const auto& visible() const {
         if constexpr (Inputs::reads_slices)
             return ordered_;

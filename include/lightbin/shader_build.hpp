@@ -143,8 +143,8 @@ struct ShaderEdges {
     float low, high;
 };
 
-/// Returns the sides of all tile columns and then of all rows. For box, build_shader() reads them in the buffer
-/// `z_bounds`, after the Z bounds of all tiles, or with clusters after the depths of the slices.
+/// Returns the two sides of each tile column and then of each tile row. With DepthTest::box, upload them in the buffer
+/// `z_bounds` that build_shader() reads: after the Z bounds of all tiles, or with clusters after shader_slabs().
 inline std::vector<ShaderEdges> shader_edges(const View& view);
 
 /// Returns the depths of the slices. With clusters, build_shader() reads them in `z_bounds` in place of the tiles' Z

@@ -71,7 +71,8 @@ inline DepthInterval fragment_depths(const View& view, Extremes window, DepthFor
         low = low < least_normal ? 0 : low * (1 - 0x1p-23);
         high = max_of(high * (1 + 0x1p-23), least_normal);
     } else {
-        // One step of the integer format, a little enlarged, and the largest step between floats up to 1.
+        // How far the stored depth can be from the fragment's: one step of the integer format, 1 / (2^n - 1), rounded
+        // up, for storing it, and the largest step between floats up to 1, 2^-24, for its conversion to float.
         const double reach = (format == DepthFormat::unorm24 ? 0x1.000002p-24 : 0x1.0002p-16) + 0x1p-24;
         low = low - reach;
         high = high + reach;
@@ -147,7 +148,8 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
         detail::reduce_tile_row<true>(
             isa, samples, size * samples_a_pixel, skipped, out.gap_min.data() + first_tile,
             [&](std::size_t tile, detail::Extremes next) {
-                // Depths of the samples next to the gap, below and above it in window depth. Infinite ones mean no gap.
+                // The view depths of the samples on either side of the tile's gap, a range of depths without samples:
+                // below and above it in window depth. They are infinite if the tile has no gap.
                 DepthInterval below = {-detail::infinity, detail::infinity}, above = below;
                 if (next.upper > -detail::infinity && next.lower < detail::infinity) {
                     below = detail::fragment_depths(view, {next.upper, next.upper}, buffer.format);

@@ -200,8 +200,8 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
     auto binners = []<std::size_t... i>(std::index_sequence<i...>) {
         return std::tuple<Binner<weighed_options(base, table[i])>...>();
     }(std::make_index_sequence<std::size(table)>());
-    // Builds a plan's lists and keeps the time if it is the shortest so far. The first call for a plan also counts its
-    // entries and evaluations.
+    // Builds a plan's lists and keeps the time this took in plan.build_ns if it is the plan's shortest so far. A plan's
+    // first call also counts the list entries and how often pixels evaluate a light.
     const auto build = [&](Plan& plan, const auto& moved, bool first) -> std::optional<Error> {
         const WeighedGrid* grid = grids.data();
         while (grid->view.tile_size() != plan.tile_size)

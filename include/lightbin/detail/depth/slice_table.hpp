@@ -17,7 +17,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// The map from depths to buckets: a depth is in the bucket (coordinate(depth) - begin) * scale, clamped to 0..last.
 struct DepthBuckets {
     float begin = 0, scale = 0, last = 0;
-    bool by_bits = false;  ///< the buckets have equal lengths in the bit pattern
+    bool by_bits = false;  ///< the buckets have equal lengths in a depth's bit pattern as a float, else in depth
 
     /// Returns the depth, or its bit pattern as an integer that ascends with the depth, rounded to float.
     float coordinate(float depth) const {
@@ -34,7 +34,8 @@ struct DepthBuckets {
     }
 };
 
-/// The least and greatest view depths of up to `size` lights, and the buckets of these depths. Kernels write whole vectors.
+/// The least and greatest view depths of up to `size` lights, and the buckets of DepthBuckets that these depths
+/// are in. Kernels write whole vectors.
 struct LightDepths {
     static constexpr std::uint32_t size = 64;
     float nearest[size], farthest[size];
@@ -49,7 +50,7 @@ public:
         float* const to = boundaries_.reserve(count_ + std::uint64_t{1});
         copy_items(boundaries.first, count_, to);
         to[count_] = std::numeric_limits<float>::quiet_NaN();  // ends searches, as every comparison with it is false
-        // Takes the buckets in which fewer boundaries share one.
+        // Chooses the kind of buckets, equal in depth or in bits, in which fewer boundaries share a bucket.
         fill_buckets(false);
         const std::size_t shared_by_depth = shared_;
         fill_buckets(true);
@@ -73,8 +74,9 @@ public:
     /// lights, runs  FootprintArrays and FootprintRuns
     template <class Kernel, class Lights, class Runs, class Found>
     void find(Kernel kernel, bool conservative, float z_sign, const Lights& lights, Runs runs, Found found) const {
-        // With at most one boundary each, a bucket meets at most two slices. A table of max_buckets may have few
-        // buckets per boundary, so that many lights would get a slice more.
+        // The faster way takes all slices that the buckets of a light's nearest and farthest depth meet: at most one
+        // slice too many at either end if no bucket holds two boundaries. It is not taken where the table is as large
+        // as it may be: there may then be few buckets per boundary, and many lights would get a slice too many.
         conservative = conservative && shared_ == 0 && buckets_.last < max_buckets - 1;
         for (const auto& run : runs) {
             fill_items(lights.ids + run.end, 16, lights.ids[run.begin]);  // kernels read whole vectors of ids
@@ -122,7 +124,8 @@ private:
     void fill_buckets(bool by_bits) {
         const Items<const float> all = boundaries();
         buckets_.by_bits = by_bits;
-        // Four times as many as boundaries, so that few share one; and no fewer than stay in the cache anyway.
+        // Four times as many buckets as boundaries, so that few boundaries share one; but at least 512, whose table
+        // stays in the cache anyway.
         const std::size_t buckets = min_of(max_of(std::bit_ceil(4 * count_), std::size_t{512}), max_buckets);
         buckets_.last = static_cast<float>(buckets - 1);
         buckets_.begin = count_ == 0 ? 0 : buckets_.coordinate(all[0]);
@@ -143,7 +146,7 @@ private:
 
     Buffer<float> boundaries_;      ///< the boundaries, and NaN behind them
     std::size_t count_;             ///< the number of boundaries
-    Buffer<std::uint32_t> before_;  ///< the number of boundaries before each bucket, and last of all boundaries
+    Buffer<std::uint32_t> before_;  ///< for each bucket the number of boundaries in earlier ones; last, of all boundaries
     std::size_t shared_ = 0;        ///< the number of boundaries whose bucket has an earlier one, too
     DepthBuckets buckets_;
 };

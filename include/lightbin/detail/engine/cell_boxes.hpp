@@ -46,7 +46,7 @@ struct SlabBoxes {
     /// How many elements past the last one vectors read and write.
     static constexpr std::size_t padding = 16;
 
-    const float* ends[4] = {};  ///< low and high x for each column of tiles, low and high y for each row
+    const float* ends[4] = {};  ///< four arrays: the boxes' low and high x by tile column, low and high y by tile row
     float z0 = 0, z1 = 0;
 };
 
@@ -62,7 +62,8 @@ inline constexpr unsigned cell_planes = depth_test == DepthTest::split_box ? 12
                                                                            : 2;
 inline constexpr unsigned next_box = 64 * cell_planes<DepthTest::box>;  ///< floats from the first box of split_box's cells to the second
 
-/// A sphere as the depth tests read it: x and y are signed so that tile indices grow with them, and z is the view depth.
+/// A sphere as the depth tests read it. The coordinates are negated where needed: tile indices grow with x and y, and z
+/// is the view depth.
 struct TestedLight {
     TestedLight() = default;
     TestedLight(const Camera& camera, const Sphere& light)
@@ -71,7 +72,7 @@ struct TestedLight {
           reach2(reach2_of(light.radius)) {}
 
     float x, y, z;
-    float nearest, farthest;  ///< view depths; rounding is monotone, so no light is lost by comparing these with Z bounds
+    float nearest, farthest;  ///< the sphere's view depths; rounding is monotone: tests against Z bounds lose no light
     float reach2;             ///< see reach2_of()
 };
 }}}  // namespace lightbin::detail

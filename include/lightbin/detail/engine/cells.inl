@@ -8,14 +8,15 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// Returns the low ends of boxes along an image axis.
+/// Returns the least view-space x (or y) of the boxes around cells: the tiles' low edges, which are slopes with a
+/// perspective projection, times the depth at which the product is least; less a margin for underflow.
 ///
 /// edges        the tiles' low edges, see tile_edges()
 /// front, back  the boxes' nearest and farthest depths with a perspective projection, 1 with an orthographic one
 inline Floats low_ends(Floats edges, Floats front, Floats back) {
     return mul(edges, select(less(edges, broadcast(0.0f)), back, front)) - broadcast(flushed);
 }
-/// Returns the high ends of boxes along an image axis, from the tiles' high edges; else as low_ends().
+/// Returns the greatest view-space x (or y) of the boxes, from the tiles' high edges; see low_ends() for the parameters.
 inline Floats high_ends(Floats edges, Floats front, Floats back) {
     return mul(edges, select(less(broadcast(0.0f), edges), back, front)) + broadcast(flushed);
 }

@@ -19,8 +19,9 @@ inline std::size_t project_parts(std::size_t chunks, std::size_t workers) {
     return workers > 1 ? min_of(chunks, 4 * min_of(chunks, workers)) : 1;
 }
 
-/// Returns whether scattering is faster than listing blocks, for lights whose rectangles have `area` tiles in all in a grid of
-/// `tiles`. Visiting all blocks takes as long as scattering three entries a tile (with AVX-512 one). The scalar tier always scatters.
+/// Returns whether binning by scattering (scatter.hpp) is faster than by lists for blocks of 8x8 tiles (lists.inl), for
+/// lights whose rectangles have `area` tiles in all, each a list entry, in a grid of `tiles` tiles. Visiting all blocks
+/// takes as long as scattering three entries per tile of the grid (with AVX-512 one). The scalar tier always scatters.
 inline bool scatter_is_faster(Isa isa, std::uint64_t tiles, std::uint64_t area) {
     if (isa == Isa::scalar) return true;
     return area < (isa == Isa::avx512 ? 1 : 3) * tiles;
@@ -52,12 +53,12 @@ inline std::uint64_t empty_row_cost(std::uint64_t tiles) {
     return tiles;
 }
 
-/// How many rows of tiles scattering counts at once: bounds the memory of its difference array.
+/// In how many rows of tiles scattering counts the lights in one pass: bounds the memory of its difference array.
 inline constexpr unsigned rows_counted_at_once = 512;
 
-/// Returns into how many of a grid's `height` rows of tiles scattering writes ids at once, reading all lights each time. Long lists
-/// lie in different cache lines and memory pages, too many for all tiles at once; then rows with about 512 tiles in all are faster,
-/// unless reading the lights again takes longer than writing the ids.
+/// Returns how many of a grid's `height` rows of tiles are filled with ids in one pass over all lights, when binning by
+/// scattering (scatter.hpp). Long lists of all tiles lie in too many cache lines and memory pages for one pass. Then
+/// passes over rows with about 512 tiles in all are faster, unless reading the lights again takes longer than writing ids.
 inline std::size_t rows_filled_at_once(std::size_t height, std::size_t width, std::uint64_t lights,
                                        std::uint64_t entries) {
     const std::size_t rows = 512 / width + 1;

@@ -20,7 +20,8 @@ public:
     /// there is no grid, if Z bounds have fewer elements than there are tiles, or if 32 bits can't count the entries.
     ///
     /// spots       whether the lights are spots
-    /// footprints  SlicedFootprints if `sliced`, else Footprints or RankedFootprints; a depth test needs them with their lights
+    /// footprints  SlicedFootprints if `sliced`, else Footprints or RankedFootprints; with a depth test, ones that
+    ///             keep the lights in view space (with_spheres)
     /// parallel    Serial or Parallel
     template <bool spots, class AnyFootprints, class Threads>
     std::optional<Error> build(Isa isa, const View& view, const AnyFootprints& footprints, const ZBounds& bounds,

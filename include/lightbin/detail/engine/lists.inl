@@ -17,13 +17,13 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 
 inline constexpr unsigned panel_blocks = 31;  // the width of a panel
 
-/// The lights of several bands, the tile rows begin..end-1, in one list for each band and panel. List number band * panels + panel
-/// has sizes[list] lights, at element list * capacity and after it.
+/// The lights of several bands of 8 tile rows, in all the tile rows begin..end-1: one list for each band and each panel
+/// of 248 tile columns. List number band * panels + panel has sizes[list] lights, from element list * capacity on.
 struct BandLists {
     unsigned begin = 0, end = 0;
     std::size_t panels = 0, count = 0, capacity = 0;
-    std::uint8_t *x0 = nullptr, *x1 = nullptr;  ///< each light covers the columns x0..x1-1 of the panel, cut off at 255
-    std::uint8_t* rows = nullptr;               ///< for each light a byte with a bit for each row of the band that it covers
+    std::uint8_t *x0 = nullptr, *x1 = nullptr;  ///< a light covers the panel's columns x0..x1-1; x1 is at most 255
+    std::uint8_t* rows = nullptr;               ///< a byte for each light, a bit for each row of the band: is it covered?
     std::uint32_t* ids = nullptr;               ///< each light's id or, if it will be tested, its index in the footprint arrays
     std::uint32_t* sizes = nullptr;
 };

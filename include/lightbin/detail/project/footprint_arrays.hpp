@@ -54,7 +54,7 @@ struct FootprintArrays {
     const Sphere* spheres = nullptr;
     const ViewSpot* spots = nullptr;
 
-    /// Returns these arrays without their first `begin` elements, and without spans.
+    /// Returns the arrays of the footprints from index `begin` on. The row spans (silhouettes) are left out.
     FootprintArrays from(std::size_t begin) const {
         return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin, nullptr, nullptr, spheres, spots};
     }

@@ -61,8 +61,8 @@ public:
         const bool share = force_parallel || parallel.pays_off(detail::project_ns(isa, static_cast<double>(lights_)));
         const Parallel threads = share ? parallel : Parallel();
         constexpr bool spots = Lights<Light, ToLight>::spots;
-        // The number of parts does not depend on whether the threads share them. It is one where the padding between
-        // parts could make indices larger than 32 bits.
+        // The lights are divided into parts, each of which becomes a run of footprints. Their number does not depend
+        // on whether threads share them. It is 1 where the padding behind each run could push indices beyond 32 bits.
         run_count_ = lights_ >> 31 == 0 ? detail::project_parts(lights_ / chunk + 1, parallel.workers()) : 1;
         runs_.reserve(run_count_);
         part_counts_.reserve(run_count_);

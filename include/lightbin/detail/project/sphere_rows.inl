@@ -37,7 +37,7 @@ struct RowTerms {
     double middle[lanes], reach[lanes], low[lanes], high[lanes], left_v[lanes], right_v[lanes];
 };
 
-/// Returns V, a bound on the slopes of all tile rows.
+/// Returns V: the view-space slopes y / depth (orthographic: the y) of all tile rows lie between -V and V.
 inline double max_row_slope(const Camera& camera) {
     return (abs_of(camera.y.offset) + camera.y.tiles) / camera.y.scale;
 }
@@ -120,7 +120,8 @@ struct SphereRows {
         return known;
     }
 
-    /// Stores the spans of light i as silhouette_ends() finds them, clamped to the tile columns leftmost..rightmost.
+    /// Stores the spans of tiles that light i covers in a vector of tile rows, whose edges are the slopes v0 and v1.
+    /// The spans are clamped to the tile columns leftmost..rightmost.
     LIGHTBIN_INLINE void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost,
                                RowSpan* to) const {
         Doubles begin, end;

@@ -39,7 +39,8 @@ inline Doubles dot(const Doubles (&a)[3], const Doubles (&b)[3]) {
     return mul(a[0], b[0]) + mul(a[1], b[1]) + mul(a[2], b[2]);
 }
 
-/// Finds the lines that bound the cones of spots, and stores them from lane `at` on, with infinite limits if there are none.
+/// Finds the two image lines that bound each spot's cone, and stores them from lane `at` on. A cone that no
+/// such lines bound gets infinite limits.
 inline void find_wedges(const Camera& camera, const WedgeLanes& spots, unsigned at, WedgeTerms& terms) {
     const Doubles zero = broadcast(0.0), one = broadcast(1.0), none = broadcast(static_cast<double>(infinity));
     Doubles u[3] = {zero, zero, one};
@@ -114,7 +115,8 @@ struct SpotRows {
         return ~0u;
     }
 
-    /// Stores the spans of light i, clamped to the tile columns leftmost..rightmost. Empty spans are stored as 1..0.
+    /// Stores the spans of tiles that light i covers in a vector of tile rows, whose edges are the slopes v0 and v1.
+    /// The spans are clamped to the tile columns leftmost..rightmost; empty ones are stored as 1..0.
     void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost, RowSpan* to) const {
         Doubles begin = leftmost, end = rightmost + 1.0;
         if ((balls_known >> i & 1) != 0) {
@@ -138,7 +140,7 @@ struct SpotRows {
     RowTerms ball;         ///< the silhouettes of the balls
     unsigned balls_known;  ///< a bit for each spot whose ball has its silhouette in `ball`
     WedgeTerms wedges;
-    double low, high;  ///< the offset of the camera's x axis, in tiles, rounded down and up
+    double low, high;  ///< the x of the view axis in the image, in tiles, less and plus a margin for rounding
 };
 
 }}}}  // namespace lightbin::detail

@@ -29,8 +29,8 @@ struct ViewSpot {
     float tolerance;          ///< how far points of the exact spot can lie outside this one
     /// With a depth test against boxes, four half spaces around the cone, whose planes touch the apex but for rounding.
     SpotPlane planes[4];
-    /// For each half space, which corner of a box lies deepest inside: where the corner's x, y and z begin in the array
-    /// of a block's boxes that arrange_cells() makes.
+    /// For each of the half spaces in `planes`, which corner of an axis-aligned box lies deepest inside: where the
+    /// corner's x, y and z begin in the array of a block's boxes that arrange_cells() makes.
     std::uint16_t corners[4][3];
 };
 

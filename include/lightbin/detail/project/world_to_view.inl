@@ -26,7 +26,7 @@ struct TransformLanes {
         max_distance = broadcast(all.max_distance);
     }
 
-    const WorldToView* to_view;  ///< null if lights are given in view space: the vectors are then not initialized
+    const WorldToView* to_view;  ///< null if lights are given in view space: the members below are then uninitialized
     Floats origin[3], columns[3][3], origin_image[3], stretch, error_rate, error_at_origin, cone_error, max_distance;
 };
 

@@ -62,8 +62,9 @@ vec2 $view_depths(uvec2 range) {
     // 2^-19 = 32u. Orthographic views allow 2^-20 of the sum of the two planes' depths. Infinity is made from a
     // variable, because WGSL refuses it as a constant.
     if (options.format == DepthFormat::float32)
-        // Widens the range by two units in the last place, at least as much as reduce_depth() does. No end is denormal,
-        // because devices may flush denormal floats to zero.
+        // Widens the range of window depths, given as the bits of floats, by two units in the last place: at least as
+        // much as reduce_depth() does. Devices may flush denormals to zero, so a denormal lower end becomes 0 and a
+        // denormal upper end the least normal float, 0x00800000.
         writer.add(R"(    uint first = 0u;
     if (range.x >= 0x00800002u) { first = range.x - 2u; }
     vec2 ends = vec2(uintBitsToFloat(first), uintBitsToFloat(clamp(range.y + 2u, 0x00800000u, 0x3f800000u)));
@@ -82,8 +83,8 @@ vec2 $view_depths(uvec2 range) {
     vec2 depths = vec2(1.0 / w.x * 0.999998, endless);
     if (w.y > 0.0) { depths.y = 1.0 / w.y * 1.000002; }
 )");
-    // `view_depths` has a single return statement because of the compiler fxc, see `next` in snippet.hpp. `pixel`
-    // widens a tile's range by the samples of pixel i. The tile's pixels are numbered row by row.
+    // `view_depths` has a single return statement, because the HLSL compiler fxc complains of functions that return
+    // early. `pixel` widens a tile's range of window depths by the samples of the tile's pixel i, counted row by row.
     writer.add(R"(    if (range.x > range.y) { depths = vec2(endless, -endless); }
     return depths;
 }

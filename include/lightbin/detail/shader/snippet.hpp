@@ -332,7 +332,8 @@ bool $next_missing(inout $missing m, uint lights) {
     if (options.list_check && !dialect.webgpu)
         writer.add("\n#define $for_each_missing(cursor, lights, pixel, view_depth) for ($missing cursor = "
                    "$begin_missing(pixel, view_depth); $next_missing(cursor, lights);) if (cursor.lacked)\n");
-    // The prefix `own_` tells the cursor of one lane from that of its wave. Without wave_loop it is not needed.
+    // In the text, `$own_` begins the names of what belongs to one lane's cursor, to tell it from the cursor that a
+    // wave shares. Without wave_loop there is no shared one, and `own_` is left out.
     return writer.finish(options.wave_loop ? "$own_" : "$");
 }
 

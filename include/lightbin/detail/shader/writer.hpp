@@ -122,7 +122,8 @@ private:
         }
         if (sign == '{') ++depth_;
         if (sign == '}') in_struct_ = --depth_ > 0 && in_struct_;
-        // An inout parameter that is passed on as one is a pointer already, which needs no `&` in WGSL.
+        // WGSL has pointers in place of `inout`: `&` makes one of a variable. An inout parameter, which renamed()
+        // finds, is one already and is passed on without `&`.
         if (const std::string_view word = word_at(glsl_, at_); sign == '&' && renamed(word) != word) {
             wgsl_ += word;
             at_ += word.size();
