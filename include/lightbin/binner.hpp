@@ -162,7 +162,7 @@ private:
     static constexpr bool spots =
         std::remove_cvref_t<decltype(detail::as_lights(std::declval<const LightRange&>()))>::spots;
 
-    /// Projects the lights to footprints and, if slices are read, orders the footprints by depth.
+    /// Projects the lights to footprints and, with z-bins or clusters, orders the footprints by depth.
     template <class LightRange>
     std::optional<Error> project(const View& view, const LightRange& lights,
                                  [[maybe_unused]] const Inputs& inputs, const Parallel& threads) {

@@ -28,7 +28,7 @@ struct ListRange {
     std::uint32_t offset, count;
 };
 
-/// How many lights a grid was made of, and how many of them it leaves out. Each of the others has a tile in its footprint.
+/// How many lights a grid was made of, and how many of them it leaves out. All others have tiles in their footprints.
 struct LightCounts {
     std::uint32_t lights = 0;
     std::uint32_t rejected = 0;  ///< lights left out as bad input: see Sphere and Spot

@@ -106,7 +106,7 @@ struct ShaderBinding {
     std::string name = {};  ///< the name of the uniform, sampler, block or buffer in the text
     ShaderResource resource = ShaderResource::uniform_vector;
     ShaderSlot slot = {};
-    TexelFormat format = TexelFormat::none;  ///< of its texels; gl_format() and others return its name in an API
+    TexelFormat format = TexelFormat::none;  ///< the format of its texels; gl_format() etc. return its API names
     std::uint32_t stride = 0;                ///< bytes per element or texel
     std::uint32_t bytes = 0;  ///< uniform blocks and push constants: the declared size; others: 0, any size will do
     std::uint32_t width = 0;  ///< texture_2d: texels per row, see texture_rows(); 0: one per column of tiles

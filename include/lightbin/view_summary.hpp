@@ -22,7 +22,8 @@ struct ViewSummary {
     bool x_flipped, y_flipped;     ///< NDC x (or y) falls where view-space x (or y) grows
     int width, height, tile_size;  ///< in pixels
 
-    // The flags below say what is seldom meant. A View with one of them set is right all the same if it is meant.
+    // Each flag below is set where the matrix or the viewport looks like a common mistake. A View with
+    // a flag set is right if that was intended.
 
     bool looks_transposed;  ///< the matrix is a perspective one, and its entry of 1 is where a transposed matrix has it
     /// The matrix is orthographic and scales nothing: it may be an identity, or the view matrix.

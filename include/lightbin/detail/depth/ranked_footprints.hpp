@@ -98,8 +98,8 @@ private:
     void find_ranges() {
         const std::uint32_t *const sources = sources_.data(), *const last_bins = last_bins_.data();
         BinRange* const bins = bins_.reserve(bin_count_);
-        // The least rank is that of the first light in the order that ends in the bin or a later one. Where that light
-        // begins after the bin, no light meets the bin.
+        // A bin's least rank is the first one whose light ends in the bin or a later one: lights before it end too
+        // early. If this light begins only after the bin, no light meets the bin; the loop below finds that.
         BinRange *to = bins, *const end = bins + bin_count_;
         for (std::uint32_t rank = 0; rank < run_.end && to < end; ++rank)
             for (const BinRange* last = bins + last_bins[sources[rank]]; to <= last; ++to)

@@ -67,7 +67,7 @@ public:
     float farther(float depth) const { return margin > 0 ? float_above(widened(depth, margin)) : depth; }
 
     /// Calls found(i, first, last) for each footprint i of the runs, where first..last are the slices that its light's view
-    /// depths meet, ends included. Writes ids into the padding behind each run.
+    /// depths meet, ends included. Overwrites the padding of lights.ids behind each run.
     ///
     /// kernel        find_depth_buckets() of a tier
     /// conservative  the slices may be one more at either end, where that is faster to find
@@ -147,7 +147,7 @@ private:
     Buffer<float> boundaries_;      ///< the boundaries, and NaN behind them
     std::size_t count_;             ///< the number of boundaries
     Buffer<std::uint32_t> before_;  ///< for each bucket the number of boundaries in earlier ones; last, of all boundaries
-    std::size_t shared_ = 0;        ///< the number of boundaries whose bucket has an earlier one, too
+    std::size_t shared_ = 0;        ///< the number of boundaries that are not the first in their bucket
     DepthBuckets buckets_;
 };
 

@@ -60,8 +60,8 @@ struct Scratch {
     }
 };
 
-/// Returns an upper bound on the padded sizes of all block lists of a slice together. Kernels count them in 32 bits. It is one
-/// element for each light and each block that its rectangle can meet, wherever the first band begins, and the padding of all lists.
+/// Returns an upper bound on the sum of the padded sizes of a slice's block lists, which kernels count in 32 bits: one
+/// element for each light and each block that its rectangle can meet, wherever the first band begins, and all padding.
 inline std::uint64_t list_size_bound(const Camera& camera, const FootprintSlice& lit) {
     const std::uint64_t width = static_cast<std::uint64_t>(camera.x.tiles) / 8 + 3,
                         height = static_cast<std::uint64_t>(camera.y.tiles) / 8 + 3;

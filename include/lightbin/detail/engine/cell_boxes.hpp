@@ -60,7 +60,8 @@ template <DepthTest depth_test>
 inline constexpr unsigned cell_planes = depth_test == DepthTest::split_box ? 12
                                         : depth_test == DepthTest::box     ? 6
                                                                            : 2;
-inline constexpr unsigned next_box = 64 * cell_planes<DepthTest::box>;  ///< floats from the first box of split_box's cells to the second
+/// With split_box a cell has two boxes: how many floats after the first one the second one begins.
+inline constexpr unsigned next_box = 64 * cell_planes<DepthTest::box>;
 
 /// A sphere as the depth tests read it. The coordinates are negated where needed: tile indices grow with x and y, and z
 /// is the view depth.

@@ -16,7 +16,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 inline Floats low_ends(Floats edges, Floats front, Floats back) {
     return mul(edges, select(less(edges, broadcast(0.0f)), back, front)) - broadcast(flushed);
 }
-/// Returns the greatest view-space x (or y) of the boxes, from the tiles' high edges; see low_ends() for the parameters.
+/// Returns the greatest view-space x (or y) of the boxes, from the tiles' high edges; see low_ends() for arguments.
 inline Floats high_ends(Floats edges, Floats front, Floats back) {
     return mul(edges, select(less(broadcast(0.0f), edges), back, front)) + broadcast(flushed);
 }

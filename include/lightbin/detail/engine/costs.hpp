@@ -58,7 +58,7 @@ inline constexpr unsigned rows_counted_at_once = 512;
 
 /// Returns how many of a grid's `height` rows of tiles are filled with ids in one pass over all lights, when binning by
 /// scattering (scatter.hpp). Long lists of all tiles lie in too many cache lines and memory pages for one pass. Then
-/// passes over rows with about 512 tiles in all are faster, unless reading the lights again takes longer than writing ids.
+/// passes over rows with about 512 tiles in all are faster, unless rereading the lights takes longer than writing ids.
 inline std::size_t rows_filled_at_once(std::size_t height, std::size_t width, std::uint64_t lights,
                                        std::uint64_t entries) {
     const std::size_t rows = 512 / width + 1;

@@ -160,9 +160,9 @@ void meet_64_lights(const BinJob<Id>& job, const BlockCells<depth_test>& cells, 
     if (in_range != 0) meet_tiles(cells, tested, columns, rows, in_range, met);
 }
 
-/// Stores the table of Scratch::row_columns_of() for a list whose lights are in all tiles of their rectangles.
+/// Stores the table of Scratch::row_columns_of() for a list: each light is in all tiles of its rectangle.
 ///
-/// by_slab  whether they are only in those of these tiles whose bits store_met_boxes() has set
+/// by_slab  a light is only in the tiles of its rectangle for which store_met_boxes() set a bit
 template <bool by_slab> void store_rectangles(Scratch& scratch, const BlockList& list) {
     const std::uint32_t padded = list.padded_count();
     std::uint8_t* const columns = scratch.list_columns.data() + list.begin;

@@ -12,11 +12,11 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// The tile rows, or slices, begin..end-1.
 struct Share {
     unsigned begin, end;
-    std::uint64_t entries;  ///< an upper bound, the tiles of all rectangles in the share; the number of entries once it is built
+    std::uint64_t entries;  ///< the tiles of all rectangles in the share, an upper bound; once it is built, the exact number
 };
 
 /// Divides `steps` tile rows or slices into shares of about equal work. There must be no more shares than steps. The work of a step is
-/// area(step), the number of tiles of rectangles in it, plus `overhead`.
+/// area(step), the number of tiles that all lights' rectangles have in it, plus `overhead`.
 template <class Area> void share_steps(Items<Share> shares, std::size_t steps, std::uint64_t overhead, Area area) {
     const std::size_t count = shares.size();
     std::uint64_t work = 0, done = 0;
@@ -37,8 +37,9 @@ template <class Area> void share_steps(Items<Share> shares, std::size_t steps, s
     }
 }
 
-/// Divides a grid's tile rows into shares of about equal work. How many tiles of rectangles each row has is summed up from difference
-/// arrays over the rows, one for each run of footprints, so that threads can fill them in parallel.
+/// Divides a grid's tile rows into shares of about equal work. A row's work is the number of tiles that the lights'
+/// rectangles cover in it, each counted for each light: the prefix sums of difference arrays over the rows. Each run of
+/// footprints has a difference array of its own, so that threads can fill them in parallel.
 ///
 /// sums  memory for the difference arrays
 template <class Id>

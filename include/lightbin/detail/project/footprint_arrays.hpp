@@ -92,7 +92,7 @@ struct ProjectCounts {
     std::uint64_t rows = 0;      ///< tile rows in all rectangles; counted for silhouettes only
 };
 
-/// The tile rectangles of a chunk: of as many lights as are projected before those out of view are dropped.
+/// The tile rectangles of a chunk of lights: `size` lights are projected first, then the ones out of view are dropped.
 struct ChunkRects {
     static constexpr std::uint32_t size = 64;
     std::uint32_t x0[size], y0[size], x1[size], y1[size];

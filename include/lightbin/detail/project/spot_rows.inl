@@ -29,10 +29,11 @@ struct WedgeTerms {
     double per_x[2][lanes], n_y[2][lanes], limit[2][lanes];
 };
 
-/// What find_wedges() reads of a vector of spots.
+/// A vector of spots in double, for find_wedges(): the cones' apexes and unit axes, and the sines of their half angles.
 struct WedgeLanes {
     Doubles apex[3], axis[3], sine;
-    Doubles tolerance;  ///< bound on n.p for planes' normals n and points p of the spot; perspective: divided by p's depth
+    /// Bound on n.p for points p of the spot and the two planes' normals n; with perspective divided by p's depth.
+    Doubles tolerance;
 };
 
 inline Doubles dot(const Doubles (&a)[3], const Doubles (&b)[3]) {
@@ -76,7 +77,7 @@ inline void find_wedges(const Camera& camera, const WedgeLanes& spots, unsigned 
     }
 }
 
-/// The silhouettes of a vector of spots, with the members of SphereRows.
+/// The silhouettes of a vector of spots, for the same templates as SphereRows, the silhouettes of spheres.
 struct SpotRows {
     unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin, std::uint32_t count) {
         Sphere balls[lanes], axes[lanes], rest[lanes];

@@ -8,7 +8,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// A FloatTransform with each number broadcast to a vector.
+/// The transform from world space to view space in float, with each number broadcast to a vector.
 struct TransformLanes {
     explicit TransformLanes(const WorldToView* from) : to_view(from) {
         if (from == nullptr) return;

@@ -239,7 +239,7 @@ struct ShaderBuffer {
 /// The type and the name of a vector that the CPU sets, such as {"uvec4", "grid"}.
 using ShaderConstant = std::pair<const char*, const char*>;
 
-/// A declaration, or the part of one, in the three language families.
+/// A declaration, or a part of one, as each of the three families of shader languages writes it.
 struct ByLanguage {
     std::string glsl = {}, hlsl = {}, wgsl = {};
 };

@@ -17,7 +17,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Returns pick(Tier()) of the tier for an instruction set. The machine must have it.
+/// Returns pick(Tier()), where Tier has the kernels of an instruction set, which the machine must support.
 template <class Pick> auto with_tier(Isa isa, Pick pick) {
 #if defined(LIGHTBIN_X86)
     if (isa == Isa::avx512) return pick(avx512::Tier{});

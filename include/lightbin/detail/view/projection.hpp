@@ -71,7 +71,8 @@ inline std::optional<ErrorCode> wrong_shape(const Matrix& m) {
     return {};
 }
 
-/// Whether the 1 or -1 of a perspective matrix, the z entry of its w row, is instead where a transposed matrix has it.
+/// Whether a perspective matrix looks transposed: the 1 or -1 that belongs in the z entry of its w row is in the w
+/// entry of its z row.
 inline bool one_is_transposed(const Matrix& m) {
     return abs_of(m[3][2]) == 1 && abs_of(m[2][3]) != 1;
 }
