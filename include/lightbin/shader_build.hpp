@@ -86,7 +86,7 @@ struct BuildShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     BuildPass pass = BuildPass::count;
     DepthTest depth_test = DepthTest::none;  ///< split_box is refused; with clusters interval is, too
-    Slicing slicing = Slicing::none;         ///< z_bins are refused: these shaders make none
+    Slicing slicing = Slicing::none;         ///< z_bins is refused: build_shader() makes no z-bins
     bool max_only = false;      ///< tests the maximum Z bound alone, for transparent surfaces; not read with clusters
     bool orthographic = false;  ///< View::orthographic(); only read with DepthTest::box
 

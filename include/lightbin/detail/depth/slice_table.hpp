@@ -110,7 +110,7 @@ private:
         return exact + abs_of(exact) * static_cast<double>(fraction);  // a product of two floats is exact in double
     }
 
-    /// Returns how many boundaries lie before a depth, which is in `bucket`.
+    /// Returns for how many boundaries is_before(boundary) is true. It compares a boundary with a depth in `bucket`.
     template <class IsBefore> std::uint32_t before(std::size_t bucket, IsBefore is_before) const {
         const float* const boundaries = boundaries_.data();
         std::uint32_t slice = before_.data()[bucket];
@@ -146,7 +146,7 @@ private:
 
     Buffer<float> boundaries_;      ///< the boundaries, and NaN behind them
     std::size_t count_;             ///< the number of boundaries
-    Buffer<std::uint32_t> before_;  ///< for each bucket the number of boundaries in earlier ones; last, of all boundaries
+    Buffer<std::uint32_t> before_;  ///< for each bucket, the number of boundaries in earlier ones; last, of all
     std::size_t shared_ = 0;        ///< the number of boundaries that are not the first in their bucket
     DepthBuckets buckets_;
 };

@@ -131,7 +131,7 @@ private:
     template <bool spots>
     static constexpr bool by_slab = sliced && depth_test == DepthTest::box && footprint == Footprint::rectangle && !spots;
 
-    /// Fills in what the jobs of all slices have in common, except for the table to write.
+    /// Sets the camera, the Z bounds and the tiles' edges, which the jobs of all slices have in common.
     std::optional<Error> prepare(const View& view, const ZBounds& bounds, Job& common) {
         const std::size_t tiles = view.tile_count();
         common.camera = &camera_of(view);

@@ -12,7 +12,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// The tile rows, or slices, begin..end-1.
 struct Share {
     unsigned begin, end;
-    std::uint64_t entries;  ///< the tiles of all rectangles in the share, an upper bound; once it is built, the exact number
+    std::uint64_t entries;  ///< an upper bound: the tiles of all rectangles in the share; the exact number once built
 };
 
 /// Divides `steps` tile rows or slices into shares of about equal work. There must be no more shares than steps. The work of a step is

@@ -24,7 +24,7 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
 /// The two lines that bound each of `lanes` cones in the image. In a tile row with the slopes v0 to v1, the span
-/// begins or ends at  (limit - min(n_y v0, n_y v1)) per_x + offset  tiles: it ends there if per_x > 0.
+/// ends (if per_x > 0) or else begins at  (limit - min(n_y v0, n_y v1)) per_x + offset  tiles.
 struct WedgeTerms {
     double per_x[2][lanes], n_y[2][lanes], limit[2][lanes];
 };

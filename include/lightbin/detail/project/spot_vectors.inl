@@ -57,7 +57,7 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
         for (unsigned row = 0; row < 3; ++row)
             axis[row] = transformed_row(transform, row, given[0], given[1], given[2]);
         transform_spheres(transform, apex[0], apex[1], apex[2], spots.radius);
-        // transform_spheres() stretched the radius and added its bound on the centre's error: the bound is found again.
+        // transform_spheres() stretched the radius and added its bound on the centre's error; this recovers the bound.
         const Floats centre_error = spots.radius - mul(given_radius, transform.stretch);
         tolerance = mul(spots.radius, broadcast(0x1p-18f)) + (centre_error + mul(spots.radius, transform.cone_error));
         safe = both(safe, less_equal(transform.cone_error, broadcast(1.0f)));

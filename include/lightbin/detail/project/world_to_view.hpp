@@ -112,9 +112,9 @@ private:
     }
 
     /// Finds the transform in float if A is close to a rotation with a uniform scale: if the product of its Frobenius
-    /// norm and its inverse's is at most 32. Otherwise p - o, and so its rounding error, could be much larger than its
-    /// image. It follows that each column of A is at least 2^-26 long, and that a denormal entry that is flushed to
-    /// zero is at most 2^-100 times its column's length.
+    /// norm and its inverse's is at most 32. Otherwise a position relative to the origin, p - o, and so its rounding
+    /// error, could be much larger than its image. It follows that each column of A is at least 2^-26 long, and that a
+    /// denormal entry that is flushed to zero is at most 2^-100 times its column's length.
     void find_float_transform() {
         double inverse[3][3], det = 0, norm2 = 0, inverse_norm2 = 0, longest_column2 = 0;
         for (int c = 0; c < 3; ++c)

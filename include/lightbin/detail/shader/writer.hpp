@@ -144,7 +144,7 @@ private:
             ++at_;
             return;
         }
-        // A type, a space and a name are a declaration. Types that the text itself declares begin with the prefix.
+        // A type, a space and a name begin a declaration. Types that the text itself declares begin with the prefix.
         const ShaderWord row = shader_word(word);
         const std::string_view name = at_ < glsl_.size() && glsl_[at_] == ' ' ? word_at(glsl_, at_ + 1) : "";
         if ((row.is_type || word == "void" || word.starts_with('$')) && !name.empty()) {

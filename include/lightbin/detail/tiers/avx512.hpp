@@ -187,7 +187,7 @@ template <int lights, class Id> Id* append_several(Id* out, __m512i ids, std::ui
 template <unsigned at_most, class Id>
 Id* emit_short(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset, const std::uint32_t* ids,
                const std::uint8_t* row_columns) {
-    // `low` has a byte for each tile, with a bit for each of the first eight lights; `high`, for each of the next eight.
+    // `low` has a byte for each tile, with a bit for each of the first eight lights; `high`, for the next eight.
     const std::uint64_t low = transpose_bits(load_8_bytes(row_columns)),
                         high = at_most == 8 ? 0 : transpose_bits(load_8_bytes(row_columns + 8));
     const __m128i lights = _mm_set_epi64x(static_cast<long long>(high), static_cast<long long>(low)),
