@@ -58,7 +58,8 @@ inline std::string to_string(const Plan& plan) {
     return words;
 }
 
-/// What a plan gains from one of its parts, or would lose with a part that it lacks.
+/// What a plan gains from a part that it has, or would lose with a part that it lacks. A part is a technique: tiles,
+/// a depth pre-pass, boxes, split boxes, clusters, z-bins or silhouettes.
 struct Verdict {
     std::string part;     ///< the part's name, such as "box"
     bool keep = false;    ///< whether the plan has the part

@@ -73,8 +73,8 @@ struct ShaderGrid {
 };
 static_assert(sizeof(ShaderGrid) == 32 && sizeof(ListRange) == 8);  // neither has padding
 
-/// Returns the constants of a view. The corner is only read with viewport_corner: it is the window pixel at the
-/// viewport's first column and row, as the shader counts pixels.
+/// Returns the values of the shader's constants for a view. The corner is the window pixel at the viewport's first
+/// column and row, as the shader counts pixels; only shaders with ShaderOptions::viewport_corner read it.
 inline ShaderGrid shader_grid(const View& view, int corner_x = 0, int corner_y = 0) {
     const Extent size = view.viewport();
     const auto u = [](int n) { return static_cast<std::uint32_t>(n); };
@@ -93,12 +93,13 @@ struct ShaderView {
 };
 static_assert(sizeof(ShaderView) == 32);  // it has no padding
 
-/// Returns the constants of a view.
+/// Returns the values of the constants with which the shader's `check_view` checks pixels against a view.
 ///
-/// tolerance  in pixels: how far from its pixel a position may be. Half a pixel is needed for positions taken at a
-///            sample. The rest is for rounding: a position at depth d, interpolated over a triangle whose corners are
-///            at a distance r, is wrong by up to about 2^-22 r / d of the image's height in pixels. A larger tolerance
-///            is only needed where r / d exceeds some thousand
+/// tolerance  in pixels: how far from the pixel's centre, in x and in y, the position passed to `check_view` may be
+///            projected. Half a pixel is needed for positions taken at a sample. The rest is for rounding: a position
+///            at depth d, interpolated over a triangle whose corners are at a distance r, is wrong by up to about
+///            2^-22 r / d of the image's height in pixels. A larger tolerance is only needed where r / d exceeds some
+///            thousand
 inline ShaderView shader_view(const View& view, float tolerance = 2) {
     const detail::Camera& camera = detail::camera_of(view);
     const auto pixels = [&](double tiles) { return static_cast<float>(tiles * view.tile_size()); };

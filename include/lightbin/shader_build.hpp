@@ -41,7 +41,8 @@ struct ShaderReduce {
 };
 static_assert(sizeof(ShaderReduce) == 48);
 
-/// Returns the constants of a view. The corner is the texel at the viewport's first column and row.
+/// Returns the values of the constants of reduce_shader() for a view. The corner is the texel of the depth texture at
+/// the viewport's first column and row; only shaders with ReduceShaderOptions::viewport_corner read it.
 inline ShaderReduce shader_reduce(const View& view, int corner_x = 0, int corner_y = 0) {
     const ShaderGrid grid = shader_grid(view);
     // Let e be a window depth's distance from the far plane's: 1 - depth, or with reversed Z depth itself. View depth
@@ -177,7 +178,7 @@ inline std::vector<ShaderEdges> shader_slabs(const Slices& slices) {
 /// interval  the same entries, if the device rounds sums correctly
 /// box       the same entries but for the device's rounding of sums and products: no light that meets the cell is
 ///           missing, and no light is listed whose distance from the box exceeds its radius by over 2^-19 of the radius
-/// clusters  with box as above, without depth test as with interval; the depths of a cell are those of its slice
+/// clusters  as for box if the depth test is box, as for interval if it is none; the depths of a cell are its slice's
 ///
 /// Of a spot, these shaders test the least sphere around it (see least_sphere()), where the Binner tests the cone; the
 /// rectangle of tiles is the same. No spot that meets a cell is missing. Without depth test and clusters the entries

@@ -24,7 +24,7 @@ inline constexpr bool with_boxes = depth_test == DepthTest::box || depth_test ==
 struct BlockList {
     std::uint32_t begin, count;
 
-    /// The size rounded up to what is emitted at once: 8 lights, or a multiple of 16.
+    /// The number of lights, rounded up to the 8 or 16 that the kernels emit at once: to 8, or to a multiple of 16.
     std::uint32_t padded_count() const { return count <= 8 ? 8 : (count + 15) & ~15u; }
 };
 
@@ -39,13 +39,14 @@ struct Scratch {
 
     // The lists of one band's blocks.
     Buffer<BlockList> lists;
-    Buffer<std::uint32_t> list_ids;       ///< the lights' ids or, until they are tested, their indices in the footprint arrays
-    Buffer<std::uint8_t> list_columns;    ///< for each light a byte, with a bit for each of the block's columns in its rectangle
-    Buffer<std::uint8_t> list_rows;       ///< for each light a byte, with a bit for each of the block's rows in its rectangle
-    Buffer<std::uint64_t> tile_masks;     ///< for each light of one list a word, with a bit for each of the block's tiles it is in
-    Buffer<std::uint8_t> row_columns;     ///< the result of the tests for all lists, see row_columns_of()
+    Buffer<std::uint32_t> list_ids;     ///< the lights' ids; until mask_lights() tests them, indices in FootprintArrays
+    Buffer<std::uint8_t> list_columns;  ///< a byte for each light: a bit for each tile column its rectangle meets
+    Buffer<std::uint8_t> list_rows;     ///< a byte for each light: a bit for each tile row its rectangle meets
+    Buffer<std::uint64_t> tile_masks;   ///< a word for each light of one list: a bit for each tile that it is in
+    Buffer<std::uint8_t> row_columns;   ///< the tiles of each light after all tests, see row_columns_of()
 
-    // The lights that pick_row() copies out of a long list, and the words that split_bits() makes of them.
+    // Copies that pick_row() makes of the lights in one row of tiles: their ids, and bytes with a bit for each tile.
+    // split_bits() transposes the bytes of each 64 lights to 8 words, one for each tile, with a bit for each light.
     Buffer<std::uint32_t> row_ids;
     Buffer<std::uint8_t> picked_columns;
     Buffer<std::uint64_t> row_words;

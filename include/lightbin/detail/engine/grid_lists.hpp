@@ -145,7 +145,8 @@ private:
         return {};
     }
 
-    /// Finds the edges of all columns and rows of tiles, for boxes. Zeros follow them, as whole vectors are read.
+    /// Finds the edges of all columns and rows of tiles, from which the depth test makes boxes around cells. Zeros
+    /// follow the edges, as whole vectors are read.
     void find_edges(Job& common) {
         const ImageAxis* axes[] = {&common.camera->x, &common.camera->y};
         for (std::size_t i = 0; i < 2; ++i) {

@@ -123,7 +123,7 @@ inline std::uint32_t list_block(Scratch& scratch, const BandLists& bands, std::s
     std::uint8_t* const columns = scratch.list_columns.reserve(capacity, begin) + begin;
     std::uint8_t* const rows = scratch.list_rows.reserve(capacity, begin) + begin;
     std::uint32_t* const ids = scratch.list_ids.reserve(capacity, begin) + begin;
-    const BandLists from = bands;  // a local copy, as above
+    const BandLists from = bands;  // a local copy, so that compilers need not reload it after each store
     const std::size_t first = list * from.capacity;
     std::uint32_t count = 0;
     for (std::size_t i = 0; i < size; i += byte_lanes) {

@@ -76,7 +76,7 @@ void prepend_id(Id* list, ListRange* row, const ListRange* end, std::size_t pitc
 /// not inlined, as it takes a tenth longer inside another loop.
 template <class Id>
 LIGHTBIN_NOINLINE void fill_rows(const BinJob<Id>& job, Id* list, std::size_t begin, std::size_t end) {
-    const FootprintArrays lights = job.lights;  // a local copy, as above
+    const FootprintArrays lights = job.lights;  // a local copy, so that compilers need not reload it after each store
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
     for (std::size_t run = job.runs.size(); run-- > 0;)
         for (std::uint32_t i = job.runs[run].end; i-- > job.runs[run].begin;) {

@@ -86,7 +86,8 @@ inline unsigned row_terms(const Camera& camera, Doubles x, Doubles y, Doubles z,
     return movemask(whole) << at;
 }
 
-/// Finds where silhouette i begins and ends, in tiles, in a vector of tile rows, whose edges have the slopes v0 and v1.
+/// Finds where silhouette i begins and ends, in tiles, in a vector of tile rows. The edges of each row lie at the
+/// slopes y / depth = v0 and v1 in view space (orthographic: y = v0 and v1).
 LIGHTBIN_INLINE void silhouette_ends(const RowTerms& terms, std::uint32_t i, Doubles v0, Doubles v1, Doubles& begin,
                                      Doubles& end) {
     const Doubles y = broadcast(terms.y[i]), y_v = broadcast(terms.y_v[i]), z = broadcast(terms.z[i]),
@@ -120,8 +121,9 @@ struct SphereRows {
         return known;
     }
 
-    /// Stores the spans of tiles that light i covers in a vector of tile rows, whose edges are the slopes v0 and v1.
-    /// The spans are clamped to the tile columns leftmost..rightmost.
+    /// Stores the spans of tiles that light i covers in a vector of tile rows. The edges of each row lie at the slopes
+    /// y / depth = v0 and v1 in view space (orthographic: y = v0 and v1). The spans are clamped to the tile columns
+    /// leftmost..rightmost.
     LIGHTBIN_INLINE void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost,
                                RowSpan* to) const {
         Doubles begin, end;

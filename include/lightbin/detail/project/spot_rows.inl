@@ -23,8 +23,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// The two lines that bound each of `lanes` cones in the image. In a tile row with the slopes v0 to v1, the span
-/// ends (if per_x > 0) or else begins at  (limit - min(n_y v0, n_y v1)) per_x + offset  tiles.
+/// The two lines that bound each of `lanes` cones in the image. In a tile row between the slopes v0 and v1, a line
+/// ends the span (if per_x > 0) or begins it, at  (limit - min(n_y v0, n_y v1)) per_x + offset  tiles.
 struct WedgeTerms {
     double per_x[2][lanes], n_y[2][lanes], limit[2][lanes];
 };
@@ -116,8 +116,9 @@ struct SpotRows {
         return ~0u;
     }
 
-    /// Stores the spans of tiles that light i covers in a vector of tile rows, whose edges are the slopes v0 and v1.
-    /// The spans are clamped to the tile columns leftmost..rightmost; empty ones are stored as 1..0.
+    /// Stores the spans of tiles that light i covers in a vector of tile rows. The edges of each row lie at the slopes
+    /// y / depth = v0 and v1 in view space (orthographic: y = v0 and v1). The spans are clamped to the tile columns
+    /// leftmost..rightmost; empty spans are stored as 1..0.
     void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost, RowSpan* to) const {
         Doubles begin = leftmost, end = rightmost + 1.0;
         if ((balls_known >> i & 1) != 0) {

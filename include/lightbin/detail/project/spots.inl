@@ -35,7 +35,7 @@ struct RimLanes {
     Floats axis_z;     ///< the depth coordinate of the cone's unit axis
     Floats cosine2;    ///< the squared cosine of the half angle
     Floats along;      ///< the distance from the apex to the rim's centre
-    Floats rho, rho2;  ///< the rim's radius and its square
+    Floats rho, rho2;  ///< the radius of the rim, where cone and ball meet, and its square
     Floats rim_z;      ///< the view depth of the rim's centre
     Floats per_a;      ///< 1 / A, see narrow_slopes()
     Floats error;      ///< a slope's error is at most this times (1 + |slope|)

@@ -155,8 +155,8 @@ private:
             offset += abs_of(at);
             in_float_.origin_image[r] = static_cast<float>(at);
         }
-        // The factors (1 + 2^-22) and (1 + 2^-18) cover the rounding of the transformed radius, and 2^-100 denormal
-        // numbers that are flushed to zero.
+        // Kernels compute a transformed radius in float from `stretch` and the two error terms below. The factors
+        // (1 + 2^-22) and (1 + 2^-18) cover the rounding in this, and 2^-100 covers denormal numbers flushed to zero.
         in_float_.stretch = float_above(stretch_ * (1 + 0x1p-22));
         in_float_.error_rate = float_above(root_of(longest_column2) * (6 * 0x1p-24) * (1 + 0x1p-18));
         in_float_.error_at_origin = float_above((offset * 0x1p-23 + terms * 0x1p-50) * (1 + 0x1p-18) + 0x1p-100);

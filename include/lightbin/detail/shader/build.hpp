@@ -56,11 +56,12 @@ vec2 $view_depths(uvec2 range) {
     uint endless_bits = 0x7f800000u;
     float endless = uintBitsToFloat(endless_bits);
 )");
-    // `view_depths` converts a tile's range of window depths to view depths, rounded outward. In units of u = 2^-24 the
-    // relative errors are: 3u in `far_end` and `slope`, since View's depths are floats; 2u in their product and sum; 1u
-    // in e, which is exact where it is small; up to 5u in the device's reciprocal. That is 11u, and the factors allow
-    // 2^-19 = 32u. Orthographic views allow 2^-20 of the sum of the two planes' depths. Infinity is made from a
-    // variable, because WGSL refuses it as a constant.
+    // The shader's function `view_depths` converts a tile's range of window depths to view depths, rounded outward. If
+    // e is a window depth's distance from the far plane's, the view depth is 1 / (far_end + slope e) in perspective.
+    // In units of u = 2^-24 the relative errors are: 3u in the constants `far_end` and `slope`, since View's depths are
+    // floats; 2u in the product slope e and the sum; 1u in e, which is exact where e is small; up to 5u in the device's
+    // reciprocal. That is 11u; the factors 0.999998 and 1.000002 allow 2^-19 = 32u. Orthographic views allow 2^-20
+    // of the sum of the two planes' depths. Infinity is made from a variable, because WGSL refuses it as a constant.
     if (options.format == DepthFormat::float32)
         // Widens the range of window depths, given as the bits of floats, by two units in the last place: at least as
         // much as reduce_depth() does. Devices may flush denormals to zero, so a denormal lower end becomes 0 and a

@@ -67,8 +67,9 @@ inline std::string replaced(std::string text, std::string_view from, std::string
     return text;
 }
 
-/// Translates to HLSL, or to GLSL for OpenGL, Vulkan or ES. In ES every declaration is marked highp, since a fragment
-/// shader's integers may have only 16 bits otherwise. (A default precision would change the user's code, too.)
+/// Translates the writer's GLSL, which is described at the head of this file, to HLSL or to the GLSL of OpenGL, Vulkan
+/// or OpenGL ES. In OpenGL ES every declaration is marked highp, since a fragment shader's integers may have only 16
+/// bits otherwise. (A default precision would change the user's code, too.)
 inline std::string translate(std::string_view glsl, bool hlsl, bool es) {
     std::string text;
     for (std::size_t at = 0; at < glsl.size();) {
@@ -232,7 +233,7 @@ struct ShaderBuffer {
     ShaderResource resource;
     ShaderSlot slot;
     TexelFormat format;   ///< the elements are uvec2 if it is rg32ui, otherwise uint
-    std::uint64_t bytes;  ///< uniform_block: the size of the largest content
+    std::uint64_t bytes;  ///< uniform_block: the size, enough for the largest data that the shader options allow
     std::uint32_t width;  ///< texture_2d: texels per row
 };
 
