@@ -107,7 +107,7 @@ struct ShaderBuild {
 };
 static_assert(sizeof(ShaderBuild) == 32);
 
-/// Returns the constants of a view.
+/// Returns the values of the constants of build_shader() for a view.
 ///
 /// footprints  how many footprints shader_footprints() returned
 /// capacity    how many ids fit in the buffer `lists`

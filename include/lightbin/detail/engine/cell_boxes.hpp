@@ -74,6 +74,6 @@ struct TestedLight {
 
     float x, y, z;
     float nearest, farthest;  ///< the sphere's view depths; rounding is monotone: tests against Z bounds lose no light
-    float reach2;             ///< see reach2_of()
+    float reach2;             ///< the squared radius, enlarged, see reach2_of()
 };
 }}}  // namespace lightbin::detail

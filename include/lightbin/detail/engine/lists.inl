@@ -24,7 +24,7 @@ struct BandLists {
     std::size_t panels = 0, count = 0, capacity = 0;
     std::uint8_t *x0 = nullptr, *x1 = nullptr;  ///< a light covers the panel's columns x0..x1-1, saturated to 0..255
     std::uint8_t* rows = nullptr;               ///< a byte for each light: a bit for each covered row of the band
-    std::uint32_t* ids = nullptr;               ///< each light's id or, if it will be tested, its index in the footprint arrays
+    std::uint32_t* ids = nullptr;               ///< each light's id or, for mask_lights(), its index in FootprintArrays
     std::uint32_t* sizes = nullptr;
 };
 

@@ -126,7 +126,7 @@ public:
 private:
     static constexpr std::size_t chunk = detail::ChunkRects::size;
 
-    /// Finds the row spans of all footprints, those of each part one after another.
+    /// Finds the row spans of all footprints and stores them in one array, those of each FootprintRun together.
     void add_spans(detail::RowSpanKernel kernel, const View& view, const Parallel& threads) {
         constexpr std::uint64_t padding = 8;  // kernels store vectors of up to 8 rows
         // Lights whose spans would have an index above 32 bits have none, and keep their whole rectangles.

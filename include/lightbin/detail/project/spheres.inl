@@ -214,7 +214,8 @@ struct ViewLanes {
     Floats sign_x, sign_y, sign_z, normal_x, normal_xz, normal_y, normal_yz, front, back;
 };
 
-/// Returns which lights of a vector are certain to lie outside the view frustum, of those that are safe in float.
+/// Returns a mask of the lights in a vector that are certain to lie outside the view frustum. The result only holds for
+/// lights that safe_in_float() accepts.
 ///
 /// x, y, z, r         the lights' spheres after the camera's signs: tile indices grow with x and y; z is the view depth
 /// nearest, farthest  the lights' view depths
