@@ -14,7 +14,7 @@ template <class Light, class ToLight> struct Lights {
     ToLight to_light;
     std::optional<detail::WorldToView> to_view;
 
-    /// True if `to_light` makes Spots, false if it makes Spheres. The Spots may include point lights, see Spot::whole().
+    /// True if `to_light` makes Spots, false if it makes Spheres. The Spots may include spheres, by Spot::whole().
     static constexpr bool spots = std::convertible_to<
         decltype(detail::make_light(std::declval<const ToLight&>(), std::declval<const Light&>())), Spot>;
 

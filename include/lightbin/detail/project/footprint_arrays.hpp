@@ -111,7 +111,7 @@ struct FootprintSlice {
 template <class Id> struct BinJob : FootprintSlice {
     const Camera* camera;
     const float* bounds[4];  ///< the ZBounds min, max, gap_min, gap_max; null for an absent one
-    const float* edges[4];   ///< the tiles' edges for boxes around cells: low x, high x, low y, high y; see tile_edges()
+    const float* edges[4];   ///< the tiles' edges for boxes around cells: low x, high x, low y, high y, by tile_edges()
     ListRange* tiles;        ///< the whole grid's ranges, to be written
 };
 
