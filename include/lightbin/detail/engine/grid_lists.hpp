@@ -77,14 +77,19 @@ public:
                 else
                     share_rows(job, parallel, row_sums_, shares);
                 const auto kernel = kernel_of<spots>(isa, view, job);
-                entries_ = static_cast<std::size_t>(build_shares(
-                    parallel, shares, common.tiles, tiles / (sliced ? 1 : rows), share_lists_, list,
-                    [&](const Share& share, std::size_t i, Id* out) {
-                        if constexpr (sliced)
-                            return build_slices(share.begin, share.end, out, scratch.data()[i]);
-                        else
-                            return kernel(job, scratch.data()[i], {share.begin, share.end, out, 0});
-                    }));
+                if constexpr (!sliced && !tested)
+                    entries_ = static_cast<std::size_t>(build_rectangles(
+                        parallel, Items<const Share>{shares.first, count}, share_lists_, list,
+                        [&](std::size_t i, const BinShare<Id>& part) { kernel(job, scratch.data()[i], part); }));
+                else
+                    entries_ = static_cast<std::size_t>(build_shares(
+                        parallel, shares, common.tiles, tiles / (sliced ? 1 : rows), share_lists_, list,
+                        [&](const Share& share, std::size_t i, Id* out) {
+                            if constexpr (sliced)
+                                return build_slices(share.begin, share.end, out, scratch.data()[i]);
+                            else
+                                return kernel(job, scratch.data()[i], {share.begin, share.end, out, 0});
+                        }));
                 return {};
             }
         }

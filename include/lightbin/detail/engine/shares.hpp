@@ -13,6 +13,11 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 struct Share {
     unsigned begin, end;
     std::uint64_t entries;  ///< an upper bound: the tiles of all rectangles in the share; the exact number once built
+
+    // Of a share of tile rows, for build_rectangles():
+    std::uint64_t before = 0;        ///< the tiles of all rectangles in earlier shares
+    unsigned tail_begin = 0;         ///< from this tile row on, the share's rectangles have a kernel's slack of tiles or little more
+    std::uint64_t tail_entries = 0;  ///< how many they have
 };
 
 /// Divides `steps` tile rows or slices into shares of about equal work. There must be no more shares than steps. The work of a step is
@@ -63,6 +68,36 @@ void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
     }
     share_steps(shares, rows, empty_row_cost(static_cast<std::uint64_t>(job.camera->x.tiles)),
                 [&](std::size_t row) { return row_area[row]; });
+    std::uint64_t before = 0;
+    for (Share& share : shares) {
+        share.before = before;
+        before += share.entries;
+        share.tail_begin = share.end;
+        while (share.tail_begin > share.begin && share.tail_entries < BinShare<Id>::slack)
+            share.tail_entries += row_area[--share.tail_begin];
+    }
+}
+
+/// Builds shares of rectangles without tests, whose entries are known before, in their places in `list`. Kernels write past their end,
+/// where another thread may be at work: so the last rows of a share are built in memory of their own and copied. Without this the
+/// copies of build_shares() take as long as the kernels where lists are long, and threads gain nothing. Returns the number of entries.
+///
+/// memory  the memory of the last rows, kept from call to call
+/// build   build(i, rows) builds some rows of share i, a BinShare
+template <class Id, class Build>
+std::uint64_t build_rectangles(const Parallel& parallel, Items<const Share> shares, Buffer<Buffer<Id>>& memory, Id* list,
+                               Build build) {
+    memory.reserve(shares.size(), shares.size());
+    parallel.run(shares.size(), [&](std::size_t i) {
+        const Share& share = shares[i];
+        const std::uint64_t tail = share.before + share.entries - share.tail_entries;  // where the last rows' entries begin
+        build(i, {share.begin, share.tail_begin, list + share.before, static_cast<std::uint32_t>(share.before)});
+        Id* const copied = memory.data()[i].reserve(share.tail_entries + BinShare<Id>::slack);
+        build(i, {share.tail_begin, share.end, copied, static_cast<std::uint32_t>(tail)});
+        copy_items(copied, share.tail_entries, list + tail);
+    });
+    const Share& last = shares[shares.size() - 1];
+    return last.before + last.entries;
 }
 
 /// Builds all shares in parallel, and joins their index lists. The first share's is built in `list`; the others are built in memory of
