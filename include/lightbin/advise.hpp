@@ -20,7 +20,7 @@ struct Costs {
     /// The time to evaluate one light at one pixel: about 1 on a CPU core, and 0.005 to 0.05 on a whole GPU, which
     /// evaluates many at once.
     double evaluation_ns = 0.02;
-    /// The time of the depth pre-pass and the reduction to Z bounds; 0 if the renderer does both anyway.
+    /// The time of the depth pre-pass and its reduction to each tile's Z bounds; 0 if the renderer does both anyway.
     double z_bounds_ns = 0;
     /// The time to move one byte of the lists to where the shader reads it: 0.1 at 10 GB/s.
     double upload_byte_ns = 0;
@@ -35,10 +35,10 @@ struct Plan {
     bool tiled = true;  ///< false: every pixel evaluates every light, and all members up to tile_size mean nothing
     Footprint footprint = Footprint::rectangle;
     DepthTest depth_test = DepthTest::none;
-    Slicing slicing = Slicing::none;  ///< other values need the slices that advise_slices() was given
+    Slicing slicing = Slicing::none;  ///< values other than `none` need the slices given to advise_slices()
     int tile_size = 0;
     double build_ns = 0;        ///< the time to build the lists, plus Costs::z_bounds_ns if the plan has Z bounds
-    double upload_ns = 0;       ///< the time to upload the lists
+    double upload_ns = 0;       ///< the time to move the lists to where the shader reads them
     std::uint64_t entries = 0;  ///< the length of the light index list
     /// The list lengths summed over all pixels with something to light; without Z bounds multiplied by Costs::overdraw.
     double evaluations = 0;

@@ -85,8 +85,8 @@ inline std::uint64_t encoded_bytes(const ListFormat& format, std::uint64_t tiles
 /// What encode() left out of lists that are longer than the capacity of the sentinel format.
 struct Encoded {
     std::uint64_t entries_cut = 0;
-    std::uint32_t tiles_cut = 0;        ///< tiles whose list was cut
-    std::uint32_t capacity_needed = 0;  ///< length of the longest list, the least capacity that cuts nothing
+    std::uint32_t tiles_cut = 0;        ///< the number of tiles whose list was cut
+    std::uint32_t capacity_needed = 0;  ///< the length of the longest list: the least capacity that cuts none
 };
 
 /// Writes the lists of a grid to `out`, in this machine's byte order. `out` must hold encoded_bytes(format, tiles,

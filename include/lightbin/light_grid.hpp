@@ -31,8 +31,8 @@ struct ListRange {
 /// How many lights a grid was made of, and how many of them it leaves out. All others have tiles in their footprints.
 struct LightCounts {
     std::uint32_t lights = 0;
-    std::uint32_t rejected = 0;  ///< lights left out as bad input: see Sphere and Spot
-    std::uint32_t culled = 0;    ///< lights left out as outside of the view
+    std::uint32_t rejected = 0;  ///< the number of lights left out as bad input: see Sphere and Spot
+    std::uint32_t culled = 0;    ///< the number of lights left out as outside of the view
 };
 
 /// The least and greatest rank of the lights whose depths meet a z-bin. A rank is a light's position in order of depth.
@@ -41,7 +41,7 @@ struct BinRange {
     std::uint32_t least, greatest;
 };
 
-/// What Slicing::z_bins adds to a grid: the lights in order of depth, and the ranks in each z-bin.
+/// What Slicing::z_bins adds to a grid: the lights' order by depth, and the range of ranks (places in it) per z-bin.
 struct LightRanks {
     std::span<const std::uint32_t> order;  ///< for each rank, the position of its light in the caller's array
     std::span<const BinRange> bins;        ///< the ranks in each z-bin, one BinRange per slice
@@ -50,7 +50,7 @@ struct LightRanks {
 /// What Binner::bin_bits() returns. The bitmasks are in the caller's memory.
 struct LightBits {
     LightCounts counts;
-    LightRanks ranks;  ///< filled in with Slicing::z_bins, else empty
+    LightRanks ranks;  ///< the order of the lights by depth, with Slicing::z_bins; else empty
 };
 
 /// A finished light grid. It refers to memory that it does not own; the function that returns the grid says how long that
@@ -64,7 +64,7 @@ public:
 
     int tiles_x() const { return tiles_x_; }
     int tiles_y() const { return tiles_y_; }
-    int slices() const { return slices_; }  ///< 1 unless made with Slicing::clusters
+    int slices() const { return slices_; }  ///< the number of depth slices; 1 unless made with Slicing::clusters
 
     /// The range of ids() that each tile lists: tiles_x() * tiles_y() ranges, row-major; with clusters as many for each
     /// slice, one slice after another. Each range begins where the one before it ends.

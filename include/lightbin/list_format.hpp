@@ -22,9 +22,9 @@ constexpr const char* to_string(ListEncoding encoding) {
 /// The format of the lists: their encoding, and the numbers that fix its sizes.
 struct ListFormat {
     ListEncoding encoding = ListEncoding::offset_count;
-    IdWidth ids = IdWidth::u32;    ///< width of an id; read for offset_count and sentinel
+    IdWidth ids = IdWidth::u32;    ///< the width of an id; read for offset_count and sentinel
     std::uint32_t capacity = 0;    ///< ids that a tile has memory for, 1 or more; read for sentinel
-    std::uint32_t max_lights = 0;  ///< all ids are below it; bitmask needs it, else 0 means as many as `ids` can number
+    std::uint32_t max_lights = 0;  ///< all ids are less; bitmask needs it, else 0 means as many as `ids` can number
 };
 
 }}  // namespace lightbin

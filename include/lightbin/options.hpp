@@ -10,7 +10,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 /// How a light's footprint is computed: the tiles that its projection covers.
 enum class Footprint : std::uint8_t {
     rectangle,   ///< the tiles of the projection's bounding rectangle (as in Tiled Shading)
-    silhouette,  ///< one exact span of tiles per tile row, without the corners of the rectangle
+    silhouette,  ///< one exact span of tiles per tile row, without the corners of the bounding rectangle
 };
 
 /// The test that keeps a light out of tiles of its footprint by depth. All but `none` need Z bounds or clusters.

@@ -54,9 +54,9 @@ struct ShaderOptions {
     bool window = false;      ///< adds the function `window`, which computes what light_window() does on the CPU
 
     std::uint32_t texture_width = 2048;  ///< texture_2d: texels per row, 1 to 16384; a power of two is fastest
-    std::uint32_t max_tiles = 0;    ///< uniform blocks: the greatest number of tiles, counted in every slice
-    std::uint32_t max_entries = 0;  ///< uniform blocks with offset_count: the greatest number of list entries
-    std::uint32_t max_slices = 0;   ///< uniform blocks with slicing: the greatest number of slices
+    std::uint32_t max_tiles = 0;    ///< sizes a uniform block: the greatest number of tiles, counted in every slice
+    std::uint32_t max_entries = 0;  ///< sizes a uniform block of offset_count lists: the greatest number of entries
+    std::uint32_t max_slices = 0;   ///< sizes the uniform block of the slices: their greatest number
     std::uint32_t uniform_block_bytes = 16384;  ///< the device's limit for one block; every device allows 16384
 
     ShaderSlot tiles = {0}, lists = {1}, grid = {2}, slices = {3}, bins = {4}, view = {5};
@@ -88,8 +88,8 @@ inline std::vector<std::uint32_t> shader_slices(const Slices& slices);
 /// The values of the constants `image` and `depths` that `check_view` reads. `nearest` is a view depth, `tolerance` a
 /// number of pixels. A uniform block has this layout.
 struct ShaderView {
-    float scale_x, scale_y, offset_x, offset_y;      ///< image: pixel = scale * x / depth + offset
-    float forward, perspective, nearest, tolerance;  ///< depths: view depth = forward * z; perspective is 1 or 0
+    float scale_x, scale_y, offset_x, offset_y;      ///< `image`: pixel = scale * x / depth + offset
+    float forward, perspective, nearest, tolerance;  ///< `depths`: view depth = forward * z; perspective is 1 or 0
 };
 static_assert(sizeof(ShaderView) == 32);  // it has no padding
 

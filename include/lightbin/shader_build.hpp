@@ -22,7 +22,7 @@ struct ReduceShaderOptions {
     bool reversed_z = false;    ///< View::reversed_z()
     bool orthographic = false;  ///< View::orthographic()
     DepthFormat format = DepthFormat::float32;
-    bool skip_background = false;  ///< ignores pixels at the far plane, see DepthBuffer::skip_background
+    bool skip_background = false;  ///< ignores samples at the far plane: see DepthBuffer::skip_background
     bool flip_y = false;           ///< the texture's row 0 is at the image's opposite end to the view's WindowOrigin
     bool viewport_corner = false;  ///< the viewport begins at the texel `corner`, not at the texture's first one
 
@@ -86,13 +86,13 @@ constexpr const char* to_string(BuildPass value) {
 struct BuildShaderOptions {
     ShaderLanguage language = ShaderLanguage::glsl_430;
     BuildPass pass = BuildPass::count;
-    DepthTest depth_test = DepthTest::none;  ///< split_box is refused; with clusters interval is, too
-    Slicing slicing = Slicing::none;         ///< z_bins is refused: build_shader() makes no z-bins
-    bool max_only = false;      ///< tests the maximum Z bound alone, for transparent surfaces; not read with clusters
-    bool orthographic = false;  ///< View::orthographic(); only read with DepthTest::box
+    DepthTest depth_test = DepthTest::none;  ///< split_box is an error; with clusters, interval is, too
+    Slicing slicing = Slicing::none;         ///< z_bins is an error: build_shader() makes no z-bins
+    bool max_only = false;      ///< tests with the maximum Z bound alone, for transparent surfaces; not with clusters
+    bool orthographic = false;  ///< whether the view is orthographic: View::orthographic(); read with DepthTest::box
 
     ShaderSlot footprints = {0}, z_bounds = {1}, tiles = {2}, lists = {3};
-    ShaderSlot total = {3};  ///< by default the slot of `lists`, as no pass uses both
+    ShaderSlot total = {3};  ///< for the lists' total length; by default the slot of `lists`, as no pass uses both
     ShaderSlot grid = {4};
     bool push_constants = false;            ///< Vulkan: the constants are push constants
     std::string_view prefix = "lightbin_";  ///< every name in the text begins with it
@@ -128,7 +128,7 @@ inline ShaderBuild shader_build(const View& view, std::uint32_t footprints, std:
 struct ShaderFootprint {
     std::uint32_t id;  ///< the light's position in the caller's array
     std::uint16_t x0, y0, x1, y1;
-    float reach2;  ///< the squared radius, rounded up
+    float reach2;  ///< the sphere's squared radius, rounded up
     float x, y, z, radius;
 };
 static_assert(sizeof(ShaderFootprint) == 32);

@@ -98,7 +98,7 @@ constexpr std::size_t texture_rows(std::size_t count, std::size_t width) {
 /// Texts for OpenGL 3.3 and ES 3.0 contain no bindings; there the program assigns samplers and blocks by name.
 struct ShaderSlot {
     int binding = 0;
-    int set = 0;  ///< 0 except in Vulkan, hlsl_5_1 and wgsl
+    int set = 0;  ///< the descriptor set, register space or bind group in Vulkan, hlsl_5_1 and wgsl; else 0
 };
 
 /// One resource that the program has to bind before it uses the shader.
@@ -106,8 +106,8 @@ struct ShaderBinding {
     std::string name = {};  ///< the name of the uniform, sampler, block or buffer in the text
     ShaderResource resource = ShaderResource::uniform_vector;
     ShaderSlot slot = {};
-    TexelFormat format = TexelFormat::none;  ///< the format of its texels; gl_format() etc. return its API names
-    std::uint32_t stride = 0;                ///< bytes per element or texel
+    TexelFormat format = TexelFormat::none;  ///< the format of texels, if any; gl_format() etc. return its API names
+    std::uint32_t stride = 0;                ///< the number of bytes per array element or texel
     std::uint32_t bytes = 0;  ///< uniform blocks and push constants: the declared size; others: 0, any size will do
     std::uint32_t width = 0;  ///< texture_2d: texels per row, see texture_rows(); 0: one per column of tiles
 };

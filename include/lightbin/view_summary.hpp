@@ -15,7 +15,7 @@ struct ViewSummary {
     /// Perspective: the horizontal and vertical field of view in degrees. Orthographic: the image's width and height in
     /// units of view space.
     double x_size, y_size;
-    double aspect;  ///< width divided by height of the image on a plane of equal depth
+    double aspect;  ///< the width divided by the height of the image on a plane of equal depth
     double near_depth, far_depth;
     bool looks_down_negative_z;  ///< true for right-handed view spaces
     bool reversed_z;

@@ -100,7 +100,7 @@ inline constexpr Options weighed_sliced[] = {
     {.footprint = Footprint::rectangle, .depth_test = DepthTest::box, .slicing = Slicing::clusters},
     {.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::clusters}};
 
-/// Returns `base` with the footprint, depth test and slicing of a table's row.
+/// Returns `base` with the footprint, depth test and slicing of `row`, a row of a table of options to be measured.
 constexpr Options weighed_options(Options base, const Options& row) {
     base.footprint = row.footprint;
     base.depth_test = row.depth_test;
@@ -108,7 +108,8 @@ constexpr Options weighed_options(Options base, const Options& row) {
     return base;
 }
 
-/// Finds a plan's options among the rows of a table from row i on, and calls visit() with them as a constant.
+/// Calls visit() with a plan's options as a template argument, which a Binner's type needs. Finds them in `table`, the
+/// options that are measured, from row i on.
 template <const auto& table, Options base, std::size_t i, class Visit>
 decltype(auto) with_options_from(const Plan& plan, Visit& visit) {
     constexpr Options options = weighed_options(base, table[i]);
@@ -141,7 +142,7 @@ template <class Visit> void for_each_drawn(const View& view, const ZBounds& boun
 /// A view with one of the tile sizes that are measured, and its Z bounds.
 struct WeighedGrid {
     View view;
-    ZBounds bounds;  ///< the caller's Z bounds; if the tiles are larger than the caller's, views of the vectors below
+    ZBounds bounds;  ///< the caller's Z bounds or, with larger tiles than the caller's, spans of the vectors below
     std::vector<float> lowest, highest, gap_begin, gap_end;
 
     /// Merges the Z bounds of the caller's fine tiles. A fine tile is assumed to show all depths between its bounds

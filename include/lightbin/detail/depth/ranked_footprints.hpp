@@ -8,8 +8,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// Footprints sorted by the first bin that their light meets, and in the caller's order within a bin. A footprint's
-/// rank is its index in this order, and stands for the light's id. Memory is reused from call to call.
+/// The footprints of lights sorted by the first z-bin, an interval of view depth, that the light meets, and in the
+/// caller's order within a z-bin. A footprint's rank is its index in this order; lists have ranks in place of ids.
 ///
 /// with_spheres  sort the lights, spheres or spots, too, for a depth test
 template <Footprint footprint, bool with_spheres> class RankedFootprints {
@@ -94,7 +94,7 @@ private:
             to[rank] = from[sources[rank]];
     }
 
-    /// Finds the least and the greatest rank of the lights that meet each bin.
+    /// Finds, for each z-bin, the least and the greatest rank of the lights that meet it.
     void find_ranges() {
         const std::uint32_t *const sources = sources_.data(), *const last_bins = last_bins_.data();
         BinRange* const bins = bins_.reserve(bin_count_);
@@ -124,11 +124,11 @@ private:
         }
     }
 
-    /// The first and the last bin that each light meets, by its footprint's index before sorting.
+    /// The first and the last z-bin that each light meets, by its footprint's index before sorting.
     detail::Buffer<std::uint32_t> first_bins_, last_bins_;
     detail::Buffer<std::uint32_t> sources_;  ///< for each rank, the index of the footprint before sorting
-    detail::Buffer<std::uint32_t> order_;    ///< for each rank, the id of the light
-    detail::Buffer<std::uint32_t> ends_;     ///< for each bin, the number of lights that begin in it or an earlier one
+    detail::Buffer<std::uint32_t> order_;    ///< for each rank (place in order of depth), the id of the light
+    detail::Buffer<std::uint32_t> ends_;     ///< for each z-bin, the number of lights that begin in it or before it
     detail::Buffer<BinRange> bins_;
     detail::FootprintBuffers buffers_;
     detail::Buffer<Sphere> spheres_;

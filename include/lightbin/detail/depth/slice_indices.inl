@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The view depths of lights and their buckets in a SliceTable's lookup table, a vector of lights at a time. Included
-// once per tier.
+// Finds the view depths of lights and, to find the depth slices that they meet, the entries (buckets) of a SliceTable's
+// lookup table for these depths. A vector of lights at a time. Included once per tier, an instruction set's kernels.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>
@@ -8,8 +8,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// Returns the buckets of a vector of depths, by the arithmetic of DepthBuckets::index_of(), before truncation to
-/// integers.
+/// Returns in which buckets, a lookup table's depth intervals, a vector of depths lies, before truncation to integers.
+/// The arithmetic is that of DepthBuckets::index_of().
 inline Floats bucket_of(const DepthBuckets& buckets, Floats depth) {
     depth = depth + broadcast(0.0f);  // makes -0 to 0
     const Floats coordinate = buckets.by_bits ? ascending_bits(depth) : depth;

@@ -14,7 +14,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// The map from depths to buckets: a depth is in the bucket (coordinate(depth) - begin) * scale, clamped to 0..last.
+/// The map from depths to buckets, a lookup table's depth intervals: a depth is in the bucket
+/// (coordinate(depth) - begin) * scale, clamped to 0..last.
 struct DepthBuckets {
     float begin = 0, scale = 0, last = 0;
     bool by_bits = false;  ///< the buckets have equal lengths in a depth's bit pattern as a float, else in depth
@@ -42,7 +43,7 @@ struct LightDepths {
     std::uint32_t first_bucket[size], last_bucket[size];
 };
 
-/// The slices between boundaries, which ascend and are finite.
+/// A lookup table of the depth slices between boundaries, which ascend and are finite.
 class SliceTable {
 public:
     explicit SliceTable(Items<const float> boundaries) : count_(boundaries.size()) {
@@ -50,7 +51,7 @@ public:
         float* const to = boundaries_.reserve(count_ + std::uint64_t{1});
         copy_items(boundaries.first, count_, to);
         to[count_] = std::numeric_limits<float>::quiet_NaN();  // ends searches, as every comparison with it is false
-        // Chooses the kind of buckets, equal in depth or in bits, in which fewer boundaries share a bucket.
+        // Divides depths into buckets, equal in depth or in bits: the kind in which fewer slice boundaries share one.
         fill_buckets(false);
         const std::size_t shared_by_depth = shared_;
         fill_buckets(true);
@@ -120,7 +121,7 @@ private:
         return slice;
     }
 
-    /// Lays out the buckets and counts the boundaries before each: a histogram's prefix sum.
+    /// Divides the depths into buckets, and counts the slice boundaries before each: a histogram's prefix sum.
     void fill_buckets(bool by_bits) {
         const Items<const float> all = boundaries();
         buckets_.by_bits = by_bits;
@@ -144,10 +145,10 @@ private:
         }
     }
 
-    Buffer<float> boundaries_;      ///< the boundaries, and NaN behind them
+    Buffer<float> boundaries_;      ///< the depths between the slices, and NaN behind them
     std::size_t count_;             ///< the number of boundaries
-    Buffer<std::uint32_t> before_;  ///< for each bucket, the number of boundaries in earlier ones; last, of all
-    std::size_t shared_ = 0;        ///< the number of boundaries that are not the first in their bucket
+    Buffer<std::uint32_t> before_;  ///< for each bucket, the number of boundaries in earlier ones; then of all
+    std::size_t shared_ = 0;        ///< the number of slice boundaries that are not the first in their bucket
     DepthBuckets buckets_;
 };
 

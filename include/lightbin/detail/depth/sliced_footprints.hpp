@@ -113,8 +113,8 @@ private:
     }
 
     const detail::SliceTable* table_ = nullptr;  ///< the table of the caller's Slices, set by order()
-    detail::Buffer<SliceRange> met_;             ///< the slices of each footprint
-    detail::Buffer<SliceRun> runs_;              ///< the run of each slice, and one that ends the difference array
+    detail::Buffer<SliceRange> met_;             ///< for each footprint, the slices that its light meets
+    detail::Buffer<SliceRun> runs_;              ///< each slice's run of footprints; one more ends the difference array
     detail::FootprintBuffers buffers_;
     detail::FootprintArrays arrays_ = {};
     std::size_t run_count_ = 0;

@@ -30,20 +30,20 @@ struct BlockList {
 
 /// The working memory of one thread's binning kernels, kept from call to call so that it is allocated once.
 struct Scratch {
-    Buffer<std::uint32_t> corners;  ///< the difference array over the tiles from which count_rows() sums counts
+    Buffer<std::uint32_t> corners;  ///< a difference array over tiles: its prefix sums are their numbers of lights
 
-    // The lists of several bands, see BandLists.
+    // The lists of the lights in several bands, rows of blocks: see BandLists.
     Buffer<std::uint32_t> light_indices;  ///< the numbers 0, 1, 2 ...
     Buffer<std::uint8_t> band_x0, band_x1, band_rows;
     Buffer<std::uint32_t> band_ids, band_sizes;
 
     // The lists of one band's blocks.
     Buffer<BlockList> lists;
-    Buffer<std::uint32_t> list_ids;     ///< the lights' ids; until mask_lights() tests them, indices in FootprintArrays
+    Buffer<std::uint32_t> list_ids;     ///< the lights' ids or, before tests of their tiles, their footprints' indices
     Buffer<std::uint8_t> list_columns;  ///< a byte for each light: a bit for each tile column its rectangle meets
     Buffer<std::uint8_t> list_rows;     ///< a byte for each light: a bit for each tile row its rectangle meets
     Buffer<std::uint64_t> tile_masks;   ///< a word for each light of one list: a bit for each tile that it is in
-    Buffer<std::uint8_t> row_columns;   ///< the tiles of each light after all tests, see row_columns_of()
+    Buffer<std::uint8_t> row_columns;   ///< a byte for each light and tile row, a bit for each tile: row_columns_of()
 
     // Copies that pick_row() makes of the lights in one row of tiles: their ids, and bytes with a bit for each tile.
     // split_bits() transposes the bytes of each 64 lights to 8 words, one for each tile, with a bit for each light.
@@ -51,7 +51,7 @@ struct Scratch {
     Buffer<std::uint8_t> picked_columns;
     Buffer<std::uint64_t> row_words;
 
-    Buffer<float> slab_ends;  ///< the memory that SlabBoxes::ends points to
+    Buffer<float> slab_ends;  ///< the sides of the boxes around a depth slice's cells, which SlabBoxes::ends points to
 
     /// Returns the table from which a list's tiles are emitted. For each of the block's 8 rows of tiles it has one byte for each
     /// light, with a bit for each of the row's 8 tiles that the light is in. Rows begin list.padded_count() bytes apart, and the

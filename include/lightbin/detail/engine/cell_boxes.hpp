@@ -15,8 +15,8 @@
 //   terms of one sign). The squared radius loses 3u. 2^-20 = 16u makes up for the 8u, and 2^-125 for squares
 //   that are flushed to zero. What overflows to infinity did so in both or in the sphere's favour, since all
 //   roundings are monotone; infinity is not beyond infinity.
-// - in a slice (slab_tiles_met) the squared distances along z and y are subtracted from the squared radius, and the rest is
-//   compared with that along x. Where it could be more, each difference is off by u of the squared radius, as much
+// - in a slice (store_met_boxes) the squared distances along z and y are subtracted from the squared radius, and the
+//   rest is compared with that along x. Where it could be more, each difference is off by u of the squared radius, as much
 //   as a sum above. One that is flushed to zero is off by 2^-126, two by 2^-125: squares don't need that
 //   then, as a squared radius that is flushed leaves 2^-125 - 0 - 0, which is not.
 #pragma once
@@ -74,6 +74,6 @@ struct TestedLight {
 
     float x, y, z;
     float nearest, farthest;  ///< the sphere's view depths; rounding is monotone: tests against Z bounds lose no light
-    float reach2;             ///< the squared radius, enlarged, see reach2_of()
+    float reach2;             ///< the sphere's squared radius, enlarged by a margin for rounding: reach2_of()
 };
 }}}  // namespace lightbin::detail

@@ -33,9 +33,11 @@ inline double scatter_ns(double lights, double entries) {
     return max_of(0.6 * entries - 8 * lights, 0.0);
 }
 
-/// Estimates how many ns one thread of a fast processor takes to list blocks and emit their tiles.
+/// Estimates how many ns one thread of a fast processor takes to bin by blocks: to list the lights of each block of 8x8
+/// tiles, and from these write the tiles' lists.
 ///
-/// tested  whether a silhouette or a depth test finds the lights' tiles
+/// tested           whether a silhouette or a depth test decides in which tiles of its rectangle a light is listed
+/// lights, entries  the number of lights in view, and of tiles in all their rectangles
 inline double block_ns(Isa isa, bool tested, double lights, double entries) {
     const double slower = isa == Isa::avx512 ? 1 : isa == Isa::avx2 ? 1.5 : 2;
     return slower * (tested ? 9 * lights + 0.35 * entries : 1.5 * lights + 0.1 * entries);

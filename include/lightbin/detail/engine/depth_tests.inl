@@ -68,14 +68,14 @@ template <DepthTest depth_test, class Light> std::uint64_t tiles_met(const float
     return met;
 }
 
-/// What a depth test compares a block's lights with.
+/// The cells of a block's tiles, with which a depth test compares the block's lights.
 template <DepthTest depth_test> struct BlockCells {
     float planes[64 * cell_planes<depth_test>];
     std::uint64_t drawn;   ///< a bit for each tile whose Z bounds are not empty
-    DepthInterval depths;  ///< the depths of all cells in those vectors of tiles that have a drawn tile
+    DepthInterval depths;  ///< the view depths of all cells in those vectors of tiles that hold a drawn tile
 };
 
-/// Returns the depths of all cells in those vectors of tiles that have a bit in `drawn`.
+/// Returns the interval of the view depths of all cells in those vectors of tiles that have a bit in `drawn`.
 template <DepthTest depth_test> DepthInterval depth_range(const float* cells, std::uint64_t drawn) {
     float min[lanes], max[lanes];
     Floats nearest = broadcast(infinity), farthest = broadcast(-infinity);
@@ -162,7 +162,7 @@ void meet_64_lights(const BinJob<Id>& job, const BlockCells<depth_test>& cells, 
 
 /// Stores the table of Scratch::row_columns_of() for a list: each light is in all tiles of its rectangle.
 ///
-/// by_slab  a light is only in the tiles of its rectangle for which store_met_boxes() set a bit
+/// by_slab  a light is only in the tiles whose cells' boxes it meets: store_met_boxes() set their bits
 template <bool by_slab> void store_rectangles(Scratch& scratch, const BlockList& list) {
     const std::uint32_t padded = list.padded_count();
     std::uint8_t* const columns = scratch.list_columns.data() + list.begin;
@@ -273,7 +273,7 @@ void mask_lights(const BinJob<Id>& job, Scratch& scratch, unsigned x, unsigned t
 /// Lists the lights of each block in the band that begins at tile row `top`, and fills the table of Scratch::row_columns_of() for
 /// each list. Returns the lists, one for each block, or null if no light meets the band.
 ///
-/// slab   the boxes of the slice's cells, if by_slab
+/// slab   the boxes around the depth slice's cells; only read if by_slab: if these boxes are the depth test
 /// bands  the lists of bands, kept from call to call: several bands are listed at once
 /// end    the end of the tile rows that the caller will ask for
 template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>

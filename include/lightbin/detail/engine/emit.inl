@@ -82,8 +82,11 @@ LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned columns, st
 }
 
 #if !defined(LIGHTBIN_TIER_EMITS_SHORT)
-/// Emits one row of a block's tiles, as emit_tiles() does, for lists of up to `at_most` lights, 8 or 16.
+/// Writes the light lists of up to 8 tiles, one row of a block of 8x8, and their ranges in the index list. Chosen from
+/// up to `at_most` lights, 8 or 16; emit_tiles() does this for more. Returns the end of the index list.
 ///
+/// columns      the number of tiles
+/// offset       the offset of `out` in the whole index list
 /// row_columns  for each light a byte with a bit for each tile that it is in
 template <unsigned at_most, class Id>
 LIGHTBIN_NOINLINE Id* emit_short(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset, const std::uint32_t* ids,

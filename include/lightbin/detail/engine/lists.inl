@@ -15,16 +15,16 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-inline constexpr unsigned panel_blocks = 31;  // the width of a panel
+inline constexpr unsigned panel_blocks = 31;  // a panel is this many blocks wide: tile columns that bytes can count
 
 /// The lights of several bands of 8 tile rows, in all the tile rows begin..end-1: one list for each band and each panel
 /// of 248 tile columns. List number band * panels + panel has sizes[list] lights, from element list * capacity on.
 struct BandLists {
     unsigned begin = 0, end = 0;
     std::size_t panels = 0, count = 0, capacity = 0;
-    std::uint8_t *x0 = nullptr, *x1 = nullptr;  ///< a light covers the panel's columns x0..x1-1, saturated to 0..255
+    std::uint8_t *x0 = nullptr, *x1 = nullptr;  ///< the light's first column in the panel, and its last plus 1; 0..255
     std::uint8_t* rows = nullptr;               ///< a byte for each light: a bit for each covered row of the band
-    std::uint32_t* ids = nullptr;               ///< each light's id or, for mask_lights(), its index in FootprintArrays
+    std::uint32_t* ids = nullptr;               ///< the lights' ids or, if tile tests follow, footprints' indices
     std::uint32_t* sizes = nullptr;
 };
 

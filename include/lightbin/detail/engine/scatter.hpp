@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Scattering: binning by counting, prefix sums and filling (Tiled Shading, section 6.1), for rectangles without tests. It is the faster
-// method for small lights and nearly empty grids, and on machines without vectors. Its text needs no tier.
+// Scattering: binning by counting, prefix sums and filling (Tiled Shading, section 6.1), for rectangles without
+// tests. It is the faster method for small lights and nearly empty grids, and on machines without vectors. The code is
+// the same for all instruction sets.
 #pragma once
 
 #include <lightbin/detail/engine/block.hpp>

@@ -9,7 +9,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// The tile rows, or slices, begin..end-1.
+/// One thread's share of the work: the tile rows, or depth slices, begin..end-1.
 struct Share {
     unsigned begin, end;
     std::uint64_t entries;  ///< an upper bound: the tiles of all rectangles in the share; the exact number once built

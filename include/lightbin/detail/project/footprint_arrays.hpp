@@ -12,12 +12,12 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// Arrays are indexed by a light's id.
 struct LightSource {
     const Sphere* spheres;  ///< the caller's own array, to be read with load_sphere(); null: `copy` is called
-    const void* lights;     ///< the caller's Lights, for `copy`
+    const void* lights;     ///< the caller's lights, a Lights object that `copy` reads
     /// Writes lights first..first + count - 1 to `to` as spheres. Of spots it writes the spheres that their cones
     /// cut, and to `cones` vec4s with the axes and the cosines of the half angles.
     void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* to, Sphere* cones) = nullptr;
     const WorldToView* to_view;  ///< the transform to view space; null: the lights are given in view space
-    bool with_planes;            ///< store ViewSpot::planes and corners, too
+    bool with_planes;            ///< store each spot's planes for the depth tests, too: ViewSpot::planes and corners
     /// Where copied or transformed spheres, and all spots, are stored if not null. Kernels store whole vectors, so each
     /// array is padded.
     Sphere* out_spheres = nullptr;
@@ -39,7 +39,7 @@ struct FootprintRun {
 /// can be read and written, as kernels load and store whole vectors.
 struct FootprintArrays {
     static constexpr std::size_t padding = 64;
-    static constexpr std::uint32_t whole_rectangle = 0xffffffff;  ///< the span_begin of a footprint without spans
+    static constexpr std::uint32_t whole_rectangle = 0xffffffff;  ///< span_begin of a footprint without row spans
 
     std::uint32_t* ids;
     std::uint16_t *x0, *y0, *x1, *y1;
@@ -54,7 +54,8 @@ struct FootprintArrays {
     const Sphere* spheres = nullptr;
     const ViewSpot* spots = nullptr;
 
-    /// Returns the arrays of the footprints from index `begin` on. The row spans (silhouettes) are left out.
+    /// Returns pointers to the arrays' elements from index `begin` on: footprints, the tiles that lights cover, without
+    /// the spans of tiles per row that silhouettes have.
     FootprintArrays from(std::size_t begin) const {
         return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin, nullptr, nullptr, spheres, spots};
     }
@@ -86,10 +87,10 @@ struct DepthRows {
 
 /// Sums over the lights that were projected.
 struct ProjectCounts {
-    std::uint32_t visible = 0;   ///< lights in view
-    std::uint32_t rejected = 0;  ///< lights that are bad input, see Sphere
-    std::uint64_t area = 0;      ///< tiles in all rectangles: an upper bound on the number of list entries
-    std::uint64_t rows = 0;      ///< tile rows in all rectangles; counted for silhouettes only
+    std::uint32_t visible = 0;   ///< the number of lights in view
+    std::uint32_t rejected = 0;  ///< the number of lights that are bad input, see Sphere
+    std::uint64_t area = 0;      ///< the number of tiles in all rectangles: an upper bound on that of list entries
+    std::uint64_t rows = 0;      ///< the number of tile rows in all rectangles; counted for silhouettes only
 };
 
 /// The tile rectangles of a chunk of lights: `size` lights are projected first, then the ones out of view are dropped.
@@ -102,17 +103,17 @@ struct ChunkRects {
 struct FootprintSlice {
     FootprintArrays lights;
     Items<const FootprintRun> runs;
-    std::uint32_t visible;                  ///< footprints in all runs
-    std::uint64_t area;                     ///< tiles in the rectangles of all these footprints
+    std::uint32_t visible;                  ///< the number of footprints in all runs
+    std::uint64_t area;                     ///< the number of tiles in all these footprints' rectangles
     float slab[2] = {-infinity, infinity};  ///< the slice's depths, which depth tests use in place of absent Z bounds
 };
 
 /// What the binning kernels read, and the table that they write.
 template <class Id> struct BinJob : FootprintSlice {
     const Camera* camera;
-    const float* bounds[4];  ///< the ZBounds min, max, gap_min, gap_max; null for an absent one
+    const float* bounds[4];  ///< the tiles' depths ZBounds::min, max, gap_min, gap_max; null for absent ones
     const float* edges[4];   ///< the tiles' edges for boxes around cells: low x, high x, low y, high y, by tile_edges()
-    ListRange* tiles;        ///< the whole grid's ranges, to be written
+    ListRange* tiles;        ///< where to write the offset and count of each tile's list, for the whole grid
 };
 
 /// The tile rows begin..end-1, which one call of a binning kernel bins in bands of 8 rows that count from `begin`.

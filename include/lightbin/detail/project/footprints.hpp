@@ -114,7 +114,7 @@ public:
 
     std::size_t lights() const { return lights_; }               ///< lights given
     std::uint32_t visible() const { return counts_.visible; }    ///< lights in view
-    std::uint32_t rejected() const { return counts_.rejected; }  ///< lights that are bad input, see Sphere
+    std::uint32_t rejected() const { return counts_.rejected; }  ///< the number of lights that are bad input: Sphere
     std::uint64_t area() const { return counts_.area; }          ///< tiles in all rectangles
     const detail::FootprintArrays& arrays() const { return arrays_; }
     detail::Items<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
@@ -129,7 +129,7 @@ private:
     /// Finds the row spans of all footprints and stores them in one array, those of each FootprintRun together.
     void add_spans(detail::RowSpanKernel kernel, const View& view, const Parallel& threads) {
         constexpr std::uint64_t padding = 8;  // kernels store vectors of up to 8 rows
-        // Lights whose spans would have an index above 32 bits have none, and keep their whole rectangles.
+        // Lights whose row spans would have an index above 32 bits get no spans, and cover their whole rectangles.
         const std::uint64_t capacity = detail::min_of(counts_.rows + run_count_ * padding, std::uint64_t{0xffffffff});
         detail::RowSpan* spans = spans_.reserve(capacity + padding);
         arrays_.spans = spans;

@@ -17,7 +17,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 struct ProjectedChunk {
     ChunkRects rects;
     std::uint64_t visible;                       ///< a bit for each light in view
-    std::uint32_t fallback[ChunkRects::size];    ///< the indices of the lights that need double precision
+    std::uint32_t fallback[ChunkRects::size];    ///< the indices of the lights to be projected in double precision
     std::uint32_t fallback_count;
 };
 
@@ -75,7 +75,7 @@ inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, D
     const Doubles outer_corner = (h + a + corner_error) / near_z;
     const Doubles inner_corner = (h - a + corner_error) / near_z;
 
-    // The squared length of the tangent is not positive if the eye is on the sphere or inside.
+    // The squared length t2 of the tangent from eye to sphere is not positive if the eye is on the sphere or inside.
     const Doubles squares = mul(a, a) + mul(z, z), t2 = squares - mul(r, r);
     const Doubles error = (squares + mul(r, r)) * 0x1p-50 / t2 + 0x1p-48;  // relative error of a tangent's slope
     const auto has_tangent = both(less(zero, t2), less_equal(error, broadcast(0x1p-20)));

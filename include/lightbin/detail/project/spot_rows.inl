@@ -23,8 +23,9 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// The two lines that bound each of `lanes` cones in the image. In a tile row between the slopes v0 and v1, a line
-/// ends the span (if per_x > 0) or begins it, at  (limit - min(n_y v0, n_y v1)) per_x + offset  tiles.
+/// The two lines that bound each of `lanes` spots' cones in the image. A spot covers a span of tiles in each tile row.
+/// In a row between the slopes y / depth = v0 and v1, a line ends the span (if per_x > 0) or begins it at the x, in
+/// tiles,  (limit - min(n_y v0, n_y v1)) per_x + offset,  where n is the normal of the plane through eye and line.
 struct WedgeTerms {
     double per_x[2][lanes], n_y[2][lanes], limit[2][lanes];
 };
@@ -139,8 +140,8 @@ struct SpotRows {
                     select(none, broadcast(0.0), minimum(maximum(end, leftmost), rightmost)));
     }
 
-    RowTerms ball;         ///< the silhouettes of the balls
-    unsigned balls_known;  ///< a bit for each spot whose ball has its silhouette in `ball`
+    RowTerms ball;         ///< the silhouettes of the balls, the spheres that the spots' cones cut
+    unsigned balls_known;  ///< a mask of the spots whose ball's silhouette is already in `ball`
     WedgeTerms wedges;
     double low, high;  ///< the x of the view axis in the image, in tiles, less and plus a margin for rounding
 };

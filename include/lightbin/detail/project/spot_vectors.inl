@@ -8,7 +8,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// A vector of spots in view space, with members of ViewSpot.
+/// A vector of spots in view space, with the apexes, axes and other members of ViewSpot, one number per lane.
 struct SpotLanes {
     Floats apex[3], radius, axis[3], cosine, sine, tolerance;
 };
@@ -42,7 +42,7 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
     load_spheres(balls, apex[0], apex[1], apex[2], spots.radius);
     load_spheres(cones, axis[0], axis[1], axis[2], cosine);
     const Floats given_radius = spots.radius, axis_size = manhattan_length(axis);
-    // Spots with which float can compute without overflow and underflow.
+    // A mask of the spots with which float can compute without overflow and underflow.
     auto safe =
         both(less_equal(manhattan_length(apex), broadcast(float_safe_max)), less_equal(abs(cosine), broadcast(1.0f)));
     safe = both(safe, both(less_equal(broadcast(float_safe_min), given_radius),

@@ -31,13 +31,13 @@ inline void store_both_spheres(const Camera& camera, const SpotLanes& spots, Sph
 
 /// The terms of narrow_slopes() that both image axes share, for the rims of a vector of spots.
 struct RimLanes {
-    Floats per_z;      ///< the reciprocal of the apex's view depth
+    Floats per_z;      ///< the reciprocal of the view depth of the cone's apex
     Floats axis_z;     ///< the depth coordinate of the cone's unit axis
-    Floats cosine2;    ///< the squared cosine of the half angle
-    Floats along;      ///< the distance from the apex to the rim's centre
+    Floats cosine2;    ///< the squared cosine of the cone's half angle
+    Floats along;      ///< the distance from the cone's apex to the centre of the rim, where cone and ball meet
     Floats rho, rho2;  ///< the radius of the rim, where cone and ball meet, and its square
-    Floats rim_z;      ///< the view depth of the rim's centre
-    Floats per_a;      ///< 1 / A, see narrow_slopes()
+    Floats rim_z;      ///< the view depth of the centre of the rim, where cone and ball meet
+    Floats per_a;      ///< 1 / A, the reciprocal of the quadratic equation's coefficient in narrow_slopes()
     Floats error;      ///< a slope's error is at most this times (1 + |slope|)
 };
 

@@ -22,11 +22,11 @@ struct SpotPlane {
 /// A spot in view space, after the camera's signs: tile indices grow with x and y, and z is the view depth. A spot
 /// that is a whole sphere has the axis 0, the sine 1 and the tolerance 0, so that no plane excludes any of it.
 struct ViewSpot {
-    Sphere ball;                           ///< its centre is the cone's apex
+    Sphere ball;                           ///< the sphere that the cone cuts; its centre is the cone's apex
     float axis_x, axis_y, axis_z, cosine;  ///< the cone's unit axis; the cosine of the half angle, from 0 to 1
-    float nearest, farthest;  ///< least and greatest view depth; rounding is monotone, so comparing floats with them is exact
+    float nearest, farthest;  ///< the spot's view depths; rounding is monotone, so comparing floats with them is exact
     float sine;               ///< sine of the half angle
-    float tolerance;          ///< how far points of the exact spot can lie outside this one
+    float tolerance;          ///< how far the exact spot can reach outside of this one, which is rounded to float
     /// With a depth test against boxes, four half spaces around the cone, whose planes touch the apex but for rounding.
     SpotPlane planes[4];
     /// For each of the half spaces in `planes`, which corner of an axis-aligned box lies deepest inside: where the

@@ -29,7 +29,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// An affine transform of world space to view space, in float.
 struct FloatTransform {
     float origin[3];        ///< a point near the eye, in world space
-    float columns[3][3];    ///< columns of the linear part, a 3x3 matrix
+    float columns[3][3];    ///< the columns of the transform's linear part, a 3x3 matrix
     float origin_image[3];  ///< `origin` in view space
     float stretch;          ///< bound on the factor by which a length is stretched, rounded up
     /// A transformed centre has an error of at most  error_rate * (|x| + |y| + |z|) + error_at_origin,  where x, y and

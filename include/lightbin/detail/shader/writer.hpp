@@ -232,7 +232,7 @@ struct ShaderBuffer {
     std::string name;
     ShaderResource resource;
     ShaderSlot slot;
-    TexelFormat format;   ///< the elements are uvec2 if it is rg32ui, otherwise uint
+    TexelFormat format;   ///< the format of an element: uvec2 if it is rg32ui, otherwise uint
     std::uint64_t bytes;  ///< uniform_block: the size, enough for the largest data that the shader options allow
     std::uint32_t width;  ///< texture_2d: texels per row
 };

@@ -58,7 +58,7 @@ BitsKernel<Id> bits_kernel(Isa isa) {
 
 /// Returns the fastest binning kernel for lights whose rectangles have `area` tiles in all.
 ///
-/// by_slab  whether lights are tested against the boxes of a slice, see store_met_boxes()
+/// by_slab  whether lights are tested against the boxes around a depth slice's cells, see store_met_boxes()
 /// spots    whether the lights are spots
 template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>
 BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint64_t area) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What every tier includes: the headers that the kernels' texts (.inl) need, the types of the kernels, and a table for shuffles.
+// What every tier (the kernels of one instruction set) includes: the headers that the kernels' texts (.inl) need, the
+// types of the kernels, and a table of the shuffles that move chosen elements to the front of a vector.
 #pragma once
 
 #include <lightbin/detail/depth/slice_table.hpp>

@@ -19,7 +19,7 @@ struct ImageAxis {
     float sign = 1;    ///< 1, or -1 where tile indices grow as the view-space coordinate falls
     float margin = 0;  ///< bound on the error, in tiles, of a coordinate inside the viewport that is computed in float
     float limit = 0;   ///< the viewport's size in tiles, partial tiles as fractions, rounded up
-    float last_tile_centre = 0;  ///< coordinates are clamped to it before they are truncated to tile indices
+    float last_tile_centre = 0;  ///< coordinates in tiles are clamped to it, then truncated to tile indices
     /// Unit normal (normal, normal_z) of a plane through the eye that has the whole viewport on its inner side. So has
     /// its mirror image: a point with the coordinate c and the view depth d is out of view if
     /// normal * |c| + normal_z * d > 0. Both are 0 with an orthographic projection, which has no such plane.
@@ -27,7 +27,7 @@ struct ImageAxis {
     int tiles = 0;
 };
 
-/// The constants of a View.
+/// The constants of a View that projection and depth tests read.
 struct Camera {
     ImageAxis x, y;
     float z_sign = 1;      ///< view depth = z_sign * z, so that it grows away from the eye
