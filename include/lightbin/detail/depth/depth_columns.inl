@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Reduces the rows of a depth buffer that lie in one row of tiles to the extremes of each column of samples, a vector
-// of columns at a time. Included once per tier.
+// of columns at a time. Included once per tier (instruction set).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>

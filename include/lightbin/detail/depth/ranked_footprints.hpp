@@ -10,6 +10,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// The footprints of lights sorted by the first z-bin, an interval of view depth, that the light meets, and in the
 /// caller's order within a z-bin. A footprint's rank is its index in this order; lists have ranks in place of ids.
+/// Memory is reused from call to call.
 ///
 /// with_spheres  sort the lights, spheres or spots, too, for a depth test
 template <Footprint footprint, bool with_spheres> class RankedFootprints {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Finds the view depths of lights and, to find the depth slices that they meet, the entries (buckets) of a SliceTable's
-// lookup table for these depths. A vector of lights at a time. Included once per tier, an instruction set's kernels.
+// lookup table for these depths. A vector of lights at a time. Included once per tier (instruction set).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>

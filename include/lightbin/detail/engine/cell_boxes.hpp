@@ -16,9 +16,9 @@
 //   that are flushed to zero. What overflows to infinity did so in both or in the sphere's favour, since all
 //   roundings are monotone; infinity is not beyond infinity.
 // - in a slice (store_met_boxes) the squared distances along z and y are subtracted from the squared radius, and the
-//   rest is compared with that along x. Where it could be more, each difference is off by u of the squared radius, as much
-//   as a sum above. One that is flushed to zero is off by 2^-126, two by 2^-125: squares don't need that
-//   then, as a squared radius that is flushed leaves 2^-125 - 0 - 0, which is not.
+//   rest is compared with that along x. Where it could be more, each difference is off by u of the squared radius, as
+//   much as a sum above. One that is flushed to zero is off by 2^-126, two by 2^-125: squares don't need that then,
+//   as a squared radius that is flushed leaves 2^-125 - 0 - 0, which is not.
 #pragma once
 
 #include <lightbin/options.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Prepares what the depth tests compare lights with: the Z bounds of a block's 64 tiles, and the boxes around their cells, whose
-// rounding cell_boxes.hpp derives. Included once for each tier.
+// rounding cell_boxes.hpp derives. Included once per tier (instruction set).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>
@@ -16,7 +16,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 inline Floats low_ends(Floats edges, Floats front, Floats back) {
     return mul(edges, select(less(edges, broadcast(0.0f)), back, front)) - broadcast(flushed);
 }
-/// Returns the greatest view-space x (or y) of the boxes, from the tiles' high edges; see low_ends() for arguments.
+/// Returns the greatest view-space x (or y) of boxes around cells, from the tiles' high edges. Arguments: low_ends().
 inline Floats high_ends(Floats edges, Floats front, Floats back) {
     return mul(edges, select(less(broadcast(0.0f), edges), back, front)) + broadcast(flushed);
 }
@@ -59,14 +59,14 @@ inline void store_boxes(const Camera& camera, float* boxes, Floats x0, Floats x1
     }
 }
 
-/// Copies `count` floats, 1 to 8, and repeats the last one up to 8.
+/// Copies `count` floats, 1 to 8, and pads them to 8 with copies of the last one.
 inline void copy_8_floats(const float* from, unsigned count, float* to) {
     if (count == 8) return static_cast<void>(std::memcpy(to, from, 8 * sizeof *to));
     for (unsigned i = 0; i < 8; ++i)
         to[i] = from[min_of(i, count - 1)];
 }
 
-/// Stores a number 8 times or, with vectors of sixteen floats, 16 times.
+/// Stores `value` in 8 floats at `to` or, with vectors of sixteen floats, in 16.
 inline void fill_8_floats(float* to, float value) {
     for (unsigned i = 0; i < 8; i += lanes)
         store_floats(to + i, broadcast(value));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every threshold and every estimate of time. They choose between methods that give the same lists, and were measured with
-// bench/binning on a Zen 4 and a Zen 5.
+// All thresholds and estimates of time for binning. They choose between methods that give the same lists, and were
+// measured with bench/binning on a Zen 4 and a Zen 5.
 #pragma once
 
 #include <lightbin/detail/base/algorithms.hpp>
@@ -43,7 +43,7 @@ inline double block_ns(Isa isa, bool tested, double lights, double entries) {
     return slower * (tested ? 9 * lights + 0.35 * entries : 1.5 * lights + 0.1 * entries);
 }
 
-/// Estimates how many ns one thread takes with the faster of the two methods.
+/// Estimates how many ns one thread takes to bin lights with the faster method: scattering, or by blocks of 8x8 tiles.
 template <bool tested> double bin_ns(Isa isa, std::uint64_t tiles, std::uint64_t lights, std::uint64_t area) {
     const double count = static_cast<double>(lights), entries = static_cast<double>(area);
     return !tested && scatter_is_faster(isa, tiles, area) ? scatter_ns(count, entries)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Step 2 of binning: finds in which of a block's 64 tiles each of its lights is listed. Included once for each tier.
+// Step 2 of binning: finds in which of a block's 8x8 tiles each of its lights is listed. Included once per tier (ISA).
 //
 // A silhouette and a depth test work on a word for each light, with a bit for each tile: the tiles of the light's rectangle, and-ed
 // with the tiles in its silhouette's row spans and with the tiles whose cells it meets.

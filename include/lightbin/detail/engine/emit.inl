@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Step 3 of binning: emits the lists of the tiles. Tiles are visited in row-major order, so the index list is written strictly in
-// sequence, without counting, scattering or sorting. Included once for each tier.
+// sequence, without counting, scattering or sorting. Included once per tier (instruction set).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/engine/depth_tests.inl>
@@ -142,8 +142,8 @@ Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t offset, 
     return out;
 }
 
-/// Bins the tile rows of a share: lists blocks, tests lights and emits tiles, band by band. Returns the number of entries. May write
-/// up to BinShare::slack elements past them.
+/// Bins one thread's share of tile rows, band by band: lists the lights of each block of 8x8 tiles, tests them, and
+/// writes the tiles' lists. Returns the number of list entries. May write up to BinShare::slack elements past them.
 template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>
 std::uint64_t bin_blocks(const BinJob<Id>& job, Scratch& scratch, const BinShare<Id>& share) {
     const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles);

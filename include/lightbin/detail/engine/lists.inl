@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Step 1 of binning: lists the lights of each block of 8x8 tiles. Included once for each tier.
+// Step 1 of binning: lists the lights of each block of 8x8 tiles. Included once per tier (instruction set).
 //
 //   1. Each vector of lights is compared with each band of 8 tile rows. A saturating subtraction and two byte shuffles make a byte
 //      for each light, with a bit for each of the band's rows that its rectangle covers. Lights whose byte is not 0 are appended
@@ -113,8 +113,8 @@ inline std::size_t band_size(const BandLists& bands, std::size_t band) {
     return size;
 }
 
-/// Makes the list of the block at column 8 x of a band, out of the band's list for that panel. Its lights are stored from element
-/// `begin` of Scratch::list_ids, list_columns and list_rows on. Returns how many there are.
+/// Makes the list of the block at tile column 8 x of a band, out of the list of its panel, 248 columns of the band.
+/// Stores lights from element `begin` of Scratch::list_ids, list_columns and list_rows on. Returns their number.
 inline std::uint32_t list_block(Scratch& scratch, const BandLists& bands, std::size_t band, unsigned x,
                                 std::uint32_t begin) {
     const std::size_t list = band * bands.panels + x / panel_blocks, size = bands.sizes[list];

@@ -88,7 +88,7 @@ LIGHTBIN_NOINLINE void fill_rows(const BinJob<Id>& job, Id* list, std::size_t be
         }
 }
 
-/// Bins one light or none. It needs no prefix sums, as the whole index list is one id repeated. Returns the number of entries.
+/// Bins one light or none, without prefix sums, as the index list is one id repeated. Returns the number of entries.
 template <class Id>
 std::uint64_t scatter_one(const BinJob<Id>& job, const FootprintRun& run, const BinShare<Id>& share) {
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
@@ -109,7 +109,7 @@ std::uint64_t scatter_one(const BinJob<Id>& job, const FootprintRun& run, const 
     return offset - share.offset;
 }
 
-/// Bins the tile rows of a share by scattering. Returns the number of entries, and writes nothing past them.
+/// Bins one thread's share of tile rows by scattering. Returns the number of list entries, and writes none past them.
 template <class Id>
 std::uint64_t scatter_lights(const BinJob<Id>& job, Scratch& scratch, const BinShare<Id>& share) {
     const FootprintRun run = job.runs[0];

@@ -54,8 +54,7 @@ struct FootprintArrays {
     const Sphere* spheres = nullptr;
     const ViewSpot* spots = nullptr;
 
-    /// Returns pointers to the arrays' elements from index `begin` on: footprints, the tiles that lights cover, without
-    /// the spans of tiles per row that silhouettes have.
+    /// Returns the arrays of the footprints (lights' tile rectangles) from `begin` on, without silhouettes' row spans.
     FootprintArrays from(std::size_t begin) const {
         return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin, nullptr, nullptr, spheres, spots};
     }

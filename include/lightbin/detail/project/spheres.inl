@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The projection of spheres to tile rectangles, a vector of lights at a time. All tiers do the same operations in the same
-// order, so they give the same bytes. Included once per tier.
+// order, so they give the same bytes. Included once per tier (instruction set).
 //
 // Each image axis is a problem in two dimensions: the edges of tiles are planes  x = s z  through the eye with the
 // slope s, and a sphere appears as a disc with the centre (c, z), where c is x or y and z the view depth. Its bounds

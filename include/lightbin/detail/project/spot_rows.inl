@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The row spans of spots: silhouettes of the balls, cut off at the lines that bound the cones. Included once per tier.
+// Row spans of spots: their balls' silhouettes, cut off at lines that bound the cones. Included once per tier (ISA).
 //
 // Two planes through the eye touch a cone, unless the eye is inside it. In the image they are two lines through the
 // apex. Let t be the half angle, a the unit axis, u the unit vector from the eye to the apex, b = a - (a.u) u and
@@ -78,7 +78,7 @@ inline void find_wedges(const Camera& camera, const WedgeLanes& spots, unsigned 
     }
 }
 
-/// The silhouettes of a vector of spots, for the same templates as SphereRows, the silhouettes of spheres.
+/// The silhouettes of a vector of spots, from which row_spans() makes spans of tiles. For spheres it takes SphereRows.
 struct SpotRows {
     unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin, std::uint32_t count) {
         Sphere balls[lanes], axes[lanes], rest[lanes];

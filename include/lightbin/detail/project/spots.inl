@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The projection of spots to tile rectangles, a vector of lights at a time. Included once per tier.
+// The projection of spots to tile rectangles, a vector of lights at a time. Included once per tier (instruction set).
 //
 // A spot is the sector that a cone cuts out of a ball. The point of a sector that is farthest in some direction is the
 // apex, a point of the rim, the circle in which cone and ball meet, or a point of the cap, the ball's surface inside
@@ -76,8 +76,8 @@ LIGHTBIN_INLINE void narrow_slopes(const RimLanes& rim, Floats c, Floats axis, F
     high = select(touches_cap(rim, high, axis - mul(high, rim.axis_z)), high, minimum(largest + error, high));
 }
 
-/// Projects in double the spots of a chunk that are listed in chunk.fallback: a spot's rectangle is where those of its
-/// ball and of its least sphere intersect.
+/// Projects in double the spots of a chunk that are listed in chunk.fallback: spots that float can't project. A spot's
+/// rectangle is where those of its ball and of its least sphere intersect.
 inline void project_spots_in_double(const Camera& camera, const Sphere* balls, const Sphere* least,
                                     ProjectedChunk& chunk, ProjectCounts& counts) {
     project_in_double(camera, balls, chunk, counts);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The transform from world space to view space, a vector of spheres at a time; world_to_view.hpp derives its error bounds.
-// Included once per tier.
+// Included once per tier (instruction set).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>

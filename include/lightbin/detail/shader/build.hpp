@@ -85,8 +85,8 @@ vec2 $view_depths(uvec2 range) {
     if (w.y > 0.0) { depths.y = 1.0 / w.y * 1.000002; }
 )");
     // `view_depths` has a single return statement, because the HLSL compiler fxc complains of functions that return
-    // early. A range without samples has x > y. `pixel` widens a tile's `range` of window depths, least and greatest,
-    // by the depth samples of the tile's pixel i, counted row by row.
+    // early. A range without samples has x > y. `pixel` widens a tile's `range` of window depths by the depth samples
+    // of the tile's pixel i, counted row by row.
     writer.add(R"(    if (range.x > range.y) { depths = vec2(endless, -endless); }
     return depths;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Functions that all tiers have in common. A tier that has a better way overloads them for its own types, as templates are chosen last.
-// Included once for each tier, before all kernels.
+// Included once per tier (instruction set), before all kernels.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/in_editor.hpp>
@@ -41,7 +41,7 @@ template <class Mask> inline Mask and_not(Mask a, Mask b) {
     return static_cast<Mask>(a & (a ^ b));
 }
 
-/// Selects by a mask that no branch predictor could guess. The scalar tier overloads it for floats, without a branch.
+/// Returns a (mask set) or b, for masks that no branch predictor could guess: in the scalar tier branchless for floats.
 template <class Mask, class Reals>
 inline Reals select_unpredicted(Mask mask, Reals a, Reals b) {
     return select(mask, a, b);
