@@ -14,8 +14,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// The width of a light id in bytes.
 enum class IdWidth : std::uint8_t {
-    u8 = 1,   ///< up to 256 lights; made by encode(), not by a Binner
-    u16 = 2,  ///< up to 65,536 lights
+    u8 = 1,   ///< ids of 8 bits, up to 256 lights; made by encode(), not by a Binner
+    u16 = 2,  ///< ids of 16 bits, up to 65,536 lights
     u32 = 4,
 };
 

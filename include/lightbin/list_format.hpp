@@ -8,7 +8,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// How the list of a tile is stored.
 enum class ListEncoding : std::uint8_t {
-    offset_count,  ///< as in a LightGrid: {offset, count} per tile, and one list of ids (Tiled Shading, Figure 1)
+    offset_count,  ///< a LightGrid's lists: {offset, count} per tile, and one list of ids (Tiled Shading, Figure 1)
     /// Memory for `capacity` ids per tile, so that no offsets are needed (Light Indexed Deferred Rendering). A shorter
     /// list ends with a sentinel, the largest value of the id's width.
     sentinel,
@@ -23,7 +23,7 @@ constexpr const char* to_string(ListEncoding encoding) {
 struct ListFormat {
     ListEncoding encoding = ListEncoding::offset_count;
     IdWidth ids = IdWidth::u32;    ///< the width of an id; read for offset_count and sentinel
-    std::uint32_t capacity = 0;    ///< ids that a tile has memory for, 1 or more; read for sentinel
+    std::uint32_t capacity = 0;    ///< the number of ids that a tile has memory for, 1 or more; read for sentinel
     std::uint32_t max_lights = 0;  ///< all ids are less; bitmask needs it, else 0 means as many as `ids` can number
 };
 

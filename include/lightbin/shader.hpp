@@ -44,14 +44,14 @@ struct ShaderOptions {
     int tile_size = 0;             ///< in pixels, fixed in the text; 0: read at run time from the constant `grid`
     bool flip_y = false;           ///< the shader counts pixel rows from the opposite end to the view's WindowOrigin
     bool viewport_corner = false;  ///< pixels are counted in the window; the constant `corner` is subtracted from them
-    bool heat_map = false;         ///< adds the functions `count` and `heat`, which show the number of lights
+    bool heat_map = false;         ///< adds the functions `count` and `heat`, which show a pixel's number of lights
     /// The lanes of a wave (subgroup) loop together over the union of their lists, so that a light's data is read once
     /// for all of them (Drobot 2017). GLSL 4.30 and ES 3.10 need GL_KHR_shader_subgroup_arithmetic, Vulkan 1.1, HLSL
     /// 6.0, WGSL the device's feature `subgroups`.
     bool wave_loop = false;
     bool view_check = false;  ///< adds the function `check_view`, whose constants are bound at the slot `view`
     bool list_check = false;  ///< adds the loop `for_each_missing` over the lights that a pixel's list lacks
-    bool window = false;      ///< adds the function `window`, which computes what light_window() does on the CPU
+    bool window = false;      ///< adds the function `window`, a light's falloff at its range: see light_window()
 
     std::uint32_t texture_width = 2048;  ///< texture_2d: texels per row, 1 to 16384; a power of two is fastest
     std::uint32_t max_tiles = 0;    ///< sizes a uniform block: the greatest number of tiles, counted in every slice

@@ -72,7 +72,7 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {})
 /// The three shaders that build a light grid, in the order of their dispatches.
 enum class BuildPass : std::uint8_t {
     count,    ///< counts the lights of each tile; groups: tiles_x by tiles_y, with clusters tiles_x by slices * tiles_y
-    offsets,  ///< adds the counts up, to the offset of each list and the total; groups: one
+    offsets,  ///< prefix sums of the counts: each tile's list offset, and the total; groups: one
     fill,     ///< writes the lists; groups: as many as for count
 };
 

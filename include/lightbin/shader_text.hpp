@@ -38,7 +38,7 @@ enum class ShaderResource : std::uint8_t {
     byte_address,     ///< HLSL: ByteAddressBuffer, register t
     texel_buffer,     ///< GLSL: buffer texture, in Vulkan a uniform texel buffer; HLSL: Buffer, register t
     texture_2d,       ///< read without a sampler. GLSL: set NEAREST, no mipmaps; WGSL: depth is "unfilterable-float"
-    writable_buffer,  ///< storage buffer that is written. HLSL: RWStructuredBuffer, register u; WGSL: read_write
+    writable_buffer,  ///< a storage buffer that is written. HLSL: RWStructuredBuffer, register u; WGSL: read_write
 };
 
 constexpr const char* to_string(ShaderResource value) {

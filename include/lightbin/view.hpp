@@ -10,8 +10,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 /// The range of clip-space depth, a setting of the graphics API that a matrix does not show. With minus_one_to_one in place
 /// of zero_to_one the near plane seems too near, which is safe; the other way round it seems too far, and lights are missed.
 enum class ClipDepth : std::uint8_t {
-    minus_one_to_one,  ///< OpenGL
-    zero_to_one,       ///< Direct3D, Vulkan, Metal, WebGPU, OpenGL with glClipControl
+    minus_one_to_one,  ///< depths -1 to 1: OpenGL
+    zero_to_one,       ///< depths 0 to 1: Direct3D, Vulkan, Metal, WebGPU, OpenGL with glClipControl
 };
 
 /// The corner of the window that holds pixel (0, 0) and tile (0, 0), where the lower side is the one with NDC y = -1.

@@ -17,7 +17,7 @@ struct ViewSummary {
     double x_size, y_size;
     double aspect;  ///< the width divided by the height of the image on a plane of equal depth
     double near_depth, far_depth;
-    bool looks_down_negative_z;  ///< true for right-handed view spaces
+    bool looks_down_negative_z;  ///< whether the view looks along -z: true for right-handed view spaces
     bool reversed_z;
     bool x_flipped, y_flipped;     ///< NDC x (or y) falls where view-space x (or y) grows
     int width, height, tile_size;  ///< in pixels

@@ -139,7 +139,7 @@ template <class Visit> void for_each_drawn(const View& view, const ZBounds& boun
         }
 }
 
-/// A view with one of the tile sizes that are measured, and its Z bounds.
+/// A view with one of the tile sizes that are measured, and the Z bounds of its tiles.
 struct WeighedGrid {
     View view;
     ZBounds bounds;  ///< the caller's Z bounds or, with larger tiles than the caller's, spans of the vectors below

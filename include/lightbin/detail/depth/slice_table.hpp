@@ -111,7 +111,7 @@ private:
         return exact + abs_of(exact) * static_cast<double>(fraction);  // a product of two floats is exact in double
     }
 
-    /// Returns for how many boundaries is_before(boundary) is true. It compares a boundary with a depth in `bucket`.
+    /// Returns for how many slice boundaries is_before(boundary) is true, a comparison with a depth in `bucket`.
     template <class IsBefore> std::uint32_t before(std::size_t bucket, IsBefore is_before) const {
         const float* const boundaries = boundaries_.data();
         std::uint32_t slice = before_.data()[bucket];

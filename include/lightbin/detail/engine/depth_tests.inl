@@ -160,7 +160,7 @@ void meet_64_lights(const BinJob<Id>& job, const BlockCells<depth_test>& cells, 
     if (in_range != 0) meet_tiles(cells, tested, columns, rows, in_range, met);
 }
 
-/// Stores the table of Scratch::row_columns_of() for a list: each light is in all tiles of its rectangle.
+/// Stores in which tiles a block's lights are, all tiles of their rectangles, in the list's Scratch::row_columns_of().
 ///
 /// by_slab  a light is only in the tiles whose cells' boxes it meets: store_met_boxes() set their bits
 template <bool by_slab> void store_rectangles(Scratch& scratch, const BlockList& list) {

@@ -175,7 +175,7 @@ std::uint64_t bin_blocks(const BinJob<Id>& job, Scratch& scratch, const BinShare
     return offset - share.offset;
 }
 
-/// Returns how many entries the grid will have, without writing it.
+/// Returns how many list entries (pairs of cell and light) the grid will have, without writing it.
 template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>
 std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scratch) {
     const unsigned end = static_cast<unsigned>(job.camera->y.tiles);

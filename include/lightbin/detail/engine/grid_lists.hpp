@@ -124,15 +124,15 @@ public:
     template <class Range = ListRange> std::span<const Range> tiles() const { return {tiles_.data(), tile_count_}; }
     std::span<const Id> indices() const { return {indices_.data(), entries_}; }
 
-    /// Whether the last grid was built on several threads.
+    /// Whether the last grid was built on several threads, each of which built a share of it.
     bool shared() const { return shared_; }
 
 private:
     using Job = BinJob<Id>;
     static constexpr std::uint64_t max_entries = (std::numeric_limits<std::uint32_t>::max)();
 
-    /// Whether spheres are tested by store_met_boxes(), which is faster than the test for boxes that differ in depth: a build of
-    /// clusters without it takes 1.2 to 2 times as long.
+    /// Whether spheres are tested by store_met_boxes(), for a slice's boxes of equal depths. This is faster than the
+    /// test for boxes that differ in depth: a build of clusters without it takes 1.2 to 2 times as long.
     template <bool spots>
     static constexpr bool by_slab = sliced && depth_test == DepthTest::box && footprint == Footprint::rectangle && !spots;
 

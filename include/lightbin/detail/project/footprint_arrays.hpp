@@ -29,7 +29,7 @@ struct RowSpan {
     std::uint16_t first, last;
 };
 
-/// The elements begin..end-1 of the footprint arrays.
+/// A run of footprints: the elements begin..end-1 of FootprintArrays.
 struct FootprintRun {
     std::uint32_t begin, end;
 };

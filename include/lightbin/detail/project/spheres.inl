@@ -16,7 +16,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 /// A chunk of lights while they are projected. A light's index is counted from the chunk's first light.
 struct ProjectedChunk {
     ChunkRects rects;
-    std::uint64_t visible;                       ///< a bit for each light in view
+    std::uint64_t visible;                       ///< a mask of the chunk's lights that are in view
     std::uint32_t fallback[ChunkRects::size];    ///< the indices of the lights to be projected in double precision
     std::uint32_t fallback_count;
 };

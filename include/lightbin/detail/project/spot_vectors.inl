@@ -92,7 +92,7 @@ inline Floats spot_reach(const SpotLanes& spots, Floats along, Floats across) {
     return minimum(mul(spots.radius, part) + spots.tolerance, spots.radius);
 }
 
-/// Copies a vec4 to each ViewSpot of a vector, `offset` bytes from its begin.
+/// Copies a vec4 to each ViewSpot of a vector of spots, `offset` bytes from the ViewSpot's begin.
 inline void store_vec4s(ViewSpot* to, std::size_t offset, const Sphere (&vec4s)[lanes]) {
     for (std::uint32_t lane = 0; lane < lanes; ++lane)
         std::memcpy(reinterpret_cast<char*>(to + lane) + offset, vec4s + lane, sizeof(Sphere));

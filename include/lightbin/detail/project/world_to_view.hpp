@@ -31,7 +31,7 @@ struct FloatTransform {
     float origin[3];        ///< a point near the eye, in world space
     float columns[3][3];    ///< the columns of the transform's linear part, a 3x3 matrix
     float origin_image[3];  ///< `origin` in view space
-    float stretch;          ///< bound on the factor by which a length is stretched, rounded up
+    float stretch;          ///< an upper bound on the factor by which the transform stretches a length
     /// A transformed centre has an error of at most  error_rate * (|x| + |y| + |z|) + error_at_origin,  where x, y and
     /// z are its coordinates relative to the origin.
     float error_rate, error_at_origin;
@@ -166,7 +166,7 @@ private:
 
     Matrix m_;
     bool affine_;
-    double stretch_;     ///< bound on the factor by which a length is stretched: the largest singular value, rounded up
+    double stretch_;     ///< the largest singular value, rounded up: no length is stretched by a larger factor
     double anisotropy_;  ///< the smallest singular value is at least 1 - anisotropy_ times the largest
     FloatTransform in_float_ = {};
 };

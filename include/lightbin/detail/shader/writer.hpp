@@ -234,7 +234,7 @@ struct ShaderBuffer {
     ShaderSlot slot;
     TexelFormat format;   ///< the format of an element: uvec2 if it is rg32ui, otherwise uint
     std::uint64_t bytes;  ///< uniform_block: the size, enough for the largest data that the shader options allow
-    std::uint32_t width;  ///< texture_2d: texels per row
+    std::uint32_t width;  ///< the number of texels per row, if the resource is a texture_2d
 };
 
 /// The type and the name of a vector that the CPU sets, such as {"uvec4", "grid"}.

@@ -16,8 +16,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// The mapping between view depth d and normalized device depth:  ndc = (z_scale d + z_offset) / (w_scale d + w_offset).
 struct DepthMap {
     double z_scale = 0, z_offset = 0, w_scale = 0, w_offset = 0;
-    bool reversed = false;     ///< the near plane has the larger device depth
-    bool zero_to_one = false;  ///< device depth runs from 0 to 1, not from -1 to 1
+    bool reversed = false;     ///< reversed Z: the near plane has the larger device (NDC) depth
+    bool zero_to_one = false;  ///< device (NDC) depth runs from 0 to 1, not from -1 to 1
 
     /// Device depth of a window depth, which runs from 0 to 1.
     double device_depth(double window) const { return zero_to_one ? window : 2 * window - 1; }
