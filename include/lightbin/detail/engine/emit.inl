@@ -200,19 +200,28 @@ void write_bits(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigne
     const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles);
     const std::size_t row_stride = tiles_x * stride;
     fill_items(bits + begin * row_stride, (end - begin) * row_stride, 0);
+    std::size_t positions[64];  // of the words of a block's tiles
+    for (unsigned tile = 0; tile < 64; ++tile)
+        positions[tile] = tile / 8 * row_stride + tile % 8 * stride;
     BandLists bands;
     for (unsigned top = begin; top < end; top += 8) {
         const BlockList* list = list_lights<footprint, depth_test, false, spots>(job, scratch, {}, bands, top, end);
-        for (unsigned x = 0; list != nullptr && x < tiles_x; x += 8, ++list)
-            for (unsigned row = 0; row < min_of(end - top, 8u); ++row) {
-                const std::uint8_t* const columns = scratch.row_columns_of(*list) + std::size_t{row} * list->padded_count();
-                std::uint32_t* const first = bits + (top + row) * row_stride + x * stride;
-                for (std::uint32_t i = 0; i < list->count; ++i) {
-                    const std::uint32_t id = scratch.list_ids.data()[list->begin + i];
-                    for (unsigned rest = columns[i]; rest != 0; rest &= rest - 1)
-                        first[static_cast<unsigned>(std::countr_zero(rest)) * stride + id / 32] |= std::uint32_t{1} << id % 32;
+        for (unsigned x = 0; list != nullptr && x < tiles_x; x += 8, ++list) {
+            const std::uint8_t* const row_columns = scratch.row_columns_of(*list);
+            std::uint32_t* const first = bits + top * row_stride + x * stride;
+            for (std::uint32_t i = 0; i < list->count; i += 8) {
+                // For each of 8 lights a word with a bit for each tile, so that there is one loop over a light's tiles.
+                std::uint64_t masks[8];
+                for (unsigned row = 0; row < 8; ++row)
+                    masks[row] = load_8_bytes(row_columns + row * list->padded_count() + i);
+                transpose_bytes(masks);
+                for (std::uint32_t k = 0; k < 8 && i + k < list->count; ++k) {
+                    const std::uint32_t id = scratch.list_ids.data()[list->begin + i + k];
+                    for (std::uint64_t rest = masks[k]; rest != 0; rest &= rest - 1)
+                        first[positions[std::countr_zero(rest)] + id / 32] |= std::uint32_t{1} << id % 32;
                 }
             }
+        }
     }
 }
 
