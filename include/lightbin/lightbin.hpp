@@ -45,5 +45,5 @@
 // GPU Pro 4, 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.
 #pragma once
 
-#include <lightbin/binner.hpp>  // includes the other headers of steps 1 to 4
+#include <lightbin/binner.hpp>
 #include <lightbin/version.hpp>
