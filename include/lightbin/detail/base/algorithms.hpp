@@ -13,7 +13,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// A contiguous array of items that someone else owns: std::span for internal use, as <span> compiles slowly.
+/// A contiguous array of items that someone else owns: std::span for internal use, as that header compiles slowly.
 template <class T> struct Items {
     T* first;
     std::size_t count;
