@@ -71,12 +71,12 @@ public:
                 scratch.reserve(count, count);
                 const Items<Share> shares = {shares_.reserve(count), count};
                 const Job job = job_of(common, footprints, 0);
+                [[maybe_unused]] const auto kernel = kernel_of<spots>(isa, view, job);
                 if constexpr (sliced)
                     share_steps(shares, slices, empty_row_cost(tiles),
                                 [&](std::size_t slice) { return footprints.slice(slice).area; });
                 else
-                    share_rows(job, parallel, row_sums_, shares);
-                const auto kernel = kernel_of<spots>(isa, view, job);
+                    share_rows(job, parallel, row_sums_, shares, kernel == scatter_lights<Id> ? 0 : BinShare<Id>::slack);
                 if constexpr (!sliced && !tested)
                     entries_ = static_cast<std::size_t>(build_rectangles(
                         parallel, Items<const Share>{shares.first, count}, share_lists_, list,

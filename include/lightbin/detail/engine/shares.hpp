@@ -46,9 +46,11 @@ template <class Area> void share_steps(Items<Share> shares, std::size_t steps, s
 /// rectangles cover in it, each counted for each light: the prefix sums of difference arrays over the rows. Each run of
 /// footprints has a difference array of its own, so that threads can fill them in parallel.
 ///
-/// sums  memory for the difference arrays
+/// sums   memory for the difference arrays
+/// slack  how many elements past its end the kernel may write, for the tails of all shares but the last
 template <class Id>
-void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums, Items<Share> shares) {
+void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums, Items<Share> shares,
+                std::size_t slack) {
     const std::size_t rows = static_cast<std::size_t>(job.camera->y.tiles), pitch = rows + 1;
     std::uint64_t* const row_area = sums.reserve(std::uint64_t{pitch} * job.runs.size());
     parallel.run(job.runs.size(), [&](std::size_t run) {
@@ -73,7 +75,8 @@ void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
         share.before = before;
         before += share.entries;
         share.tail_begin = share.end;
-        while (share.tail_begin > share.begin && share.tail_entries < BinShare<Id>::slack)
+        if (&share == shares.end() - 1) break;
+        while (share.tail_begin > share.begin && share.tail_entries < slack)
             share.tail_entries += row_area[--share.tail_begin];
     }
 }

@@ -134,13 +134,17 @@ inline __m512i fresh_zeros() {
     return zeros;
 }
 
+/// Stores sixteen ids at `out`.
+template <class Id> LIGHTBIN_INLINE void store_ids(Id* out, __m512i ids) {
+    if constexpr (sizeof(Id) == 4)
+        _mm512_storeu_si512(out, ids);
+    else
+        _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm512_cvtepi32_epi16(ids));
+}
+
 /// Appends to `out` those of sixteen ids whose bit in `mask` is set. Returns the end, behind which it may write up to 16 elements.
 template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
-    const __m512i chosen = _mm512_mask_compress_epi32(fresh_zeros(), static_cast<__mmask16>(mask), _mm512_loadu_si512(ids));
-    if constexpr (sizeof(Id) == 4)
-        _mm512_storeu_si512(out, chosen);
-    else
-        _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm512_cvtepi32_epi16(chosen));
+    store_ids(out, _mm512_mask_compress_epi32(fresh_zeros(), static_cast<__mmask16>(mask), _mm512_loadu_si512(ids)));
     return out + std::popcount(mask);
 }
 
@@ -159,14 +163,6 @@ template <int period> __m512i set_positions(std::uint64_t word) {
     const __m512i positions = _mm512_and_si512(_mm512_loadu_si512(counting_bytes.of), _mm512_set1_epi8(period - 1));
     return _mm512_mask_compress_epi8(fresh_zeros(), word, positions);
 }
-/// Stores sixteen ids at `out`.
-template <class Id> void store_ids(Id* out, __m512i ids) {
-    if constexpr (sizeof(Id) == 4)
-        _mm512_storeu_si512(out, ids);
-    else
-        _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm512_cvtepi32_epi16(ids));
-}
-
 /// Appends to `out` the ids of several tiles, whose masks of `lights` bits each, 8 or 16, lie one after another in a word. Returns the
 /// end, behind which it may write up to 64 elements.
 template <int lights, class Id> Id* append_several(Id* out, __m512i ids, std::uint64_t masks) {
