@@ -130,7 +130,7 @@ inline ShaderView shader_view(const View& view, float tolerance = 2) {
 ///     bool lightbin_check_view(uvec2 pixel, vec3 position);           // with view_check: see below
 ///     #define lightbin_for_each_missing(cursor, lights, pixel, view_depth)  // with list_check: see below
 ///
-/// The use is the same for every encoding, storage and slicing, in GLSL and HLSL:
+/// In GLSL and HLSL, a shader loops over a pixel's lights like this, with every encoding, storage and slicing:
 ///
 ///     lightbin_for_each_light(light, uvec2(gl_FragCoord.xy), depth) { colour += shade(light.id, position); }
 ///

@@ -185,7 +185,7 @@ private:
     bool in_struct_ = false, in_parameters_ = false, by_pointer_ = false;
 };
 
-/// The family and the features of a shader language.
+/// Which family of shader languages a language belongs to (HLSL, OpenGL ES, Vulkan, WebGPU), and which features it has.
 struct Dialect {
     using enum ShaderLanguage;
     ShaderLanguage language;
