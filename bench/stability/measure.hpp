@@ -237,7 +237,7 @@ private:
 
     static lightbin::View view_of(const Scene& scene) {
         const auto view = oracle::library_view(scene.camera);
-        if (!view) throw std::logic_error("the camera was refused: " + view.error().message());
+        if (!view) throw std::logic_error("the camera was refused: " + std::string(view.error().message()));
         return *view;
     }
 
@@ -501,7 +501,7 @@ private:
             scene.slices,
             static_cast<float>(static_cast<double>(scene.near_depth) * std::pow(ratio, 1.0 / scene.slices)),
             scene.last);
-        if (!slices) throw std::logic_error("the slices were refused: " + slices.error().message());
+        if (!slices) throw std::logic_error("the slices were refused: " + std::string(slices.error().message()));
         return *slices;
     }
 

@@ -2,10 +2,10 @@
 // Errors that a running program can meet are returned as values with a text. Bugs in the calling program are assertions.
 #pragma once
 
+#include <lightbin/detail/base/text.hpp>
 #include <lightbin/error_code.hpp>
 
 #include <optional>
-#include <string>
 #include <utility>
 
 /// Checks a condition that only a bug in the calling program can make false. The default is the standard assert(); define
@@ -24,22 +24,32 @@ struct Error {
     std::uint64_t needed = 0;
     std::uint64_t available = 0;
 
-    /// Returns to_string(code) with the numbers filled in. Allocates memory for the text.
-    std::string message() const {
+    /// Returns to_string(code) with the numbers filled in.
+    Text message() const {
         const bool negative = static_cast<std::int64_t>(needed) < 0;
-        std::string text = to_string(code);
-        fill_in(text, "{needed}", needed, false);
-        fill_in(text, "{given}", negative ? 0 - needed : needed, negative);
-        fill_in(text, "{available}", available, false);
+        Text text;
+        for (const char* from = to_string(code); *from != 0;)
+            if (skip(from, "{needed}"))
+                text.append(needed);
+            else if (skip(from, "{available}"))
+                text.append(available);
+            else if (!skip(from, "{given}"))
+                text.append(*from++);
+            else {
+                if (negative) text.append('-');
+                text.append(negative ? 0 - needed : needed);
+            }
         return text;
     }
 
 private:
-    /// Replaces the placeholder `name` in `text`, if it is there, by a decimal number with an optional minus sign.
-    static void fill_in(std::string& text, const char* name, std::uint64_t number, bool negative) {
-        const auto at = text.find(name);
-        if (at == std::string::npos) return;
-        text.replace(at, std::string(name).size(), (negative ? "-" : "") + std::to_string(number));
+    /// Moves `text` past `prefix` and returns true if it begins with that; else returns false.
+    static bool skip(const char*& text, const char* prefix) {
+        const char* at = text;
+        for (; *prefix != 0; ++prefix, ++at)
+            if (*at != *prefix) return false;
+        text = at;
+        return true;
     }
 };
 

@@ -2,10 +2,9 @@
 // A summary of what a View read from its matrix, to be printed: it shows the usual mistakes with matrices.
 #pragma once
 
-#include <lightbin/detail/base/abi_tag.hpp>
+#include <lightbin/detail/base/text.hpp>
 
 #include <cstdio>
-#include <string>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
@@ -40,7 +39,7 @@ struct ViewSummary {
 };
 
 /// Returns a summary in one line of text, with a question for each flag that is set.
-inline std::string to_string(const ViewSummary& view) {
+inline Text to_string(const ViewSummary& view) {
     const bool flat = view.orthographic;
     char text[256];
     std::snprintf(
@@ -50,18 +49,19 @@ inline std::string to_string(const ViewSummary& view) {
         view.aspect, view.near_depth, view.far_depth,
         view.looks_down_negative_z ? "-z (right-handed)" : "+z (left-handed)", view.width, view.height,
         view.tile_size);
-    std::string line = text;
-    if (view.reversed_z) line += ", reversed Z";
-    if (view.x_flipped) line += ", x flipped";
-    if (view.y_flipped) line += ", y flipped";
-    if (view.looks_transposed) line += "; is it transposed? See MatrixLayout";
+    Text line;
+    line.append(text);
+    if (view.reversed_z) line.append(", reversed Z");
+    if (view.x_flipped) line.append(", x flipped");
+    if (view.y_flipped) line.append(", y flipped");
+    if (view.looks_transposed) line.append("; is it transposed? See MatrixLayout");
     if (view.looks_like_view_matrix)
-        line += "; is this the view matrix, or an identity, in place of the projection?";
-    if (view.looks_turned) line += "; upside down: degrees where radians are wanted?";
-    if (view.looks_behind) line += "; all of it is behind the eye: is ViewOptions::reversed_z right?";
-    if (view.looks_zero_to_one) line += "; no depth reaches -1: is ViewOptions::clip_depth right?";
+        line.append("; is this the view matrix, or an identity, in place of the projection?");
+    if (view.looks_turned) line.append("; upside down: degrees where radians are wanted?");
+    if (view.looks_behind) line.append("; all of it is behind the eye: is ViewOptions::reversed_z right?");
+    if (view.looks_zero_to_one) line.append("; no depth reaches -1: is ViewOptions::clip_depth right?");
     if (view.pixels_not_square)
-        line += "; pixels are not square: is the viewport's size stale, or the aspect inverted?";
+        line.append("; pixels are not square: is the viewport's size stale, or the aspect inverted?");
     return line;
 }
 

@@ -240,7 +240,6 @@ TEST_CASE("what keeps nothing from call to call loses nothing, either") {
     check_function([&] { return shader_snippet()->text; });
     check_function([&] { return reduce_shader()->text; });
     check_function([&] { return build_shader()->text; });
-    check_function([&] { return Error{ErrorCode::too_many_lights, 5, 4}.message(); });
     check_function([&] {
         const auto footprints = shader_footprints(scene.view, scene.lights);
         return std::to_string(footprints->size() + shader_edges(scene.view).size());

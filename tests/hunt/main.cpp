@@ -258,7 +258,7 @@ public:
             if (made)
                 view = *made;
             else if (ordinary(camera_kind))
-                fault("an ordinary camera is refused: " + made.error().message());
+                fault("an ordinary camera is refused: " + std::string(made.error().message()));
         }
         if (!view) return;
         view_ = &*view;
@@ -343,7 +343,7 @@ private:
         if (!grid) {
             using lightbin::ErrorCode;
             if (grid.error().code != ErrorCode::too_many_entries && grid.error().code != ErrorCode::too_many_list_places)
-                fault("refused: " + grid.error().message() + "; " + kind.name);
+                fault("refused: " + std::string(grid.error().message()) + "; " + kind.name);
             return;
         }
         if (const std::string wrong = look(*grid, slices, kind); !wrong.empty()) fault(wrong + "; " + kind.name);

@@ -107,7 +107,7 @@ bool Engine::accepts(const Camera& camera) const {
 Lists Engine::lists(const Scene& scene, Rung rung, std::vector<std::string>& complaints) const {
     const auto view = library_view(scene.camera);
     if (!view) {
-        complaints.push_back("the camera was refused: " + view.error().message());
+        complaints.push_back("the camera was refused: " + std::string(view.error().message()));
         return {};
     }
     using lightbin::DepthTest, lightbin::Footprint;

@@ -67,7 +67,7 @@ TEST_CASE("bitmasks that don't fit are refused, and not a bit is written") {
     const auto short_of = binner.bin_bits(view, lights, 97, bits);
     REQUIRE(!short_of);
     CHECK(short_of.error().code == ErrorCode::bit_buffer_too_small);
-    CHECK(short_of.error().message().find("holds 48 words of 32 bits and 64 ") != std::string::npos);
+    CHECK(std::string(short_of.error().message()).find("holds 48 words of 32 bits and 64 ") != std::string::npos);
     CHECK(binner.bin_bits(view, lights, 69, bits).error().code == ErrorCode::ids_too_narrow);
     CHECK(binner.bin_bits(view, lights, 0, bits).error().code == ErrorCode::ids_too_narrow);
     CHECK(std::count(bits.begin(), bits.end(), 7u) == 48);

@@ -131,11 +131,11 @@ TEST_CASE("an error's sentence has its numbers, with their sign where what was g
         for (const ErrorCode code :
              {ErrorCode::viewport_out_of_range, ErrorCode::tile_size_out_of_range,
               ErrorCode::samples_out_of_range, ErrorCode::no_slices, ErrorCode::no_sets})
-            CHECK(Error{code, static_cast<std::uint64_t>(given)}.message().find(
-                      " " + std::to_string(given)) != std::string::npos);
+            CHECK(std::string(Error{code, static_cast<std::uint64_t>(given)}.message())
+                      .find(" " + std::to_string(given)) != std::string::npos);
     const auto refused = shader_snippet({.language = ShaderLanguage::glsl_430, .tiles = {0, -1}});
     REQUIRE(!refused);
-    CHECK(refused.error().message().find("18446744073709551615") == std::string::npos);
+    CHECK(std::string(refused.error().message()).find("18446744073709551615") == std::string::npos);
 }
 
 TEST_CASE("every enum has words") {

@@ -16,7 +16,7 @@ using namespace lightbin;
 namespace {
 
 bool names(const Error& error, std::uint64_t number) {
-    return error.message().find(std::to_string(number)) != std::string::npos;
+    return std::string(error.message()).find(std::to_string(number)) != std::string::npos;
 }
 
 }  // namespace

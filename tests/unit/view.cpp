@@ -30,7 +30,7 @@ template <class Matrix>
 ErrorCode refusal(const Matrix& matrix, lightbin::Extent viewport = full_hd, ViewOptions options = {}) {
     const auto view = View::from_projection(matrix, viewport, options);
     REQUIRE(!view);
-    CHECK(view.error().message().size() > 20);
+    CHECK(std::string(view.error().message()).size() > 20);
     return view.error().code;
 }
 
@@ -68,7 +68,7 @@ TEST_CASE("sizes out of range are refused, and the text names them") {
     CHECK(refusal(matrix, {1920, 40000}) == ErrorCode::viewport_out_of_range);
     CHECK(refusal(matrix, full_hd, {.tile_size = 0}) == ErrorCode::tile_size_out_of_range);
     CHECK(refusal(matrix, full_hd, {.tile_size = -8}) == ErrorCode::tile_size_out_of_range);
-    const auto message = [&](lightbin::Extent viewport, ViewOptions options) {
+    const auto message = [&](lightbin::Extent viewport, ViewOptions options) -> std::string {
         return View::from_projection(matrix, viewport, options).error().message();
     };
     CHECK(message({1920, 40000}, {}).find("40000") != std::string::npos);
@@ -167,7 +167,7 @@ TEST_CASE("a view says what it read, and what is seldom meant") {
     CHECK(read.near_depth == doctest::Approx(0.25));
     CHECK(read.far_depth == doctest::Approx(512).epsilon(1e-3));
     CHECK(read.looks_down_negative_z);
-    CHECK(to_string(read) ==
+    CHECK(std::string(to_string(read)) ==
           "perspective, 91.49 x 60 degrees, aspect 1.778, near 0.25, far 512, looks down -z "
           "(right-handed), 1920 x 1080 pixels in tiles of 32");
     const glm::mat4 flipped = glm::scale(glm::mat4(1.0f), {1.0f, -1.0f, 1.0f});
@@ -276,7 +276,7 @@ void check_summary(const Made& made, lightbin::Extent viewport) {
     CHECK(read.y_flipped == (flip_y < 0));
     CHECK(!read.looks_zero_to_one);
     CHECK(read.pixels_not_square == (viewport.width > 0 && viewport.height > 0));
-    CHECK(to_string(read).find("nan") == std::string::npos);
+    CHECK(std::string(to_string(read)).find("nan") == std::string::npos);
 }
 
 }  // namespace

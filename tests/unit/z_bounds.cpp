@@ -42,7 +42,7 @@ TEST_CASE("sizes that do not fit are errors that name what is needed") {
         REQUIRE(!bounds);
         const auto needed =
             static_cast<std::int64_t>(bounds.error().needed);  // a sample count may be negative
-        CHECK(bounds.error().message().find(std::to_string(needed)) != std::string::npos);
+        CHECK(std::string(bounds.error().message()).find(std::to_string(needed)) != std::string::npos);
         return bounds.error().code;
     };
     const std::span<const float> short_depth(depth.data(), depth.size() - 1);
