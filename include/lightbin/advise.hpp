@@ -25,14 +25,14 @@ struct Costs {
     /// The time to move one byte of the lists to where the shader reads it: 0.1 at 10 GB/s.
     double upload_byte_ns = 0;
     /// The number of fragments that are shaded per visible pixel without a depth pre-pass, 1 or more. It multiplies the
-    /// evaluations of all plans without Z bounds.
+    /// light evaluations (Plan::evaluations) of each plan without Z bounds, as such a plan has no pre-pass.
     double overdraw = 1;
 };
 
 /// One way to light a view, and its costs per frame. with_options() or with_sliced_options() applies the options, and
 /// View::with_tile_size() the tile size.
 struct Plan {
-    bool tiled = true;  ///< false: every pixel evaluates every light, and all members up to tile_size mean nothing
+    bool tiled = true;  ///< false: every pixel evaluates every light; `footprint` to `tile_size` mean nothing
     Footprint footprint = Footprint::rectangle;
     DepthTest depth_test = DepthTest::none;
     Slicing slicing = Slicing::none;  ///< values other than `none` need the slices given to advise_slices()
@@ -58,20 +58,21 @@ inline std::string to_string(const Plan& plan) {
     return words;
 }
 
-/// What a plan gains from a part that it has, or would lose with a part that it lacks. A part is a technique: tiles,
-/// a depth pre-pass, boxes, split boxes, clusters, z-bins or silhouettes.
+/// Whether a plan gains from a technique that it uses, or would gain from one that it lacks: tiles, a depth pre-pass,
+/// boxes, split boxes, clusters, z-bins or silhouettes.
 struct Verdict {
-    std::string part;     ///< the part's name, such as "box"
-    bool keep = false;    ///< whether the plan has the part
-    Plan other = {};      ///< the cheapest measured plan that differs from the plan in this part
-    std::string instead;  ///< the plan `other` in words; empty if no measured plan differs in this part
-    double saved_ns = 0;  ///< the time of a frame with the plan `other` minus that with the plan itself
+    std::string part;     ///< the technique's name, such as "box"
+    bool keep = false;    ///< whether the judged plan uses the technique that `part` names
+    Plan other = {};      ///< the cheapest plan with the technique if the judged plan lacks it, else without it
+    std::string instead;  ///< the Plan `other` in words; empty if no such plan was measured
+    double saved_ns = 0;  ///< the time of a frame with the Plan `other` minus that with the judged plan
 };
 
-/// Returns a line such as "box          keep: saves 1.200 ms                instead: 16 px, rectangle, interval".
+/// Returns a line such as  "box          keep: saves 1.200 ms    instead: 16 px, rectangle, interval":  keep boxes
+/// around cells; the best plan without them, the last in the line, takes 1.2 ms more per frame.
 inline std::string to_string(const Verdict& verdict);
 
-/// Every plan that was measured, the cheapest first.
+/// Every plan (options of a Binner and a tile size) that was measured, in ascending order of the time of a frame.
 class Advice {
 public:
     /// Sorts the plans by insertion: plans of equal time keep their order. (std::stable_sort warns in some compilers.)
@@ -88,15 +89,15 @@ public:
     /// Returns a table of the plans for people to read, one per line.
     std::string text() const;
 
-    /// Returns a verdict on each part that a plan has or lacks, against the cheapest measured plan that differs in the
-    /// part. That plan may differ in other parts as well, because without this part others may pay off.
+    /// Returns a verdict on each technique, such as tiles: compares `plan` with the cheapest measured plan that lacks
+    /// the technique if `plan` uses it, or uses it if `plan` lacks it. Other options of that plan may differ as well.
     std::vector<Verdict> verdicts(const Plan& plan) const;
 
 private:
     std::vector<Plan> plans_;
 };
 
-/// Returns the advice for people to read: the cheapest plan, and a line for each part with what it saves or would cost.
+/// Returns the advice for people to read: the cheapest plan, and a line for each technique with what it saves or costs.
 inline std::string to_string(const Advice& advice);
 
 /// Applies a plan of advise(): calls visit.operator()<options>() with the plan's options as a constant, and returns its
@@ -127,9 +128,9 @@ decltype(auto) with_sliced_options(const Plan& plan, Visit&& visit);
 /// lights moved slightly sideways each time but the first, and takes the shortest time. It keeps no memory.
 ///
 /// lights  as for Binner::bin()
-/// bounds  Z bounds of the view's own tiles; those of larger tiles are merged from them. Without any, no depth test is
-///         measured, and every pixel is assumed to have something to light: if a third of the pixels is sky, multiply
-///         Costs::evaluation_ns by two thirds
+/// bounds  Z bounds of the view's own tiles, from which bounds of larger tiles are merged. Without bounds, no depth
+///         test is measured, and every pixel is assumed to have something to light: if a third of the pixels is sky,
+///         multiply Costs::evaluation_ns by two thirds
 /// base    the options that a plan leaves open: ids, isa
 /// Clock   a clock like those of <chrono>; one that counts this thread's own time is better on a busy machine
 template <Options base = Options{}, class Clock = std::chrono::steady_clock, class LightRange>
@@ -139,9 +140,9 @@ Result<Advice> advise(const View& view, const LightRange& lights, const Costs& c
 /// View depths of the visible surfaces at points evenly spread over the viewport, from the previous frame or from a few
 /// frames that are typical of the scene.
 struct DepthSamples {
-    /// Row by row, from the view's window origin. NaN or infinity marks a point with nothing to light.
+    /// One view depth per point, row by row from the view's WindowOrigin; NaN or infinity where nothing is to be lit.
     std::span<const float> depths;
-    Extent size;  ///< how many columns and rows of samples, such as an eighth of the viewport's width and height
+    Extent size;  ///< the number of columns and of rows of depths, such as one depth for every 8x8 pixels
 };
 
 /// The slices that advise_slices() uses for Slicing::clusters and Slicing::z_bins.

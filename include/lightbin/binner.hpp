@@ -12,7 +12,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// The inputs of Binner::bin() beside the lights. Those that the options read, and no others, must be given.
+/// The inputs of Binner::bin() beside the lights. An input that the options read must be given, and no other may be.
 template <DepthTest depth_test, Slicing slicing = Slicing::none> struct Inputs {
     static constexpr bool reads_slices = slicing != Slicing::none,
                           reads_bounds = depth_test != DepthTest::none && slicing != Slicing::clusters;
@@ -35,7 +35,7 @@ requires(options.slicing == Slicing::none) Inputs<options.depth_test> inputs_for
         return {.bounds = bounds};
 }
 
-/// Returns Inputs with those of the bounds and slices that the options read. For templates whose options vary,
+/// Returns Inputs with the bounds or slices, or both, that the options read. For templates whose options vary,
 /// Options::slicing among them. The slices must live until the call; temporary Slices are copied.
 template <Options options>
 Inputs<options.depth_test, options.slicing> inputs_for([[maybe_unused]] const ZBounds& bounds,
@@ -57,9 +57,9 @@ template <class Id> struct TransparencyGrids { LightGrid<Id> opaque, transparent
 /// Bins lights into screen tiles.
 ///
 /// A Binner keeps its memory from call to call: it allocates only where an input needs more memory than all before, or
-/// another kernel or number of threads is chosen for it. If a call throws, the Binner has no grid, and later calls work as
-/// usual. Not thread-safe: use one Binner per thread. During a call, the library and the caller's callables compute in the
-/// floating-point environment that threads start with: rounding to nearest, no traps, denormal numbers kept.
+/// another kernel or number of threads is chosen for it. If a call throws, the Binner has no grid, and later calls work
+/// as usual. Not thread-safe: use one Binner per thread. During a call, the library and the caller's callables compute
+/// in the floating-point environment that threads start with: rounding to nearest, no traps, denormal numbers kept.
 template <Options options = Options{}> class Binner {
     static_assert(options.ids != IdWidth::u8,
                   "lightbin: a Binner's ids have 16 or 32 bits: take Options{.ids = IdWidth::u16} and have "
@@ -84,15 +84,15 @@ public:
 
     /// Returns the light grid of `lights` in `view`. Its memory belongs to the Binner and is valid until the next call.
     ///
-    /// lights   view_space(...), world_space(...), or a contiguous range of vec4 (x, y, z, radius), Sphere or Spot in view
+    /// lights   view_space(...), world_space(...), or a contiguous range of vec4 (x, y, z, r), Sphere or Spot in view
     ///          space
     /// inputs   {.slices = ...} with clusters or z_bins, {.bounds = ...} with a depth test unless with clusters, and
     ///          {.slices = ..., .bounds = ...} with z_bins and a depth test; else nothing
     /// threads  a Parallel, to share the work among the caller's threads. The grid does not depend on it.
     ///
-    /// Afterwards every tile lists, in ascending order, every light whose sphere, or spot, meets the tile's cell. Errors:
-    /// more lights than Id can number; more than 2^32 - 1 entries, cells, or pairs of a light and a slice or block of 8x8
-    /// tiles; a world_space() matrix that is not affine; Z bounds shorter than view.tile_count().
+    /// Afterwards every tile lists, in ascending order, every light whose sphere, or spot, meets the tile's cell.
+    /// Errors: more lights than Id can number; more than 2^32 - 1 entries, cells, or pairs of a light and a slice or
+    /// block of 8x8 tiles; a world_space() matrix that is not affine; Z bounds shorter than view.tile_count().
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     Result<LightGrid<Id>> bin(const View& view, const LightRange& lights, const Inputs& inputs = {},
                               const Threads& threads = {}) {
@@ -102,8 +102,8 @@ public:
     }
 
     /// Returns two grids, for opaque and for transparent geometry, and projects the lights once for both. They are
-    /// valid until the Binner's next call. Errors: those of bin(); bounds made without the background but without
-    /// transparent_max.
+    /// valid until the Binner's next call. Errors: those of bin(), and bounds that leave out the background
+    /// (ZBounds::background_skipped) and have a `max` but no `transparent_max`.
     ///
     /// inputs  the bounds are those of the opaque geometry. Lights for transparent geometry are tested against
     ///         transparent_max, or against max where that is empty
@@ -126,12 +126,12 @@ public:
         return TransparencyGrids<Id>{*opaque, *transparent};
     }
 
-    /// Writes a bitmask per tile to `bits`, without making lists: those that encode() makes of bin()'s grid with
-    /// {.encoding = ListEncoding::bitmask, .max_lights = max_lights}. This is faster up to about a thousand lights. Returns
-    /// the counts of lights and, with z_bins, the ranks, which are valid until the next call.
+    /// Writes a bitmask per tile to `bits`, without making lists: the same words that encode() makes of bin()'s grid
+    /// with {.encoding = ListEncoding::bitmask, .max_lights = max_lights}. This is faster up to about a thousand
+    /// lights. Returns the counts of lights and, with z_bins, the ranks, which are valid until the next call.
     ///
-    /// Errors: those of bin() except for entries, which are not counted; fewer words in `bits` than (max_lights + 31) / 32
-    /// per tile; more lights than max_lights (with z_bins, more lights in view). After the last two no bit was written.
+    /// Errors: those of bin() except for too many entries, as none are counted; fewer words in `bits` than (max_lights
+    /// + 31) / 32 per tile; more lights than max_lights (with z_bins, in view). The last two leave `bits` as it was.
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     requires(!clusters) Result<LightBits> bin_bits(const View& view, const LightRange& lights,
                                                    std::uint32_t max_lights, std::span<std::uint32_t> bits,

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes the lists of a light grid in another format: narrower ids, lists that end with a sentinel, or a bitmask per
-// tile.
+// Writes a light grid's lists in another format: narrower ids, a sentinel at each list's end, or a bitmask per tile.
 #pragma once
 
 #include <lightbin/detail/base/checked_sizes.hpp>
@@ -70,8 +69,7 @@ template <class Id> void encode_bits(const LightGrid<Id>& grid, std::size_t byte
 
 }  // namespace detail
 
-/// Returns how many bytes encode() needs for a grid of so many tiles and list entries, rounded up to a multiple of 4.
-/// If that exceeds 64 bits, returns 2^64 - 4.
+/// Returns how many bytes, a multiple of 4, encode() needs for `tiles` tiles and `entries` ids; 2^64 - 4 for any more.
 inline std::uint64_t encoded_bytes(const ListFormat& format, std::uint64_t tiles, std::uint64_t entries) {
     const std::uint64_t elements = format.encoding == ListEncoding::offset_count
                                        ? entries
@@ -85,7 +83,7 @@ inline std::uint64_t encoded_bytes(const ListFormat& format, std::uint64_t tiles
 /// What encode() left out of lists that are longer than the capacity of the sentinel format.
 struct Encoded {
     std::uint64_t entries_cut = 0;
-    std::uint32_t tiles_cut = 0;        ///< the number of tiles whose list was cut
+    std::uint32_t tiles_cut = 0;        ///< the number of tiles whose list was cut short at ListFormat::capacity
     std::uint32_t capacity_needed = 0;  ///< the length of the longest list: the least capacity that cuts none
 };
 

@@ -42,8 +42,8 @@ namespace detail {
 /// The widest instruction set whose kernels the processor and the operating system support.
 inline Isa processor_isa() {
 #if defined(_MSC_VER)
-    // Bits of CPUID leaf 1 (ECX) and leaf 7 (EBX, ECX) say what the processor supports; bits of XGETBV, which registers the
-    // operating system saves. (Intel's manual, volume 2, CPUID.)
+    // Bits of CPUID leaf 1 (ECX) and leaf 7 (EBX, ECX) say what the processor supports; bits of XGETBV, which registers
+    // the operating system saves. (Intel's manual, volume 2, CPUID.)
     int leaf_0[4], leaf_1[4], leaf_7[4] = {};
     __cpuid(leaf_0, 0);
     __cpuid(leaf_1, 1);
@@ -74,7 +74,7 @@ inline Isa processor_isa() {
 }  // namespace detail
 #endif
 
-/// Returns the widest instruction set up to `cap` that this build contains and this machine runs, as Binners use it.
+/// Returns the widest instruction set, up to `cap` (such as Options::isa), of this build that this machine runs.
 inline Isa machine_isa(Isa cap = compiled_isa) {
     if (cap > compiled_isa) cap = compiled_isa;
 #if defined(LIGHTBIN_X86)

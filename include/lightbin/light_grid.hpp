@@ -23,7 +23,7 @@ constexpr const char* to_string(IdWidth width) {
     return detail::name_at(width, {"?", "u8", "u16", "?", "u32"});
 }
 
-/// The list of one tile: `count` ids of the light index list, from index `offset` on. 8 bytes, laid out as a GPU's uvec2.
+/// The list of one tile: `count` ids of the light index list, from index `offset` on. Laid out as a GPU's uvec2.
 struct ListRange {
     std::uint32_t offset, count;
 };
@@ -53,8 +53,7 @@ struct LightBits {
     LightRanks ranks;  ///< the order of the lights by depth, with Slicing::z_bins; else empty
 };
 
-/// A finished light grid. It refers to memory that it does not own; the function that returns the grid says how long that
-/// memory is valid.
+/// A finished light grid. It does not own its memory; the function that returns the grid says how long that is valid.
 template <class Id> class LightGrid {
 public:
     LightGrid(int tiles_x, int tiles_y, std::span<const ListRange> ranges, std::span<const Id> ids,

@@ -2,10 +2,10 @@
 //
 // lightbin: finds the lights that can reach each screen tile. Header-only C++20, standard library only.
 //
-// What it does. From a projection matrix and N light spheres it makes, for each screen tile, the list of the lights that can
-// reach what the tile shows: {offset, count} per tile and one light index list. A forward, deferred or compute pass reads
-// these two flat buffers. No light is missed, whatever the camera and the numbers, and nothing is dropped silently. It has no
-// lighting model, no shadows, no GPU calls, no threads and no file formats: it fills memory and writes shader text.
+// What it does. From a projection matrix and N light spheres it makes, for each screen tile, the list of the lights
+// that can reach what the tile shows: {offset, count} per tile and one light index list. A forward, deferred or compute
+// pass reads these buffers. No light is missed, whatever the camera and the numbers, and nothing is dropped silently.
+// It has no lighting, shadows, GPU calls, threads or file formats: it fills memory and writes shader text.
 //
 // Step by step
 //   1. View::from_projection(projection, {width, height}, {.tile_size = 32, ...})              view.hpp
@@ -33,16 +33,16 @@
 //   shader_build.hpp  shader text that does steps 2 and 3 on the GPU
 //   advise.hpp        advise(view, lights, costs[, bounds]) measures which tile size and options are best
 //
-// Building. No compiler flags are needed. The kernels for the widest instruction set (isa.hpp) that the machine has are chosen
-// at run time, and all give the same bytes. Define LIGHTBIN_NO_SIMD to leave the vector kernels out, and LIGHTBIN_ASSERT to
-// replace the assertions. -ffast-math is an error where the compiler tells of it (docs/limits.md says where it does not),
-// and so is x87 arithmetic, the default of some 32-bit compilers. The caller's rounding mode, traps and flushing of denormal
-// numbers do not change the results. The files of a program may be compiled for different processors: the library's names
-// lie in an inline namespace named after the instruction set, so these files share no functions of it. Its types cannot be
-// passed between such files (the linker reports it), nor be declared without including its headers.
+// Building. No compiler flags are needed. The kernels for the widest instruction set (isa.hpp) that the machine has are
+// chosen at run time, and all give the same bytes. Define LIGHTBIN_NO_SIMD to leave the vector kernels out, and
+// LIGHTBIN_ASSERT to replace the assertions. -ffast-math is an error where the compiler tells of it (docs/limits.md
+// says where it does not), and so is x87 arithmetic, the default of some 32-bit compilers. The caller's rounding mode,
+// traps and flushing of denormal numbers do not change the results. The files of a program may be compiled for
+// different processors: the library's inline namespace is named after the instruction set, so these files share no
+// functions. Its types cannot be passed between such files (a linker error), nor be declared without its headers.
 //
-// Sources: Olsson and Assarsson, "Tiled Shading", JGT 15(4), 2011. Billeter, Olsson and Assarsson, "Tiled Forward Shading",
-// GPU Pro 4, 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.
+// Sources: Olsson and Assarsson, "Tiled Shading", JGT 15(4), 2011. Billeter, Olsson and Assarsson, "Tiled Forward
+// Shading", GPU Pro 4, 2013. Pettineo, "Light Indexed Deferred Rendering", 2012.
 #pragma once
 
 #include <lightbin/binner.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lights as the caller has them: arrays of vec4, Sphere, Spot or the caller's own structs, in view space or world space.
+// Lights as the caller has them: arrays of vec4, Sphere, Spot or the caller's own structs, in view or world space.
 #pragma once
 
 #include <lightbin/detail/project/to_light.hpp>
@@ -33,8 +33,7 @@ template <class Light, class ToLight> struct Lights {
         return to_view ? (*to_view)(sphere) : sphere;
     }
 
-    /// Returns the Sphere or Spot, in view space, of an array element. The axis of a Spot is rounded to nearest, not
-    /// outward.
+    /// Returns an array element's Sphere or Spot in view space. A Spot's axis is rounded to nearest, not outward.
     auto view_light(const Light& light) const {
         if constexpr (spots) {
             const Spot spot = made(light);
@@ -48,8 +47,8 @@ template <class Light, class ToLight> struct Lights {
     }
 };
 
-/// What view_space() and world_space() return for a temporary array, such as a std::vector that a function returned. The
-/// array was moved into `array`. (Of a temporary std::span only the span is copied.)
+/// What view_space() and world_space() return for a temporary array, such as a std::vector that a function returned.
+/// The array was moved into `array`. (Of a temporary std::span only the span is copied.)
 template <class Range, class ToLight> struct OwnedLights {
     Range array;
     ToLight to_light;
@@ -61,8 +60,8 @@ template <class Range, class ToLight> struct OwnedLights {
 ///
 /// lights    a contiguous range of any type: structs, pointers or smart pointers to them, std::reference_wrapper
 /// to_light  a callable or a pointer to a member that makes a Sphere or a Spot of an element. If it does not take an
-///           element itself, it is called with the object that the element points to, and a null pointer is bad input. A
-///           to_light that takes pointers is called with null pointers, too. It is copied, and called as const.
+///           element itself, it is called with the object that the element points to, and a null pointer is bad input.
+///           A to_light that takes pointers is called with null pointers, too. It is copied, and called as const.
 template <class Range, class ToLight = AsLight>
 auto view_space(Range&& lights, const ToLight& to_light = {}) {
     constexpr bool temporary = !std::is_lvalue_reference_v<Range>,
@@ -83,8 +82,8 @@ auto view_space(Range&& lights, const ToLight& to_light = {}) {
 /// bound on the rounding error of the transform.
 ///
 /// lights, to_light  as for view_space()
-/// view_matrix       world space to view space, any type that matrix.hpp lists. Must be affine. If it is far from a
-///                   rotation and uniform scale, it would distort cones, and the least spheres around spots are transformed.
+/// view_matrix       world space to view space, any type that matrix.hpp lists. Must be affine. If it is so far from a
+///                   rotation and uniform scale that it would distort cones, spots become their least_sphere().
 template <class Range, class ViewMatrix, class ToLight = AsLight>
 auto world_space(Range&& lights, const ViewMatrix& view_matrix, const ToLight& to_light = {}) {
     auto result = view_space(static_cast<Range&&>(lights), to_light);
@@ -108,8 +107,8 @@ template <class Range, class ToLight> auto as_lights(const OwnedLights<Range, To
     return result;
 }
 
-/// Returns a pointer to the caller's array if its elements are Spheres or float vec4s of the same layout, so that kernels
-/// can read the array directly, by load_sphere(); else null.
+/// Returns a pointer to the caller's array if its elements are Spheres or float vec4s of the same layout, so that
+/// kernels can read the array directly, by load_sphere(); else null.
 template <class Light, class ToLight> const Sphere* as_they_are(const Lights<Light, ToLight>& lights) {
     if constexpr (std::is_same_v<ToLight, AsLight> && !Lights<Light, ToLight>::spots &&
                   sizeof(Light) == sizeof(Sphere) && std::is_trivially_copyable_v<Light>) {

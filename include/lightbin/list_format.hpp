@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The format of the lists of lights. A shader that reads lists must be made for the format that a Binner or encode() wrote.
+// The format of light lists. A shader that reads lists must be made for the format that a Binner or encode() wrote.
 #pragma once
 
 #include <lightbin/light_grid.hpp>
@@ -22,8 +22,8 @@ constexpr const char* to_string(ListEncoding encoding) {
 /// The format of the lists: their encoding, and the numbers that fix its sizes.
 struct ListFormat {
     ListEncoding encoding = ListEncoding::offset_count;
-    IdWidth ids = IdWidth::u32;    ///< the width of an id; read for offset_count and sentinel
-    std::uint32_t capacity = 0;    ///< the number of ids that a tile has memory for, 1 or more; read for sentinel
+    IdWidth ids = IdWidth::u32;    ///< the width of an id in the encodings offset_count and sentinel
+    std::uint32_t capacity = 0;    ///< for the encoding sentinel: how many ids a tile has memory for, 1 or more
     std::uint32_t max_lights = 0;  ///< all ids are less; bitmask needs it, else 0 means as many as `ids` can number
 };
 

@@ -4,16 +4,16 @@
 //   type                                      first four numbers    what to pass
 //   GLM, cglm, float[4][4] of columns         column of M v         the matrix itself
 //   Eigen                                     either                the matrix or transform itself
-//   DirectXMath's XMFLOAT4X4, D3DMATRIX       row of v M            the matrix itself (an XMMATRIX: XMStoreFloat4x4 first)
+//   DirectXMath's XMFLOAT4X4, D3DMATRIX       row of v M            the matrix (of an XMMATRIX: XMStoreFloat4x4 first)
 //   OpenSceneGraph's Matrixf, Matrixd         row of v M            the matrix itself
 //   Irrlicht                                  row of v M            matrix(m.pointer(), MatrixLayout::row_vectors)
 //   Panda3D                                   row of v M            matrix(m.get_data(), MatrixLayout::row_vectors)
 //   Qt's QMatrix4x4                           column of M v         matrix(m.constData(), MatrixLayout::column_major)
 //   OGRE, rows of one's own                   row of M v            matrix(&m[0][0], MatrixLayout::row_major)
 //
-// The rows of a matrix for row vectors (v M) are the columns of the same transform for column vectors (M v), so column_major
-// and row_vectors are the same numbers in memory: a view matrix has its translation in numbers 13 to 15, counted from 1, and
-// with row_major in numbers 4, 8 and 12. A float[4][4] of rows is accepted as it is, but read as its transpose.
+// The rows of a matrix for row vectors (v M) are the columns of the same transform for column vectors (M v), so
+// column_major and row_vectors are the same numbers in memory: a view matrix has its translation in numbers 13 to 15,
+// counted from 1, and with row_major in numbers 4, 8 and 12. A float[4][4] of rows is read as its transpose.
 #pragma once
 
 #include <lightbin/detail/base/math.hpp>
@@ -102,7 +102,7 @@ inline Matrix transposed(const Matrix& m) {
 
 /// Returns the matrix that sixteen numbers make in the given layout.
 ///
-/// numbers  float[16], double[16], a pointer to the first of sixteen, or a std::array, std::vector or std::span of sixteen
+/// numbers  float[16], double[16], a pointer to 16 numbers, or a std::array, std::vector or std::span of sixteen
 template <class Numbers> Matrix matrix(const Numbers& numbers, MatrixLayout layout) {
     static_assert(
         detail::SixteenNumbers<Numbers>,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Errors that a running program can meet are returned as values with a text. Bugs in the calling program are assertions.
+// Errors that a running program can meet are returned as values with a text; bugs of the program are assertions.
 #pragma once
 
 #include <lightbin/detail/base/text.hpp>
@@ -8,8 +8,8 @@
 #include <optional>
 #include <utility>
 
-/// Checks a condition that only a bug in the calling program can make false. The default is the standard assert(); define
-/// LIGHTBIN_ASSERT before including lightbin to replace it.
+/// Checks a condition that only a bug in the calling program can make false. The default is the standard assert();
+/// define LIGHTBIN_ASSERT before including lightbin to replace it.
 #ifndef LIGHTBIN_ASSERT
 #include <cassert>
 #define LIGHTBIN_ASSERT(condition) assert(condition)
@@ -17,14 +17,14 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// Why a call failed. For errors about sizes, `needed` is the size that the call needed and `available` the size that there
-/// was. For errors about other numbers, `needed` is the number given and `available` the greatest one allowed.
+/// Why a call failed. For errors about sizes, `needed` is the size that the call needed and `available` the size that
+/// there was. For errors about other numbers, `needed` is the number given and `available` the greatest one allowed.
 struct Error {
     ErrorCode code;
     std::uint64_t needed = 0;
     std::uint64_t available = 0;
 
-    /// Returns to_string(code) with the numbers filled in.
+    /// Returns to_string(code) with `needed` and `available` in place of its placeholders.
     Text message() const {
         const bool negative = static_cast<std::int64_t>(needed) < 0;
         Text text;

@@ -35,13 +35,13 @@ struct ShaderOptions {
     ListFormat format = {};
     /// With ListEncoding::offset_count: reads {offset, count} from a uniform block, and only the ids from `storage`.
     bool tiles_in_uniform_block = false;
-    /// With texel_buffer and texture_2d: reads ids of 8 and 16 bits from texels of 32 bits, packed as in the other
-    /// storages. By default each id has a texel of its own width.
+    /// With texel_buffer and texture_2d: reads ids of 8 and 16 bits from texels of 32 bits, in which they are packed as
+    /// in a storage buffer. By default each id has a texel of its own width.
     bool packed_ids = false;
 
     Slicing slicing = Slicing::none;  ///< the same as Options::slicing of the Binner that makes the lists
 
-    int tile_size = 0;             ///< in pixels, fixed in the text; 0: read at run time from the constant `grid`
+    int tile_size = 0;             ///< in pixels, a literal in the shader text; 0: read from the shader constant `grid`
     bool flip_y = false;           ///< the shader counts pixel rows from the opposite end to the view's WindowOrigin
     bool viewport_corner = false;  ///< pixels are counted in the window; the constant `corner` is subtracted from them
     bool heat_map = false;         ///< adds the functions `count` and `heat`, which show a pixel's number of lights
@@ -54,9 +54,9 @@ struct ShaderOptions {
     bool window = false;      ///< adds the function `window`, a light's falloff at its range: see light_window()
 
     std::uint32_t texture_width = 2048;  ///< texture_2d: texels per row, 1 to 16384; a power of two is fastest
-    std::uint32_t max_tiles = 0;    ///< sizes a uniform block: the greatest number of tiles, counted in every slice
-    std::uint32_t max_entries = 0;  ///< sizes a uniform block of offset_count lists: the greatest number of entries
-    std::uint32_t max_slices = 0;   ///< sizes the uniform block of the slices: their greatest number
+    std::uint32_t max_tiles = 0;    ///< with uniform_block: the most tiles; with clusters, the most tiles times slices
+    std::uint32_t max_entries = 0;  ///< with uniform_block and ListEncoding::offset_count: the most ids in all lists
+    std::uint32_t max_slices = 0;   ///< with uniform_block and slicing: the greatest number of slices
     std::uint32_t uniform_block_bytes = 16384;  ///< the device's limit for one block; every device allows 16384
 
     ShaderSlot tiles = {0}, lists = {1}, grid = {2}, slices = {3}, bins = {4}, view = {5};
@@ -85,11 +85,13 @@ inline ShaderGrid shader_grid(const View& view, int corner_x = 0, int corner_y =
 /// the last slice, by which the shader guesses a depth's slice, and the boundaries, by which it corrects the guess.
 inline std::vector<std::uint32_t> shader_slices(const Slices& slices);
 
-/// The values of the constants `image` and `depths` that `check_view` reads. `nearest` is a view depth, `tolerance` a
-/// number of pixels. A uniform block has this layout.
+/// The values of the constants that the shader function `check_view` reads. A uniform block has this layout.
 struct ShaderView {
-    float scale_x, scale_y, offset_x, offset_y;      ///< `image`: pixel = scale * x / depth + offset
-    float forward, perspective, nearest, tolerance;  ///< `depths`: view depth = forward * z; perspective is 1 or 0
+    /// The vec4 constant `image`: a point's pixel is  scale * x / depth + offset;  orthographic:  scale * x + offset.
+    float scale_x, scale_y, offset_x, offset_y;
+    /// The vec4 constant `depths`: a point's view depth is  forward * z  and must be at least `nearest`; `perspective`
+    /// is 1, or 0 in orthographic views; the point may be projected up to `tolerance` pixels away from its pixel.
+    float forward, perspective, nearest, tolerance;
 };
 static_assert(sizeof(ShaderView) == 32);  // it has no padding
 

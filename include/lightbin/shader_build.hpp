@@ -45,9 +45,9 @@ static_assert(sizeof(ShaderReduce) == 48);
 /// the viewport's first column and row; only shaders with ReduceShaderOptions::viewport_corner read it.
 inline ShaderReduce shader_reduce(const View& view, int corner_x = 0, int corner_y = 0) {
     const ShaderGrid grid = shader_grid(view);
-    // Let e be a window depth's distance from the far plane's: 1 - depth, or with reversed Z depth itself. View depth
-    // is 1 / (far_end + slope e) in perspective and far_end - slope e in orthographic views. Both terms of the sum have
-    // the same sign, so nothing cancels.
+    // Let e be a window depth's distance from the far plane's: 1 - depth, or with reversed Z the depth itself. A
+    // perspective view depth is  1 / (far_end + slope e)  with far_end = 1 / far and slope = 1 / near - 1 / far:
+    // positive terms, so nothing cancels. An orthographic one is  far_end - slope e;  `margin` covers its rounding.
     const double from = static_cast<double>(view.near_depth()), to = static_cast<double>(view.far_depth());
     const bool flat = view.orthographic();
     const float far_end = static_cast<float>(flat ? to : 1 / to),
@@ -71,9 +71,10 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {})
 
 /// The three shaders that build a light grid, in the order of their dispatches.
 enum class BuildPass : std::uint8_t {
-    count,    ///< counts the lights of each tile; groups: tiles_x by tiles_y, with clusters tiles_x by slices * tiles_y
-    offsets,  ///< prefix sums of the counts: each tile's list offset, and the total; groups: one
-    fill,     ///< writes the lists; groups: as many as for count
+    /// Counts the lights of each tile. Dispatch tiles_x by tiles_y (with clusters, slices * tiles_y) work groups.
+    count,
+    offsets,  ///< adds the counts up to each tile's list offset and to the total; dispatch one work group
+    fill,     ///< writes the lists; dispatch as many work groups as for the pass `count`
 };
 
 constexpr const char* to_string(BuildPass value) {

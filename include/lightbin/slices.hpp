@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Depth slices: intervals of view depth that divide each tile's cell into clusters (Olsson, Billeter, Assarsson, "Clustered
-// Deferred and Forward Shading", HPG 2012) or serve as z-bins.
+// Depth slices: intervals of view depth that divide each tile's cell into clusters (Olsson, Billeter, Assarsson,
+// "Clustered Deferred and Forward Shading", HPG 2012) or serve as z-bins.
 #pragma once
 
 #include <lightbin/detail/depth/slice_table.hpp>
@@ -47,18 +47,18 @@ public:
                         [=](std::size_t i) { return boundaries[i]; });
     }
 
-    /// Returns these slices for readers whose lookup is inexact: shaders that compute the slice by a rounding formula of
-    /// their own, or from a rounded depth, and so may find for a depth d the slice of any depth from d - margin |d| to
-    /// d + margin |d|. Lights are then listed in every slice that may be found for one of their depths. Readers that use
-    /// slice_at() or shader_slices() need no margin.
+    /// Returns these slices for readers whose lookup is inexact: shaders that compute the slice by a rounding formula
+    /// of their own, or from a rounded depth, and so may find for a depth d the slice of any depth from d - margin |d|
+    /// to d + margin |d|. Lights are then listed in every slice that may be found for one of their depths. Readers that
+    /// use slice_at() or shader_slices() need no margin.
     ///
     /// margin  from 0 to 1/2; docs/depth.md says which is enough
     Slices with_margin(float margin) const {
         LIGHTBIN_ASSERT(0 <= margin && margin <= 0.5f);
         const double exact = static_cast<double>(margin);
         Slices result(*this);
-        // If a depth d is looked up as e, with |e - d| <= margin |d|, then d lies within margin / (1 - margin) |e| of e.
-        // The factor 1 + 2^-20 covers rounding.
+        // If a depth d is looked up as e, with |e - d| <= margin |d|, then d lies within margin / (1 - margin) |e| of
+        // e. The factor 1 + 2^-20 covers rounding.
         result.table_.margin = detail::float_above(exact / (1 - exact) * (1 + 0x1p-20));
         return result;
     }
@@ -71,15 +71,13 @@ public:
 
     int count() const { return static_cast<int>(table_.boundaries().size()) + 1; }
 
-    /// Returns the count() - 1 boundaries in ascending order. Slice i lies between boundaries i - 1 and i. Valid as long as
-    /// these Slices.
+    /// Returns the count() - 1 boundaries in ascending order, valid as long as the Slices. Slice i ends at boundary i.
     std::span<const float> boundaries() const& {
         return {table_.boundaries().first, table_.boundaries().count};
     }
     void boundaries() && = delete;  // the span would dangle
 
-    /// Returns the index of the slice that contains a depth. A boundary itself belongs to the slice behind it. The
-    /// depth must not be NaN.
+    /// Returns the index of the slice that contains a depth, not NaN. A boundary itself belongs to the slice behind it.
     int slice_at(float depth) const {
         const detail::Items<const float> all = table_.boundaries();
         return static_cast<int>(
@@ -88,7 +86,7 @@ public:
     }
 
 private:
-    /// The lookup table that maps a depth to its slice, for the stages.
+    /// Returns the lookup table from depths to slices. It is not public: the library's own binning stages read it.
     friend const detail::SliceTable& table_of(const Slices& slices) { return slices.table_; }
 
     explicit Slices(detail::Items<const float> boundaries) : table_(boundaries) {}

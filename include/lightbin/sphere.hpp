@@ -16,9 +16,9 @@ struct Sphere {
     float x, y, z, radius;
 };
 
-/// Returns the distance in metres at which a point light of `intensity` candela (lumen per steradian) has fallen to `cutoff`
-/// lux (lumen per square metre, on a surface that faces the light): sqrt(intensity / cutoff), rounded up. Light beyond this
-/// range is lost, so the cutoff is also the greatest error per light that cutting it off there can cause.
+/// Returns the distance in metres at which a point light of `intensity` candela (lumen per steradian) has fallen to
+/// `cutoff` lux (lumen per square metre, on a surface that faces the light): sqrt(intensity / cutoff), rounded up.
+/// Light beyond this range is lost, so the cutoff is also the greatest error per light that this can cause.
 ///
 /// intensity  0 or less gives range 0, +inf an infinite range, NaN gives NaN
 /// cutoff     0 or less gives an infinite range
@@ -31,8 +31,8 @@ inline float light_range(float intensity, float cutoff) {
 
 /// Returns the factor by which to multiply a light so that it fades smoothly to nothing at its range: 1 at the light,
 /// (1 - (distance / range)^4)^2 in between, and exactly 0 from the range on (Karis, Real Shading in Unreal Engine 4,
-/// SIGGRAPH 2013). Without such a window the light that is left at the range is cut off at tile borders, and seams show.
-/// With ShaderOptions::window shaders get a function for the same factor. Range +inf gives 1.
+/// SIGGRAPH 2013). Without such a window the light that is left at the range is cut off at tile borders, and seams
+/// show. With ShaderOptions::window shaders get a function for the same factor. Range +inf gives 1.
 inline float light_window(float distance, float range) {
     if (!(distance < range)) return 0;
     const float x = distance / range, w = 1 - x * x * x * x;

@@ -9,19 +9,18 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// The region that a spot light can reach: the points of a sphere that lie in a cone from its centre. In memory two vec4s.
+/// The region that a spot light can reach: the points of a sphere in a cone from its centre. In memory two vec4s.
 ///
 /// axis_x, axis_y, axis_z  the direction in which the light shines, of any length but zero
-/// cos_half_angle          cosine of the angle between the axis and the cone's side, from 1 (a ray) over 0 (a half sphere)
-///                         to -1 (a whole sphere). glTF: cos(outerConeAngle); Unity: cosine of half the spotAngle.
+/// cos_half_angle          cosine of the angle between the axis and the cone's side: 1 for a ray, 0 for a half sphere,
+///                         -1 for a whole sphere. glTF: cos(outerConeAngle); Unity: cosine of half the spotAngle.
 ///
 /// A point p is in the cone if  (p - centre).axis >= cos_half_angle |p - centre| |axis|,  evaluated without rounding
 /// for the floats given. The float nearest to a cosine may be above the cosine, which makes the cone narrower: by up to
 /// 2^-12 radians where it is narrow. If your shader compares with the angle itself, round the cosine down.
 ///
-/// A spot with radius +inf, or a half angle of 90 degrees or more, is treated as its whole sphere. What is bad input in a
-/// Sphere is so in a Spot, as are an axis with a NaN or infinite coordinate or of length zero, and a cosine that is NaN or
-/// outside -1 to 1.
+/// A spot with radius +inf, or a half angle of 90 degrees or more, is treated as its whole sphere. Bad input is what is
+/// bad in a Sphere, an axis of length 0 or with a NaN or infinite coordinate, and a cosine of NaN or outside -1..1.
 struct Spot {
     float x, y, z, radius;
     float axis_x, axis_y, axis_z, cos_half_angle;
@@ -31,14 +30,14 @@ struct Spot {
         return {sphere.x, sphere.y, sphere.z, sphere.radius, 0, 0, 1, -1};
     }
 
-    /// Converts to least_sphere(*this), for functions that take only spheres. A Binner takes spots themselves, and lists
-    /// fewer tiles for them than for these spheres.
+    /// Converts to least_sphere(*this), for functions that take only spheres. A Binner takes spots themselves, and
+    /// lists fewer tiles for them than for these spheres.
     operator Sphere() const;
 };
 
 /// Returns the least sphere that contains all points of a spot, up to rounding: its radius exceeds the exact one by at
-/// most 2^-22 (|x| + |y| + |z| + radius) + 2^-123 and never exceeds the spot's own. Half angles of 90 degrees or more and
-/// an infinite radius give the spot's own sphere; a bad spot gives a bad Sphere.
+/// most 2^-22 (|x| + |y| + |z| + radius) + 2^-123 and never exceeds the spot's own. Half angles of 90 degrees or more
+/// and an infinite radius give the spot's own sphere; a bad spot gives a bad Sphere.
 inline Sphere least_sphere(const Spot& spot) {
     const detail::Triple axis = {static_cast<double>(spot.axis_x), static_cast<double>(spot.axis_y),
                                  static_cast<double>(spot.axis_z)};
@@ -69,8 +68,8 @@ inline Spot::operator Sphere() const {
 }
 
 /// Returns the least sphere that contains all points within `radius` of the line segment from `a` to `b`: a tube with
-/// round ends. Up to rounding: the sphere's radius exceeds the exact one by at most 2^-22 of the sum of the exact radius
-/// and the absolute values of the centre's coordinates, plus 2^-123.
+/// round ends. Up to rounding: the sphere's radius exceeds the exact one by at most 2^-22 of the sum of the exact
+/// radius and the absolute values of the centre's coordinates, plus 2^-123.
 ///
 /// a, b    any type with members x, y and z, floats or doubles. NaN or infinite coordinates give a bad Sphere
 /// radius  +inf gives a sphere that covers everything; negative or NaN, a bad Sphere

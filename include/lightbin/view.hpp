@@ -7,8 +7,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// The range of clip-space depth, a setting of the graphics API that a matrix does not show. With minus_one_to_one in place
-/// of zero_to_one the near plane seems too near, which is safe; the other way round it seems too far, and lights are missed.
+/// The range of clip-space depth, a setting of the graphics API that a matrix does not show. With minus_one_to_one in
+/// place of zero_to_one the near plane seems too near, which is safe; in the reverse case lights are missed.
 enum class ClipDepth : std::uint8_t {
     minus_one_to_one,  ///< depths -1 to 1: OpenGL
     zero_to_one,       ///< depths 0 to 1: Direct3D, Vulkan, Metal, WebGPU, OpenGL with glClipControl
@@ -67,9 +67,9 @@ struct TilePosition {
 
 /// A projection, a viewport and a tile size. Together they fix the tile grid.
 ///
-/// Tiles are squares of t = tile_size() pixels. Tile (tx, ty) has index ty * tiles_x() + tx and covers the pixels tx * t to
-/// (tx + 1) * t in x and ty * t to (ty + 1) * t in y, cut off at the viewport's edge. View depth is the distance from the
-/// eye (orthographic: from the plane z = 0) along the viewing direction, in the units of view space.
+/// Tiles are squares of t = tile_size() pixels. Tile (tx, ty) has index ty * tiles_x() + tx and covers the pixels tx *
+/// t to (tx + 1) * t in x and ty * t to (ty + 1) * t in y, cut off at the viewport's edge. View depth is the distance
+/// from the eye (orthographic: from the plane z = 0) along the viewing direction, in the units of view space.
 class View {
 public:
     static constexpr int max_side = 32768;
@@ -87,7 +87,7 @@ public:
         return make(detail::to_matrix(projection), viewport, options);
     }
 
-    /// Returns the view of the same projection and viewport with tiles of another size. Errors: those of from_projection().
+    /// Returns this view with tiles of another size. Errors: those of from_projection().
     Result<View> with_tile_size(int tile_size) const {
         const auto clip_depth = static_cast<ClipDepth>(projection_.depth.zero_to_one);
         return make(projection_.matrix, viewport_, {tile_size, clip_depth, origin_, reversed_z()});
@@ -125,8 +125,8 @@ public:
     /// Window depth of a view depth, up to rounding. NaN for an infinite view depth.
     float window_depth(double view_depth) const { return projection_.depth.window_depth(view_depth); }
 
-    /// Returns where in the image a point of view space lies, inside or outside of the viewport, up to the rounding of
-    /// doubles. Where the point is not in front of a perspective view's eye, depth is 0 or less, and x and y mean nothing.
+    /// Returns where in the image a view-space point lies, inside or outside of the viewport, up to rounding in double.
+    /// For a point that is not in front of a perspective view's eye, depth is 0 or less, and x and y mean nothing.
     ImagePoint image_point(const ViewPoint& point) const {
         const detail::Camera& camera = projection_.camera;
         const double depth = static_cast<double>(camera.z_sign) * point.z,
@@ -134,7 +134,7 @@ public:
         return {pixels(camera.x, point.x / distance), pixels(camera.y, point.y / distance), depth};
     }
 
-    /// Returns the point of view space that an image point shows, the inverse of image_point(). Wants a non-empty viewport.
+    /// The inverse of image_point(): the view-space point that an image point shows. The viewport must not be empty.
     ViewPoint view_point(const ImagePoint& point) const {
         const detail::Camera& camera = projection_.camera;
         const double distance = camera.orthographic ? 1 : point.depth;
@@ -147,8 +147,8 @@ public:
         return tile_at({x + 0.0, y + 0.0, 1});
     }
 
-    /// Returns the tile that holds an image point, for LightGrid::lights_in(), or nothing if the point is outside of the
-    /// viewport or not in front of a perspective view's eye.
+    /// Returns the tile that holds an image point, for LightGrid::lights_in(), or nothing if the point is outside of
+    /// the viewport or not in front of a perspective view's eye.
     std::optional<TilePosition> tile_at(const ImagePoint& point) const {
         const bool inside =
             point.x >= 0 && point.x < viewport_.width && point.y >= 0 && point.y < viewport_.height;

@@ -29,7 +29,7 @@ struct ViewSummary {
     bool looks_like_view_matrix;
     /// The image is upside down and mirrored, as by a field of view in degrees where radians are wanted.
     bool looks_turned;
-    bool looks_behind;  ///< all depths of an orthographic projection are behind the eye: is ViewOptions::reversed_z right?
+    bool looks_behind;  ///< all orthographic depths are behind the eye: is ViewOptions::reversed_z right?
     /// No depth of a perspective projection with reversed Z reaches NDC -1, so that its far plane is taken to be at
     /// infinity: should ViewOptions::clip_depth be zero_to_one?
     bool looks_zero_to_one;

@@ -13,27 +13,27 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 struct ZBounds {
     std::span<const float> min = {};
     std::span<const float> max = {};
-    /// Read by DepthTest::split_box; both spans must be given, or neither. Nothing is drawn in a tile at depths strictly
-    /// between gap_min and gap_max. A tile with gap_min >= gap_max, or NaN in either, has no gap.
+    /// Read by DepthTest::split_box; both spans must be given, or neither. Nothing is drawn in a tile at depths
+    /// strictly between gap_min and gap_max. A tile with gap_min >= gap_max, or NaN in either, has no gap.
     std::span<const float> gap_min = {};
     std::span<const float> gap_max = {};
-    /// Read by Binner::bin_transparency(): maxima in which the background counts as drawn at the far plane, as transparent
-    /// geometry is also seen in front of the background. If empty, `max` is used.
+    /// Read by Binner::bin_transparency(): maxima in which the background counts as drawn at the far plane, as
+    /// transparent geometry is also seen in front of the background. If empty, `max` is used.
     std::span<const float> transparent_max = {};
     /// `min`, `max` and the gaps were made without the background. bin_transparency() then requires transparent_max.
     bool background_skipped = false;
 };
 
-/// Memory that reduce_depth() writes Z bounds to: View::tile_count() floats for each bound that is wanted, an empty span for
-/// the others. Gaps are written if gap_min and gap_max are both given.
+/// Memory that reduce_depth() writes Z bounds to: View::tile_count() floats for each bound that is wanted, an empty
+/// span for the others. Gaps are written if gap_min and gap_max are both given.
 struct ZBoundsBuffers {
     std::span<float> min = {}, max = {}, gap_min = {}, gap_max = {}, transparent_max = {};
 };
 
-/// The number format of a depth buffer. It decides by how much reduce_depth() widens the bounds to allow for rounding: a
-/// stored value may be either of the format's two values next to the fragment's exact window depth, and an integer read as
-/// a float either of the two floats next to its value. The bounds do not allow for larger differences, such as in a buffer
-/// with fewer bits than the format named, or of depths moved by a polygon offset.
+/// The number format of a depth buffer. It decides by how much reduce_depth() widens the bounds to allow for rounding:
+/// a stored value may be either of the format's two values next to the fragment's exact window depth, and an integer
+/// read as a float either of the two floats next to its value. The bounds do not allow for larger differences, such as
+/// in a buffer with fewer bits than the format named, or of depths moved by a polygon offset.
 enum class DepthFormat : std::uint8_t {
     float32,  ///< a 32-bit float; denormal numbers may have been flushed to zero
     unorm24,  ///< a 24-bit integer n that stands for the depth n / (2^24 - 1)
@@ -44,8 +44,8 @@ constexpr const char* to_string(DepthFormat format) {
     return detail::name_at(format, {"float32", "unorm24", "unorm16"});
 }
 
-/// A depth buffer in main memory that covers the view's viewport and nothing else. Samples are window depths from 0 to 1, as
-/// glReadPixels returns them.
+/// A depth buffer in main memory that covers the view's viewport and nothing else. Samples are window depths from 0 to
+/// 1, as glReadPixels returns them.
 struct DepthBuffer {
     /// Rows of pixels from the view's window origin on. The samples of one pixel are next to each other.
     std::span<const float> depth = {};
@@ -53,8 +53,8 @@ struct DepthBuffer {
     std::size_t row_pitch = 0;  ///< floats from the start of one row to the next; 0: viewport width * samples
     DepthFormat format = DepthFormat::float32;
     /// Treats samples at the far end of the depth range (1, or 0 with reversed Z) as background, where nothing is
-    /// drawn, and which counts for ZBounds::transparent_max alone. Right for buffers that were cleared to that value and
-    /// drawn with a strict depth comparison.
+    /// drawn, and which counts for ZBounds::transparent_max alone. Right for buffers that were cleared to that value
+    /// and drawn with a strict depth comparison.
     bool skip_background = false;
 };
 
@@ -82,10 +82,10 @@ inline DepthInterval fragment_depths(const View& view, Extremes window, DepthFor
 
 }  // namespace detail
 
-/// Reduces a depth buffer to Z bounds in the memory of `out`, and returns them. The view depth of every sample lies within
-/// its tile's bounds, which are rounded outward and widened by the rounding of the DepthFormat. A tile where nothing is
-/// drawn has min = +inf and max = -inf. Samples outside 0..1 are clamped; a NaN sample makes its tile reach from the near
-/// to the far plane. A tile's gap lies between the two samples next to the middle of its depth range, one on either side.
+/// Reduces a depth buffer to Z bounds in the memory of `out`, and returns them. The view depth of every sample lies
+/// within its tile's bounds, which are rounded outward and widened by the rounding of the DepthFormat. A tile where
+/// nothing is drawn has min = +inf and max = -inf. Samples outside 0..1 are clamped; a NaN sample makes its tile reach
+/// from the near to the far plane. A tile's gap lies between the samples next to the middle of its depth range.
 ///
 /// isa  use no wider instructions than these; the result is the same
 ///
@@ -116,7 +116,7 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
     constexpr float none = std::numeric_limits<float>::quiet_NaN();
     const float skipped = !buffer.skip_background ? none : view.reversed_z() ? 0.0f : 1.0f;
     const bool gaps = !out.gap_min.empty() && !out.gap_max.empty();
-    // A tile larger than the viewport is treated as one of the viewport's size, so that the products below do not overflow.
+    // A tile larger than the viewport is treated as one of its size, so that the products below do not overflow.
     const std::size_t size = static_cast<std::size_t>(
         detail::min_of(view.tile_size(), detail::max_of(viewport.width, viewport.height)));
     const std::size_t tiles_x = static_cast<std::size_t>(view.tiles_x());

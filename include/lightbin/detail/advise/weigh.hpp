@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How advise() and advise_slices() measure plans, and how Advice orders plans, judges their parts and prints them.
+// How advise() and advise_slices() measure plans, and how Advice sorts and prints them and finds what techniques save.
 #pragma once
 
 #include <lightbin/advise.hpp>
@@ -108,8 +108,7 @@ constexpr Options weighed_options(Options base, const Options& row) {
     return base;
 }
 
-/// Calls visit() with a plan's options as a template argument, which a Binner's type needs. Finds them in `table`, the
-/// options that are measured, from row i on.
+/// Calls visit() with a plan's options, as a template argument, which it finds in `table`, from row i on.
 template <const auto& table, Options base, std::size_t i, class Visit>
 decltype(auto) with_options_from(const Plan& plan, Visit& visit) {
     constexpr Options options = weighed_options(base, table[i]);
@@ -142,7 +141,8 @@ template <class Visit> void for_each_drawn(const View& view, const ZBounds& boun
 /// A view with one of the tile sizes that are measured, and the Z bounds of its tiles.
 struct WeighedGrid {
     View view;
-    ZBounds bounds;  ///< the caller's Z bounds or, with larger tiles than the caller's, spans of the vectors below
+    /// The caller's Z bounds or, for tiles larger than the caller's, merged bounds, which the std::vectors below hold.
+    ZBounds bounds;
     std::vector<float> lowest, highest, gap_begin, gap_end;
 
     /// Merges the Z bounds of the caller's fine tiles. A fine tile is assumed to show all depths between its bounds

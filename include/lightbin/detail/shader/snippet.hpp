@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How shader_snippet() makes the text that reads the lists, and shader_slices() the buffer for a depth's slice.
+// How shader_snippet() makes the text that reads the lists, and shader_slices() the table of slices that it looks up.
 #pragma once
 
 #include <lightbin/detail/base/platform.hpp>
@@ -128,7 +128,7 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     const std::string here = std::string("    uvec2 here = pixel") +
                              (options.viewport_corner ? " - uvec2($corner);\n" : ";\n") +
                              (options.flip_y ? "    here.y = $grid.w - 1u - here.y;\n" : "");
-    // `tile` divides by at least 1, because the tile size is 0 while the constants are unset.
+    // The shader function `tile` divides by at least 1: until the program sets `grid`, the tile size in it is 0.
     const bool fixed = options.tile_size != 0;
     const std::string size = fixed ? std::to_string(options.tile_size) + "u" : "$grid.x";
     writer.add("\n// The tile that a pixel lies in.\nuvec2 $tile(uvec2 pixel) {\n" + here + "    return here / " +

@@ -325,8 +325,8 @@ public:
              .wgsl = "texture_2d<u32>"});
     }
 
-    /// Declares constants, each at a multiple of 16 bytes. In OpenGL they are single uniforms; in the other APIs they
-    /// form one block, or push constants if `push` is set, which is named after the first constant.
+    /// Declares constants. In OpenGL each is a uniform by itself. In the other APIs they form one block, named after
+    /// the first one, in which each begins at a multiple of 16 bytes; `push` makes it a block of push constants.
     void declare_constants(const std::vector<ShaderConstant>& constants, ShaderSlot slot, bool push) {
         const bool loose = !dialect.hlsl && !dialect.vulkan && !dialect.webgpu;
         const std::string name = std::string(constants.front().second) + "_block";
