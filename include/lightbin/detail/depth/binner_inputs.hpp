@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The members of Binner's Inputs: an input that is missing, or that the options do not read, is refused at compile time.
+// The members of Binner's Inputs: one that is missing, or that the options do not read, is refused at compile time.
 #pragma once
 
 #include <lightbin/slices.hpp>

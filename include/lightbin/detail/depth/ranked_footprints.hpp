@@ -63,7 +63,7 @@ public:
     LightRanks ranks() const { return {{order_.data(), run_.end}, {bins_.data(), bin_count_}}; }
 
 private:
-    /// Writes the sorted footprints, one array after another, so that few cache lines are read in random order at a time.
+    /// Writes the sorted footprints, array by array, so that few cache lines are read in random order at a time.
     template <bool spots> void gather_lights(const detail::FootprintArrays& lights) {
         arrays_ = buffers_.reserve(run_.end, with_spans);
         std::uint32_t* const order = order_.reserve(run_.end);

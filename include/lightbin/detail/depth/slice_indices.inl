@@ -17,9 +17,9 @@ inline Floats bucket_of(const DepthBuckets& buckets, Floats depth) {
     return minimum(maximum(bucket, broadcast(0.0f)), broadcast(buckets.last));
 }
 
-/// Finds the least and the greatest view depths of the lights with `count` ids, and the buckets of these depths. Whole
-/// vectors of ids are read. Rounding is monotone, so a light whose exact depths meet an interval between two floats meets
-/// it with its rounded ones.
+/// Finds the least and the greatest view depths of the lights with `count` ids, and in which buckets of a SliceTable's
+/// lookup table these depths lie. Whole vectors of ids are read. Rounding is monotone, so a light whose exact depths
+/// meet an interval between two floats meets it with its rounded depths, too.
 template <bool spots>
 inline void find_depth_buckets(const DepthBuckets& buckets, float z_sign, const FootprintArrays& lights,
                                const std::uint32_t* ids, std::uint32_t count, LightDepths& out) {

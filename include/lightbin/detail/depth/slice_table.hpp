@@ -14,20 +14,19 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// The map from depths to buckets, a lookup table's depth intervals: a depth is in the bucket
-/// (coordinate(depth) - begin) * scale, clamped to 0..last.
+/// The map from view depths to buckets, each an entry of a lookup table. A depth is in the bucket
+/// (coordinate(depth) - begin) * scale, clamped to 0..last; coordinate() is the depth or its bit pattern.
 struct DepthBuckets {
     float begin = 0, scale = 0, last = 0;
     bool by_bits = false;  ///< the buckets have equal lengths in a depth's bit pattern as a float, else in depth
 
-    /// Returns the depth, or its bit pattern as an integer that ascends with the depth, rounded to float.
+    /// Returns the depth itself or, with by_bits, its bit pattern as an integer that ascends with it, rounded to float.
     float coordinate(float depth) const {
         if (!by_bits) return depth;
         const std::int32_t bits = bit_cast<std::int32_t>(depth + 0.0f);  // the sum makes -0 to 0
         return static_cast<float>(bits ^ (bits >> 31 & 0x7fffffff));
     }
-    /// Returns the bucket of a depth. Each step is monotone and rounds the same on every machine, so that a depth in a
-    /// later bucket is greater.
+    /// Returns the bucket of a depth. All steps are monotone and the same on all machines: a later bucket is deeper.
     std::size_t index_of(float depth) const {
         const float bucket = (coordinate(depth) - begin) * scale;
         // NaN, from an infinite depth and a scale of 0, goes to bucket 0, where all depths are then.
@@ -35,8 +34,7 @@ struct DepthBuckets {
     }
 };
 
-/// The least and greatest view depths of up to `size` lights, and the buckets of DepthBuckets that these depths
-/// are in. Kernels write whole vectors.
+/// The view depths of up to `size` lights, and the DepthBuckets that these are in. Kernels write whole vectors.
 struct LightDepths {
     static constexpr std::uint32_t size = 64;
     float nearest[size], farthest[size];
@@ -51,7 +49,7 @@ public:
         float* const to = boundaries_.reserve(count_ + std::uint64_t{1});
         copy_items(boundaries.first, count_, to);
         to[count_] = std::numeric_limits<float>::quiet_NaN();  // ends searches, as every comparison with it is false
-        // Divides depths into buckets, equal in depth or in bits: the kind in which fewer slice boundaries share one.
+        // Buckets of equal length in depth or, if fewer boundaries share a bucket then, in the depths' bit patterns.
         fill_buckets(false);
         const std::size_t shared_by_depth = shared_;
         fill_buckets(true);
@@ -67,12 +65,11 @@ public:
     float nearer(float depth) const { return margin > 0 ? float_below(widened(depth, -margin)) : depth; }
     float farther(float depth) const { return margin > 0 ? float_above(widened(depth, margin)) : depth; }
 
-    /// Calls found(i, first, last) for each footprint i of the runs, where first..last are the slices that its light's view
-    /// depths meet, ends included. Overwrites the padding of lights.ids behind each run.
+    /// Calls found(i, first, last) for each footprint i: its light's view depths meet the slices first..last.
     ///
-    /// kernel        find_depth_buckets() of a tier
+    /// kernel        find_depth_buckets() for an instruction set: the view depths of lights and their buckets
     /// conservative  the slices may be one more at either end, where that is faster to find
-    /// lights, runs  FootprintArrays and FootprintRuns
+    /// lights, runs  the FootprintArrays and their FootprintRuns. Overwrites elements of lights.ids behind each run
     template <class Kernel, class Lights, class Runs, class Found>
     void find(Kernel kernel, bool conservative, float z_sign, const Lights& lights, Runs runs, Found found) const {
         // The faster way takes all slices that the buckets of a light's nearest and farthest depth meet: at most one
@@ -115,7 +112,8 @@ private:
     template <class IsBefore> std::uint32_t before(std::size_t bucket, IsBefore is_before) const {
         const float* const boundaries = boundaries_.data();
         std::uint32_t slice = before_.data()[bucket];
-        slice += is_before(boundaries[slice]);  // one boundary at most as a rule, so that the loop's branch is predicted
+        // One boundary at most as a rule, so that the loop's branch is predicted.
+        slice += is_before(boundaries[slice]);
         while (is_before(boundaries[slice]))
             ++slice;
         return slice;
@@ -145,10 +143,10 @@ private:
         }
     }
 
-    Buffer<float> boundaries_;      ///< the depths between the slices, and NaN behind them
+    Buffer<float> boundaries_;      ///< the depths between slices, ascending, then a NaN that ends every search
     std::size_t count_;             ///< the number of boundaries
     Buffer<std::uint32_t> before_;  ///< for each bucket, the number of boundaries in earlier ones; then of all
-    std::size_t shared_ = 0;        ///< the number of slice boundaries that are not the first in their bucket
+    std::size_t shared_ = 0;        ///< the number of boundaries that share a bucket (depth interval) with a lesser one
     DepthBuckets buckets_;
 };
 

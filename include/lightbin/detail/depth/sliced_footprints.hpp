@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The slicing stage, between projection and binning: finds the footprints in each depth slice, of which clusters are
-// made.
+// The slicing stage, between projection and binning: finds the footprints in each depth slice, for clusters.
 #pragma once
 
 #include <lightbin/detail/project/footprints.hpp>
@@ -13,9 +12,8 @@ template <Footprint footprint> class SlicedFootprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette;
 
 public:
-    /// Puts each footprint in the slices that its light's view depths meet, ends included: a sphere's are z - r to
-    /// z + r, widened by the slices' margin. Errors: there are more than 2^32 - 1 cells, or pairs of a light and a
-    /// slice.
+    /// Puts each footprint in the slices that its light's view depths meet, ends included: those of a sphere, z +- r,
+    /// widened by the slices' margin. Errors: there are more than 2^32 - 1 cells, or pairs of a light and a slice.
     ///
     /// spots  the lights are spots
     template <bool spots>
@@ -96,8 +94,7 @@ private:
         return size;
     }
 
-    /// Appends footprint i to a slice. With a `count` and an `area` of 0 it writes an element that the next call
-    /// overwrites.
+    /// Appends footprint i to a slice; with a `count` and an `area` of 0, to an element that the next call overwrites.
     void put(const detail::FootprintArrays& lights, std::uint32_t i, std::uint64_t area, std::uint32_t slice,
              std::uint32_t count) {
         SliceRun& run = runs_.data()[slice];
@@ -114,7 +111,8 @@ private:
 
     const detail::SliceTable* table_ = nullptr;  ///< the table of the caller's Slices, set by order()
     detail::Buffer<SliceRange> met_;             ///< for each footprint, the slices that its light meets
-    detail::Buffer<SliceRun> runs_;              ///< each slice's run of footprints; one more ends the difference array
+    /// Each slice's run of footprints, and one element more: find_slices() first makes a difference array of them.
+    detail::Buffer<SliceRun> runs_;
     detail::FootprintBuffers buffers_;
     detail::FootprintArrays arrays_ = {};
     std::size_t run_count_ = 0;

@@ -16,8 +16,8 @@ struct Extremes {
     }
 };
 
-/// Returns the extremes of `so_far` and of `count` ranges from lower[i] to upper[i]. The four chains of minima and maxima are
-/// independent, so that the processor overlaps them.
+/// Returns the extremes of `so_far` and of `count` ranges from lower[i] to upper[i]. Each range goes to one of four
+/// Extremes in turn, so that the processor overlaps their minima and maxima, which do not depend on each other.
 inline Extremes extremes(const float* lower, const float* upper, std::size_t count, Extremes so_far) {
     Extremes chains[4] = {so_far, so_far, so_far, so_far};
     std::size_t i = 0;
@@ -31,13 +31,13 @@ inline Extremes extremes(const float* lower, const float* upper, std::size_t cou
     return chains[0];
 }
 
-/// Reduces one row of tiles and calls finish(tile, extremes) for each tile. The kernel first reduces each column of samples
-/// to its extremes, as many columns at once as fit in a buffer on the stack; then the columns of each tile are reduced.
+/// Reduces one row of tiles and calls finish(tile, extremes) for each tile. The kernel first reduces each column of
+/// samples to its extremes, as many columns as fit in a buffer on the stack; then each tile's columns are reduced.
 ///
 /// tile_columns  samples across a tile
 /// skipped       samples of this value are left out; NaN: none are
-/// by_split      instead of the extremes of all samples, finds the greatest sample that is not above splits[tile], as `upper`,
-///               and the least one that is above it, as `lower`
+/// by_split      instead of the extremes of all samples, finds the greatest sample that is not above splits[tile], as
+///               `upper`, and the least one that is above it, as `lower`
 template <bool by_split, class Finish>
 void reduce_tile_row(Isa isa, const DepthRows& row, std::size_t tile_columns, float skipped,
                      const float* splits, Finish finish) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Blocks of 8x8 tiles: the binning kernels first list the lights of each block, and then emit its tiles. A band is a row of blocks,
-// that is 8 rows of tiles. Here are the types, the working memory and the bit operations of these kernels.
+// Blocks of 8x8 tiles: the binning kernels first list the lights of each block, and then emit its tiles. A band is a
+// row of blocks, that is 8 rows of tiles. Here are the types, working memory and bit operations of these kernels.
 #pragma once
 
 #include <lightbin/detail/project/footprint_arrays.hpp>
@@ -11,16 +11,14 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 template <Footprint footprint, DepthTest depth_test>
 inline constexpr bool has_tests = footprint != Footprint::rectangle || depth_test != DepthTest::none;
 
-/// Whether a binning kernel reads the spots' cones. Kernels without a depth test read footprints only, and so serve spheres and
-/// spots alike.
+/// Whether a binning kernel reads the spots' cones. Without a depth test it reads footprints only, of spheres or spots.
 template <DepthTest depth_test> inline constexpr bool reads_spots = depth_test != DepthTest::none;
 
 /// Whether a depth test compares lights with the boxes around cells, rather than with their depths alone.
 template <DepthTest depth_test>
 inline constexpr bool with_boxes = depth_test == DepthTest::box || depth_test == DepthTest::split_box;
 
-/// The list of the lights whose rectangles meet a block: elements begin..begin + count - 1 of Scratch::list_ids, list_columns
-/// and list_rows.
+/// The list of the lights whose rectangles meet a block: elements begin..begin + count - 1 of Scratch::list_*.
 struct BlockList {
     std::uint32_t begin, count;
 
@@ -32,8 +30,8 @@ struct BlockList {
 struct Scratch {
     Buffer<std::uint32_t> corners;  ///< a difference array over tiles: its prefix sums are their numbers of lights
 
-    // The lists of the lights in several bands, rows of blocks: see BandLists.
-    Buffer<std::uint32_t> light_indices;  ///< the numbers 0, 1, 2 ...
+    // Memory for BandLists, the lists of the lights in bands; a band is a row of blocks of 8x8 tiles.
+    Buffer<std::uint32_t> light_indices;  ///< 0, 1, 2 ...: indices of footprints, listed where tests of tiles follow
     Buffer<std::uint8_t> band_x0, band_x1, band_rows;
     Buffer<std::uint32_t> band_ids, band_sizes;
 
@@ -43,7 +41,7 @@ struct Scratch {
     Buffer<std::uint8_t> list_columns;  ///< a byte for each light: a bit for each tile column its rectangle meets
     Buffer<std::uint8_t> list_rows;     ///< a byte for each light: a bit for each tile row its rectangle meets
     Buffer<std::uint64_t> tile_masks;   ///< a word for each light of one list: a bit for each tile that it is in
-    Buffer<std::uint8_t> row_columns;   ///< a byte for each light and tile row, a bit for each tile: row_columns_of()
+    Buffer<std::uint8_t> row_columns;   ///< for each light of a list and each tile row, a bit for each tile it is in
 
     // Copies that pick_row() makes of the lights in one row of tiles: their ids, and bytes with a bit for each tile.
     // split_bits() transposes the bytes of each 64 lights to 8 words, one for each tile, with a bit for each light.
@@ -53,16 +51,17 @@ struct Scratch {
 
     Buffer<float> slab_ends;  ///< the sides of the boxes around a depth slice's cells, which SlabBoxes::ends points to
 
-    /// Returns the table from which a list's tiles are emitted. For each of the block's 8 rows of tiles it has one byte for each
-    /// light, with a bit for each of the row's 8 tiles that the light is in. Rows begin list.padded_count() bytes apart, and the
-    /// bytes behind the last light are 0. Vectors may be read and written past a row's end, if rows are written in order.
+    /// Returns the table from which a list's tiles are emitted. For each of the block's 8 rows of tiles it has one byte
+    /// for each light, with a bit for each of the row's 8 tiles that the light is in. Rows begin list.padded_count()
+    /// bytes apart, and bytes behind the last light are 0. Rows may be read and, in order, written past their end.
     std::uint8_t* row_columns_of(const BlockList& list) const {
         return row_columns.data() + std::size_t{8} * list.begin;
     }
 };
 
-/// Returns an upper bound on the sum of the padded sizes of a slice's block lists, which kernels count in 32 bits: one
-/// element for each light and each block that its rectangle can meet, wherever the first band begins, and all padding.
+/// Returns an upper bound on the number of elements, which kernels count in 32 bits, of the lists of all blocks (8x8
+/// tiles) of a slice: one for each light and each block that its rectangle can meet, at whichever tile row the first
+/// row of blocks begins, and 64 per block, because lists are padded to whole vectors.
 inline std::uint64_t list_size_bound(const Camera& camera, const FootprintSlice& lit) {
     const std::uint64_t width = static_cast<std::uint64_t>(camera.x.tiles) / 8 + 3,
                         height = static_cast<std::uint64_t>(camera.y.tiles) / 8 + 3;
@@ -74,8 +73,8 @@ inline std::uint64_t list_size_bound(const Camera& camera, const FootprintSlice&
     return size;
 }
 
-/// Writes the ranges of `count` tiles without lights, all at `offset` of the index list. The first 16 are written one by one, and the
-/// rest are copies of all that were written so far, as memcpy() is faster than a loop.
+/// Writes the ranges of `count` tiles without lights, all at `offset` of the index list. The first 16 are written one
+/// by one, and the rest are copies of all that were written so far, as memcpy() is faster than a loop.
 inline void fill_empty(ListRange* tiles, std::size_t count, std::uint32_t offset) {
     std::size_t filled = min_of<std::size_t>(count, 16);
     fill_items(tiles, filled, {offset, 0});
@@ -91,7 +90,7 @@ inline unsigned covered(unsigned first, unsigned last, unsigned begin) {
     return ((2u << high) - 1) & (~0u << low);
 }
 
-/// Returns the word whose lowest byte is the first of 8 bytes in memory, on little-endian and big-endian machines alike.
+/// Returns the word whose lowest byte is the first of 8 bytes in memory, whatever the byte order of the machine.
 inline std::uint64_t load_8_bytes(const std::uint8_t* bytes) {
     std::uint64_t word = 0;
     if constexpr (std::endian::native == std::endian::little)
@@ -102,7 +101,7 @@ inline std::uint64_t load_8_bytes(const std::uint8_t* bytes) {
     return word;
 }
 
-/// Stores a word as 8 bytes with the lowest first, on little-endian and big-endian machines alike.
+/// Stores a word as 8 bytes with the lowest first, whatever the byte order of the machine.
 inline void store_8_bytes(std::uint8_t* bytes, std::uint64_t word) {
     if constexpr (std::endian::native == std::endian::little)
         std::memcpy(bytes, &word, 8);
@@ -127,14 +126,14 @@ inline std::uint64_t transpose_bits(std::uint64_t x) {
     return x ^ t ^ t << 28;
 }
 
-/// Swaps the bytes of b that `mask` selects with the bytes of a that lie `distance` bits higher: a step of transpose_bytes().
+/// Swaps the bytes of b in `mask` with the bytes of a that lie `distance` bits higher: a step of transpose_bytes().
 template <unsigned distance> void swap_bytes(std::uint64_t& a, std::uint64_t& b, std::uint64_t mask) {
     const std::uint64_t t = (a >> distance ^ b) & mask;
     a ^= t << distance;
     b ^= t;
 }
 
-/// Transposes 8x8 bytes: byte j of word i becomes byte i of word j. Halves, quarters and eighths are swapped, as by transpose_bits().
+/// Transposes 8x8 bytes: byte j of word i becomes byte i of word j, by swapping halves, then quarters, then eighths.
 inline void transpose_bytes(std::uint64_t (&words)[8]) {
     for (unsigned i = 0; i < 4; ++i)
         swap_bytes<32>(words[i], words[i + 4], 0x00000000ffffffff);

@@ -28,8 +28,8 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 inline constexpr float flushed = 0x1p-120f;
 
-/// Finds a tile's two edges along an image axis, `low` rounded down and `high` rounded up: slopes with a perspective projection,
-/// view-space coordinates with an orthographic one.
+/// Finds a tile's two edges along an image axis, `low` rounded down and `high` rounded up: slopes with a perspective
+/// projection, view-space coordinates with an orthographic one.
 inline void tile_edges(const ImageAxis& axis, int tile, float& low, float& high) {
     constexpr double most = static_cast<double>(FLT_MAX);
     const double error = 0x1p-48 * (abs_of(axis.offset) + axis.tiles + 1);

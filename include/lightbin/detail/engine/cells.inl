@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Prepares what the depth tests compare lights with: the Z bounds of a block's 64 tiles, and the boxes around their cells, whose
-// rounding cell_boxes.hpp derives. Included once per tier (instruction set).
+// Prepares what the depth tests compare lights with: the Z bounds of a block's 64 tiles, and the boxes around their
+// cells, whose rounding cell_boxes.hpp derives. Included once per tier (instruction set).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>
@@ -16,7 +16,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 inline Floats low_ends(Floats edges, Floats front, Floats back) {
     return mul(edges, select(less(edges, broadcast(0.0f)), back, front)) - broadcast(flushed);
 }
-/// Returns the greatest view-space x (or y) of boxes around cells, from the tiles' high edges. Arguments: low_ends().
+/// Returns the greatest view-space x (or y) of the boxes around cells: the tiles' high edges times the depth, `front`
+/// or `back`, at which the product is greatest; plus a margin for underflow. See low_ends() for the arguments.
 inline Floats high_ends(Floats edges, Floats front, Floats back) {
     return mul(edges, select(less(broadcast(0.0f), edges), back, front)) + broadcast(flushed);
 }
@@ -35,8 +36,8 @@ inline void store_box(const Camera& camera, float* box, Floats x0, Floats x1, Fl
 
 /// Stores the boxes around a vector of cells. With split_box each cell has two, in front of its gap and behind it.
 ///
-/// Boxes are clamped to the near and the far plane. That loses no light: one that is in view meets a cell's depths if and only if
-/// it meets the clamped depths.
+/// Boxes are clamped to the near and the far plane. That loses no light: one that is in view meets a cell's depths if
+/// and only if it meets the clamped depths.
 ///
 /// x0, x1, y0, y1  the tiles' low and high edges along x and y
 /// bounds          the cells' Z bounds: minimum, maximum and, with split_box, gap_min and gap_max
@@ -72,9 +73,10 @@ inline void fill_8_floats(float* to, float value) {
         store_floats(to + i, broadcast(value));
 }
 
-/// Stores what a depth test compares lights with, for the block that begins at column 8 x and row `top`, in arrays of one float for
-/// each of its 64 tiles. With DepthTest::interval these are the minimum and maximum depths; with the other tests the six arrays of
-/// store_box(), twice for split_box. Returns a bit for each tile whose Z bounds are not empty.
+/// Stores what a depth test compares lights with, for the block that begins at tile column 8 * `x` and tile row `top`,
+/// in arrays of one float for each of its 64 tiles. DepthTest::interval has two arrays, the minimum and maximum depths;
+/// `box` has six, the low and high ends of cells' boxes along z, x and y; `split_box` has six for each of two boxes.
+/// Returns a bit for each tile whose Z bounds are not empty.
 template <DepthTest depth_test, class Id>
 std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, float* cells) {
     constexpr bool boxes = with_boxes<depth_test>;

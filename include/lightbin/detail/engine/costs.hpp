@@ -13,8 +13,8 @@ inline double project_ns(Isa isa, double lights) {
     return lights * (isa == Isa::avx512 ? 2 : isa == Isa::avx2 ? 3 : 7);
 }
 
-/// Returns into how many parts the chunks of lights are divided for a number of threads: four parts a thread, so that little time
-/// is lost where one thread starts late. One part if there is one thread, as each part takes memory.
+/// Returns into how many parts the chunks of lights are divided for a number of threads: four parts a thread, so that
+/// little time is lost where one thread starts late. One part if there is one thread, as each part takes memory.
 inline std::size_t project_parts(std::size_t chunks, std::size_t workers) {
     return workers > 1 ? min_of(chunks, 4 * min_of(chunks, workers)) : 1;
 }
@@ -27,8 +27,8 @@ inline bool scatter_is_faster(Isa isa, std::uint64_t tiles, std::uint64_t area) 
     return area < (isa == Isa::avx512 ? 1 : 3) * tiles;
 }
 
-/// Estimates how many ns of scattering can be divided among threads. The rest every thread does again: it visits all lights, and
-/// its branches on which lights are in its share are mispredicted.
+/// Estimates how many ns of scattering can be divided among threads. The rest every thread does again: it visits all
+/// lights, and its branches on which lights are in its share are mispredicted.
 inline double scatter_ns(double lights, double entries) {
     return max_of(0.6 * entries - 8 * lights, 0.0);
 }
@@ -70,8 +70,8 @@ inline std::size_t rows_filled_at_once(std::size_t height, std::size_t width, st
 /// How many lights the lists of bands that are made in one pass over the lights can hold in all: bounds their memory.
 inline constexpr std::uint64_t max_band_entries = std::uint64_t{1} << 24;
 
-/// Lights whose rectangles have at most this many tiles in all need lists whose sizes 32 bits can count, however they are
-/// distributed, so list_size_bound() need not be asked.
+/// Lights whose rectangles have at most this many tiles in all need lists whose sizes 32 bits can count, however they
+/// are distributed, so list_size_bound() need not be asked.
 inline constexpr std::uint64_t surely_listed_area = 0xffffffff / 8;
 
 }}}  // namespace lightbin::detail

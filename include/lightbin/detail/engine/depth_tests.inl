@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Step 2 of binning: finds in which of a block's 8x8 tiles each of its lights is listed. Included once per tier (ISA).
 //
-// A silhouette and a depth test work on a word for each light, with a bit for each tile: the tiles of the light's rectangle, and-ed
-// with the tiles in its silhouette's row spans and with the tiles whose cells it meets.
+// A silhouette and a depth test work on a word for each light, with a bit for each tile: the tiles of the light's
+// rectangle, and-ed with the tiles in its silhouette's row spans and with the tiles whose cells it meets.
 //
 //     bit  0  1 ..  7      . . . . . . . .      rows that the rectangle covers     0 1 1 1 0 0 0 0
 //          8  9 .. 15      . . # # # # . .      columns                            0 0 1 1 1 1 0 0
@@ -32,15 +32,14 @@ inline Floats distance2(const float* boxes, float x, float y, float z) {
     return mul(along_x, along_x) + mul(along_y, along_y) + mul(along_z, along_z);
 }
 
-/// Returns a mask of the boxes in a vector that a sphere misses. It is always inlined because GCC 12 loses half of such a mask when
-/// a call returns it.
+/// Returns a mask of the boxes in a vector that a sphere misses. Always inlined: GCC 12 loses half of a returned mask.
 LIGHTBIN_INLINE auto boxes_missed(const float* boxes, const TestedLight& light) {
     return less(broadcast(light.reach2), distance2(boxes, light.x, light.y, light.z));
 }
 
-/// Returns a mask of the boxes in a vector that a spot misses: those that its ball misses, and those that lie outside one of the four
-/// planes around its cone. A box lies outside a plane if its deepest corner does, the corner farthest along the plane's inner side.
-/// (Unreal tests one such plane, chosen for each box.)
+/// Returns a mask of the boxes in a vector that a spot misses: boxes that its ball misses, or that lie outside one of
+/// the four planes around its cone. A box lies outside a plane if its deepest corner does, the corner farthest along
+/// the plane's inner side. (Unreal tests one such plane, chosen for each box.)
 LIGHTBIN_INLINE auto boxes_missed(const float* boxes, const TestedSpot& light) {
     const ViewSpot& spot = *light.spot;
     auto missed = less(broadcast(reach2_of(spot.ball.radius)), distance2(boxes, spot.ball.x, spot.ball.y, spot.ball.z));
@@ -71,11 +70,11 @@ template <DepthTest depth_test, class Light> std::uint64_t tiles_met(const float
 /// The cells of a block's tiles, with which a depth test compares the block's lights.
 template <DepthTest depth_test> struct BlockCells {
     float planes[64 * cell_planes<depth_test>];
-    std::uint64_t drawn;   ///< a bit for each tile whose Z bounds are not empty
-    DepthInterval depths;  ///< the view depths of all cells in those vectors of tiles that hold a drawn tile
+    std::uint64_t drawn;   ///< a bit for each drawn tile, that is, each with Z bounds that are not empty
+    DepthInterval depths;  ///< encloses the view depths of drawn tiles' cells, and of tiles in a SIMD vector with one
 };
 
-/// Returns the interval of the view depths of all cells in those vectors of tiles that have a bit in `drawn`.
+/// Returns an interval that encloses the view depths of the cells of all tiles with a bit in `drawn`.
 template <DepthTest depth_test> DepthInterval depth_range(const float* cells, std::uint64_t drawn) {
     float min[lanes], max[lanes];
     Floats nearest = broadcast(infinity), farthest = broadcast(-infinity);
@@ -93,11 +92,11 @@ template <DepthTest depth_test> DepthInterval depth_range(const float* cells, st
     return range;
 }
 
-/// Sets in met[i] the bits of the tiles whose cells light i meets, for each of 64 lights whose bit in `chosen` is set. A light is
-/// tested against a vector of tiles only if one of them is in its rectangle. Vectors of tiles are the outer loop and lights the inner
-/// one: the cells then stay in registers, and there is no short loop over each light's own vectors, whose end would be mispredicted.
+/// Sets in met[i] the bits of the tiles whose cells light i meets, for each of 64 lights whose bit in `chosen` is set.
+/// A light is tested against a vector of tiles only if one of them is in its rectangle. The outer loop runs over
+/// vectors of tiles: the cells stay in registers, and no short loop over a light's vectors has a mispredicted end.
 ///
-/// columns, rows  the lights' bytes of Scratch::list_columns and list_rows
+/// columns, rows  a byte for each light: a bit for each tile column (or row) of the block that its rectangle meets
 template <DepthTest depth_test, class Light>
 void meet_tiles(const BlockCells<depth_test>& cells, const Light* lights, const std::uint8_t* columns,
                 const std::uint8_t* rows, std::uint64_t chosen, std::uint64_t* met) {
@@ -118,10 +117,10 @@ void meet_tiles(const BlockCells<depth_test>& cells, const Light* lights, const 
     }
 }
 
-/// Returns those of the bits `tiles` whose tiles are within the row spans of a light's silhouette.
+/// Returns the bits of `tiles` whose tiles lie within the row spans of a light's silhouette.
 ///
 /// i       the light's index in the footprint arrays
-/// x, top  the block begins at column 8 x and row `top`
+/// x, top  the block begins at tile column 8 * x and tile row `top`
 inline std::uint64_t silhouette_tiles(const FootprintArrays& lights, std::uint32_t i, unsigned x, unsigned top,
                                       std::uint64_t tiles) {
     if (tiles == 0 || lights.span_begin[i] == FootprintArrays::whole_rectangle) return tiles;
@@ -136,10 +135,11 @@ inline std::uint64_t silhouette_tiles(const FootprintArrays& lights, std::uint32
     return tiles & spanned;
 }
 
-/// Tests up to 64 lights of a block against its cells. Stores in met[i] a bit for each tile whose cell light i meets.
+/// Tests up to 64 lights of a block against its tiles' cells, the parts of the view frustum that the tiles show between
+/// their Z bounds. Stores in met[i] a bit for each tile whose cell light i meets.
 ///
-/// indices        of the lights in the footprint arrays
-/// columns, rows  the lights' bytes of Scratch::list_columns and list_rows
+/// indices        the lights' indices in the footprint arrays
+/// columns, rows  a byte for each light: a bit for each tile column (or row) of the block that its rectangle meets
 template <DepthTest depth_test, bool spots, class Id>
 void meet_64_lights(const BinJob<Id>& job, const BlockCells<depth_test>& cells, const std::uint32_t* indices,
                     const std::uint8_t* columns, const std::uint8_t* rows, std::uint32_t count, std::uint64_t* met) {
@@ -160,9 +160,10 @@ void meet_64_lights(const BinJob<Id>& job, const BlockCells<depth_test>& cells, 
     if (in_range != 0) meet_tiles(cells, tested, columns, rows, in_range, met);
 }
 
-/// Stores in which tiles a block's lights are, all tiles of their rectangles, in the list's Scratch::row_columns_of().
+/// Fills the table of Scratch::row_columns_of(): each light of a list is in all tiles of its rectangle in the block.
 ///
-/// by_slab  a light is only in the tiles whose cells' boxes it meets: store_met_boxes() set their bits
+/// by_slab  each light is only in the tiles of its rectangle whose boxes it meets; store_met_boxes(), called before,
+///          stored a bit for each met box in Scratch::tile_masks
 template <bool by_slab> void store_rectangles(Scratch& scratch, const BlockList& list) {
     const std::uint32_t padded = list.padded_count();
     std::uint8_t* const columns = scratch.list_columns.data() + list.begin;
@@ -178,8 +179,8 @@ template <bool by_slab> void store_rectangles(Scratch& scratch, const BlockList&
         }
 }
 
-/// Stores the table of Scratch::row_columns_of() out of the list's words in Scratch::tile_masks. A word has a byte for each row, so
-/// the words of 8 lights are transposed as 8x8 bytes.
+/// Stores the table of Scratch::row_columns_of() out of the list's words in Scratch::tile_masks. A word has a byte for
+/// each row, so the words of 8 lights are transposed as 8x8 bytes.
 inline void store_masks(Scratch& scratch, const BlockList& list) {
     const std::uint32_t padded = list.padded_count();
     std::uint64_t* const masks = scratch.tile_masks.data();
@@ -194,14 +195,14 @@ inline void store_masks(Scratch& scratch, const BlockList& list) {
     }
 }
 
-/// Tests a list's spheres against the boxes of a slice, for the block that begins at column 8 x and row `top`. Stores a table like that
-/// of Scratch::row_columns_of(), with a bit for each box that is met, in the memory of Scratch::tile_masks.
+/// Tests a list's spheres against the boxes of a slice, for the block that begins at tile column 8 * x and tile row
+/// `top`. Stores a bit for each box that is met in Scratch::tile_masks, laid out as Scratch::row_columns_of() is.
 ///
-/// The boxes of a slice differ only by column and by row, so the squared distance of a sphere from a box is the sum of x2, which
-/// depends on the column, y2, which depends on the row, and z2. These are 17 numbers for 64 tiles, each of which then takes one
-/// comparison: a box is missed if  reach2 - z2 - y2 < x2;  cell_boxes.hpp derives the rounding. Where reach2 and a distance are
-/// infinite the difference is NaN, and the box counts as met. Depths need no test of their own: a slice's lists hold only lights
-/// that meet its depths.
+/// The boxes of a slice differ only by column and by row, so the squared distance of a sphere from a box is the sum of
+/// x2, which depends on the column, y2, which depends on the row, and z2. These are 17 numbers for 64 tiles, each of
+/// which then takes one comparison: a box is missed if  reach2 - z2 - y2 < x2;  cell_boxes.hpp derives the rounding.
+/// Where reach2 and a distance are infinite the difference is NaN, and the box counts as met. Depths need no test of
+/// their own: a slice's lists hold only lights that meet its depths.
 template <class Id>
 void store_met_boxes(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab, unsigned x, unsigned top,
                      const BlockList& list) {
@@ -237,8 +238,8 @@ void store_met_boxes(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& s
     }
 }
 
-/// Stores in Scratch::tile_masks the tiles of each light of a list, for the block that begins at column 8 x and row `top`. Removes
-/// lights that are in none of its tiles from the list, and replaces the indices of the others by their ids.
+/// Stores in Scratch::tile_masks the tiles of each light of a list, for the block that begins at tile column 8 * x and
+/// tile row `top`. Removes lights that are in no tile of the block, and replaces the remaining lights' indices by ids.
 template <Footprint footprint, DepthTest depth_test, bool spots, class Id>
 void mask_lights(const BinJob<Id>& job, Scratch& scratch, unsigned x, unsigned top, BlockList& list) {
     [[maybe_unused]] BlockCells<depth_test> cells;
@@ -270,11 +271,11 @@ void mask_lights(const BinJob<Id>& job, Scratch& scratch, unsigned x, unsigned t
     list.count = left;
 }
 
-/// Lists the lights of each block in the band that begins at tile row `top`, and fills the table of Scratch::row_columns_of() for
-/// each list. Returns the lists, one for each block, or null if no light meets the band.
+/// Lists the lights of each block in the band (row of blocks) that begins at tile row `top`, and fills the table of
+/// Scratch::row_columns_of() with the tiles of each. Returns the lists of the blocks, or null if all are empty.
 ///
-/// slab   the boxes around the depth slice's cells; only read if by_slab: if these boxes are the depth test
-/// bands  the lists of bands, kept from call to call: several bands are listed at once
+/// slab   the boxes around the depth slice's cells; only read with by_slab, when lights are tested against these boxes
+/// bands  the lists of several bands at a time, kept for the calls for the next bands
 /// end    the end of the tile rows that the caller will ask for
 template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>
 const BlockList* list_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab, BandLists& bands,

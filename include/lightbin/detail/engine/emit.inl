@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Step 3 of binning: emits the lists of the tiles. Tiles are visited in row-major order, so the index list is written strictly in
-// sequence, without counting, scattering or sorting. Included once per tier (instruction set).
+// Step 3 of binning: emits the lists of the tiles. Tiles are visited in row-major order, so the index list is written
+// strictly in sequence, without counting, scattering or sorting. Included once per tier (instruction set).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/engine/depth_tests.inl>
@@ -15,8 +15,7 @@ struct RowLights {
     std::uint32_t count;
 };
 
-/// Returns the lights of a row: all lights of the block's list or, if the list is long and few of its lights are in the row, a copy
-/// of these few.
+/// Returns the lights of a row: all lights of the block's list or, if few of many are in the row, a copy of these few.
 inline RowLights pick_row(Scratch& scratch, const BlockList& list, unsigned row) {
     const RowLights all = {scratch.list_ids.data() + list.begin,
                            scratch.row_columns_of(list) + std::size_t{row} * list.padded_count(), list.count};
@@ -44,8 +43,8 @@ inline RowLights pick_row(Scratch& scratch, const BlockList& list, unsigned row)
     return {ids, columns, picked};
 }
 
-/// Appends to `out` those of `count` ids, up to 64, whose bit in `chosen` is set. Returns the end. It has branches in place of a loop,
-/// whose end would be mispredicted more often.
+/// Appends to `out` each of `count` ids, up to 64, whose bit in `chosen` is set. Returns the end. It has branches in
+/// place of a loop, whose end would be mispredicted more often.
 template <class Id> LIGHTBIN_INLINE Id* append_64(Id* out, const std::uint32_t* ids, std::uint64_t chosen, std::uint32_t count) {
     out = append_16(out, ids, static_cast<unsigned>(chosen & 0xffff));
     if (count <= 16) return out;
@@ -56,8 +55,8 @@ template <class Id> LIGHTBIN_INLINE Id* append_64(Id* out, const std::uint32_t* 
     return append_16(out, ids + 48, static_cast<unsigned>(chosen >> 48));
 }
 
-/// Emits one row of a block's tiles: appends each tile's ids to the index list, and writes the tile's range. Returns the end of the
-/// index list. It is not inlined, as compilers would keep its variables on the stack in a longer function.
+/// Emits one row of a block's tiles: appends each tile's ids to the index list, and writes the tile's range. Returns
+/// the end of the index list. Not inlined, as compilers would keep its variables on the stack in a longer function.
 ///
 /// columns  the number of tiles, up to 8
 /// offset   the offset of `out` in the whole index list
@@ -82,8 +81,8 @@ LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned columns, st
 }
 
 #if !defined(LIGHTBIN_TIER_EMITS_SHORT)
-/// Writes the light lists of up to 8 tiles, one row of a block of 8x8, and their ranges in the index list. Chosen from
-/// up to `at_most` lights, 8 or 16; emit_tiles() does this for more. Returns the end of the index list.
+/// Writes the light lists of one row of up to 8 tiles of a block, and their ranges in the index list. The block's list
+/// has up to `at_most` lights, 8 or 16; emit_tiles() serves longer ones. Returns the end of the index list.
 ///
 /// columns      the number of tiles
 /// offset       the offset of `out` in the whole index list
@@ -192,15 +191,15 @@ std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scratch) {
     return entries;
 }
 
-/// Writes a bitmask of lights for each tile in the rows begin..end-1. A tile has `stride` words, and bit b of its word w stands for the
-/// light with the id 32 w + b.
+/// Writes a bitmask of lights for each tile in the rows begin..end-1. A tile has `stride` words, and bit b of its word
+/// w stands for the light with the id 32 w + b.
 template <Footprint footprint, DepthTest depth_test, class Id, bool spots>
 void write_bits(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end, std::uint32_t* bits,
                 std::size_t stride) {
     const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles);
     const std::size_t row_stride = tiles_x * stride;
     fill_items(bits + begin * row_stride, (end - begin) * row_stride, 0);
-    std::size_t positions[64];  // of the words of a block's tiles
+    std::size_t positions[64];  // where each tile's words begin, counted from the words of the block's first tile
     for (unsigned tile = 0; tile < 64; ++tile)
         positions[tile] = tile / 8 * row_stride + tile % 8 * stride;
     BandLists bands;
@@ -210,7 +209,7 @@ void write_bits(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigne
             const std::uint8_t* const row_columns = scratch.row_columns_of(*list);
             std::uint32_t* const first = bits + top * row_stride + x * stride;
             for (std::uint32_t i = 0; i < list->count; i += 8) {
-                // For each of 8 lights a word with a bit for each tile, so that there is one loop over a light's tiles.
+                // A word for each of 8 lights with a bit for each tile: one loop over a light's tiles, not one per row.
                 std::uint64_t masks[8];
                 for (unsigned row = 0; row < 8; ++row)
                     masks[row] = load_8_bytes(row_columns + row * list->padded_count() + i);

@@ -9,15 +9,15 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// A light grid and its memory, which is kept from call to call. If `sliced`, the grids of all depth slices one after another.
+/// A light grid and its memory, which is kept from call to call. If `sliced`, the grids of all slices in turn.
 template <class Id, Footprint footprint, DepthTest depth_test, bool sliced> class GridLists {
     static_assert(!sliced || depth_test == DepthTest::none || depth_test == DepthTest::box,
                   "lightbin: with slices the depth test is none, as lights are in the slices that they meet, or box");
     static constexpr bool tested = has_tests<footprint, depth_test>;
 
 public:
-    /// Builds the grid with the kernels of an instruction set. Tiles are in row-major order, slice after slice. Returns an error, and
-    /// there is no grid, if Z bounds have fewer elements than there are tiles, or if 32 bits can't count the entries.
+    /// Builds the grid with the kernels of an instruction set. Tiles are in row-major order, slice after slice. Returns
+    /// an error, and has no grid, if Z bounds have too few elements, or 32 bits can't count the entries.
     ///
     /// spots       whether the lights are spots
     /// footprints  SlicedFootprints if `sliced`, else Footprints or RankedFootprints; with a depth test, ones that
@@ -40,7 +40,7 @@ public:
             if (const auto error = check_list_size(view, part)) return error;
         }
         std::uint64_t capacity = area;
-        // Where 32 bits can't count the tiles of all rectangles, they may still count the tiles that pass the tests.
+        // Tests leave fewer entries than rectangles have tiles: if 32 bits can't count the tiles, count the entries.
         if constexpr (tested)
             if (area > max_entries) {
                 capacity = 0;
@@ -97,8 +97,9 @@ public:
         return {};
     }
 
-    /// Writes a bitmask of lights for each tile, `stride` words each, see write_bits(). There is no grid afterwards. Returns the
-    /// errors of build() but for too many entries, as none are counted.
+    /// Writes a bitmask of lights for each tile to `bits`, `stride` words per tile, as the kernels write_bits() do.
+    /// Builds no lists: tiles() and indices() are empty afterwards. Returns an error if Z bounds have fewer elements
+    /// than there are tiles, or if 32 bits can't count the elements of all blocks' lists.
     template <bool spots, class AnyFootprints>
     std::optional<Error> write_bits(Isa isa, const View& view, const AnyFootprints& footprints, const ZBounds& bounds,
                             Buffer<Scratch>& scratch, const Parallel& parallel, std::uint32_t* bits, std::size_t stride) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Step 1 of binning: lists the lights of each block of 8x8 tiles. Included once per tier (instruction set).
 //
-//   1. Each vector of lights is compared with each band of 8 tile rows. A saturating subtraction and two byte shuffles make a byte
-//      for each light, with a bit for each of the band's rows that its rectangle covers. Lights whose byte is not 0 are appended
-//      to the band's list.
+//   1. Each vector of lights is compared with each band of 8 tile rows. A saturating subtraction and two byte shuffles
+//      make a byte for each light, with a bit for each of the band's rows that its rectangle covers. Lights with a
+//      byte that is not 0 are appended to the band's list.
 //   2. A band's list is compared with the 8 columns of each of its blocks in the same way.
 //
-// No branch depends on which tiles a light covers. Coordinates are bytes that count from the first band and from the begin of a panel
-// of 248 tile columns; a wider grid has several panels.
+// No branch depends on which tiles a light covers. Coordinates are bytes that count from the first band and from the
+// begin of a panel of 248 tile columns; a wider grid has several panels.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>
@@ -22,14 +22,13 @@ inline constexpr unsigned panel_blocks = 31;  // a panel is this many blocks wid
 struct BandLists {
     unsigned begin = 0, end = 0;
     std::size_t panels = 0, count = 0, capacity = 0;
-    std::uint8_t *x0 = nullptr, *x1 = nullptr;  ///< the light's first column in the panel, and its last plus 1; 0..255
-    std::uint8_t* rows = nullptr;               ///< a byte for each light: a bit for each covered row of the band
-    std::uint32_t* ids = nullptr;               ///< the lights' ids or, if tile tests follow, footprints' indices
+    std::uint8_t *x0 = nullptr, *x1 = nullptr;  ///< each light's columns x0..x1-1 in its panel of 248 tile columns
+    std::uint8_t* rows = nullptr;               ///< per light, a bit for each of the band's 8 tile rows it covers
+    std::uint32_t* ids = nullptr;               ///< lights' ids or, if tile tests follow, footprints' indices
     std::uint32_t* sizes = nullptr;
 };
 
-/// Returns for each light, which covers the tiles first..end-1 along an image axis, a byte with a bit for each of the 8 tiles
-/// begin..begin + 7 that it covers.
+/// Returns for each light, with tiles first..end-1 along an axis, a byte with a bit for each of 8 tiles from `begin`.
 inline Bytes covered_bytes(Bytes first, Bytes end, unsigned begin) {
     static constexpr std::uint8_t from[16] = {255, 254, 252, 248, 240, 224, 192, 128};
     static constexpr std::uint8_t before[16] = {0, 1, 3, 7, 15, 31, 63, 127, 255};
@@ -43,7 +42,7 @@ inline ByteMask first_bytes(std::size_t count) {
     return count < byte_lanes ? static_cast<ByteMask>(~(all << count)) : all;
 }
 
-/// Appends the lights from index i on, `count` of them but no more than a vector holds, to the lists of the bands that they meet.
+/// Appends the lights from index i on, `count` but at most a vector of them, to the lists of the bands they meet.
 ///
 /// ids  what is listed of each light: its id, or its index in the footprint arrays
 inline void add_to_bands(const FootprintArrays& lights, const std::uint32_t* ids, const BandLists& bands,
@@ -113,7 +112,7 @@ inline std::size_t band_size(const BandLists& bands, std::size_t band) {
     return size;
 }
 
-/// Makes the list of the block at tile column 8 x of a band, out of the list of its panel, 248 columns of the band.
+/// Makes the list of the block at tile column 8 * x of a band, out of the list of its panel, 248 columns of the band.
 /// Stores lights from element `begin` of Scratch::list_ids, list_columns and list_rows on. Returns their number.
 inline std::uint32_t list_block(Scratch& scratch, const BandLists& bands, std::size_t band, unsigned x,
                                 std::uint32_t begin) {

@@ -9,12 +9,12 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// Writes the ranges of the tile rows begin..end-1: the number of lights of each tile, and where its list ends in the index list, from
-/// which fill_rows() will count down to where it begins. The first tile's list begins at `offset`. Returns where the last list ends.
+/// Writes the ranges of the tile rows begin..end-1: the number of lights of each tile, and where its list ends in the
+/// index list, from which fill_rows() counts down. The first list begins at `offset`. Returns where the last one ends.
 ///
-/// The counts come from a difference array: each rectangle adds 1 at two of its corners and subtracts 1 at the other two, so that
-/// prefix sums along columns and rows give the number of rectangles over each tile. A second one counts the rectangles over each
-/// row: where there are none, no sums are needed.
+/// The counts come from a difference array: each rectangle adds 1 at two of its corners and subtracts 1 at the other
+/// two, so that prefix sums along columns and rows give the number of rectangles over each tile. A second difference
+/// array counts the rectangles over each row: a row without any needs no sums.
 template <class Id>
 std::uint32_t count_rows(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end, std::uint32_t offset) {
     const FootprintArrays lights = job.lights;  // a local copy, so that compilers need not reload it after each store
@@ -62,8 +62,8 @@ std::uint32_t count_rows(const BinJob<Id>& job, Scratch& scratch, unsigned begin
 /// pitch     tiles from one row of the grid to the next
 /// columns   tiles in each of the rectangle's rows
 ///
-/// Each of the usual numbers of columns has its own loop, chosen by one branch for the whole light. A loop over any number would be
-/// mispredicted at the end of each row, which takes 1.5 to 1.8 times as long.
+/// Each of the usual numbers of columns has its own loop, chosen by one branch for the whole light. A loop over any
+/// number would be mispredicted at the end of each row, which takes 1.5 to 1.8 times as long.
 template <std::size_t fixed = 1, class Id>
 void prepend_id(Id* list, ListRange* row, const ListRange* end, std::size_t pitch, std::size_t columns, Id id) {
     if constexpr (fixed <= 8)
@@ -73,8 +73,8 @@ void prepend_id(Id* list, ListRange* row, const ListRange* end, std::size_t pitc
             list[--row[x].offset] = id;
 }
 
-/// Prepends all lights' ids to the lists of the tile rows begin..end-1, the last light first, so that ids ascend in each list. It is
-/// not inlined, as it takes a tenth longer inside another loop.
+/// Prepends all lights' ids to the lists of the tile rows begin..end-1, the last light first, so that ids ascend in
+/// each list. It is not inlined, as it takes a tenth longer inside another loop.
 template <class Id>
 LIGHTBIN_NOINLINE void fill_rows(const BinJob<Id>& job, Id* list, std::size_t begin, std::size_t end) {
     const FootprintArrays lights = job.lights;  // a local copy, so that compilers need not reload it after each store
@@ -109,7 +109,8 @@ std::uint64_t scatter_one(const BinJob<Id>& job, const FootprintRun& run, const 
     return offset - share.offset;
 }
 
-/// Bins one thread's share of tile rows by scattering. Returns the number of list entries, and writes none past them.
+/// Bins one thread's share of tile rows: counts each tile's lights, then writes each light's id to its tiles' lists.
+/// Returns the number of list entries, and writes no element past the last entry.
 template <class Id>
 std::uint64_t scatter_lights(const BinJob<Id>& job, Scratch& scratch, const BinShare<Id>& share) {
     const FootprintRun run = job.runs[0];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How binning is divided among threads: each share is a range of tile rows, or of slices, with everything in it. So shares write
-// separate memory and have only the lights in common, which they read.
+// How binning is divided among threads: each share is a range of tile rows, or of slices, with everything in it. So
+// shares write separate memory and have only the lights in common, which they read.
 #pragma once
 
 #include <lightbin/detail/engine/costs.hpp>
@@ -14,14 +14,15 @@ struct Share {
     unsigned begin, end;
     std::uint64_t entries;  ///< an upper bound: the tiles of all rectangles in the share; the exact number once built
 
-    // Of a share of tile rows, for build_rectangles():
-    std::uint64_t before = 0;        ///< the tiles of all rectangles in earlier shares
-    unsigned tail_begin = 0;         ///< from this tile row on, the share's rectangles have a kernel's slack of tiles or little more
-    std::uint64_t tail_entries = 0;  ///< how many they have
+    // Read by build_rectangles(). A kernel may write some elements, its slack, past its list's end, where the next
+    // share's list begins. So the last tile rows with as many entries are built in other memory.
+    std::uint64_t before = 0;        ///< the number of entries of all earlier shares: of tiles in their rectangles
+    unsigned tail_begin = 0;         ///< the first of the last tile rows, which are built in other memory and copied
+    std::uint64_t tail_entries = 0;  ///< the number of entries of the tile rows tail_begin..end-1
 };
 
-/// Divides `steps` tile rows or slices into shares of about equal work. There must be no more shares than steps. The work of a step is
-/// area(step), the number of tiles that all lights' rectangles have in it, plus `overhead`.
+/// Divides `steps` tile rows or slices into shares of about equal work. There must be no more shares than steps. The
+/// work of a step is area(step), the number of tiles that all lights' rectangles have in it, plus `overhead`.
 template <class Area> void share_steps(Items<Share> shares, std::size_t steps, std::uint64_t overhead, Area area) {
     const std::size_t count = shares.size();
     std::uint64_t work = 0, done = 0;
@@ -47,7 +48,7 @@ template <class Area> void share_steps(Items<Share> shares, std::size_t steps, s
 /// footprints has a difference array of its own, so that threads can fill them in parallel.
 ///
 /// sums   memory for the difference arrays
-/// slack  how many elements past its end the kernel may write, for the tails of all shares but the last
+/// slack  how many elements a kernel may write past its list's end: each share but the last gets a tail of as many
 template <class Id>
 void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uint64_t>& sums, Items<Share> shares,
                 std::size_t slack) {
@@ -81,9 +82,10 @@ void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
     }
 }
 
-/// Builds shares of rectangles without tests, whose entries are known before, in their places in `list`. Kernels write past their end,
-/// where another thread may be at work: so the last rows of a share are built in memory of their own and copied. Without this the
-/// copies of build_shares() take as long as the kernels where lists are long, and threads gain nothing. Returns the number of entries.
+/// Builds all shares in parallel, each share's list at its final place in `list`. Lights are listed in every tile of
+/// their rectangles, so each share's number of entries is known beforehand. Kernels write past their list's end, where
+/// another thread may be at work: so the last rows of a share are built elsewhere and copied. build_shares() copies
+/// whole lists, which takes as long as the kernels if lists are long. Returns the number of entries.
 ///
 /// memory  the memory of the last rows, kept from call to call
 /// build   build(i, rows) builds some rows of share i, a BinShare
@@ -93,7 +95,8 @@ std::uint64_t build_rectangles(const Parallel& parallel, Items<const Share> shar
     memory.reserve(shares.size(), shares.size());
     parallel.run(shares.size(), [&](std::size_t i) {
         const Share& share = shares[i];
-        const std::uint64_t tail = share.before + share.entries - share.tail_entries;  // where the last rows' entries begin
+        // Where the entries of the last rows begin.
+        const std::uint64_t tail = share.before + share.entries - share.tail_entries;
         build(i, {share.begin, share.tail_begin, list + share.before, static_cast<std::uint32_t>(share.before)});
         Id* const copied = memory.data()[i].reserve(share.tail_entries + BinShare<Id>::slack);
         build(i, {share.tail_begin, share.end, copied, static_cast<std::uint32_t>(tail)});
@@ -103,13 +106,12 @@ std::uint64_t build_rectangles(const Parallel& parallel, Items<const Share> shar
     return last.before + last.entries;
 }
 
-/// Builds all shares in parallel, and joins their index lists. The first share's is built in `list`; the others are built in memory of
-/// their own and copied behind it, and the offsets in their ranges are moved up accordingly. Returns the number of all entries.
+/// Builds all shares in parallel, and joins their index lists. The first is built in `list`, each further one in memory
+/// of its own; that is copied, and the offsets in its ranges are moved up accordingly. Returns the number of entries.
 ///
 /// ranges  the grid's ranges, `width` for each tile row or slice
-/// memory  the memory of the other shares' lists, kept from call to call
-/// build   build(share, i, out) builds share i, writes its index list to `out` with offsets that count from 0, and returns its
-///         number of entries
+/// memory  the memory of all shares' lists but the first, kept from call to call
+/// build   build(share, i, out) builds share i, its list at `out` with offsets from 0 on; returns its number of entries
 template <class Id, class Build>
 std::uint64_t build_shares(const Parallel& parallel, Items<Share> shares, ListRange* ranges, std::size_t width,
                            Buffer<Buffer<Id>>& memory, Id* list, Build build) {
