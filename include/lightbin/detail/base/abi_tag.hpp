@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: MIT
-// LIGHTBIN_ABI_TAG: the name of the library's inline namespace. It encodes the instructions that the compiler's flags allow
-// everywhere, so that two translation units compiled with different flags share no function and no type. Of a shared inline
-// function the linker would keep either copy, whose instructions might not exist on the machine. Passing a lightbin type
-// between such units is a linker error.
+// LIGHTBIN_ABI_TAG: the name of the library's inline namespace. It encodes the instructions that the compiler's flags
+// allow everywhere, so that two translation units compiled with different flags share no function and no type. Of a
+// shared inline function the linker would keep either copy, whose instructions might not exist on the machine. Passing
+// a lightbin type between such units is a linker error.
 //
 // Each other header begins by including this one, itself or by another header. So this header also refuses compilers
-// that are not set to C++20, by including a file that does not exist: that ends every compiler with one error that shows
-// the file's name, while after an #error gcc and clang would go on to report hundreds of errors.
+// that are not set to C++20, by including a file that does not exist: that ends every compiler with one error that
+// shows the file's name, while after an #error gcc and clang would go on to report hundreds of errors.
 #pragma once
 
 #if (defined(_MSVC_LANG) ? _MSVC_LANG : __cplusplus) <= 201703L
 #include "lightbin wants C++20, which the flag -std=c++20 gives (Microsoft's: /std:c++20); no file is missing"
 #endif
 
-// The name consists of the highest level of vector instructions that the flags allow, such as sse41, and of each other
-// extension that they allow, written as the number of its LIGHTBIN_LINE below and its letter within that line. The name
-// has every extension that a compiler may use of its own accord for plain C++ and announces by a macro. It leaves out
-// the extensions that tests/guest/flavours.sh lists: those that only intrinsics reach, those for checksums, ciphers and
-// 16-bit floats, hints that older processors ignore (prefetches, control-flow marks), and those of WebAssembly, where an
-// engine refuses a module as a whole.
+// LIGHTBIN_INSTRUCTION_SET, a part of the namespace's name, consists of the highest level of vector instructions that
+// the compiler's flags allow, and of each other extension that they allow, written as the number of its LIGHTBIN_LINE
+// below and its letter within that line: -march=haswell gives avx2_1a1b1c1d1e1f. It has every extension that a compiler
+// may use of its own accord for plain C++ and announces by a macro. tests/guest/flavours.sh lists the ones left out:
+// for intrinsics only, for checksums, ciphers and 16-bit floats, hints that older processors ignore (prefetches,
+// control-flow marks), and those of WebAssembly, where an engine refuses a module as a whole.
 
 // LIGHTBIN_IF(macro, name, other) expands to `name` if the macro is 1 (RISC-V: 1000000), to `name` and the digit if the
 // macro is 2 or 3, and to `other` if the macro is not defined.
@@ -38,8 +38,8 @@
                    LIGHTBIN_IF_VALUE(D, n##d, ), LIGHTBIN_IF_VALUE(E, n##e, ), LIGHTBIN_IF_VALUE(F, n##f, ), \
                    LIGHTBIN_IF_VALUE(G, n##g, ), LIGHTBIN_IF_VALUE(H, n##h, ))
 
-// LIGHTBIN_INSTRUCTION_SET is the name described above, defined for each processor family in turn; simply `baseline` if
-// the flags allow no x86 extension, because expanding it wherever the namespace is named costs a file 15 ms otherwise.
+// LIGHTBIN_INSTRUCTION_SET, a part of the namespace's name, for each processor family in turn. It is just `baseline` if
+// the flags allow no x86 extension, as expanding the macros at each use takes 15 ms of compile time per file.
 // clang-format off
 #if defined(__arm__) || defined(__aarch64__)
 #define LIGHTBIN_INSTRUCTION_SET LIGHTBIN_PASTE(LIGHTBIN_LEVEL, \

@@ -12,7 +12,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// An array whose elements are not initialised. Unlike std::vector it does not clear memory that is about to be overwritten.
+/// An array whose elements are not initialised, unlike those of std::vector, as they are about to be overwritten.
 template <class T> class Buffer {
 public:
     Buffer() = default;
@@ -53,7 +53,7 @@ public:
     }
 
 private:
-    /// Allocates `size` uninitialised elements. A size beyond std::size_t is reduced to its maximum, so that `new` throws.
+    /// Allocates `size` uninitialised elements. A size beyond std::size_t is reduced to its maximum: then `new` throws.
     explicit Buffer(std::uint64_t size)
         : size_(static_cast<std::size_t>(min_of<std::uint64_t>(size, ~std::size_t{0}))) {
 #if defined(LIGHTBIN_MEMORY_SANITIZER)

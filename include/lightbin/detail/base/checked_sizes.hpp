@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Saturating sums and products of sizes, for numbers that the caller may choose freely, such as the pitch of a depth
-// buffer. Sizes are 64-bit numbers, also on 32-bit machines. The numbers of lights, tiles and entries are below 2^32, so
-// that the product of any two of them fits without such a function.
+// buffer. Sizes are 64-bit numbers, also on 32-bit machines. The numbers of lights, tiles and entries are below 2^32,
+// so that the product of any two of them fits without such a function.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>

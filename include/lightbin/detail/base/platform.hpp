@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Differences between compilers and processors, as macros. LIGHTBIN_NO_SIMD, which users may define, leaves only the scalar
-// kernels. So does the memory sanitizer, which would report the unused lanes of vectors as uninitialised.
+// Differences between compilers and processors, as macros. LIGHTBIN_NO_SIMD, which users may define, leaves only the
+// scalar kernels. So does the memory sanitizer, which would report the unused lanes of vectors as uninitialised.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -46,9 +46,9 @@
 #endif
 #endif
 
-// LIGHTBIN_FORGET(value) makes the compiler forget how a number or vector was computed, so that it cannot fuse the computation
-// with a later one; see rounded(). Microsoft's compiler does not fuse unless told to, and WebAssembly has no fused instructions. On
-// processors without vector kernels the value goes through memory ("+m"), a constraint that all processors have.
+// LIGHTBIN_FORGET(value) makes the compiler forget how a number or vector was computed, so that it cannot fuse the
+// computation with a later one; see rounded(). Microsoft's compiler fuses only if told to, and WebAssembly has no fused
+// instructions. Without vector kernels the value goes through memory ("+m"), a constraint of all processors.
 #if defined(__x86_64__) || defined(__i386__)
 #define LIGHTBIN_FORGET(value) __asm__("" : "+v"(value))
 #elif defined(__aarch64__) && (defined(__GNUC__) || defined(__clang__))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Outward rounding from double to float. The promise that no light is missed rests on this rounding and on IEEE comparisons
-// with NaN, so compiler modes that break either are refused here.
+// Outward rounding from double to float. The promise that no light is missed rests on this rounding and on IEEE
+// comparisons with NaN, so compiler modes that break either are refused here.
 #pragma once
 
 #include <lightbin/detail/base/platform.hpp>
@@ -32,8 +32,8 @@ static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<doubl
 
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// Kernels compute in floats for lights whose coordinates and radii have absolute values within these limits, whose squares
-/// neither overflow nor underflow. Others are computed in doubles.
+/// Kernels compute in floats for lights whose coordinates and radii have absolute values within these limits, whose
+/// squares neither overflow nor underflow. Others are computed in doubles.
 inline constexpr float float_safe_min = 0x1p-40f, float_safe_max = 0x1p40f;
 
 /// Returns the largest float below a finite `value`. Unlike std::nextafter this is inlined.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Turns off warnings that users may have on, from where a header includes this file until it includes warnings_on.inl. They
-// are about code that is meant as it is:
+// Turns off warnings that users may have on, from where a header includes this file until it includes warnings_on.inl.
+// They are about code that is meant as it is:
 //
 //   -Wfloat-equal   floats are compared for exact equality on purpose
 //   -Wcast-align    vector load and store instructions accept any address

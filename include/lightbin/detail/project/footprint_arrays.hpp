@@ -49,8 +49,7 @@ struct FootprintArrays {
     std::uint32_t* span_begin = nullptr;
     const RowSpan* spans = nullptr;
 
-    /// With silhouettes or a depth test, all lights in view space, indexed by id: spots, or spheres that are read with
-    /// load_sphere().
+    /// With silhouettes or a depth test, all lights in view space, by id: spots, or spheres, read with load_sphere().
     const Sphere* spheres = nullptr;
     const ViewSpot* spots = nullptr;
 
@@ -62,7 +61,7 @@ struct FootprintArrays {
 
 class FootprintBuffers {
 public:
-    /// Returns arrays for `count` footprints and the padding, without spans, spheres and spots.
+    /// Returns arrays of ids, rectangles and, with `with_spans`, span_begin, for `count` footprints and the padding.
     FootprintArrays reserve(std::uint64_t count, bool with_spans) {
         const std::uint64_t capacity = count + FootprintArrays::padding;
         return {.ids = ids_.reserve(capacity),
@@ -88,7 +87,7 @@ struct DepthRows {
 struct ProjectCounts {
     std::uint32_t visible = 0;   ///< the number of lights in view
     std::uint32_t rejected = 0;  ///< the number of lights that are bad input, see Sphere
-    std::uint64_t area = 0;      ///< the number of tiles in all rectangles: an upper bound on that of list entries
+    std::uint64_t area = 0;      ///< the number of tiles in all rectangles: an upper bound on the length of all lists
     std::uint64_t rows = 0;      ///< the number of tile rows in all rectangles; counted for silhouettes only
 };
 
@@ -98,7 +97,7 @@ struct ChunkRects {
     std::uint32_t x0[size], y0[size], x1[size], y1[size];
 };
 
-/// The footprints of all lights in view, or of those that intersect one depth slice.
+/// The footprints of all lights in view, or of the lights in view that intersect one depth slice.
 struct FootprintSlice {
     FootprintArrays lights;
     Items<const FootprintRun> runs;

@@ -40,16 +40,15 @@ void copy_lights(const void* lights, std::size_t first, std::size_t count, Spher
 
 /// The footprints of the lights in view, in ascending order of id.
 ///
-/// footprint     silhouette: with row spans
+/// footprint     with Footprint::silhouette, row spans are found, too
 /// with_spheres  keep the lights in view space, spheres or spots, for a depth test; silhouettes keep them anyway
 template <Footprint footprint, bool with_spheres> class Footprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette, keeps_lights = with_spheres || with_spans;
 
 public:
     /// Projects all lights. A light's rectangle then holds each tile that the part of its sphere, or spot, beyond the
-    /// near plane is projected to, and is the smallest such rectangle but for the view's rounding margin. For a spot
-    /// whose sphere does not lie wholly beyond the near plane, it is the intersection of the rectangles of its sphere and
-    /// of its least_sphere().
+    /// near plane is projected to, and is the smallest such rectangle but for the view's rounding margin. If a spot's
+    /// sphere is not wholly beyond the near plane, it is where the rectangles of its sphere and least_sphere() meet.
     ///
     /// force_parallel  use the caller's threads even if projecting is too little work to wake them up for, because a
     ///                 stage that follows has enough
@@ -61,8 +60,8 @@ public:
         const bool share = force_parallel || parallel.pays_off(detail::project_ns(isa, static_cast<double>(lights_)));
         const Parallel threads = share ? parallel : Parallel();
         constexpr bool spots = Lights<Light, ToLight>::spots;
-        // The lights are divided into parts, each of which becomes a run of footprints. Their number does not depend
-        // on whether threads share them. It is 1 where the padding behind each run could push indices beyond 32 bits.
+        // The lights are divided into parts, each of which becomes a run of footprints. Their number is the same
+        // whether or not threads share the work; it is 1 where the runs' padding could push indices beyond 32 bits.
         run_count_ = lights_ >> 31 == 0 ? detail::project_parts(lights_ / chunk + 1, parallel.workers()) : 1;
         runs_.reserve(run_count_);
         part_counts_.reserve(run_count_);
@@ -114,7 +113,7 @@ public:
 
     std::size_t lights() const { return lights_; }               ///< lights given
     std::uint32_t visible() const { return counts_.visible; }    ///< lights in view
-    std::uint32_t rejected() const { return counts_.rejected; }  ///< the number of lights that are bad input: Sphere
+    std::uint32_t rejected() const { return counts_.rejected; }  ///< lights that are bad input, as Sphere defines it
     std::uint64_t area() const { return counts_.area; }          ///< tiles in all rectangles
     const detail::FootprintArrays& arrays() const { return arrays_; }
     detail::Items<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
@@ -126,7 +125,8 @@ public:
 private:
     static constexpr std::size_t chunk = detail::ChunkRects::size;
 
-    /// Finds the row spans of all footprints and stores them in one array, those of each FootprintRun together.
+    /// Finds the row spans of all footprints, that is, the tiles of each tile row that a silhouette touches, and stores
+    /// them in one array, in which the spans of each run of footprints are contiguous.
     void add_spans(detail::RowSpanKernel kernel, const View& view, const Parallel& threads) {
         constexpr std::uint64_t padding = 8;  // kernels store vectors of up to 8 rows
         // Lights whose row spans would have an index above 32 bits get no spans, and cover their whole rectangles.

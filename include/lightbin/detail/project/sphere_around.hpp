@@ -9,9 +9,9 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// A Sphere that is bad input: skipped and counted.
 inline constexpr Sphere bad_sphere = {0, 0, 0, -1};
 
-/// Returns a float sphere that contains a sphere of doubles. The centre is rounded to nearest, and the radius is enlarged
-/// by the distance that this moves the centre. A sphere that floats represent exactly stays as it is; a centre beyond the
-/// range of floats gives a sphere that covers everything.
+/// Returns a float sphere that contains a sphere of doubles. The centre is rounded to nearest, and the radius is
+/// enlarged by the distance that this moves the centre. A sphere that floats represent exactly stays as it is; a centre
+/// beyond the range of floats gives a sphere that covers everything.
 inline Sphere sphere_around(double x, double y, double z, double radius) {
     if (!is_finite(x) || !is_finite(y) || !is_finite(z) || !(radius >= 0)) return bad_sphere;
     constexpr double most = static_cast<double>(FLT_MAX);
@@ -24,8 +24,8 @@ inline Sphere sphere_around(double x, double y, double z, double radius) {
     return {nearest.x, nearest.y, nearest.z, float_above(reach)};
 }
 
-/// Returns the sphere stored at `from`. The memory may hold objects of any type with the layout of a Sphere: its bytes are
-/// copied, because access through a Sphere pointer would break the aliasing rules.
+/// Returns the sphere stored at `from`. The memory may hold objects of any type with the layout of a Sphere: its bytes
+/// are copied, because access through a Sphere pointer would break the aliasing rules.
 inline Sphere load_sphere(const Sphere* from) {
     Sphere sphere;
     std::memcpy(&sphere, from, sizeof sphere);
@@ -49,9 +49,9 @@ inline bool finite(const Triple& v) {
     return is_finite(v.x) && is_finite(v.y) && is_finite(v.z);
 }
 
-/// Returns a float sphere that contains a sphere whose centre and radius were computed in double with rounding errors: up to
-/// 2^-50 of the radius in the radius, and up to 2^-50 of the radius plus 2^-53 of each coordinate in the centre. The term
-/// 2^-124 is for values that were flushed to zero.
+/// Returns a float sphere that contains a sphere whose centre and radius were computed in double with rounding errors:
+/// up to 2^-50 of the radius in the radius, and up to 2^-50 of the radius plus 2^-53 of each coordinate in the centre.
+/// The term 2^-124 is for values that were flushed to zero.
 inline Sphere sphere_around_nearly(const Triple& centre, double radius) {
     return sphere_around(centre.x, centre.y, centre.z,
                          rounded(radius * (1 + 0x1p-48)) +

@@ -3,7 +3,8 @@
 //
 // A plane  y = v z  through the eye is a line in the image at the height v. It cuts a sphere with the centre (x, y, z)
 // and the radius r in a disc, whose projection reaches over the slopes
-//     u(v) = (x g -+ t S) / A,   g = y v + z,   S^2 = r^2 (1 + v^2) - (y - v z)^2,   A = y^2 + z^2 - r^2,   t^2 = A + x^2,
+//     u(v) = (x g -+ t S) / A,   g = y v + z,   S^2 = r^2 (1 + v^2) - (y - v z)^2,
+//     A = y^2 + z^2 - r^2,   t^2 = A + x^2,
 // which is the equation of the sphere's tangent cone solved for u. The silhouette, an ellipse, is convex: within a
 // tile row its right end lies at the row's slope v that is nearest to that of its rightmost point, and likewise on the
 // left. So these two slopes are clamped to each row, once per light and row, and u(v) there gives both ends.
@@ -29,9 +30,10 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// The coefficients of `lanes` lights' silhouettes. At the row slope v,  g = y_v v + z  and S^2 = r2 + r2_v
-/// v^2 - (y - v z)^2 + slack.  In tiles, a row's span begins at  middle g - reach S + low  with v = left_v clamped to
-/// the row, and ends at  middle g + reach S + high  with v = right_v clamped to the row.
+/// The coefficients of the silhouettes of `lanes` lights, see the head of this file. A tile row at the slopes v
+/// has  g = y_v v + z  and  S^2 = r2 + r2_v v^2 - (y - v z)^2 + slack.  In tiles, its span begins
+/// at  middle g - reach S + low  with v = left_v, clamped to the row, and ends at  middle g + reach S + high  with
+/// right_v.
 struct RowTerms {
     double y[lanes], y_v[lanes], z[lanes], r2[lanes], r2_v[lanes], slack[lanes];
     double middle[lanes], reach[lanes], low[lanes], high[lanes], left_v[lanes], right_v[lanes];
@@ -42,8 +44,8 @@ inline double max_row_slope(const Camera& camera) {
     return (abs_of(camera.y.offset) + camera.y.tiles) / camera.y.scale;
 }
 
-/// Writes the coefficients of spheres with the centres (x, y, z), after the camera's signs, from lane `at` on. Returns a bit
-/// for each sphere whose silhouette is an ellipse, as the sphere lies wholly beyond the near plane.
+/// Writes the coefficients of spheres' silhouettes, from lane `at` on. The centres (x, y, z) are signed so that z is
+/// the view depth. Returns a bit for each sphere whose silhouette is an ellipse, being wholly beyond the near plane.
 inline unsigned row_terms(const Camera& camera, Doubles x, Doubles y, Doubles z, Doubles r, RowTerms& terms,
                           unsigned at) {
     const double scale = camera.x.scale, offset = camera.x.offset, max_slope = max_row_slope(camera);
@@ -136,7 +138,7 @@ struct SphereRows {
 
 /// Writes the row spans of a run of footprints, from spans[to] on; whole vectors are stored. A footprint gets no spans
 /// where they could exclude no tile, because it is one tile wide or high, where its silhouette is not known, and where
-/// an index of 32 bits can't tell where they begin. A span of a sphere has at least one tile. Rows: SphereRows or SpotRows.
+/// they would begin beyond an index of 32 bits. A span of a sphere has at least one tile. Rows: SphereRows or SpotRows.
 template <class Rows>
 inline void row_spans(const Camera& camera, const FootprintArrays& lights, FootprintRun run, RowSpan* spans,
                       std::uint64_t to) {

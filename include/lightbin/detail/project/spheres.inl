@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The projection of spheres to tile rectangles, a vector of lights at a time. All tiers do the same operations in the same
-// order, so they give the same bytes. Included once per tier (instruction set).
+// The projection of spheres to tile rectangles, a vector of lights at a time. All tiers do the same operations in the
+// same order, so they give the same bytes. Included once per tier (instruction set).
 //
 // Each image axis is a problem in two dimensions: the edges of tiles are planes  x = s z  through the eye with the
 // slope s, and a sphere appears as a disc with the centre (c, z), where c is x or y and z the view depth. Its bounds
@@ -50,10 +50,9 @@ inline void tangent_slopes(Reals c, Reals z, Reals r, Reals e, Reals per_e, Real
 /// none overflows.
 ///
 /// The part is convex, so the largest slope c / z is at the point where the tangent touches the circle, if that lies
-/// beyond the near plane, and else at the corner where circle and near plane meet. The tangent's slope bounds the
-/// whole disc, so it is a correct bound wherever there is a tangent; the corner's is taken only where it is certain to
-/// be the largest. The smallest slope is the negative of the largest one of the mirrored disc with the
-/// centre (-c, z).
+/// beyond the near plane, and else at the corner where circle and near plane meet. The tangent's slope bounds the whole
+/// disc, so it is a correct bound wherever there is a tangent; the corner's is taken only where it is certain to be the
+/// largest. The smallest slope is the negative of the largest one of the mirrored disc with the centre (-c, z).
 inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, Doubles& low, Doubles& high) {
     const Doubles near_z = broadcast(near_depth), zero = broadcast(0.0),
                   infinite = broadcast(static_cast<double>(infinity));
@@ -64,9 +63,10 @@ inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, D
     const Doubles h = sqrt(maximum(h2, zero) + h2_error);  // rounded up
     const Doubles h_low = sqrt(maximum(h2 - h2_error, zero));
 
-    // At the corner (c + h, near_z) the circle enters the part in the direction (z - near_z, h), in which c / z grows as
-    // (near_z, -(c + h)) . (z - near_z, h). So the tangent touches beyond the near plane if and only if
-    // near_z (z - near_z) > h (c + h). With a = |c|, the outer tangent has c = a there, and the inner one c = -a.
+    // The circle around (c, z) meets the near plane in the corner (c + h, near_z). There it leads beyond the plane in
+    // the direction (z - near_z, h), in which the slope, coordinate / depth, grows
+    // as  (near_z, -(c + h)) . (z - near_z, h).  So the tangent of the largest slope touches beyond the near plane if
+    // and only if  near_z (z - near_z) > h (c + h),  where the outer tangent has c = |c| = a and the inner one c = -a.
     const Doubles doubt = (mul(h, h) + mul(a, h) + mul(near_z, abs(z) + near_z)) * 0x1p-48;
     const Doubles tangent_side = mul(near_z, z - near_z) + doubt, square = mul(h_low, h_low);
     const auto outer_cut = less(tangent_side, square + mul(a, h_low));
@@ -79,8 +79,8 @@ inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, D
     const Doubles squares = mul(a, a) + mul(z, z), t2 = squares - mul(r, r);
     const Doubles error = (squares + mul(r, r)) * 0x1p-50 / t2 + 0x1p-48;  // relative error of a tangent's slope
     const auto has_tangent = both(less(zero, t2), less_equal(error, broadcast(0x1p-20)));
-    // As in tangent_slopes(), sums have terms of one sign. If the sphere reaches behind the eye, z <= r, the outer tangent
-    // points backward and bounds nothing.
+    // As in tangent_slopes(), sums have terms of one sign. If the sphere reaches behind the eye, z <= r, the outer
+    // tangent points backward and bounds nothing.
     const Doubles az = mul(a, z), rt = mul(r, sqrt(t2)), e = mul(z - r, z + r);
     const auto behind = less(z, zero);
     const Doubles outer = (az + rt) / e;
@@ -119,8 +119,8 @@ LIGHTBIN_INLINE Mask tile_rects(const Camera& camera, const ImageBounds<Reals>& 
 }
 
 /// Stores the tile rectangles of a vector of lights of a chunk, from index i on, and which of them are in view. Lights
-/// whose bit in `fallback` is set are listed for the double-precision path instead. `valid` has a bit for each lane that
-/// holds a light of the chunk.
+/// whose bit in `fallback` is set are listed for the double-precision path instead. `valid` has a bit for each lane
+/// that holds a light of the chunk.
 template <class Mask>
 LIGHTBIN_INLINE void put_vector(const Camera& camera, const ImageBounds<Floats>& bounds, Mask float_safe,
                                 unsigned fallback, unsigned valid, std::uint32_t i, ProjectedChunk& chunk) {
@@ -130,7 +130,7 @@ LIGHTBIN_INLINE void put_vector(const Camera& camera, const ImageBounds<Floats>&
     chunk.visible |= std::uint64_t{movemask(tile_rects<float>(camera, bounds, float_safe, chunk.rects, i)) & valid} << i;
 }
 
-/// Appends the footprints of those lights of a chunk that are in view. The chunk has `here` lights from id `first` on.
+/// Appends the footprints of the lights of a chunk that are in view. The chunk has `here` lights from id `first` on.
 inline void append_chunk(const ProjectedChunk& chunk, std::uint32_t first, std::uint32_t here,
                          const FootprintArrays& out, ProjectCounts& counts) {
     std::uint32_t ids[ChunkRects::size], end = counts.visible;
@@ -152,9 +152,9 @@ inline void append_chunk(const ProjectedChunk& chunk, std::uint32_t first, std::
     }
 }
 
-/// Projects in double the lights of a chunk that are listed in chunk.fallback: those that cross the near plane or
-/// contain the eye, tiny, huge and infinite ones, and bad input, which it counts. Sets the bits in chunk.visible of
-/// the listed lights that are in view.
+/// Projects in double the lights of a chunk that are listed in chunk.fallback: lights that cross the near plane or
+/// contain the eye, tiny, huge and infinite ones, and bad input, which it counts. Sets the bits in chunk.visible of the
+/// listed lights that are in view.
 ///
 /// spheres  the spheres of all lights of the chunk, in view space
 inline void project_in_double(const Camera& camera, const Sphere* spheres, ProjectedChunk& chunk,
@@ -217,7 +217,7 @@ struct ViewLanes {
 /// Returns a mask of the lights in a vector that are certain to lie outside the view frustum. The result only holds for
 /// lights that safe_in_float() accepts.
 ///
-/// x, y, z, r         the lights' spheres after the camera's signs: tile indices grow with x and y; z is the view depth
+/// x, y, z, r         the lights' spheres, signed so that tile indices grow with x and y, and z is the view depth
 /// nearest, farthest  the lights' view depths
 /// size               |x| + |y| + |z| + r
 ///
@@ -237,8 +237,8 @@ LIGHTBIN_INLINE auto safe_in_float(Floats size, Floats r) {
     return both(less_equal(size, broadcast(float_safe_max)), less_equal(broadcast(float_safe_min), r));
 }
 
-/// Appends the footprints of those of the spheres first..first + count - 1 that are in view. Spheres are projected in
-/// float where the error bounds of tangent_slopes() hold: where nothing overflows or underflows and the whole sphere lies
+/// Appends the footprints of the spheres first..first + count - 1 that are in view. Spheres are projected in float
+/// where the error bounds of tangent_slopes() hold: where nothing overflows or underflows and the whole sphere lies
 /// beyond the near plane. All other spheres, and those with a NaN, are projected in double.
 inline void project(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
                     const FootprintArrays& out, ProjectCounts& counts) {

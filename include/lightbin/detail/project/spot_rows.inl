@@ -33,7 +33,8 @@ struct WedgeTerms {
 /// A vector of spots in double, for find_wedges(): the cones' apexes and unit axes, and the sines of their half angles.
 struct WedgeLanes {
     Doubles apex[3], axis[3], sine;
-    /// Bound on n.p for points p of the spot and the two planes' normals n; with perspective divided by p's depth.
+    /// Bound on n.p for points p of the spot and the normals n of the two planes through the eye that touch its cone;
+    /// with perspective divided by p's depth.
     Doubles tolerance;
 };
 
@@ -78,7 +79,7 @@ inline void find_wedges(const Camera& camera, const WedgeLanes& spots, unsigned 
     }
 }
 
-/// The silhouettes of a vector of spots, from which row_spans() makes spans of tiles. For spheres it takes SphereRows.
+/// The silhouettes of a vector of spots, from which row_spans() makes spans of tiles. SphereRows are those of spheres.
 struct SpotRows {
     unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin, std::uint32_t count) {
         Sphere balls[lanes], axes[lanes], rest[lanes];

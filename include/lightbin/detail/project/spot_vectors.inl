@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The transform of spots to view space, a vector at a time; view_spot.hpp derives the bound on rounding errors. Included
-// once per tier.
+// The transform of spots to view space, whose rounding view_spot.hpp derives. Included once per tier (instruction set).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/project/world_to_view.inl>
@@ -18,9 +17,9 @@ LIGHTBIN_INLINE Floats manhattan_length(const Floats (&v)[3]) {
     return abs(v[0]) + abs(v[1]) + abs(v[2]);
 }
 
-/// Replaces the balls of the spots whose bit in `which` is set by the spots' least_sphere(), transformed to view space.
+/// Where a spot's bit in `which` is set, replaces its ball, which the cone cuts, by its least_sphere() in view space.
 ///
-/// balls, cones  the spots as they were given, see LightSource
+/// balls, cones  the spots as they were given: spheres, and vec4s of the cones' axes and half angles' cosines
 LIGHTBIN_NOINLINE inline void use_least_spheres(const WorldToView* to_view, unsigned which, const Sphere* balls,
                                                 const Sphere* cones, SpotLanes& spots) {
     Sphere moved[lanes];
@@ -35,7 +34,9 @@ LIGHTBIN_NOINLINE inline void use_least_spheres(const WorldToView* to_view, unsi
     load_spheres(moved, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);
 }
 
-/// Transforms a vector of spots, given as for use_least_spheres(), to view space after the camera's signs.
+/// Transforms a vector of spots to view space, signed so that tile indices grow with x and y, and z is view depth.
+///
+/// balls, cones  the spots as they were given: spheres, and vec4s of the cones' axes and half angles' cosines
 LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& transform, const Sphere* balls,
                                 const Sphere* cones, SpotLanes& spots) {
     Floats apex[3], axis[3], cosine;
@@ -62,8 +63,8 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
         tolerance = mul(spots.radius, broadcast(0x1p-18f)) + (centre_error + mul(spots.radius, transform.cone_error));
         safe = both(safe, less_equal(transform.cone_error, broadcast(1.0f)));
     }
-    // Spots with a half angle of 90 degrees or more count as whole spheres. Spots that have sizes float can't compute with,
-    // or a cone that the transform does not map to a cone, are replaced by the least spheres around them.
+    // Spots with a half angle of 90 degrees or more count as whole spheres. Spots that have sizes float can't compute
+    // with, or a cone that the transform does not map to a cone, are replaced by the least spheres around them.
     const auto with_cone = and_not(safe, less_equal(cosine, broadcast(0.0f)));
     const Floats per_length = 1.0f / sqrt(mul(axis[0], axis[0]) + mul(axis[1], axis[1]) + mul(axis[2], axis[2]));
     for (unsigned i = 0; i < 3; ++i) {
@@ -82,8 +83,8 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
     }
 }
 
-/// Returns how far spots reach from their apexes in a direction: the radius where the direction is inside the cone, else
-/// the distance to the rim, or 0 if the apex lies farther in that direction than the rim.
+/// Returns how far spots reach from their apexes in a direction: the radius where the direction is inside the cone,
+/// else the distance to the rim, or 0 if the apex lies farther in that direction than the rim.
 ///
 /// along, across  the lengths of the cone's unit axis along the direction and perpendicular to it
 inline Floats spot_reach(const SpotLanes& spots, Floats along, Floats across) {

@@ -4,7 +4,7 @@
 // A spot is the sector that a cone cuts out of a ball. The point of a sector that is farthest in some direction is the
 // apex, a point of the rim, the circle in which cone and ball meet, or a point of the cap, the ball's surface inside
 // the rim; in the last case it is the ball's own farthest point. So a sector has the bounds of its ball where these
-// touch the cap, and else those of the apex and the rim.
+// touch the cap, and else the bounds of the apex and the rim.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/project/spheres.inl>
@@ -13,8 +13,8 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// Stores, in view space, the balls of a vector of spots and the least spheres around the spots. Let u = 2^-24 and
-/// S = |x| + |y| + |z| + r: the centre of a least sphere is within 8u S of the exact one, and its radius is 16u S larger.
+/// Stores, in view space, the balls of a vector of spots and the least spheres around the spots. Let u = 2^-24 and S =
+/// |x| + |y| + |z| + r: the centre of a least sphere is within 8u S of the exact one, and its radius is 16u S larger.
 inline void store_both_spheres(const Camera& camera, const SpotLanes& spots, Sphere* balls, Sphere* least) {
     const auto narrow = less_equal(broadcast(0.5f), mul(spots.cosine, spots.cosine));
     const Floats half = mul(spots.radius, broadcast(0.5f)) / spots.cosine, along = mul(spots.radius, spots.cosine);
@@ -37,7 +37,7 @@ struct RimLanes {
     Floats along;      ///< the distance from the cone's apex to the centre of the rim, where cone and ball meet
     Floats rho, rho2;  ///< the radius of the rim, where cone and ball meet, and its square
     Floats rim_z;      ///< the view depth of the centre of the rim, where cone and ball meet
-    Floats per_a;      ///< 1 / A, the reciprocal of the quadratic equation's coefficient in narrow_slopes()
+    Floats per_a;      ///< 1 / A, where A s^2 is the square term of the equation of narrow_slopes() for slopes s
     Floats error;      ///< a slope's error is at most this times (1 + |slope|)
 };
 
@@ -77,7 +77,7 @@ LIGHTBIN_INLINE void narrow_slopes(const RimLanes& rim, Floats c, Floats axis, F
 }
 
 /// Projects in double the spots of a chunk that are listed in chunk.fallback: spots that float can't project. A spot's
-/// rectangle is where those of its ball and of its least sphere intersect.
+/// rectangle is the intersection of its ball's and its least sphere's.
 inline void project_spots_in_double(const Camera& camera, const Sphere* balls, const Sphere* least,
                                     ProjectedChunk& chunk, ProjectCounts& counts) {
     project_in_double(camera, balls, chunk, counts);
@@ -100,7 +100,7 @@ inline void project_spots_in_double(const Camera& camera, const Sphere* balls, c
     }
 }
 
-/// Finds the bounds along the image axes, with a perspective projection, of spots whose balls lie beyond the near plane.
+/// Finds the bounds along the image axes, in perspective, of spots whose balls lie beyond the near plane.
 ///
 /// size      |x| + |y| + |z| + r of the ball
 /// nearest   the spot's least view depth; at least 2^-16 of `size`
@@ -125,13 +125,13 @@ LIGHTBIN_INLINE void find_slopes(const SpotLanes& spots, Floats size, Floats nea
     narrow_slopes(rim, spots.apex[1], spots.axis[1], spots.axis[0], bounds.low[1], bounds.high[1]);
 }
 
-/// Appends the footprints of those of the spots first..first + count - 1 that are in view. As with project(), spots
+/// Appends the footprints of the spots first..first + count - 1 that are in view. As with project(), spots
 /// whose ball does not lie beyond the near plane, or that float can't compute with, are projected in double.
 inline void project_spots(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
                           const FootprintArrays& out, ProjectCounts& counts) {
     ProjectedChunk chunk;
-    // The spots as they are given: balls, and vec4s of the cones' axes and cosines. For spots that are projected in double
-    // they are overwritten by the balls and the least spheres in view space.
+    // The spots as they are given: balls, and vec4s of the cones' axes and cosines. For spots that are projected in
+    // double they are overwritten by the balls and the least spheres in view space.
     Sphere balls[ChunkRects::size], cones[ChunkRects::size];
     const TransformLanes transform(source.to_view);
     const ViewLanes view(camera);

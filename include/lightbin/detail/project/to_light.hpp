@@ -23,8 +23,8 @@ concept Vec4Of = requires(const Light& light) {
 
 }  // namespace detail
 
-/// The default way to make a Sphere or a Spot of a light: what converts to Spot or Sphere is converted, and a vec4 of floats,
-/// or of doubles rounded outward, becomes the Sphere with centre (x, y, z) and radius w.
+/// The default way to make a Sphere or a Spot of a light: what converts to Spot or Sphere is converted, and a vec4 of
+/// floats, or of doubles rounded outward, becomes the Sphere with centre (x, y, z) and radius w.
 struct AsLight {
     template <class Light>
     requires(std::convertible_to<const Light&, Sphere> || std::convertible_to<const Light&, Spot> ||
@@ -82,8 +82,7 @@ constexpr decltype(auto) make_light(const ToLight& to_light, const Light& light)
         return call(to_light, light);
 }
 
-/// Returns `to_light`. If it cannot make lights of type Light, that is a compile error, and a stand-in is returned so that
-/// no further errors follow.
+/// Returns `to_light`. If it cannot make lights of type Light, the one compile error says so: a stand-in is returned.
 template <class Light, class ToLight> constexpr auto checked_to_light(const ToLight& to_light) {
     using Made = decltype(make_light(to_light, std::declval<const Light&>()));
     constexpr bool can_be_called = !std::same_as<Made, NotCalled>;
@@ -107,8 +106,7 @@ template <class Light, class ToLight> constexpr auto checked_to_light(const ToLi
     }
 }
 
-/// Returns a span of the caller's array. If it is not contiguous, that is a compile error, and an empty span is returned so
-/// that no further errors follow.
+/// Returns a span of the caller's array. If it is not contiguous, the one compile error says so: the span is empty.
 template <class Range> auto checked_array(const Range& lights) {
     constexpr bool contiguous = requires { std::span(std::data(lights), std::size(lights)); };
     static_assert(

@@ -19,12 +19,13 @@ struct SpotPlane {
     float x, y, z, offset;
 };
 
-/// A spot in view space, after the camera's signs: tile indices grow with x and y, and z is the view depth. A spot
-/// that is a whole sphere has the axis 0, the sine 1 and the tolerance 0, so that no plane excludes any of it.
+/// A spot in view space, signed so that tile indices grow with x and y, and z is the view depth. A spot that is a whole
+/// sphere has the axis 0, the sine 1 and the tolerance 0, so that no plane excludes any of it.
 struct ViewSpot {
     Sphere ball;                           ///< the sphere that the cone cuts; its centre is the cone's apex
     float axis_x, axis_y, axis_z, cosine;  ///< the cone's unit axis; the cosine of the half angle, from 0 to 1
-    float nearest, farthest;  ///< the spot's view depths; rounding is monotone, so comparing floats with them is exact
+    /// The spot's view depths, rounded. Rounding is monotone: they meet each interval of floats that exact ones meet.
+    float nearest, farthest;
     float sine;               ///< sine of the half angle
     float tolerance;          ///< how far the exact spot can reach outside of this one, which is rounded to float
     /// With a depth test against boxes, four half spaces around the cone, whose planes touch the apex but for rounding.

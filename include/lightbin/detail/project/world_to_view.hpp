@@ -33,10 +33,10 @@ struct FloatTransform {
     float origin_image[3];  ///< `origin` in view space
     float stretch;          ///< an upper bound on the factor by which the transform stretches a length
     /// A transformed centre has an error of at most  error_rate * (|x| + |y| + |z|) + error_at_origin,  where x, y and
-    /// z are its coordinates relative to the origin.
+    /// z are its world-space coordinates relative to the member `origin`.
     float error_rate, error_at_origin;
-    /// How far a point of a transformed spot can lie outside the cone around the transformed axis, divided by the spot's
-    /// transformed radius; +inf where no bound is known.
+    /// How far a point of a transformed spot can lie outside the cone around the transformed axis, divided by the
+    /// spot's transformed radius; +inf where no bound is known.
     float cone_error;
     float max_distance = -1;  ///< float is precise enough where |x| + |y| + |z|, relative to `origin`, is at most this
 };
@@ -44,7 +44,7 @@ struct FloatTransform {
 /// A matrix that transforms lights from world space to view space.
 class WorldToView {
 public:
-    /// Not inlined, so that compilers move none of its operations out of the life of `environment`.
+    /// Not inlined, so that all operations happen while the object `environment` keeps rounding to nearest.
     LIGHTBIN_NOINLINE explicit WorldToView(const Matrix& matrix)
         : m_(matrix), affine_(finite(m_) && last_row_is_affine(m_)) {
         const DefaultFloatEnvironment environment;
@@ -77,8 +77,8 @@ public:
     }
     const FloatTransform& in_float() const { return in_float_; }
 
-    /// Returns the image of a sphere, computed in double; bad input is returned as it is. Not inlined, because compilers
-    /// would fuse its products and sums into the fused multiply-adds of a tier, which round differently.
+    /// Returns the image of a sphere, computed in double; bad input is returned as it is. Not inlined, because
+    /// compilers would fuse its products and sums into the fused multiply-adds of a tier, which round differently.
     LIGHTBIN_NOINLINE Sphere operator()(const Sphere& light) const {
         if (!is_finite(light.x) || !is_finite(light.y) || !is_finite(light.z) || !(light.radius >= 0)) return light;
         const double x = static_cast<double>(light.x), y = static_cast<double>(light.y),
@@ -111,10 +111,10 @@ private:
         return m[0][3] == 0 && m[1][3] == 0 && m[2][3] == 0 && m[3][3] == 1;
     }
 
-    /// Finds the transform in float if A is close to a rotation with a uniform scale: if the product of its Frobenius
-    /// norm and its inverse's is at most 32. Otherwise a position relative to the origin, p - o, and so its rounding
-    /// error, could be much larger than its image. It follows that each column of A is at least 2^-26 long, and that a
-    /// denormal entry that is flushed to zero is at most 2^-100 times its column's length.
+    /// Finds the transform in float if A, the linear part, is close to a rotation with a uniform scale: if the product
+    /// of its Frobenius norm and its inverse's is at most 32. Otherwise a position relative to the origin, p - o, and
+    /// so its rounding error, could be much larger than its image. A's norm must be 2^-20 to 2^20, so each column of A
+    /// is at least 2^-26 long, and a denormal entry that is flushed to zero is at most 2^-100 times as long.
     void find_float_transform() {
         double inverse[3][3], det = 0, norm2 = 0, inverse_norm2 = 0, longest_column2 = 0;
         for (int c = 0; c < 3; ++c)

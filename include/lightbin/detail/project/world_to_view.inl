@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The transform from world space to view space, a vector of spheres at a time; world_to_view.hpp derives its error bounds.
-// Included once per tier (instruction set).
+// The transform from world space to view space, a vector of spheres at a time; world_to_view.hpp derives its error
+// bounds. Included once per tier (instruction set).
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/common.inl>
@@ -30,7 +30,7 @@ struct TransformLanes {
     Floats origin[3], columns[3][3], origin_image[3], stretch, error_rate, error_at_origin, cone_error, max_distance;
 };
 
-/// Replaces the images of those spheres of a vector whose bit in `which` is set by images that are computed in double.
+/// Replaces the view-space spheres `images` of a vector, where a bit in `which` is set, by ones computed in double.
 LIGHTBIN_NOINLINE inline void transform_in_double(const WorldToView& to_view, unsigned which, const Floats (&given)[4],
                                                   Floats (&images)[4]) {
     Sphere before[lanes], after[lanes];

@@ -110,7 +110,7 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     }
 }
 
-/// Appends to `out` those of eight ids whose bit in `mask` is set. Returns the end, behind which it may write up to 8 elements.
+/// Appends to `out` the ids, of eight, whose bit in `mask` is set. Returns the end; may write 8 elements past it.
 template <class Id> LIGHTBIN_INLINE Id* append_8(Id* out, const std::uint32_t* ids, unsigned mask) {
     const __m256i chosen = _mm256_permutevar8x32_epi32(
         _mm256_loadu_si256(reinterpret_cast<const __m256i*>(ids)),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The tier of 512-bit vectors, which hold sixteen lights: AVX-512 with the compress instructions of VBMI2, and BITALG, which Ice
-// Lake, Zen 4 and later processors have.
+// The tier of 512-bit vectors, which hold sixteen lights: AVX-512 with the compress instructions of VBMI2, and BITALG,
+// which Ice Lake, Zen 4 and later processors have.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -126,8 +126,8 @@ inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
         words[bit] = _mm512_test_epi8_mask(all_bytes, _mm512_set1_epi8(static_cast<char>(1 << bit)));
 }
 
-/// Returns zeros in a register of their own, for the merging form of compress instructions. The zeroing form depends on the old value
-/// of its destination register on Zen 5, so that each iteration of a loop would wait for the one before.
+/// Returns zeros in a register of their own, for the merging form of compress instructions. The zeroing form depends on
+/// the old value of its destination register on Zen 5, so that each iteration of a loop would wait for the one before.
 inline __m512i fresh_zeros() {
     __m512i zeros = _mm512_setzero_si512();
     LIGHTBIN_FORGET(zeros);  // else the compiler picks the zeroing form
@@ -142,7 +142,7 @@ template <class Id> LIGHTBIN_INLINE void store_ids(Id* out, __m512i ids) {
         _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm512_cvtepi32_epi16(ids));
 }
 
-/// Appends to `out` those of sixteen ids whose bit in `mask` is set. Returns the end, behind which it may write up to 16 elements.
+/// Appends to `out` the ids, of sixteen, whose bit in `mask` is set. Returns the end; may write 16 elements past it.
 template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* ids, unsigned mask) {
     store_ids(out, _mm512_mask_compress_epi32(fresh_zeros(), static_cast<__mmask16>(mask), _mm512_loadu_si512(ids)));
     return out + std::popcount(mask);
@@ -158,13 +158,13 @@ inline constexpr CountingBytes counting_bytes = [] {
         bytes.of[i] = static_cast<std::uint8_t>(i);
     return bytes;
 }();
-/// Returns the positions of a word's set bits in ascending order, a byte for each, modulo `period`, which is a power of two.
+/// Returns the positions of a word's set bits, ascending, a byte for each, modulo `period`, a power of two.
 template <int period> __m512i set_positions(std::uint64_t word) {
     const __m512i positions = _mm512_and_si512(_mm512_loadu_si512(counting_bytes.of), _mm512_set1_epi8(period - 1));
     return _mm512_mask_compress_epi8(fresh_zeros(), word, positions);
 }
-/// Appends to `out` the ids of several tiles, whose masks of `lights` bits each, 8 or 16, lie one after another in a word. Returns the
-/// end, behind which it may write up to 64 elements.
+/// Appends to `out` the ids of several tiles, whose masks of `lights` bits each, 8 or 16, lie one after another in a
+/// word. Returns the end, behind which it may write up to 64 elements.
 template <int lights, class Id> Id* append_several(Id* out, __m512i ids, std::uint64_t masks) {
     const __m512i positions = set_positions<lights>(masks);
     const int count = std::popcount(masks);
@@ -178,8 +178,8 @@ template <int lights, class Id> Id* append_several(Id* out, __m512i ids, std::ui
 }
 
 #define LIGHTBIN_TIER_EMITS_SHORT
-/// Emits a row of eight tiles, as the emit_short() of emit.inl does, but all tiles at once: a compress instruction finds the lights of 4
-/// or 8 tiles. Builds of few or small lights take 1.2 to 1.7 times as long without it.
+/// Emits a row of eight tiles, as the emit_short() of emit.inl does, but all tiles at once: a compress instruction
+/// finds the lights of 4 or 8 tiles. Builds of few or small lights take 1.2 to 1.7 times as long without it.
 template <unsigned at_most, class Id>
 Id* emit_short(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset, const std::uint32_t* ids,
                const std::uint8_t* row_columns) {
@@ -188,7 +188,7 @@ Id* emit_short(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset
                         high = at_most == 8 ? 0 : transpose_bits(load_8_bytes(row_columns + 8));
     const __m128i lights = _mm_set_epi64x(static_cast<long long>(high), static_cast<long long>(low)),
                   counts = _mm_popcnt_epi8(lights), sizes = _mm_add_epi8(counts, _mm_unpackhi_epi64(counts, counts));
-    // Each tile's size, at most 16, is a byte. A product with 1 in each byte makes prefix sums of them.
+    // Each byte of `sizes` is the length of a tile's list, at most 16. A product with 1 in each byte makes prefix sums.
     const std::uint64_t sums = static_cast<std::uint64_t>(_mm_cvtsi128_si64(sizes)) * 0x0101010101010101;
     const __m512i ends = _mm512_cvtepu8_epi64(_mm_cvtsi64_si128(static_cast<long long>(sums))),
                   begins = _mm512_cvtepu8_epi64(_mm_cvtsi64_si128(static_cast<long long>(sums << 8)));

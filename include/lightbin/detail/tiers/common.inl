@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Functions that all tiers have in common. A tier that has a better way overloads them for its own types, as templates are chosen last.
-// Included once per tier (instruction set), before all kernels.
+// Functions that all tiers have in common. A tier that has a better way overloads them for its own types, as templates
+// are chosen last. Included once per tier (instruction set), before all kernels.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/tiers/in_editor.hpp>
@@ -11,8 +11,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 /// A mask's bits, see movemask(), with every lane set.
 inline constexpr std::uint64_t every_lane = (std::uint64_t{1} << lanes) - 1;
 
-// Loads and stores take the compiler's own type of register: GCC 12 copies a class that contains one in two halves, and the next load
-// would have to wait for both.
+// Loads and stores take the compiler's own type of register: GCC 12 copies a class that contains one in two halves, and
+// the next load would have to wait for both.
 inline Floats load_floats(const float* from) {
     FloatRegister values;
     std::memcpy(&values, from, sizeof values);
@@ -47,8 +47,7 @@ inline Reals select_unpredicted(Mask mask, Reals a, Reals b) {
     return select(mask, a, b);
 }
 
-/// Loads the spheres with `count` indices, but no more than a vector holds, as four vectors. If they are fewer, the last sphere fills
-/// the other lanes.
+/// Loads the spheres with `count` indices, at most a vector of them, as four vectors. The last one fills spare lanes.
 template <class Index>
 void load_listed_spheres(const Sphere* spheres, const Index* indices, std::uint32_t count, Floats& x, Floats& y, Floats& z,
                          Floats& radius) {

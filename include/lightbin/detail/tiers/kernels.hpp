@@ -41,8 +41,7 @@ template <bool spots> DepthBucketsKernel depth_buckets_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) { return tier.template depth_buckets_kernel<spots>(); });
 }
 
-/// Returns the kernel that reduces depth samples in rows of `columns`: the widest one, up to the instruction set, whose vectors are
-/// no longer than a row.
+/// Returns the kernel that reduces rows of `columns` samples: the widest, up to `isa`, whose vectors a row can fill.
 template <bool by_split> DepthKernel depth_kernel(Isa isa, std::size_t columns) {
     if (with_tier(isa, [=](auto tier) { return columns >= tier.vector; }))
         return with_tier(isa, [](auto tier) { return tier.template depth_kernel<by_split>(); });

@@ -1,36 +1,37 @@
 // SPDX-License-Identifier: MIT
-// The kernels of one tier, in order: every text is read once for each tier, in the tier's namespace and with its vector class. A
-// tier is a file that defines what is named below and includes this one; a kernel is a text, a line here, a member of Tier, and a
-// function in kernels.hpp that hands it out.
+// The kernels of one tier (instruction set). The source of a kernel is an .inl file of templates over the tier's vector
+// class. This file includes all of them, each after the files whose functions it calls. A tier is a header that defines
+// the names below and includes this file, so each kernel is compiled once per tier, in the tier's namespace. A kernel
+// also has a member in Tier, at the end of this file, and a function in kernels.hpp that returns it.
 //
 // A tier defines LIGHTBIN_TIER, the name of its namespace, and in that
 //   lanes, double_lanes            the number of floats, and of doubles, in a vector
 //   Floats, Doubles                vectors with + - * / and the sign
-//   FloatRegister, DoubleRegister  the compiler's types that hold them
-//   broadcast, sqrt, abs           of a number into all lanes; of each lane
+//   FloatRegister, DoubleRegister  the compiler's own types inside of Floats and Doubles
+//   broadcast, sqrt, abs           a number in all lanes; the root, and the absolute value, of each lane
 //   mul                            a product that is rounded before anything is added to it, see rounded()
 //   less, less_equal               comparisons; the result is a mask
-//   movemask                       the bits of a mask, one a lane
-//   both, either, and_not          logic of masks, unless these have & | ^
+//   movemask                       the bits of a mask, one for each lane, as an integer
+//   both, either, and_not          logic of masks, unless masks have & | ^
 //   select(mask, a, b)             a where the mask is set, else b
 //   minimum, maximum               of two vectors; where a lane of the first is NaN, the second's
 //   widened(floats, half)          half 0 or 1 of Floats as Doubles
 //   load_spheres, store_spheres    `lanes` spheres as four vectors, and back
-//   store_tiles, store_spans       coordinates of tiles, rounded down to whole numbers; pairs of them as 16 bits
+//   store_tiles, store_spans       coordinates of tiles, rounded down to whole numbers; pairs of them as RowSpans
 //   ascending_bits                 the bits of floats as numbers in the order of the floats, as floats
-//   split_bits(bytes, words)       for each of the 8 bits of 64 bytes the word of that bit in each: a transpose of 64x8 bits
-//   split_16_bytes(bytes, words)   the same of 16 bytes
-//   append_16(out, ids, mask)      appends those of 16 ids whose bit is set, and up to 16 elements without meaning; the end
-//   append_8                       the same of 8 ids, with up to 16 elements without meaning
-//   Bytes, ByteMask, byte_lanes    a vector of bytes without sign, a bit for each, how many
+//   split_bits(bytes, words)       transposes 64 bytes to 8 words: bit i of word j is bit j of byte i
+//   split_16_bytes(bytes, words)   as split_bits(), but of 16 bytes
+//   append_16(out, ids, mask)      appends the ids, of 16, whose bit is set; returns the end; writes up to 16 more
+//   append_8(out, ids, mask)       as append_16(), but of 8 ids
+//   Bytes, ByteMask, byte_lanes    a vector of unsigned bytes; a mask with a bit for each; the number of bytes
 //   load_bytes, store_bytes, broadcast_byte, &, minimum
-//   subtract                       0 where the difference is negative
+//   subtract                       the difference of bytes, 0 where it is negative
 //   shuffle(table, indices)        looks up bytes in a table of 16
 //   not_zero                       the mask of the bytes that are not 0
-//   keep_where(bytes, condition)   the bytes whose condition is not 0; the others become 0
-//   coordinates(from, more, begin) min(from[i] + more - begin, 255), 0 where negative, of `byte_lanes` 16-bit numbers
-//   compress_store(mask, from, to) stores the chosen bytes, or 32-bit ids in memory, side by side, and elements without meaning
-// Functions that a tier has a faster way for overload those of common.inl.
+//   keep_where(bytes, condition)   the bytes, but 0 where the byte of `condition` is 0
+//   coordinates(from, more, begin) min(from[i] + more - begin, 255) of `byte_lanes` 16-bit numbers; 0 where negative
+//   compress_store(mask, from, to) stores the chosen bytes, or 32-bit ids, side by side, then meaningless elements
+// A tier overloads the functions of common.inl for which it has a faster way.
 
 #define LIGHTBIN_KERNELS
 

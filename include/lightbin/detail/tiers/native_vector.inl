@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Vector functions for types that have the operators of numbers themselves: plain numbers in the scalar tier, and the vector types of
-// GCC and Clang in NEON and WebAssembly.
+// Vector functions for types that have the operators of numbers themselves: plain numbers in the scalar tier, and the
+// vector types of GCC and Clang in NEON and WebAssembly.
 
 template <class Reals> Reals mul(Reals a, Reals b) {
     return rounded(a * b);

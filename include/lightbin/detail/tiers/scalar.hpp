@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The tier of plain numbers, for machines without a tier of their own. Every other tier must give the same bytes as this one.
+// The tier of plain numbers, for machines without a tier of their own. Every other tier must give the same bytes.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>

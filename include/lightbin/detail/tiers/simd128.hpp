@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The tier of 128-bit vectors, which hold four lights: SSE4.1 (x86 processors since 2008), NEON (64-bit ARM) and WebAssembly's simd128.
-// This file has what the three have in common; sse41.inl, neon.inl and wasm.inl have the operations as each spells them.
+// The tier of 128-bit vectors, which hold four lights: SSE4.1 (x86 processors since 2008), NEON (64-bit ARM) and
+// WebAssembly's simd128. sse41.inl, neon.inl and wasm.inl have the operations that each spells in its own way.
 #pragma once
 
 #include <lightbin/detail/base/abi_tag.hpp>
@@ -80,7 +80,7 @@ inline void compress_store(ByteMask chosen, Bytes from, std::uint8_t* to) {
 /// How many bits of four are set.
 inline constexpr std::uint8_t set_of_4[] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
 
-/// For each mask of four 32-bit elements, the positions of the bytes of those elements whose bit is set: indices for a byte shuffle.
+/// For each mask of four 32-bit elements, the positions of the bytes of the chosen elements: indices of a byte shuffle.
 struct Compress4 {
     alignas(16) std::uint8_t of[16][16];
 };
@@ -93,7 +93,7 @@ inline constexpr Compress4 compress_4 = [] {
     return table;
 }();
 
-/// Appends to `out` those of four ids whose bit in `mask` is set. Returns the end, behind which it may write up to 4 elements.
+/// Appends to `out` the ids, of four, whose bit in `mask` is set. Returns the end; may write 4 elements past it.
 template <class Id> LIGHTBIN_INLINE Id* append_4(Id* out, const std::uint32_t* ids, unsigned mask) {
     const ByteRegister chosen = shuffle_bytes(load_register(ids), load_register(compress_4.of[mask]));
     if constexpr (sizeof(Id) == 4)

@@ -24,8 +24,8 @@ template <class Id>
 using BitsKernel = void (*)(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end,
                             std::uint32_t* bits, std::size_t stride);
 
-/// For each value of a byte, the positions of its set bits in ascending order, one in each byte of a word. As indices of a shuffle they
-/// compact eight elements: they move the elements whose bit is set to the front.
+/// For each value of a byte, the positions of its set bits in ascending order, one in each byte of a word. As indices
+/// of a shuffle they compact eight elements: they move the elements whose bit is set to the front.
 struct SetBits {
     std::uint64_t of[256];
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A class around an x86 vector register, with the operators of its elements. A tier includes this file twice, for floats and for
-// doubles, and defines before it
+// A class around an x86 vector register, with the operators of its elements. A tier includes this file twice, for
+// floats and for doubles, and defines before it
 //
 //   LIGHTBIN_VECTOR    the name of the class
 //   LIGHTBIN_ELEMENT   float or double

@@ -18,7 +18,7 @@ struct ImageAxis {
     double offset = 0;
     float sign = 1;    ///< 1, or -1 where tile indices grow as the view-space coordinate falls
     float margin = 0;  ///< an upper bound on the error, in tiles, of a coordinate in the viewport that float computes
-    float limit = 0;   ///< the viewport's size in tiles, partial tiles as fractions, rounded up
+    float limit = 0;   ///< the viewport's extent in tiles, fractional for a partial tile, rounded up to a float
     float last_tile_centre = 0;  ///< coordinates in tiles are clamped to it, then truncated to tile indices
     /// Unit normal (normal, normal_z) of a plane through the eye that has the whole viewport on its inner side. So has
     /// its mirror image: a point with the coordinate c and the view depth d is out of view if

@@ -13,7 +13,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// The mapping between view depth d and normalized device depth:  ndc = (z_scale d + z_offset) / (w_scale d + w_offset).
+/// Maps view depth d to normalized device depth and back:  ndc = (z_scale d + z_offset) / (w_scale d + w_offset).
 struct DepthMap {
     double z_scale = 0, z_offset = 0, w_scale = 0, w_offset = 0;
     bool reversed = false;     ///< reversed Z: the near plane has the larger device (NDC) depth
@@ -71,8 +71,7 @@ inline std::optional<ErrorCode> wrong_shape(const Matrix& m) {
     return {};
 }
 
-/// Whether a perspective matrix looks transposed: the 1 or -1 that belongs in the z entry of its w row is in the w
-/// entry of its z row.
+/// Whether a perspective matrix looks transposed: the 1 or -1 of its w row's z entry is in the w entry of its z row.
 inline bool one_is_transposed(const Matrix& m) {
     return abs_of(m[3][2]) == 1 && abs_of(m[2][3]) != 1;
 }
@@ -83,8 +82,9 @@ struct Projection {
     Camera camera;
     DepthMap depth;
 
-    /// Sets one image axis. Device coordinates are  ndc = (c / w) * p + q / w  of a view coordinate c, and ndc -1 to 1 are
-    /// the `side` pixels of the viewport. Returns false if the scale is too small or too large to compute with.
+    /// Sets one image axis from entries p, q and w of the matrix. A device coordinate
+    /// is  ndc = c * p / w + q / w,  where c is a point's slope x / depth (or y / depth), or in orthographic views its
+    /// coordinate. The viewport's `side` pixels are ndc -1 to 1. Returns false if the scale is too small or too large.
     bool set_axis(ImageAxis& axis, double p, double q, double w, int side, int tile_size) const {
         const double tiles = static_cast<double>(side) / tile_size;
         axis.tiles = side / tile_size + (side % tile_size != 0 ? 1 : 0);
@@ -93,10 +93,11 @@ struct Projection {
         axis.offset = (q / w + 1.0) * (0.5 * tiles);
         axis.last_tile_centre = static_cast<float>(axis.tiles) - 0.5f;
         axis.limit = float_above(tiles);
-        // A tangent's slope in floats is within 10u of the true one, where u = 2^-24 (derived in spheres.inl). Multiplied
-        // by the scale, rounded to float, the error is 12u; rounding the offset and the sum adds u each. Inside the viewport
-        // |scale * slope| <= |offset| + tiles. A margin of 16u of that also covers the double steps above and the addition
-        // of the margin itself. The term 2^-80 scale is for callers who flush denormal numbers to zero.
+        // A tangent's slope in floats is within 10u of the true one, where u = 2^-24 (derived in spheres.inl).
+        // Multiplied by the scale, rounded to float, the error is 12u; rounding the offset and the sum adds u each.
+        // Inside the viewport |scale * slope| <= |offset| + tiles, as scale * slope + offset is between 0 and `tiles`.
+        // A margin of 16u of that also covers the rounding of `scale` and `offset` in double and the addition of the
+        // margin itself. The term 2^-80 scale is for callers who flush denormal numbers to zero.
         axis.margin = float_above(0x1p-20 * (abs_of(axis.offset) + axis.tiles) + 0x1p-80 * axis.scale);
         if (!camera.orthographic && axis.scale > 0) {
             const double slope = max_of(tiles - axis.offset, axis.offset) / axis.scale;
@@ -127,9 +128,9 @@ struct Projection {
     /// Reads `matrix`. depth.zero_to_one must be set before. Returns why the matrix is refused, or nothing.
     ///
     /// y_up        tile rows count up from the side of the image where device y is -1
-    /// reversed_z  read for orthographic matrices alone: a perspective matrix shows it
+    /// reversed_z  read for orthographic matrices alone: a perspective matrix shows whether Z is reversed
     ///
-    /// Not inlined, so that the compiler moves no operation of it out of the life of `environment`.
+    /// Not inlined, so that all operations happen while the object `environment` keeps rounding to nearest.
     LIGHTBIN_NOINLINE std::optional<ErrorCode> read(int width, int height, int tile_size, bool y_up,
                                                     bool reversed_z) {
         const DefaultFloatEnvironment environment;
@@ -169,8 +170,7 @@ struct Projection {
     ViewSummary summary(int width, int height, int tile_size) const {
         const bool flat = camera.orthographic;
         const Matrix& m = matrix;
-        // The image's extent between ndc -1 and 1 on one axis, from the matrix because ImageAxis::scale is 0 for an empty
-        // viewport.
+        // The image's extent between ndc -1 and 1, from the matrix, as ImageAxis::scale is 0 for an empty viewport.
         const auto size = [&](int axis) {
             const double w = flat ? depth.w_offset : depth.w_scale,
                          offset = flat ? m[3][axis] : static_cast<double>(camera.z_sign) * m[2][axis];

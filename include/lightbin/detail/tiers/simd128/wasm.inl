@@ -20,7 +20,7 @@ inline Floats sqrt(Floats a) {
 inline Doubles sqrt(Doubles a) {
     return reinterpret_cast<Doubles>(wasm_f64x2_sqrt(reinterpret_cast<v128_t>(a)));
 }
-// WebAssembly's pmin and pmax are select(less(a, b), a, b) and the like in one instruction, with NaN as the kernels need it.
+// WebAssembly's pmin and pmax are select(less(a, b), a, b) and the like in one instruction, also for NaN.
 inline Floats minimum(Floats a, Floats b) {
     return reinterpret_cast<Floats>(wasm_f32x4_pmin(reinterpret_cast<v128_t>(b), reinterpret_cast<v128_t>(a)));
 }
