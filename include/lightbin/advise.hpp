@@ -17,8 +17,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// Costs that advise() can't measure, as they depend on the renderer and the GPU. Times are in nanoseconds, 0 or more.
 struct Costs {
-    /// The time to evaluate one light at one pixel: about 1 on a CPU core, and 0.005 to 0.05 on a whole GPU, which
-    /// evaluates many at once.
+    /// The time to evaluate one light at one pixel: about 1 on a CPU core, and 0.005 to 0.05 on a whole, parallel GPU.
     double evaluation_ns = 0.02;
     /// The time of the depth pre-pass and its reduction to each tile's Z bounds; 0 if the renderer does both anyway.
     double z_bounds_ns = 0;
@@ -58,18 +57,19 @@ inline std::string to_string(const Plan& plan) {
     return words;
 }
 
-/// Whether a plan gains from a technique that it uses, or would gain from one that it lacks: tiles, a depth pre-pass,
-/// boxes, split boxes, clusters, z-bins or silhouettes.
+/// What one technique saves or costs in a plan that verdicts() judges. Techniques are tiles, a depth pre-pass,
+/// DepthTest::box or split_box, split_box alone, Slicing::clusters, Slicing::z_bins and Footprint::silhouette.
 struct Verdict {
     std::string part;     ///< the technique's name, such as "box"
     bool keep = false;    ///< whether the judged plan uses the technique that `part` names
-    Plan other = {};      ///< the cheapest plan with the technique if the judged plan lacks it, else without it
-    std::string instead;  ///< the Plan `other` in words; empty if no such plan was measured
+    Plan other = {};      ///< the cheapest measured plan that lacks the technique if `keep` is true, else that uses it
+    std::string instead;  ///< `other` in words; empty if no measured plan differs from the judged one in `part`
     double saved_ns = 0;  ///< the time of a frame with the Plan `other` minus that with the judged plan
 };
 
-/// Returns a line such as  "box          keep: saves 1.200 ms    instead: 16 px, rectangle, interval":  keep boxes
-/// around cells; the best plan without them, the last in the line, takes 1.2 ms more per frame.
+/// Returns a line such as  "box          keep: saves 1.200 ms    instead: 16 px, rectangle, interval".  This says that
+/// the judged plan uses DepthTest::box, and that the cheapest plan without it, which has tiles of 16 pixels,
+/// Footprint::rectangle and DepthTest::interval, takes 1.2 ms more per frame.
 inline std::string to_string(const Verdict& verdict);
 
 /// Every plan (options of a Binner and a tile size) that was measured, in ascending order of the time of a frame.
@@ -113,15 +113,15 @@ inline std::string to_string(const Advice& advice);
 template <Options base = Options{}, class Visit>
 decltype(auto) with_options(const Plan& plan, Visit&& visit);
 
-/// Applies a plan of advise_slices() as with_options() does. Some of its options need slices, others don't:
-/// inputs_for<options>({}, slices) returns the inputs of Binner::bin() for each.
+/// Applies a plan of advise_slices(): calls visit.operator()<options>() with the plan's options as a constant, and
+/// returns its result. Only plans with clusters or z-bins need slices: inputs_for<options>({}, slices) returns for
+/// every plan the inputs that Binner::bin() needs.
 template <Options base = Options{}, class Visit>
 decltype(auto) with_sliced_options(const Plan& plan, Visit&& visit);
 
-/// Measures what each way to light a view costs: without tiles; and with tiles of the view's size, of 2, 4 and 8 times
-/// that size, and of one tile as large as the screen, each with rectangles, silhouettes, and the depth tests that
-/// `bounds` allow. So pass the view with the smallest tiles that you would use. Errors are those of Binner::bin() for
-/// any of these.
+/// Measures what each way to light a view costs: without tiles; and with tiles of the view's tile size, of 2, 4 and 8
+/// times that size, and of one tile as large as the screen, each with rectangles, silhouettes, and the depth tests that
+/// `bounds` allow. So pass the view with the smallest tiles that you would use. Errors: those of Binner::bin().
 ///
 /// Call it once per scene, not once per frame, in an optimised build. It takes as long as some hundreds of plain builds
 /// of the view's grid, or a thousand if these are short: it builds every grid 3 to 9 times on this thread, with the
@@ -151,12 +151,12 @@ struct WeighedSlices {
     const Slices& z_bins;    ///< typically some hundreds
 };
 
-/// Measures, like advise(), the ways to light a view that need no depth pre-pass: without tiles; rectangles or
-/// silhouettes; rectangles with z-bins; clusters with rectangles, with rectangles and `box`, with silhouettes and
-/// `box`. The tile sizes are those of advise(). Each depth sample stands for an equal share of the pixels, which
-/// evaluate the list of their tile; with z-bins its part between the ranks of the depth's bin; with clusters the list
-/// of the cell. with_sliced_options() applies a plan. Errors: those of Binner::bin(), and fewer depths than
-/// samples.size says.
+/// Measures, like advise(), the ways to light a view that need no depth pre-pass: without tiles; tiles with rectangles
+/// or silhouettes; rectangles with z-bins; clusters with rectangles, without a depth test or with DepthTest::box;
+/// clusters with silhouettes and DepthTest::box. The tile sizes are those of advise(). Each depth sample stands for an
+/// equal share of the pixels, which evaluate the list of their tile; with z-bins its part between the ranks of the
+/// depth's bin; with clusters the list of the cell. with_sliced_options() applies a plan. Errors: those of
+/// Binner::bin(), and fewer depths than samples.size says.
 ///
 /// Compared with what advise() finds for the same view with Z bounds, the result shows whether a depth pre-pass pays
 /// off. It takes longer than advise(), because clusters of the smallest tiles do.

@@ -6,6 +6,7 @@
 #include <lightbin/detail/depth/ranked_footprints.hpp>
 #include <lightbin/detail/depth/sliced_footprints.hpp>
 #include <lightbin/detail/engine/grid_lists.hpp>
+#include <lightbin/detail/project/light_coverage.hpp>
 #include <lightbin/list_format.hpp>
 
 #include <lightbin/detail/base/warnings_off.inl>
@@ -17,7 +18,7 @@ template <DepthTest depth_test, Slicing slicing = Slicing::none> struct Inputs {
     static constexpr bool reads_slices = slicing != Slicing::none,
                           reads_bounds = depth_test != DepthTest::none && slicing != Slicing::clusters;
 
-    /// The depth slices. They are not copied, so they must live until the call; temporary Slices are copied.
+    /// The depth slices. Temporary Slices are copied; other Slices must live until the Binner's call returns.
     std::conditional_t<reads_slices, detail::SlicesInput, detail::NotRead> slices =
         detail::slices_left_out<reads_slices>();
     /// Z bounds: minimum, maximum or both. Lights are not tested against a bound whose span is empty.
@@ -36,7 +37,7 @@ requires(options.slicing == Slicing::none) Inputs<options.depth_test> inputs_for
 }
 
 /// Returns Inputs with the bounds or slices, or both, that the options read. For templates whose options vary,
-/// Options::slicing among them. The slices must live until the call; temporary Slices are copied.
+/// Options::slicing among them. Temporary Slices are copied; others must live until the Binner's call returns.
 template <Options options>
 Inputs<options.depth_test, options.slicing> inputs_for([[maybe_unused]] const ZBounds& bounds,
                                                        [[maybe_unused]] const detail::SlicesInput& slices) {
@@ -50,8 +51,7 @@ Inputs<options.depth_test, options.slicing> inputs_for([[maybe_unused]] const ZB
 }
 
 /// Two grids of one scene (Tiled Forward Shading, section 4.5, Listing 4.2). `opaque` is tested against minimum and
-/// maximum depth; `transparent` against the maximum alone, because transparent geometry may lie anywhere in front of
-/// opaque geometry.
+/// maximum depth; `transparent` against the maximum alone, as transparent geometry may be anywhere before opaque.
 template <class Id> struct TransparencyGrids { LightGrid<Id> opaque, transparent; };
 
 /// Bins lights into screen tiles.
@@ -84,21 +84,21 @@ public:
 
     /// Returns the light grid of `lights` in `view`. Its memory belongs to the Binner and is valid until the next call.
     ///
-    /// lights   view_space(...), world_space(...), or a contiguous range of vec4 (x, y, z, r), Sphere or Spot in view
-    ///          space
+    /// lights   view_space(...), world_space(...), or a contiguous range of vec4 (x, y, z, radius), Sphere, Spot or Box in
+    ///          view space; or lights(...), which joins several of these
     /// inputs   {.slices = ...} with clusters or z_bins, {.bounds = ...} with a depth test unless with clusters, and
     ///          {.slices = ..., .bounds = ...} with z_bins and a depth test; else nothing
     /// threads  a Parallel, to share the work among the caller's threads. The grid does not depend on it.
     ///
-    /// Afterwards every tile lists, in ascending order, every light whose sphere, or spot, meets the tile's cell.
-    /// Errors: more lights than Id can number; more than 2^32 - 1 entries, cells, or pairs of a light and a slice or
-    /// block of 8x8 tiles; a world_space() matrix that is not affine; Z bounds shorter than view.tile_count().
+    /// Afterwards every tile lists, in ascending order, every light whose sphere, spot or box meets the tile's cell. Errors:
+    /// more lights than Id can number; more than 2^32 - 1 entries, cells, or pairs of a light and a slice or block of 8x8
+    /// tiles; a world_space() matrix that is not affine; Z bounds shorter than view.tile_count().
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     Result<LightGrid<Id>> bin(const View& view, const LightRange& lights, const Inputs& inputs = {},
                               const Threads& threads = {}) {
         const detail::DefaultFloatEnvironment environment;
         if (const auto error = project(view, lights, inputs, threads)) return *error;
-        return build<spots<LightRange>>(lists_, view, inputs.bounds, threads);
+        return build<kind<LightRange>>(lists_, view, inputs.bounds, threads);
     }
 
     /// Returns two grids, for opaque and for transparent geometry, and projects the lights once for both. They are
@@ -119,16 +119,17 @@ public:
             return Error{ErrorCode::no_transparent_max};
         if (const auto error = project(view, lights, inputs, threads)) return *error;
         const ZBounds in_front = {.max = own_max ? bounds.transparent_max : bounds.max};
-        const auto transparent = build<spots<LightRange>>(transparent_, view, in_front, threads);
+        const auto transparent = build<kind<LightRange>>(transparent_, view, in_front, threads);
         if (!transparent) return transparent.error();
-        const auto opaque = build<spots<LightRange>>(lists_, view, bounds, threads);
+        const auto opaque = build<kind<LightRange>>(lists_, view, bounds, threads);
         if (!opaque) return opaque.error();
         return TransparencyGrids<Id>{*opaque, *transparent};
     }
 
     /// Writes a bitmask per tile to `bits`, without making lists: the same words that encode() makes of bin()'s grid
     /// with {.encoding = ListEncoding::bitmask, .max_lights = max_lights}. This is faster up to about a thousand
-    /// lights. Returns the counts of lights and, with z_bins, the ranks, which are valid until the next call.
+    /// lights. Returns how many lights there are and how many were left out, and with z_bins the order of the lights by
+    /// depth and the z-bins' ranges in it, which are valid until the next call.
     ///
     /// Errors: those of bin() except for too many entries, as none are counted; fewer words in `bits` than (max_lights
     /// + 31) / 32 per tile; more lights than max_lights (with z_bins, in view). The last two leave `bits` as it was.
@@ -143,38 +144,44 @@ public:
         if (const auto error = project(view, lights, inputs, threads)) return *error;
         const std::uint64_t numbered = z_bins ? footprints_.visible() : footprints_.lights();
         if (numbered > max_lights) return Error{ErrorCode::ids_too_narrow, numbered, max_lights};
-        if (const auto error = lists_.template write_bits<spots<LightRange>>(
+        if (const auto error = lists_.template write_bits<kind<LightRange>>(
                 isa_, view, visible(), inputs.bounds, scratch_, threads, bits.data(),
                 static_cast<std::size_t>(each)))
             return *error;
         return LightBits{counts(), visible().ranks()};
     }
 
+    /// Returns what each light in view covers, in ascending order of id, for the lights and the view of the last call
+    /// of bin(), bin_transparency() or bin_bits(). It is valid until the next call. After an error it may be empty.
+    std::span<const LightCoverage> coverage() const requires(options.coverage) { return coverage_.all(); }
+
 private:
     using Lists = detail::GridLists<Id, options.footprint, options.depth_test, clusters>;
     struct Nothing {};
     using Ordered = std::conditional_t<
         clusters, SlicedFootprints<options.footprint>,
-        std::conditional_t<z_bins, RankedFootprints<options.footprint, with_depth>, Nothing>>;
+        std::conditional_t<z_bins, RankedFootprints<options.footprint>, Nothing>>;
 
-    /// True if the caller's lights are Spots.
+    /// The kind of the caller's lights.
     template <class LightRange>
-    static constexpr bool spots =
-        std::remove_cvref_t<decltype(detail::as_lights(std::declval<const LightRange&>()))>::spots;
+    static constexpr detail::LightKind kind =
+        std::remove_cvref_t<decltype(detail::as_lights(std::declval<const LightRange&>()))>::kind;
 
     /// Projects the lights to footprints and, with z-bins or clusters, orders the footprints by depth.
     template <class LightRange>
     std::optional<Error> project(const View& view, const LightRange& lights,
                                  [[maybe_unused]] const Inputs& inputs, const Parallel& threads) {
         const auto& source = detail::as_lights(lights);
+        if constexpr (options.coverage) coverage_.clear();
         if (const auto error = detail::refuse(source, options.ids == IdWidth::u16 ? 0x10000 : 0xffffffff))
             return error;
         scratch_.reserve(1, 1);
         isa_ = machine_isa(options.isa);
         footprints_.project(isa_, view, source, threads, lists_.shared(),
                             detail::with_boxes<options.depth_test>);
+        if constexpr (options.coverage) coverage_.template find<kind<LightRange>>(view, footprints_, threads);
         if constexpr (Inputs::reads_slices)
-            return ordered_.template order<spots<LightRange>>(isa_, view, footprints_, inputs.slices);
+            return ordered_.template order<kind<LightRange>>(isa_, view, footprints_, inputs.slices);
         else
             return {};
     }
@@ -188,10 +195,10 @@ private:
     }
 
     /// Builds the lists of the projected lights into `lists` and returns their grid.
-    template <bool of_spots, class Threads>
+    template <detail::LightKind of_kind, class Threads>
     Result<LightGrid<Id>> build(Lists& lists, const View& view, const ZBounds& bounds,
                                 const Threads& threads) {
-        if (const auto error = lists.template build<of_spots>(isa_, view, visible(), bounds, scratch_, threads))
+        if (const auto error = lists.template build<of_kind>(isa_, view, visible(), bounds, scratch_, threads))
             return *error;
         return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), counts(),
                              visible().slices(), visible().ranks());
@@ -199,7 +206,9 @@ private:
 
     LightCounts counts() const {
         const auto all = static_cast<std::uint32_t>(footprints_.lights());
-        return {all, footprints_.rejected(), all - footprints_.rejected() - footprints_.visible()};
+        const detail::ViewLights& kinds = footprints_.arrays().view_lights;
+        return {all, footprints_.rejected(), all - footprints_.rejected() - footprints_.visible(), kinds.first_spot,
+                kinds.first_box};
     }
 
     void swap(Binner& other) noexcept {
@@ -209,14 +218,16 @@ private:
         std::swap(ordered_, other.ordered_);
         std::swap(lists_, other.lists_);
         std::swap(transparent_, other.transparent_);
+        std::swap(coverage_, other.coverage_);
     }
 
     Isa isa_ = Isa::scalar;
     detail::Buffer<detail::Scratch> scratch_;  ///< working memory, one Scratch per worker
-    Footprints<options.footprint, with_depth || options.slicing != Slicing::none> footprints_;
+    Footprints<options.footprint, with_depth || options.slicing != Slicing::none || options.coverage> footprints_;
     Ordered ordered_;
     Lists lists_;
     std::conditional_t<with_depth, Lists, Nothing> transparent_;
+    std::conditional_t<options.coverage, detail::CoverageList, Nothing> coverage_;
 };
 
 }}  // namespace lightbin

@@ -33,6 +33,8 @@ enum class ErrorCode : std::uint8_t {
     too_many_list_places,
     range_buffer_too_small,
     id_buffer_too_small,
+    grids_differ,
+    ids_are_ranks,
     // Z bounds
     z_bounds_too_small,
     depth_buffer_too_small,
@@ -44,8 +46,12 @@ enum class ErrorCode : std::uint8_t {
     slice_range_empty,
     slices_do_not_ascend,
     too_many_cells,
+    // arrays with one element per light
+    too_few_weights,
+    light_buffer_too_small,
     // encodings and shader text
     ids_too_narrow,
+    kinds_of_ranks,
     list_buffer_too_small,
     bit_buffer_too_small,
     capacity_unknown,
@@ -56,6 +62,7 @@ enum class ErrorCode : std::uint8_t {
     no_texel_buffers,
     no_byte_address_buffers,
     slot_out_of_range,
+    views_out_of_range,
     no_sets,
     no_push_constants,
     no_multisample_textures,
@@ -108,6 +115,10 @@ inline constexpr const char* error_sentences[] = {
      "fewer slices, larger tiles or fewer lights"),
     "the buffer for list ranges holds {available} ranges, and {needed} are needed",
     "the buffer for light ids holds {available} ids and {needed} are needed",
+    ("grids that share buffers, or that are united, must have the same numbers of columns and rows of tiles and of "
+     "slices: give their views the same viewport and tile size, and the same Slices"),
+    ("grids with z-bins cannot be united, as each numbers the lights in its own order of depth: use tiles or clusters, "
+     "or give each view a grid of its own"),
     // Z bounds
     "a Z bounds buffer holds {available} tiles, and the view has {needed}",
     "the depth buffer holds {available} samples and {needed} are needed",
@@ -120,9 +131,15 @@ inline constexpr const char* error_sentences[] = {
     "two or more slices need a range of finite depths: 0 < first < last for exponential(), begin < end for linear()",
     ("the boundaries of slices must be finite and ascend, and boundary {needed}, counted from 0, does not (of "
      "exponential() and linear(): too few floats in their range for so many slices)"),
-    "tiles times slices are {needed} cells, and 32-bit numbers reach {available}: use larger tiles or fewer slices",
+    ("tiles times slices (of all views) are {needed} cells, and 32-bit numbers reach {available}: use larger tiles or "
+     "fewer slices"),
+    // arrays with one element per light
+    "a budget needs a weight for each of the {needed} lights that were binned, and was given {available}",
+    "the buffer with one element per light has {available}, and {needed} lights were binned",
     // encodings and shader text
     "the lists' format numbers {available} lights and {needed} are needed: use wider ids, or a larger max_lights",
+    ("with z-bins ids are ranks, in order of depth, so a list is not ordered by kind: look each id up in ranks().order, and "
+     "compare that with LightCounts::first_spot and first_box"),
     "the buffer for the encoded lists holds {available} bytes and {needed} are needed",
     "the buffer for bitmasks holds {available} words of 32 bits and {needed} are needed",
     "sentinel lists need ListFormat::capacity, the lights a tile can hold",
@@ -136,6 +153,7 @@ inline constexpr const char* error_sentences[] = {
     "GLSL ES and WGSL have no buffer textures: use texture_2d, uniform_block or (not ES 3.00) storage_buffer",
     "byte_address buffers are HLSL's: use storage_buffer",
     "ShaderSlot::binding and set must be 0 or more, and one is {given}",
+    "ShaderOptions::views must be 1 to {available}, and is {given}",
     "this language has no descriptor sets, register spaces or groups: ShaderSlot::set must be 0 and is {given}",
     "push constants are Vulkan GLSL's: set ShaderOptions::push_constants to false",
     "GLSL ES 3.00 has no multisample textures: resolve the depth buffer first",

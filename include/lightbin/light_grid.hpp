@@ -31,8 +31,10 @@ struct ListRange {
 /// How many lights a grid was made of, and how many of them it leaves out. All others have tiles in their footprints.
 struct LightCounts {
     std::uint32_t lights = 0;
-    std::uint32_t rejected = 0;  ///< the number of lights left out as bad input: see Sphere and Spot
+    std::uint32_t rejected = 0;  ///< the number of lights left out as bad input: see Sphere, Spot and Box
     std::uint32_t culled = 0;    ///< the number of lights left out as outside of the view
+    /// Ids below `first_spot` are those of Spheres, from there to `first_box` those of Spots, others those of Boxes.
+    std::uint32_t first_spot = 0xffffffff, first_box = 0xffffffff;
 };
 
 /// The least and greatest rank of the lights whose depths meet a z-bin. A rank is a light's position in order of depth.
@@ -43,8 +45,8 @@ struct BinRange {
 
 /// What Slicing::z_bins adds to a grid: the lights' order by depth, and the range of ranks (places in it) per z-bin.
 struct LightRanks {
-    std::span<const std::uint32_t> order;  ///< for each rank, the position of its light in the caller's array
-    std::span<const BinRange> bins;        ///< the ranks in each z-bin, one BinRange per slice
+    std::span<const std::uint32_t> order;  ///< the lights' positions in the caller's array, in order of depth
+    std::span<const BinRange> bins;        ///< per z-bin, the range in `order` of its lights; one z-bin per slice
 };
 
 /// What Binner::bin_bits() returns. The bitmasks are in the caller's memory.
@@ -66,19 +68,21 @@ public:
     int slices() const { return slices_; }  ///< the number of depth slices; 1 unless made with Slicing::clusters
 
     /// The range of ids() that each tile lists: tiles_x() * tiles_y() ranges, row-major; with clusters as many for each
-    /// slice, one slice after another. Each range begins where the one before it ends.
+    /// slice, one slice after another; with several views as many per view. Each begins where the range before it ends.
     std::span<const ListRange> ranges() const { return ranges_; }
 
-    /// The light index list. A light's id is its position in the caller's array, or its rank with Slicing::z_bins. The
-    /// ids of a tile ascend.
+    /// The light index list. A light's id is its position in the caller's array, or with Slicing::z_bins its rank,
+    /// which is its position in order of depth. The ids of a tile ascend.
     std::span<const Id> ids() const { return ids_; }
 
     /// Returns the ids of the lights of tile (x, y) in a slice, where 0 <= x < tiles_x(), 0 <= y < tiles_y() and 0 <=
-    /// slice < slices().
-    std::span<const Id> lights_in(int x, int y, int slice = 0) const {
+    /// slice < slices(). `view` is 0, or in a grid of several views, which copy_to() makes, the number of one of them.
+    std::span<const Id> lights_in(int x, int y, int slice = 0, int view = 0) const {
         LIGHTBIN_ASSERT(x >= 0 && x < tiles_x_ && y >= 0 && y < tiles_y_ && slice >= 0 && slice < slices_);
-        const std::int64_t row = slice * std::int64_t{tiles_y_} + y;
-        const ListRange range = ranges_[static_cast<std::size_t>(row * tiles_x_ + x)];
+        const std::int64_t row = (view * std::int64_t{slices_} + slice) * tiles_y_ + y;
+        const auto cell = static_cast<std::size_t>(row * tiles_x_ + x);
+        LIGHTBIN_ASSERT(view >= 0 && cell < ranges_.size());
+        const ListRange range = ranges_[cell];
         return ids_.subspan(range.offset, range.count);
     }
 
@@ -99,6 +103,39 @@ public:
         detail::copy_items(ids_.data(), ids_.size(), ids.data());
         return LightGrid(tiles_x_, tiles_y_, {ranges.data(), ranges_.size()}, {ids.data(), ids_.size()},
                          counts_, slices_, ranks_);
+    }
+
+    /// Copies ranges() and ids() behind those of other views, for shaders made with ShaderOptions::views. Returns the
+    /// grid of all views so far: its ranges() are those of view 0, then those of view 1, and so on, and so are its
+    /// ids(); every offset counts from the beginning of `ids`. Its light_counts() and ranks() are those of this grid.
+    /// The buffers are only written, in ascending order, and keep what the earlier views filled.
+    ///
+    /// before  what copy_to() returned for the view before, with the same two buffers
+    ///
+    /// Errors, after which nothing is written: the grids have different numbers of tiles or slices; all views together
+    /// have more cells or list entries than 32 bits count; a buffer is too small for all views.
+    Result<LightGrid> copy_to(std::span<ListRange> ranges, std::span<Id> ids, const LightGrid& before) const {
+        LIGHTBIN_ASSERT(before.ranges_.data() == ranges.data() && before.ids_.data() == ids.data());
+        if (!same_cells(before)) return Error{ErrorCode::grids_differ};
+        constexpr std::uint64_t limit = 0xffffffff;
+        const std::uint64_t cells = std::uint64_t{before.ranges_.size()} + ranges_.size(),
+                            entries = std::uint64_t{before.ids_.size()} + ids_.size();
+        if (cells > limit) return Error{ErrorCode::too_many_cells, cells, limit};
+        if (entries > limit) return Error{ErrorCode::too_many_entries, entries, limit};
+        if (ranges.size() < cells) return Error{ErrorCode::range_buffer_too_small, cells, ranges.size()};
+        if (ids.size() < entries) return Error{ErrorCode::id_buffer_too_small, entries, ids.size()};
+        const auto base = static_cast<std::uint32_t>(before.ids_.size());
+        ListRange* to = ranges.data() + before.ranges_.size();
+        for (const ListRange range : ranges_)
+            *to++ = {base + range.offset, range.count};
+        detail::copy_items(ids_.data(), ids_.size(), ids.data() + base);
+        return LightGrid(tiles_x_, tiles_y_, {ranges.data(), static_cast<std::size_t>(cells)},
+                         {ids.data(), static_cast<std::size_t>(entries)}, counts_, slices_, ranks_);
+    }
+
+    /// Returns whether another grid has as many columns and rows of tiles and as many slices.
+    bool same_cells(const LightGrid& other) const {
+        return tiles_x_ == other.tiles_x_ && tiles_y_ == other.tiles_y_ && slices_ == other.slices_;
     }
 
 private:

@@ -16,9 +16,10 @@
 //   3. Make a Binner<Options{...}> binner once. Then, each frame:                              binner.hpp
 //        binner.bin(view, lights), or with a depth test binner.bin(view, lights, {.bounds = *bounds}). To use several
 //        threads, add a Parallel as the last argument.                                         parallel.hpp
-//        lights is an array of vec4, Sphere or Spot in view space, or view_space(array, to_light), or
-//        world_space(array, view_matrix[, to_light]), where to_light makes a Sphere or a Spot  lights.hpp
-//        of an element. A Spot is listed where its cone reaches.                               spot.hpp
+//        lights is an array of vec4, Sphere, Spot or Box in view space, or view_space(array, to_light), or
+//        world_space(array, view_matrix[, to_light]), where to_light makes one of an element,  lights.hpp
+//        or lights(spheres, spots, boxes). A Spot is listed where its cone reaches,            spot.hpp
+//        a Box where a sphere and an oriented box intersect.                                   box.hpp
 //   4. Upload grid->ranges() and grid->ids(), or let grid->copy_to(ranges, ids) write to       light_grid.hpp
 //        mapped buffers.
 //      To cover all depths without a depth buffer (no pre-pass, fog, glass), make Slices       slices.hpp
@@ -30,6 +31,8 @@
 // This header includes steps 1 to 4. Further headers, to be included by name:
 //   shader.hpp        shader text that reads the lists, in GLSL, HLSL and WGSL
 //   encode.hpp        the lists in other formats: 8-bit ids, sentinel-terminated lists, bitmasks
+//   budget.hpp        lists limited to a number of lights per cell or per frame, by weights
+//   grid_union.hpp    one grid for two views, such as two eyes
 //   shader_build.hpp  shader text that does steps 2 and 3 on the GPU
 //   advise.hpp        advise(view, lights, costs[, bounds]) measures which tile size and options are best
 //

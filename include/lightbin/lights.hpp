@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lights as the caller has them: arrays of vec4, Sphere, Spot or the caller's own structs, in view or world space.
+// Lights as the caller has them: arrays of vec4, Sphere, Spot, Box or the caller's own structs, in view space or world space.
 #pragma once
 
 #include <lightbin/detail/project/to_light.hpp>
@@ -7,23 +7,29 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// What view_space() and world_space() return: a span of the caller's array, the callable that makes a Sphere or a Spot
-/// of an element, and for world_space() the transform to view space.
+/// What view_space() and world_space() return: a span of the caller's array, the callable that makes a Sphere, a
+/// Spot or a Box of an element, and for world_space() the transform to view space.
 template <class Light, class ToLight> struct Lights {
     std::span<const Light> array;
     ToLight to_light;
     std::optional<detail::WorldToView> to_view;
 
-    /// True if `to_light` makes Spots, false if it makes Spheres. The Spots may include spheres, by Spot::whole().
-    static constexpr bool spots = std::convertible_to<
-        decltype(detail::make_light(std::declval<const ToLight&>(), std::declval<const Light&>())), Spot>;
+    /// Whether `to_light` makes Spheres, Spots or Boxes. The Spots may include spheres, by Spot::whole().
+    static constexpr detail::LightKind kind = detail::kind_of<
+        decltype(detail::make_light(std::declval<const ToLight&>(), std::declval<const Light&>()))>;
 
-    /// Returns the Spot or Sphere that to_light makes of an array element, in the space of the array. A null pointer
-    /// gives bad input, unless to_light itself takes pointers.
+    /// Returns the Sphere, Spot or Box that to_light makes of an array element, in the space of the array. An element
+    /// that is a null pointer gives a light that is skipped as bad input, unless to_light itself takes pointers.
     auto made(const Light& light) const {
-        using Made = std::conditional_t<spots, Spot, Sphere>;
+        using Made = std::conditional_t<kind == detail::LightKind::box, Box,
+                                        std::conditional_t<kind == detail::LightKind::spot, Spot, Sphere>>;
         if constexpr (detail::by_reference<ToLight, Light> && requires { !light, *light; })
-            if (!light) return static_cast<Made>(Spot::whole(detail::bad_sphere));
+            if (!light) {
+                if constexpr (kind == detail::LightKind::box)
+                    return detail::bad_box;
+                else
+                    return static_cast<Made>(Spot::whole(detail::bad_sphere));
+            }
         return static_cast<Made>(detail::make_light(to_light, light));
     }
 
@@ -33,9 +39,29 @@ template <class Light, class ToLight> struct Lights {
         return to_view ? (*to_view)(sphere) : sphere;
     }
 
-    /// Returns an array element's Sphere or Spot in view space. A Spot's axis is rounded to nearest, not outward.
+    /// Returns the Sphere, Spot or Box, in view space, of an array element. The axis of a Spot, and the centre and the half
+    /// axes of a Box, are rounded to nearest, not outward.
     auto view_light(const Light& light) const {
-        if constexpr (spots) {
+        if constexpr (kind == detail::LightKind::box) {
+            Box box = made(light);
+            if (!to_view) return box;
+            const Sphere ball = (*to_view)(Sphere{box.x, box.y, box.z, box.radius}),
+                         centre = (*to_view)(Sphere{box.box_x, box.box_y, box.box_z, 0});
+            for (float(&axis)[3] : box.half_axes) {
+                const Sphere image = to_view->direction(axis[0], axis[1], axis[2]);
+                axis[0] = image.x;
+                axis[1] = image.y;
+                axis[2] = image.z;
+            }
+            box.x = ball.x;
+            box.y = ball.y;
+            box.z = ball.z;
+            box.radius = ball.radius;
+            box.box_x = centre.x;
+            box.box_y = centre.y;
+            box.box_z = centre.z;
+            return box;
+        } else if constexpr (kind == detail::LightKind::spot) {
             const Spot spot = made(light);
             if (!to_view) return spot;
             const Sphere ball = (*to_view)(Sphere{spot.x, spot.y, spot.z, spot.radius});
@@ -59,9 +85,9 @@ template <class Range, class ToLight> struct OwnedLights {
 /// it is, so it must live until the Binner's call returns. A temporary array is moved into the returned object.
 ///
 /// lights    a contiguous range of any type: structs, pointers or smart pointers to them, std::reference_wrapper
-/// to_light  a callable or a pointer to a member that makes a Sphere or a Spot of an element. If it does not take an
-///           element itself, it is called with the object that the element points to, and a null pointer is bad input.
-///           A to_light that takes pointers is called with null pointers, too. It is copied, and called as const.
+/// to_light  a callable or a pointer to a member that makes a Sphere, a Spot or a Box of an element. If it does not take an
+///           element itself, it is called with the object that the element points to, and a null pointer is bad input. A
+///           to_light that takes pointers is called with null pointers, too. It is copied, and called as const.
 template <class Range, class ToLight = AsLight>
 auto view_space(Range&& lights, const ToLight& to_light = {}) {
     constexpr bool temporary = !std::is_lvalue_reference_v<Range>,
@@ -91,9 +117,16 @@ auto world_space(Range&& lights, const ViewMatrix& view_matrix, const ToLight& t
     return result;
 }
 
+/// What lights() returns: several arrays of lights, each of another kind.
+template <class First, class Rest> struct JoinedLights {
+    First first;
+    Rest rest;
+    static constexpr detail::LightKind kind = detail::LightKind::mixed;
+};
+
 namespace detail {
 
-/// Returns the Lights that a call was given. A plain range is taken for vec4s, Spheres or Spots in view space.
+/// Returns the Lights that a call was given. A plain range is taken for vec4s, Spheres, Spots or Boxes in view space.
 template <class Range> auto as_lights(const Range& lights) {
     return view_space(lights);
 }
@@ -107,10 +140,50 @@ template <class Range, class ToLight> auto as_lights(const OwnedLights<Range, To
     return result;
 }
 
-/// Returns a pointer to the caller's array if its elements are Spheres or float vec4s of the same layout, so that
-/// kernels can read the array directly, by load_sphere(); else null.
+template <class First, class Rest>
+const JoinedLights<First, Rest>& as_lights(const JoinedLights<First, Rest>& lights) {
+    return lights;
+}
+
+/// Calls `visit` with each array of lights that a call was given, in the order of their ids.
+template <class Light, class ToLight, class Visit>
+void for_each_array(const Lights<Light, ToLight>& lights, const Visit& visit) {
+    visit(lights);
+}
+template <class First, class Rest, class Visit>
+void for_each_array(const JoinedLights<First, Rest>& lights, const Visit& visit) {
+    visit(lights.first);
+    for_each_array(lights.rest, visit);
+}
+
+/// Returns the number of lights in all arrays.
+template <class Source> std::size_t light_count(const Source& source) {
+    std::size_t count = 0;
+    for_each_array(source, [&](const auto& lights) { count += lights.array.size(); });
+    return count;
+}
+
+/// Returns the kind of the lights in the first of the arrays that a call was given.
+template <class Light, class ToLight> constexpr LightKind first_kind(const Lights<Light, ToLight>*) {
+    return Lights<Light, ToLight>::kind;
+}
+template <class First, class Rest> constexpr LightKind first_kind(const JoinedLights<First, Rest>*) {
+    return First::kind;
+}
+
+/// Returns an argument of lights() as Lights that refer to its array. A temporary array is refused by a compile error.
+template <class Range> auto lasting_lights(Range&& lights) {
+    using Given = std::remove_cvref_t<decltype(as_lights(lights))>;
+    static_assert(std::is_lvalue_reference_v<Range> || std::is_same_v<Given, std::remove_cvref_t<Range>> ||
+                      std::ranges::enable_borrowed_range<std::remove_cvref_t<Range>>,
+                  "lightbin: these lights are gone after the expression: give the array a name that lives on");
+    return Given(as_lights(lights));
+}
+
+/// Returns a pointer to the caller's array if its elements are Spheres or float vec4s of the same layout, so that kernels
+/// can read the array directly, by load_sphere(); else null.
 template <class Light, class ToLight> const Sphere* as_they_are(const Lights<Light, ToLight>& lights) {
-    if constexpr (std::is_same_v<ToLight, AsLight> && !Lights<Light, ToLight>::spots &&
+    if constexpr (std::is_same_v<ToLight, AsLight> && Lights<Light, ToLight>::kind == LightKind::sphere &&
                   sizeof(Light) == sizeof(Sphere) && std::is_trivially_copyable_v<Light>) {
         if (lights.array.empty()) return nullptr;
         if constexpr (std::is_base_of_v<Sphere, Light>) {
@@ -128,4 +201,25 @@ template <class Light, class ToLight> const Sphere* as_they_are(const Lights<Lig
 }
 
 }  // namespace detail
+
+/// Joins two or three arrays of lights of different kinds, for one call of a Binner: at most one of Spheres (or vec4s), one
+/// of Spots and one of Boxes, in this order. Each array may be in a space of its own. Ids number the arrays through, so the
+/// ids of Spots begin behind those of the Spheres, and in every list of a grid the Spheres come first, then the Spots, then
+/// the Boxes. (With Slicing::z_bins ids are ranks, in order of depth.) Each kind costs what it costs alone.
+///
+/// first, second  view_space(...), world_space(...), or a contiguous range of lights in view space. Arrays are read where
+///                they are, so they must live until the Binner's call returns
+template <class First, class Second> auto lights(First&& first, Second&& second) {
+    auto one = detail::lasting_lights(static_cast<First&&>(first));
+    auto other = detail::lasting_lights(static_cast<Second&&>(second));
+    using One = decltype(one);
+    using Other = decltype(other);
+    static_assert(detail::first_kind(static_cast<One*>(nullptr)) < detail::first_kind(static_cast<Other*>(nullptr)),
+                  "lightbin: lights() takes Spheres, Spots and Boxes in this order, and one array of each kind");
+    return JoinedLights<One, Other>{one, other};
+}
+template <class First, class Second, class Third> auto lights(First&& first, Second&& second, Third&& third) {
+    return lights(static_cast<First&&>(first), lights(static_cast<Second&&>(second), static_cast<Third&&>(third)));
+}
+
 }}  // namespace lightbin

@@ -23,8 +23,9 @@ constexpr const char* to_string(ListEncoding encoding) {
 struct ListFormat {
     ListEncoding encoding = ListEncoding::offset_count;
     IdWidth ids = IdWidth::u32;    ///< the width of an id in the encodings offset_count and sentinel
-    std::uint32_t capacity = 0;    ///< for the encoding sentinel: how many ids a tile has memory for, 1 or more
-    std::uint32_t max_lights = 0;  ///< all ids are less; bitmask needs it, else 0 means as many as `ids` can number
+    std::uint32_t capacity = 0;    ///< with ListEncoding::sentinel: how many ids each tile has memory for, 1 or more
+    /// Every id must be less. Required with ListEncoding::bitmask; else 0 allows all ids that IdWidth can hold.
+    std::uint32_t max_lights = 0;
 };
 
 }}  // namespace lightbin

@@ -17,15 +17,14 @@ enum class Footprint : std::uint8_t {
 enum class DepthTest : std::uint8_t {
     none,       ///< no test: a light is listed in all tiles of its footprint
     interval,   ///< the light's depths, z - r to z + r, must meet the tile's Z bounds (Tiled Shading, section 6.3)
-    box,        ///< `interval`, and the light must meet the view-space box around the tile's cell
+    box,        ///< the light must meet the Z bounds, and the view-space box around the tile's frustum between them
     split_box,  ///< `box` with two boxes, one in front of and one behind the tile's depth gap (see ZBounds)
 };
 
 /// How the Slices given to bin() narrow the lights of a tile by depth. No depth buffer is needed.
 enum class Slicing : std::uint8_t {
     none,
-    /// Each tile has one list per slice. DepthTest::box tests lights against the box around the tile in that slice; no
-    /// Z bounds are read.
+    /// Each tile has one list per slice. DepthTest::box tests the box around the tile in that slice, without Z bounds.
     clusters,
     /// Each tile has one list, whose ids are ranks: positions of the lights in order of depth. Each slice is a bin that
     /// stores the least and greatest rank of its lights, so a shader skips the ids outside of its pixel's bin (Drobot,
@@ -53,6 +52,7 @@ struct Options {
     Slicing slicing = Slicing::none;
     /// The widest instruction set to use, even where the machine has a wider one. The result is the same.
     Isa isa = compiled_isa;
+    bool coverage = false;  ///< find what each light in view covers, for Binner::coverage()
 };
 
 }}  // namespace lightbin

@@ -17,8 +17,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 enum class ListStorage : std::uint8_t {
     storage_buffer,  ///< storage buffers (GLSL 4.30, Vulkan, ES 3.10, WGSL); StructuredBuffer in HLSL
     texel_buffer,    ///< buffer textures in GLSL, Buffer in HLSL; ES and WGSL have none
-    texture_2d,      ///< 2D textures, in every language (Tiled Shading, Listing 1)
-    uniform_block,   ///< uniform blocks, in HLSL cbuffers (Tiled Forward Shading, Listing 4.1)
+    texture_2d,      ///< the lists are in 2D textures, in every language (as in Tiled Shading, Listing 1)
+    uniform_block,   ///< the lists are in uniform blocks, in HLSL cbuffers (as in Tiled Forward Shading, Listing 4.1)
     byte_address,    ///< ByteAddressBuffer, in HLSL only
 };
 
@@ -40,6 +40,9 @@ struct ShaderOptions {
     bool packed_ids = false;
 
     Slicing slicing = Slicing::none;  ///< the same as Options::slicing of the Binner that makes the lists
+    /// The number of views whose lists lie one after another in the buffers, 1 to 512. With 2 or more, the functions
+    /// that read lists take the number of the pixel's view, counted from 0, as their last parameter.
+    std::uint32_t views = 1;
 
     int tile_size = 0;             ///< in pixels, a literal in the shader text; 0: read from the shader constant `grid`
     bool flip_y = false;           ///< the shader counts pixel rows from the opposite end to the view's WindowOrigin
@@ -49,19 +52,21 @@ struct ShaderOptions {
     /// for all of them (Drobot 2017). GLSL 4.30 and ES 3.10 need GL_KHR_shader_subgroup_arithmetic, Vulkan 1.1, HLSL
     /// 6.0, WGSL the device's feature `subgroups`.
     bool wave_loop = false;
-    bool view_check = false;  ///< adds the function `check_view`, whose constants are bound at the slot `view`
+    /// Adds the function `check_view`: whether a pixel shows a view-space position. It reads ShaderView, bound at
+    /// `view`.
+    bool view_check = false;
     bool list_check = false;  ///< adds the loop `for_each_missing` over the lights that a pixel's list lacks
     bool window = false;      ///< adds the function `window`, a light's falloff at its range: see light_window()
 
     std::uint32_t texture_width = 2048;  ///< texture_2d: texels per row, 1 to 16384; a power of two is fastest
-    std::uint32_t max_tiles = 0;    ///< with uniform_block: the most tiles; with clusters, the most tiles times slices
-    std::uint32_t max_entries = 0;  ///< with uniform_block and ListEncoding::offset_count: the most ids in all lists
+    std::uint32_t max_tiles = 0;    ///< with uniform_block: the most tiles in all slices of all views together
+    std::uint32_t max_entries = 0;  ///< with uniform_block and offset_count: the most ids in all lists together
     std::uint32_t max_slices = 0;   ///< with uniform_block and slicing: the greatest number of slices
     std::uint32_t uniform_block_bytes = 16384;  ///< the device's limit for one block; every device allows 16384
 
     ShaderSlot tiles = {0}, lists = {1}, grid = {2}, slices = {3}, bins = {4}, view = {5};
-    bool push_constants = false;            ///< Vulkan: `grid` and `corner` are push constants
-    std::string_view prefix = "lightbin_";  ///< every name in the text begins with it
+    bool push_constants = false;            ///< Vulkan: ShaderGrid (`grid` and `corner`) is push constants
+    std::string_view prefix = "lightbin_";  ///< every name in the generated shader text begins with it
 };
 
 /// The values of the shader's constants `grid` and `corner`. A uniform block and push constants have this layout;
@@ -73,8 +78,8 @@ struct ShaderGrid {
 };
 static_assert(sizeof(ShaderGrid) == 32 && sizeof(ListRange) == 8);  // neither has padding
 
-/// Returns the values of the shader's constants for a view. The corner is the window pixel at the viewport's first
-/// column and row, as the shader counts pixels; only shaders with ShaderOptions::viewport_corner read it.
+/// Returns the values of the shader's constants for a view. The corner is the least x and y of the viewport's pixels in
+/// the shader's own pixel coordinates; only shaders with ShaderOptions::viewport_corner read it.
 inline ShaderGrid shader_grid(const View& view, int corner_x = 0, int corner_y = 0) {
     const Extent size = view.viewport();
     const auto u = [](int n) { return static_cast<std::uint32_t>(n); };
@@ -156,6 +161,15 @@ inline ShaderView shader_view(const View& view, float tolerance = 2) {
 /// With wave_loop, `begin` and `next` step through the lights of the whole wave, so what depends on the id alone is
 /// uniform in it; cursor.own tells whether the lane's own list contains the light. No `else` can follow the loop body,
 /// and in WGSL the text must come first in its module.
+///
+/// With several views (options.views is 2 or more), every function and loop above that takes a pixel, except `tile`,
+/// takes the number of the pixel's view, a uint, as its last parameter:
+///
+///     lightbin_for_each_light(light, uvec2(gl_FragCoord.xy), depth, gl_ViewID_OVR) { ... }
+///
+/// The buffers of tiles, lists and bins hold the data of view 0, then of view 1, and so on, as LightGrid::copy_to()
+/// writes tiles and lists. All views have the same `grid`, `corner` and slices. The list of a view whose number is
+/// options.views or more is empty. `check_view` has one array `image` of constants: each view's ShaderView in turn.
 ///
 /// Two checks find mistakes in the set-up, by marking the pixels where something is wrong:
 ///

@@ -28,7 +28,7 @@ struct ReduceShaderOptions {
 
     ShaderSlot depth = {0}, z_bounds = {1}, grid = {2};
     bool push_constants = false;            ///< Vulkan: the constants are push constants
-    std::string_view prefix = "lightbin_";  ///< every name in the text begins with it
+    std::string_view prefix = "lightbin_";  ///< every name in the generated shader text begins with it
 };
 
 /// The values of the constants `grid`, `planes` and `corner` of reduce_shader(). A uniform block has this layout;
@@ -45,9 +45,10 @@ static_assert(sizeof(ShaderReduce) == 48);
 /// the viewport's first column and row; only shaders with ReduceShaderOptions::viewport_corner read it.
 inline ShaderReduce shader_reduce(const View& view, int corner_x = 0, int corner_y = 0) {
     const ShaderGrid grid = shader_grid(view);
-    // Let e be a window depth's distance from the far plane's: 1 - depth, or with reversed Z the depth itself. A
+    // Let e be the distance of a window depth from the far plane's: 1 - depth, or with reversed Z the depth itself. A
     // perspective view depth is  1 / (far_end + slope e)  with far_end = 1 / far and slope = 1 / near - 1 / far:
-    // positive terms, so nothing cancels. An orthographic one is  far_end - slope e;  `margin` covers its rounding.
+    // positive terms, so nothing cancels. With far_end = far and slope = far - near, an orthographic one is
+    // far_end - slope e;  `margin` covers its rounding.
     const double from = static_cast<double>(view.near_depth()), to = static_cast<double>(view.far_depth());
     const bool flat = view.orthographic();
     const float far_end = static_cast<float>(flat ? to : 1 / to),
@@ -96,13 +97,13 @@ struct BuildShaderOptions {
     ShaderSlot total = {3};  ///< for the lists' total length; by default the slot of `lists`, as no pass uses both
     ShaderSlot grid = {4};
     bool push_constants = false;            ///< Vulkan: the constants are push constants
-    std::string_view prefix = "lightbin_";  ///< every name in the text begins with it
+    std::string_view prefix = "lightbin_";  ///< every name in the generated shader text begins with it
 };
 
-/// The values of the constants `grid` and, with box or clusters, `planes` of build_shader(). A uniform block has this
-/// layout; without `planes`, its first 16 bytes.
+/// The values of the shader constants `grid` and `planes` of build_shader(). A uniform block has this layout. Without
+/// DepthTest::box and Slicing::clusters there is no `planes`, and the block is the first 16 bytes.
 struct ShaderBuild {
-    /// grid: tile columns; tile rows, summed over the slices; number of lights; ids that fit in the buffer `lists`
+    /// The constant `grid`: tile columns; tile rows, summed over the slices; lights in view; ids that fit in `lists`.
     std::uint32_t tiles_x, rows, footprints, capacity;
     float near_depth, far_depth, tiles_y, unused = {};  ///< planes
 };
@@ -125,7 +126,7 @@ inline ShaderBuild shader_build(const View& view, std::uint32_t footprints, std:
 }
 
 /// A light in view, as build_shader() reads it: its tiles x0..x1 by y0..y1, both ends included, and its sphere. The
-/// sphere's x and y are view-space coordinates, negated where the tile index falls with them; z is its view depth.
+/// sphere's x and y are view-space coordinates, negated where tile indices decrease as they grow; z is its view depth.
 struct ShaderFootprint {
     std::uint32_t id;  ///< the light's position in the caller's array
     std::uint16_t x0, y0, x1, y1;
@@ -135,7 +136,8 @@ struct ShaderFootprint {
 static_assert(sizeof(ShaderFootprint) == 32);
 
 /// Returns the footprints of the lights in view by ascending id, the input of build_shader(). A spot's footprint has
-/// the rectangle of the cone and the least sphere around it. `lights` and errors are those of Binner::bin().
+/// the rectangle of the cone and the least sphere around it, a Box's the rectangle of the box and the sphere of
+/// bounding_sphere(). `lights` and errors are those of Binner::bin().
 template <class LightRange>
 Result<std::vector<ShaderFootprint>> shader_footprints(const View& view, const LightRange& lights);
 
@@ -185,7 +187,8 @@ inline std::vector<ShaderEdges> shader_slabs(const Slices& slices) {
 /// rectangle of tiles is the same. No spot that meets a cell is missing. Without depth test and clusters the entries
 /// are the Binner's. With interval, or clusters without box, every entry of the Binner is there, except those that only
 /// its rounding margins add, and there are more. With box neither has all entries of the other: the Binner tests the
-/// ball and the half spaces around the cone, which may both meet a box that lies beyond the least sphere.
+/// ball and the half spaces around the cone, which may both meet a box that lies beyond the least sphere. Of a Box they
+/// test its bounding_sphere() in the Box's own rectangle of tiles; no Box that meets a cell is missing.
 inline Result<ShaderText> build_shader(const BuildShaderOptions& options = {});
 
 }}  // namespace lightbin

@@ -103,7 +103,7 @@ struct ShaderSlot {
 
 /// One resource that the program has to bind before it uses the shader.
 struct ShaderBinding {
-    std::string name = {};  ///< the name of the uniform, sampler, block or buffer in the text
+    std::string name = {};  ///< the name of the uniform, sampler, block or buffer in the generated shader text
     ShaderResource resource = ShaderResource::uniform_vector;
     ShaderSlot slot = {};
     TexelFormat format = TexelFormat::none;  ///< the format of texels, if any; gl_format() etc. return its API names

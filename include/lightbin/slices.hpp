@@ -29,8 +29,8 @@ public:
     }
 
     /// Returns slices that divide the depths from `begin` to `end` into equal parts. The first slice still begins at
-    /// the near plane, and the last one reaches to the far plane. Errors: those of exponential(), with
-    /// begin < end in place of 0 < first < last.
+    /// the near plane, and the last one reaches to the far plane. Errors: count is less than 1. With two slices or
+    /// more: not begin < end, one of these is infinite, or two boundaries round to the same float.
     static Result<Slices> linear(int count, float begin, float end) {
         if (count > 1 && !(begin < end && detail::is_finite(begin) && detail::is_finite(end)))
             return Error{ErrorCode::slice_range_empty};

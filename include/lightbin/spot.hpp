@@ -19,8 +19,10 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 /// for the floats given. The float nearest to a cosine may be above the cosine, which makes the cone narrower: by up to
 /// 2^-12 radians where it is narrow. If your shader compares with the angle itself, round the cosine down.
 ///
-/// A spot with radius +inf, or a half angle of 90 degrees or more, is treated as its whole sphere. Bad input is what is
-/// bad in a Sphere, an axis of length 0 or with a NaN or infinite coordinate, and a cosine of NaN or outside -1..1.
+/// With a half angle above 90 degrees a spot is listed where its convex hull reaches, its sphere cut off at the circle
+/// in which cone and sphere meet. With radius +inf, or a cosine of -0.75 or less, it is treated as its whole sphere.
+/// What is bad input in a Sphere is so in a Spot, as are an axis with a NaN or infinite coordinate or of length zero,
+/// and a cosine that is NaN or outside -1 to 1.
 struct Spot {
     float x, y, z, radius;
     float axis_x, axis_y, axis_z, cos_half_angle;

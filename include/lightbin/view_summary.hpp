@@ -11,8 +11,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 /// What View::summary() returns: what was read from the projection matrix, and what looks like a mistake.
 struct ViewSummary {
     bool orthographic;
-    /// Perspective: the horizontal and vertical field of view in degrees. Orthographic: the image's width and height in
-    /// units of view space.
+    /// The image's width and height. Perspective: the field of view, in degrees. Orthographic: in view-space units.
     double x_size, y_size;
     double aspect;  ///< the width divided by the height of the image on a plane of equal depth
     double near_depth, far_depth;
@@ -33,8 +32,7 @@ struct ViewSummary {
     /// No depth of a perspective projection with reversed Z reaches NDC -1, so that its far plane is taken to be at
     /// infinity: should ViewOptions::clip_depth be zero_to_one?
     bool looks_zero_to_one;
-    /// The viewport's pixels are wider than high, or higher than wide, by more than 2 %: its size may be stale, or the
-    /// aspect inverted.
+    /// The viewport's pixels are off square by more than 2 %: its size may be stale, or the aspect inverted.
     bool pixels_not_square;
 };
 

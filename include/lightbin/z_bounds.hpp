@@ -24,8 +24,8 @@ struct ZBounds {
     bool background_skipped = false;
 };
 
-/// Memory that reduce_depth() writes Z bounds to: View::tile_count() floats for each bound that is wanted, an empty
-/// span for the others. Gaps are written if gap_min and gap_max are both given.
+/// Memory that reduce_depth() writes Z bounds to: View::tile_count() floats for each bound that is wanted, else an
+/// empty span. A tile's gap, depths where nothing is drawn, is written if gap_min and gap_max are both given.
 struct ZBoundsBuffers {
     std::span<float> min = {}, max = {}, gap_min = {}, gap_max = {}, transparent_max = {};
 };

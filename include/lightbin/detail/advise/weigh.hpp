@@ -108,7 +108,8 @@ constexpr Options weighed_options(Options base, const Options& row) {
     return base;
 }
 
-/// Calls visit() with a plan's options, as a template argument, which it finds in `table`, from row i on.
+/// Searches `table`, an array of Options, from row i on for a plan's footprint, depth test and slicing. Calls
+/// visit.operator()<options>() with `base` and these three, and returns its result.
 template <const auto& table, Options base, std::size_t i, class Visit>
 decltype(auto) with_options_from(const Plan& plan, Visit& visit) {
     constexpr Options options = weighed_options(base, table[i]);
@@ -138,7 +139,7 @@ template <class Visit> void for_each_drawn(const View& view, const ZBounds& boun
         }
 }
 
-/// A view with one of the tile sizes that are measured, and the Z bounds of its tiles.
+/// A view with one of the tile sizes that advise() and advise_slices() try, and the Z bounds of its tiles.
 struct WeighedGrid {
     View view;
     /// The caller's Z bounds or, for tiles larger than the caller's, merged bounds, which the std::vectors below hold.
@@ -184,6 +185,22 @@ struct WeighedGrid {
     WeighedGrid(WeighedGrid&&) = default;  // the spans of a copy would point into the original
 };
 
+/// Returns lights moved along x by `aside` or, in a perspective view, by `aside` times their z. The result refers to `lights`.
+template <class Light, class ToLight>
+auto moved_aside(const Lights<Light, ToLight>& lights, float aside, bool orthographic) {
+    return view_space(lights.array, [=, &lights](const Light& light) {
+        auto in_view = lights.view_light(light);
+        const float by = aside * (orthographic ? 1 : in_view.z);
+        in_view.x += by;
+        if constexpr (Lights<Light, ToLight>::kind == LightKind::box) in_view.box_x += by;
+        return in_view;
+    });
+}
+template <class First, class Rest>
+auto moved_aside(const JoinedLights<First, Rest>& joined, float aside, bool orthographic) {
+    return lights(moved_aside(joined.first, aside, orthographic), moved_aside(joined.rest, aside, orthographic));
+}
+
 /// Measures the options in each row of a table on grids of several tile sizes.
 ///
 /// for_each_visible  for_each_visible(visit) calls visit(x, y, depth, pixels) for every point with something to light:
@@ -191,8 +208,8 @@ struct WeighedGrid {
 template <const auto& table, Options base, class Clock, class LightRange, class ForEachVisible>
 Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlices& slices,
                      const LightRange& lights, const Costs& costs, ForEachVisible for_each_visible) {
-    // The grids: tiles of the view's size, of 2, 4 and 8 times that size while that is smaller than the screen, and one
-    // tile as large as the screen.
+    // The grids: tiles of the view's tile size, of 2, 4 and 8 times that size while that is smaller than the screen,
+    // and one tile as large as the screen.
     std::vector<WeighedGrid> grids;
     const int whole = (std::max)({view.viewport().width, view.viewport().height, view.tile_size()});
     for (int size = view.tile_size(); size < whole && grids.size() < 4;
@@ -241,7 +258,7 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
     const auto& source = as_lights(lights);
     std::vector<Plan> plans = {{.tiled = false}};
     for_each_visible([&](int, int, float, double pixels) {
-        plans[0].evaluations += costs.overdraw * pixels * static_cast<double>(source.array.size());
+        plans[0].evaluations += costs.overdraw * pixels * static_cast<double>(light_count(source));
     });
     for (const WeighedGrid& grid : grids)
         for (const Options& options : table) {
@@ -274,11 +291,7 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
         if (turn == turns) return Advice(std::move(plans));
         const float aside = static_cast<float>((2.0 * turn / (turns - 1) - 1) / 32 * view.tiles_x() /
                                                camera_of(view).x.scale);
-        const auto moved = view_space(source.array, [&](const auto& light) {
-            auto in_view = source.view_light(light);
-            in_view.x += aside * (view.orthographic() ? 1 : in_view.z);
-            return in_view;
-        });
+        const auto moved = moved_aside(source, aside, view.orthographic());
         for (Plan& plan : plans)
             if (plan.tiled && (turn < 2 || plan.total_ns - 0.5 * plan.build_ns < least))
                 static_cast<void>(build(plan, moved, false));

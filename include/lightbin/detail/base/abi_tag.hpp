@@ -39,7 +39,7 @@
                    LIGHTBIN_IF_VALUE(G, n##g, ), LIGHTBIN_IF_VALUE(H, n##h, ))
 
 // LIGHTBIN_INSTRUCTION_SET, a part of the namespace's name, for each processor family in turn. It is just `baseline` if
-// the flags allow no x86 extension, as expanding the macros at each use takes 15 ms of compile time per file.
+// the flags allow no x86 extension, as pasting it together from the macros above takes 15 ms of compile time per file.
 // clang-format off
 #if defined(__arm__) || defined(__aarch64__)
 #define LIGHTBIN_INSTRUCTION_SET LIGHTBIN_PASTE(LIGHTBIN_LEVEL, \

@@ -32,8 +32,8 @@ static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<doubl
 
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// Kernels compute in floats for lights whose coordinates and radii have absolute values within these limits, whose
-/// squares neither overflow nor underflow. Others are computed in doubles.
+/// Lights are computed in floats if their radii or sizes lie between these limits, and no coordinate's absolute value
+/// is above the upper one: then no square overflows, and none of a size underflows. Others are computed in doubles.
 inline constexpr float float_safe_min = 0x1p-40f, float_safe_max = 0x1p40f;
 
 /// Returns the largest float below a finite `value`. Unlike std::nextafter this is inlined.

@@ -11,18 +11,14 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 /// The footprints of lights sorted by the first z-bin, an interval of view depth, that the light meets, and in the
 /// caller's order within a z-bin. A footprint's rank is its index in this order; lists have ranks in place of ids.
 /// Memory is reused from call to call.
-///
-/// with_spheres  sort the lights, spheres or spots, too, for a depth test
-template <Footprint footprint, bool with_spheres> class RankedFootprints {
+template <Footprint footprint> class RankedFootprints {
     static constexpr bool with_spans = footprint == Footprint::silhouette;
 
 public:
-    /// Sorts the footprints, and finds the bins that each light's view depths meet, ends included: a sphere's are
-    /// z - r to z + r, widened by the slices' margin. A light that ends close to a boundary may also count for the bin
-    /// on the other side.
-    ///
-    /// spots  the lights are spots
-    template <bool spots>
+    /// Finds the z-bins, intervals of view depth, that each light meets, and sorts the footprints by the first of them.
+    /// A light's view depths, a sphere's being z - r to z + r, include their ends and are widened by the slices'
+    /// margin. A light that ends close to a boundary may also count for the bin on the other side.
+    template <detail::LightKind kind>
     std::optional<Error> order(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
                                const Slices& slices) {
         run_ = {0, footprints.visible()};
@@ -37,7 +33,7 @@ public:
             last_bins[i] = last;
             ++ends[first];
         };
-        table_of(slices).find(detail::depth_buckets_kernel<spots>(isa), true, detail::camera_of(view).z_sign,
+        table_of(slices).find(detail::depth_buckets_kernel<kind>(isa), true, detail::camera_of(view).z_sign,
                                       footprints.arrays(), footprints.runs(), found);
 
         // A counting sort: ends_ has the number of lights that begin in each bin, then the rank of the first of them,
@@ -48,12 +44,12 @@ public:
             before += ends[bin];
             ends[bin] = begin;
         }
-        // Only indices are scattered here. The arrays are then gathered by them, as scattered reads are faster than
-        // writes.
+        // Only the footprints' indices are scattered here. By these indices the arrays of footprints are then gathered,
+        // as scattered reads are faster than scattered writes.
         for (const detail::FootprintRun& run : footprints.runs())
             for (std::uint32_t i = run.begin; i < run.end; ++i)
                 sources[ends[first_bins[i]]++] = i;
-        gather_lights<spots>(footprints.arrays());
+        gather_lights(footprints.arrays());
         find_ranges();
         return {};
     }
@@ -63,8 +59,8 @@ public:
     LightRanks ranks() const { return {{order_.data(), run_.end}, {bins_.data(), bin_count_}}; }
 
 private:
-    /// Writes the sorted footprints, array by array, so that few cache lines are read in random order at a time.
-    template <bool spots> void gather_lights(const detail::FootprintArrays& lights) {
+    /// Writes the sorted footprints array by array, so that few cache lines are read in random order at a time.
+    void gather_lights(const detail::FootprintArrays& lights) {
         arrays_ = buffers_.reserve(run_.end, with_spans);
         std::uint32_t* const order = order_.reserve(run_.end);
         gather(lights.ids, order);
@@ -76,17 +72,8 @@ private:
         gather(lights.y1, arrays_.y1);
         if constexpr (with_spans) gather(lights.span_begin, arrays_.span_begin);
         arrays_.spans = lights.spans;
-        if constexpr (with_spheres && spots) {
-            detail::ViewSpot* const sorted = spots_.reserve(run_.end);
-            for (std::uint32_t rank = 0; rank < run_.end; ++rank)
-                sorted[rank] = lights.spots[order[rank]];
-            arrays_.spots = sorted;
-        } else if constexpr (with_spheres) {
-            Sphere* const sorted = spheres_.reserve(run_.end);
-            for (std::uint32_t rank = 0; rank < run_.end; ++rank)
-                sorted[rank] = detail::load_sphere(lights.spheres + order[rank]);
-            arrays_.spheres = sorted;
-        }
+        arrays_.light_ids = order;
+        arrays_.view_lights = lights.view_lights;
     }
 
     template <class T> void gather(const T* from, T* to) const {
@@ -99,8 +86,9 @@ private:
     void find_ranges() {
         const std::uint32_t *const sources = sources_.data(), *const last_bins = last_bins_.data();
         BinRange* const bins = bins_.reserve(bin_count_);
-        // A bin's least rank is the first one whose light ends in the bin or a later one: lights before it end too
-        // early. If this light begins only after the bin, no light meets the bin; the loop below finds that.
+        // A bin's least rank is that of the first light that ends in the bin or a later one: lights before it end too
+        // early. Lights after it begin no earlier than it. So if it begins only after the bin, no light meets the bin,
+        // which the last loop below marks as empty.
         BinRange *to = bins, *const end = bins + bin_count_;
         for (std::uint32_t rank = 0; rank < run_.end && to < end; ++rank)
             for (const BinRange* last = bins + last_bins[sources[rank]]; to <= last; ++to)
@@ -125,15 +113,13 @@ private:
         }
     }
 
-    /// The first and the last z-bin that each light meets, by its footprint's index before sorting.
+    /// For each footprint, by its index before sorting by z-bin: the first and the last z-bin that its light meets.
     detail::Buffer<std::uint32_t> first_bins_, last_bins_;
     detail::Buffer<std::uint32_t> sources_;  ///< for each rank, the index of the footprint before sorting
     detail::Buffer<std::uint32_t> order_;    ///< for each rank (place in order of depth), the id of the light
     detail::Buffer<std::uint32_t> ends_;     ///< for each z-bin, the number of lights that begin in it or before it
     detail::Buffer<BinRange> bins_;
     detail::FootprintBuffers buffers_;
-    detail::Buffer<Sphere> spheres_;
-    detail::Buffer<detail::ViewSpot> spots_;
     detail::FootprintArrays arrays_ = {};
     detail::FootprintRun run_ = {};
     std::uint64_t area_ = 0;

@@ -17,24 +17,33 @@ inline Floats bucket_of(const DepthBuckets& buckets, Floats depth) {
     return minimum(maximum(bucket, broadcast(0.0f)), broadcast(buckets.last));
 }
 
-/// Finds the least and the greatest view depths of the lights with `count` ids, and in which buckets of a SliceTable's
-/// lookup table these depths lie. Whole vectors of ids are read. Rounding is monotone, so a light whose exact depths
-/// meet an interval between two floats meets it with its rounded depths, too.
-template <bool spots>
+/// Finds the least and the greatest view depth of each of `count` lights, and in which buckets, a lookup table's depth
+/// intervals, these depths lie. Whole vectors of ids are read, so elements after the last id must exist and be the ids
+/// of lights of the same kind. The lights of one call are of one kind, the first one's if `kind` is `mixed`. Rounding
+/// is monotone, so a light whose exact depths meet an interval between two floats meets it with its rounded ones.
+template <LightKind kind>
 inline void find_depth_buckets(const DepthBuckets& buckets, float z_sign, const FootprintArrays& lights,
                                const std::uint32_t* ids, std::uint32_t count, LightDepths& out) {
+    if constexpr (kind == LightKind::mixed) {
+        const LightKind first = lights.view_lights.kind_of(*ids);
+        const auto find = first == LightKind::sphere ? find_depth_buckets<LightKind::sphere>
+                          : first == LightKind::spot ? find_depth_buckets<LightKind::spot>
+                                                     : find_depth_buckets<LightKind::box>;
+        return find(buckets, z_sign, lights, ids, count, out);
+    }
     for (std::uint32_t i = 0; i < count; i += lanes) {
         Floats nearest, farthest;
-        if constexpr (spots) {
+        if constexpr (kind == LightKind::spot || kind == LightKind::box) {
             for (std::uint32_t lane = i; lane < i + lanes; ++lane) {
-                out.nearest[lane] = lights.spots[ids[lane]].nearest;
-                out.farthest[lane] = lights.spots[ids[lane]].farthest;
+                const auto& light = lights.view_lights.shape<kind>(ids[lane]);
+                out.nearest[lane] = light.nearest;
+                out.farthest[lane] = light.farthest;
             }
             nearest = load_floats(out.nearest + i);
             farthest = load_floats(out.farthest + i);
         } else {
             Floats x, y, z, radius;
-            load_listed_spheres(lights.spheres, ids + i, lanes, x, y, z, radius);
+            load_listed_spheres(lights.view_lights.spheres, ids + i, lanes, x, y, z, radius);
             z = z * broadcast(z_sign);
             nearest = z - radius;
             farthest = z + radius;

@@ -18,7 +18,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// (coordinate(depth) - begin) * scale, clamped to 0..last; coordinate() is the depth or its bit pattern.
 struct DepthBuckets {
     float begin = 0, scale = 0, last = 0;
-    bool by_bits = false;  ///< the buckets have equal lengths in a depth's bit pattern as a float, else in depth
+    bool by_bits = false;  ///< whether depth buckets have equal lengths in the floats' bit patterns, or else in depth
 
     /// Returns the depth itself or, with by_bits, its bit pattern as an integer that ascends with it, rounded to float.
     float coordinate(float depth) const {
@@ -34,7 +34,8 @@ struct DepthBuckets {
     }
 };
 
-/// The view depths of up to `size` lights, and the DepthBuckets that these are in. Kernels write whole vectors.
+/// The nearest and farthest view depths of up to `size` lights, and the buckets, a lookup table's depth intervals, that
+/// these lie in. Kernels store whole vectors, also over elements behind the last light's.
 struct LightDepths {
     static constexpr std::uint32_t size = 64;
     float nearest[size], farthest[size];
@@ -69,12 +70,13 @@ public:
     ///
     /// kernel        find_depth_buckets() for an instruction set: the view depths of lights and their buckets
     /// conservative  the slices may be one more at either end, where that is faster to find
-    /// lights, runs  the FootprintArrays and their FootprintRuns. Overwrites elements of lights.ids behind each run
+    /// lights, runs  FootprintArrays and ranges of indices in them; overwrites 16 elements of lights.ids after each
     template <class Kernel, class Lights, class Runs, class Found>
     void find(Kernel kernel, bool conservative, float z_sign, const Lights& lights, Runs runs, Found found) const {
-        // The faster way takes all slices that the buckets of a light's nearest and farthest depth meet: at most one
-        // slice too many at either end if no bucket holds two boundaries. It is not taken where the table is as large
-        // as it may be: there may then be few buckets per boundary, and many lights would get a slice too many.
+        // The conservative way to find slices compares no depth with slice boundaries. It takes all slices that meet
+        // the buckets, a lookup table's depth intervals, of a light's nearest and farthest depth: at most one slice too
+        // many at either end if no bucket holds two boundaries. It is not taken where the table is as large as it may
+        // be: there may then be few buckets per boundary, and many lights would get a slice too many.
         conservative = conservative && shared_ == 0 && buckets_.last < max_buckets - 1;
         for (const auto& run : runs) {
             fill_items(lights.ids + run.end, 16, lights.ids[run.begin]);  // kernels read whole vectors of ids
@@ -112,7 +114,7 @@ private:
     template <class IsBefore> std::uint32_t before(std::size_t bucket, IsBefore is_before) const {
         const float* const boundaries = boundaries_.data();
         std::uint32_t slice = before_.data()[bucket];
-        // One boundary at most as a rule, so that the loop's branch is predicted.
+        // One boundary is counted without a branch. As buckets seldom hold two, the loop's branch is predicted well.
         slice += is_before(boundaries[slice]);
         while (is_before(boundaries[slice]))
             ++slice;
@@ -144,8 +146,8 @@ private:
     }
 
     Buffer<float> boundaries_;      ///< the depths between slices, ascending, then a NaN that ends every search
-    std::size_t count_;             ///< the number of boundaries
-    Buffer<std::uint32_t> before_;  ///< for each bucket, the number of boundaries in earlier ones; then of all
+    std::size_t count_;             ///< the number of boundaries between slices
+    Buffer<std::uint32_t> before_;  ///< for each depth bucket the number of slice boundaries before it; last, the total
     std::size_t shared_ = 0;        ///< the number of boundaries that share a bucket (depth interval) with a lesser one
     DepthBuckets buckets_;
 };

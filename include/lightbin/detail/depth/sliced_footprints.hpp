@@ -14,9 +14,7 @@ template <Footprint footprint> class SlicedFootprints {
 public:
     /// Puts each footprint in the slices that its light's view depths meet, ends included: those of a sphere, z +- r,
     /// widened by the slices' margin. Errors: there are more than 2^32 - 1 cells, or pairs of a light and a slice.
-    ///
-    /// spots  the lights are spots
-    template <bool spots>
+    template <detail::LightKind kind>
     std::optional<Error> order(Isa isa, const View& view, const Footprints<footprint, true>& footprints,
                                const Slices& slices) {
         constexpr std::uint64_t max_count = (std::numeric_limits<std::uint32_t>::max)();
@@ -25,12 +23,11 @@ public:
         run_count_ = static_cast<std::size_t>(slices.count());
         const std::uint64_t cells = std::uint64_t{view.tile_count()} * run_count_;
         if (cells > max_count) return Error{ErrorCode::too_many_cells, cells, max_count};
-        const std::uint64_t size = find_slices<spots>(isa, view, footprints);
+        const std::uint64_t size = find_slices<kind>(isa, view, footprints);
         if (size > max_count) return Error{ErrorCode::too_many_list_places, size, max_count};
         arrays_ = buffers_.reserve(size, with_spans);
         arrays_.spans = lights.spans;
-        arrays_.spheres = lights.spheres;
-        arrays_.spots = lights.spots;
+        arrays_.view_lights = lights.view_lights;
         const SliceRange* met = met_.data();
         for (const detail::FootprintRun& run : footprints.runs())
             for (std::uint32_t i = run.begin; i < run.end; ++i, ++met) {
@@ -68,9 +65,9 @@ private:
         std::uint64_t area;
     };
 
-    /// Finds the slices of each light, and where each slice's run begins. An unused element follows each run, as put()
-    /// writes one past it. Returns the number of elements of all runs.
-    template <bool spots>
+    /// Finds which slices each light meets, and where in arrays_ each slice's footprints begin. One unused element
+    /// follows the footprints of each slice, as put() may write there. Returns the number of elements of each array.
+    template <detail::LightKind kind>
     std::uint64_t find_slices(Isa isa, const View& view, const Footprints<footprint, true>& footprints) {
         SliceRun* const runs = runs_.reserve(run_count_ + 1);
         detail::fill_items(runs, run_count_ + 1, {});
@@ -82,7 +79,7 @@ private:
             ++runs[first].end;
             --runs[last + 1].end;
         };
-        table_->find(detail::depth_buckets_kernel<spots>(isa), false, detail::camera_of(view).z_sign,
+        table_->find(detail::depth_buckets_kernel<kind>(isa), false, detail::camera_of(view).z_sign,
                      footprints.arrays(), footprints.runs(), found);
         std::uint64_t size = 0;
         std::uint32_t count = 0;
@@ -94,7 +91,8 @@ private:
         return size;
     }
 
-    /// Appends footprint i to a slice; with a `count` and an `area` of 0, to an element that the next call overwrites.
+    /// Appends footprint i, whose rectangle has `area` tiles, to a slice if `count` is 1. If `count` and `area` are 0,
+    /// it appends nothing, without a branch: what it writes, the slice's next footprint overwrites.
     void put(const detail::FootprintArrays& lights, std::uint32_t i, std::uint64_t area, std::uint32_t slice,
              std::uint32_t count) {
         SliceRun& run = runs_.data()[slice];

@@ -11,8 +11,10 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 template <Footprint footprint, DepthTest depth_test>
 inline constexpr bool has_tests = footprint != Footprint::rectangle || depth_test != DepthTest::none;
 
-/// Whether a binning kernel reads the spots' cones. Without a depth test it reads footprints only, of spheres or spots.
-template <DepthTest depth_test> inline constexpr bool reads_spots = depth_test != DepthTest::none;
+/// The kind of lights whose binning kernel bins lights of a kind. Kernels without a depth test read footprints only,
+/// and so those for spheres serve all kinds.
+template <DepthTest depth_test, LightKind kind>
+inline constexpr LightKind kind_read = depth_test != DepthTest::none ? kind : LightKind::sphere;
 
 /// Whether a depth test compares lights with the boxes around cells, rather than with their depths alone.
 template <DepthTest depth_test>
@@ -31,13 +33,14 @@ struct Scratch {
     Buffer<std::uint32_t> corners;  ///< a difference array over tiles: its prefix sums are their numbers of lights
 
     // Memory for BandLists, the lists of the lights in bands; a band is a row of blocks of 8x8 tiles.
-    Buffer<std::uint32_t> light_indices;  ///< 0, 1, 2 ...: indices of footprints, listed where tests of tiles follow
+    /// The indices 0, 1, 2 ... of footprints, which lists have in place of ids until silhouettes and depths are tested.
+    Buffer<std::uint32_t> light_indices;
     Buffer<std::uint8_t> band_x0, band_x1, band_rows;
     Buffer<std::uint32_t> band_ids, band_sizes;
 
     // The lists of one band's blocks.
     Buffer<BlockList> lists;
-    Buffer<std::uint32_t> list_ids;     ///< the lights' ids or, before tests of their tiles, their footprints' indices
+    Buffer<std::uint32_t> list_ids;     ///< ids of lights; during silhouette and depth tests, indices of footprints
     Buffer<std::uint8_t> list_columns;  ///< a byte for each light: a bit for each tile column its rectangle meets
     Buffer<std::uint8_t> list_rows;     ///< a byte for each light: a bit for each tile row its rectangle meets
     Buffer<std::uint64_t> tile_masks;   ///< a word for each light of one list: a bit for each tile that it is in
@@ -53,7 +56,8 @@ struct Scratch {
 
     /// Returns the table from which a list's tiles are emitted. For each of the block's 8 rows of tiles it has one byte
     /// for each light, with a bit for each of the row's 8 tiles that the light is in. Rows begin list.padded_count()
-    /// bytes apart, and bytes behind the last light are 0. Rows may be read and, in order, written past their end.
+    /// bytes apart, and bytes behind the last light are 0. Kernels read and write whole vectors, past a row's end: they
+    /// write the rows in ascending order, so that each overwrites what the row before wrote too far.
     std::uint8_t* row_columns_of(const BlockList& list) const {
         return row_columns.data() + std::size_t{8} * list.begin;
     }

@@ -2,9 +2,9 @@
 // The view-space box around a tile's cell, which DepthTest::box tests spheres against (Thomas, "Advancements
 // in Tiled-Based Compute Rendering", GDC 2015; Stewart, "Compute-Based Tiled Culling", GPU Pro 6).
 //
-// A cell lies between two planes a side, through the eye (perspective) or along the viewing direction
-// (orthographic), and between two depths. Between the depths z0 and z1, 0 < z0, the planes of slope s0 and s1
-// bound the coordinate by  min(s0 z0, s0 z1)  and  max(s1 z0, s1 z1).
+// A cell lies between two depths and, along each of x and y, between two planes, which pass through the eye
+// (perspective) or are parallel to the viewing direction (orthographic). Between the depths z0 and z1, 0 < z0, the
+// planes of slope s0 and s1 through the eye bound the coordinate by  min(s0 z0, s0 z1)  and  max(s1 z0, s1 z1).
 //
 // Rounding, u = 2^-24. Outward everywhere:
 // - an edge's slope is computed in double: the offset may be off by 2^-51 of its parts, the quotient by a few
@@ -15,7 +15,7 @@
 //   terms of one sign). The squared radius loses 3u. 2^-20 = 16u makes up for the 8u, and 2^-125 for squares
 //   that are flushed to zero. What overflows to infinity did so in both or in the sphere's favour, since all
 //   roundings are monotone; infinity is not beyond infinity.
-// - in a slice (store_met_boxes) the squared distances along z and y are subtracted from the squared radius, and the
+// - in a slice (SlabCells) the squared distances along z and y are subtracted from the squared radius, and the
 //   rest is compared with that along x. Where it could be more, each difference is off by u of the squared radius, as
 //   much as a sum above. One that is flushed to zero is off by 2^-126, two by 2^-125: squares don't need that then,
 //   as a squared radius that is flushed leaves 2^-125 - 0 - 0, which is not.
@@ -46,7 +46,7 @@ struct SlabBoxes {
     /// How many elements past the last one vectors read and write.
     static constexpr std::size_t padding = 16;
 
-    const float* ends[4] = {};  ///< four arrays: the boxes' low and high x by tile column, low and high y by tile row
+    const float* ends[4] = {};  ///< four arrays: cell boxes' low and high x by tile column, low and high y by tile row
     float z0 = 0, z1 = 0;
 };
 
@@ -55,25 +55,29 @@ inline float reach2_of(float radius) {
     return rounded(rounded(radius * radius) * (1 + 0x1p-20f)) + 0x1p-125f;
 }
 
-/// How many arrays of 64 floats, one number for each of a block's tiles, a depth test reads: see arrange_cells().
+/// How many arrays of 64 floats, one number for each of a block's tiles, describe the cells that a depth test compares
+/// lights with: see arrange_cells().
 template <DepthTest depth_test>
-inline constexpr unsigned cell_planes = depth_test == DepthTest::split_box ? 12
+inline constexpr unsigned cell_arrays = depth_test == DepthTest::split_box ? 12
                                         : depth_test == DepthTest::box     ? 6
                                                                            : 2;
-/// With split_box a cell has two boxes: how many floats after the first one the second one begins.
-inline constexpr unsigned next_box = 64 * cell_planes<DepthTest::box>;
+/// With split_box a tile has two cells: how many floats after the first one's arrays the second one's begin.
+inline constexpr unsigned next_cell = 64 * cell_arrays<DepthTest::box>;
 
-/// A sphere as the depth tests read it. The coordinates are negated where needed: tile indices grow with x and y, and z
-/// is the view depth.
+/// A sphere as the depth tests read it, in view space. The camera's signs are applied: tile indices grow with x and y,
+/// and z is the view depth.
 struct TestedLight {
     TestedLight() = default;
     TestedLight(const Camera& camera, const Sphere& light)
-        : x(camera.x.sign * light.x), y(camera.y.sign * light.y), z(camera.z_sign * light.z),
-          nearest(z - light.radius), farthest(z + light.radius),
+        : TestedLight({camera.x.sign * light.x, camera.y.sign * light.y, camera.z_sign * light.z, light.radius}) {}
+    /// Takes a sphere with the camera's signs applied: tile indices grow with its x and y, and z is its view depth.
+    explicit TestedLight(const Sphere& light)
+        : x(light.x), y(light.y), z(light.z), nearest(z - light.radius), farthest(z + light.radius),
           reach2(reach2_of(light.radius)) {}
 
     float x, y, z;
-    float nearest, farthest;  ///< the sphere's view depths; rounding is monotone: tests against Z bounds lose no light
+    /// The sphere's view depths. Rounding is monotone: these meet all intervals of floats that the exact depths meet.
+    float nearest, farthest;
     float reach2;             ///< the sphere's squared radius, enlarged by a margin for rounding: reach2_of()
 };
 }}}  // namespace lightbin::detail

@@ -34,7 +34,7 @@ inline void store_box(const Camera& camera, float* box, Floats x0, Floats x1, Fl
     store_floats(box + 320, high_ends(y1, front, back));
 }
 
-/// Stores the boxes around a vector of cells. With split_box each cell has two, in front of its gap and behind it.
+/// Stores the boxes around a vector of cells. With split_box each tile has two cells, before and behind its gap.
 ///
 /// Boxes are clamped to the near and the far plane. That loses no light: one that is in view meets a cell's depths if
 /// and only if it meets the clamped depths.
@@ -56,7 +56,7 @@ inline void store_boxes(const Camera& camera, float* boxes, Floats x0, Floats x1
         const Floats end = select(both(gap, less(gap_min, z1)), gap_min, z1);
         const Floats begin = minimum(select(both(gap, less(z0, gap_max)), gap_max, z0), largest);
         store_box(camera, boxes, x0, x1, y0, y1, z0, end);
-        store_box(camera, boxes + next_box, x0, x1, y0, y1, begin, z1);
+        store_box(camera, boxes + next_cell, x0, x1, y0, y1, begin, z1);
     }
 }
 
@@ -73,24 +73,25 @@ inline void fill_8_floats(float* to, float value) {
         store_floats(to + i, broadcast(value));
 }
 
-/// Stores what a depth test compares lights with, for the block that begins at tile column 8 * `x` and tile row `top`,
-/// in arrays of one float for each of its 64 tiles. DepthTest::interval has two arrays, the minimum and maximum depths;
-/// `box` has six, the low and high ends of cells' boxes along z, x and y; `split_box` has six for each of two boxes.
-/// Returns a bit for each tile whose Z bounds are not empty.
+/// Stores what a depth test compares lights with, for the block that begins at tile column 8 * x and tile row `top`, in
+/// arrays of one float for each of its 64 tiles. With DepthTest::interval these are the minimum and maximum depths. With
+/// DepthTest::box they are the depths z0 and z1, low x, high x, low y and high y of the box around each tile's cell.
+/// With split_box they are these six for the cells in front of the tiles' depth gaps (see ZBounds), then six for the
+/// cells behind the gaps. With box and split_box the edges of the tiles themselves are stored in `edges`. Returns a bit for each tile whose Z bounds are not empty.
 template <DepthTest depth_test, class Id>
-std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, float* cells) {
+std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, float* cells, TileEdges& edges) {
     constexpr bool boxes = with_boxes<depth_test>;
     constexpr unsigned sides = depth_test == DepthTest::split_box ? 4 : 2;
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
     const unsigned rows = min_of(8u, static_cast<unsigned>(job.camera->y.tiles) - top);
     const unsigned columns = min_of(8u, static_cast<unsigned>(width) - 8 * x);
     const float absent[] = {job.slab[0], job.slab[1], infinity, -infinity};
-    float bounds[sides][64 + lanes], y_edges[2][64 + lanes];
-    float x_edges[2][16];  // the edges of the block's 8 columns, twice: a vector of sixteen holds two rows of tiles
+    float bounds[sides][64 + lanes];
     if constexpr (boxes)
         for (unsigned side = 0; side < 2; ++side) {
-            copy_8_floats(job.edges[side] + 8 * x, columns, x_edges[side]);
-            copy_8_floats(x_edges[side], 8, x_edges[side] + 8);
+            float* const to = edges.x + edges.high_x * side;
+            copy_8_floats(job.edges[side] + 8 * x, columns, to);
+            copy_8_floats(to, 8, to + 8);
         }
     for (unsigned row = 0; row < 8; ++row) {
         const unsigned first = 8 * row, y = top + min_of(row, rows - 1);  // rows below the grid repeat its last row
@@ -101,7 +102,7 @@ std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, flo
                 fill_8_floats(bounds[side] + first, absent[side]);
         if constexpr (boxes)
             for (unsigned side = 0; side < 2; ++side)
-                fill_8_floats(y_edges[side] + first, job.edges[2 + side][y]);
+                fill_8_floats(edges.y + edges.high_y * side + first, job.edges[2 + side][y]);
     }
     std::uint64_t drawn = 0;
     for (unsigned tile = 0; tile < 64; tile += lanes) {
@@ -110,9 +111,9 @@ std::uint64_t arrange_cells(const BinJob<Id>& job, unsigned x, unsigned top, flo
             of_tiles[side] = load_floats(bounds[side] + tile);
         drawn |= (~std::uint64_t{movemask(less(of_tiles[1], of_tiles[0]))} & every_lane) << tile;
         if constexpr (boxes) {
-            store_boxes<depth_test>(*job.camera, cells + tile, load_floats(x_edges[0] + tile % 8),
-                                    load_floats(x_edges[1] + tile % 8), load_floats(y_edges[0] + tile),
-                                    load_floats(y_edges[1] + tile), of_tiles);
+            const float *const of_x = edges.x + tile % 8, *const of_y = edges.y + tile;
+            store_boxes<depth_test>(*job.camera, cells + tile, load_floats(of_x), load_floats(of_x + edges.high_x),
+                                    load_floats(of_y), load_floats(of_y + edges.high_y), of_tiles);
         } else {
             store_floats(cells + tile, maximum(of_tiles[0], broadcast(-infinity)));  // so that NaN excludes no light
             store_floats(cells + 64 + tile, minimum(of_tiles[1], broadcast(infinity)));

@@ -27,8 +27,8 @@ inline bool scatter_is_faster(Isa isa, std::uint64_t tiles, std::uint64_t area) 
     return area < (isa == Isa::avx512 ? 1 : 3) * tiles;
 }
 
-/// Estimates how many ns of scattering can be divided among threads. The rest every thread does again: it visits all
-/// lights, and its branches on which lights are in its share are mispredicted.
+/// Estimates how many ns of binning by scattering ids to tiles' lists (scatter.hpp) can be divided among threads. Each
+/// thread repeats the rest: it visits all lights, and mispredicts branches on which lights are in its share.
 inline double scatter_ns(double lights, double entries) {
     return max_of(0.6 * entries - 8 * lights, 0.0);
 }
@@ -55,7 +55,7 @@ inline std::uint64_t empty_row_cost(std::uint64_t tiles) {
     return tiles;
 }
 
-/// In how many rows of tiles scattering counts the lights in one pass: bounds the memory of its difference array.
+/// Binning by scattering (scatter.hpp) counts the lights of this many rows of tiles at a time, to bound its memory.
 inline constexpr unsigned rows_counted_at_once = 512;
 
 /// Returns how many of a grid's `height` rows of tiles are filled with ids in one pass over all lights, when binning by
@@ -67,7 +67,7 @@ inline std::size_t rows_filled_at_once(std::size_t height, std::size_t width, st
     return entries < 256 * std::uint64_t{height} * width + 2 * lights * (height / rows + 1) ? height : rows;
 }
 
-/// How many lights the lists of bands that are made in one pass over the lights can hold in all: bounds their memory.
+/// The most entries in all lists of bands (8 tile rows) that one pass over the lights makes; bounds their memory.
 inline constexpr std::uint64_t max_band_entries = std::uint64_t{1} << 24;
 
 /// Lights whose rectangles have at most this many tiles in all need lists whose sizes 32 bits can count, however they

@@ -32,57 +32,83 @@ inline Floats distance2(const float* boxes, float x, float y, float z) {
     return mul(along_x, along_x) + mul(along_y, along_y) + mul(along_z, along_z);
 }
 
-/// Returns a mask of the boxes in a vector that a sphere misses. Always inlined: GCC 12 loses half of a returned mask.
-LIGHTBIN_INLINE auto boxes_missed(const float* boxes, const TestedLight& light) {
+/// Returns a mask of the boxes in a vector that a sphere misses. It is always inlined because GCC 12 loses half of such
+/// a mask when a call returns it.
+template <bool orthographic>
+LIGHTBIN_INLINE auto boxes_missed(const float* boxes, const float*, const float*, const TestedLight& light) {
     return less(broadcast(light.reach2), distance2(boxes, light.x, light.y, light.z));
 }
 
-/// Returns a mask of the boxes in a vector that a spot misses: boxes that its ball misses, or that lie outside one of
-/// the four planes around its cone. A box lies outside a plane if its deepest corner does, the corner farthest along
-/// the plane's inner side. (Unreal tests one such plane, chosen for each box.)
-LIGHTBIN_INLINE auto boxes_missed(const float* boxes, const TestedSpot& light) {
-    const ViewSpot& spot = *light.spot;
-    auto missed = less(broadcast(reach2_of(spot.ball.radius)), distance2(boxes, spot.ball.x, spot.ball.y, spot.ball.z));
-    for (unsigned i = 0; i < 4; ++i) {
-        const SpotPlane& plane = spot.planes[i];
-        const Floats deepest = mul(load_floats(boxes + spot.corners[i][0]), broadcast(plane.x)) +
-                               mul(load_floats(boxes + spot.corners[i][1]), broadcast(plane.y)) +
-                               mul(load_floats(boxes + spot.corners[i][2]), broadcast(plane.z));
-        missed = either(missed, less(broadcast(plane.offset), deepest));
+/// Adds to the mask `missed` those of a vector of cells that lie outside of one of the half spaces `around` a light, by
+/// the formula in cell_planes.hpp, and returns it. Always inlined: GCC 12 loses half of a mask that a call returns.
+///
+/// cells             the depths z0 and z1 of the cells, in the arrays that store_box() fills
+/// x_edges, y_edges  the edges of the cells' tiles in TileEdges::x and TileEdges::y
+template <bool orthographic, std::size_t count, class Mask>
+LIGHTBIN_INLINE Mask or_outside(Mask missed, const float* cells, const float* x_edges, const float* y_edges,
+                                const CellPlanes<count>& around) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const CellPlane& plane = around.planes[i];
+        const std::uint16_t(&arrays)[3] = around.arrays[i];
+        const Floats across = mul(load_floats(x_edges + arrays[0]), broadcast(plane.x)) +
+                              mul(load_floats(y_edges + arrays[1]), broadcast(plane.y)),
+                     z = load_floats(cells + arrays[2]), n_z = broadcast(plane.z);
+        const Floats least = orthographic ? across + mul(z, n_z) : mul(across + n_z, z);
+        missed = either(missed, less(broadcast(plane.most), least));
     }
     return missed;
 }
 
-/// Returns a bit for each tile in a vector whose cell a light meets.
+/// Returns a mask of the cells in a vector that a spot or a Box misses: those whose boxes, stored by store_box(), are
+/// missed by its ball, the sphere that it is a part of, and those that lie outside of one of the half spaces around it:
+/// four around a spot, six around a Box. A Box that lies in its ball as a whole has a ball of infinite radius, which is
+/// not tested. (Unreal tests one such half space of a spot, chosen for each cell.) Arguments: see or_outside().
+template <bool orthographic, class Shape>
+LIGHTBIN_INLINE auto boxes_missed(const float* cells, const float* x_edges, const float* y_edges,
+                                  const TestedShape<Shape>& light) {
+    const Shape& shape = *light.shape;
+    auto missed = less(Floats{}, Floats{});  // none
+    if (!std::is_same_v<Shape, ViewBox> || shape.ball.radius < infinity)
+        missed = less(broadcast(reach2_of(shape.ball.radius)),
+                      distance2(cells, shape.ball.x, shape.ball.y, shape.ball.z));
+    return or_outside<orthographic>(missed, cells, x_edges, y_edges, shape.around);
+}
+
+/// The cells of a block's tiles, with which a depth test compares the block's lights.
+template <DepthTest depth_test> struct BlockCells {
+    float arrays[64 * cell_arrays<depth_test>];  ///< the cells' depths or boxes, as arrange_cells() stores them
+    TileEdges edges;       ///< the edges of the cells' tiles, set only if lights are tested against boxes around cells
+    std::uint64_t drawn;   ///< a bit for each tile whose Z bounds are not empty
+    DepthInterval depths;  ///< an interval that holds the view depths of the cells of all tiles in `drawn`
+};
+
+/// Returns a word whose bit i says whether a light meets the cell of tile `tile` + i, for each lane i of a vector.
 ///
-/// cells  the arrays of arrange_cells(), from the vector's first tile on
-template <DepthTest depth_test, class Light> std::uint64_t tiles_met(const float* cells, const Light& light) {
+/// orthographic  whether the projection is orthographic, which only the half spaces around spots and Boxes depend on
+template <DepthTest depth_test, bool orthographic, class Light>
+std::uint64_t tiles_met(const BlockCells<depth_test>& cells, unsigned tile, const Light& light) {
     const Floats nearest = broadcast(light.nearest), farthest = broadcast(light.farthest);
     std::uint64_t met = 0;
-    for (const float* cell = cells; cell < cells + 64 * cell_planes<depth_test>; cell += next_box) {
+    for (unsigned box = 0; box < 64 * cell_arrays<depth_test>; box += next_cell) {
+        const float* const cell = cells.arrays + box + tile;
         auto missed = either(less(farthest, load_floats(cell)), less(load_floats(cell + 64), nearest));
-        if constexpr (depth_test != DepthTest::interval) missed = either(missed, boxes_missed(cell, light));
+        if constexpr (depth_test != DepthTest::interval)
+            missed = either(
+                missed, boxes_missed<orthographic>(cell, cells.edges.x + tile % 8, cells.edges.y + tile, light));
         met |= ~movemask(missed) & every_lane;
     }
     return met;
 }
 
-/// The cells of a block's tiles, with which a depth test compares the block's lights.
-template <DepthTest depth_test> struct BlockCells {
-    float planes[64 * cell_planes<depth_test>];
-    std::uint64_t drawn;   ///< a bit for each drawn tile, that is, each with Z bounds that are not empty
-    DepthInterval depths;  ///< encloses the view depths of drawn tiles' cells, and of tiles in a SIMD vector with one
-};
-
-/// Returns an interval that encloses the view depths of the cells of all tiles with a bit in `drawn`.
+/// Returns the interval of the view depths of all cells that share a vector with a tile whose bit in `drawn` is set.
 template <DepthTest depth_test> DepthInterval depth_range(const float* cells, std::uint64_t drawn) {
     float min[lanes], max[lanes];
     Floats nearest = broadcast(infinity), farthest = broadcast(-infinity);
     for (unsigned tile = 0; tile < 64; tile += lanes)
         if ((drawn >> tile & every_lane) != 0)
-            for (unsigned box = 0; box < 64 * cell_planes<depth_test>; box += next_box) {
-                nearest = minimum(load_floats(cells + box + tile), nearest);
-                farthest = maximum(load_floats(cells + box + 64 + tile), farthest);
+            for (unsigned cell = 0; cell < 64 * cell_arrays<depth_test>; cell += next_cell) {
+                nearest = minimum(load_floats(cells + cell + tile), nearest);
+                farthest = maximum(load_floats(cells + cell + 64 + tile), farthest);
             }
     store_floats(min, nearest);
     store_floats(max, farthest);
@@ -92,12 +118,12 @@ template <DepthTest depth_test> DepthInterval depth_range(const float* cells, st
     return range;
 }
 
-/// Sets in met[i] the bits of the tiles whose cells light i meets, for each of 64 lights whose bit in `chosen` is set.
-/// A light is tested against a vector of tiles only if one of them is in its rectangle. The outer loop runs over
+/// Sets in met[i] the bits of the tiles whose cells light i meets, for each of up to 64 lights whose bit in `chosen` is
+/// set. A light is tested against a vector of tiles only if one of them is in its rectangle. The outer loop runs over
 /// vectors of tiles: the cells stay in registers, and no short loop over a light's vectors has a mispredicted end.
 ///
-/// columns, rows  a byte for each light: a bit for each tile column (or row) of the block that its rectangle meets
-template <DepthTest depth_test, class Light>
+/// columns, rows  for each light a byte, with a bit for each tile column, or tile row, that its rectangle meets
+template <DepthTest depth_test, bool orthographic, class Light>
 void meet_tiles(const BlockCells<depth_test>& cells, const Light* lights, const std::uint8_t* columns,
                 const std::uint8_t* rows, std::uint64_t chosen, std::uint64_t* met) {
     std::uint64_t in_column[8], in_row[8];
@@ -112,7 +138,7 @@ void meet_tiles(const BlockCells<depth_test>& cells, const Light* lights, const 
             in_columns |= in_column[tile % 8 + lane];
         for (std::uint64_t rest = in_rows & in_columns & chosen; rest != 0; rest &= rest - 1) {
             const unsigned light = static_cast<unsigned>(std::countr_zero(rest));
-            met[light] |= tiles_met<depth_test>(cells.planes + tile, lights[light]) << tile;
+            met[light] |= tiles_met<depth_test, orthographic>(cells, tile, lights[light]) << tile;
         }
     }
 }
@@ -135,35 +161,138 @@ inline std::uint64_t silhouette_tiles(const FootprintArrays& lights, std::uint32
     return tiles & spanned;
 }
 
-/// Tests up to 64 lights of a block against its tiles' cells, the parts of the view frustum that the tiles show between
-/// their Z bounds. Stores in met[i] a bit for each tile whose cell light i meets.
+/// The boxes around the cells of a depth slice in one block of 8x8 tiles.
 ///
-/// indices        the lights' indices in the footprint arrays
-/// columns, rows  a byte for each light: a bit for each tile column (or row) of the block that its rectangle meets
-template <DepthTest depth_test, bool spots, class Id>
-void meet_64_lights(const BinJob<Id>& job, const BlockCells<depth_test>& cells, const std::uint32_t* indices,
-                    const std::uint8_t* columns, const std::uint8_t* rows, std::uint32_t count, std::uint64_t* met) {
-    Tested<spots> tested[64];
-    std::uint64_t in_range = 0;
-    for (std::uint32_t j = 0; j < count; ++j) {
-        const std::uint32_t id = job.lights.ids[indices[j]];
-        // Constructed in place: copying what was just stored in parts would stall on store forwarding.
-        if constexpr (spots)
-            std::construct_at(tested + j, *job.camera, job.lights.spots[id]);
-        else
-            std::construct_at(tested + j, *job.camera, load_sphere(job.lights.spheres + id));
-        met[j] = 0;
-        // Most lights that miss all of the block's cells lie outside the depths of all cells together.
-        const bool missed = (tested[j].farthest < cells.depths.min) | (cells.depths.max < tested[j].nearest);
-        in_range |= std::uint64_t{!missed} << j;
+/// These boxes differ only by column and by row, so the squared distance of a sphere from a box is the sum of x2, which
+/// depends on the column, y2, which depends on the row, and z2. These are 17 numbers for 64 tiles, each of which then
+/// takes one comparison: a box is missed if  reach2 - z2 - y2 < x2;  cell_boxes.hpp derives the rounding. Where reach2
+/// and a distance are infinite the difference is NaN, and the box counts as met.
+struct SlabCells {
+    static constexpr unsigned vectors = lanes < 8 ? 8 / lanes : 1;
+
+    /// The block begins at column 8 * x and row `top`.
+    SlabCells(const SlabBoxes& slab, unsigned x, unsigned top) : z0(slab.z0), z1(slab.z1) {
+        for (unsigned i = 0; i < vectors; ++i) {
+            x0[i] = load_floats(slab.ends[0] + 8 * x + i * lanes);
+            x1[i] = load_floats(slab.ends[1] + 8 * x + i * lanes);
+            y0[i] = load_floats(slab.ends[2] + top + i * lanes);
+            y1[i] = load_floats(slab.ends[3] + top + i * lanes);
+        }
     }
-    if (in_range != 0) meet_tiles(cells, tested, columns, rows, in_range, met);
+
+    /// Calls store(row, bits) for each row of tiles, where bits 0 to 7 of `bits` say which cells' boxes a sphere meets.
+    template <class Store> LIGHTBIN_INLINE void meet(const TestedLight& light, const Store& store) const {
+        const float z_distance = max_of(max_of(z0 - light.z, light.z - z1), 0.0f);
+        const Floats left = broadcast(light.reach2 - rounded(z_distance * z_distance));
+        Floats x2[vectors];
+        float left_by_row[vectors * lanes];
+        for (unsigned k = 0; k < vectors; ++k) {
+            const Floats along_x = distance(broadcast(light.x), x0[k], x1[k]),
+                         along_y = distance(broadcast(light.y), y0[k], y1[k]);
+            x2[k] = mul(along_x, along_x);
+            store_floats(left_by_row + k * lanes, left - mul(along_y, along_y));
+        }
+        for (unsigned row = 0; row < 8; ++row) {
+            unsigned missed = 0;
+            for (unsigned k = 0; k < vectors; ++k)
+                missed |= movemask(less(broadcast(left_by_row[row]), x2[k])) << k * lanes;
+            store(row, ~missed);
+        }
+    }
+
+    Floats x0[vectors], x1[vectors], y0[vectors], y1[vectors];
+    float z0, z1;
+};
+
+/// Finds which boxes around a depth slice's cells each sphere of a block's list meets; the list has no other lights.
+/// Stores for each row of tiles a byte for each sphere, with a bit for each of the row's 8 boxes that it meets, in the
+/// memory of Scratch::tile_masks. Rows are list.padded_count() bytes apart. Builds of clusters of spheres take 1.3
+/// times as long with a 64-bit word for each light instead, as mask_lights() stores it.
+template <class Id>
+void store_met_boxes(const BinJob<Id>& job, Scratch& scratch, const SlabCells& slab, const BlockList& list) {
+    const SlabCells boxes = slab;  // a local copy, so that compilers need not reload it after each store
+    const std::uint32_t padded = list.padded_count();
+    const std::uint32_t* const ids = scratch.list_ids.data() + list.begin;
+    std::uint8_t* const met = reinterpret_cast<std::uint8_t*>(scratch.tile_masks.reserve(padded + std::uint64_t{64}));
+    for (std::uint32_t i = 0; i < list.count; ++i)
+        boxes.meet(TestedLight(*job.camera, load_sphere(job.lights.view_lights.spheres + ids[i])),
+                   [=](unsigned row, unsigned bits) { met[row * padded + i] = static_cast<std::uint8_t>(bits); });
 }
 
-/// Fills the table of Scratch::row_columns_of(): each light of a list is in all tiles of its rectangle in the block.
+/// Takes the place of SlabCells, the boxes around the cells of a depth slice, where no light is tested against them.
+struct NoSlab {
+    NoSlab(const SlabBoxes&, unsigned, unsigned) {}
+};
+
+/// The lights among up to 64 of a block's list that are tested as the type Light, each at its position among the 64.
+template <class Light> struct TestedLights {
+    Light lights[64];
+    std::uint64_t in_range = 0;  ///< bit i: lights[i] was set by add(), and meets the view depths that add() was given
+
+    /// Constructs lights[i] from `from`, in place, as copying an object just stored in parts would stall on store
+    /// forwarding. Its bit in in_range is set if it meets `depths`, the view depths of all the block's cells together.
+    /// Most lights that miss all of the cells miss these depths.
+    template <class... From> LIGHTBIN_INLINE void add(std::uint32_t i, const DepthInterval& depths, const From&... from) {
+        const Light& light = *std::construct_at(lights + i, from...);
+        const bool missed = (light.farthest < depths.min) | (depths.max < light.nearest);
+        in_range |= std::uint64_t{!missed} << i;
+    }
+};
+
+/// Tests up to 64 lights of a block's list against the cells of the block's tiles. Stores in met[i] a bit for each tile
+/// whose cell light i meets. Spots that are whole spheres are tested as spheres.
 ///
-/// by_slab  each light is only in the tiles of its rectangle whose boxes it meets; store_met_boxes(), called before,
-///          stored a bit for each met box in Scratch::tile_masks
+/// slab           with by_slab, the boxes around the block's cells in a depth slice, which spheres are tested against
+/// indices        the lights' indices in the footprint arrays
+/// columns, rows  for each light a byte, with a bit for each tile column, or tile row, that its rectangle meets
+template <DepthTest depth_test, bool by_slab, LightKind kind, class Slab, class Id>
+void meet_64_lights(const BinJob<Id>& job, const BlockCells<depth_test>& cells, const Slab& slab,
+                    const std::uint32_t* indices, const std::uint8_t* columns, const std::uint8_t* rows,
+                    std::uint32_t count, std::uint64_t* met) {
+    const ViewLights lights = job.lights.view_lights;
+    const Slab boxes_of_slab = slab;  // a local copy, so that compilers need not reload it after each store
+    [[maybe_unused]] TestedLights<TestedLight> spheres;
+    const auto add_sphere = [&](std::uint32_t j, const auto&... from) {
+        if constexpr (by_slab)
+            boxes_of_slab.meet(TestedLight(from...), [&](unsigned row, unsigned bits) {
+                met[j] |= std::uint64_t{bits & 0xff} << 8 * row;
+            });
+        else
+            spheres.add(j, cells.depths, from...);
+    };
+    [[maybe_unused]] TestedLights<TestedShape<ViewSpot>> spots;
+    [[maybe_unused]] TestedLights<TestedShape<ViewBox>> boxes;
+    for (std::uint32_t j = 0; j < count; ++j) {
+        const std::uint32_t id = job.lights.light_ids[indices[j]];
+        const LightKind own_kind = kind == LightKind::mixed ? lights.kind_of(id) : kind;
+        met[j] = 0;
+        if (own_kind == LightKind::sphere) {
+            add_sphere(j, *job.camera, load_sphere(lights.spheres + id));
+        } else if (own_kind == LightKind::spot) {
+            const ViewSpot& spot = lights.template shape<LightKind::spot>(id);
+            if (spot.tolerance > 0)
+                spots.add(j, cells.depths, spot);
+            else
+                add_sphere(j, spot.ball);
+        } else {
+            boxes.add(j, cells.depths, lights.template shape<LightKind::box>(id));
+        }
+    }
+    const auto meet = [&]<class Light>(const TestedLights<Light>& tested) {
+        if (tested.in_range == 0) return;
+        if constexpr (!std::is_same_v<Light, TestedLight> && with_boxes<depth_test>)
+            if (job.camera->orthographic)
+                return meet_tiles<depth_test, true>(cells, tested.lights, columns, rows, tested.in_range, met);
+        meet_tiles<depth_test, false>(cells, tested.lights, columns, rows, tested.in_range, met);
+    };
+    if constexpr (!by_slab && kind != LightKind::box) meet(spheres);
+    if constexpr (kind == LightKind::spot || kind == LightKind::mixed) meet(spots);
+    if constexpr (kind == LightKind::box || kind == LightKind::mixed) meet(boxes);
+}
+
+/// Fills the table of Scratch::row_columns_of(), which has for each row of tiles a byte for each light, with a bit for
+/// each tile that it is listed in. These are all tiles of its rectangle or, with by_slab, those whose boxes it meets:
+/// store_met_boxes(), called before, stored a bit for each met box in Scratch::tile_masks.
 template <bool by_slab> void store_rectangles(Scratch& scratch, const BlockList& list) {
     const std::uint32_t padded = list.padded_count();
     std::uint8_t* const columns = scratch.list_columns.data() + list.begin;
@@ -179,8 +308,9 @@ template <bool by_slab> void store_rectangles(Scratch& scratch, const BlockList&
         }
 }
 
-/// Stores the table of Scratch::row_columns_of() out of the list's words in Scratch::tile_masks. A word has a byte for
-/// each row, so the words of 8 lights are transposed as 8x8 bytes.
+/// Fills the table of Scratch::row_columns_of(), which has for each row of tiles a byte for each light, with a bit for
+/// each tile that it is listed in. Scratch::tile_masks has a word for each light, with a byte for each row, so the
+/// words of 8 lights at a time are transposed as 8x8 bytes.
 inline void store_masks(Scratch& scratch, const BlockList& list) {
     const std::uint32_t padded = list.padded_count();
     std::uint64_t* const masks = scratch.tile_masks.data();
@@ -195,58 +325,16 @@ inline void store_masks(Scratch& scratch, const BlockList& list) {
     }
 }
 
-/// Tests a list's spheres against the boxes of a slice, for the block that begins at tile column 8 * x and tile row
-/// `top`. Stores a bit for each box that is met in Scratch::tile_masks, laid out as Scratch::row_columns_of() is.
-///
-/// The boxes of a slice differ only by column and by row, so the squared distance of a sphere from a box is the sum of
-/// x2, which depends on the column, y2, which depends on the row, and z2. These are 17 numbers for 64 tiles, each of
-/// which then takes one comparison: a box is missed if  reach2 - z2 - y2 < x2;  cell_boxes.hpp derives the rounding.
-/// Where reach2 and a distance are infinite the difference is NaN, and the box counts as met. Depths need no test of
-/// their own: a slice's lists hold only lights that meet its depths.
-template <class Id>
-void store_met_boxes(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab, unsigned x, unsigned top,
-                     const BlockList& list) {
-    constexpr unsigned vectors = lanes < 8 ? 8 / lanes : 1;
-    Floats x0[vectors], x1[vectors], y0[vectors], y1[vectors];
-    for (unsigned i = 0; i < vectors; ++i) {
-        x0[i] = load_floats(slab.ends[0] + 8 * x + i * lanes);
-        x1[i] = load_floats(slab.ends[1] + 8 * x + i * lanes);
-        y0[i] = load_floats(slab.ends[2] + top + i * lanes);
-        y1[i] = load_floats(slab.ends[3] + top + i * lanes);
-    }
-    const std::uint32_t padded = list.padded_count();
-    const std::uint32_t* const ids = scratch.list_ids.data() + list.begin;
-    std::uint8_t* const met = reinterpret_cast<std::uint8_t*>(scratch.tile_masks.reserve(padded + std::uint64_t{64}));
-    for (std::uint32_t i = 0; i < list.count; ++i) {
-        const TestedLight light(*job.camera, load_sphere(job.lights.spheres + ids[i]));
-        const float z_distance = max_of(max_of(slab.z0 - light.z, light.z - slab.z1), 0.0f);
-        const Floats left = broadcast(light.reach2 - rounded(z_distance * z_distance));
-        Floats x2[vectors];
-        float left_by_row[vectors * lanes];
-        for (unsigned k = 0; k < vectors; ++k) {
-            const Floats along_x = distance(broadcast(light.x), x0[k], x1[k]),
-                         along_y = distance(broadcast(light.y), y0[k], y1[k]);
-            x2[k] = mul(along_x, along_x);
-            store_floats(left_by_row + k * lanes, left - mul(along_y, along_y));
-        }
-        for (unsigned row = 0; row < 8; ++row) {
-            unsigned missed = 0;
-            for (unsigned k = 0; k < vectors; ++k)
-                missed |= movemask(less(broadcast(left_by_row[row]), x2[k])) << k * lanes;
-            met[row * padded + i] = static_cast<std::uint8_t>(~missed);
-        }
-    }
-}
-
-/// Stores in Scratch::tile_masks the tiles of each light of a list, for the block that begins at tile column 8 * x and
-/// tile row `top`. Removes lights that are in no tile of the block, and replaces the remaining lights' indices by ids.
-template <Footprint footprint, DepthTest depth_test, bool spots, class Id>
-void mask_lights(const BinJob<Id>& job, Scratch& scratch, unsigned x, unsigned top, BlockList& list) {
+/// Stores in Scratch::tile_masks the tiles of each light of a list, for the block that begins at column 8 x and row
+/// `top`. Removes lights that are in none of its tiles from the list, and replaces the others' indices by ids.
+template <Footprint footprint, DepthTest depth_test, bool by_slab, LightKind kind, class Id>
+void mask_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab, unsigned x, unsigned top, BlockList& list) {
     [[maybe_unused]] BlockCells<depth_test> cells;
     if constexpr (depth_test != DepthTest::none) {
-        cells.drawn = arrange_cells<depth_test>(job, x, top, cells.planes);
-        cells.depths = depth_range<depth_test>(cells.planes, cells.drawn);
+        cells.drawn = arrange_cells<depth_test>(job, x, top, cells.arrays, cells.edges);
+        cells.depths = depth_range<depth_test>(cells.arrays, cells.drawn);
     }
+    [[maybe_unused]] std::conditional_t<by_slab, SlabCells, NoSlab> slab_cells(slab, x, top);
     const std::uint8_t *const columns = scratch.list_columns.data() + list.begin,
                        *const rows = scratch.list_rows.data() + list.begin;
     std::uint32_t* const indices = scratch.list_ids.data() + list.begin;
@@ -256,7 +344,8 @@ void mask_lights(const BinJob<Id>& job, Scratch& scratch, unsigned x, unsigned t
         const std::uint32_t count = min_of(list.count - begin, 64u);
         [[maybe_unused]] std::uint64_t met[64];
         if constexpr (depth_test != DepthTest::none)
-            meet_64_lights<depth_test, spots>(job, cells, indices + begin, columns + begin, rows + begin, count, met);
+            meet_64_lights<depth_test, by_slab, kind>(job, cells, slab_cells, indices + begin, columns + begin,
+                                                      rows + begin, count, met);
         for (std::uint32_t i = begin; i < begin + count; ++i) {
             const std::uint32_t light = indices[i];
             std::uint64_t tiles = spread_bits(rows[i]) & columns[i] * std::uint64_t{0x0101010101010101};
@@ -271,16 +360,17 @@ void mask_lights(const BinJob<Id>& job, Scratch& scratch, unsigned x, unsigned t
     list.count = left;
 }
 
-/// Lists the lights of each block in the band (row of blocks) that begins at tile row `top`, and fills the table of
-/// Scratch::row_columns_of() with the tiles of each. Returns the lists of the blocks, or null if all are empty.
+/// Lists the lights of the blocks of 8x8 tiles in the 8 rows from `top` on, and fills the table of
+/// Scratch::row_columns_of() with a bit for each tile that a light is in. Returns the lists, or null if all are empty.
 ///
-/// slab   the boxes around the depth slice's cells; only read with by_slab, when lights are tested against these boxes
-/// bands  the lists of several bands at a time, kept for the calls for the next bands
+/// slab   with by_slab, the boxes around the depth slice's cells, which lights are tested against
+/// bands  the lists of several bands of 8 tile rows, kept for the calls for the next bands
 /// end    the end of the tile rows that the caller will ask for
-template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>
+template <Footprint footprint, DepthTest depth_test, bool by_slab, LightKind kind, class Id>
 const BlockList* list_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab, BandLists& bands,
                              unsigned top, unsigned end) {
-    constexpr bool masked = has_tests<footprint, depth_test> && !by_slab;
+    constexpr bool slab_alone = by_slab && kind == LightKind::sphere && footprint == Footprint::rectangle;
+    constexpr bool masked = has_tests<footprint, depth_test> && !slab_alone;
     const unsigned width = (static_cast<unsigned>(job.camera->x.tiles) + 7) / 8;
     if (top >= bands.end) list_bands<masked>(job, scratch, top, end, bands);
     BlockList* const lists = scratch.lists.reserve(width);
@@ -290,15 +380,15 @@ const BlockList* list_lights(const BinJob<Id>& job, Scratch& scratch, const Slab
         BlockList& list = lists[x];
         list = {used, list_block(scratch, bands, (top - bands.begin) / 8, x, used)};
         if constexpr (masked)
-            if (list.count > 0) mask_lights<footprint, depth_test, spots>(job, scratch, x, top, list);
+            if (list.count > 0) mask_lights<footprint, depth_test, by_slab, kind>(job, scratch, slab, x, top, list);
         if (list.count == 0) continue;
         const std::uint32_t padded = list.padded_count();
         scratch.row_columns.reserve(std::uint64_t{8} * (used + padded) + 64, std::size_t{8} * used);
         if constexpr (masked)
             store_masks(scratch, list);
-        else if constexpr (by_slab)
-            store_met_boxes(job, scratch, slab, x, top, list);
-        if constexpr (!masked) store_rectangles<by_slab>(scratch, list);
+        else if constexpr (slab_alone)
+            store_met_boxes(job, scratch, SlabCells(slab, x, top), list);
+        if constexpr (!masked) store_rectangles<slab_alone>(scratch, list);
         used += padded;
     }
     return used == 0 ? nullptr : lists;

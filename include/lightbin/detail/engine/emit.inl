@@ -106,10 +106,10 @@ LIGHTBIN_NOINLINE Id* emit_short(Id* out, ListRange* tiles, unsigned columns, st
 }
 #endif
 
-/// Emits a row of tiles of the whole grid. Returns the end of the index list.
+/// Appends the light ids of one row of tiles to the index list, and writes the tiles' ranges. Returns the list's end.
 ///
-/// lists  one for each block of the band
-/// row    the row's number in the band, 0 to 7
+/// lists  the lists of the blocks of 8x8 tiles that the row runs through, from left to right
+/// row    the row's number in these blocks, 0 to 7
 template <class Id>
 Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t offset, Scratch& scratch,
              const BlockList* lists, unsigned row) {
@@ -143,7 +143,7 @@ Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t offset, 
 
 /// Bins one thread's share of tile rows, band by band: lists the lights of each block of 8x8 tiles, tests them, and
 /// writes the tiles' lists. Returns the number of list entries. May write up to BinShare::slack elements past them.
-template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>
+template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, LightKind kind>
 std::uint64_t bin_blocks(const BinJob<Id>& job, Scratch& scratch, const BinShare<Id>& share) {
     const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles);
     ListRange* tiles = job.tiles + share.begin * std::size_t{tiles_x};
@@ -158,7 +158,7 @@ std::uint64_t bin_blocks(const BinJob<Id>& job, Scratch& scratch, const BinShare
     BandLists bands;
     for (unsigned top = share.begin; top < share.end; top += 8) {
         const BlockList* const lists =
-            list_lights<footprint, depth_test, by_slab, spots>(job, scratch, slab, bands, top, share.end);
+            list_lights<footprint, depth_test, by_slab, kind>(job, scratch, slab, bands, top, share.end);
         const unsigned rows = min_of(share.end - top, 8u);
         if (lists == nullptr) {
             fill_empty(tiles, rows * std::size_t{tiles_x}, offset);
@@ -175,7 +175,7 @@ std::uint64_t bin_blocks(const BinJob<Id>& job, Scratch& scratch, const BinShare
 }
 
 /// Returns how many list entries (pairs of cell and light) the grid will have, without writing it.
-template <Footprint footprint, DepthTest depth_test, bool by_slab, bool spots, class Id>
+template <Footprint footprint, DepthTest depth_test, bool by_slab, LightKind kind, class Id>
 std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scratch) {
     const unsigned end = static_cast<unsigned>(job.camera->y.tiles);
     SlabBoxes slab;
@@ -183,7 +183,7 @@ std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scratch) {
     BandLists bands;
     std::uint64_t entries = 0;
     for (unsigned top = 0; top < end; top += 8) {
-        const BlockList* list = list_lights<footprint, depth_test, by_slab, spots>(job, scratch, slab, bands, top, end);
+        const BlockList* list = list_lights<footprint, depth_test, by_slab, kind>(job, scratch, slab, bands, top, end);
         for (int x = 0; list != nullptr && x < job.camera->x.tiles; x += 8, ++list)
             for (std::uint32_t i = 0; i < 8 * list->padded_count(); i += 8)
                 entries += static_cast<unsigned>(std::popcount(load_8_bytes(scratch.row_columns_of(*list) + i)));
@@ -193,7 +193,7 @@ std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scratch) {
 
 /// Writes a bitmask of lights for each tile in the rows begin..end-1. A tile has `stride` words, and bit b of its word
 /// w stands for the light with the id 32 w + b.
-template <Footprint footprint, DepthTest depth_test, class Id, bool spots>
+template <Footprint footprint, DepthTest depth_test, class Id, LightKind kind>
 void write_bits(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end, std::uint32_t* bits,
                 std::size_t stride) {
     const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles);
@@ -204,12 +204,12 @@ void write_bits(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigne
         positions[tile] = tile / 8 * row_stride + tile % 8 * stride;
     BandLists bands;
     for (unsigned top = begin; top < end; top += 8) {
-        const BlockList* list = list_lights<footprint, depth_test, false, spots>(job, scratch, {}, bands, top, end);
+        const BlockList* list = list_lights<footprint, depth_test, false, kind>(job, scratch, {}, bands, top, end);
         for (unsigned x = 0; list != nullptr && x < tiles_x; x += 8, ++list) {
             const std::uint8_t* const row_columns = scratch.row_columns_of(*list);
             std::uint32_t* const first = bits + top * row_stride + x * stride;
             for (std::uint32_t i = 0; i < list->count; i += 8) {
-                // A word for each of 8 lights with a bit for each tile: one loop over a light's tiles, not one per row.
+                // For each of 8 lights a word with a bit for each tile: one loop visits a light's tiles in all rows.
                 std::uint64_t masks[8];
                 for (unsigned row = 0; row < 8; ++row)
                     masks[row] = load_8_bytes(row_columns + row * list->padded_count() + i);

@@ -9,7 +9,7 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// A light grid and its memory, which is kept from call to call. If `sliced`, the grids of all slices in turn.
+/// A light grid, or if `sliced` one per depth slice, stored one after another. Its memory is kept from call to call.
 template <class Id, Footprint footprint, DepthTest depth_test, bool sliced> class GridLists {
     static_assert(!sliced || depth_test == DepthTest::none || depth_test == DepthTest::box,
                   "lightbin: with slices the depth test is none, as lights are in the slices that they meet, or box");
@@ -19,11 +19,10 @@ public:
     /// Builds the grid with the kernels of an instruction set. Tiles are in row-major order, slice after slice. Returns
     /// an error, and has no grid, if Z bounds have too few elements, or 32 bits can't count the entries.
     ///
-    /// spots       whether the lights are spots
-    /// footprints  SlicedFootprints if `sliced`, else Footprints or RankedFootprints; with a depth test, ones that
-    ///             keep the lights in view space (with_spheres)
+    /// footprints  SlicedFootprints if `sliced`, a parameter of the class, else Footprints or RankedFootprints; with a
+    ///             depth test, ones that keep the lights in view space (with_spheres)
     /// parallel    Serial or Parallel
-    template <bool spots, class AnyFootprints, class Threads>
+    template <LightKind kind, class AnyFootprints, class Threads>
     std::optional<Error> build(Isa isa, const View& view, const AnyFootprints& footprints, const ZBounds& bounds,
                        Buffer<Scratch>& scratch, [[maybe_unused]] const Threads& parallel) {
         tile_count_ = entries_ = 0;  // until there is a grid
@@ -45,7 +44,7 @@ public:
             if (area > max_entries) {
                 capacity = 0;
                 for (std::size_t slice = 0; slice < slices; ++slice)
-                    capacity += scalar::count_entries<footprint, depth_test, by_slab<spots>, spots>(
+                    capacity += scalar::count_entries<footprint, depth_test, by_slab<kind>, kind>(
                         job_of(common, footprints, slice), scratch.data()[0]);
             }
         if (capacity > max_entries) return Error{ErrorCode::too_many_entries, capacity, max_entries};
@@ -58,7 +57,7 @@ public:
             for (std::size_t slice = begin; slice < end; ++slice) {
                 Job job = job_of(common, footprints, slice);
                 job.tiles += slice * tiles;
-                const auto kernel = kernel_of<spots>(isa, view, job);
+                const auto kernel = kernel_of<kind>(isa, view, job);
                 offset += static_cast<std::uint32_t>(kernel(job, memory, {0, rows, out + offset, offset}));
             }
             return std::uint64_t{offset};
@@ -71,7 +70,7 @@ public:
                 scratch.reserve(count, count);
                 const Items<Share> shares = {shares_.reserve(count), count};
                 const Job job = job_of(common, footprints, 0);
-                [[maybe_unused]] const auto kernel = kernel_of<spots>(isa, view, job);
+                [[maybe_unused]] const auto kernel = kernel_of<kind>(isa, view, job);
                 if constexpr (sliced)
                     share_steps(shares, slices, empty_row_cost(tiles),
                                 [&](std::size_t slice) { return footprints.slice(slice).area; });
@@ -97,10 +96,9 @@ public:
         return {};
     }
 
-    /// Writes a bitmask of lights for each tile to `bits`, `stride` words per tile, as the kernels write_bits() do.
-    /// Builds no lists: tiles() and indices() are empty afterwards. Returns an error if Z bounds have fewer elements
-    /// than there are tiles, or if 32 bits can't count the elements of all blocks' lists.
-    template <bool spots, class AnyFootprints>
+    /// Writes for each tile a bitmask of `stride` words: bit b of word w stands for the light with the id 32 w + b.
+    /// Drops the last built grid: tiles() is empty. Returns build()'s errors but too many entries, as none are counted.
+    template <LightKind kind, class AnyFootprints>
     std::optional<Error> write_bits(Isa isa, const View& view, const AnyFootprints& footprints, const ZBounds& bounds,
                             Buffer<Scratch>& scratch, const Parallel& parallel, std::uint32_t* bits, std::size_t stride) {
         tile_count_ = entries_ = 0;
@@ -108,7 +106,7 @@ public:
         if (const auto error = prepare(view, bounds, common)) return error;
         const Job job = job_of(common, footprints, 0);
         if (const auto error = check_list_size(view, job)) return error;
-        const auto kernel = bits_kernel<footprint, depth_test, Id, spots>(isa);
+        const auto kernel = bits_kernel<footprint, depth_test, Id, kind>(isa);
         const std::size_t rows = static_cast<std::size_t>(view.tiles_y()), bands = (rows + 7) / 8;
         const bool share = parallel.pays_off(block_ns(isa, true, job.visible, static_cast<double>(job.area)));
         const std::size_t count = share ? max_of<std::size_t>(min_of(parallel.workers(), bands), 1) : 1;
@@ -132,10 +130,10 @@ private:
     using Job = BinJob<Id>;
     static constexpr std::uint64_t max_entries = (std::numeric_limits<std::uint32_t>::max)();
 
-    /// Whether spheres are tested by store_met_boxes(), for a slice's boxes of equal depths. This is faster than the
-    /// test for boxes that differ in depth: a build of clusters without it takes 1.2 to 2 times as long.
-    template <bool spots>
-    static constexpr bool by_slab = sliced && depth_test == DepthTest::box && footprint == Footprint::rectangle && !spots;
+    /// Whether spheres are tested by SlabCells, for a slice's boxes of equal depths. This is faster than the test for
+    /// boxes that differ in depth: a build of clusters without it takes 1.2 to 2 times as long.
+    template <LightKind kind>
+    static constexpr bool by_slab = sliced && depth_test == DepthTest::box && kind != LightKind::box;
 
     /// Sets the camera, the Z bounds and the tiles' edges, which the jobs of all slices have in common.
     std::optional<Error> prepare(const View& view, const ZBounds& bounds, Job& common) {
@@ -180,8 +178,8 @@ private:
         return {};
     }
 
-    template <bool spots> static BinKernel<Id> kernel_of(Isa isa, const View& view, const Job& job) {
-        return bin_kernel<footprint, depth_test, Id, by_slab<spots>, spots>(isa, view, job.area);
+    template <LightKind kind> static BinKernel<Id> kernel_of(Isa isa, const View& view, const Job& job) {
+        return bin_kernel<footprint, depth_test, Id, by_slab<kind>, kind>(isa, view, job.area);
     }
 
     Buffer<ListRange> tiles_;

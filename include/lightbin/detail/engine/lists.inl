@@ -17,14 +17,15 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 
 inline constexpr unsigned panel_blocks = 31;  // a panel is this many blocks wide: tile columns that bytes can count
 
-/// The lights of several bands of 8 tile rows, in all the tile rows begin..end-1: one list for each band and each panel
-/// of 248 tile columns. List number band * panels + panel has sizes[list] lights, from element list * capacity on.
+/// The lights of several bands of 8 tile rows each, which together are the tile rows begin..end-1. There is a list for
+/// each band and each panel of 248 tile columns: list number l = band * panels + panel has sizes[l] elements in each of
+/// x0, x1, rows and ids, from element l * capacity on.
 struct BandLists {
     unsigned begin = 0, end = 0;
     std::size_t panels = 0, count = 0, capacity = 0;
     std::uint8_t *x0 = nullptr, *x1 = nullptr;  ///< each light's columns x0..x1-1 in its panel of 248 tile columns
     std::uint8_t* rows = nullptr;               ///< per light, a bit for each of the band's 8 tile rows it covers
-    std::uint32_t* ids = nullptr;               ///< lights' ids or, if tile tests follow, footprints' indices
+    std::uint32_t* ids = nullptr;               ///< lights' ids or, for silhouette and depth tests, footprints' indices
     std::uint32_t* sizes = nullptr;
 };
 
@@ -42,7 +43,7 @@ inline ByteMask first_bytes(std::size_t count) {
     return count < byte_lanes ? static_cast<ByteMask>(~(all << count)) : all;
 }
 
-/// Appends the lights from index i on, `count` but at most a vector of them, to the lists of the bands they meet.
+/// Appends up to a vector of the `count` lights from index i on to the lists of the bands (8 tile rows) that they meet.
 ///
 /// ids  what is listed of each light: its id, or its index in the footprint arrays
 inline void add_to_bands(const FootprintArrays& lights, const std::uint32_t* ids, const BandLists& bands,
@@ -71,9 +72,9 @@ inline void add_to_bands(const FootprintArrays& lights, const std::uint32_t* ids
     }
 }
 
-/// Lists the lights of as many bands, from tile row `begin` on, as max_band_entries allows in one pass over the lights.
+/// Lists the lights of as many bands of 8 tile rows, from row `begin` on, as max_band_entries allows in one pass.
 ///
-/// tested  whether to list the lights' indices in the footprint arrays, which the tests need, rather than their ids
+/// tested  whether to list indices in the footprint arrays, for silhouette and depth tests, rather than lights' ids
 template <bool tested, class Id>
 void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end, BandLists& to) {
     const std::size_t width = (static_cast<std::size_t>(job.camera->x.tiles) + 7) / 8;
@@ -95,8 +96,9 @@ void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigne
     if constexpr (tested) {
         const std::uint32_t last = job.runs.count == 0 ? 0 : job.runs[job.runs.count - 1].end;
         std::uint32_t* const indices = scratch.light_indices.reserve(last + std::uint64_t{64});
-        for (std::uint32_t i = 0; i < last; ++i)
-            indices[i] = i;
+        for (const FootprintRun& run : job.runs)
+            for (std::uint32_t i = run.begin; i < run.end; ++i)
+                indices[i] = i;
         ids = indices;
     }
     for (const FootprintRun& run : job.runs)
@@ -104,7 +106,7 @@ void list_bands(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigne
             add_to_bands(job.lights, ids, to, i, run.end - i);
 }
 
-/// Returns how many lights a band's lists have together.
+/// Returns the sum of the sizes of a band's lists. A band is 8 tile rows; it has a list for each panel of 248 columns.
 inline std::size_t band_size(const BandLists& bands, std::size_t band) {
     std::size_t size = 0;
     for (std::size_t panel = 0; panel < bands.panels; ++panel)

@@ -12,12 +12,13 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// One thread's share of the work: the tile rows, or depth slices, begin..end-1.
 struct Share {
     unsigned begin, end;
-    std::uint64_t entries;  ///< an upper bound: the tiles of all rectangles in the share; the exact number once built
-
-    // Read by build_rectangles(). A kernel may write some elements, its slack, past its list's end, where the next
-    // share's list begins. So the last tile rows with as many entries are built in other memory.
-    std::uint64_t before = 0;        ///< the number of entries of all earlier shares: of tiles in their rectangles
-    unsigned tail_begin = 0;         ///< the first of the last tile rows, which are built in other memory and copied
+    /// How many list entries the thread writes; until it has, an upper bound: the tiles of all rectangles in its share.
+    std::uint64_t entries;
+    // Only for build_rectangles(), where threads write neighbouring parts of one index list.
+    std::uint64_t before = 0;  ///< the number of list entries, pairs of a light and a tile, in all earlier shares
+    /// The first of the share's last tile rows, which have as many entries as kernels may write past their list's end,
+    /// where the next share's entries are: these rows are built in separate memory and copied.
+    unsigned tail_begin = 0;
     std::uint64_t tail_entries = 0;  ///< the number of entries of the tile rows tail_begin..end-1
 };
 
@@ -95,7 +96,7 @@ std::uint64_t build_rectangles(const Parallel& parallel, Items<const Share> shar
     memory.reserve(shares.size(), shares.size());
     parallel.run(shares.size(), [&](std::size_t i) {
         const Share& share = shares[i];
-        // Where the entries of the last rows begin.
+        // Where in `list` the entries of the share's last tile rows, which are built in separate memory, begin.
         const std::uint64_t tail = share.before + share.entries - share.tail_entries;
         build(i, {share.begin, share.tail_begin, list + share.before, static_cast<std::uint32_t>(share.before)});
         Id* const copied = memory.data()[i].reserve(share.tail_entries + BinShare<Id>::slack);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <lightbin/detail/base/buffer.hpp>
-#include <lightbin/detail/project/view_spot.hpp>
+#include <lightbin/detail/project/view_box.hpp>
 #include <lightbin/detail/project/world_to_view.hpp>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
@@ -12,16 +12,21 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// Arrays are indexed by a light's id.
 struct LightSource {
     const Sphere* spheres;  ///< the caller's own array, to be read with load_sphere(); null: `copy` is called
-    const void* lights;     ///< the caller's lights, a Lights object that `copy` reads
-    /// Writes lights first..first + count - 1 to `to` as spheres. Of spots it writes the spheres that their cones
-    /// cut, and to `cones` vec4s with the axes and the cosines of the half angles.
-    void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* to, Sphere* cones) = nullptr;
+    const void* lights;     ///< the caller's lights, an object of the class template Lights that `copy` reads
+    /// Writes lights first..first + count - 1: to `to` the Sphere of each, which a spot's cone or a box cuts, and to
+    /// `more` the rest as vec4s. Of spots these are the axes and the cosines of the half angles. Of boxes they are
+    /// three arrays of ChunkRects::size vec4s, with twelve of the numbers of a Box each in their order in memory, from
+    /// box_x on, and then an array of floats, the members Box::taper.
+    void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* to, Sphere* more) = nullptr;
+    std::uint32_t first_id;      ///< the id of the first one of the lights in `spheres` or `lights`
     const WorldToView* to_view;  ///< the transform to view space; null: the lights are given in view space
-    bool with_planes;            ///< store each spot's planes for the depth tests, too: ViewSpot::planes and corners
-    /// Where copied or transformed spheres, and all spots, are stored if not null. Kernels store whole vectors, so each
-    /// array is padded.
+    /// Store the half spaces around each spot or box for the depth tests, too: `around` in ViewSpot and ViewBox.
+    bool with_planes;
+    /// Where copied or transformed spheres, and all spots and boxes, are stored if not null. Kernels store whole
+    /// vectors, so each array is padded.
     Sphere* out_spheres = nullptr;
     ViewSpot* out_spots = nullptr;
+    ViewBox* out_boxes = nullptr;
 };
 
 /// The tiles first..last of one tile row that a light's silhouette touches; none if first > last.
@@ -32,6 +37,27 @@ struct RowSpan {
 /// A run of footprints: the elements begin..end-1 of FootprintArrays.
 struct FootprintRun {
     std::uint32_t begin, end;
+};
+
+/// All lights in view space. They are complete only if silhouettes, depth tests or coverage read them. Ids number the
+/// arrays that lights() joined: first all spheres, then all spots, then all boxes.
+struct ViewLights {
+    const Sphere* spheres = nullptr;  ///< to be read with load_sphere()
+    const ViewSpot* spots = nullptr;
+    const ViewBox* boxes = nullptr;
+    std::uint32_t first_spot = 0, first_box = 0;  ///< the ids of the first spot and of the first box
+
+    /// Returns the kind of the light with an id, if the lights are of mixed kinds.
+    LightKind kind_of(std::uint32_t id) const {
+        return id < first_spot ? LightKind::sphere : id < first_box ? LightKind::spot : LightKind::box;
+    }
+    /// Returns the light with an id, which is of the kind spot or box.
+    template <LightKind kind> const auto& shape(std::uint32_t id) const {
+        if constexpr (kind == LightKind::spot)
+            return spots[id - first_spot];
+        else
+            return boxes[id - first_box];
+    }
 };
 
 /// The footprints of the lights in view, as parallel arrays: tile columns x0..x1 and tile rows y0..y1, ends included.
@@ -49,27 +75,31 @@ struct FootprintArrays {
     std::uint32_t* span_begin = nullptr;
     const RowSpan* spans = nullptr;
 
-    /// With silhouettes or a depth test, all lights in view space, by id: spots, or spheres, read with load_sphere().
-    const Sphere* spheres = nullptr;
-    const ViewSpot* spots = nullptr;
+    /// For each footprint, the position of its light in the caller's arrays, by which view_lights is indexed. This is
+    /// `ids`, except with z-bins, where `ids` holds ranks, which are positions in order of depth.
+    const std::uint32_t* light_ids = nullptr;
+    ViewLights view_lights = {};
 
     /// Returns the arrays of the footprints (lights' tile rectangles) from `begin` on, without silhouettes' row spans.
     FootprintArrays from(std::size_t begin) const {
-        return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin, nullptr, nullptr, spheres, spots};
+        return {ids + begin, x0 + begin, y0 + begin, x1 + begin, y1 + begin, nullptr, nullptr, light_ids + begin,
+                view_lights};
     }
 };
 
 class FootprintBuffers {
 public:
-    /// Returns arrays of ids, rectangles and, with `with_spans`, span_begin, for `count` footprints and the padding.
+    /// Returns arrays for `count` footprints and FootprintArrays::padding elements more; span_begin only if with_spans.
     FootprintArrays reserve(std::uint64_t count, bool with_spans) {
         const std::uint64_t capacity = count + FootprintArrays::padding;
-        return {.ids = ids_.reserve(capacity),
+        std::uint32_t* const ids = ids_.reserve(capacity);
+        return {.ids = ids,
                 .x0 = x0_.reserve(capacity),
                 .y0 = y0_.reserve(capacity),
                 .x1 = x1_.reserve(capacity),
                 .y1 = y1_.reserve(capacity),
-                .span_begin = with_spans ? span_begin_.reserve(capacity) : nullptr};
+                .span_begin = with_spans ? span_begin_.reserve(capacity) : nullptr,
+                .light_ids = ids};
     }
 
 private:
@@ -83,7 +113,7 @@ struct DepthRows {
     std::size_t pitch, rows, columns;
 };
 
-/// Sums over the lights that were projected.
+/// How many lights were projected, and how many tiles and tile rows the rectangles of those in view have in sum.
 struct ProjectCounts {
     std::uint32_t visible = 0;   ///< the number of lights in view
     std::uint32_t rejected = 0;  ///< the number of lights that are bad input, see Sphere
@@ -101,12 +131,12 @@ struct ChunkRects {
 struct FootprintSlice {
     FootprintArrays lights;
     Items<const FootprintRun> runs;
-    std::uint32_t visible;                  ///< the number of footprints in all runs
-    std::uint64_t area;                     ///< the number of tiles in all these footprints' rectangles
+    std::uint32_t visible;                  ///< the number of footprints in all FootprintRuns of `runs` together
+    std::uint64_t area;                     ///< the number of tiles in the rectangles of all footprints of `runs`
     float slab[2] = {-infinity, infinity};  ///< the slice's depths, which depth tests use in place of absent Z bounds
 };
 
-/// What the binning kernels read, and the table that they write.
+/// What the binning kernels read, and where they write each tile's ListRange, the offset and count of its list.
 template <class Id> struct BinJob : FootprintSlice {
     const Camera* camera;
     const float* bounds[4];  ///< the tiles' depths ZBounds::min, max, gap_min, gap_max; null for absent ones
@@ -120,8 +150,8 @@ template <class Id> struct BinShare {
     static constexpr std::size_t slack = 64;
 
     unsigned begin, end;
-    Id* out;               ///< where the index list of these rows begins in memory
-    std::uint32_t offset;  ///< where the index list of these rows begins in the whole grid's
+    Id* out;               ///< where in memory the light index list of tile rows begin..end-1 begins
+    std::uint32_t offset;  ///< how many ids the whole grid's light index list has before those of tile row `begin`
 };
 
 }}}  // namespace lightbin::detail

@@ -51,7 +51,7 @@ inline bool finite(const Triple& v) {
 
 /// Returns a float sphere that contains a sphere whose centre and radius were computed in double with rounding errors:
 /// up to 2^-50 of the radius in the radius, and up to 2^-50 of the radius plus 2^-53 of each coordinate in the centre.
-/// The term 2^-124 is for values that were flushed to zero.
+/// The radius is enlarged by more than these, and by 2^-124 for values that were flushed to zero.
 inline Sphere sphere_around_nearly(const Triple& centre, double radius) {
     return sphere_around(centre.x, centre.y, centre.z,
                          rounded(radius * (1 + 0x1p-48)) +

@@ -30,10 +30,11 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// The coefficients of the silhouettes of `lanes` lights, see the head of this file. A tile row at the slopes v
-/// has  g = y_v v + z  and  S^2 = r2 + r2_v v^2 - (y - v z)^2 + slack.  In tiles, its span begins
-/// at  middle g - reach S + low  with v = left_v, clamped to the row, and ends at  middle g + reach S + high  with
-/// right_v.
+/// The numbers by which silhouette_ends() finds what span of tiles the silhouettes of `lanes` lights have in a tile
+/// row. The image line at the slope v = y / depth (orthographic: y = v) crosses a silhouette, in tiles, from
+/// middle g - reach S + low  to  middle g + reach S + high,  where  g = y_v v + z  and
+/// S^2 = r2 + r2_v v^2 - (y - v z)^2 + slack;  the other symbols are members. A row's span begins there for v = left_v
+/// and ends there for v = right_v, the slopes of the silhouette's leftmost and rightmost point, clamped to the row.
 struct RowTerms {
     double y[lanes], y_v[lanes], z[lanes], r2[lanes], r2_v[lanes], slack[lanes];
     double middle[lanes], reach[lanes], low[lanes], high[lanes], left_v[lanes], right_v[lanes];
@@ -113,7 +114,7 @@ struct SphereRows {
     /// for each whose row spans store() can find.
     unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin, std::uint32_t count) {
         Floats x, y, z, r;
-        load_listed_spheres(lights.spheres, lights.ids + begin, count, x, y, z, r);
+        load_listed_spheres(lights.view_lights.spheres, lights.ids + begin, count, x, y, z, r);
         unsigned known = 0;
         for (unsigned half = 0; half < lanes / double_lanes; ++half)
             known |= row_terms(camera, widened(x, half) * static_cast<double>(camera.x.sign),
@@ -123,9 +124,8 @@ struct SphereRows {
         return known;
     }
 
-    /// Stores the spans of tiles that light i covers in a vector of tile rows. The edges of each row lie at the slopes
-    /// y / depth = v0 and v1 in view space (orthographic: y = v0 and v1). The spans are clamped to the tile columns
-    /// leftmost..rightmost.
+    /// Stores the spans of tiles that light i covers in a vector of tile rows, clamped to columns leftmost..rightmost.
+    /// The edges of each row lie at the slopes y / depth = v0 and v1 in view space (orthographic: y = v0 and v1).
     LIGHTBIN_INLINE void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost,
                                RowSpan* to) const {
         Doubles begin, end;

@@ -21,7 +21,7 @@ struct ProjectedChunk {
     std::uint32_t fallback_count;
 };
 
-/// Bounds of a vector of lights along the image axes, x and y: slopes (orthographic: view-space coordinates).
+/// Bounds of a vector of lights on the slopes x / depth and y / depth (orthographic: on view-space x and y).
 template <class Reals> struct ImageBounds { Reals low[2], high[2]; };
 
 /// Finds the slopes of the tangents from the eye, the origin, to discs with the centre (c, z) and the radius r, which
@@ -29,10 +29,10 @@ template <class Reals> struct ImageBounds { Reals low[2], high[2]; };
 ///
 /// e, per_e  (z - r) (z + r) and its reciprocal
 ///
-/// The outer tangent is the one farther from the view axis. Both slopes come from sums whose terms have one sign, so
-/// that relative errors never grow by cancellation. With the unit roundoff u, e has a relative error of at most 3u,
-/// c^2 + e of 4u, its root of 3u, q of 5u, the outer slope of 10u and the inner one of 9u. The inner slope follows
-/// from the outer one, as the product of both is (c^2 - r^2) / e.
+/// The outer tangent is the one farther from the view axis. Its slope is q / e with  q = |c| z + r sqrt(c^2 + e).  The
+/// inner slope is (c^2 - r^2) / q, as the product of both is (c^2 - r^2) / e. Both come from sums whose terms have one
+/// sign, so that relative errors never grow by cancellation. With the unit roundoff u, e has a relative error of at
+/// most 3u, c^2 + e of 4u, sqrt(c^2 + e) of 3u, q of 5u, the outer slope of 10u and the inner one of 9u.
 template <class Reals>
 inline void tangent_slopes(Reals c, Reals z, Reals r, Reals e, Reals per_e, Reals& low, Reals& high) {
     const Reals a = abs(c);
@@ -79,7 +79,7 @@ inline void clipped_slopes(Doubles c, Doubles z, Doubles r, double near_depth, D
     const Doubles squares = mul(a, a) + mul(z, z), t2 = squares - mul(r, r);
     const Doubles error = (squares + mul(r, r)) * 0x1p-50 / t2 + 0x1p-48;  // relative error of a tangent's slope
     const auto has_tangent = both(less(zero, t2), less_equal(error, broadcast(0x1p-20)));
-    // As in tangent_slopes(), sums have terms of one sign. If the sphere reaches behind the eye, z <= r, the outer
+    // Each sum has terms of one sign, so that none cancels. If the sphere reaches behind the eye, z <= r, the outer
     // tangent points backward and bounds nothing.
     const Doubles az = mul(a, z), rt = mul(r, sqrt(t2)), e = mul(z - r, z + r);
     const auto behind = less(z, zero);
@@ -152,9 +152,30 @@ inline void append_chunk(const ProjectedChunk& chunk, std::uint32_t first, std::
     }
 }
 
-/// Projects in double the lights of a chunk that are listed in chunk.fallback: lights that cross the near plane or
-/// contain the eye, tiny, huge and infinite ones, and bad input, which it counts. Sets the bits in chunk.visible of the
-/// listed lights that are in view.
+/// Returns bounds along the image axes of the parts of spheres beyond the near plane. The centres (x, y, z) are signed
+/// so that tile indices grow with x and y, and z is the view depth. All arguments are floats converted to double.
+inline ImageBounds<Doubles> bounds_in_double(const Camera& camera, Doubles x, Doubles y, Doubles z, Doubles radius) {
+    // A radius of 0 is enlarged to much less than any float's rounding error, so that no square root is taken of 0.
+    const Doubles r = maximum(radius, broadcast(0x1p-400));
+    ImageBounds<Doubles> bounds = {{x - r, y - r}, {x + r, y + r}};
+    if (camera.orthographic) return bounds;
+    const double near_depth = static_cast<double>(camera.near_depth);
+    const Doubles nearest = z - radius, farthest = z + radius;
+    const auto whole = less(broadcast(near_depth), nearest);
+    const Doubles centre[] = {x, y}, e = mul(nearest, farthest), per_e = 1.0 / e;
+    for (unsigned axis = 0; axis < 2; ++axis) {
+        Doubles low, high;
+        clipped_slopes(centre[axis], z, r, near_depth, bounds.low[axis], bounds.high[axis]);
+        tangent_slopes(centre[axis], z, r, e, per_e, low, high);
+        bounds.low[axis] = select(whole, low, bounds.low[axis]);
+        bounds.high[axis] = select(whole, high, bounds.high[axis]);
+    }
+    return bounds;
+}
+
+/// Projects in double the lights of a chunk that are listed in chunk.fallback: those that cross the near plane or
+/// contain the eye, tiny, huge and infinite ones, and bad input, which it counts. Sets the bits in chunk.visible of
+/// the listed lights that are in view.
 ///
 /// spheres  the spheres of all lights of the chunk, in view space
 inline void project_in_double(const Camera& camera, const Sphere* spheres, ProjectedChunk& chunk,
@@ -174,22 +195,9 @@ inline void project_in_double(const Camera& camera, const Sphere* spheres, Proje
         const Doubles nearest = z - radius, farthest = z + radius;
         auto visible = and_not(good, either(less(farthest, broadcast(near_depth)),
                                             less(broadcast(static_cast<double>(camera.far_depth)), nearest)));
-        // A radius of 0 is enlarged to much less than any float's rounding error, so that no square root is taken of 0.
-        const Doubles r = maximum(radius, broadcast(0x1p-400));
-        ImageBounds<Doubles> bounds = {{x - r, y - r}, {x + r, y + r}};
-        if (!camera.orthographic) {
-            const auto whole = less(broadcast(near_depth), nearest);
-            const Doubles centre[] = {x, y}, e = mul(nearest, farthest), per_e = 1.0 / e;
-            for (unsigned axis = 0; axis < 2; ++axis) {
-                Doubles low, high;
-                clipped_slopes(centre[axis], z, r, near_depth, bounds.low[axis], bounds.high[axis]);
-                tangent_slopes(centre[axis], z, r, e, per_e, low, high);
-                bounds.low[axis] = select(whole, low, bounds.low[axis]);
-                bounds.high[axis] = select(whole, high, bounds.high[axis]);
-            }
-        }
         ChunkRects rects;
-        const unsigned in_view = movemask(tile_rects<double>(camera, bounds, visible, rects, 0));
+        const unsigned in_view =
+            movemask(tile_rects<double>(camera, bounds_in_double(camera, x, y, z, radius), visible, rects, 0));
         counts.rejected += used - static_cast<std::uint32_t>(std::popcount(movemask(good) & ((1u << used) - 1)));
         for (std::uint32_t i = 0; i < used; ++i) {
             const std::uint32_t to = indices[i];
@@ -222,8 +230,7 @@ struct ViewLanes {
 /// size               |x| + |y| + |z| + r
 ///
 /// Rounding is monotone and the depths of the near and far plane are floats, so comparing rounded sums with these is
-/// exact. The computed distance to a side plane has an error of at most 4u `size`, where u = 2^-24; the test allows
-/// for 8u.
+/// exact. The computed distance to a side plane has an error of at most 4u `size`, with u = 2^-24; 8u are allowed.
 LIGHTBIN_INLINE auto out_of_view(const ViewLanes& view, Floats x, Floats y, Floats z, Floats r, Floats nearest,
                                  Floats farthest, Floats size) {
     const Floats outside = maximum(mul(abs(x), view.normal_x) + mul(z, view.normal_xz),
@@ -251,7 +258,7 @@ inline void project(const Camera& camera, const LightSource& source, std::uint32
     const std::uint32_t batch = source.copy != nullptr ? 32 : ChunkRects::size;
     for (std::uint32_t here; count > 0; count -= here, first += here) {
         here = min_of(count, batch);
-        // Copies and transformed spheres are written to `own`.
+        // `own` is where spheres that `copy` writes, or that are transformed to view space, are stored.
         Sphere* const own = source.out_spheres != nullptr ? source.out_spheres + first : buffer;
         const Sphere* const given = source.spheres != nullptr ? source.spheres + first : own;
         if (source.copy != nullptr) source.copy(source.lights, first, here, own, nullptr);
@@ -290,7 +297,7 @@ inline void project(const Camera& camera, const LightSource& source, std::uint32
             put_vector(camera, bounds, in_float, fallback, valid, i, chunk);
         }
         project_in_double(camera, transformed ? own : given, chunk, counts);
-        append_chunk(chunk, first, here, out, counts);
+        append_chunk(chunk, source.first_id + first, here, out, counts);
     }
 }
 

@@ -8,7 +8,8 @@
 // and each point p of the cone has  n.p <= 0. So a spot's points whose view depth is at least z, within the slopes v0
 // to v1 of a tile row, have slopes x with  n_x x <= tolerance / z - n_z - min(n_y v0, n_y v1),  where `tolerance` is
 // the spot's. (The Universal Render Pipeline of Unity bounds spots by the same planes.) With an orthographic
-// projection u is the view direction, and  n.(p - apex) <= tolerance.
+// projection u is the view direction, and  n.(p - apex) <= tolerance. No such lines bound a cone of 90 degrees or more:
+// of such a spot the row spans are those of its ball, within the spot's rectangle.
 //
 // Rounding, with the unit roundoffs u = 2^-24 of float and e = 2^-53 of double:
 // - sin t and |a| have errors of at most 8u and 18u. Where t is near 90 degrees, a small change of the sine is a large
@@ -25,22 +26,20 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 
 /// The two lines that bound each of `lanes` spots' cones in the image. A spot covers a span of tiles in each tile row.
 /// In a row between the slopes y / depth = v0 and v1, a line ends the span (if per_x > 0) or begins it at the x, in
-/// tiles,  (limit - min(n_y v0, n_y v1)) per_x + offset,  where n is the normal of the plane through eye and line.
+/// tiles, (limit - min(n_y v0, n_y v1)) per_x + offset.  Here n is the normal of the plane through eye and line; the
+/// spot's slopes x and y have  n_x x + n_y y <= limit;  and per_x = ImageAxis::scale / n_x, offset = ImageAxis::offset.
 struct WedgeTerms {
     double per_x[2][lanes], n_y[2][lanes], limit[2][lanes];
 };
 
-/// A vector of spots in double, for find_wedges(): the cones' apexes and unit axes, and the sines of their half angles.
+/// A vector of spots in double, for find_wedges(): the cones' apexes, unit axes and the sines of their half angles.
 struct WedgeLanes {
-    Doubles apex[3], axis[3], sine;
-    /// Bound on n.p for points p of the spot and the normals n of the two planes through the eye that touch its cone;
-    /// with perspective divided by p's depth.
+    Doubles apex[3], axis[3];
+    Doubles sine;  ///< 1 for half angles of 90 degrees and more: with this sine no line bounds the cone
+    /// The most n.(p - apex) for points p of the spot and the outward unit normals n of the two planes through the eye
+    /// that touch the cone: not 0, because of rounding. With perspective it is divided by the depth of p.
     Doubles tolerance;
 };
-
-inline Doubles dot(const Doubles (&a)[3], const Doubles (&b)[3]) {
-    return mul(a[0], b[0]) + mul(a[1], b[1]) + mul(a[2], b[2]);
-}
 
 /// Finds the two image lines that bound each spot's cone, and stores them from lane `at` on. A cone that no
 /// such lines bound gets infinite limits.
@@ -79,12 +78,30 @@ inline void find_wedges(const Camera& camera, const WedgeLanes& spots, unsigned 
     }
 }
 
-/// The silhouettes of a vector of spots, from which row_spans() makes spans of tiles. SphereRows are those of spheres.
+/// Shortens spans of tiles, begin..end, in rows between the slopes v0 and v1 to a spot's side of a line in the image,
+/// with the WedgeTerms per_x, n_y and limit. low, high: the view axis' x in tiles, less and plus a margin for rounding.
+LIGHTBIN_INLINE void cut_at_line(double per_x_of_all, double n_y_of_all, double limit, double low, double high, Doubles v0,
+                                 Doubles v1, Doubles& begin, Doubles& end) {
+    const Doubles per_x = broadcast(per_x_of_all), n_y = broadcast(n_y_of_all);
+    const Doubles here = mul(limit - minimum(mul(n_y, v0), mul(n_y, v1)), per_x);
+    const auto to_right = less(broadcast(0.0), per_x);
+    end = minimum(select(to_right, here + high, end), end);
+    begin = maximum(select(to_right, begin, here + low), begin);
+}
+
+/// Stores the spans begin..end, clamped to tile columns leftmost..rightmost; as 1..0 where end < begin.
+LIGHTBIN_INLINE void store_cut_spans(RowSpan* to, Doubles begin, Doubles end, Doubles leftmost, Doubles rightmost) {
+    const auto none = less(end, begin);
+    store_spans(to, select(none, broadcast(1.0), minimum(maximum(begin, leftmost), rightmost)),
+                select(none, broadcast(0.0), minimum(maximum(end, leftmost), rightmost)));
+}
+
+/// The silhouettes of a vector of spots, from which row_spans() makes spans of tiles. For spheres it takes SphereRows.
 struct SpotRows {
     unsigned find(const Camera& camera, const FootprintArrays& lights, std::uint32_t begin, std::uint32_t count) {
         Sphere balls[lanes], axes[lanes], rest[lanes];
         for (std::uint32_t i = 0; i < lanes; ++i) {
-            const ViewSpot& spot = lights.spots[lights.ids[begin + min_of(i, count - 1)]];
+            const ViewSpot& spot = lights.view_lights.shape<LightKind::spot>(lights.ids[begin + min_of(i, count - 1)]);
             balls[i] = spot.ball;
             axes[i] = {spot.axis_x, spot.axis_y, spot.axis_z, spot.cosine};
             rest[i] = {spot.nearest, spot.farthest, spot.sine, spot.tolerance};
@@ -105,8 +122,9 @@ struct SpotRows {
             }
             balls_known |=
                 row_terms(camera, wedge.apex[0], wedge.apex[1], wedge.apex[2], radius, ball, half * double_lanes);
-            wedge.sine = widened(sine, half);
-            wedge.tolerance = widened(tolerance, half) + size * 0x1p-28 + radius * 0x1p-19 / widened(cosine, half);
+            const Doubles cosine_of = widened(cosine, half);
+            wedge.sine = select(less(broadcast(0.0), cosine_of), widened(sine, half), broadcast(1.0));
+            wedge.tolerance = widened(tolerance, half) + size * 0x1p-28 + radius * 0x1p-19 / cosine_of;
             if (!camera.orthographic)
                 wedge.tolerance = wedge.tolerance /
                                   maximum(widened(nearest, half), broadcast(static_cast<double>(camera.near_depth)));
@@ -129,20 +147,13 @@ struct SpotRows {
             begin = maximum(ball_begin, begin);
             end = minimum(ball_end, end);
         }
-        for (unsigned side = 0; side < 2; ++side) {
-            const Doubles per_x = broadcast(wedges.per_x[side][i]), n_y = broadcast(wedges.n_y[side][i]);
-            const Doubles here = mul(wedges.limit[side][i] - minimum(mul(n_y, v0), mul(n_y, v1)), per_x);
-            const auto to_right = less(broadcast(0.0), per_x);
-            end = minimum(select(to_right, here + high, end), end);
-            begin = maximum(select(to_right, begin, here + low), begin);
-        }
-        const auto none = less(end, begin);
-        store_spans(to, select(none, broadcast(1.0), minimum(maximum(begin, leftmost), rightmost)),
-                    select(none, broadcast(0.0), minimum(maximum(end, leftmost), rightmost)));
+        for (unsigned side = 0; side < 2; ++side)
+            cut_at_line(wedges.per_x[side][i], wedges.n_y[side][i], wedges.limit[side][i], low, high, v0, v1, begin, end);
+        store_cut_spans(to, begin, end, leftmost, rightmost);
     }
 
     RowTerms ball;         ///< the silhouettes of the balls, the spheres that the spots' cones cut
-    unsigned balls_known;  ///< a mask of the spots whose ball's silhouette is already in `ball`
+    unsigned balls_known;  ///< a mask of the spots whose sphere has a silhouette in `ball`: beyond the near plane
     WedgeTerms wedges;
     double low, high;  ///< the x of the view axis in the image, in tiles, less and plus a margin for rounding
 };

@@ -17,7 +17,8 @@ LIGHTBIN_INLINE Floats manhattan_length(const Floats (&v)[3]) {
     return abs(v[0]) + abs(v[1]) + abs(v[2]);
 }
 
-/// Where a spot's bit in `which` is set, replaces its ball, which the cone cuts, by its least_sphere() in view space.
+/// In each lane whose bit in `which` is set, stores as spots.apex and spots.radius the spot's least_sphere() in view
+/// space, in place of the sphere that the cone cuts.
 ///
 /// balls, cones  the spots as they were given: spheres, and vec4s of the cones' axes and half angles' cosines
 LIGHTBIN_NOINLINE inline void use_least_spheres(const WorldToView* to_view, unsigned which, const Sphere* balls,
@@ -63,9 +64,9 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
         tolerance = mul(spots.radius, broadcast(0x1p-18f)) + (centre_error + mul(spots.radius, transform.cone_error));
         safe = both(safe, less_equal(transform.cone_error, broadcast(1.0f)));
     }
-    // Spots with a half angle of 90 degrees or more count as whole spheres. Spots that have sizes float can't compute
+    // Spots with a half angle beyond 138 degrees count as whole spheres. Spots that have sizes float can't compute
     // with, or a cone that the transform does not map to a cone, are replaced by the least spheres around them.
-    const auto with_cone = and_not(safe, less_equal(cosine, broadcast(0.0f)));
+    const auto with_cone = and_not(safe, less_equal(cosine, broadcast(whole_ball_cosine)));
     const Floats per_length = 1.0f / sqrt(mul(axis[0], axis[0]) + mul(axis[1], axis[1]) + mul(axis[2], axis[2]));
     for (unsigned i = 0; i < 3; ++i) {
         spots.apex[i] = apex[i];
@@ -93,55 +94,73 @@ inline Floats spot_reach(const SpotLanes& spots, Floats along, Floats across) {
     return minimum(mul(spots.radius, part) + spots.tolerance, spots.radius);
 }
 
-/// Copies a vec4 to each ViewSpot of a vector of spots, `offset` bytes from the ViewSpot's begin.
-inline void store_vec4s(ViewSpot* to, std::size_t offset, const Sphere (&vec4s)[lanes]) {
+/// Copies a vec4 to each ViewSpot or ViewBox of a vector of lights, `offset` bytes from its begin.
+template <class Shape> inline void store_vec4s(Shape* to, std::size_t offset, const Sphere (&vec4s)[lanes]) {
     for (std::uint32_t lane = 0; lane < lanes; ++lane)
         std::memcpy(reinterpret_cast<char*>(to + lane) + offset, vec4s + lane, sizeof(Sphere));
 }
 
+/// Stores half space i of those around a vector of lights: the points p with  n.p <= most.  As depth tests round,
+/// `most` must exceed n.p of the light by 4u S, where u = 2^-24 and S = |x| + |y| + |z| + r of the light's sphere.
+template <class Light>
+inline void store_plane(const Camera& camera, Light* to, std::size_t i, const Floats (&n)[3], Floats most) {
+    Sphere vec4s[lanes];
+    store_spheres(vec4s, n[0], n[1], n[2], most);
+    const auto first_of = [](unsigned high, Floats deepest_if_positive) {
+        return select(less(Floats{}, deepest_if_positive), Floats{}, broadcast(static_cast<float>(high)));
+    };
+    std::uint32_t arrays[3][lanes];
+    store_tiles(arrays[0], first_of(TileEdges::high_x, n[0]));
+    store_tiles(arrays[1], first_of(TileEdges::high_y, n[1]));
+    store_tiles(arrays[2], first_of(64, camera.orthographic ? n[2] : most));
+    for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+        std::memcpy(to[lane].around.planes + i, vec4s + lane, sizeof *vec4s);
+        for (std::size_t k = 0; k < 3; ++k)
+            to[lane].around.arrays[i][k] = static_cast<std::uint16_t>(arrays[k][lane]);
+    }
+}
+
 /// Finds and stores the half spaces around the cones of a vector of spots. Let t be the half angle, and e and f two
 /// unit vectors perpendicular to the axis a and to each other (Duff et al., "Building an Orthonormal Basis,
-/// Revisited", JCGT 6(1), 2017). The planes' unit normals are  +-e cos t - a sin t  and  +-f cos t - a sin t.
+/// Revisited", JCGT 6(1), 2017). The planes go through the apex, and their unit normals are  +-e cos t - a sin t  and
+/// +-f cos t - a sin t.
+///
+/// From 90 degrees on there is one half space, stored four times: the side of the rim's plane that the cap is on, with
+/// the normal -a. With the ball it is the spot's convex hull. The plane lies -r cos t behind the apex, where r is the
+/// radius, as a point v off the apex has  -a.v <= -|v| cos t,  which is at most  -r cos t,  as cos t <= 0.
 ///
 /// Rounding, with u = 2^-24, the ball's size S = |x| + |y| + |z| + r, a normal n and the apex P: n is within 16u of
-/// the normal for the exact axis, and so n.p - n.P is at most `tolerance` for each point p of the spot. A box that
-/// meets the spot in p has a corner c with n_i c_i <= n_i p_i for i = x, y, z. Rounding increases the sum of n_i c_i
-/// by at most 5u times the sum of the products' sizes. The positive products add up to at most 2 S. The negative ones
-/// add up to at most twice all other terms, or else make the sum so small that its rounding can't matter. For all this
-/// the offset is 2^-18 S = 64u S larger.
-inline void store_planes(ViewSpot* to, const SpotLanes& spots) {
+/// the normal for the exact axis, and so n.p - n.P is at most `tolerance` for each point p of the spot. The products
+/// and sums of n.P and of r cos t are off by less than 9u S in all. With the 4u S that cell_planes.hpp asks for this is
+/// less than 2^-20 S = 16u S, which is added.
+inline void store_planes(const Camera& camera, ViewSpot* to, const SpotLanes& spots) {
     const Floats apex[] = {spots.apex[0], spots.apex[1], spots.apex[2]}, (&axis)[3] = spots.axis;
     const auto backward = less(axis[2], Floats{});
     const Floats sign = select(backward, broadcast(-1.0f), broadcast(1.0f)), p = -1.0f / (sign + axis[2]);
     const Floats xp = mul(axis[0], p), q = mul(axis[1], xp);
     const Floats across[2][3] = {{1.0f + mul(mul(sign, axis[0]), xp), sign * q, -(sign * axis[0])},
                                  {q, sign + mul(axis[1], mul(axis[1], p)), -axis[1]}};
-    const Floats slack = spots.tolerance + mul(manhattan_length(apex) + spots.radius, broadcast(0x1p-18f));
+    const Floats slack = spots.tolerance + mul(manhattan_length(apex) + spots.radius, broadcast(0x1p-20f));
+    const auto wide = less_equal(spots.cosine, Floats{});
+    const Floats sine = select(wide, broadcast(1.0f), spots.sine), cosine = maximum(spots.cosine, Floats{});
+    // Beyond 90 degrees the only plane is that of the rim: its place on the axis, from the apex on. Planes of narrower
+    // cones go through the apex: 0.
+    const Floats rim = mul(spots.radius, minimum(spots.cosine, Floats{}));
     Floats back[3];
     for (unsigned i = 0; i < 3; ++i)
-        back[i] = mul(axis[i], spots.sine);
+        back[i] = mul(axis[i], sine);
     for (unsigned plane = 0; plane < 4; ++plane) {
-        Floats n[3], offset = slack;
+        Floats n[3], most = slack - rim;
         for (unsigned i = 0; i < 3; ++i) {
-            const Floats aside = mul(across[plane / 2][i], spots.cosine);
+            const Floats aside = mul(across[plane / 2][i], cosine);
             n[i] = (plane % 2 == 0 ? aside : -aside) - back[i];
-            offset = offset + mul(n[i], apex[i]);
+            most = most + mul(n[i], apex[i]);
         }
-        Sphere vec4s[lanes];
-        store_spheres(vec4s, n[0], n[1], n[2], offset);
-        store_vec4s(to, offsetof(ViewSpot, planes) + plane * sizeof(SpotPlane), vec4s);
-        for (unsigned i = 0; i < 3; ++i) {
-            // In arrange_cells()' array, z has its 64 low ends at 0, x at 128 and y at 256; 64 high ends follow each.
-            const float low = static_cast<float>(i == 2 ? 0 : 128 + 128 * i);
-            std::uint32_t corners[lanes];
-            store_tiles(corners, select(less(n[i], Floats{}), broadcast(low + 64), broadcast(low)));
-            for (std::uint32_t lane = 0; lane < lanes; ++lane)
-                to[lane].corners[plane][i] = static_cast<std::uint16_t>(corners[lane]);
-        }
+        store_plane(camera, to, plane, n, most);
     }
 }
 
-/// Stores a vector of spots, except the planes and corners, which store_planes() stores.
+/// Stores a vector of spots, except the half spaces around them, which store_planes() stores.
 inline void store_spots(ViewSpot* to, const SpotLanes& spots, Floats nearest, Floats farthest) {
     Sphere vec4s[lanes];
     store_spheres(vec4s, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);

@@ -4,7 +4,8 @@
 // A spot is the sector that a cone cuts out of a ball. The point of a sector that is farthest in some direction is the
 // apex, a point of the rim, the circle in which cone and ball meet, or a point of the cap, the ball's surface inside
 // the rim; in the last case it is the ball's own farthest point. So a sector has the bounds of its ball where these
-// touch the cap, and else the bounds of the apex and the rim.
+// touch the cap, and else those of the apex and the rim. That holds for half angles of 90 degrees and more, too: then
+// the bounds are those of the spot's convex hull, the part of the ball on the cap's side of the rim's plane.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/project/spheres.inl>
@@ -21,7 +22,8 @@ inline void store_both_spheres(const Camera& camera, const SpotLanes& spots, Sph
     const Floats size = manhattan_length(spots.apex) + spots.radius;
     const Floats radius =
         select(narrow, half, mul(spots.radius, spots.sine)) + (mul(size, broadcast(0x1p-20f)) + spots.tolerance);
-    const auto smaller = less(radius, spots.radius);
+    // From a half angle of 90 degrees on, the least sphere around a spot is its ball, the sphere that its cone cuts.
+    const auto smaller = both(less(Floats{}, spots.cosine), less(radius, spots.radius));
     const Floats step = select(smaller, select(narrow, half, along), Floats{});
     const Floats x = broadcast(camera.x.sign), y = broadcast(camera.y.sign), z = broadcast(camera.z_sign);
     store_spheres(balls, spots.apex[0] * x, spots.apex[1] * y, spots.apex[2] * z, spots.radius);
@@ -29,26 +31,27 @@ inline void store_both_spheres(const Camera& camera, const SpotLanes& spots, Sph
                   (spots.apex[2] + mul(step, spots.axis[2])) * z, select(smaller, radius, spots.radius));
 }
 
-/// The terms of narrow_slopes() that both image axes share, for the rims of a vector of spots.
+/// Numbers of a vector of spots by which narrow_slopes() bounds the slopes of their rims along either image axis.
 struct RimLanes {
     Floats per_z;      ///< the reciprocal of the view depth of the cone's apex
     Floats axis_z;     ///< the depth coordinate of the cone's unit axis
-    Floats cosine2;    ///< the squared cosine of the cone's half angle
+    Floats cosine2;    ///< the square of the cosine of the cone's half angle, with the cosine's sign
     Floats along;      ///< the distance from the cone's apex to the centre of the rim, where cone and ball meet
     Floats rho, rho2;  ///< the radius of the rim, where cone and ball meet, and its square
     Floats rim_z;      ///< the view depth of the centre of the rim, where cone and ball meet
-    Floats per_a;      ///< 1 / A, where A s^2 is the square term of the equation of narrow_slopes() for slopes s
+    Floats per_a;      ///< 1 / A, where the slopes s of planes that touch the rim solve  A s^2 - 2 B s + C = 0
     Floats error;      ///< a slope's error is at most this times (1 + |slope|)
 };
 
-/// Returns for which spots the plane of some slope that touches the ball does so in the cap. Where that is in doubt it
-/// returns true, as the ball's slope bounds every part of the ball.
+/// Returns for which spots the plane  coordinate = slope * depth,  which touches the sphere that the cone cuts, touches
+/// it in the cap: the part of the sphere inside the cone. Where that is in doubt it returns true, as `slope` bounds the
+/// whole sphere. With the half angle t and the normal's length l, the plane touches in the cap if  across >= l cos t.
+/// Both sides are squared with their signs kept. 2^-20 l^2 is more than the errors of both squares.
 ///
-/// across  the scalar product of the cone's axis and the plane's normal, whose length is sqrt(1 + slope^2)
+/// across  the scalar product of the cone's axis and the plane's normal, whose length l is sqrt(1 + slope^2)
 LIGHTBIN_INLINE auto touches_cap(const RimLanes& rim, Floats slope, Floats across) {
     across = across + mul(1.0f + abs(slope), broadcast(0x1p-18f));
-    return both(less_equal(Floats{}, across), less_equal(mul(rim.cosine2, 1.0f + mul(slope, slope)),
-                                                         mul(mul(across, across), broadcast(1 + 0x1p-18f))));
+    return less_equal(mul(rim.cosine2 - 0x1p-20f, 1.0f + mul(slope, slope)), mul(across, abs(across)));
 }
 
 /// Narrows the slopes low..high along an image axis from the bounds of the balls to those of their sectors.
@@ -76,8 +79,8 @@ LIGHTBIN_INLINE void narrow_slopes(const RimLanes& rim, Floats c, Floats axis, F
     high = select(touches_cap(rim, high, axis - mul(high, rim.axis_z)), high, minimum(largest + error, high));
 }
 
-/// Projects in double the spots of a chunk that are listed in chunk.fallback: spots that float can't project. A spot's
-/// rectangle is the intersection of its ball's and its least sphere's.
+/// Projects in double the spots of a chunk in chunk.fallback, which float can't project. A spot's tile rectangle is the
+/// intersection of those of `balls`, the sphere that its cone cuts, and `least`, its least_sphere().
 inline void project_spots_in_double(const Camera& camera, const Sphere* balls, const Sphere* least,
                                     ProjectedChunk& chunk, ProjectCounts& counts) {
     project_in_double(camera, balls, chunk, counts);
@@ -114,7 +117,7 @@ LIGHTBIN_INLINE void find_slopes(const SpotLanes& spots, Floats size, Floats nea
     const Floats rim_z = z + mul(along, spots.axis[2]), depth = mul(rho, across_z);
     const RimLanes rim = {1.0f / z,
                           spots.axis[2],
-                          mul(spots.cosine, spots.cosine),
+                          mul(spots.cosine, abs(spots.cosine)),
                           along,
                           rho,
                           mul(rho, rho),
@@ -125,8 +128,9 @@ LIGHTBIN_INLINE void find_slopes(const SpotLanes& spots, Floats size, Floats nea
     narrow_slopes(rim, spots.apex[1], spots.axis[1], spots.axis[0], bounds.low[1], bounds.high[1]);
 }
 
-/// Appends the footprints of the spots first..first + count - 1 that are in view. As with project(), spots
-/// whose ball does not lie beyond the near plane, or that float can't compute with, are projected in double.
+/// Appends the footprints of the spots first..first + count - 1 that are in view. Spots are projected in float where
+/// nothing overflows, underflows or is NaN, the sphere that the cone cuts lies beyond the near plane, and the spot's
+/// least view depth is at least 2^-16 of that sphere's |x| + |y| + |z| + r. All others are projected in double.
 inline void project_spots(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
                           const FootprintArrays& out, ProjectCounts& counts) {
     ProjectedChunk chunk;
@@ -158,7 +162,7 @@ inline void project_spots(const Camera& camera, const LightSource& source, std::
             const unsigned valid = (1u << min_of(lanes, here - i)) - 1;
             if ((~movemask(culled) & valid) == 0) continue;
             if (source.out_spots != nullptr) store_spots(source.out_spots + first + i, spots, nearest, farthest);
-            if (source.with_planes) store_planes(source.out_spots + first + i, spots);
+            if (source.with_planes) store_planes(camera, source.out_spots + first + i, spots);
             auto in_float = and_not(safe, culled);
             ImageBounds<Floats> bounds;
             if (camera.orthographic) {
@@ -177,7 +181,7 @@ inline void project_spots(const Camera& camera, const LightSource& source, std::
             put_vector(camera, bounds, in_float, fallback, valid, i, chunk);
         }
         project_spots_in_double(camera, balls, cones, chunk, counts);
-        append_chunk(chunk, first, here, out, counts);
+        append_chunk(chunk, source.first_id + first, here, out, counts);
     }
 }
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Turns the elements of the caller's array into Spheres or Spots.
+// Turns the elements of the caller's array into Spheres, Spots or Boxes.
 #pragma once
 
+#include <lightbin/box.hpp>
 #include <lightbin/spot.hpp>
+
+#include <lightbin/detail/project/light_kind.hpp>
 
 #include <concepts>
 #include <span>
@@ -23,14 +26,16 @@ concept Vec4Of = requires(const Light& light) {
 
 }  // namespace detail
 
-/// The default way to make a Sphere or a Spot of a light: what converts to Spot or Sphere is converted, and a vec4 of
-/// floats, or of doubles rounded outward, becomes the Sphere with centre (x, y, z) and radius w.
+/// The default way to make a light of an element: what converts to Box, Spot or Sphere is converted, and a vec4 of floats,
+/// or of doubles rounded outward, becomes the Sphere with centre (x, y, z) and radius w.
 struct AsLight {
     template <class Light>
     requires(std::convertible_to<const Light&, Sphere> || std::convertible_to<const Light&, Spot> ||
-             detail::Vec4Of<Light, float> || detail::Vec4Of<Light, double>) constexpr auto
+             std::convertible_to<const Light&, Box> || detail::Vec4Of<Light, float> || detail::Vec4Of<Light, double>) constexpr auto
     operator()(const Light& light) const {
-        if constexpr (std::convertible_to<const Light&, Spot>)
+        if constexpr (std::convertible_to<const Light&, Box>)
+            return static_cast<Box>(light);
+        else if constexpr (std::convertible_to<const Light&, Spot>)
             return static_cast<Spot>(light);
         else if constexpr (std::convertible_to<const Light&, Sphere>)
             return static_cast<Sphere>(light);
@@ -82,31 +87,39 @@ constexpr decltype(auto) make_light(const ToLight& to_light, const Light& light)
         return call(to_light, light);
 }
 
-/// Returns `to_light`. If it cannot make lights of type Light, the one compile error says so: a stand-in is returned.
+/// The kind of light that objects of type Made are converted to.
+template <class Made>
+inline constexpr LightKind kind_of = std::convertible_to<Made, Box>    ? LightKind::box
+                                     : std::convertible_to<Made, Spot> ? LightKind::spot
+                                                                       : LightKind::sphere;
+
+/// Returns `to_light`. If it cannot make lights of type Light, that is a compile error, and a stand-in is returned so
+/// that no further errors follow.
 template <class Light, class ToLight> constexpr auto checked_to_light(const ToLight& to_light) {
     using Made = decltype(make_light(to_light, std::declval<const Light&>()));
     constexpr bool can_be_called = !std::same_as<Made, NotCalled>;
     if constexpr (std::same_as<ToLight, AsLight>)
         static_assert(
             can_be_called,
-            "lightbin: this light is no Sphere or Spot and has no float or double x, y, z and w (the "
+            "lightbin: this light is no Sphere, Spot or Box and has no float or double x, y, z and w (the "
             "radius): pass view_space(lights, to_light) or world_space(lights, view_matrix, to_light), "
-            "where to_light makes a lightbin::Sphere or a lightbin::Spot of a light");
+            "where to_light makes a lightbin::Sphere, a lightbin::Spot or a lightbin::Box of a light");
     else
         static_assert(
             can_be_called,
             "lightbin: to_light is called, as const, with a const reference to one of the lights, or with "
             "what that points to, and can't be called with either");
-    if constexpr (std::convertible_to<Made, Sphere> || std::convertible_to<Made, Spot>) {
+    if constexpr (std::convertible_to<Made, Sphere> || std::convertible_to<Made, Spot> ||
+                  std::convertible_to<Made, Box>) {
         return to_light;
     } else {
         static_assert(!can_be_called,
-                      "lightbin: to_light must return a lightbin::Sphere or a lightbin::Spot");
+                      "lightbin: to_light must return a lightbin::Sphere, a lightbin::Spot or a lightbin::Box");
         return [](const Light&) { return Sphere(); };
     }
 }
 
-/// Returns a span of the caller's array. If it is not contiguous, the one compile error says so: the span is empty.
+/// Returns a span of the caller's array; after the compile error for a range that is not contiguous, an empty one.
 template <class Range> auto checked_array(const Range& lights) {
     constexpr bool contiguous = requires { std::span(std::data(lights), std::size(lights)); };
     static_assert(

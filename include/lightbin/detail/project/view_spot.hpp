@@ -10,41 +10,35 @@
 // spots given in world space the errors of the transform are added, see world_to_view.hpp.
 #pragma once
 
-#include <lightbin/detail/engine/cell_boxes.hpp>
+#include <lightbin/detail/engine/cell_planes.hpp>
+#include <lightbin/detail/project/light_kind.hpp>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// The half space of the points p with  x p_x + y p_y + z p_z <= offset.
-struct SpotPlane {
-    float x, y, z, offset;
-};
+/// Spots whose cosine of the half angle is at most this, beyond 138 degrees, count as whole spheres. So do those made
+/// by Spot::whole(), whose lists are then the spheres'. The rim's plane would cut next to nothing off the others.
+inline constexpr float whole_ball_cosine = -0.75f;
 
 /// A spot in view space, signed so that tile indices grow with x and y, and z is the view depth. A spot that is a whole
-/// sphere has the axis 0, the sine 1 and the tolerance 0, so that no plane excludes any of it.
+/// sphere has the axis 0, the cosine 0, the sine 1 and the tolerance 0: with these, the half spaces that depth tests
+/// compute around a spot contain every point.
 struct ViewSpot {
     Sphere ball;                           ///< the sphere that the cone cuts; its centre is the cone's apex
-    float axis_x, axis_y, axis_z, cosine;  ///< the cone's unit axis; the cosine of the half angle, from 0 to 1
-    /// The spot's view depths, rounded. Rounding is monotone: they meet each interval of floats that exact ones meet.
+    float axis_x, axis_y, axis_z, cosine;  ///< the cone's unit axis; the cosine of the half angle
+    /// The spot's least and greatest view depth. Rounding moved neither past any float that a test compares it with.
     float nearest, farthest;
     float sine;               ///< sine of the half angle
     float tolerance;          ///< how far the exact spot can reach outside of this one, which is rounded to float
-    /// With a depth test against boxes, four half spaces around the cone, whose planes touch the apex but for rounding.
-    SpotPlane planes[4];
-    /// For each of the half spaces in `planes`, which corner of an axis-aligned box lies deepest inside: where the
-    /// corner's x, y and z begin in the array of a block's boxes that arrange_cells() makes.
-    std::uint16_t corners[4][3];
+    CellPlanes<4> around;  ///< with a depth test against boxes, four half spaces around the spot, see store_planes()
 };
 
-/// A spot as the depth tests read it.
-struct TestedSpot {
-    TestedSpot() = default;
-    TestedSpot(const Camera&, const ViewSpot& of) : spot(&of), nearest(of.nearest), farthest(of.farthest) {}
+/// A ViewSpot or ViewBox as the depth tests read it.
+template <class Shape> struct TestedShape {
+    TestedShape() = default;
+    TestedShape(const Shape& of) : shape(&of), nearest(of.nearest), farthest(of.farthest) {}
 
-    const ViewSpot* spot;
+    const Shape* shape;
     float nearest, farthest;
 };
-
-/// The type of lights that the depth tests read: TestedSpot for spots, TestedLight for spheres.
-template <bool spots> using Tested = std::conditional_t<spots, TestedSpot, TestedLight>;
 
 }}}  // namespace lightbin::detail

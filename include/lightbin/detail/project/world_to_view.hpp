@@ -28,7 +28,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
 /// An affine transform of world space to view space, in float.
 struct FloatTransform {
-    float origin[3];        ///< a point near the eye, in world space
+    float origin[3];        ///< a world-space point near the eye: positions are taken relative to it, to round less
     float columns[3][3];    ///< the columns of the transform's linear part, a 3x3 matrix
     float origin_image[3];  ///< `origin` in view space
     float stretch;          ///< an upper bound on the factor by which the transform stretches a length
@@ -44,14 +44,14 @@ struct FloatTransform {
 /// A matrix that transforms lights from world space to view space.
 class WorldToView {
 public:
-    /// Not inlined, so that all operations happen while the object `environment` keeps rounding to nearest.
+    /// Not inlined, so that no operation moves out of the lifetime of the local `environment`, which rounds to nearest.
     LIGHTBIN_NOINLINE explicit WorldToView(const Matrix& matrix)
         : m_(matrix), affine_(finite(m_) && last_row_is_affine(m_)) {
         const DefaultFloatEnvironment environment;
         // By Gershgorin's circle theorem the square of the largest singular value, which is the largest eigenvalue of
         // M^T M, is at most the largest sum of absolute values in a row of M^T M. Likewise, the square of the smallest
-        // one is at least the smallest difference of a diagonal element and the absolute values beside it. If a
-        // product overflows, `all` is infinite or NaN, and there is no bound.
+        // one is at least the smallest difference of a diagonal element and the absolute values beside it. `all` is the
+        // sum of all absolute values: if a product overflows, it is infinite or NaN, and there is no bound.
         double largest2 = 0, all = 0, smallest2 = static_cast<double>(infinity);
         for (int i = 0; i < 3; ++i) {
             double row_sum = 0, diagonal = 0;
@@ -76,9 +76,10 @@ public:
                                                                 : ErrorCode::view_matrix_not_affine;
     }
     const FloatTransform& in_float() const { return in_float_; }
+    const Matrix& matrix() const { return m_; }
 
-    /// Returns the image of a sphere, computed in double; bad input is returned as it is. Not inlined, because
-    /// compilers would fuse its products and sums into the fused multiply-adds of a tier, which round differently.
+    /// Returns the image of a sphere, computed in double, or the sphere itself if a coordinate is NaN or infinite or
+    /// its radius NaN or negative. Not inlined, as instruction sets with fused multiply-adds would then use them here.
     LIGHTBIN_NOINLINE Sphere operator()(const Sphere& light) const {
         if (!is_finite(light.x) || !is_finite(light.y) || !is_finite(light.z) || !(light.radius >= 0)) return light;
         const double x = static_cast<double>(light.x), y = static_cast<double>(light.y),
@@ -155,8 +156,9 @@ private:
             offset += abs_of(at);
             in_float_.origin_image[r] = static_cast<float>(at);
         }
-        // Kernels compute a transformed radius in float from `stretch` and the two error terms below. The factors
-        // (1 + 2^-22) and (1 + 2^-18) cover the rounding in this, and 2^-100 covers denormal numbers flushed to zero.
+        // Kernels compute a transformed radius: stretch * radius + (error_rate * distance + error_at_origin). The
+        // factors (1 + 2^-22) and (1 + 2^-18) cover rounding in this, and 2^-100 covers denormal numbers flushed to
+        // zero.
         in_float_.stretch = float_above(stretch_ * (1 + 0x1p-22));
         in_float_.error_rate = float_above(root_of(longest_column2) * (6 * 0x1p-24) * (1 + 0x1p-18));
         in_float_.error_at_origin = float_above((offset * 0x1p-23 + terms * 0x1p-50) * (1 + 0x1p-18) + 0x1p-100);
@@ -166,8 +168,8 @@ private:
 
     Matrix m_;
     bool affine_;
-    double stretch_;     ///< the largest singular value, rounded up: no length is stretched by a larger factor
-    double anisotropy_;  ///< the smallest singular value is at least 1 - anisotropy_ times the largest
+    double stretch_;     ///< the linear part's largest singular value, rounded up: no length is stretched more
+    double anisotropy_;  ///< the linear part's smallest singular value is at least (1 - anisotropy_) * the largest
     FloatTransform in_float_ = {};
 };
 

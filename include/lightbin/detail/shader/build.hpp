@@ -139,6 +139,8 @@ template <class LightRange>
 Result<std::vector<ShaderFootprint>> shader_footprints(const View& view, const LightRange& lights) {
     const detail::DefaultFloatEnvironment environment;
     const auto& source = detail::as_lights(lights);
+    constexpr detail::LightKind kind = std::remove_cvref_t<decltype(source)>::kind;
+    static_assert(kind != detail::LightKind::mixed, "lightbin: shader_footprints() takes one array of lights, not lights()");
     if (const auto error = detail::refuse(source)) return *error;
     Footprints<Footprint::rectangle, true> footprints;
     footprints.project(machine_isa(), view, source, Parallel{});
@@ -147,10 +149,10 @@ Result<std::vector<ShaderFootprint>> shader_footprints(const View& view, const L
     std::vector<ShaderFootprint> out;
     for (std::uint32_t i = 0; i < footprints.visible(); ++i) {
         Sphere sphere;
-        if constexpr (std::remove_cvref_t<decltype(source)>::spots)
-            sphere = source.view_sphere(source.array[in.ids[i]]);  // the least sphere around the spot
+        if constexpr (kind != detail::LightKind::sphere)
+            sphere = source.view_sphere(source.array[in.ids[i]]);  // a sphere around the spot or box
         else
-            sphere = detail::load_sphere(in.spheres + in.ids[i]);
+            sphere = detail::load_sphere(in.view_lights.spheres + in.ids[i]);
         const detail::TestedLight light(camera, sphere);
         out.push_back({in.ids[i], in.x0[i], in.y0[i], in.x1[i], in.y1[i], light.reach2, light.x, light.y,
                        light.z, sphere.radius});

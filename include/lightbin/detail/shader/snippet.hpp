@@ -60,6 +60,8 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     const Dialect& dialect = writer.dialect;
     const ListFormat& format = options.format;
     const bool textures = options.storage == ListStorage::texture_2d;
+    // Every device allows a uniform block of 16384 bytes. It holds the constants of `check_view` for so many views.
+    constexpr std::uint32_t max_views = 16384 / sizeof(ShaderView);
     if (const auto error = refuse_common(
             options, {options.tiles, options.lists, options.grid, options.slices, options.bins, options.view},
             {{options.storage == ListStorage::storage_buffer && !dialect.storage_buffers,
@@ -69,6 +71,8 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
              {options.storage == ListStorage::byte_address && !dialect.hlsl, {ErrorCode::no_byte_address_buffers}},
              {options.wave_loop && (!dialect.storage_buffers || options.language == ShaderLanguage::hlsl_5_0),
               {ErrorCode::no_wave_operations}},
+             {options.views < 1 || options.views > max_views,
+              {ErrorCode::views_out_of_range, options.views, max_views}},
              {options.tile_size < 0,
               {ErrorCode::tile_size_out_of_range, static_cast<std::uint64_t>(options.tile_size)}},
              {textures && (options.texture_width < 1 || options.texture_width > 16384),
@@ -91,6 +95,12 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
                                                                      : TexelFormat::r32ui;
     const bool sliced = options.slicing != Slicing::none, binned = options.slicing == Slicing::z_bins;
     const std::uint32_t width = textures ? options.texture_width : 0;
+    // With several views, functions that read a view's lists or constants take the view's number as last parameter.
+    const bool several = options.views > 1;
+    const std::string view_parameter = several ? ", uint view" : "", view_argument = several ? ", view" : "",
+                      is_view = several ? " && view < " + std::to_string(options.views) + "u" : "";
+    const std::string of_list = "(uvec2 pixel, float view_depth" + view_parameter + ") {\n",
+                      list_arguments = "(pixel, view_depth" + view_argument + ")";
     std::vector<ShaderBuffer> buffers;
     if (table)
         buffers.push_back({"tiles", options.tiles_in_uniform_block ? uniform_block : resource, options.tiles,
@@ -101,8 +111,8 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
         buffers.push_back({"slices", resource, options.slices, TexelFormat::r32ui,
                            options.max_slices == 0 ? 0 : 4 * (options.max_slices + 3ull), width});
     if (binned)
-        buffers.push_back(
-            {"bins", resource, options.bins, TexelFormat::rg32ui, 8ull * options.max_slices, width});
+        buffers.push_back({"bins", resource, options.bins, TexelFormat::rg32ui,
+                           8ull * options.max_slices * options.views, width});
     for (const ShaderBuffer& buffer : buffers)
         if (buffer.resource == uniform_block && buffer.bytes == 0)
             return Error{ErrorCode::block_size_unknown};
@@ -118,7 +128,9 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     std::vector<ShaderConstant> constants = {{"uvec4", "grid"}};
     if (options.viewport_corner) constants.push_back({"ivec2", "corner"});
     writer.declare_constants(constants, options.grid, options.push_constants);
-    if (options.view_check)
+    if (options.view_check && several)
+        writer.declare_constants({{"vec4", "image"}}, options.view, false, 2 * options.views);
+    else if (options.view_check)
         writer.declare_constants({{"vec4", "image"}, {"vec4", "depths"}}, options.view, false);
     for (const ShaderBuffer& buffer : buffers)
         writer.declare(buffer);
@@ -164,16 +176,20 @@ inline Result<ShaderText> shader_snippet(const ShaderOptions& options) {
     writer.add("\nstruct $own_cursor {\n    uint id;\n    uint at;\n    uint end;\n");
     if (bits) writer.add("    uint bits;\n");
     if (binned) writer.add("    uint last;\n");
-    writer.add("};\n\n$own_cursor $own_begin(uvec2 pixel, float view_depth) {\n" + here +
+    writer.add("};\n\n$own_cursor $own_begin" + of_list + here +
                "    $own_cursor c;\n    c.at = 0u;\n    c.end = 0u;\n" +
                (bits && !binned ? "    c.id = 0xffffffe0u;  // 32 before the first\n" : "    c.id = 0u;\n"));
     if (bits) writer.add("    c.bits = 0u;\n");
     if (binned) writer.add("    c.last = 0u;\n");
     writer.add("    if (here.x < $grid.z && here.y < $grid.w" + (fixed ? " && $grid.x == " + size : "") +
-               ") {\n        uvec2 tile = here / " + size + ";\n");
+               is_view + ") {\n        uvec2 tile = here / " + size + ";\n");
     if (sliced) writer.add("        uint slice = $slice(view_depth);\n");
-    if (sliced && !binned)
-        writer.add("        tile.y += slice * (($grid.w - 1u) / " + size + " + 1u);\n");
+    // The cells of a view, and its bins, lie behind those of the views before it.
+    if (sliced && several) writer.add("        slice += view * ($slices[3u] + 1u);\n");
+    const bool clusters = sliced && !binned;
+    if (clusters || several)
+        writer.add(std::string("        tile.y += ") + (clusters ? "slice" : "view") +
+                   " * (($grid.w - 1u) / " + size + " + 1u);\n");
     if (binned) writer.add("        uvec2 bin = $bins[slice];\n        c.last = bin.y;\n");
     writer.add("        uint place = tile.y * $grid.y + tile.x;\n");
     const std::string each = std::to_string(elements_per_tile(format)) + "u";
@@ -238,11 +254,10 @@ struct $cursor {
     $own_cursor ahead;
 };
 
-$cursor $begin(uvec2 pixel, float view_depth) {
-    $cursor c;
+$cursor $begin)" + of_list + R"(    $cursor c;
     c.id = 0u;
     c.own = false;
-    $own_cursor ahead = $own_begin(pixel, view_depth);
+    $own_cursor ahead = $own_begin)" + list_arguments + R"(;
     c.more = $own_next(&ahead);
     c.ahead = ahead;
     return c;
@@ -260,19 +275,16 @@ bool $next(inout $cursor c) {
 }
 )");
     if (!dialect.webgpu)
-        writer.add(std::string("\n#define $for_each_light(cursor, pixel, view_depth) for ($cursor cursor = "
-                               "$begin(pixel, view_depth); $next(cursor);)") +
+        writer.add("\n#define $for_each_light(cursor, pixel, view_depth" + view_argument +
+                   ") for ($cursor cursor = $begin" + list_arguments + "; $next(cursor);)" +
                    (options.wave_loop ? " if (cursor.own)\n" : "\n"));
     if (options.heat_map)  // with a table and without z-bins, a list's length is read instead of counted
-        writer.add("\nuint $count(uvec2 pixel, float view_depth) {\n"
-                   "    $own_cursor c = $own_begin(pixel, view_depth);\n" +
+        writer.add("\nuint $count" + of_list + "    $own_cursor c = $own_begin" + list_arguments + ";\n" +
                    std::string(table && !binned ? "    return c.end - c.at;\n"
                                                 : "    uint count = 0u;\n    while ($own_next(&c)) { count += 1u; }\n"
                                                   "    return count;\n") +
-                   R"(}
-
-vec3 $heat(uvec2 pixel, float view_depth, float most) {
-    float heat = float($count(pixel, view_depth)) / most;
+                   "}\n\nvec3 $heat(uvec2 pixel, float view_depth, float most" + view_parameter +
+                   ") {\n    float heat = float($count" + list_arguments + R"() / most;
     vec3 colour = vec3(4.0 * heat - 2.0, min(4.0 * heat, 4.0 - 4.0 * heat), 2.0 - 4.0 * heat);
     return clamp(colour, vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
 }
@@ -287,19 +299,23 @@ float $window(float apart, float range) {
     return w * w;
 }
 )");
-    if (options.view_check)
-        writer.add("\n// Whether the View has a position of view space in this pixel, and not before its near plane.\n"
-                   "bool $check_view(uvec2 pixel, vec3 position) {\n" + here +
-                   R"(    float depth = $depths.x * position.z;
+    if (options.view_check) {
+        std::string check = R"(    float depth = $depths.x * position.z;
     float w = 1.0;
     if ($depths.y > 0.0) { w = depth; }
     vec2 at = $image.xy * position.xy / w + $image.zw;
     vec2 apart = abs(at - (vec2(here) + 0.5));
-    return apart.x < $depths.w && apart.y < $depths.w && depth >= $depths.z;
-}
-)");
-    // As the ids of a list ascend, one pass over all ids, with the list's cursor beside it, finds the ids that the list
-    // lacks.
+    return apart.x < $depths.w && apart.y < $depths.w && depth >= $depths.z)" +
+                            is_view + ";\n}\n";
+        // The constants of view v are elements 2v and 2v + 1 of an array. A number that no view has reads the last ones.
+        if (several)
+            check = "    uint first = 2u * min(view, " + std::to_string(options.views - 1) +
+                    "u);\n    vec4 image = $image[first];\n    vec4 depths = $image[first + 1u];\n" +
+                    replaced(replaced(check, "$image", "image"), "$depths", "depths");
+        writer.add("\n// Whether the View has a position of view space in this pixel, and not before its near plane.\n"
+                   "bool $check_view(uvec2 pixel, vec3 position" + view_parameter + ") {\n" + here + check);
+    }
+    // As a list's ids ascend, one pass over all ids, with the list's cursor beside it, finds those that the list lacks.
     if (options.list_check)
         writer.add(R"(
 // A light, and whether the pixel's list lacks it.
@@ -310,8 +326,7 @@ struct $missing {
     $own_cursor listed;
 };
 
-$missing $begin_missing(uvec2 pixel, float view_depth) {
-    $own_cursor listed = $own_begin(pixel, view_depth);
+$missing $begin_missing)" + of_list + R"(    $own_cursor listed = $own_begin)" + list_arguments + R"(;
     $missing m;
     m.id = 0xffffffffu;
     m.lacked = false;
@@ -330,10 +345,11 @@ bool $next_missing(inout $missing m, uint lights) {
 }
 )");
     if (options.list_check && !dialect.webgpu)
-        writer.add("\n#define $for_each_missing(cursor, lights, pixel, view_depth) for ($missing cursor = "
-                   "$begin_missing(pixel, view_depth); $next_missing(cursor, lights);) if (cursor.lacked)\n");
-    // In the text, `$own_` begins the names of what belongs to one lane's cursor, to tell it from the cursor that a
-    // wave shares. Without wave_loop there is no shared one, and `own_` is left out.
+        writer.add("\n#define $for_each_missing(cursor, lights, pixel, view_depth" + view_argument +
+                   ") for ($missing cursor = $begin_missing" + list_arguments +
+                   "; $next_missing(cursor, lights);) if (cursor.lacked)\n");
+    // In the text, names of what reads the list of one lane begin with `$own_`, where `$` is the prefix of all names.
+    // With wave_loop this tells them from those of the loop that a wave shares. Without wave_loop `own_` is left out.
     return writer.finish(options.wave_loop ? "$own_" : "$");
 }
 

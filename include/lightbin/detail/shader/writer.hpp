@@ -123,8 +123,8 @@ private:
         }
         if (sign == '{') ++depth_;
         if (sign == '}') in_struct_ = --depth_ > 0 && in_struct_;
-        // WGSL has pointers in place of `inout`: `&` makes one of a variable. An inout parameter, which renamed()
-        // finds, is one already and is passed on without `&`.
+        // `&` marks an argument for an `inout` parameter, in WGSL a pointer, and makes one of a variable. A name that
+        // renamed() changes is such a parameter itself, which is a pointer already and is passed on without `&`.
         if (const std::string_view word = word_at(glsl_, at_); sign == '&' && renamed(word) != word) {
             wgsl_ += word;
             at_ += word.size();
@@ -145,7 +145,7 @@ private:
             ++at_;
             return;
         }
-        // A type, a space and a name begin a declaration. Types that the text itself declares begin with the prefix.
+        // A type, a space and a name begin a declaration. Structs that the shader text declares have names with `$`.
         const ShaderWord row = shader_word(word);
         const std::string_view name = at_ < glsl_.size() && glsl_[at_] == ' ' ? word_at(glsl_, at_ + 1) : "";
         if ((row.is_type || word == "void" || word.starts_with('$')) && !name.empty()) {
@@ -233,7 +233,7 @@ struct ShaderBuffer {
     ShaderResource resource;
     ShaderSlot slot;
     TexelFormat format;   ///< the format of an element: uvec2 if it is rg32ui, otherwise uint
-    std::uint64_t bytes;  ///< uniform_block: the size, enough for the largest data that the shader options allow
+    std::uint64_t bytes;  ///< if the resource is a uniform_block: its size, enough for all data that the options allow
     std::uint32_t width;  ///< the number of texels per row, if the resource is a texture_2d
 };
 
@@ -246,7 +246,7 @@ struct ByLanguage {
 };
 
 /// Collects one shader text and its bindings. The declare functions add a declaration to the text and the resource to
-/// the bindings. In all texts that the writer is given, `$` stands for the prefix.
+/// the bindings. In texts given to the writer, `$` stands for the prefix that all names in the result begin with.
 class ShaderWriter {
 public:
     ShaderWriter(ShaderLanguage language, std::string_view prefix)
@@ -269,8 +269,8 @@ public:
         shader_.text += glsl;
     }
 
-    /// Declares a resource by the text of the writer's language. `@` in the text stands for the layout, register or
-    /// attribute that binds the resource. binding.name lacks the prefix.
+    /// Declares a resource by the member of `text` in the language of the result. `@` in it stands for the layout,
+    /// register or attribute that binds the resource. The prefix of names is added to binding.name.
     void declare(ShaderBinding binding, const ByLanguage& text) {
         const std::string& own = dialect.hlsl ? text.hlsl : dialect.webgpu ? text.wgsl : text.glsl;
         shader_.text += replaced(own, "@", binding_text(binding)) + ";\n";
@@ -326,22 +326,27 @@ public:
     }
 
     /// Declares constants. In OpenGL each is a uniform by itself. In the other APIs they form one block, named after
-    /// the first one, in which each begins at a multiple of 16 bytes; `push` makes it a block of push constants.
-    void declare_constants(const std::vector<ShaderConstant>& constants, ShaderSlot slot, bool push) {
+    /// the first one, in which each begins at a multiple of 16 bytes; `push` makes it a block of push constants. If `length` is
+    /// more than 1, each constant is an array of so many vec4s.
+    void declare_constants(const std::vector<ShaderConstant>& constants, ShaderSlot slot, bool push,
+                           std::uint32_t length = 1) {
         const bool loose = !dialect.hlsl && !dialect.vulkan && !dialect.webgpu;
         const std::string name = std::string(constants.front().second) + "_block";
         std::string lines;
         for (const auto& [constant_type, constant_name] : constants) {
             const std::string own = constant_name, type = constant_type;
-            lines += "    " + type + (dialect.webgpu ? " " : " $") + own + ";\n";
+            const std::string array = length > 1 ? "[" + std::to_string(length) + "]" : "";
+            lines += length > 1 && dialect.webgpu
+                         ? "    " + own + " : array<vec4f, " + std::to_string(length) + ">;\n"
+                         : "    " + type + (dialect.webgpu ? " " : " $") + own + array + ";\n";
             members_.push_back({"$" + own, "$" + name + "." + own});
             const std::uint32_t bytes = type == "ivec2" ? 8 : 16;
             if (loose)
-                declare({.name = own, .stride = bytes, .bytes = bytes},
-                        {.glsl = "uniform " + type + " $" + own});
+                declare({.name = own, .stride = bytes, .bytes = bytes * length},
+                        {.glsl = "uniform " + type + " $" + own + array});
         }
         if (!loose)
-            declare_block(name, slot, push, static_cast<std::uint32_t>(16 * constants.size()), lines,
+            declare_block(name, slot, push, static_cast<std::uint32_t>(16 * length * constants.size()), lines,
                           "struct $" + name + "_members {\n" + lines + "}\n@var<uniform> $" + name + " : $" +
                               name + "_members");
     }
@@ -355,15 +360,15 @@ public:
                                : "texelFetch(" + texture + ", " + at + ", " + sample + ")";
     }
 
-    /// Declares an array of uint in the memory that a work group shares. WGSL has a type of its own for atomic
-    /// variables, which only atomicLoad(), atomicStore() and the atomic functions of GLSL may access.
+    /// Declares an array of uint in the memory that a work group shares. If `atomic`, WGSL makes it one of atomic<u32>,
+    /// and so the text may use it only by atomicLoad(), atomicStore(), and GLSL's functions such as atomicMin().
     void declare_shared(const std::string& name, int count, bool atomic) {
         const std::string size = std::to_string(count), type = atomic ? "atomic<uint>" : "uint";
         add(dialect.webgpu ? "var<workgroup> $" + name + " : array<" + type + ", " + size + ">;\n"
                           : "shared uint $" + name + "[" + size + "];\n");
     }
 
-    /// Adds the entry point of a compute shader with `threads` threads per group, which calls $run(group, thread).
+    /// Adds a compute shader's entry point, with `threads` threads per group. It calls the text's $run(group, thread).
     void add_compute_main(unsigned threads) {
         const std::string count = std::to_string(threads);
         add(dialect.webgpu ? "\n@compute @workgroup_size(" + count + ")\nfn main(@builtin(workgroup_id) group : vec3u, "

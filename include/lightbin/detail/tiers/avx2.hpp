@@ -126,7 +126,6 @@ template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* 
     return append_8(append_8(out, ids, mask & 0xff), ids + 8, mask >> 8);
 }
 
-/// A vector of 32 bytes.
 struct Bytes {
     __m256i v;
 };

@@ -134,7 +134,6 @@ inline __m512i fresh_zeros() {
     return zeros;
 }
 
-/// Stores sixteen ids at `out`.
 template <class Id> LIGHTBIN_INLINE void store_ids(Id* out, __m512i ids) {
     if constexpr (sizeof(Id) == 4)
         _mm512_storeu_si512(out, ids);
@@ -148,7 +147,6 @@ template <class Id> LIGHTBIN_INLINE Id* append_16(Id* out, const std::uint32_t* 
     return out + std::popcount(mask);
 }
 
-/// The bytes 0, 1, 2 ... 63.
 struct CountingBytes {
     std::uint8_t of[64];
 };
@@ -178,12 +176,12 @@ template <int lights, class Id> Id* append_several(Id* out, __m512i ids, std::ui
 }
 
 #define LIGHTBIN_TIER_EMITS_SHORT
-/// Emits a row of eight tiles, as the emit_short() of emit.inl does, but all tiles at once: a compress instruction
-/// finds the lights of 4 or 8 tiles. Builds of few or small lights take 1.2 to 1.7 times as long without it.
+/// Writes the light ids and the ranges of up to 8 tiles, in place of emit_short() in emit.inl. A compress instruction
+/// finds the lights of 4 or 8 tiles at once: builds of few or small lights take 1.2 to 1.7 times as long without it.
 template <unsigned at_most, class Id>
 Id* emit_short(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset, const std::uint32_t* ids,
                const std::uint8_t* row_columns) {
-    // `low` has a byte for each tile, with a bit for each of the first eight lights; `high`, for the next eight.
+    // Each tile has a byte of bits for its lights: `low` for lights 0 to 7 of the list, `high` for lights 8 to 15.
     const std::uint64_t low = transpose_bits(load_8_bytes(row_columns)),
                         high = at_most == 8 ? 0 : transpose_bits(load_8_bytes(row_columns + 8));
     const __m128i lights = _mm_set_epi64x(static_cast<long long>(high), static_cast<long long>(low)),
@@ -202,7 +200,6 @@ Id* emit_short(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset
     return append_several<16>(out, table, static_cast<std::uint64_t>(_mm_extract_epi64(masks, 1)));
 }
 
-/// A vector of 64 bytes.
 struct Bytes {
     __m512i v;
 };

@@ -47,7 +47,23 @@ inline Reals select_unpredicted(Mask mask, Reals a, Reals b) {
     return select(mask, a, b);
 }
 
-/// Loads the spheres with `count` indices, at most a vector of them, as four vectors. The last one fills spare lanes.
+/// Returns a vector of floats or doubles, all of which are the number `each`, which float represents exactly.
+template <class Reals> Reals all(double each) {
+    if constexpr (std::is_same_v<Reals, Floats>)
+        return broadcast(static_cast<float>(each));
+    else
+        return broadcast(each);
+}
+template <class Reals> Reals dot(const Reals (&a)[3], const Reals (&b)[3]) {
+    return mul(a[0], b[0]) + mul(a[1], b[1]) + mul(a[2], b[2]);
+}
+template <class Reals> void cross(const Reals (&a)[3], const Reals (&b)[3], Reals (&to)[3]) {
+    for (unsigned i = 0; i < 3; ++i)
+        to[i] = mul(a[(i + 1) % 3], b[(i + 2) % 3]) - mul(a[(i + 2) % 3], b[(i + 1) % 3]);
+}
+
+/// Loads the spheres with `count` indices, but no more than a vector holds, as four vectors. If they are fewer, the
+/// last sphere fills the other lanes.
 template <class Index>
 void load_listed_spheres(const Sphere* spheres, const Index* indices, std::uint32_t count, Floats& x, Floats& y, Floats& z,
                          Floats& radius) {

@@ -30,15 +30,15 @@ template <class Pick> auto with_tier(Isa isa, Pick pick) {
     return pick(scalar::Tier{});
 }
 
-template <bool spots> ProjectKernel project_kernel(Isa isa) {
-    return with_tier(isa, [](auto tier) { return tier.template project_kernel<spots>(); });
+template <LightKind kind> ProjectKernel project_kernel(Isa isa) {
+    return with_tier(isa, [](auto tier) { return tier.template project_kernel<kind>(); });
 }
-template <bool spots> RowSpanKernel row_span_kernel(Isa isa) {
-    return with_tier(isa, [](auto tier) { return tier.template row_span_kernel<spots>(); });
+template <LightKind kind> RowSpanKernel row_span_kernel(Isa isa) {
+    return with_tier(isa, [](auto tier) { return tier.template row_span_kernel<kind>(); });
 }
 
-template <bool spots> DepthBucketsKernel depth_buckets_kernel(Isa isa) {
-    return with_tier(isa, [](auto tier) { return tier.template depth_buckets_kernel<spots>(); });
+template <LightKind kind> DepthBucketsKernel depth_buckets_kernel(Isa isa) {
+    return with_tier(isa, [](auto tier) { return tier.template depth_buckets_kernel<kind>(); });
 }
 
 /// Returns the kernel that reduces rows of `columns` samples: the widest, up to `isa`, whose vectors a row can fill.
@@ -48,24 +48,23 @@ template <bool by_split> DepthKernel depth_kernel(Isa isa, std::size_t columns) 
     return depth_kernel<by_split>(static_cast<Isa>(static_cast<int>(isa) - 1), columns);
 }
 
-template <Footprint footprint, DepthTest depth_test, class Id, bool spots>
+template <Footprint footprint, DepthTest depth_test, class Id, LightKind kind>
 BitsKernel<Id> bits_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) {
-        return tier.template bits_kernel < footprint, depth_test, Id, spots && reads_spots < depth_test >> ();
+        return tier.template bits_kernel<footprint, depth_test, Id, kind_read<depth_test, kind>>();
     });
 }
 
 /// Returns the fastest binning kernel for lights whose rectangles have `area` tiles in all.
 ///
-/// by_slab  whether lights are tested against the boxes around a depth slice's cells, see store_met_boxes()
-/// spots    whether the lights are spots
-template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>
+/// by_slab  whether lights are tested against the boxes around a depth slice's cells, see SlabCells
+template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, LightKind kind>
 BinKernel<Id> bin_kernel(Isa isa, const View& view, std::uint64_t area) {
     if constexpr (!has_tests<footprint, depth_test>)
         if (scatter_is_faster(isa, view.tile_count(), area)) return scatter_lights<Id>;
     return with_tier(isa, [](auto tier) {
-        return tier.template bin_kernel < footprint, depth_test, Id, by_slab,
-               spots && reads_spots < depth_test >> ();
+        return tier.template bin_kernel<footprint, depth_test, Id, by_slab,
+               kind_read<depth_test, kind>>();
     });
 }
 

@@ -49,9 +49,15 @@
 
 #include <lightbin/detail/project/spots.inl>
 
+#include <lightbin/detail/project/box_vectors.inl>
+
+#include <lightbin/detail/project/boxes.inl>
+
 #include <lightbin/detail/project/sphere_rows.inl>
 
 #include <lightbin/detail/project/spot_rows.inl>
+
+#include <lightbin/detail/project/box_rows.inl>
 
 #include <lightbin/detail/engine/lists.inl>
 
@@ -67,27 +73,29 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 struct Tier {
     static constexpr std::size_t vector = lanes;
 
-    template <bool spots> static ProjectKernel project_kernel() {
-        if constexpr (spots)
+    template <LightKind kind> static ProjectKernel project_kernel() {
+        if constexpr (kind == LightKind::box)
+            return project_boxes;
+        else if constexpr (kind == LightKind::spot)
             return project_spots;
         else
             return project;
     }
-    template <bool spots> static RowSpanKernel row_span_kernel() {
-        return row_spans<std::conditional_t<spots, SpotRows, SphereRows>>;
+    template <LightKind kind> static RowSpanKernel row_span_kernel() {
+        return row_spans<RowsOf<kind>>;
     }
-    template <bool spots> static DepthBucketsKernel depth_buckets_kernel() { return find_depth_buckets<spots>; }
+    template <LightKind kind> static DepthBucketsKernel depth_buckets_kernel() { return find_depth_buckets<kind>; }
     template <bool by_split> static DepthKernel depth_kernel() { return column_extremes<by_split>; }
 
-    template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, bool spots>
+    template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, LightKind kind>
     static BinKernel<Id> bin_kernel() {
         if constexpr (lanes == 1 && !has_tests<footprint, depth_test>)
             return scatter_lights<Id>;  // as scatter_is_faster() says of the scalar tier
         else
-            return bin_blocks<footprint, depth_test, Id, by_slab, spots>;
+            return bin_blocks<footprint, depth_test, Id, by_slab, kind>;
     }
-    template <Footprint footprint, DepthTest depth_test, class Id, bool spots> static BitsKernel<Id> bits_kernel() {
-        return write_bits<footprint, depth_test, Id, spots>;
+    template <Footprint footprint, DepthTest depth_test, class Id, LightKind kind> static BitsKernel<Id> bits_kernel() {
+        return write_bits<footprint, depth_test, Id, kind>;
     }
 };
 

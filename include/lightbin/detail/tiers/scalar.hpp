@@ -81,7 +81,6 @@ template <class Id> LIGHTBIN_INLINE Id* append_8(Id* out, const std::uint32_t* i
     return append_16(out, ids, mask);
 }
 
-/// A vector of one byte.
 using Bytes = std::uint8_t;
 using ByteMask = std::uint8_t;
 inline constexpr std::uint32_t byte_lanes = 1;

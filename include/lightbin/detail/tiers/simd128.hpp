@@ -34,7 +34,6 @@ inline constexpr std::uint32_t lanes = 4, double_lanes = 2;
 #include <lightbin/detail/tiers/simd128/wasm.inl>
 #endif
 
-/// A vector of 16 bytes.
 struct Bytes {
     ByteRegister v;
 };

@@ -6,7 +6,8 @@
 //   LIGHTBIN_ELEMENT   float or double
 //   LIGHTBIN_REGISTER  the compiler's type of register
 //   LIGHTBIN_MASK      the type of masks, if they have one bit for each lane; else masks are registers
-//   LIGHTBIN_OP(name)  the intrinsic for add, sub, mul, div, sqrt, min, max, set1, xor, andnot; and, or, movemask
+//   LIGHTBIN_OP(name)  the intrinsic for add, sub, mul, div, sqrt, min, max, set1, xor, andnot; if LIGHTBIN_MASK is not
+//                      defined, also for and, or, movemask
 //
 // and, for both types of elements, LIGHTBIN_LESS(a, b), LIGHTBIN_LESS_EQUAL(a, b) and LIGHTBIN_SELECT(mask, a, b).
 

@@ -14,7 +14,7 @@ namespace detail {
 /// view depth d is projected to  scale * (c / d) + offset  tiles with a perspective projection, and to
 /// scale * c + offset  with an orthographic one.
 struct ImageAxis {
-    double scale = 0;  ///< tiles per unit of slope (orthographic: of length); greater than 0
+    double scale = 0;  ///< tiles per unit of slope, which is c / d (orthographic: per unit of c); greater than 0
     double offset = 0;
     float sign = 1;    ///< 1, or -1 where tile indices grow as the view-space coordinate falls
     float margin = 0;  ///< an upper bound on the error, in tiles, of a coordinate in the viewport that float computes
@@ -33,7 +33,7 @@ struct Camera {
     float z_sign = 1;      ///< view depth = z_sign * z, so that it grows away from the eye
     float near_depth = 0;  ///< view depth of the near plane, rounded down
     float far_depth = 0;   ///< view depth of the far plane, rounded up; +inf where there is none
-    float min_float_depth = 0;  ///< view depth beyond which whole spheres can be projected in float
+    float min_float_depth = 0;  ///< spheres that lie entirely beyond this view depth can be projected in float
     bool orthographic = false;
 };
 

@@ -125,12 +125,12 @@ struct Projection {
         return too_close ? ErrorCode::near_plane_too_close : ErrorCode::no_near_plane;
     }
 
-    /// Reads `matrix`. depth.zero_to_one must be set before. Returns why the matrix is refused, or nothing.
+    /// Finds `camera` and `depth` from `matrix` and depth.zero_to_one. Returns why the matrix is refused, or nothing.
     ///
     /// y_up        tile rows count up from the side of the image where device y is -1
     /// reversed_z  read for orthographic matrices alone: a perspective matrix shows whether Z is reversed
     ///
-    /// Not inlined, so that all operations happen while the object `environment` keeps rounding to nearest.
+    /// Not inlined, so that no operation moves out of the lifetime of the local `environment`, which rounds to nearest.
     LIGHTBIN_NOINLINE std::optional<ErrorCode> read(int width, int height, int tile_size, bool y_up,
                                                     bool reversed_z) {
         const DefaultFloatEnvironment environment;
@@ -166,11 +166,12 @@ struct Projection {
         return set_depth_range();
     }
 
-    /// Returns the values that View::summary() reports.
+    /// Returns, for a View with this viewport, what was read from the matrix and what looks like a mistake.
     ViewSummary summary(int width, int height, int tile_size) const {
         const bool flat = camera.orthographic;
         const Matrix& m = matrix;
-        // The image's extent between ndc -1 and 1, from the matrix, as ImageAxis::scale is 0 for an empty viewport.
+        // Returns the image's width or height in degrees (orthographic: in view-space units). It comes from the matrix,
+        // as ImageAxis::scale is 0 for an empty viewport.
         const auto size = [&](int axis) {
             const double w = flat ? depth.w_offset : depth.w_scale,
                          offset = flat ? m[3][axis] : static_cast<double>(camera.z_sign) * m[2][axis];

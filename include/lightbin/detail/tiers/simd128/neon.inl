@@ -96,7 +96,7 @@ inline uint8x16_t shuffle_bytes(uint8x16_t table, uint8x16_t indices) {
 inline uint8x16_t bytes_not_zero(uint8x16_t a) {
     return vtstq_u8(a, a);
 }
-/// Returns 1, 2, 4 ... 128 in both halves of a vector: and-ed with a mask of bytes and summed, the mask's bits.
+/// Returns the bytes 1, 2 ... 128 twice. Each half, and-ed with 8 mask bytes and then summed, is a mask of 8 bits.
 inline uint8x16_t bit_values() {
     return vreinterpretq_u8_u64(vdupq_n_u64(0x8040201008040201));
 }

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+// Box: a sphere cut by an oriented box. And functions that make boxes of decals, probes, rooms, projectors and tubes.
+#pragma once
+
+#include <lightbin/detail/base/algorithms.hpp>
+#include <lightbin/detail/project/sphere_around.hpp>
+#include <lightbin/matrix.hpp>
+
+#include <lightbin/detail/base/warnings_off.inl>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
+
+/// The region that a decal, a probe, a projector or a light in a room can reach: the points of a sphere that lie in
+/// an oriented box. It is listed where both reach.
+///
+/// x, y, z, radius      the sphere. With radius +inf it covers everything, and the region is the whole box.
+/// box_x, box_y, box_z  the box's centre
+/// half_axes            vectors from the box's centre to the middles of three of its faces. They need not be at right
+///                      angles. One that is zero makes the box flat, two make it a line segment.
+/// taper                how large the face at centre - half_axes[2] is, as a fraction of the face at centre +
+///                      half_axes[2]: 1 for a box, 0 for a pyramid, between them a frustum
+///
+/// The points of the box are  centre + a k half_axes[0] + b k half_axes[1] + c half_axes[2]  with a, b and c from -1
+/// to 1
+/// and  k = (1 + taper + c (1 - taper)) / 2.
+///
+/// A radius that is zero, negative or NaN is bad input, as are coordinates that are NaN or infinite, three half axes
+/// of zero, and a taper that is NaN or not from 0 to 1: such a Box is skipped and counted.
+struct Box {
+    float x, y, z, radius;
+    float box_x, box_y, box_z;
+    float half_axes[3][3];
+    float taper = 1;
+
+    /// Converts to bounding_sphere(*this), for functions that take only spheres. A Binner takes boxes themselves, and
+    /// lists fewer tiles for them than for these spheres.
+    operator Sphere() const;
+};
+
+namespace detail {
+
+/// A Box that is bad input: skipped and counted.
+inline constexpr Box bad_box = {0, 0, 0, -1, 0, 0, 0, {}};
+
+inline Triple scaled(const Triple& v, double factor) {
+    return {rounded(v.x * factor), rounded(v.y * factor), rounded(v.z * factor)};
+}
+inline Triple sum(const Triple& a, const Triple& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+inline Triple half_axis(const Box& box, int i) {
+    const float(&axis)[3] = box.half_axes[i];
+    return {static_cast<double>(axis[0]), static_cast<double>(axis[1]), static_cast<double>(axis[2])};
+}
+
+/// Returns a sphere around all corners of a box; a bad Sphere for bad input. Its centre lies on the third half axis,
+/// as far from the corners of one face as from those of the other where the half axes are at right angles.
+inline Sphere sphere_of_corners(const Box& box) {
+    const Triple centre = {static_cast<double>(box.box_x), static_cast<double>(box.box_y),
+                           static_cast<double>(box.box_z)};
+    const Triple across[] = {sum(half_axis(box, 0), half_axis(box, 1)),
+                             sum(half_axis(box, 0), scaled(half_axis(box, 1), -1))};
+    const Triple along = half_axis(box, 2);
+    const double taper = static_cast<double>(box.taper), width = max_of(length(across[0]), length(across[1])),
+                 depth = length(along);
+    if (!finite(centre) || !is_finite(width) || !is_finite(depth) || !(width + depth > 0) || !(taper >= 0) ||
+        !(taper <= 1))
+        return bad_sphere;
+    double shift = rounded((1 - rounded(taper * taper)) * (width * width)) / rounded(4 * depth * depth);
+    shift = shift < 1 ? shift : depth > 0 ? 1.0 : 0.0;
+    double radius = 0;
+    for (const Triple& diagonal : across)
+        for (const double side : {-1.0, 1.0}) {
+            const Triple wide = sum(scaled(along, 1 - shift), scaled(diagonal, side)),
+                         narrow = sum(scaled(along, -1 - shift), scaled(diagonal, rounded(side * taper)));
+            radius = max_of(radius, max_of(length(wide), length(narrow)));
+        }
+    return sphere_around_nearly(sum(centre, scaled(along, shift)), radius);
+}
+
+/// Returns a box with these half axes, and the sphere of its own corners.
+inline Box box_with_own_sphere(const Triple& centre, const Triple (&half_axes)[3], double taper) {
+    for (const Triple& axis : half_axes)
+        if (!finite(axis)) return bad_box;
+    Box box = {0,
+               0,
+               0,
+               0,
+               static_cast<float>(centre.x),
+               static_cast<float>(centre.y),
+               static_cast<float>(centre.z),
+               {},
+               static_cast<float>(taper)};
+    for (int i = 0; i < 3; ++i) {
+        const double axis[] = {half_axes[i].x, half_axes[i].y, half_axes[i].z};
+        for (int k = 0; k < 3; ++k)
+            box.half_axes[i][k] = static_cast<float>(axis[k]);
+    }
+    const Sphere sphere = sphere_of_corners(box);
+    box.x = sphere.x;
+    box.y = sphere.y;
+    box.z = sphere.z;
+    box.radius = sphere.radius;
+    return box;
+}
+
+/// Returns a vector of length 1 at right angles to a vector that is not zero.
+inline Triple perpendicular(const Triple& v) {
+    const Triple across = abs_of(v.x) < abs_of(v.y) ? Triple{0, -v.z, v.y} : Triple{v.z, 0, -v.x};
+    return scaled(across, 1 / length(across));
+}
+inline Triple cross(const Triple& a, const Triple& b) {
+    return {rounded(a.y * b.z) - rounded(a.z * b.y), rounded(a.z * b.x) - rounded(a.x * b.z),
+            rounded(a.x * b.y) - rounded(a.y * b.x)};
+}
+
+/// Returns a right-angled box that contains the box given in double, whose half axes have the direction `along` of
+/// length 1 and two directions at right angles to it. Its faces are moved outward by more than rounding to float
+/// moves them.
+inline Box right_angled_box(const Triple& centre, const Triple& along, double half_length, double half_width) {
+    const Triple across = perpendicular(along), third = cross(along, across);
+    const double size = abs_of(centre.x) + abs_of(centre.y) + abs_of(centre.z) + half_length + 2 * half_width,
+                 margin = rounded(size * 0x1p-21) + 0x1p-120;
+    const Triple half_axes[] = {scaled(across, half_width + margin), scaled(third, half_width + margin),
+                                scaled(along, half_length + margin)};
+    return box_with_own_sphere(centre, half_axes, 1);
+}
+
+}  // namespace detail
+
+/// Returns a sphere that contains all points of a Box: the Box's own sphere or, if smaller, one around the box's
+/// corners. A bad Box gives a bad Sphere.
+inline Sphere bounding_sphere(const Box& box) {
+    const Sphere own = {box.x, box.y, box.z, box.radius}, corners = detail::sphere_of_corners(box);
+    const bool finite = detail::is_finite(box.x) && detail::is_finite(box.y) && detail::is_finite(box.z);
+    if (!finite || !(own.radius > 0) || !(corners.radius > 0)) return detail::bad_sphere;
+    return corners.radius < own.radius ? corners : own;
+}
+
+inline Box::operator Sphere() const {
+    return bounding_sphere(*this);
+}
+
+/// Returns a whole box, such as that of a decal or a reflection probe: its sphere is one around its corners.
+///
+/// centre, half_x, half_y, half_z  any type with members x, y and z, floats or doubles: the box's centre, and vectors
+///                                 from there to the middles of three faces, of any lengths and angles
+template <class Point>
+Box whole_box(const Point& centre, const Point& half_x, const Point& half_y, const Point& half_z) {
+    return detail::box_with_own_sphere(detail::triple(centre),
+                                       {detail::triple(half_x), detail::triple(half_y), detail::triple(half_z)}, 1);
+}
+
+/// Returns the image of a cube under a transform, as engines keep decals and probes, with a sphere around its
+/// corners.
+///
+/// transform  from the cube's space to the space of the lights, any type that matrix.hpp lists; the last row is not
+///            read
+/// half_side  half of the cube's side: 1 for the cube from -1 to 1, 0.5 for the cube from -0.5 to 0.5
+template <class Transform> Box whole_box(const Transform& transform, double half_side) {
+    const Matrix m = detail::to_matrix(transform);
+    detail::Triple axes[3];
+    for (int i = 0; i < 3; ++i)
+        axes[i] = detail::scaled({m[i][0], m[i][1], m[i][2]}, half_side);
+    return detail::box_with_own_sphere({m[3][0], m[3][1], m[3][2]}, axes, 1);
+}
+
+/// Returns the part of a light's sphere that lies in a box, such as that of a room, a portal's frustum or a projector.
+///
+/// room  a Box, of which everything but its sphere is taken
+inline Box clipped_sphere(const Sphere& light, const Box& room) {
+    Box box = room;
+    box.x = light.x;
+    box.y = light.y;
+    box.z = light.z;
+    box.radius = light.radius;
+    return box;
+}
+
+/// Returns the half of a sphere that lies on one side of its centre, where an area light shines: a Box that contains
+/// the half sphere and exceeds it by at most 2^-19 of the sum of its radius and the sizes of the centre's
+/// coordinates.
+///
+/// direction  a type with members x, y and z: towards the half that is kept, of any length but zero
+template <class Direction> Box half_sphere(const Sphere& light, const Direction& direction) {
+    const detail::Triple axis = detail::triple(direction);
+    const double axis_length = detail::length(axis), radius = static_cast<double>(light.radius);
+    if (!(axis_length > 0) || !detail::is_finite(axis_length) || !detail::is_finite(light.radius))
+        return detail::bad_box;
+    const detail::Triple along = detail::scaled(axis, 1 / axis_length);
+    const detail::Triple middle =
+        detail::sum({static_cast<double>(light.x), static_cast<double>(light.y), static_cast<double>(light.z)},
+                    detail::scaled(along, radius / 2));
+    return clipped_sphere(light, detail::right_angled_box(middle, along, radius / 2, radius));
+}
+
+/// Returns the frustum that a projector lights, with a sphere around its corners.
+///
+/// eye             where the rays of the projector meet; types as for whole_box()
+/// forward         vector from the eye to the middle of the far face
+/// half_x, half_y  vectors from there to the middles of two sides of the far face
+/// begin           where the frustum begins, as a fraction of `forward`: 0 for the whole pyramid, below 1
+template <class Point>
+Box projector_box(const Point& eye, const Point& forward, const Point& half_x, const Point& half_y,
+                  double begin = 0) {
+    const detail::Triple way = detail::triple(forward);
+    return detail::box_with_own_sphere(
+        detail::sum(detail::triple(eye), detail::scaled(way, 0.5 + 0.5 * begin)),
+        {detail::triple(half_x), detail::triple(half_y), detail::scaled(way, 0.5 - 0.5 * begin)}, begin);
+}
+
+/// Returns a box and a sphere that contain all points within `radius` of the line segment from `a` to `b`, a tube with
+/// round ends. It is listed in fewer tiles than tube_sphere(a, b, radius), which is its sphere.
+///
+/// a, b, radius  as for tube_sphere(), but both finite
+template <class Point> Box tube_box(const Point& a, const Point& b, float radius) {
+    const detail::Triple from = detail::triple(a), to = detail::triple(b);
+    const detail::Triple way = detail::sum(to, detail::scaled(from, -1));
+    const double distance = detail::length(way), reach = static_cast<double>(radius);
+    const detail::Triple middle = detail::scaled(detail::sum(from, to), 0.5);
+    if (!detail::finite(middle) || !detail::is_finite(distance) || !(radius >= 0) || !detail::is_finite(radius))
+        return detail::bad_box;
+    const detail::Triple along = distance > 0 ? detail::scaled(way, 1 / distance) : detail::Triple{1, 0, 0};
+    return clipped_sphere(detail::sphere_around_nearly(middle, 0.5 * distance + reach),
+                          detail::right_angled_box(middle, along, 0.5 * distance + reach, reach));
+}
+
+}}  // namespace lightbin
+
+#include <lightbin/detail/base/warnings_on.inl>

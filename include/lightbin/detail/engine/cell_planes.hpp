@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// Half spaces around a light, and how a depth test finds that a tile's cell lies outside of one of them.
+//
+// A half space holds the points p with  n.p <= most,  where n has the length 1. A cell is part of the view frustum: its
+// points are (s z, t z, z)  with a perspective projection and  (s, t, z)  with an orthographic one, where s and t lie
+// between the edges of the tile, see tile_edges(), and the view depth z lies between z0 and z1. The cell lies outside
+// of the half space if its deepest point does, the one with the least n.p:
+//     perspective:     (n_x s + n_y t + n_z) z > most,     orthographic:  n_x s + n_y t + n_z z > most.
+// Each of s and t is the low edge where n_x or n_y is positive, else the high edge. With an orthographic projection z
+// is z0 where n_z is positive, else z1. With a perspective projection z is z0 where `most` is positive, else z1: if the
+// inequality holds for this z, it holds for all depths of the cell. Unlike a test of the box around the cell, this test
+// is exact for one half space.
+//
+// Rounding, with u = 2^-24: let the light lie in a ball around P with the radius r, and S = |P_x| + |P_y| + |P_z| + r.
+// A cell that holds a point p of the ball is not rejected if  n.p <= most - 4u S.  Rounding is monotone: an expression
+// of floats is at most what the same expression, rounded likewise, gives for larger operands.
+// - Edges are rounded outward by more than the rounding error of a product, so each rounded product of an edge is at
+//   most that of p, but for underflow of 2^-126. The rounded sum of both exceeds the sum of p's by at most u |p|,
+//   divided by z if perspective.
+// - perspective: the next sum adds u |p| / z, so the factor of z is at most  (n.p + 2.1u |p|) / z_p,  where z_p is the
+//   depth of p. |p| is at most S, so the factor times z_p is at most `most`. Then so is the factor times z: if `most`
+//   is positive, z is at most z_p, else the factor is negative and z is at least z_p. Rounding this product can't raise
+//   it above `most`, which is a float.
+// - orthographic: the rounded n_z z is at most n_z p_z + u |p|, and the last sum adds u |p|.
+// What is left of 4u S exceeds the underflow, as S is at least 2^-62: a light whose half spaces are tested has a radius
+// of at least 2^-40, before a transform that shrinks it to no less than 2^-21 of that.
+//
+// An edge or a depth may be infinite: products of 0 and infinity, and sums of opposite infinities, are NaN, which
+// rejects no cell.
+#pragma once
+
+#include <lightbin/detail/engine/cell_boxes.hpp>
+
+#include <cstdint>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
+
+/// The edges of a block's 64 tiles, by tile_edges(): first all low edges, then all high ones.
+struct TileEdges {
+    /// The elements where the high edges begin. A vector of sixteen floats is two rows of 8 tiles: so x has its 8
+    /// columns twice, and y has 16 elements more than 64, as the vector stored for the last row ends there.
+    static constexpr unsigned high_x = 16, high_y = 64 + 16;
+
+    float x[2 * high_x];  ///< the low edges of 8 tile columns from element 0 on, their high edges from high_x on
+    float y[2 * high_y];  ///< the low edges of 64 tiles, row by row, from element 0 on, their high edges from high_y on
+};
+
+/// A half space of the points p with  x p_x + y p_y + z p_z <= most.
+struct CellPlane {
+    float x, y, z, most;
+};
+
+/// Half spaces around a light, each of which holds the whole light.
+template <std::size_t count> struct CellPlanes {
+    CellPlane planes[count];
+    /// For each half space, which point of a cell is tested: the offsets of the low or the high edges in TileEdges::x
+    /// and in TileEdges::y, and that of the depths z0 or z1 in the arrays that store_box() stores for cells.
+    std::uint16_t arrays[count][3];
+};
+}}}  // namespace lightbin::detail

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// A Box in view space, as the kernels read it.
+//
+// Its numbers are rounded to float. A test that compares a linear form n.p with its greatest value m over the points
+// p of this rounded box loses no light if it allows for |n| times `tolerance` more, and it does so whatever n is:
+// errors in the normals of the box's faces make tests looser, not wrong. The tolerance is a bound on the distance of
+// any point of the exact box, the convex hull of its exact corners, from the rounded one, and 16u S more, where u =
+// 2^-24 and S is the sum of the absolute values of all coordinates of the centre and the half axes: computing m in
+// float takes at most 11u S.
+#pragma once
+
+#include <lightbin/detail/project/view_spot.hpp>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
+
+/// A Box in view space, after the camera's signs: tile indices grow with x and y, and z is the view depth.
+struct ViewBox {
+    Sphere ball;              ///< the sphere that cuts the box; radius +inf where it holds all of the box
+    float nearest, farthest;  ///< view depths between which the part of the box in the sphere lies
+    float taper;              ///< see Box
+    float tolerance;  ///< how far the exact box can reach outside of this one; +inf where the box has no bounds
+    float centre[3], half_axes[3][3];  ///< see Box
+    CellPlanes<6> around;  ///< with a depth test against boxes, a half space for each face, see store_box_planes()
+};
+
+}}}  // namespace lightbin::detail
