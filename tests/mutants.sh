@@ -27,15 +27,19 @@ try() {
             g++ "$place/engine.o" $work/judge.o $work/campaign.o -lgmp -o "$place/proof"
         arguments=2000
         ;;
+    views)
+        g++ $flags tests/unit/views.cpp $work/doctest_main.o -o "$place/proof" 2>"$place/log"
+        arguments=
+        ;;
     *)
         g++ $flags tests/oracle/$proof.cpp $work/doctest_main.o -lgmp -o "$place/proof" 2>"$place/log"
-        arguments='--test-case=cells: symmetric,world space*,clusters: symmetric,spots: symmetric,spots: world space,spots: missed once,the least*'
+        arguments='--test-case=cells: symmetric,world space*,clusters: symmetric,spots: symmetric,spots: world space,spots: missed once,boxes: symmetric,boxes: world space,the least*'
         ;;
     esac || {
         echo "DOES NOT COMPILE: mutant $1, see $place/log"
         return
     }
-    if "$place/proof" "$arguments" >"$place/log" 2>&1; then
+    if "$place/proof" ${arguments:+"$arguments"} >"$place/log" 2>&1; then
         echo "SURVIVES $proof: mutant $1, see tests/mutants.txt"
     else
         echo "caught by $proof: mutant $1"

@@ -1,6 +1,8 @@
 // Once warm, nothing allocates.
 #include "counted_new.hpp"
 
+#include <lightbin/budget.hpp>
+#include <lightbin/grid_union.hpp>
 #include <lightbin/lightbin.hpp>
 
 #include <doctest/doctest.h>
@@ -44,13 +46,13 @@ std::size_t allocations_in(auto&& work) {
 struct Scene {
     View view;
     std::vector<glm::vec4> lights;
-    std::vector<float> depth, min, max;
+    std::vector<float> depth, min, max, weights;
     Slices slices = *Slices::exponential(9, 1, 50);
 
     Scene(int width, int height, std::size_t light_count)
         : view(make_view(width, height, 32)), lights(random_lights(light_count)),
           depth(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)), min(view.tile_count()),
-          max(view.tile_count()) {
+          max(view.tile_count()), weights(light_count) {
         for (std::size_t i = 0; i < depth.size(); ++i)
             depth[i] = 0.9f + 0.1f * static_cast<float>(i % 97) / 97.0f;
     }
@@ -62,10 +64,10 @@ struct Scene {
     }
 };
 
-// Everything a frame does with one Binner; the entries it got.
-template <Options options>
-std::size_t frame(Binner<options>& binner, Scene& scene, std::vector<ListRange>& ranges,
-                  std::vector<typename Binner<options>::Id>& ids) {
+// Everything a frame does with one Binner, one Budget and one GridUnion; the entries it got.
+template <Options options, class Id = typename Binner<options>::Id>
+std::size_t frame(Binner<options>& binner, Budget<Id>& budget, GridUnion<Id>& both, Scene& scene,
+                  std::vector<ListRange>& ranges, std::vector<Id>& ids) {
     std::size_t entries = 0;
     const ZBounds bounds = scene.reduce();
     const auto use = [&](const auto& lights) {
@@ -73,6 +75,9 @@ std::size_t frame(Binner<options>& binner, Scene& scene, std::vector<ListRange>&
         if (!grid) return;
         entries += grid->ids().size() + list_lengths(*grid).longest;
         if (const auto copy = grid->copy_to(ranges, ids)) entries += copy->ids().size();
+        if (const auto limited = budget.limit(*grid, scene.weights, {.per_cell = 3, .per_frame = 200}))
+            entries += limited->grid.ids().size();
+        if (const auto united = both.unite(*grid, *grid)) entries += united->ids().size();
     };
     use(scene.lights);
     use(world_space(scene.lights, glm::mat4(1.0f)));
@@ -88,30 +93,33 @@ template <Options options> void check_options() {
     std::vector<ListRange> ranges(scene.view.tile_count() * static_cast<std::size_t>(scene.slices.count()));
     std::vector<typename Binner<options>::Id> ids(500 * ranges.size());
     Binner<options> binner;
+    Budget<typename Binner<options>::Id> budget;
+    GridUnion<typename Binner<options>::Id> both;
 
     // The first frame must be seen to allocate, or the counter counts nothing.
     std::size_t entries = 0;
-    CHECK(allocations_in([&] { entries += frame(binner, scene, ranges, ids); }) > 0);
-    entries += frame(binner, scene, ranges, ids);
+    CHECK(allocations_in([&] { entries += frame(binner, budget, both, scene, ranges, ids); }) > 0);
+    entries += frame(binner, budget, both, scene, ranges, ids);
     CHECK(entries > 0);
 
-    CHECK(allocations_in([&] { entries += frame(binner, scene, ranges, ids); }) == 0);
-    CHECK(allocations_in([&] { entries += frame(binner, smaller, ranges, ids); }) == 0);
-    CHECK(allocations_in([&] { entries += frame(binner, scene, ranges, ids); }) == 0);
+    CHECK(allocations_in([&] { entries += frame(binner, budget, both, scene, ranges, ids); }) == 0);
+    CHECK(allocations_in([&] { entries += frame(binner, budget, both, smaller, ranges, ids); }) == 0);
+    CHECK(allocations_in([&] { entries += frame(binner, budget, both, scene, ranges, ids); }) == 0);
 }
 
 }  // namespace
 
-TEST_CASE("a warm Binner does not allocate") {
+TEST_CASE("a warm Binner does not allocate, nor does a warm Budget") {
     check_options<Options{.ids = IdWidth::u16, .depth_test = DepthTest::none}>();
     check_options<Options{.ids = IdWidth::u32, .depth_test = DepthTest::none}>();
     check_options<Options{.ids = IdWidth::u16, .depth_test = DepthTest::interval}>();
     check_options<Options{.ids = IdWidth::u32, .depth_test = DepthTest::interval}>();
     check_options<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
     check_options<Options{.depth_test = DepthTest::box, .slicing = Slicing::z_bins}>();
+    check_options<Options{.depth_test = DepthTest::interval, .coverage = true}>();
 }
 
-TEST_CASE("nor does one that shares more of the same work the second time") {
+TEST_CASE("nor does a Binner that shares more of the same work the second time") {
     Scene scene(1280, 720, 2000);
     for (glm::vec4& light : scene.lights)
         light.w = 20;

@@ -131,7 +131,9 @@
 #define SSE2 1
 
 #include <lightbin/advise.hpp>
+#include <lightbin/budget.hpp>
 #include <lightbin/encode.hpp>
+#include <lightbin/grid_union.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader_build.hpp>
 

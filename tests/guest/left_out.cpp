@@ -1,5 +1,8 @@
-// One Binner: with every option off, or with ALL_OPTIONS on. left_out.sh compares the two.
+// One Binner: with every option off, or with ALL_OPTIONS on, and a Budget. left_out.sh compares the two.
 #include <lightbin/binner.hpp>
+#if defined(ALL_OPTIONS)
+#include <lightbin/budget.hpp>
+#endif
 
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +19,8 @@ std::uint64_t bin(const lightbin::View& view, std::span<const lightbin::Sphere> 
         }
     };
     lightbin::Binner<lightbin::Options{.footprint = lightbin::Footprint::silhouette,
-                                       .depth_test = lightbin::DepthTest::split_box}>
+                                       .depth_test = lightbin::DepthTest::split_box,
+                                       .coverage = true}>
         binner;
     const auto grid = binner.bin(view, lights, {.bounds = bounds}, lightbin::Parallel(4, loop));
     lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::box,
@@ -27,8 +31,10 @@ std::uint64_t bin(const lightbin::View& view, std::span<const lightbin::Sphere> 
     const auto ranked = ranking_binner.bin(view, lights, {.slices = *lightbin::Slices::linear(8, 0, 100)});
     const auto bits =
         ranking_binner.bin_bits(view, lights, 0, {}, {.slices = *lightbin::Slices::linear(8, 0, 100)});
-    return grid && clusters && ranked && bits
-               ? grid->ids().size() + clusters->ids().size() + ranked->ids().size()
+    lightbin::Budget<> budget;
+    const auto limited = budget.limit(*clusters, {}, {.per_cell = 9});
+    return grid && clusters && ranked && bits && limited
+               ? grid->ids().size() + binner.coverage().size() + clusters->ids().size() + ranked->ids().size()
                : 0;
 #else
     static_cast<void>(bounds);

@@ -1,4 +1,5 @@
 // Mistakes that must not compile, a number each. The comment behind a case is what the compiler must say, in one error.
+#include <lightbin/budget.hpp>
 #include <lightbin/lightbin.hpp>
 
 #include <array>
@@ -42,7 +43,7 @@ void mistake() {
         for (std::size_t i = 0; i < n; ++i)
             body(i);
     });
-#elif MISTAKE == 2  // this light is no Sphere or Spot and has no float or double x, y, z and w .*: pass view_space
+#elif MISTAKE == 2  // this light is no Sphere, Spot or Box and has no float or double x, y, z and w .*: pass view_space
     (void)binner.bin(*view, lamps);
 #elif MISTAKE == 3  // View.*private|private.*View
     [[maybe_unused]] lightbin::View none;
@@ -56,13 +57,13 @@ void mistake() {
     (void)binner.bin(*view, lights, {.bounds = lightbin::ZBounds()});
 #elif MISTAKE == 8  // a Binner's ids have 16 or 32 bits
     [[maybe_unused]] lightbin::Binner<lightbin::Options{.ids = lightbin::IdWidth::u8}> narrow;
-#elif MISTAKE == 9  // this light is no Sphere or Spot
+#elif MISTAKE == 9  // this light is no Sphere, Spot or Box
     (void)binner.bin(*view, std::vector<Vec4>());
-#elif MISTAKE == 10  // this light is no Sphere or Spot
+#elif MISTAKE == 10  // this light is no Sphere, Spot or Box
     (void)binner.bin(*view, lightbin::world_space(lamps, projection));
 #elif MISTAKE == 11  // to_light is called, as const, with a const reference to one of the lights
     (void)binner.bin(*view, lightbin::view_space(lamps, [](Lamp&) { return lightbin::Sphere(); }));
-#elif MISTAKE == 12  // to_light must return a lightbin::Sphere or a lightbin::Spot
+#elif MISTAKE == 12  // to_light must return a lightbin::Sphere, a lightbin::Spot or a lightbin::Box
     (void)binner.bin(*view, lightbin::view_space(lamps, [](const Lamp& lamp) { return lamp.range; }));
 #elif MISTAKE == 13  // lights are an array, a std::vector, a std::span or another range
     (void)binner.bin(*view, std::list<lightbin::Sphere>());
@@ -105,7 +106,7 @@ void mistake() {
 #elif MISTAKE == 28  // to_light is called, .*, or with what that points to
     const auto to_sphere = [](Lamp*) { return lightbin::Sphere(); };
     (void)binner.bin(*view, lightbin::view_space(std::vector<std::unique_ptr<Lamp>>(), to_sphere));
-#elif MISTAKE == 29  // this light is no Sphere or Spot
+#elif MISTAKE == 29  // this light is no Sphere, Spot or Box
     (void)binner.bin(*view, std::vector<Lamp*>());
 #elif MISTAKE == 30  // these lights are gone after the expression and can't be moved: give the array a name
     lightbin::Sphere array[2] = {};
@@ -115,5 +116,18 @@ void mistake() {
     [[maybe_unused]] const auto inputs = lightbin::inputs_for<clusters>({}, lightbin::Slices::linear(8, 0, 1));
 #elif MISTAKE == 32  // cannot bind|lvalue reference
     [[maybe_unused]] lightbin::Slices& gone = *lightbin::Slices::linear(8, 0, 1);
+#elif MISTAKE == 33  // a Budget shortens lists, and bin_bits.. makes none
+    lightbin::Budget<> budget;
+    std::vector<std::uint32_t> bits(4);
+    (void)budget.limit(*binner.bin_bits(*view, lights, 32, bits), {}, {.per_cell = 8});
+#elif MISTAKE == 34  // this is still a Result
+    lightbin::Budget<> budget;
+    (void)budget.limit(binner.bin(*view, lights), {}, {.per_cell = 8});
+#elif MISTAKE == 35  // lights\(\) takes Spheres, Spots and Boxes in this order
+    const std::vector<lightbin::Spot> spots;
+    (void)binner.bin(*view, lightbin::lights(spots, lights));
+#elif MISTAKE == 36  // these lights are gone after the expression
+    const std::vector<lightbin::Spot> spots;
+    (void)binner.bin(*view, lightbin::lights(std::vector<lightbin::Sphere>(), spots));
 #endif
 }

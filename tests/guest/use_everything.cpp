@@ -1,12 +1,17 @@
 // Every public template instantiated with every kind of argument, in a function named by the macro UNIT:
 // compiled by several compilers with several flags for its warnings, and twice into one program.
 #include <lightbin/advise.hpp>
+#include <lightbin/box.hpp>
+#include <lightbin/budget.hpp>
+#include <lightbin/encode.hpp>
+#include <lightbin/grid_union.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader_build.hpp>
 
 #include <glm/glm.hpp>
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -65,6 +70,12 @@ void use_binner(Hash& hash, const View& view, const auto& lights, const ZBounds&
     std::vector<ListRange> ranges(grid.ranges().size());
     std::vector<Id> ids(grid.ids().size());
     hash.add(value_of(grid.copy_to(ranges, ids)));
+    // Not resize(), a function that both units of tests/guest/two_units.sh would have.
+    std::vector<ListRange> more_ranges(2 * ranges.size());
+    std::vector<Id> more_ids(2 * ids.size());
+    hash.add(value_of(grid.copy_to(more_ranges, more_ids, value_of(grid.copy_to(more_ranges, more_ids)))));
+    GridUnion<Id> both;
+    hash.add(value_of(both.unite(grid, grid)));
     const ListLengths lengths = list_lengths(grid);
     hash.add(lengths.longest);
     for (const std::uint64_t tiles : lengths.histogram)
@@ -101,6 +112,26 @@ void use_encodings(Hash& hash, const auto& grid) {
         for (const std::byte byte : bytes)
             hash.add(std::to_integer<std::uint64_t>(byte));
     }
+}
+
+/// weights  one per light
+void use_coverage(Hash& hash, const View& view, const auto& lights, const std::vector<float>& weights) {
+    Binner<Options{.ids = IdWidth::u16, .coverage = true}> binner;
+    const auto grid = value_of(binner.bin(view, lights));
+    for (const LightCoverage& light : binner.coverage()) {
+        hash.add(light.id + std::uint64_t{65536} * light.x0 + light.y1);
+        for (const float number : {light.nearest, light.farthest, light.pixels})
+            hash.add(std::bit_cast<std::uint32_t>(number));
+    }
+    Budget<std::uint16_t> budget;
+    const auto limited = value_of(budget.limit(grid, weights, {.per_cell = 9, .per_frame = 500}));
+    hash.add(limited.grid);
+    std::vector<std::uint32_t> entries(weights.size());
+    hash.add(value_of(count_entries(limited.grid, entries)));
+    for (const std::uint32_t number : entries)
+        hash.add(number);
+    for (const std::uint32_t number : limited.cut_in_cell)
+        hash.add(number);
 }
 
 void use_shader_data(Hash& hash, const View& view, const std::vector<Sphere>& lights) {
@@ -195,6 +226,11 @@ void use_view(Hash& hash, const View& view) {
     Binner<> binner;
     use_encodings(hash, value_of(binner.bin(view, spheres)));
     use_shader_data(hash, view, spheres);
+    std::vector<float> weights;
+    for (const Sphere& sphere : spheres)
+        weights.push_back(sphere.radius);
+    use_coverage(hash, view, spheres, weights);
+    use_coverage(hash, view, world_space(vectors, camera, to_spot), weights);
     use_advice(hash, view, spheres, bounds);
     use_advice(hash, view, world_space(lamps, identity, to_light), {});
     use_all_options<DepthTest::none>(hash, view, spheres, bounds);
@@ -203,6 +239,21 @@ void use_view(Hash& hash, const View& view) {
     use_binner<Options{.ids = IdWidth::u16, .depth_test = DepthTest::box}>(hash, view, spheres, bounds);
     use_binner<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>(
         hash, view, spheres, {min, max, min, max});
+    const std::vector<Spot> spots = {to_spot(vectors[0]), to_spot(vectors[1]), Spot::whole(spheres[2])};
+    const glm::vec3 up(0, 1, 0), along(0, 0, -1);
+    const std::vector<Box> boxes = {whole_box(corner, side, up, along), whole_box(camera, 0.5), half_sphere(spheres[3], up),
+                                    clipped_sphere(spheres[4], whole_box(corner, side, up, along)),
+                                    projector_box(corner, along, side, up, 0.1), tube_box(corner, side, 2)};
+    const auto all = lights(spheres, spots, world_space(boxes, camera));
+    use_lights(hash, view, boxes, bounds);
+    use_lights(hash, view, lights(spots, boxes), bounds);
+    use_binner<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box}>(hash, view, all, bounds);
+    std::vector<KindRange> kinds(view.tile_count());
+    hash.add(value_of(split_kinds(value_of(binner.bin(view, all)), kinds)).back().boxes);
+    while (weights.size() < spheres.size() + spots.size() + boxes.size())
+        weights.push_back(1);
+    use_coverage(hash, view, all, weights);
+    use_advice(hash, view, all, bounds);
     use_lights(hash, view, std::span<const glm::vec4>(vectors), bounds);
     use_lights(hash, view, view_space(lamps, to_light), bounds);
     use_lights(hash, view, world_space(vectors, camera), bounds);

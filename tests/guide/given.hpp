@@ -23,6 +23,10 @@ struct Lamp {
     std::uint32_t mask;
 };
 
+struct Decal {
+    glm::mat4 to_world;
+};
+
 struct ThreadPool {
     std::size_t size() const;
     template <class Body> void parallel_for(std::size_t count, const Body& body);
@@ -31,6 +35,7 @@ struct ThreadPool {
 int fail(const std::string& message);
 int grow(std::size_t ranges, std::size_t ids);
 void warn(const char* message);
+void allot_shadow_map(std::uint32_t id, float pixels);
 template <class... Arguments> void upload(Arguments&&... arguments);
 
 extern const glm::mat4 projection, view_matrix;
@@ -40,6 +45,14 @@ extern const lightbin::Result<lightbin::LightGrid<std::uint32_t>> grid;
 extern lightbin::Binner<> binner;
 extern const std::vector<glm::vec4> spheres;
 extern const std::vector<Lamp> lamps;
+extern const std::vector<Decal> decals;
+struct Eye {
+    lightbin::View view;
+    glm::mat4 world_to_view;
+};
+extern const Eye eyes[2];
+extern const lightbin::Result<lightbin::LightGrid<std::uint32_t>> left_grid, right_grid;
+lightbin::Sphere to_sphere(const Lamp& lamp);
 extern const Lamp lamp;
 extern const std::vector<float> depth_buffer;
 extern const float white, distance, range;

@@ -20,16 +20,21 @@ vec3 shade(uint id, vec3 position, vec3 normal) { return shade(id, position) + n
 vec3 shade_point(uint id) { return shade(id); }
 vec3 shade_spot(uint id) { return shade(id); }
 vec3 blend_decal(vec3 colour, uint id) { return mix(colour, shade(id), 0.5); }
-const uint first_spot = 10u, first_decal = 20u, light_count = 30u;
+const uint first_spot = 10u, first_box = 20u, light_count = 30u;
 )";
 
 /// A shader of a block: what has no main() is the inside of one.
 std::string whole(lightbin::ShaderLanguage language, const std::string& block) {
-    const auto snippet = lightbin::shader_snippet(
-        {.language = language, .view_check = true, .list_check = true, .window = true});
+    const bool multiview = block.find("gl_ViewID_OVR") != std::string::npos;
+    const auto snippet = lightbin::shader_snippet({.language = language,
+                                                   .views = multiview ? 2u : 1u,
+                                                   .view_check = true,
+                                                   .list_check = true,
+                                                   .window = true});
     if (language == lightbin::ShaderLanguage::hlsl_5_0)
         return snippet->text + "float3 shade(uint id, float3 position) { return float3(id, 0, 0) + position; }\n" + block;
-    const std::string start = "#version 450\n" + snippet->text + given;
+    const std::string start = std::string("#version 450\n") +
+                              (multiview ? "#extension GL_OVR_multiview2 : require\n" : "") + snippet->text + given;
     if (block.find("main(") != std::string::npos) return start + block;
     return start + "in vec3 position;\nin vec3 normal;\nin float view_depth;\nout vec3 colour;\n"
                    "void main() {\ncolour = vec3(0);\n" + block + "}\n";

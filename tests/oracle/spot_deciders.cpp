@@ -208,9 +208,17 @@ TEST_CASE("spots: one point is enough") {
     CHECK(meets(cell, exact_spot(0, 2, 1.5f, 9, 1, -above, 0, 1)) == false);
     CHECK(meets(cell, exact_spot(0, 2, 1.5f, 9, 1, -below, 0, 1)) == true);
     // As balls.
-    CHECK(meets(cell, exact_spot(0, 1, 1, 1, -1, 0, 0, 0)) == true);
+    CHECK(meets(cell, exact_spot(0, 1, 1, 1, -1, 0, 0, -1)) == true);
     CHECK(meets(cell, exact_spot(0, 1, 1, INFINITY, -1, 0, 0, 1)) == true);
     CHECK(meets(cell, exact_spot(0, 1, 1, below, -1, 0, 0, -1)) == false);
+    // As half balls, and beyond 90 degrees as balls that end at the plane of the rim: its distance is rounded.
+    CHECK(meets(cell, exact_spot(0, 1, 1, 1, 3, 0, 0, 0)) == true);
+    CHECK(meets(cell, exact_spot(0, 1, 1, 1, -3, 0, 0, 0)) == false);
+    CHECK(meets(cell, exact_spot(2, 1.5f, 1.5f, 1, 3, 0, 0, 0)) == true);
+    CHECK(meets(cell, exact_spot(std::nextafter(2.0f, 3.0f), 1.5f, 1.5f, 1, 3, 0, 0, 0)) == false);
+    CHECK(meets(cell, exact_spot(std::nextafter(2.5f, 2.0f), 1.5f, 1.5f, 1, 3, 0, 0, -0.5f)) == true);
+    CHECK(meets(cell, exact_spot(2.5f, 1.5f, 1.5f, 1, 3, 0, 0, -0.5f)) == std::nullopt);
+    CHECK(meets(cell, exact_spot(std::nextafter(2.5f, 3.0f), 1.5f, 1.5f, 1, 3, 0, 0, -0.5f)) == false);
 }
 
 namespace {

@@ -79,6 +79,8 @@ inline double half_angle(Random& random) {
         return 90 * degree - random.power_of_two(-30, -3);
     case 4:
         return random.chance(0.5) ? 90 * degree : random.uniform(90, 180) * degree;
+    case 5:
+        return random.uniform(90, 139) * degree;
     default:
         return random.uniform(0, 90) * degree;
     }
@@ -182,8 +184,7 @@ inline SpotLight touching(const Aim& aim, Random& random) {
     n = unit(n);
     const Triple at = {aim.at(0, pixel[0], d), aim.at(1, pixel[1], d), d};
 
-    const double angle = std::min(half_angle(random), std::acos(0.0)), cosine = std::cos(angle),
-                 sine = std::sin(angle);
+    const double angle = half_angle(random), cosine = std::cos(angle), sine = std::sin(angle);
     // Any, or that of the tangent plane of the least sphere, too, at the rim or at the apex.
     double turn = std::acos(random.uniform(-1, 1));
     if (random.chance(0.6)) turn = random.chance(0.7) ? std::min(2 * angle, std::acos(0.0)) : std::acos(-1.0);

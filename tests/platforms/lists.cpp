@@ -11,6 +11,7 @@
 #include "tests/platforms/environments.hpp"
 #include "tests/split_mix.hpp"
 
+#include <lightbin/budget.hpp>
 #include <lightbin/encode.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader.hpp>
@@ -248,7 +249,16 @@ public:
     std::uint64_t hash(const Scene& scene, std::size_t number, const Parallel& parallel) {
         const auto to_sphere = [](const Lamp& lamp) { return Sphere(lamp.spot); };
         const auto to_spot = [](const Lamp& lamp) { return lamp.spot; };
-        switch (number % 5) {
+        // Products alone, as a compiler may fuse them with sums.
+        const auto to_box = [](const Lamp& lamp) {
+            const Spot& s = lamp.spot;
+            const float r = s.radius, x = s.axis_x * r, y = s.axis_y * r, z = s.axis_z * r;
+            return Box{s.x,       s.y,        s.z * 0.875f,
+                       r,         s.x,        s.y * 0.9375f,
+                       s.z,       {{x, y, z}, {-y * s.axis_z, x, 0}, {r * s.cos_half_angle, 0, r * 0.25f}},
+                       s.axis_y * s.axis_y};
+        };
+        switch (number % 7) {
         case 0:
             return built(scene, scene.spheres, parallel);
         case 1:
@@ -257,6 +267,10 @@ public:
             return built(scene, world_space(scene.spheres, scene.to_view), parallel);
         case 3:
             return built(scene, world_space(scene.lamps, scene.to_view, to_spot), parallel);
+        case 4:
+            return built(scene, view_space(scene.lamps, to_box), parallel);
+        case 5:
+            return built(scene, world_space(scene.lamps, scene.to_view, to_box), parallel);
         default:
             return built(scene, view_space(scene.lamps, to_sphere), parallel);
         }
@@ -274,6 +288,7 @@ private:
         if constexpr (options.ids == IdWidth::u32 && options.slicing == Slicing::none &&
                       options.depth_test == DepthTest::none)
             add_encodings(hash, *grid);
+        if constexpr (options.coverage) add_coverage(hash, *grid);
         if constexpr (options.slicing != Slicing::clusters) {
             std::vector<std::uint32_t> bits(scene.view.tile_count() * 22);
             hash.add(
@@ -284,7 +299,27 @@ private:
         return hash.value();
     }
 
+    /// What the lights cover, and a budget by their sizes in pixels, among which are infinite ones; of lights out of view NaN.
+    template <class Id> void add_coverage(Hash& hash, const LightGrid<Id>& grid) {
+        std::vector<float> weights(grid.light_counts().lights, std::numeric_limits<float>::quiet_NaN());
+        for (const LightCoverage& light : binner_.coverage()) {
+            hash.add(light.id | std::uint64_t{light.x0} << 32 | std::uint64_t{light.y0} << 48);
+            hash.add(light.x1 | std::uint64_t{light.y1} << 32);
+            hash.add(light.nearest);
+            hash.add(light.farthest);
+            hash.add(light.pixels);
+            weights[light.id] = light.pixels;
+        }
+        const auto limited = budget_.limit(grid, weights, {.per_cell = 7, .per_frame = 900});
+        hash.add(std::uint64_t{limited.has_value()});
+        if (!limited) return;
+        add_grid(hash, limited->grid);
+        for (const std::uint32_t cut : limited->cut_in_cell)
+            hash.add(std::uint64_t{cut});
+    }
+
     Binner<options> binner_;
+    Budget<typename Binner<options>::Id> budget_;
 };
 
 constexpr Options with(Options options, Isa isa) {
@@ -404,6 +439,7 @@ void check_lists(const std::vector<Scene>& scenes) {
     check<Options{.depth_test = DepthTest::box, .slicing = Slicing::z_bins}>("box, z_bins", scenes);
     check<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::z_bins}>(
         "silhouette, box, z_bins", scenes);
+    check<Options{.depth_test = DepthTest::interval, .coverage = true}>("interval, coverage", scenes);
 }
 
 /// Of what is made of the same scenes in an environment, and the views and slices as well.

@@ -41,7 +41,7 @@ class Compiler {
 public:
     Compiler() {
         glslang::InitializeProcess();
-        for (spvtools::SpirvTools* const validator : {&validator_, &wave_validator_})
+        for (spvtools::SpirvTools* const validator : {&validator_, &newer_validator_})
             validator->SetMessageConsumer([this](spv_message_level_t, const char*, const spv_position_t&,
                                                  const char* text) { error_ = text; });
     }
@@ -69,7 +69,7 @@ public:
 private:
     bool is_valid(const std::string& text, EShLanguage stage, bool hlsl) {
         try {
-            return (needs_waves(text) ? wave_validator_ : validator_)
+            return (needs_vulkan_1_1(text) ? newer_validator_ : validator_)
                 .Validate(compile_spirv(text, stage, hlsl));
         } catch (const std::runtime_error& error) {
             error_ = error.what();
@@ -77,7 +77,7 @@ private:
         }
     }
 
-    spvtools::SpirvTools validator_{SPV_ENV_VULKAN_1_0}, wave_validator_{SPV_ENV_VULKAN_1_1};
+    spvtools::SpirvTools validator_{SPV_ENV_VULKAN_1_0}, newer_validator_{SPV_ENV_VULKAN_1_1};
     std::string error_;
 };
 
@@ -101,6 +101,11 @@ void compile_language(Compiler& compiler, ShaderLanguage language) {
         compile(EShLangFragment, reader_text(options, *snippet, Stage::fragment, 9, 9));
         if (computes) compile(EShLangCompute, reader_text(options, *snippet, Stage::compute, 9, 9));
     }
+    // glslang takes HLSL's SV_ViewID for any input, and knows of no multiview there; WGSL has none.
+    const lightbin::detail::Dialect dialect = lightbin::detail::Dialect{language};
+    if (!dialect.hlsl && !dialect.webgpu)
+        for (const ReaderRun& run : multiview_runs(language))
+            compile(EShLangFragment, run.job().text);
     for (const lightbin::ReduceShaderOptions& options : every_reduction(language))
         compile(options.stage == lightbin::ShaderStage::compute ? EShLangCompute : EShLangFragment,
                 version_line(language) + reduce_shader(options)->text);
@@ -236,11 +241,11 @@ void compile_example(Compiler& compiler, int glsl) {
     using lightbin::Slicing;
     for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
         compile(EShLangFragment, heat_map_fragment_shader(glsl, slicing));
-        for (const bool spots : {false, true})
-            compile(EShLangFragment, forward_fragment_shader(glsl, LightLoop::tile_list, spots, slicing));
+        for (const LightKinds kinds : {LightKinds{}, LightKinds{true, false}, LightKinds{true, true}})
+            compile(EShLangFragment, forward_fragment_shader(glsl, LightLoop::tile_list, kinds, slicing));
     }
-    for (const bool spots : {false, true})
-        compile(EShLangFragment, forward_fragment_shader(glsl, LightLoop::every_light, spots));
+    for (const LightKinds kinds : {LightKinds{}, LightKinds{true, false}, LightKinds{true, true}})
+        compile(EShLangFragment, forward_fragment_shader(glsl, LightLoop::every_light, kinds));
 }
 
 }  // namespace

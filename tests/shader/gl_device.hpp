@@ -118,7 +118,7 @@ private:
         };
         switch (input.binding.resource) {
         case ShaderResource::uniform_vector:
-            set_uniform(program, place, name, input.bytes.data());
+            set_uniform(program, place, name, input.bytes);
             return;
         case ShaderResource::uniform_block: {
             const GLuint index = glGetUniformBlockIndex(program, name);
@@ -205,7 +205,9 @@ void main() {
 }
 )";
 
-    static void set_uniform(GLuint program, GLint place, const char* name, const std::byte* bytes) {
+    static void set_uniform(GLuint program, GLint place, const char* name,
+                            const std::vector<std::byte>& data) {
+        const std::byte* const bytes = data.data();
         GLuint index = 0;
         glGetUniformIndices(program, 1, &name, &index);
         if (index == GL_INVALID_INDEX) return;  // not read, and so left out
@@ -216,7 +218,8 @@ void main() {
         else if (type == GL_INT_VEC2)
             glUniform2iv(place, 1, reinterpret_cast<const GLint*>(bytes));
         else
-            glUniform4fv(place, 1, reinterpret_cast<const GLfloat*>(bytes));
+            glUniform4fv(place, static_cast<GLsizei>(data.size() / 16),
+                         reinterpret_cast<const GLfloat*>(bytes));
     }
 
     OffscreenContext context_;

@@ -34,7 +34,9 @@ struct Job {
     std::array<std::uint32_t, 2> groups = {1, 1};  // compute
     std::uint32_t width = 0, height = 0;           // fragment: of the viewport
     std::array<std::uint32_t, 2> corner = {0, 0};  // fragment: where in the picture the viewport begins
-    std::vector<std::uint32_t> expected;  // fragment: 4 words a pixel, rows as the shader counts them
+    std::uint32_t views = 1;  // fragment: drawn by multiview, if more than 1; each is a layer of the picture
+    std::vector<std::uint32_t>
+        expected;  // fragment: 4 words a pixel, rows as the shader counts them, view by view
     std::vector<FloatRange> within;       // where not empty: the words are floats in these ranges
 
     bool accepts(const std::vector<std::uint32_t>& words) const {

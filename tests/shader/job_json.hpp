@@ -84,6 +84,7 @@ inline std::string json(const Job& job, bool runs) {
         .number("height", job.height)
         .number("x", job.corner[0])
         .number("y", job.corner[1])
+        .number("views", job.views)
         .raw("inputs", inputs.empty() ? "[]" : inputs + "]");
     if (job.within.empty())
         object.bytes("expected", job.expected);

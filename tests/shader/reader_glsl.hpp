@@ -46,37 +46,43 @@ inline std::uint32_t checked_lights(std::uint32_t width) {
     return width > 100 ? 8 : 3000;
 }
 
-/// The scales of the projection of reader_job().
-constexpr float scale_x = 1.2f, scale_y = 1.7f;
+/// The scales of the projection of reader_job(), and how far to the side in NDC each view is from the one before it.
+constexpr float scale_x = 1.2f, scale_y = 1.7f, view_shift = 0.25f;
 
 /// Lines that add to `hash` where a check or the window function says what is not so. `grid` is the pixel as the view
 /// counts it. `listed` is the sum of 1 + id of the lights listed.
 inline std::string reader_checks(const lightbin::ShaderOptions& options, std::uint32_t width) {
     const std::string prefix(options.prefix), lights = std::to_string(checked_lights(width)) + "u";
+    const bool several = options.views > 1;
+    const std::string view = several ? ", view)" : ")";
     std::string text;
     if (options.view_check)
         text += "    highp vec2 size = vec2(" + prefix + "grid.zw);\n    highp uvec2 grid = pixel;\n" +
                 (options.viewport_corner ? "    grid -= uvec2(" + prefix + "corner);\n" : "") +
                 (options.flip_y ? "    grid.y = " + prefix + "grid.w - 1u - grid.y;\n" : "") +
-                "    bool inside = grid.x < " + prefix + "grid.z && grid.y < " + prefix +
-                R"(grid.w;
+                "    bool inside = grid.x < " + prefix + "grid.z && grid.y < " + prefix + "grid.w" +
+                (several ? " && view < " + std::to_string(options.views) + "u" : "") + R"(;
     highp vec2 ndc = 2.0 * (vec2(grid) + 0.5) / size - 1.0;
-    highp vec3 far_off = vec3(ndc / vec2()" +
-                std::to_string(scale_x) + ", " + std::to_string(scale_y) + R"(), -1.0);
+)" + (several ? "    ndc.x += " + std::to_string(view_shift) + " * float(view);\n" : "") +
+                R"(    highp vec3 far_off = vec3(ndc / vec2()" + std::to_string(scale_x) + ", " +
+                std::to_string(scale_y) + R"(), -1.0);
     highp vec3 aside = far_off + vec3(4.4 / ()" +
                 std::to_string(scale_x) + R"( * size.x), 0.0, 0.0);
     highp vec3 below = far_off - vec3(0.0, 4.4 / ()" +
                 std::to_string(scale_y) + R"( * size.y), 0.0);
     if (inside && !)" +
-                prefix + "check_view(pixel, 7.0 * far_off)) hash += 1u;\n    if (inside && !" + prefix +
-                "check_view(pixel, far_off * 0.11)) hash += 2u;\n    if (inside && " + prefix +
-                "check_view(pixel, far_off * 0.09)) hash += 4u;\n    if (inside && " + prefix +
-                "check_view(pixel, 7.0 * aside)) hash += 8u;\n    if (inside && " + prefix +
-                "check_view(pixel, 7.0 * below)) hash += 16u;\n    if (inside && " + prefix +
-                "check_view(pixel, -7.0 * far_off)) hash += 32u;\n";
+                prefix + "check_view(pixel, 7.0 * far_off" + view + ") hash += 1u;\n    if (inside && !" +
+                prefix + "check_view(pixel, far_off * 0.11" + view + ") hash += 2u;\n    if (inside && " +
+                prefix + "check_view(pixel, far_off * 0.09" + view + ") hash += 4u;\n    if (inside && " +
+                prefix + "check_view(pixel, 7.0 * aside" + view + ") hash += 8u;\n    if (inside && " +
+                prefix + "check_view(pixel, 7.0 * below" + view + ") hash += 16u;\n    if (inside && " +
+                prefix + "check_view(pixel, -7.0 * far_off" + view + ") hash += 32u;\n";
+    if (options.view_check && several)
+        text += "    if (view >= " + std::to_string(options.views) + "u && " + prefix +
+                "check_view(pixel, 7.0 * far_off, view)) hash += 256u;\n";
     if (options.list_check)
-        text += "    " + prefix + "for_each_missing(other, " + lights +
-                ", pixel, depth) listed += other.id + 1u;\n    if (listed != " +
+        text += "    " + prefix + "for_each_missing(other, " + lights + ", pixel, depth" + view +
+                " listed += other.id + 1u;\n    if (listed != " +
                 std::to_string(checked_lights(width) * (checked_lights(width) + 1) / 2) + "u) hash += 64u;\n";
     if (options.window)
         text += "    if (" + prefix + "window(3.0, 3.0) != 0.0 || " + prefix +
@@ -87,13 +93,16 @@ inline std::string reader_checks(const lightbin::ShaderOptions& options, std::ui
 
 /// What reader_text() returns, in GLSL or HLSL.
 inline std::string reader_glsl(const lightbin::ShaderOptions& options, const lightbin::ShaderText& snippet,
-                               Stage stage, std::uint32_t width, std::uint32_t height) {
+                               Stage stage, std::uint32_t width, std::uint32_t height, bool multiview) {
     const lightbin::detail::Dialect dialect = lightbin::detail::Dialect{options.language};
     const std::string prefix(options.prefix), binding = std::to_string(result_binding);
     const auto pair = [](auto x, auto y) {
         return "uvec2(" + std::to_string(x) + "u, " + std::to_string(y) + "u)";
     };
     std::string text = version_line(options.language);
+    if (multiview && !dialect.hlsl)
+        text += std::string("#extension ") + (dialect.vulkan ? "GL_EXT_multiview" : "GL_OVR_multiview2") +
+                " : require\n";
     const bool sliced = options.slicing != lightbin::Slicing::none;
     // A device's logarithm may be as wrong as it likes.
     if (sliced && options.heat_map) text += "#define log2(x) (0.6 * log2(x) - 1.0)\n";
@@ -115,16 +124,17 @@ inline std::string reader_glsl(const lightbin::ShaderOptions& options, const lig
         depth =
             "uintBitsToFloat(depths[(5u * " + of_pixel + ".x + 3u * " + of_pixel + ".y) % " + count + "u])";
     }
-    text += R"(
-uvec4 read_list(highp uvec2 pixel) {
-    highp float depth = )" +
-            depth + R"(;
+    const bool several = options.views > 1;
+    const std::string view = several ? ", view" : "";
+    text += several ? "\nuvec4 read_list(highp uvec2 pixel, highp uint view) {\n"
+                    : "\nuvec4 read_list(highp uvec2 pixel) {\n";
+    text += "    highp float depth = " + depth + R"(;
     highp uint hash = 2166136261u;
     highp uint sum = 0u;
     highp uint count = 0u;
     highp uint listed = 0u;
     )" + prefix +
-            R"(for_each_light(light, pixel, depth) {
+            "for_each_light(light, pixel, depth" + view + R"() {
         hash = (hash ^ light.id) * 16777619u;
         count += 1u;
         sum += count * light.id;
@@ -133,12 +143,20 @@ uvec4 read_list(highp uvec2 pixel) {
     }
 )";
     if (options.heat_map)
-        text += "    if (" + prefix + "count(pixel, depth) != count || " + prefix +
-                "heat(pixel, depth, 8.0).x > 1.0) hash += 1u;\n";
+        text += "    if (" + prefix + "count(pixel, depth" + view + ") != count || " + prefix +
+                "heat(pixel, depth, 8.0" + view + ").x > 1.0) hash += 1u;\n";
     text += reader_checks(options, width);
     text += "    highp uvec2 tile = " + prefix +
             "tile(pixel);\n    return uvec4(tile.x + (tile.y << 16u), count, hash, sum);\n}\n\n";
 
+    // Without multiview, the number of a pixel's view is that of a band of rows.
+    const std::string read = several && !multiview ? "read_band" : "read_list",
+                      band = std::to_string(height / (options.views + 1)) + "u",
+                      first_row = options.viewport_corner ? std::to_string(corner_y) + "u" : "0u";
+    if (several && !multiview)
+        text += "uvec4 read_band(highp uvec2 place) {\n    highp uint view = (place.y - " + first_row +
+                ") / " + band + ";\n    return read_list(uvec2(place.x, place.y - view * " + band +
+                "), view);\n}\n\n";
     if (stage == Stage::compute) {
         const std::string add_corner = options.viewport_corner ? " + " + pair(corner_x, corner_y) : "";
         const std::string size = pair(width, height);
@@ -152,16 +170,19 @@ uvec4 read_list(highp uvec2 pixel) {
                     "void main() {\n    highp uvec2 pixel = gl_GlobalInvocationID.xy;\n";
         return text + "    highp uvec2 size = " + size +
                ";\n    if (pixel.x < size.x && pixel.y < size.y)\n"
-               "        result[pixel.y * size.x + pixel.x] = read_list(pixel" +
-               add_corner + ");\n}\n";
+               "        result[pixel.y * size.x + pixel.x] = " +
+               read + "(pixel" + add_corner + ");\n}\n";
     }
     const std::string less_corner = options.viewport_corner ? "" : " - " + pair(corner_x, corner_y);
     if (dialect.hlsl)
-        return text +
-               "uint4 main(float4 position : SV_Position) : SV_Target {\n    return read_list(uint2("
-               "position.xy)" +
-               less_corner + ");\n}\n";
+        return text + "uint4 main(float4 position : SV_Position" +
+               (multiview ? ", uint view : SV_ViewID" : "") + ") : SV_Target {\n    return " + read +
+               "(uint2(position.xy)" + less_corner + (multiview ? ", view" : "") + ");\n}\n";
     return text + (dialect.vulkan ? "layout(location = 0) " : "") +
-           "out highp uvec4 colour;\nvoid main() {\n    colour = read_list(uvec2(gl_FragCoord.xy)" +
-           less_corner + ");\n}\n";
+           "out highp uvec4 colour;\nvoid main() {\n    colour = " + read + "(uvec2(gl_FragCoord.xy)" +
+           less_corner +
+           (!multiview       ? ""
+            : dialect.vulkan ? ", uint(gl_ViewIndex)"
+                             : ", gl_ViewID_OVR") +
+           ");\n}\n";
 }

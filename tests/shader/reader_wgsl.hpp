@@ -19,39 +19,45 @@ inline std::string wgsl_depth(const lightbin::ShaderOptions& options) {
            std::to_string(reader_depths().size()) + "u])";
 }
 
-/// reader_checks() in WGSL, `$` being the prefix.
+/// reader_checks() in WGSL, `$` being the prefix. Within, `@` is the argument for the view, where there are several.
 inline std::string wgsl_checks(const lightbin::ShaderOptions& options, std::uint32_t width) {
     const std::uint32_t lights = checked_lights(width);
+    const std::string views = std::to_string(options.views) + "u";
+    const bool several = options.views > 1;
     std::string text;
     if (options.heat_map)
         text +=
-            "    if ($count(pixel, depth) != count || $heat(pixel, depth, 8.0).x > 1.0) { hash += 1u; }\n";
+            "    if ($count(pixel, depth@) != count || $heat(pixel, depth, 8.0@).x > 1.0) { hash += 1u; }\n";
     if (options.view_check)
         text += "    const scale = vec2f(" + std::to_string(scale_x) + ", " + std::to_string(scale_y) +
                 ");\n    let size = vec2f($grid_block.grid.zw);\n    var grid = pixel;\n" +
                 (options.viewport_corner ? "    grid -= vec2u($grid_block.corner);\n" : "") +
                 (options.flip_y ? "    grid.y = $grid_block.grid.w - 1u - grid.y;\n" : "") +
-                R"(    let inside = grid.x < $grid_block.grid.z && grid.y < $grid_block.grid.w;
-    let ndc = 2.0 * (vec2f(grid) + 0.5) / size - 1.0;
-    let far_off = vec3f(ndc / scale, -1.0);
+                "    let inside = grid.x < $grid_block.grid.z && grid.y < $grid_block.grid.w" +
+                (several ? " && view < " + views : "") + R"(;
+    var ndc = 2.0 * (vec2f(grid) + 0.5) / size - 1.0;
+)" + (several ? "    ndc.x += " + std::to_string(view_shift) + " * f32(view);\n" : "") +
+                R"(    let far_off = vec3f(ndc / scale, -1.0);
     let aside = far_off + vec3f(4.4 / (scale.x * size.x), 0.0, 0.0);
     let below = far_off - vec3f(0.0, 4.4 / (scale.y * size.y), 0.0);
-    if (inside && !$check_view(pixel, 7.0 * far_off)) { hash += 1u; }
-    if (inside && !$check_view(pixel, far_off * 0.11)) { hash += 2u; }
-    if (inside && $check_view(pixel, far_off * 0.09)) { hash += 4u; }
-    if (inside && $check_view(pixel, 7.0 * aside)) { hash += 8u; }
-    if (inside && $check_view(pixel, 7.0 * below)) { hash += 16u; }
-    if (inside && $check_view(pixel, -7.0 * far_off)) { hash += 32u; }
+    if (inside && !$check_view(pixel, 7.0 * far_off@)) { hash += 1u; }
+    if (inside && !$check_view(pixel, far_off * 0.11@)) { hash += 2u; }
+    if (inside && $check_view(pixel, far_off * 0.09@)) { hash += 4u; }
+    if (inside && $check_view(pixel, 7.0 * aside@)) { hash += 8u; }
+    if (inside && $check_view(pixel, 7.0 * below@)) { hash += 16u; }
+    if (inside && $check_view(pixel, -7.0 * far_off@)) { hash += 32u; }
 )";
+    if (options.view_check && several)
+        text += "    if (view >= " + views + " && $check_view(pixel, 7.0 * far_off@)) { hash += 256u; }\n";
     if (options.list_check)
-        text += "    var other = $begin_missing(pixel, depth);\n    while ($next_missing(&other, " +
+        text += "    var other = $begin_missing(pixel, depth@);\n    while ($next_missing(&other, " +
                 std::to_string(lights) +
                 "u)) {\n        if (other.lacked) { listed += other.id + 1u; }\n    }\n    if (listed != " +
                 std::to_string(lights * (lights + 1) / 2) + "u) { hash += 64u; }\n";
     if (options.window)
         text += "    if ($window(3.0, 3.0) != 0.0 || $window(0.0, 3.0) != 1.0 || abs($window(1.5, 3.0) - "
                 "0.87890625) > 1e-5) { hash += 128u; }\n";
-    return text;
+    return lightbin::detail::replaced(text, "@", several ? ", view" : "");
 }
 
 /// What reader_text() returns, in WGSL.
@@ -68,12 +74,20 @@ inline std::string reader_wgsl(const lightbin::ShaderOptions& options, const lig
             text += "fn log2(x : f32) -> f32 {\n"
                     "    return 0.6 * f32(i32(bitcast<u32>(x) >> 23u) - 127) - 1.0;\n}\n\n";
     }
-    text += "fn read_list(pixel : vec2u) -> vec4u {\n    let depth = " + wgsl_depth(options) + R"(;
+    // The number of a pixel's view is that of a band of rows: WGSL has no multiview.
+    const bool several = options.views > 1;
+    const std::string band = std::to_string(height / (options.views + 1)) + "u";
+    text += several ? "fn read_list(place : vec2u) -> vec4u {\n    let view = (place.y" +
+                          std::string(options.viewport_corner ? " - corner.y" : "") + ") / " + band +
+                          ";\n    let pixel = vec2u(place.x, place.y - view * " + band + ");\n"
+                    : "fn read_list(pixel : vec2u) -> vec4u {\n";
+    text += "    let depth = " + wgsl_depth(options) + R"(;
     var hash = 2166136261u;
     var sum = 0u;
     var count = 0u;
     var listed = 0u;
-    var light = $begin(pixel, depth);
+    var light = $begin(pixel, depth)" +
+            std::string(several ? ", view" : "") + R"();
     while ($next(&light)) {
 )" + (options.wave_loop ? "        if (!light.own) { continue; }\n" : "") +
             R"(        hash = (hash ^ light.id) * 16777619u;

@@ -38,6 +38,7 @@ inline std::string name_of(const lightbin::ShaderOptions& options) {
     option(options.wave_loop, "wave loop");
     option(options.view_check, "view check");
     option(options.list_check, "list check");
+    option(options.views > 1, "two views");
     return name;
 }
 
@@ -131,8 +132,20 @@ inline std::vector<lightbin::ShaderOptions> every_wave_list(lightbin::ShaderLang
     return every;
 }
 
+/// The same with two views; with waves every second one has wave loops, if the language has them.
+inline std::vector<lightbin::ShaderOptions> every_list_of_views(lightbin::ShaderLanguage language,
+                                                                lightbin::Slicing slicing, bool waves) {
+    std::vector<lightbin::ShaderOptions> every = every_list(language, slicing);
+    for (std::size_t i = 0; i < every.size(); ++i) {
+        every[i].views = 2;
+        every[i].wave_loop = waves && i % 2 == 1;
+        if (!shader_snippet(every[i])) every[i].wave_loop = false;
+    }
+    return every;
+}
+
 /// Every list of a language with every set of switches; with slicing two sets of each, which take turns and between them
-/// have every switch on and off; with wave loops one.
+/// have every switch on and off; with wave loops one, with two views one.
 inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguage language) {
     using lightbin::Slicing;
     std::vector<lightbin::ShaderOptions> every;
@@ -147,17 +160,21 @@ inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguag
         }
         for (const lightbin::ShaderOptions& list : every_wave_list(language, slicing))
             every.push_back(with_switches(list, ++turn % switch_count));
+        for (const lightbin::ShaderOptions& list : every_list_of_views(language, slicing, true))
+            every.push_back(with_switches(list, ++turn % switch_count));
     }
     return every;
 }
 
 /// Returns a whole shader. It writes for every pixel: its tile, the length of its list, and two sums over the
-/// ids that depend on their order.
+/// ids that depend on their order. With several views the picture has a band of rows for each view, and one more for a
+/// number that no view has; with multiview, a fragment shader in GLSL or HLSL is told its view by the graphics API.
 inline std::string reader_text(const lightbin::ShaderOptions& options, const lightbin::ShaderText& snippet,
-                               Stage stage, std::uint32_t width, std::uint32_t height) {
+                               Stage stage, std::uint32_t width, std::uint32_t height,
+                               bool multiview = false) {
     return options.language == lightbin::ShaderLanguage::wgsl
                ? reader_wgsl(options, snippet, stage, width, height)
-               : reader_glsl(options, snippet, stage, width, height);
+               : reader_glsl(options, snippet, stage, width, height, multiview);
 }
 
 /// About 40 of `count` spheres are in view, half of them just behind one another, the last among them; the others are
@@ -178,8 +195,9 @@ inline std::vector<lightbin::Sphere> reader_lights(std::size_t count) {
 
 /// The bytes of what a snippet binds.
 inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin::ShaderOptions& options,
-                          const lightbin::ShaderGrid& constants, const lightbin::ShaderView& view,
-                          const lightbin::LightGrid<std::uint32_t>& grid, std::span<const std::byte> lists) {
+                          const lightbin::ShaderGrid& constants, std::span<const lightbin::ShaderView> views,
+                          const lightbin::LightGrid<std::uint32_t>& grid,
+                          std::span<const lightbin::BinRange> bins, std::span<const std::byte> lists) {
     const std::string name = binding.name.substr(options.prefix.size());
     Input input;
     input.binding = binding;
@@ -190,15 +208,15 @@ inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin
     else if (name.starts_with("corner"))
         data = std::as_bytes(std::span(&constants.corner_x, 2));
     else if (name == "depths")
-        data = std::as_bytes(std::span(&view.forward, 4));
+        data = std::as_bytes(std::span(&views[0].forward, 4));
     else if (name.starts_with("image"))
-        data = std::as_bytes(std::span(&view, 1));
+        data = std::as_bytes(views);
     else if (name.starts_with("tiles"))
         data = std::as_bytes(grid.ranges());
     else if (name.starts_with("slices"))
         data = std::as_bytes(std::span(slices));
     else if (name.starts_with("bins"))
-        data = std::as_bytes(grid.ranks().bins);
+        data = std::as_bytes(bins);
     if (binding.bytes != 0 && data.size() > binding.bytes) data = data.first(binding.bytes);
     input.bytes.assign(data.begin(), data.end());
     std::size_t size = (std::max)({input.bytes.size(), std::size_t{binding.bytes}, std::size_t{16}});
@@ -213,23 +231,45 @@ inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin
 }
 
 /// Returns a run of a snippet, fit to a screen: options.tile_size other than 0 becomes that of the screen.
-/// unset  the constants of the grid are 0: no pixel has lights
+/// unset      the constants of the grid are 0: no pixel has lights
+/// multiview  the views are drawn at once
 template <lightbin::Slicing slicing>
-Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& screen, bool unset) {
+Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& screen, bool unset,
+               bool multiview) {
     using namespace lightbin;
-    constexpr float projection[4][4] = {
-        {scale_x, 0, 0, 0}, {0, scale_y, 0, 0}, {0, 0, -1.01f, -1}, {0, 0, -0.2f, 0}};
-    const auto view =
-        View::from_projection(projection, {screen.width, screen.height}, {.tile_size = screen.tile_size});
     constexpr Options of_binner = {.slicing = slicing};
     const Slices slices = reader_slices();
-    Binner<of_binner> binner;
+    std::vector<Binner<of_binner>> binners(options.views);
     const std::size_t lights = options.format.encoding == ListEncoding::bitmask ? options.format.max_lights
                                : options.format.ids == IdWidth::u8              ? 200
                                : options.format.ids == IdWidth::u16             ? 50000
                                                                                 : 100000;
-    const auto grid = binner.bin(*view, reader_lights(lights), inputs_for<of_binner>({}, slices));
-    std::vector<std::byte> lists(encoded_bytes(options.format, grid->ranges().size(), grid->ids().size()));
+    std::vector<View> views;
+    std::vector<ShaderView> view_constants;
+    std::vector<LightGrid<std::uint32_t>> grids;
+    std::vector<BinRange> bins;
+    for (Binner<of_binner>& binner : binners) {
+        const float aside = view_shift * static_cast<float>(views.size());
+        const float projection[4][4] = {
+            {scale_x, 0, 0, 0}, {0, scale_y, 0, 0}, {aside, 0, -1.01f, -1}, {0, 0, -0.2f, 0}};
+        views.push_back(*View::from_projection(projection, {screen.width, screen.height},
+                                               {.tile_size = screen.tile_size}));
+        view_constants.push_back(shader_view(views.back()));
+        grids.push_back(*binner.bin(views.back(), reader_lights(lights), inputs_for<of_binner>({}, slices)));
+        bins.insert(bins.end(), grids.back().ranks().bins.begin(), grids.back().ranks().bins.end());
+    }
+    // The views' grids one after another.
+    std::size_t cells = 0, entries = 0;
+    for (const auto& each : grids) {
+        cells += each.ranges().size();
+        entries += each.ids().size();
+    }
+    std::vector<ListRange> all_ranges(cells);
+    std::vector<std::uint32_t> all_ids(entries);
+    auto grid = grids[0].copy_to(all_ranges, all_ids);
+    for (std::size_t i = 1; i < grids.size(); ++i)
+        grid = grids[i].copy_to(all_ranges, all_ids, *grid);
+    std::vector<std::byte> lists(encoded_bytes(options.format, cells, entries));
     Job job;
     job.name = name_of(options) + (stage == Stage::compute ? ", compute, " : ", fragment, ") +
                std::to_string(screen.width) + "x" + std::to_string(screen.height) + ", tile " +
@@ -243,33 +283,38 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
     job.stage = stage;
     job.hlsl = detail::Dialect{options.language}.hlsl;
     job.width = static_cast<std::uint32_t>(screen.width + beyond);
-    job.height = static_cast<std::uint32_t>(screen.height + beyond);
+    const auto band = static_cast<std::uint32_t>(screen.height + beyond);
+    job.views = multiview ? options.views : 1;
+    job.height = band * (options.views > 1 && !multiview ? options.views + 1 : 1);
     job.corner = {corner_x, corner_y};
     job.groups = {(job.width + 7) / 8, (job.height + 7) / 8};
-    job.text = reader_text(options, *snippet, stage, job.width, job.height);
-    ShaderGrid constants = shader_grid(*view, corner_x, corner_y);
+    job.text = reader_text(options, *snippet, stage, job.width, job.height, multiview);
+    ShaderGrid constants = shader_grid(views[0], corner_x, corner_y);
     if (unset) constants = {0, 0, 0, 0, corner_x, corner_y};
     for (const ShaderBinding& binding : snippet->bindings)
-        job.inputs.push_back(reader_input(binding, options, constants, shader_view(*view), *grid, lists));
+        job.inputs.push_back(reader_input(binding, options, constants, view_constants, *grid, bins, lists));
 
     // As the shader has it: the constants may be unset, and what is beyond the viewport wraps below row 0.
     const std::uint32_t tile_size =
         unset && options.tile_size == 0 ? 1 : static_cast<std::uint32_t>(screen.tile_size);
     const std::vector<float> depths = reader_depths();
-    for (std::uint32_t y = 0; y < job.height; ++y)
+    for (std::uint32_t y = 0; y < job.height * job.views; ++y)
         for (std::uint32_t x = 0; x < job.width; ++x) {
-            const std::uint32_t row = options.flip_y ? constants.height - 1 - y : y, tx = x / tile_size,
-                                ty = row / tile_size;
+            const std::uint32_t view = y / band, own_y = y % band,
+                                row = options.flip_y ? constants.height - 1 - own_y : own_y,
+                                tx = x / tile_size, ty = row / tile_size;
             std::uint32_t hash = 2166136261u, sum = 0, count = 0, listed = 0;
-            const float depth = depths[static_cast<std::size_t>(5 * x + 3 * y) % depths.size()];
+            const float depth = depths[static_cast<std::size_t>(5 * x + 3 * own_y) % depths.size()];
             const int slice = slices.slice_at(depth);
             const BinRange all = {0, 0xffffffff};
-            const BinRange bin =
-                slicing == Slicing::z_bins ? grid->ranks().bins[static_cast<std::size_t>(slice)] : all;
+            const bool inside = x < constants.width && row < constants.height && view < options.views;
+            const BinRange bin = slicing == Slicing::z_bins && inside
+                                     ? grids[view].ranks().bins[static_cast<std::size_t>(slice)]
+                                     : all;
             std::span<const std::uint32_t> list;
-            if (x < constants.width && row < constants.height)
-                list = grid->lights_in(static_cast<int>(tx), static_cast<int>(ty),
-                                       slicing == Slicing::clusters ? slice : 0);
+            if (inside)
+                list = grids[view].lights_in(static_cast<int>(tx), static_cast<int>(ty),
+                                             slicing == Slicing::clusters ? slice : 0);
             for (const std::uint32_t id : list) {
                 if (options.format.encoding == ListEncoding::sentinel && listed++ == options.format.capacity)
                     break;
@@ -301,20 +346,36 @@ struct ReaderRun {
     lightbin::ShaderOptions options;
     Stage stage;
     ScreenSize screen;
-    bool unset = false;
+    bool unset = false, multiview = false;
     Job job() const {
         using lightbin::Slicing;
-        return options.slicing == Slicing::none ? reader_job<Slicing::none>(options, stage, screen, unset)
+        return options.slicing == Slicing::none
+                   ? reader_job<Slicing::none>(options, stage, screen, unset, multiview)
                : options.slicing == Slicing::clusters
-                   ? reader_job<Slicing::clusters>(options, stage, screen, unset)
-                   : reader_job<Slicing::z_bins>(options, stage, screen, unset);
+                   ? reader_job<Slicing::clusters>(options, stage, screen, unset, multiview)
+                   : reader_job<Slicing::z_bins>(options, stage, screen, unset, multiview);
     }
 };
 
+/// Every list of two views, drawn by multiview in fragment shaders; the other options take turns.
+inline std::vector<ReaderRun> multiview_runs(lightbin::ShaderLanguage language) {
+    using lightbin::Slicing;
+    std::vector<ReaderRun> runs;
+    for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins})
+        for (const lightbin::ShaderOptions& list : every_list_of_views(language, slicing, false))
+            runs.push_back({with_switches(list, static_cast<unsigned>(runs.size()) % switch_count),
+                            Stage::fragment,
+                            {33, 17, 7},
+                            false,
+                            true});
+    return runs;
+}
+
 /// What a language runs: every list, flipped and not, in fragment and compute shaders, at each small screen;
 /// the other options take turns, and now and then the
-/// constants are not set. At the large screen: one width of ids. With slicing and wave loops: flipped in compute
-/// shaders, not flipped in fragment shaders, or where there are only those in both, at two small screens in turns.
+/// constants are not set. At the large screen: one width of ids. With slicing, wave loops or two views:
+/// flipped in compute shaders, not flipped in fragment shaders, or where there are only those in both, at two small
+/// screens in turns.
 /// each_flip  false: half of the small screens are flipped, the other half not; the next list has it the other way round
 /// waves      the device has what wave loops need
 inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, bool each_flip = true,
@@ -333,7 +394,7 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
             runs.push_back({with_switches(list, 2 * turn + flip), stage, screen});
             if (turn == 3) runs.push_back({with_switches(list, 2 * (place % 8) + flip), stage, screen, true});
         };
-        const bool few = list.slicing != Slicing::none || list.wave_loop;
+        const bool few = list.slicing != Slicing::none || list.wave_loop || list.views > 1;
         if (few && computes && (stage == Stage::compute) != (flip == 1)) return;
         for (unsigned i = 0; i < (few ? 2 : std::size(small)); ++i)
             if ((each_flip && !few) || (i + flip + place) % 2 == 0) add(small[i]);
@@ -347,6 +408,8 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
         if (waves)
             for (const lightbin::ShaderOptions& list : every_wave_list(language, slicing))
                 lists.push_back(list);
+        for (const lightbin::ShaderOptions& list : every_list_of_views(language, slicing, waves))
+            lists.push_back(list);
         for (const lightbin::ShaderOptions& list : lists) {
             for (unsigned flip = 0; flip < 2; ++flip)
                 for (const Stage stage : {Stage::fragment, Stage::compute})

@@ -52,6 +52,14 @@ void run_readers(Device& device, lightbin::ShaderLanguage language, const Share&
         tally.run(device, runs[i].job());
 }
 
+/// Two views drawn at once, if the device has multiview.
+template <class Device>
+void run_multiview(Device& device, lightbin::ShaderLanguage language, const Share& share, Tally& tally) {
+    const std::vector<ReaderRun> runs = multiview_runs(language);
+    for (std::size_t i = share.first; i < runs.size(); i += share.count)
+        tally.run(device, runs[i].job());
+}
+
 /// The build of the grid and the reduction of depth buffers; of multisample ones if the device has them.
 template <class Device>
 void run_builders(Device& device, lightbin::ShaderLanguage language, bool multisample, const Share& share,

@@ -1,13 +1,23 @@
 // SPDX-License-Identifier: MIT
-// The file of verdicts, read as an engine's tests would read it: it is whole, and every verdict is proven again. That
-// lightbin misses no pair that meets is proven in tests/oracle/spots.cpp, of other spots in each run.
+// The files of verdicts on spots and on boxes, read as an engine's tests would read them: each file is whole, every
+// verdict is proven again, and lightbin lists every box in every cell that the box meets. That lightbin misses no spot
+// is proven in tests/oracle/spots.cpp, of other spots in each run.
+#include "../../bench/exact/box.hpp"
 #include "../../bench/exact/spot.hpp"
 #include "../../bench/exact/truth.hpp"
 
+#include <lightbin/binner.hpp>
+#include <lightbin/box.hpp>
+
+#include "../oracle/library_view.hpp"
+
 #include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
@@ -22,46 +32,70 @@ struct Layer {
 };
 
 struct Spot {
+    static constexpr const char *title = "lightbin_spot_verdicts", *plural = "spots", *singular = "spot";
     float x, y, z, radius, axis_x, axis_y, axis_z, cos_half_angle;
+
+    static Spot read(auto number) {
+        Spot s;
+        for (float* v : {&s.x, &s.y, &s.z, &s.radius, &s.axis_x, &s.axis_y, &s.axis_z, &s.cos_half_angle})
+            *v = number();
+        return s;
+    }
 };
 
-struct Part {
+struct Box : oracle::BoxLight {
+    static constexpr const char *title = "lightbin_box_verdicts", *plural = "boxes", *singular = "box";
+
+    static Box read(auto number) {
+        Box b;
+        for (float* v : {&b.x, &b.y, &b.z, &b.radius, &b.centre[0], &b.centre[1], &b.centre[2]})
+            *v = number();
+        for (float(&axis)[3] : b.half_axes)
+            for (float& v : axis)
+                v = number();
+        b.taper = number();
+        return b;
+    }
+};
+
+/// The cells of one camera, and the lights, spots or boxes, that were held against them.
+template <class Light> struct Part {
     std::string name;
     float matrix[4][4];  ///< [column][row]
     int width, height, tile_size;
     bool upper_left;
     int clip_depth, forward, tiles_x, tiles_y;
     std::vector<Layer> layers;
-    std::vector<Spot> spots;
-    std::vector<std::vector<bool>> met;  ///< of each spot, layer by layer, row by row
+    std::vector<Light> lights;
+    std::vector<std::vector<bool>> met;  ///< of each light, layer by layer, row by row
 
     std::size_t tiles() const { return static_cast<std::size_t>(tiles_x * tiles_y); }
-    bool meets(std::size_t spot, std::size_t layer, std::size_t tile) const {
-        return met[spot][layer * tiles() + tile];
+    bool meets(std::size_t light, std::size_t layer, std::size_t tile) const {
+        return met[light][layer * tiles() + tile];
     }
 };
 
-class Reader {
+template <class Light> class Reader {
 public:
     explicit Reader(const char* path) : file_(path) {
         if (!file_) throw std::runtime_error(std::string("cannot read ") + path);
     }
 
-    std::vector<Part> parts() {
-        expect("lightbin_spot_verdicts");
+    std::vector<Part<Light>> parts() {
+        expect(Light::title);
         if (integer() != 1) throw std::runtime_error("another version of the format");
-        std::vector<Part> parts;
+        std::vector<Part<Light>> parts;
         std::string word = next();
         for (; word == "camera"; word = next())
             parts.push_back(part());
         if (word != "end") throw std::runtime_error("neither camera nor end: " + word);
-        std::size_t spots = 0, verdicts = 0, met = 0;
-        for (const Part& part : parts)
+        std::size_t lights = 0, verdicts = 0, met = 0;
+        for (const Part<Light>& part : parts)
             for (const std::vector<bool>& cells : part.met) {
-                ++spots, verdicts += cells.size();
+                ++lights, verdicts += cells.size();
                 met += static_cast<std::size_t>(std::count(cells.begin(), cells.end(), true));
             }
-        for (const std::size_t expected : {spots, verdicts, met})
+        for (const std::size_t expected : {lights, verdicts, met})
             if (static_cast<std::size_t>(integer()) != expected)
                 throw std::runtime_error("the file is not whole");
         return parts;
@@ -86,8 +120,8 @@ private:
         return std::bit_cast<float>(static_cast<std::uint32_t>(std::stoul(next(), nullptr, 16)));
     }
 
-    Part part() {
-        Part p;
+    Part<Light> part() {
+        Part<Light> p;
         p.name = next();
         expect("matrix");
         for (auto& column : p.matrix)
@@ -105,13 +139,10 @@ private:
             expect("layer");
             layer.min = number(), layer.max = number();
         }
-        const int spots = integer("spots");
-        for (int i = 0; i < spots; ++i) {
-            expect("spot");
-            Spot s;
-            for (float* v : {&s.x, &s.y, &s.z, &s.radius, &s.axis_x, &s.axis_y, &s.axis_z, &s.cos_half_angle})
-                *v = number();
-            p.spots.push_back(s);
+        const int lights = integer(Light::plural);
+        for (int i = 0; i < lights; ++i) {
+            expect(Light::singular);
+            p.lights.push_back(Light::read([this] { return number(); }));
             p.met.push_back(bits(next(), p.layers.size() * p.tiles()));
         }
         return p;
@@ -132,11 +163,11 @@ private:
 };
 
 /// The declaration that an orthographic matrix needs: its depth grows the other way.
-bool reversed(const Part& p) {
+template <class Light> bool reversed(const Part<Light>& p) {
     return p.matrix[2][3] == 0 && (p.matrix[2][2] > 0) != (p.forward > 0);
 }
 
-oracle::Camera camera_of(const Part& p) {
+template <class Light> oracle::Camera camera_of(const Part<Light>& p) {
     oracle::Camera camera;
     camera.name = p.name;
     for (int column = 0; column < 4; ++column)
@@ -148,16 +179,58 @@ oracle::Camera camera_of(const Part& p) {
     return camera;
 }
 
+oracle::FlatBall flat(const oracle::CameraBall& ball) {
+    return {oracle::nearly(ball.x), oracle::nearly(ball.y), oracle::nearly(ball.depth),
+            ball.all ? HUGE_VAL : oracle::nearly(ball.radius)};
+}
+
+auto cell_of(const oracle::Oracle& exact, int x, int y, const oracle::Depths& depths) {
+    return exact.half_spaces(exact.columns(x, x + 1), exact.rows(y, y + 1), depths);
+}
+
 /// A spot in the exact arithmetic's forms.
-struct Subject {
+struct ExactSpot {
     oracle::ExactSpot spot;
     oracle::FlatBall ball;
 
-    Subject(const oracle::Oracle& exact, const Spot& s)
-        : spot(oracle::exact_spot(s.x, s.y, s.z, s.radius, s.axis_x, s.axis_y, s.axis_z, s.cos_half_angle)) {
-        const oracle::CameraBall seen = exact.in_camera(spot.ball);
-        ball = {oracle::nearly(seen.x), oracle::nearly(seen.y), oracle::nearly(seen.depth),
-                oracle::nearly(seen.radius)};
+    ExactSpot(const oracle::Oracle& exact, const Spot& s)
+        : spot(oracle::exact_spot(s.x, s.y, s.z, s.radius, s.axis_x, s.axis_y, s.axis_z, s.cos_half_angle)),
+          ball(flat(exact.in_camera(spot.ball))) {}
+
+    std::optional<bool> meets(oracle::Truth& truth, int x, int y, const oracle::Depths& depths,
+                              const oracle::FlatDepths& flat_depths) const {
+        // Double precision says so of the ball of most.
+        if (truth.filter.apart(x, x + 1, y, y + 1, flat_depths, ball)) return false;
+        return oracle::meets(cell_of(truth.oracle, x, y, depths), spot);
+    }
+};
+
+/// A box in the exact arithmetic's forms.
+struct ExactBox {
+    oracle::ExactBox box;
+    oracle::FlatBall ball;
+    oracle::FlatBox corners = {};
+
+    ExactBox(const oracle::Oracle& exact, const Box& b) : box(b), ball(flat(exact.in_camera(box.ball))) {
+        const std::vector<oracle::Vector> given = oracle::exact_corners(b);
+        for (std::size_t i = 0; i < given.size(); ++i) {
+            const oracle::FlatBall corner = flat(exact.in_camera({given[i], 0}));
+            const double seen[] = {corner.x, corner.y, corner.depth};
+            for (std::size_t k = 0; k < 3; ++k) {
+                corners.corners[i][k] = seen[k];
+                corners.error = std::max(corners.error,
+                                         std::abs(seen[k]) * 0x1p-52);  // the digits that nearly() cuts off
+            }
+        }
+    }
+
+    std::optional<bool> meets(oracle::Truth& truth, int x, int y, const oracle::Depths& depths,
+                              const oracle::FlatDepths& flat_depths) const {
+        // Double precision says so of most, by the ball or by the box.
+        if (truth.filter.apart(x, x + 1, y, y + 1, flat_depths, ball) ||
+            oracle::apart(truth.filter, x, x + 1, y, y + 1, flat_depths, corners))
+            return false;
+        return oracle::meets(cell_of(truth.oracle, x, y, depths), box);
     }
 };
 
@@ -165,25 +238,22 @@ struct Proof {
     std::size_t verdicts = 0, met = 0, wrong = 0;
 };
 
-void prove(const Part& p, Proof& proof) {
+template <class Exact, class Light> void prove(const Part<Light>& p, Proof& proof) {
     oracle::Truth truth(camera_of(p));
     const oracle::Oracle& exact = truth.oracle;
     REQUIRE(exact.tiles_x() == p.tiles_x);
     REQUIRE(exact.tiles_y() == p.tiles_y);
     REQUIRE(exact.depth_sign() == p.forward);
-    std::vector<Subject> subjects;
-    for (const Spot& spot : p.spots)
-        subjects.emplace_back(exact, spot);
+    std::vector<Exact> subjects;
+    for (const Light& light : p.lights)
+        subjects.emplace_back(exact, light);
     for (std::size_t layer = 0; layer < p.layers.size(); ++layer) {
         const oracle::Depths depths = exact.depths(p.layers[layer].min, p.layers[layer].max);
-        const oracle::FlatDepths flat(depths);
+        const oracle::FlatDepths flat_depths(depths);
         for (std::size_t tile = 0; tile < p.tiles(); ++tile) {
             const int x = static_cast<int>(tile) % p.tiles_x, y = static_cast<int>(tile) / p.tiles_x;
-            const auto cell = exact.half_spaces(exact.columns(x, x + 1), exact.rows(y, y + 1), depths);
             for (std::size_t i = 0; i < subjects.size(); ++i) {
-                // Double precision says so of the ball of most.
-                const bool apart = truth.filter.apart(x, x + 1, y, y + 1, flat, subjects[i].ball);
-                const auto verdict = apart ? std::optional(false) : oracle::meets(cell, subjects[i].spot);
+                const auto verdict = subjects[i].meets(truth, x, y, depths, flat_depths);
                 const bool expected = p.meets(i, layer, tile);
                 ++proof.verdicts, proof.met += expected, proof.wrong += verdict != expected;
             }
@@ -191,14 +261,112 @@ void prove(const Part& p, Proof& proof) {
     }
 }
 
+/// Proves every verdict of a file.
+template <class Exact, class Light> Proof proof_of(const std::vector<Part<Light>>& parts) {
+    Proof proof;
+    for (const Part<Light>& p : parts)
+        prove<Exact>(p, proof);
+    MESSAGE(proof.verdicts << " verdicts, " << proof.met << " of them that they meet");
+    return proof;
+}
+
+/// The pairs of a cell and a box that meet, those that a list lacks, and the entries of all lists.
+struct Listed {
+    std::size_t met = 0, missed = 0, entries = 0;
+};
+
+/// Lists boxes with each layer as the Z bounds of all tiles.
+template <lightbin::Options options>
+void count_listed(const Part<Box>& p, const std::vector<lightbin::Box>& boxes, Listed& listed) {
+    const auto view = oracle::library_view(camera_of(p));
+    REQUIRE(view.has_value());
+    lightbin::Binner<options> binner;
+    for (std::size_t layer = 0; layer < p.layers.size(); ++layer) {
+        const std::vector<float> min(p.tiles(), p.layers[layer].min), max(p.tiles(), p.layers[layer].max);
+        const auto grid =
+            *binner.bin(*view, lightbin::view_space(boxes), {.bounds = {.min = min, .max = max}});
+        listed.entries += grid.ids().size();
+        for (std::size_t tile = 0; tile < p.tiles(); ++tile) {
+            const auto list = grid.ids().subspan(grid.ranges()[tile].offset, grid.ranges()[tile].count);
+            for (std::size_t box = 0; box < boxes.size(); ++box) {
+                if (!p.meets(box, layer, tile)) continue;
+                ++listed.met;
+                if (std::find(list.begin(), list.end(), box) == list.end() && ++listed.missed <= 5)
+                    MESSAGE("MISS: " << p.name << ", box " << box << ", layer " << layer << ", tile "
+                                     << tile);
+            }
+        }
+    }
+}
+
+const std::vector<Part<Box>>& box_parts() {
+    static const std::vector<Part<Box>> parts = Reader<Box>(VERDICTS "/boxes.txt").parts();
+    return parts;
+}
+
 }  // namespace
 
 TEST_CASE("spot verdicts: proven again") {
-    Proof proof;
-    for (const Part& p : Reader(SPOT_VERDICTS).parts())
-        prove(p, proof);
-    MESSAGE(proof.verdicts << " verdicts, " << proof.met << " of them that they meet");
+    const Proof proof = proof_of<ExactSpot>(Reader<Spot>(VERDICTS "/verdicts.txt").parts());
     CHECK(proof.wrong == 0);
     CHECK(proof.verdicts > 300000);
     CHECK(proof.met > 10000);
+}
+
+TEST_CASE("box verdicts: proven again") {
+    const Proof proof = proof_of<ExactBox>(box_parts());
+    CHECK(proof.wrong == 0);
+    CHECK(proof.verdicts > 200000);
+    CHECK(proof.met > 5000);
+}
+
+TEST_CASE("box verdicts: a box is listed in every cell that it meets") {
+    using lightbin::DepthTest, lightbin::Footprint, lightbin::Options;
+    Listed listed;
+    for (const Part<Box>& p : box_parts()) {
+        // As they are, and with the sphere of their corners in place of an infinite one.
+        std::vector<lightbin::Box> given, bounded;
+        for (const Box& b : p.lights) {
+            lightbin::Box& box = given.emplace_back(
+                lightbin::Box{b.x, b.y, b.z, b.radius, b.centre[0], b.centre[1], b.centre[2], {}, b.taper});
+            std::copy(&b.half_axes[0][0], &b.half_axes[0][0] + 9, &box.half_axes[0][0]);
+            bounded.push_back(std::isinf(b.radius) ? clipped_sphere(bounding_sphere(box), box) : box);
+        }
+        for (const auto& boxes : {given, bounded}) {
+            count_listed<Options{.depth_test = DepthTest::box}>(p, boxes, listed);
+            count_listed<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box}>(p, boxes,
+                                                                                                    listed);
+        }
+    }
+    MESSAGE(listed.met << " pairs that meet, " << listed.missed << " not listed, " << listed.entries
+                       << " listed");
+    CHECK(listed.missed == 0);
+    CHECK(listed.met > 20000);
+    CHECK(listed.entries < 2 * listed.met);
+}
+
+TEST_CASE("box verdicts: every shape is among the boxes") {
+    std::size_t whole = 0, cut = 0, zero_axis = 0, tapered = 0, mirrored = 0, sheared = 0, around_eye = 0;
+    for (const Part<Box>& p : box_parts())
+        for (const Box& b : p.lights) {
+            const auto axis = [&](int i) {
+                const float(&h)[3] = b.half_axes[i];
+                return glm::dvec3(h[0], h[1], h[2]);
+            };
+            const glm::dvec3 x = axis(0), y = axis(1), z = axis(2);
+            const double lengths = glm::length(x) * glm::length(y) * glm::length(z);
+            const std::vector<oracle::HalfSpace> faces = oracle::ExactBox(b).faces;
+            ++(std::isinf(b.radius) ? whole : cut);
+            zero_axis += !(lengths > 0);
+            tapered += b.taper < 1;
+            mirrored += glm::dot(glm::cross(x, y), z) < -0.01 * lengths;
+            sheared += std::abs(glm::dot(x, y)) * glm::length(z) > 0.1 * lengths;
+            around_eye +=
+                std::all_of(faces.begin(), faces.end(), [](const auto& face) { return face.at({}) >= 0; });
+        }
+    for (const std::size_t count : {whole, cut, zero_axis, tapered, mirrored, sheared, around_eye})
+        CHECK(count >= 10);
+    MESSAGE("whole " << whole << ", cut " << cut << ", a zero axis " << zero_axis << ", tapered " << tapered
+                     << ", mirrored " << mirrored << ", sheared " << sheared << ", around the eye "
+                     << around_eye);
 }

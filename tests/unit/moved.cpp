@@ -32,7 +32,7 @@ TEST_CASE("lights that are moved in doubles are the same on every tier where the
             for (const Isa isa : test::machine_tiers()) {
                 Footprints<Footprint::rectangle, true> footprints;
                 footprints.project(isa, view, world, {});
-                radii.push_back(footprints.arrays().spheres[0].radius);
+                radii.push_back(footprints.arrays().view_lights.spheres[0].radius);
             }
             CHECK(std::count(radii.begin(), radii.end(), radii[0]) == std::ssize(radii));
         }

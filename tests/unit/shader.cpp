@@ -108,6 +108,50 @@ TEST_CASE("a wrong option set is refused with a sentence that names the limit") 
     CHECK(has(refusal({.prefix = std::string(1001, 'a')}), "1000"));
 }
 
+TEST_CASE("several views: functions that read lists take the view's number, and one view leaves no trace") {
+    constexpr auto all_on = [](std::uint32_t views, ShaderLanguage language = ShaderLanguage::glsl_430) {
+        return ShaderOptions{.language = language,
+                             .slicing = Slicing::z_bins,
+                             .views = views,
+                             .heat_map = true,
+                             .wave_loop = true,
+                             .view_check = true,
+                             .list_check = true};
+    };
+    const std::string one = text_of(all_on(1)), two = text_of(all_on(2));
+    for (const char* absent : {"uint view", "view)", "view *", "view <", "image["})
+        CHECK(!has(one, absent));
+    for (const char* present :
+         {"lightbin_begin(uvec2 pixel, float view_depth, uint view)",
+          "#define lightbin_for_each_light(cursor, pixel, view_depth, view)",
+          "lightbin_own_begin(pixel, view_depth, view)",
+          "uint lightbin_count(uvec2 pixel, float view_depth, uint view)",
+          "lightbin_heat(uvec2 pixel, float view_depth, float most, uint view)", "view < 2u",
+          "lightbin_check_view(uvec2 pixel, vec3 position, uint view)", "uniform vec4 lightbin_image[4];",
+          "lightbin_for_each_missing(cursor, lights, pixel, view_depth, view)"})
+        CHECK(has(two, present));
+    CHECK(has(text_of(all_on(3, ShaderLanguage::hlsl_5_1)), "float4 lightbin_image[6];"));
+    CHECK(has(text_of(all_on(3, ShaderLanguage::wgsl)), "image : array<vec4f, 6>,"));
+    CHECK(has(text_of(all_on(512)), "view < 512u"));
+    CHECK(has(refusal(all_on(513)), "1 to 512, and is 513"));
+    CHECK(has(refusal(all_on(0)), "is 0"));
+
+    // The constants of each view are a ShaderView.
+    const auto bound = shader_snippet(all_on(3, ShaderLanguage::glsl_vulkan))->bindings;
+    const auto image = std::find_if(bound.begin(), bound.end(),
+                                    [](const auto& b) { return b.name == "lightbin_image_block"; });
+    REQUIRE(image != bound.end());
+    CHECK(image->bytes == 3 * sizeof(ShaderView));
+    // A block of bins has those of each view.
+    ShaderOptions block = {.storage = ListStorage::uniform_block,
+                           .slicing = Slicing::z_bins,
+                           .views = 2,
+                           .max_tiles = 2,
+                           .max_entries = 4,
+                           .max_slices = 7};
+    CHECK(shader_snippet(block)->bindings.back().bytes == 2 * 7 * sizeof(BinRange));
+}
+
 TEST_CASE("a negative slot is refused with its sign, in every language and by every generator") {
     const auto sentence = [](const Result<ShaderText>& made) {
         return made ? std::string("taken") : made.error().message();

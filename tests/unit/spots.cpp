@@ -61,14 +61,14 @@ template <class Visit> void on_rungs(Visit visit) {
 TEST_CASE("whole spheres as spots are binned as spheres are") {
     const View view = test::view({1283, 721}, 16);
     std::vector<Sphere> spheres;
-    std::vector<Spot> spots, beyond_90_degrees;
+    std::vector<Spot> spots, beyond_138_degrees;
     std::mt19937 random(4);
     std::uniform_real_distribution<float> unit(-1, 1);
     for (const glm::vec4& s : test::random_lights(700, 3)) {
         spheres.push_back({s.x, s.y, s.z, s.w});
         spots.push_back(Spot::whole(spheres.back()));
-        beyond_90_degrees.push_back(
-            {s.x, s.y, s.z, s.w, unit(random), unit(random), unit(random), std::min(unit(random), 0.0f)});
+        beyond_138_degrees.push_back({s.x, s.y, s.z, s.w, unit(random), unit(random), unit(random),
+                                      std::min(unit(random), -0.75f)});
     }
     const glm::mat4 to_view = glm::rotate(glm::mat4(1.0f), 0.3f, glm::normalize(glm::vec3(1, 2, 3)));
     on_rungs([&]<Options options> {
@@ -80,7 +80,7 @@ TEST_CASE("whole spheres as spots are binned as spheres are") {
         };
         const auto expected = lists<options>(view, spheres);
         CHECK(same(lists<options>(view, spots), expected));
-        CHECK(same(lists<options>(view, beyond_90_degrees), expected));
+        CHECK(same(lists<options>(view, beyond_138_degrees), expected));
         CHECK(same(lists<options>(view, world_space(spots, to_view)),
                    lists<options>(view, world_space(spheres, to_view))));
     });

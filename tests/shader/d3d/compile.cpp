@@ -38,6 +38,16 @@ template <class Compiler> int compile_all(const std::string& model, const Share&
                      stage);
         }
     }
+    // From model 6.1 on, SV_ViewID is the number of a view. In older models a view is a layer of the target.
+    const auto multiview = multiview_runs(language);
+    for (std::size_t i = share.first; i < multiview.size(); i += share.count) {
+        const Job job = multiview[i].job();
+        compiles(job.name,
+                 model >= "6_1"
+                     ? job.text
+                     : lightbin::detail::replaced(job.text, "SV_ViewID", "SV_RenderTargetArrayIndex"),
+                 Stage::fragment);
+    }
     for (std::size_t i = share.first; const auto& options : every_reduction(language))
         if (i++ % share.count == 0) {
             const auto shader = lightbin::reduce_shader(options);

@@ -11,9 +11,10 @@
 #include <string>
 #include <vector>
 
-/// Whether a text needs Vulkan 1.1: wave loops do.
-inline bool needs_waves(const std::string& text) {
-    return text.find("subgroupMin") != std::string::npos || text.find("WaveActiveMin") != std::string::npos;
+/// Whether a text needs Vulkan 1.1: wave loops and multiview do.
+inline bool needs_vulkan_1_1(const std::string& text) {
+    const auto has = [&](const char* word) { return text.find(word) != std::string::npos; };
+    return has("subgroupMin") || has("WaveActiveMin") || has("GL_EXT_multiview");
 }
 
 /// Returns SPIR-V for Vulkan 1.0, or 1.1 where the text needs it, or throws std::runtime_error with what glslang says.
@@ -25,10 +26,10 @@ inline std::vector<std::uint32_t> compile_spirv(const std::string& text, EShLang
     shader.setStrings(&begin, 1);
     shader.setEntryPoint("main");
     shader.setEnvInput(language, stage, glslang::EShClientVulkan, 100);
-    const bool waves = needs_waves(text);
+    const bool newer = needs_vulkan_1_1(text);
     shader.setEnvClient(glslang::EShClientVulkan,
-                        waves ? glslang::EShTargetVulkan_1_1 : glslang::EShTargetVulkan_1_0);
-    shader.setEnvTarget(glslang::EShTargetSpv, waves ? glslang::EShTargetSpv_1_3 : glslang::EShTargetSpv_1_0);
+                        newer ? glslang::EShTargetVulkan_1_1 : glslang::EShTargetVulkan_1_0);
+    shader.setEnvTarget(glslang::EShTargetSpv, newer ? glslang::EShTargetSpv_1_3 : glslang::EShTargetSpv_1_0);
     auto rules = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
     if (hlsl) rules = static_cast<EShMessages>(rules | EShMsgReadHlsl);
     glslang::TProgram program;

@@ -189,7 +189,11 @@ private:
         queue.queueFamilyIndex = family_;
         queue.queueCount = 1;
         queue.pQueuePriorities = &priority;
+        // Vulkan 1.1 requires a device to have it.
+        VkPhysicalDeviceMultiviewFeatures multiview{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTIVIEW_FEATURES};
+        multiview.multiview = VK_TRUE;
         VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
+        info.pNext = &multiview;
         info.queueCreateInfoCount = 1;
         info.pQueueCreateInfos = &queue;
         check(vkCreateDevice(physical_, &info, nullptr, &device_), "Vulkan device");
@@ -240,13 +244,13 @@ private:
     }
 
     Image make_image(VkFormat format, std::uint32_t width, std::uint32_t height, VkImageUsageFlags usage,
-                     Undo& undo) {
+                     Undo& undo, std::uint32_t layers = 1) {
         VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
         info.imageType = VK_IMAGE_TYPE_2D;
         info.format = format;
         info.extent = {width, height, 1};
         info.mipLevels = 1;
-        info.arrayLayers = 1;
+        info.arrayLayers = layers;
         info.samples = VK_SAMPLE_COUNT_1_BIT;
         info.tiling = VK_IMAGE_TILING_OPTIMAL;
         info.usage = usage;
@@ -259,9 +263,9 @@ private:
         check(vkBindImageMemory(device_, image.handle, memory, 0), "image memory");
         VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
         view.image = image.handle;
-        view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+        view.viewType = layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
         view.format = format;
-        view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+        view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, layers};
         check(vkCreateImageView(device_, &view, nullptr, &image.view), "image view");
         undo.add([=, this] { vkDestroyImageView(device_, image.view, nullptr); });
         return image;
@@ -472,9 +476,9 @@ private:
                 const Descriptors& descriptors, Undo& undo) {
         const std::uint32_t width = job.width + job.corner[0], height = job.height + job.corner[1];
         const VkFormat format = job.within.empty() ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_SFLOAT;
-        const Image image =
-            make_image(format, width, height,
-                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, undo);
+        const Image image = make_image(format, width, height,
+                                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+                                       undo, job.views);
         VkAttachmentDescription attachment{};
         attachment.format = format;
         attachment.samples = VK_SAMPLE_COUNT_1_BIT;
@@ -502,6 +506,11 @@ private:
         pass_info.pSubpasses = &subpass;
         pass_info.dependencyCount = 1;
         pass_info.pDependencies = &before_copy;
+        const std::uint32_t every_view = (1u << job.views) - 1;
+        VkRenderPassMultiviewCreateInfo multiview{VK_STRUCTURE_TYPE_RENDER_PASS_MULTIVIEW_CREATE_INFO};
+        multiview.subpassCount = 1;
+        multiview.pViewMasks = &every_view;
+        if (job.views > 1) pass_info.pNext = &multiview;
         VkRenderPass pass = nullptr;
         check(vkCreateRenderPass(device_, &pass_info, nullptr, &pass), "render pass");
         undo.add([=, this] { vkDestroyRenderPass(device_, pass, nullptr); });
@@ -539,15 +548,18 @@ private:
         vkCmdEndRenderPass(commands);
 
         const Buffer picture =
-            make_buffer({}, std::size_t{job.within.empty() ? 16u : 8u} * job.width * job.height,
+            make_buffer({}, std::size_t{job.within.empty() ? 16u : 8u} * job.width * job.height * job.views,
                         VK_BUFFER_USAGE_TRANSFER_DST_BIT, undo);
-        VkBufferImageCopy copy{};
-        copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-        copy.imageOffset = {static_cast<std::int32_t>(job.corner[0]),
-                            static_cast<std::int32_t>(job.corner[1]), 0};
-        copy.imageExtent = {job.width, job.height, 1};
-        vkCmdCopyImageToBuffer(commands, image.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, picture.handle,
-                               1, &copy);
+        for (std::uint32_t view = 0; view < job.views; ++view) {
+            VkBufferImageCopy copy{};
+            copy.bufferOffset = picture.bytes / job.views * view;
+            copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, view, 1};
+            copy.imageOffset = {static_cast<std::int32_t>(job.corner[0]),
+                                static_cast<std::int32_t>(job.corner[1]), 0};
+            copy.imageExtent = {job.width, job.height, 1};
+            vkCmdCopyImageToBuffer(commands, image.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                   picture.handle, 1, &copy);
+        }
         barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                 VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
         return picture;

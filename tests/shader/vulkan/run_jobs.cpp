@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Runs the jobs of Vulkan GLSL, and of HLSL as SPIR-V: run_jobs [FIRST COUNT] takes a share of them.
+// Runs the jobs of Vulkan GLSL, and of HLSL as SPIR-V: run_jobs [FIRST COUNT] takes a share of them, and
+// run_jobs multiview [FIRST COUNT] a share of those that draw two views at once.
 #include "device.hpp"
 
 #include "../run_jobs.hpp"
+
+#include <string>
 
 int main(int count, char** arguments) {
     const Share share = share_of(count, arguments);
@@ -12,10 +15,14 @@ int main(int count, char** arguments) {
         return 1;
     }
     Tally tally;
-    for (const auto language : {lightbin::ShaderLanguage::glsl_vulkan, lightbin::ShaderLanguage::hlsl_5_1}) {
-        run_readers(device, language, share, tally, true, true);
-        run_builders(device, language, false, share, tally);
-    }
+    using enum lightbin::ShaderLanguage;
+    if (count > 1 && std::string(arguments[1]) == "multiview")
+        run_multiview(device, glsl_vulkan, share, tally);
+    else
+        for (const auto language : {glsl_vulkan, hlsl_5_1}) {
+            run_readers(device, language, share, tally, true, true);
+            run_builders(device, language, false, share, tally);
+        }
     std::printf("%s on %s, %d validation messages\n", tally.text().c_str(), device.name().c_str(),
                 device.messages());
     return !tally.good() || device.messages() > 0;

@@ -7,7 +7,10 @@ function run(job) {
     const gl = (globalThis.gl ??= document.createElement('canvas').getContext('webgl2'));
     if (!gl) return 'there is no WebGL 2';
     const program = gl.createProgram();
+    const multiview = job.views > 1 && gl.getExtension('OVR_multiview2');
+    if (job.views > 1 && !multiview) return 'there is no multiview';
     const vertex = `#version 300 es
+${multiview ? `#extension GL_OVR_multiview2 : require\nlayout(num_views = ${job.views}) in;` : ''}
 void main() {
     gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 2.0 * float(gl_VertexID & 2) - 1.0, 0.0, 1.0);
 }`;
@@ -37,7 +40,7 @@ void main() {
         if (input.resource === 'uniform_vector') {
             if (input.name.endsWith('corner')) gl.uniform2iv(place, new Int32Array(bytes.buffer, 0, 2));
             else if (input.name.endsWith('grid')) gl.uniform4uiv(place, new Uint32Array(bytes.buffer, 0, 4));
-            else gl.uniform4fv(place, new Float32Array(bytes.buffer, 0, 4));
+            else gl.uniform4fv(place, new Float32Array(bytes.buffer));
         } else if (input.resource === 'uniform_block') {
             const buffer = gl.createBuffer();
             made.push(() => gl.deleteBuffer(buffer));
@@ -65,14 +68,25 @@ void main() {
     const picture = gl.createTexture(), frame = gl.createFramebuffer();
     made.push(() => gl.deleteTexture(picture), () => gl.deleteFramebuffer(frame));
     gl.activeTexture(gl.TEXTURE15);
-    gl.bindTexture(gl.TEXTURE_2D, picture);
-    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA32UI, job.x + job.width, job.y + job.height);
+    const width = job.x + job.width, height = job.y + job.height;
     gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, picture, 0);
+    if (multiview) {
+        gl.bindTexture(gl.TEXTURE_2D_ARRAY, picture);
+        gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, gl.RGBA32UI, width, height, job.views);
+        multiview.framebufferTextureMultiviewOVR(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, picture, 0, 0, job.views);
+    } else {
+        gl.bindTexture(gl.TEXTURE_2D, picture);
+        gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA32UI, width, height);
+        gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, picture, 0);
+    }
     gl.viewport(job.x, job.y, job.width, job.height);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
-    const words = new Uint32Array(4 * job.width * job.height);
-    gl.readPixels(job.x, job.y, job.width, job.height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, words);
+    const words = new Uint32Array(4 * job.width * job.height * job.views);
+    for (let view = 0; view < job.views; ++view) {
+        if (multiview) gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, picture, 0, view);
+        gl.readPixels(job.x, job.y, job.width, job.height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, words,
+            view * words.length / job.views);
+    }
     const expected = new Uint32Array(unhex(job.expected).buffer);
     return finish(words.every((word, i) => word === expected[i]) ? '' : 'is wrong');
 }

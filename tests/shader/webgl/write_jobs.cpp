@@ -21,5 +21,8 @@ int main(int count, char** arguments) {
     const auto runs = reader_runs(language);
     for (std::size_t i = share.first; i < runs.size(); i += share.count)
         if (runs[i].screen.width < 100) std::printf("%s,\n", json(runs[i].job(), true).c_str());
+    const auto multiview = multiview_runs(language);
+    for (std::size_t i = share.first; i < multiview.size(); i += share.count)
+        std::printf("%s,\n", json(multiview[i].job(), true).c_str());
     std::printf("]);</script>\n");
 }

@@ -1,0 +1,281 @@
+// Boxes: what the proofs in tests/oracle don't ask.
+#include "scene.hpp"
+
+#include <lightbin/box.hpp>
+#include <lightbin/shader_build.hpp>
+
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include <functional>
+
+using namespace lightbin;
+
+namespace {
+
+glm::vec3 random_vector(std::mt19937& random) {
+    std::uniform_real_distribution<float> unit(-1, 1);
+    return {unit(random), unit(random), unit(random)};
+}
+
+/// In and around the view: whole boxes and cut balls, some flat, some sheared, some tapered, some bad.
+std::vector<Box> random_boxes(std::size_t count, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::vector<Box> boxes;
+    for (const glm::vec4& s : test::random_lights(count, seed)) {
+        const glm::vec3 centre(s), x = s.w * random_vector(random), y = s.w * random_vector(random),
+                                   z = s.w * random_vector(random);
+        const Sphere ball = {s.x, s.y, s.z, s.w};
+        switch (boxes.size() % 8) {
+        case 0:
+            boxes.push_back(whole_box(centre, x, glm::cross(x, y) / s.w, glm::vec3(0)));
+            break;
+        case 1:
+            boxes.push_back(projector_box(centre, x, y, z, 0.1));
+            break;
+        case 2:
+            boxes.push_back(half_sphere(ball, x));
+            break;
+        case 3:
+            boxes.push_back(clipped_sphere(ball, whole_box(centre + y, x, y, z)));
+            break;
+        case 4:
+            boxes.push_back(tube_box(centre, centre + x, 0.2f * s.w));
+            break;
+        case 5:
+            boxes.push_back(whole_box(centre, x, y, z));
+            boxes.back().radius = boxes.size() % 3 == 0 ? -1.0f : HUGE_VALF;
+            break;
+        default:
+            boxes.push_back(whole_box(centre, x, y, z));
+        }
+    }
+    return boxes;
+}
+
+ZBounds box_bounds(const View& view, std::vector<float>& min, std::vector<float>& max) {
+    for (std::size_t tile = 0; tile < view.tile_count(); ++tile) {
+        min.push_back(static_cast<float>(tile % 97));
+        max.push_back(min.back() + static_cast<float>(tile % 5));
+    }
+    return {.min = min, .max = max};
+}
+
+template <Options options, class LightRange>
+test::Lists box_lists(const View& view, const LightRange& lights, const Parallel& parallel = {}) {
+    std::vector<float> min, max;
+    const Slices slices = *Slices::exponential(7, 3, 90);
+    Binner<options> binner;
+    const auto grid = binner.bin(view, lights, inputs_for<options>(box_bounds(view, min, max), slices), parallel);
+    REQUIRE(grid);
+    auto lists = test::to_lists(*grid);
+    if (options.slicing == Slicing::z_bins)  // from ranks back to ids
+        for (auto& list : lists) {
+            for (auto& id : list)
+                id = grid->ranks().order[id];
+            std::sort(list.begin(), list.end());
+        }
+    return lists;
+}
+
+/// Calls visit with every rung that boxes have kernels of their own for.
+template <class Visit> void on_box_rungs(Visit visit) {
+    visit.template operator()<Options{}>();
+    visit.template operator()<Options{.footprint = Footprint::silhouette}>();
+    visit.template operator()<Options{.depth_test = DepthTest::interval}>();
+    visit.template operator()<Options{.depth_test = DepthTest::box}>();
+    visit.template operator()<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>();
+    visit.template operator()<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
+    visit.template operator()<Options{
+        .footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::z_bins}>();
+}
+
+/// Whether a point is in the sphere and the box of a Box, give or take a thousandth of its size.
+bool contains(const Box& box, const glm::vec3& p) {
+    const glm::vec3 ball(box.x, box.y, box.z), from = p - glm::vec3(box.box_x, box.box_y, box.box_z);
+    const auto axis = [&](int i) { return glm::vec3(box.half_axes[i][0], box.half_axes[i][1], box.half_axes[i][2]); };
+    const glm::vec3 at = glm::inverse(glm::mat3(axis(0), axis(1), axis(2))) * from;
+    const float width = (1 + box.taper + at.z * (1 - box.taper)) / 2 * 1.001f + 0.001f;
+    return glm::length(p - ball) <= box.radius * 1.001f && std::abs(at.x) <= width && std::abs(at.y) <= width &&
+           std::abs(at.z) <= 1.001f;
+}
+
+constexpr Options on_tier(Options options, Isa isa) {
+    options.isa = isa;
+    return options;
+}
+
+}  // namespace
+
+TEST_CASE("each rung lists fewer boxes than their spheres, and none that a lower one leaves out") {
+    const View view = test::view({1283, 721}, 16);
+    const std::vector<Box> boxes = random_boxes(400, 5);
+    const std::vector<Sphere> spheres(boxes.begin(), boxes.end());
+    const auto in_rectangles = box_lists<Options{}>(view, boxes);
+    on_box_rungs([&]<Options options> {
+        const auto here = box_lists<options>(view, boxes), of_spheres = box_lists<options>(view, spheres);
+        if constexpr (options.slicing != Slicing::clusters) CHECK(test::is_superset(in_rectangles, here));
+        CHECK(4 * test::entries(here) < 3 * test::entries(of_spheres));
+        CHECK(test::entries(here) > 0);
+        const auto alone = box_lists<options>(view, std::vector<Box>{boxes[1]});
+        for (std::size_t cell = 0; cell < here.size(); ++cell)
+            REQUIRE(alone[cell].size() ==
+                    static_cast<std::size_t>(std::count(here[cell].begin(), here[cell].end(), 1u)));
+    });
+}
+
+TEST_CASE("boxes have the same lists on all tiers and threads") {
+    const View view = test::view({1283, 721}, 16);
+    const std::vector<Box> boxes = random_boxes(700, 6);
+    const glm::mat4 sheared = glm::mat4(1, 0.2f, 0, 0, 0, -1, 0.1f, 0, 0.4f, 0, 1, 0, 1, 2, 3, 1);
+    on_box_rungs([&]<Options options> {
+        const auto in_view = box_lists<on_tier(options, Isa::scalar)>(view, boxes);
+        const auto in_world = box_lists<on_tier(options, Isa::scalar)>(view, world_space(boxes, sheared));
+        test::on_machine_tiers([&]<Isa isa>() {
+            CHECK((box_lists<on_tier(options, isa)>(view, boxes) == in_view));
+            CHECK((box_lists<on_tier(options, isa)>(view, world_space(boxes, sheared)) == in_world));
+            CHECK((box_lists<on_tier(options, isa)>(view, boxes, {3, test::on_threads, 0}) == in_view));
+        });
+    });
+}
+
+TEST_CASE("bitmasks of boxes are those of their lists, and transparent ones are not cut in front") {
+    const View view = test::view({641, 361}, 16);
+    const std::vector<Box> boxes = random_boxes(300, 7);
+    std::vector<float> min, max;
+    const ZBounds bounds = box_bounds(view, min, max);
+    Binner<Options{.depth_test = DepthTest::box}> binner;
+    const auto listed = test::to_lists(*binner.bin(view, boxes, {.bounds = bounds}));
+    std::vector<std::uint32_t> bits(view.tile_count() * 10);
+    REQUIRE(binner.bin_bits(view, boxes, 300, bits, {.bounds = bounds}));
+    for (std::size_t tile = 0; tile < listed.size(); ++tile)
+        for (std::uint32_t id = 0; id < 300; ++id)
+            REQUIRE((bits[10 * tile + id / 32] >> id % 32 & 1) ==
+                    std::count(listed[tile].begin(), listed[tile].end(), id));
+    const auto both = binner.bin_transparency(view, boxes, {.bounds = bounds});
+    REQUIRE(both);
+    CHECK((test::to_lists(both->opaque) == listed));
+    CHECK((test::to_lists(both->transparent) == test::to_lists(*binner.bin(view, boxes, {.bounds = {.max = max}}))));
+}
+
+TEST_CASE("an affine matrix makes of a box the box of the transformed half axes") {
+    const View view = test::view({641, 361}, 16);
+    const glm::mat4 m = glm::mat4(1, 0.3f, 0, 0, 0.5f, -1, 0.1f, 0, 0.4f, 0, 2, 0, 1, 2, 3, 1);
+    std::vector<Box> boxes = random_boxes(300, 8), moved;
+    for (Box& box : boxes) {
+        if (box.radius > 0) box.radius = HUGE_VALF;  // the image of a sphere is none
+        const auto image = [&](float x, float y, float z, float w) { return m * glm::vec4(x, y, z, w); };
+        moved.push_back(box);
+        const glm::vec4 c = image(box.box_x, box.box_y, box.box_z, 1);
+        moved.back().box_x = c.x, moved.back().box_y = c.y, moved.back().box_z = c.z;
+        for (float(&h)[3] : moved.back().half_axes) {
+            const glm::vec4 axis = image(h[0], h[1], h[2], 0);
+            h[0] = axis.x, h[1] = axis.y, h[2] = axis.z;
+        }
+    }
+    on_box_rungs([&]<Options options> {
+        const double before = static_cast<double>(test::entries(box_lists<options>(view, world_space(boxes, m)))),
+                     after = static_cast<double>(test::entries(box_lists<options>(view, moved)));
+        CHECK(before == doctest::Approx(after).epsilon(0.002));
+    });
+}
+
+TEST_CASE("footprints for shaders have the boxes' rectangles and spheres around the boxes") {
+    const View view = test::view({641, 361}, 16);
+    const std::vector<Box> boxes = random_boxes(300, 10);
+    const auto in_rectangles = box_lists<Options{}>(view, boxes);
+    const auto footprints = shader_footprints(view, boxes);
+    REQUIRE(footprints);
+    std::size_t area = 0;
+    for (const ShaderFootprint& light : *footprints) {
+        area += (light.x1 - light.x0 + std::size_t{1}) * (light.y1 - light.y0 + 1);
+        const Sphere sphere = boxes[light.id];
+        CHECK(light.radius == sphere.radius);
+    }
+    CHECK(area == test::entries(in_rectangles));
+}
+
+TEST_CASE("bad boxes are skipped and counted") {
+    const Box good = {0, 0, -10, 1, 0, 0, -10, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    std::vector<Box> boxes = {good};
+    const auto add = [&](const std::function<void(Box&)>& change) {
+        boxes.push_back(good);
+        change(boxes.back());
+    };
+    const float nan = std::nanf("");
+    for (const float bad : {nan, HUGE_VALF, -HUGE_VALF}) {
+        add([&](Box& b) { b.y = bad; });
+        add([&](Box& b) { b.box_z = bad; });
+        add([&](Box& b) { b.half_axes[1][2] = bad; });
+        add([&](Box& b) { b.taper = bad; });
+    }
+    for (const float bad : {nan, 0.0f, -1.0f, -HUGE_VALF})
+        add([&](Box& b) { b.radius = bad; });
+    add([&](Box& b) { b.taper = -0.5f; });
+    add([&](Box& b) { b.taper = 1.5f; });
+    add([&](Box& b) { std::fill(&b.half_axes[0][0], &b.half_axes[0][0] + 9, 0.0f); });
+    const std::size_t bad_ones = boxes.size() - 1;
+    add([](Box& b) { b.half_axes[2][2] = 0; });  // flat
+    add([](Box& b) { b.half_axes[2][2] = b.half_axes[1][1] = 0; });
+    add([](Box& b) { b.radius = HUGE_VALF; });
+    add([](Box& b) { b.taper = 0; });
+    const View view = test::view({640, 360}, 16);
+    Binner<> binner;
+    const auto grid = binner.bin(view, boxes);
+    REQUIRE(grid);
+    CHECK(grid->light_counts().rejected == bad_ones);
+    CHECK(grid->light_counts().culled == 0);
+    for (std::size_t i = 1; i <= bad_ones; ++i)
+        CHECK(!(Sphere(boxes[i]).radius >= 0));
+    struct Lamp {
+        bool unused;
+    };
+    const std::vector<const Lamp*> none = {nullptr};
+    const auto of_null = binner.bin(view, view_space(none, [&](const Lamp&) { return good; }));
+    REQUIRE(of_null);
+    CHECK(of_null->light_counts().rejected == 1);
+}
+
+TEST_CASE("the functions that make boxes contain what they are named after, and no more than they must") {
+    std::mt19937 random(9);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    for (int round = 0; round < 300; ++round) {
+        const glm::vec3 c = 10.0f * random_vector(random), x = random_vector(random), y = random_vector(random),
+                        z = random_vector(random);
+        const float radius = 0.1f + std::abs(unit(random));
+        const Sphere ball = {c.x, c.y, c.z, radius};
+        if (std::abs(glm::dot(x, glm::cross(y, z))) < 0.01f) continue;  // contains() divides by it
+        const glm::vec3 s = random_vector(random);
+        const glm::vec3 in_cube = c + s.x * x + s.y * y + s.z * z;
+        const Box whole = whole_box(c, x, y, z);
+        const glm::mat4 m(glm::vec4(x, 0), glm::vec4(y, 0), glm::vec4(z, 0), glm::vec4(c, 1));
+        CHECK(contains(whole, in_cube));
+        CHECK(contains(whole_box(m, 1), in_cube));
+        CHECK(contains(whole_box(m, 0.5), c + 0.5f * (in_cube - c)));
+        CHECK(!contains(whole_box(m, 0.5), c + 0.51f * (x + s.y * y + s.z * z)));
+        CHECK(contains(clipped_sphere(ball, whole), in_cube) == (glm::length(in_cube - c) <= radius * 1.001f));
+        const Box half = half_sphere(ball, x);
+        const glm::vec3 in_ball = c + radius * s / std::max(glm::length(s), 1.0f);
+        CHECK((glm::dot(in_ball - c, x) < 0 || contains(half, in_ball)));
+        CHECK(!contains(half, c - 0.01f * radius * glm::normalize(x)));
+        const Box projector = projector_box(c, x, y, z, 0.25);
+        const float depth = 0.25f + 0.75f * std::abs(s.x);
+        CHECK(contains(projector, c + depth * (x + s.y * y + s.z * z)));
+        CHECK(!contains(projector, c + depth * (x + 1.01f * y + s.z * z)));
+        const Box tube = tube_box(c, c + x, radius);
+        CHECK(contains(tube, c + std::abs(unit(random)) * x + radius * glm::normalize(s)));
+        CHECK(!contains(tube, c + x + 1.02f * radius * glm::normalize(x)));
+        // The sphere of a whole box holds its corners, and one of them is on it.
+        float farthest = 0;
+        for (int corner = 0; corner < 8; ++corner)
+            farthest = std::max(farthest,
+                                glm::length((corner & 1 ? x : -x) + (corner & 2 ? y : -y) + (corner & 4 ? z : -z)));
+        CHECK(whole.radius == doctest::Approx(farthest).epsilon(1e-5));
+        CHECK(Sphere(clipped_sphere(ball, whole)).radius <= radius);
+        CHECK(Sphere(clipped_sphere({c.x, c.y, c.z, 100}, whole)).radius == whole.radius);
+    }
+    CHECK(!(Sphere(half_sphere({0, 0, 0, 1}, glm::vec3(0))).radius >= 0));
+    CHECK(!(Sphere(tube_box(glm::vec3(0), glm::vec3(1), -1)).radius >= 0));
+    CHECK(Sphere(tube_box(glm::vec3(1), glm::vec3(1), 2)).radius == doctest::Approx(2));
+}

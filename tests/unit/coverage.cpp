@@ -1,0 +1,426 @@
+// What each light covers, against the lists, against exact depths, and against projected points of the lights.
+#include "scene.hpp"
+
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/geometric.hpp>
+
+#include <cstring>
+#include <limits>
+
+using namespace lightbin;
+
+namespace {
+
+constexpr Options with_coverage(Options options) {
+    options.coverage = true;
+    return options;
+}
+
+std::vector<LightCoverage> coverage_of(const auto& binner) {
+    return {binner.coverage().begin(), binner.coverage().end()};
+}
+
+bool same(const std::vector<LightCoverage>& a, const std::vector<LightCoverage>& b) {
+    static_assert(sizeof(LightCoverage) == 24);  // no padding, whose bytes could differ
+    return a.size() == b.size() &&
+           (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
+}
+
+/// The lights that a grid lists, and the rectangle of each, from the lists alone.
+template <class Id>
+std::vector<LightCoverage> listed_rectangles(const LightGrid<Id>& grid, std::size_t lights) {
+    std::vector<LightCoverage> rectangles(lights, {0, 0xffff, 0xffff, 0, 0, 0, 0, 0});
+    std::vector<std::size_t> tiles(lights);
+    for (int y = 0; y < grid.tiles_y(); ++y)
+        for (int x = 0; x < grid.tiles_x(); ++x) {
+            std::vector<bool> here(lights);
+            for (int slice = 0; slice < grid.slices(); ++slice)
+                for (const Id id : grid.lights_in(x, y, slice)) {
+                    const std::uint32_t light = grid.ranks().order.empty() ? id : grid.ranks().order[id];
+                    LightCoverage& r = rectangles[light];
+                    r.x0 = std::min(r.x0, static_cast<std::uint16_t>(x));
+                    r.y0 = std::min(r.y0, static_cast<std::uint16_t>(y));
+                    r.x1 = std::max(r.x1, static_cast<std::uint16_t>(x));
+                    r.y1 = std::max(r.y1, static_cast<std::uint16_t>(y));
+                    tiles[light] += !here[light];
+                    here[light] = true;
+                }
+        }
+    std::vector<LightCoverage> found;
+    for (std::uint32_t light = 0; light < lights; ++light) {
+        LightCoverage& r = rectangles[light];
+        if (tiles[light] == 0) continue;
+        CHECK(tiles[light] == static_cast<std::size_t>((r.x1 - r.x0 + 1) * (r.y1 - r.y0 + 1)));
+        r.id = light;
+        found.push_back(r);
+    }
+    return found;
+}
+
+bool same_rectangles(const std::vector<LightCoverage>& a, const std::vector<LightCoverage>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const LightCoverage& l, const LightCoverage& r) {
+                          return l.id == r.id && l.x0 == r.x0 && l.y0 == r.y0 && l.x1 == r.x1 && l.y1 == r.y1;
+                      });
+}
+
+std::vector<Spot> some_spots(std::size_t count, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> side(-1, 1);
+    std::vector<Spot> spots;
+    for (const glm::vec4& light : test::random_lights(count, seed))
+        spots.push_back({light.x, light.y, light.z, light.w, side(random), side(random), side(random),
+                         random() % 8 == 0 ? -1.0f : std::fabs(side(random))});
+    return spots;
+}
+
+/// Cameras that look down -z and +z, off-centre, with pixels that are not square, and without perspective.
+std::vector<View> views() {
+    const glm::mat4 flipped = glm::scale(glm::mat4(1), glm::vec3(1, 1, -1));
+    std::vector<View> all;
+    for (const glm::mat4& projection : {glm::perspectiveRH_NO(1.0f, 1.5f, 0.1f, 1000.0f),
+                                        glm::frustumRH_NO(-0.2f, 0.05f, -0.1f, 0.3f, 0.25f, 500.0f),
+                                        glm::perspectiveRH_NO(1.0f, 1.5f, 2.0f, 60.0f) * flipped,
+                                        glm::orthoRH_NO(-30.0f, 50.0f, -20.0f, 25.0f, 1.0f, 80.0f)})
+        all.push_back(*View::from_projection(projection, {480, 320}, {.tile_size = 32}));
+    return all;
+}
+
+/// Spheres for a view: its depths are those of random_lights(), whichever way it looks.
+std::vector<glm::vec4> lights_before(const View& view, std::size_t count, std::uint32_t seed) {
+    auto lights = test::random_lights(count, seed);
+    const bool forward = view.image_point({0, 0, 1}).depth > 0;
+    for (glm::vec4& light : lights)
+        light.z = forward ? -light.z : light.z;
+    return lights;
+}
+
+/// The extent in pixels of the points that were added.
+struct Extent2 {
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+
+    void add(const ImagePoint& p) {
+        const double at[] = {p.x, p.y};
+        for (int i = 0; i < 2; ++i) {
+            low[i] = std::min(low[i], at[i]);
+            high[i] = std::max(high[i], at[i]);
+        }
+    }
+    double pixels() const { return std::max(high[0] - low[0], high[1] - low[1]); }
+};
+
+/// The size of a sphere's projection. In each image axis that is a disc's: points of its edge beyond the near plane,
+/// and where edge and near plane meet. Without perspective nothing is cut off.
+double sampled_pixels(const View& view, const glm::dvec4& sphere) {
+    const double forward = view.image_point({0, 0, 1}).depth, z = forward * sphere.z, r = sphere.w,
+                 near_z = view.orthographic() ? -HUGE_VAL : view.near_depth();
+    double most = 0;
+    for (int axis = 0; axis < 2; ++axis) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        const auto add = [&](double c, double depth) {
+            if (depth < near_z) return;
+            const ImagePoint at = view.image_point({c, c, forward * depth});
+            low = std::min(low, axis == 0 ? at.x : at.y);
+            high = std::max(high, axis == 0 ? at.x : at.y);
+        };
+        const double c = axis == 0 ? sphere.x : sphere.y;
+        for (int i = 0; i < 4000; ++i) {
+            const double angle = i * (2 * 3.14159265358979 / 4000);
+            add(c + r * std::cos(angle), z + r * std::sin(angle));
+        }
+        if (const double half = r * r - (near_z - z) * (near_z - z); half > 0) {
+            add(c - std::sqrt(half), near_z);
+            add(c + std::sqrt(half), near_z);
+        }
+        most = std::max(most, high - low);
+    }
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a light's rectangle is the tiles that list it, and every light in view has one, in ascending order") {
+    for (const View& view : views())
+        for (const std::size_t count : {0u, 1u, 65u, 700u}) {
+            const auto spheres = lights_before(view, count, 3);
+            const auto spots = some_spots(count, 4);
+            const Slices slices = *Slices::exponential(6, 2, 70);
+            const auto check =
+                [&]<Options options>(const auto& lights,
+                                     const Inputs<options.depth_test, options.slicing>& inputs) {
+                    Binner<with_coverage(options)> binner;
+                    const auto grid = binner.bin(view, lights, inputs);
+                    REQUIRE(grid);
+                    const auto coverage = coverage_of(binner);
+                    const LightCounts& counts = grid->light_counts();
+                    CHECK(coverage.size() == counts.lights - counts.rejected - counts.culled);
+                    CHECK(same_rectangles(coverage, listed_rectangles(*grid, count)));
+                };
+            check.template operator()<Options{}>(spheres, {});
+            check.template operator()<Options{.ids = IdWidth::u16}>(spots, {});
+            check.template operator()<Options{.slicing = Slicing::clusters}>(spheres, {.slices = slices});
+            check.template operator()<Options{.slicing = Slicing::z_bins}>(spots, {.slices = slices});
+        }
+}
+
+TEST_CASE("what a light covers depends on no other option, on no tier and on no thread") {
+    const View view = test::view({640, 360}, 32);
+    const Slices slices = *Slices::exponential(6, 2, 70);
+    const std::vector<float> min(view.tile_count(), 5.0f), max(view.tile_count(), 20.0f);
+    const ZBounds bounds = {.min = min, .max = max};
+    const glm::mat4 camera = glm::lookAt(glm::vec3(1, 2, 3), glm::vec3(4, 2, -9), glm::vec3(0.1f, 1, 0));
+    const auto vectors = test::random_lights(1500, 11);
+    const auto spots = some_spots(1500, 12);
+    const auto check = [&](const auto& lights) {
+        Binner<Options{.isa = Isa::scalar, .coverage = true}> by_itself;
+        REQUIRE(by_itself.bin(view, lights));
+        const auto coverage = coverage_of(by_itself);
+        CHECK(coverage.size() > 300);
+        test::on_machine_tiers([&]<Isa isa>() {
+            const auto agrees = [&]<Options options>() {
+                Binner<with_coverage(options)> binner;
+                const auto inputs = inputs_for<with_coverage(options)>(bounds, slices);
+                REQUIRE(binner.bin(view, lights, inputs));
+                CHECK(same(coverage_of(binner), coverage));
+                REQUIRE(binner.bin(view, std::vector<glm::vec4>(), inputs));
+                CHECK(coverage_of(binner).empty());
+                REQUIRE(binner.bin(view, lights, inputs, Parallel(3, test::on_threads, 0)));
+                CHECK(same(coverage_of(binner), coverage));
+            };
+            agrees.template operator()<Options{.isa = isa}>();
+            agrees.template operator()<Options{
+                .footprint = Footprint::silhouette, .depth_test = DepthTest::box, .isa = isa}>();
+            agrees.template
+            operator()<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters, .isa = isa}>();
+            agrees.template
+            operator()<Options{.depth_test = DepthTest::interval, .slicing = Slicing::z_bins, .isa = isa}>();
+        });
+        Binner<Options{.depth_test = DepthTest::box, .coverage = true}> tested;
+        REQUIRE(tested.bin_transparency(view, lights, {.bounds = bounds}));
+        CHECK(same(coverage_of(tested), coverage));
+        REQUIRE(tested.bin(view, std::vector<glm::vec4>(), {.bounds = bounds}));
+        std::vector<std::uint32_t> bits(view.tile_count() * 47);
+        REQUIRE(tested.bin_bits(view, lights, 1504, bits, {.bounds = bounds}));
+        CHECK(same(coverage_of(tested), coverage));
+        const auto moved = std::move(tested);
+        CHECK(same(coverage_of(moved), coverage));
+        CHECK(tested.coverage().empty());
+    };
+    check(vectors);
+    check(spots);
+    check(world_space(vectors, camera));
+    check(world_space(spots, camera));
+}
+
+TEST_CASE("after a call that refused its lights there is no coverage") {
+    const View view = test::view({640, 360}, 32);
+    const auto lights = test::random_lights(100, 1);
+    Binner<Options{.coverage = true}> binner;
+    CHECK(binner.coverage().empty());
+    REQUIRE(binner.bin(view, lights));
+    CHECK(!binner.coverage().empty());
+    CHECK(!binner.bin(view, world_space(lights, glm::mat4(NAN))));
+    CHECK(binner.coverage().empty());
+}
+
+TEST_CASE("the depths of a sphere enclose it, and are no more than a few floats wider") {
+    for (const View& view : views()) {
+        const double forward = view.image_point({0, 0, 1}).depth;
+        auto lights = lights_before(view, 900, 21);
+        lights.push_back({0, 0, forward * 10, std::numeric_limits<float>::infinity()});
+        lights.push_back({0, 0, forward * 10, 0});
+        lights.push_back({0, 0, forward * 10, 1e-30f});
+        lights.push_back({0, 0, forward * 1e-3, 9});
+        lights.push_back({0, 0, -FLT_MAX * forward, FLT_MAX});
+        lights.push_back({0, 0, FLT_MAX * forward, FLT_MAX});
+        Binner<Options{.coverage = true}> binner;
+        REQUIRE(binner.bin(view, lights));
+        for (const LightCoverage& light : binner.coverage()) {
+            const long double z = static_cast<long double>(forward) * lights[light.id].z,
+                              r = lights[light.id].w;
+            CHECK(light.nearest <= z - r);
+            CHECK(light.farthest >= z + r);
+            const auto before = [](float a) {
+                return std::nextafter(std::nextafter(a, HUGE_VALF), HUGE_VALF);
+            };
+            if (std::isfinite(light.nearest)) CHECK(before(light.nearest) >= z - r);
+            if (std::isfinite(light.farthest)) CHECK(-before(-light.farthest) <= z + r);
+        }
+    }
+}
+
+TEST_CASE("a sphere's size in pixels is that of its projection, cut off at the near plane and not at the "
+          "viewport's edge") {
+    for (const View& view : views()) {
+        const auto lights = lights_before(view, 400, 31);
+        Binner<Options{.coverage = true}> binner;
+        REQUIRE(binner.bin(view, lights));
+        CHECK(binner.coverage().size() > 50);
+        int finite = 0, larger_than_viewport = 0;
+        for (const LightCoverage& light : binner.coverage()) {
+            const glm::dvec4 sphere(lights[light.id]);
+            const double sampled = sampled_pixels(view, sphere);
+            CHECK(double{light.pixels} >= sampled);
+            if (!std::isfinite(light.pixels)) continue;
+            CHECK(double{light.pixels} <= sampled * 1.01);
+            ++finite;
+            larger_than_viewport += light.pixels > 480;
+        }
+        CHECK(finite > 40);
+        CHECK((larger_than_viewport > 0 || view.orthographic()));
+    }
+}
+
+TEST_CASE("the size in pixels of small, large and infinite spheres") {
+    const View view = test::view({640, 360}, 32);
+    // Pixels for a slope of 1, of the matrix as it is rounded to float.
+    const double per_slope = view.image_point({1, 0, -1}).x - view.image_point({0, 0, -1}).x;
+    const std::vector<Sphere> lights = {{0, 0, -10, 0},          {0, 0, -10, 1e-6f}, {0, 0, -10, 1e-20f},
+                                        {0, 0, -500, 1},         {3, -2, -9, 1},     {0, 0, -10, 9.89f},
+                                        {0, 0, -10, 9.94f},      {0, 0, 0, 0.2f},    {0, 0, -10, HUGE_VALF},
+                                        {0, 0, -1e6f, 999500.0f}};
+    Binner<Options{.coverage = true}> binner;
+    REQUIRE(binner.bin(view, lights));
+    REQUIRE(binner.coverage().size() == lights.size());
+    const auto near_is = [&](std::size_t i, double pixels) {
+        CHECK(double{binner.coverage()[i].pixels} >= pixels);
+        CHECK(double{binner.coverage()[i].pixels} <= pixels * (1 + 1e-5) + 1e-3);
+    };
+    const auto tangents = [&](double z, double r) {
+        return 2 * r / std::sqrt((z - r) * (z + r)) * per_slope;
+    };
+    near_is(0, 0);
+    near_is(1, tangents(10, 1e-6f));
+    near_is(2, 0);
+    near_is(3, tangents(500, 1));
+    const double flank = std::atan2(3.0, 9.0), half = std::asin(1 / std::sqrt(90.0));
+    near_is(4, (std::tan(flank + half) - std::tan(flank - half)) * per_slope);
+    near_is(5, tangents(10, 9.89f));
+    const double r = 9.94f,
+                 touches = 10 - r * r / 10;  // the depth where the tangents touch is beyond the near plane
+    CHECK(touches > 0.1);
+    near_is(6, tangents(10, r));
+    near_is(7, 2 * std::sqrt(0.2f * 0.2 - 0.01) / 0.1 * per_slope);
+    CHECK(binner.coverage()[8].pixels == HUGE_VALF);
+    near_is(9, tangents(1e6, 999500));
+}
+
+TEST_CASE("a spot's depths enclose it closely, and its size in pixels is that of its least sphere") {
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> uniform(0, 1);
+    const glm::mat4 camera = glm::rotate(glm::mat4(1), 0.7f, glm::normalize(glm::vec3(1, 2, 3)));
+    for (const View& view : views()) {
+        const double forward = view.image_point({0, 0, 1}).depth;
+        auto spots = some_spots(300, 41);
+        for (Spot& spot : spots)
+            spot.z *= static_cast<float>(-forward);
+        // In view space, and as the same spots in a world that a rotation moves to it, up to rounding.
+        auto in_world = spots;
+        const glm::mat3 back = glm::transpose(glm::mat3(camera));
+        for (Spot& spot : in_world) {
+            const glm::vec3 at = back * glm::vec3(spot.x, spot.y, spot.z),
+                            axis = back * glm::vec3(spot.axis_x, spot.axis_y, spot.axis_z);
+            spot = {at.x, at.y, at.z, spot.radius, axis.x, axis.y, axis.z, spot.cos_half_angle};
+        }
+        Binner<Options{.coverage = true}> binner;
+        for (const bool world : {false, true}) {
+            if (world)
+                REQUIRE(binner.bin(view, world_space(in_world, camera)));
+            else
+                REQUIRE(binner.bin(view, spots));
+            CHECK(binner.coverage().size() > 40);
+            for (const LightCoverage& light : binner.coverage()) {
+                const Spot& spot = spots[light.id];
+                const double r = spot.radius, slack = world ? 1e-4 * (r + std::fabs(spot.z)) : 0;
+                const glm::dvec3 apex(spot.x, spot.y, spot.z),
+                    axis = glm::normalize(glm::dvec3(spot.axis_x, spot.axis_y, spot.axis_z));
+                const double cosine = spot.cos_half_angle;
+                double nearest = forward * apex.z, farthest = nearest;
+                // Points of the cap and the rim; among them the ball's poles and the rim's two extreme points.
+                const glm::dvec3 up(0, 0, forward), across = up - glm::dot(up, axis) * axis;
+                const double sine = std::sqrt(1 - std::max(cosine, 0.0) * std::max(cosine, 0.0));
+                std::vector<glm::dvec3> directions = {up, -up};
+                for (const double side : {-1.0, 1.0})
+                    if (glm::length(across) > 1e-9 && cosine > 0)
+                        directions.push_back(cosine * axis + side * sine * glm::normalize(across));
+                for (int i = 0; i < 60; ++i)
+                    directions.push_back(
+                        glm::normalize(glm::dvec3(normal(random), normal(random), normal(random))));
+                Extent2 extent;
+                for (const glm::dvec3& direction : directions) {
+                    if (cosine > 0 && glm::dot(direction, axis) < cosine - 1e-12) continue;
+                    const double z = forward * (apex + r * direction).z;
+                    nearest = std::min(nearest, z);
+                    farthest = std::max(farthest, z);
+                    const glm::dvec3 point = apex + r * std::cbrt(uniform(random)) * direction;
+                    if (forward * point.z >= double{view.near_depth()})
+                        extent.add(view.image_point({point.x, point.y, point.z}));
+                }
+                const double wider = slack + 1e-5 * (r + std::fabs(spot.z));
+                CHECK(light.nearest <= nearest + slack);
+                CHECK(light.farthest >= farthest - slack);
+                CHECK(light.nearest >= nearest - wider);
+                CHECK(light.farthest <= farthest + wider);
+                CHECK(double{light.pixels} >= extent.pixels() * (1 - 1e-3 * world));
+
+                const Sphere least = least_sphere(spot);
+                const glm::dvec4 sphere(least.x, least.y, least.z, least.radius);
+                if (!std::isfinite(light.pixels) ||
+                    forward * sphere.z - sphere.w < 0.01 * sphere.w + 2 * double{view.near_depth()})
+                    continue;
+                const double size = sampled_pixels(view, sphere);
+                CHECK(double{light.pixels} >= size * (world ? 0.999 : 0.99999));
+                CHECK(double{light.pixels} <= size * 1.01 * (1 + 1e-5 * glm::length(apex) / sphere.w) + 0.01);
+            }
+        }
+    }
+}
+
+TEST_CASE("entries are counted for each light, also by rank and with clusters, and a light in no drawn tile "
+          "has none") {
+    const View view = test::view({640, 360}, 32);
+    const auto lights = test::random_lights(800, 51);
+    const Slices slices = *Slices::exponential(6, 2, 70);
+    std::vector<float> min(view.tile_count(), 12.0f), max(view.tile_count(), 14.0f);
+    const auto check = [&]<Options options>() {
+        Binner<options> binner;
+        const auto grid = binner.bin(view, lights, inputs_for<options>({.min = min, .max = max}, slices));
+        REQUIRE(grid);
+        std::vector<std::uint32_t> expected(lights.size()), entries(lights.size() + 1, 77);
+        std::uint32_t listed = 0;
+        for (const auto& list : test::to_lists(*grid))
+            for (const std::uint32_t id : list)
+                listed += expected[grid->ranks().order.empty() ? id : grid->ranks().order[id]]++ == 0;
+        expected.push_back(77);
+        const auto found = count_entries(*grid, entries);
+        REQUIRE(found);
+        CHECK(*found == listed);
+        CHECK(entries == expected);
+        const auto refused = count_entries(*grid, std::span(entries).first(lights.size() - 1));
+        REQUIRE(!refused);
+        CHECK(refused.error().code == ErrorCode::light_buffer_too_small);
+        CHECK(std::string(refused.error().message()).find("has 799, and 800 lights") != std::string::npos);
+        return listed;
+    };
+    const std::uint32_t all = check.template operator()<Options{.ids = IdWidth::u16}>();
+    check.template operator()<Options{.slicing = Slicing::clusters}>();
+    check.template operator()<Options{.slicing = Slicing::z_bins}>();
+    const std::uint32_t drawn = check.template operator()<Options{.depth_test = DepthTest::interval}>();
+    CHECK(
+        drawn ==
+        check.template operator()<Options{.depth_test = DepthTest::interval, .slicing = Slicing::z_bins}>());
+    CHECK(drawn < all);
+
+    // Of lights in view, those that are listed nowhere are those whose depths meet no Z bounds.
+    Binner<Options{.depth_test = DepthTest::interval, .coverage = true}> binner;
+    const auto grid = binner.bin(view, lights, {.bounds = {.min = min, .max = max}});
+    REQUIRE(grid);
+    std::vector<std::uint32_t> entries(lights.size());
+    REQUIRE(count_entries(*grid, entries));
+    for (const LightCoverage& light : binner.coverage()) {
+        const float z = -lights[light.id].z, r = lights[light.id].w;
+        CHECK((entries[light.id] > 0) == (z - r <= 14 && z + r >= 12));
+    }
+}

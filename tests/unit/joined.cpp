@@ -1,0 +1,161 @@
+// Arrays of several kinds in one call: the grids must be those of the kinds alone, one after another in every list.
+#include "scene.hpp"
+
+#include <lightbin/box.hpp>
+#include <lightbin/encode.hpp>
+
+#include <glm/ext/matrix_transform.hpp>
+
+using namespace lightbin;
+
+namespace {
+
+struct Kinds {
+    std::vector<Sphere> spheres;
+    std::vector<Spot> spots;
+    std::vector<Box> boxes;
+};
+
+Kinds random_kinds(std::size_t spheres, std::size_t spots, std::size_t boxes, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(-1, 1), angle(0, 3);
+    Kinds kinds;
+    for (const glm::vec4& s : test::random_lights(spheres, seed))
+        kinds.spheres.push_back({s.x, s.y, s.z, s.w});
+    for (const glm::vec4& s : test::random_lights(spots, seed + 1)) {
+        const Sphere ball = {s.x, s.y, s.z, s.w};
+        const Spot spot = {s.x, s.y, s.z, s.w, unit(random), unit(random), unit(random), std::cos(angle(random))};
+        kinds.spots.push_back(kinds.spots.size() % 3 == 0 ? Spot::whole(ball) : spot);
+    }
+    for (const glm::vec4& s : test::random_lights(boxes, seed + 2)) {
+        Box box = {s.x, s.y, s.z, s.w, s.x + unit(random), s.y, s.z, {}};
+        for (float(&axis)[3] : box.half_axes)
+            for (float& coordinate : axis)
+                coordinate = s.w * unit(random);
+        kinds.boxes.push_back(box);
+    }
+    return kinds;
+}
+
+/// The lists of ids, with z-bins those of the ranks, sorted.
+template <Options options, class LightRange>
+test::Lists joined_lists(const View& view, const LightRange& all, LightCounts* counts = nullptr) {
+    std::vector<float> min, max;
+    for (std::size_t tile = 0; tile < view.tile_count(); ++tile) {
+        min.push_back(static_cast<float>(tile % 97));
+        max.push_back(min.back() + static_cast<float>(tile % 5));
+    }
+    const Slices slices = *Slices::exponential(7, 3, 90);
+    const ZBounds bounds = {.min = min, .max = max};
+    Binner<options> binner;
+    const Parallel threads(3, test::on_threads, 0);
+    const auto grid = binner.bin(view, all, inputs_for<options>(bounds, slices), threads);
+    REQUIRE(grid);
+    if (counts != nullptr) *counts = grid->light_counts();
+    test::Lists made = test::to_lists(*grid);
+    if (options.slicing == Slicing::z_bins)
+        for (auto& list : made) {
+            for (auto& id : list)
+                id = grid->ranks().order[id];
+            std::sort(list.begin(), list.end());
+        }
+    return made;
+}
+
+/// Appends to each list those of another kind, whose ids go on from `first`.
+void append(test::Lists& to, const test::Lists& from, std::size_t first) {
+    REQUIRE(to.size() == from.size());
+    for (std::size_t cell = 0; cell < to.size(); ++cell)
+        for (const auto id : from[cell])
+            to[cell].push_back(id + static_cast<std::uint32_t>(first));
+}
+
+template <Options options> void check_joined(const View& view, const Kinds& kinds) {
+    LightCounts counts, of_spheres, of_spots, of_boxes;
+    test::Lists expected = joined_lists<options>(view, kinds.spheres, &of_spheres);
+    append(expected, joined_lists<options>(view, kinds.spots, &of_spots), kinds.spheres.size());
+    append(expected, joined_lists<options>(view, kinds.boxes, &of_boxes), kinds.spheres.size() + kinds.spots.size());
+    CHECK(joined_lists<options>(view, lights(kinds.spheres, kinds.spots, kinds.boxes), &counts) == expected);
+    CHECK(counts.rejected == of_spheres.rejected + of_spots.rejected + of_boxes.rejected);
+    CHECK(counts.culled == of_spheres.culled + of_spots.culled + of_boxes.culled);
+    CHECK(counts.first_spot == kinds.spheres.size());
+    CHECK(counts.first_box == kinds.spheres.size() + kinds.spots.size());
+
+    expected = joined_lists<options>(view, kinds.spheres);
+    append(expected, joined_lists<options>(view, kinds.boxes), kinds.spheres.size());
+    CHECK(joined_lists<options>(view, lights(kinds.spheres, kinds.boxes)) == expected);
+    expected = joined_lists<options>(view, kinds.spots);
+    append(expected, joined_lists<options>(view, kinds.boxes), kinds.spots.size());
+    CHECK(joined_lists<options>(view, lights(kinds.spots, kinds.boxes)) == expected);
+}
+
+TEST_CASE("joined arrays give the lists of each alone, one after another") {
+    const View view = test::view({900, 500}, 16);
+    for (const Kinds& kinds : {random_kinds(500, 300, 200, 1), random_kinds(1, 0, 70, 2), random_kinds(0, 65, 0, 3)})
+        test::on_machine_tiers([&]<Isa isa> {
+            check_joined<Options{.isa = isa}>(view, kinds);
+            check_joined<Options{.ids = IdWidth::u16, .footprint = Footprint::silhouette, .isa = isa}>(view, kinds);
+            check_joined<Options{.depth_test = DepthTest::interval, .isa = isa}>(view, kinds);
+            check_joined<Options{.depth_test = DepthTest::box, .isa = isa}>(view, kinds);
+            check_joined<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box, .isa = isa}>(
+                view, kinds);
+            check_joined<Options{.slicing = Slicing::clusters, .isa = isa}>(view, kinds);
+            check_joined<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters, .isa = isa}>(view, kinds);
+            check_joined<Options{.depth_test = DepthTest::box, .slicing = Slicing::z_bins, .isa = isa}>(view, kinds);
+        });
+}
+
+TEST_CASE("joined arrays may be in spaces of their own, and of the caller's types") {
+    const View view = test::view({640, 360}, 32);
+    const Kinds kinds = random_kinds(200, 150, 100, 7);
+    const glm::mat4 matrix = glm::rotate(glm::translate(glm::mat4(1.0f), {3.0f, -2.0f, 4.0f}), 0.5f, {1.0f, 2.0f, 3.0f});
+    constexpr Options box = {.depth_test = DepthTest::box};
+    const auto spots = world_space(kinds.spots, matrix);
+    test::Lists expected = joined_lists<box>(view, kinds.spheres);
+    append(expected, joined_lists<box>(view, spots), kinds.spheres.size());
+    append(expected, joined_lists<box>(view, kinds.boxes), kinds.spheres.size() + kinds.spots.size());
+    CHECK(joined_lists<box>(view, lights(std::span(kinds.spheres), spots, view_space(kinds.boxes))) == expected);
+}
+
+TEST_CASE("too many lights in all arrays together are refused") {
+    const View view = test::view({64, 64}, 16);
+    const std::vector<Sphere> spheres(0x9000, {0, 0, -5, 1});
+    const std::vector<Spot> spots(0x9000, Spot::whole({0, 0, -5, 1}));
+    Binner<Options{.ids = IdWidth::u16}> binner;
+    const auto grid = binner.bin(view, lights(spheres, spots));
+    REQUIRE(!grid);
+    CHECK(grid.error().code == ErrorCode::too_many_lights);
+    CHECK(grid.error().needed == 0x12000);
+}
+
+TEST_CASE("split_kinds() counts the lights of each kind") {
+    const View view = test::view({640, 360}, 32);
+    const Kinds kinds = random_kinds(200, 150, 100, 13);
+    Binner<> binner;
+    const auto grid = binner.bin(view, lights(kinds.spheres, kinds.spots, kinds.boxes));
+    REQUIRE(grid);
+    std::vector<KindRange> ranges(grid->ranges().size());
+    CHECK(split_kinds(*grid, std::span(ranges).first(5)).error().code == ErrorCode::range_buffer_too_small);
+    const auto split = split_kinds(*grid, ranges);
+    REQUIRE(split);
+    std::uint64_t of_boxes = 0;
+    for (std::size_t cell = 0; cell < ranges.size(); ++cell) {
+        const auto list = grid->ids().subspan(grid->ranges()[cell].offset, grid->ranges()[cell].count);
+        const auto below = [&](std::size_t end) {
+            return static_cast<std::uint32_t>(std::count_if(list.begin(), list.end(), [&](auto id) { return id < end; }));
+        };
+        const KindRange& range = (*split)[cell];
+        CHECK(range.offset == grid->ranges()[cell].offset);
+        CHECK(range.spheres == below(200));
+        CHECK(range.spheres + range.spots == below(350));
+        CHECK(range.spheres + range.spots + range.boxes == list.size());
+        of_boxes += range.boxes;
+    }
+    CHECK(of_boxes > 0);
+    Binner<Options{.slicing = Slicing::z_bins}> ranked;
+    const auto by_rank = ranked.bin(view, lights(kinds.spheres, kinds.spots), {.slices = *Slices::linear(4, 1, 50)});
+    REQUIRE(by_rank);
+    CHECK(split_kinds(*by_rank, ranges).error().code == ErrorCode::kinds_of_ranks);
+}
+
+}  // namespace

@@ -1,0 +1,249 @@
+// Several views in one pair of buffers, and the union of two views' lists.
+#include "scene.hpp"
+
+#include <lightbin/encode.hpp>
+#include <lightbin/grid_union.hpp>
+
+#include <cstddef>
+#include <iterator>
+#include <optional>
+#include <span>
+#include <vector>
+
+using namespace lightbin;
+
+namespace {
+
+/// What an eye that is `aside` to the right sees of the lights.
+std::vector<glm::vec4> seen_from(float aside, std::vector<glm::vec4> lights) {
+    for (glm::vec4& light : lights)
+        light.x -= aside;
+    return lights;
+}
+
+/// The lists of one view in a grid of several.
+template <class Id> test::Lists lists_of_view(const LightGrid<Id>& grid, int view) {
+    test::Lists lists;
+    for (int slice = 0; slice < grid.slices(); ++slice)
+        for (int y = 0; y < grid.tiles_y(); ++y)
+            for (int x = 0; x < grid.tiles_x(); ++x) {
+                const auto ids = grid.lights_in(x, y, slice, view);
+                lists.emplace_back(ids.begin(), ids.end());
+            }
+    return lists;
+}
+
+/// Two buffers that hold several views, and show which part of them was written.
+template <class Id> struct Buffers {
+    static constexpr ListRange unset_range = {0xabcdef01, 0x23456789};
+    static constexpr Id unset_id = 0xbeef;
+    std::vector<ListRange> ranges = std::vector<ListRange>(20000, unset_range);
+    std::vector<Id> ids = std::vector<Id>(400000, unset_id);
+
+    bool unset_from(std::size_t range, std::size_t id) const {
+        return std::all_of(ranges.begin() + static_cast<std::ptrdiff_t>(range), ranges.end(),
+                           [](const ListRange r) {
+                               return r.offset == unset_range.offset && r.count == unset_range.count;
+                           }) &&
+               std::all_of(ids.begin() + static_cast<std::ptrdiff_t>(id), ids.end(),
+                           [](Id i) { return i == unset_id; });
+    }
+};
+
+/// One Binner makes the grids of three views, and each is copied behind those before it. The lists of each view must be
+/// those that a Binner of its own makes.
+template <Options options> void check_shared(const View& view, const Slices& slices) {
+    using Id = typename Binner<options>::Id;
+    Buffers<Id> buffers;
+    Binner<options> binner;
+    const auto inputs = inputs_for<options>({}, slices);
+    std::vector<test::Lists> expected;
+    std::size_t ranges = 0, ids = 0;
+    std::optional<LightGrid<Id>> all;
+    for (const float aside : {-0.5f, 0.0f, 0.5f}) {
+        const auto lights = seen_from(aside, test::random_lights(700, 5));
+        Binner<options> own;
+        expected.push_back(test::to_lists(*own.bin(view, lights, inputs)));
+        const auto grid = binner.bin(view, lights, inputs);
+        const auto copy = all ? grid->copy_to(buffers.ranges, buffers.ids, *all)
+                              : grid->copy_to(buffers.ranges, buffers.ids);
+        REQUIRE(copy);
+        all = *copy;
+        ranges += grid->ranges().size();
+        ids += grid->ids().size();
+        CHECK(copy->light_counts().culled == grid->light_counts().culled);
+        CHECK(copy->ranges().data() == buffers.ranges.data());
+        CHECK(copy->ranges().size() == ranges);
+        CHECK(copy->ids().data() == buffers.ids.data());
+        CHECK(copy->ids().size() == ids);
+        CHECK(buffers.unset_from(ranges, ids));
+        for (std::size_t i = 0; i < expected.size(); ++i)
+            CHECK(lists_of_view(*all, static_cast<int>(i)) == expected[i]);
+    }
+    if (view.tile_count() > 1) CHECK(expected[0] != expected[2]);
+    // Each range begins where the one before it ends, also from one view to the next.
+    std::uint32_t offset = 0;
+    for (const ListRange range : all->ranges()) {
+        CHECK(range.offset == offset);
+        offset += range.count;
+    }
+    CHECK(offset == ids);
+    // encode() takes the grid of all views: the last third of the bitmasks is that of the last view.
+    const ListFormat format = {.encoding = ListEncoding::bitmask, .max_lights = 700};
+    const auto bytes_of = [&](const LightGrid<Id>& grid) {
+        std::vector<std::byte> bytes(encoded_bytes(format, grid.ranges().size(), grid.ids().size()));
+        REQUIRE(encode(grid, format, bytes));
+        return bytes;
+    };
+    const auto last = binner.bin(view, seen_from(0.5f, test::random_lights(700, 5)), inputs);
+    const auto alone = bytes_of(*last), together = bytes_of(*all);
+    CHECK(together.size() == 3 * alone.size());
+    CHECK(std::equal(alone.begin(), alone.end(), together.end() - static_cast<std::ptrdiff_t>(alone.size())));
+}
+
+template <class Result> ErrorCode code_of(const Result& result) {
+    REQUIRE(!result);
+    return result.error().code;
+}
+
+}  // namespace
+
+TEST_CASE("views in one pair of buffers have the lists that each has alone") {
+    const Slices slices = *Slices::exponential(7, 2, 90);
+    for (const Extent size : {Extent{320, 200}, Extent{1, 1}, Extent{0, 40}}) {
+        const View view = test::view(size, 16);
+        check_shared<Options{}>(view, slices);
+        check_shared<Options{.ids = IdWidth::u16}>(view, slices);
+        check_shared<Options{.slicing = Slicing::clusters}>(view, slices);
+        check_shared<Options{.ids = IdWidth::u16, .slicing = Slicing::z_bins}>(view, slices);
+    }
+}
+
+TEST_CASE("views that do not fit into buffers, or not together, are an error and nothing is written") {
+    const auto lights = test::random_lights(300, 9);
+    const View view = test::view({320, 200}, 16);  // 20 x 13 tiles
+    Binner<> binner;
+    const auto grid = binner.bin(view, lights);
+    const std::size_t ranges = grid->ranges().size(), ids = grid->ids().size();
+    REQUIRE(ids > 100);
+    Buffers<std::uint32_t> buffers;
+    const auto first = grid->copy_to(buffers.ranges, buffers.ids);
+    REQUIRE(first);
+
+    const auto few_ranges =
+        grid->copy_to(std::span(buffers.ranges).first(2 * ranges - 1), buffers.ids, *first);
+    CHECK(code_of(few_ranges) == ErrorCode::range_buffer_too_small);
+    CHECK(few_ranges.error().needed == 2 * ranges);
+    CHECK(few_ranges.error().available == 2 * ranges - 1);
+    const auto few_ids = grid->copy_to(buffers.ranges, std::span(buffers.ids).first(2 * ids - 1), *first);
+    CHECK(code_of(few_ids) == ErrorCode::id_buffer_too_small);
+    CHECK(few_ids.error().needed == 2 * ids);
+    CHECK(few_ids.error().available == 2 * ids - 1);
+
+    // As many tiles, in other columns and rows; and as many cells, in slices.
+    Binner<> other;
+    for (const View& unlike :
+         {test::view({200, 320}, 16), test::view({320, 208}, 8), test::view({330, 200}, 16)})
+        CHECK(code_of(other.bin(unlike, lights)->copy_to(buffers.ranges, buffers.ids, *first)) ==
+              ErrorCode::grids_differ);
+    Binner<Options{.slicing = Slicing::clusters}> clusters;
+    CHECK(code_of(clusters.bin(view, lights, {.slices = *Slices::linear(2, 0, 9)})
+                      ->copy_to(buffers.ranges, buffers.ids, *first)) == ErrorCode::grids_differ);
+
+    // Earlier views with so many entries that this view's would be number 2^32. Only the numbers are read.
+    if constexpr (sizeof(std::size_t) > 4) {
+        const LightGrid<std::uint32_t> full(20, 13, first->ranges(),
+                                            {buffers.ids.data(), 0xffffffff - ids + 1});
+        const auto too_many =
+            grid->copy_to(buffers.ranges, {buffers.ids.data(), std::size_t{0xffffffff} * 2}, full);
+        CHECK(code_of(too_many) == ErrorCode::too_many_entries);
+        CHECK(too_many.error().needed == std::uint64_t{1} << 32);
+        const LightGrid<std::uint32_t> wide(20, 13, {buffers.ranges.data(), 0xffffffff - ranges + 1},
+                                            first->ids());
+        const auto too_wide =
+            grid->copy_to({buffers.ranges.data(), std::size_t{0xffffffff} * 2}, buffers.ids, wide);
+        CHECK(code_of(too_wide) == ErrorCode::too_many_cells);
+    }
+    CHECK(buffers.unset_from(ranges, ids));
+    CHECK(grid->copy_to(std::span(buffers.ranges).first(2 * ranges), std::span(buffers.ids).first(2 * ids),
+                        *first));
+    CHECK(buffers.unset_from(2 * ranges, 2 * ids));
+}
+
+TEST_CASE("a union of two grids lists what either lists, once and in order") {
+    const Slices slices = *Slices::exponential(5, 2, 60);
+    GridUnion<std::uint16_t> of_tiles, of_clusters;
+    for (const Extent size : {Extent{500, 300}, Extent{64, 64}, Extent{1, 1}, Extent{0, 9}})
+        for (const float aside : {0.0f, 0.064f, 5.0f, 1000.0f}) {
+            const View view = test::view(size, 16);
+            const auto lights = test::random_lights(900, 3);
+            const auto check = [&](auto& both, auto& left, auto& right, const auto& inputs) {
+                const auto first = left.bin(view, lights, inputs),
+                           second = right.bin(view, seen_from(aside, lights), inputs);
+                const auto united = both.unite(*first, *second);
+                REQUIRE(united);
+                const test::Lists a = test::to_lists(*first), b = test::to_lists(*second);
+                test::Lists expected(a.size());
+                for (std::size_t i = 0; i < a.size(); ++i)
+                    std::set_union(a[i].begin(), a[i].end(), b[i].begin(), b[i].end(),
+                                   std::back_inserter(expected[i]));
+                CHECK(test::to_lists(*united) == expected);
+                CHECK(united->ranges().size() == a.size());
+                CHECK(united->ids().size() == test::entries(expected));
+                CHECK(united->light_counts().lights == 900);
+            };
+            constexpr Options tiles = {.ids = IdWidth::u16},
+                              clusters = {.ids = IdWidth::u16, .slicing = Slicing::clusters};
+            Binner<tiles> left, right;
+            check(of_tiles, left, right, inputs_for<tiles>({}, slices));
+            Binner<clusters> left_clusters, right_clusters;
+            check(of_clusters, left_clusters, right_clusters, inputs_for<clusters>({}, slices));
+        }
+}
+
+TEST_CASE("a union of a union is one of three; of an empty list and of one list it is the other") {
+    const View view = test::view({128, 96}, 32);
+    Binner<> binners[3];
+    const auto a = binners[0].bin(view, test::random_lights(100, 1)),
+               b = binners[1].bin(view, test::random_lights(100, 2)),
+               c = binners[2].bin(view, test::random_lights(100, 4));
+    GridUnion<> two, three, other_order;
+    const auto ab = two.unite(*a, *b), abc = three.unite(*ab, *c), cab = other_order.unite(*c, *ab);
+    CHECK(test::to_lists(*abc) == test::to_lists(*cab));
+    const auto lists = test::to_lists(*abc);
+    for (const auto& one : {*a, *b, *c})
+        CHECK(test::is_superset(lists, test::to_lists(one)));
+
+    Binner<> of_none;
+    const auto none = of_none.bin(view, std::vector<glm::vec4>());
+    GridUnion<> with_none;
+    CHECK(test::to_lists(*with_none.unite(*a, *none)) == test::to_lists(*a));
+    CHECK(test::to_lists(*with_none.unite(*none, *a)) == test::to_lists(*a));
+    CHECK(test::entries(test::to_lists(*with_none.unite(*none, *none))) == 0);
+    CHECK(test::to_lists(*with_none.unite(*a, *a)) == test::to_lists(*a));
+}
+
+TEST_CASE("grids that have no union are refused by name") {
+    const auto lights = test::random_lights(100, 1);
+    Binner<> a, b;
+    GridUnion<> both;
+    const auto grid = a.bin(test::view({320, 200}, 16), lights);
+    CHECK(code_of(both.unite(*grid, *b.bin(test::view({200, 320}, 16), lights))) == ErrorCode::grids_differ);
+    const Slices slices = *Slices::linear(4, 0, 50);
+    Binner<Options{.slicing = Slicing::clusters}> clusters;
+    CHECK(code_of(both.unite(*grid, *clusters.bin(test::view({320, 200}, 16), lights, {.slices = slices}))) ==
+          ErrorCode::grids_differ);
+    Binner<Options{.slicing = Slicing::z_bins}> bins;
+    const auto ranked = bins.bin(test::view({320, 200}, 16), lights, {.slices = slices});
+    CHECK(code_of(both.unite(*ranked, *grid)) == ErrorCode::ids_are_ranks);
+    CHECK(code_of(both.unite(*grid, *ranked)) == ErrorCode::ids_are_ranks);
+    Buffers<std::uint32_t> buffers;
+    const auto one = grid->copy_to(buffers.ranges, buffers.ids),
+               two = grid->copy_to(buffers.ranges, buffers.ids, *one);
+    CHECK(code_of(both.unite(*grid, *two)) == ErrorCode::grids_differ);
+    if constexpr (sizeof(std::size_t) > 4) {
+        const LightGrid<std::uint32_t> full(20, 13, grid->ranges(),
+                                            {grid->ids().data(), std::size_t{1} << 31});
+        CHECK(code_of(both.unite(full, full)) == ErrorCode::too_many_entries);
+    }
+}
