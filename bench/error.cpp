@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What lists have beyond the exact set, and whether they miss any of it: every pair of a cell and a light decided in exact
-// arithmetic, of each method of the ladder and of clusters; and of single spots by half angle. Writes error.csv and
-// spots_error.csv.
+// arithmetic, of each method of the ladder and of clusters; of single spots by half angle; and of single boxes and balls
+// cut by boxes. Writes error.csv, spots_error.csv and boxes_error.csv.
 //
 // Columns of the first, a row for each scene (all views of it together), tile size and method:
 //   misses          entries that the method must have and lacks, in `verdicts` pairs of a cell and a light: every pair there
@@ -12,6 +12,7 @@
 //   margin          entries / entries of the same method in exact arithmetic: what rounding outward adds; for
 //                   silhouettes, also what keeping some lights' rectangles adds. Not where there are spots
 #include "arguments.hpp"
+#include "boxes_error.hpp"
 #include "console.hpp"
 #include "exact_pairs.hpp"
 #include "glb_scenes.hpp"
@@ -214,6 +215,7 @@ int main(int argc, char** argv) try {
     if (quick) tile_sizes = {32, 64};
     std::vector<Row> rows, clusters;
     SpotErrors spots;
+    BoxErrors boxes;
     {
         Progress progress;
         for (const Case& scene : cases(arguments.scenes_or_fixtures()))
@@ -228,6 +230,8 @@ int main(int argc, char** argv) try {
         write(csv, clusters);
         progress("spots by half angle");
         spots = measure_spots(quick ? 100 : 1000);
+        progress("boxes");
+        boxes = measure_boxes(quick ? 50 : 500);
     }
     std::fclose(csv);
     std::puts("Entries beyond the exact set, median of the scenes\n");
@@ -238,8 +242,10 @@ int main(int argc, char** argv) try {
         "\nEntries of a spot over exact pairs of a cell and it, by half angle; in brackets those of whole "
         "spheres\n");
     print_table(spots.table);
+    std::puts("\nEntries of a box over exact pairs of a cell and it; in brackets those of the sphere around it\n");
+    print_table(boxes.table);
 
-    std::uint64_t misses = spots.misses, open = spots.open, verdicts = 0;
+    std::uint64_t misses = spots.misses + boxes.misses, open = spots.open, verdicts = 0;
     double margin = 1;
     for (const std::vector<Row>& some : {rows, clusters})
         for (const Row& row : some) {

@@ -13,6 +13,9 @@
 #include <lightbin/slices.hpp>
 #include <lightbin/z_bounds.hpp>
 
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -107,7 +110,7 @@ public:
         for (std::size_t i = 0; i < lights.size(); ++i) {
             const auto id = static_cast<std::uint32_t>(i);
             const SpotSubject spot(lights[i]);
-            if (spot.exact.whole())
+            if (spot.exact.ball.all)
                 add_ball(id, spot.ball, bounds, result);
             else
                 add_spot(id, spot, bounds, result);
@@ -138,10 +141,25 @@ private:
                    static_cast<double>(s.radius)},
               exact(oracle::exact_spot(s.x, s.y, s.z, s.radius, s.axis_x, s.axis_y, s.axis_z,
                                        s.cos_half_angle)),
-              flat(s) {}
+              flat(s) {
+            if (s.cos_half_angle >= 0) return;
+            const glm::dvec3 axis = glm::normalize(glm::dvec3(s.axis_x, s.axis_y, s.axis_z)),
+                             across = glm::normalize(glm::cross(
+                                 axis, std::abs(axis.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+            const double cosine = static_cast<double>(s.cos_half_angle) + 0x1p-20,
+                         sine = std::sqrt(1 - cosine * cosine);
+            constexpr int count = 64;
+            for (int i = 0; i < count; ++i) {
+                const double turn = i * 2 * 3.14159265358979324 / count;
+                const glm::vec3 half = sine * axis - cosine * (std::cos(turn) * across +
+                                                               std::sin(turn) * glm::cross(axis, across));
+                halves.emplace_back(lightbin::Spot{s.x, s.y, s.z, s.radius, half.x, half.y, half.z, 0});
+            }
+        }
         Ball ball;
         oracle::ExactSpot exact;
         oracle::FlatSpot flat;
+        std::vector<SpotSubject> halves;  ///< of a half angle above 90 degrees: half balls that fill it but for slivers
     };
 
     Range within_view(float min, float max) const {
@@ -245,6 +263,9 @@ private:
     /// Whether the spot does, by double precision, or where that has no answer, and now and then as a check, by a
     /// certificate.
     bool meets(int x, int y, const Range& range, const SpotSubject& spot) {
+        if (!spot.halves.empty())
+            return std::ranges::any_of(
+                spot.halves, [&](const SpotSubject& half) { return meets(x, y, range, half); });
         const Slopes &column = column_slopes_[static_cast<std::size_t>(x)],
                      &row = row_slopes_[static_cast<std::size_t>(y)];
         const bool from_near = range.min == truth_.range.min, to_far = range.max == truth_.range.max;

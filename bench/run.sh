@@ -19,8 +19,9 @@
 #       sentence a scene. Four minutes, --quick one. Writes build/bench/report.html and report.csv.
 #   error [--quick] [SCENE.glb ...]
 #       What each footprint and depth test and clusters list beyond the exact set, and what they miss, each pair of a cell and
-#       a light decided in exact arithmetic; and of single spots by half angle, listed as the spheres of their ranges, as
-#       their least spheres and as spots. Writes build/bench/error.csv and spots_error.csv.
+#       a light decided in exact arithmetic; of single spots by half angle, listed as the spheres of their ranges, as their
+#       least spheres and as spots; and of single boxes, listed as spheres and as boxes. Writes build/bench/error.csv,
+#       spots_error.csv and boxes_error.csv.
 #   advise [--quick] [--avx2 | --simd128 | --scalar] [SCENE.glb ...]
 #       What the plan that advise() chooses costs beside the best of all, with Z bounds and without, the same of
 #       advise_slices(), and how long asking takes beside a plain build; on the machine's widest instruction set or the

@@ -29,12 +29,12 @@ inline lightbin::View made_view(int tile_size) {
                                             {.tile_size = tile_size});
 }
 
-/// Depths of each tile, drawn among those that the sphere of a spot's range can meet: 6 % deep, the middle third a gap.
+/// Depths of each tile, drawn among those that a sphere around a light can meet: 6 % deep, the middle third a gap.
 struct DrawnBounds {
     std::vector<float> min, max, gap_min, gap_max;
 
-    DrawnBounds(std::size_t count, const lightbin::Spot& spot, Dice& dice) {
-        const float first = (-spot.z - spot.radius) / 1.06f, last = -spot.z + spot.radius;
+    DrawnBounds(std::size_t count, const lightbin::Sphere& around, Dice& dice) {
+        const float first = (-around.z - around.radius) / 1.06f, last = -around.z + around.radius;
         for (std::size_t tile = 0; tile < count; ++tile) {
             const float from = dice.between(first, last);
             min.push_back(from), gap_min.push_back(from * 1.02f);
@@ -123,11 +123,12 @@ inline SpotErrors measure_spots(std::size_t spots) {
     for (const SpotMethod& method : spot_methods())
         errors.table.push_back({method.name});
     std::uint32_t seed = 0;
-    for (const float angle : {10.0f, 20.0f, 30.0f, 45.0f, 60.0f, 80.0f}) {
+    for (const float angle : {10.0f, 20.0f, 30.0f, 45.0f, 60.0f, 80.0f, 90.0f, 110.0f}) {
         std::vector<SpotMethod> methods = spot_methods();
         Dice dice(seed + 100);
         for (const lightbin::Spot& spot : spots_of_angle(spots, angle, ++seed)) {
-            const DrawnBounds bounds(Lens().view(32).tile_count(), spot, dice);
+            const DrawnBounds bounds(Lens().view(32).tile_count(),
+                                     lightbin::Sphere{spot.x, spot.y, spot.z, spot.radius}, dice);
             std::vector<std::uint32_t> facts[2];
             errors.open += add_facts(of_tiles.pairs(Spots{spot}, bounds.bounds()), facts[0]);
             for (int slice = 0; slice < slices.count(); ++slice)

@@ -24,6 +24,7 @@
 #include "oracle.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -140,6 +141,40 @@ public:
         return u * u + v * v + w * w;
     }
 
+    struct Direction {
+        double x, y, z;
+    };
+
+    /// True: every point p of the cell of the block of tiles [x0, x1) x [y0, y1) between these depths has
+    /// n.p > reach.  False: unknown.
+    bool beyond(const Direction& n, int x0, int x1, int y0, int y1, const FlatDepths& depths, double reach) {
+        const Cell cell = {{{column(x0), column(x1)}, {row(y0), row(y1)}}};
+        double sizes = 0;
+        const auto along = least_along(n, cell, depths, sizes);
+        return along && *along - 0x1p-47 * sizes > reach;
+    }
+    /// The direction with a tilt that puts the sign of B beyond doubt, if it is at right angles to an edge of the cell.
+    Direction tilted(const Direction& n, int x0, int x1, int y0, int y1) {
+        const Cell cell = {{{column(x0), column(x1)}, {row(y0), row(y1)}}};
+        const Direction up = lifted(n.x, n.y, cell);
+        return std::abs(n.z - up.z) <= 0x1p-40 * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z)) ? up : n;
+    }
+    /// Directions that may separate something from the cell: into it at right angles to its sides, along depth, and
+    /// along its edges.
+    std::array<Direction, 6> sides(int x0, int x1, int y0, int y1) {
+        const Cell cell = {{{column(x0), column(x1)}, {row(y0), row(y1)}}};
+        return {{of_planes(0, 1, cell),
+                 of_planes(0, -1, cell),
+                 of_planes(1, 1, cell),
+                 of_planes(1, -1, cell),
+                 {0, 0, 1},
+                 {0, 0, -1}}};
+    }
+    std::array<Direction, 6> edges(int x0, int x1, int y0, int y1) {
+        const double u[] = {column(x0).slope, column(x1).slope}, v[] = {row(y0).slope, row(y1).slope};
+        return {{{1, 0, 0}, {0, 1, 0}, {u[0], v[0], 1}, {u[1], v[0], 1}, {u[0], v[1], 1}, {u[1], v[1], 1}}};
+    }
+
 private:
     struct FlatLine {
         double offset = 0, slope = 0;
@@ -149,10 +184,6 @@ private:
     struct Cell {
         FlatLine side[2][2];  ///< axis, low or high
     };
-    struct Direction {
-        double x, y, z;
-    };
-
     /// The end of an axis that bounds nothing.
     static FlatLine nowhere(int direction) {
         return {direction * std::numeric_limits<double>::infinity(), 0, true};
@@ -180,21 +211,28 @@ private:
         return axis == 0 ? lifted(towards, 0, cell) : lifted(0, towards, cell);
     }
 
-    static bool separates(const Direction& n, const Cell& cell, const FlatDepths& depths, const FlatBall& c) {
+    /// The least n.p of a cell's points p, give or take 2^-47 of `sizes`; nothing: unknown.
+    static std::optional<double> least_along(const Direction& n, const Cell& cell, const FlatDepths& depths,
+                                             double& sizes) {
         const FlatLine& x = cell.side[0][n.x > 0 ? 0 : 1];
         const FlatLine& y = cell.side[1][n.y > 0 ? 0 : 1];
         const double b = n.x * x.slope + n.y * y.slope + n.z;
         const double b_error = 0x1p-47 * (std::abs(n.x * x.slope) + std::abs(n.y * y.slope) + std::abs(n.z));
-        if (!(std::abs(b) >= b_error)) return false;
+        if (!(std::abs(b) >= b_error)) return std::nullopt;
         const double d = b >= 0 ? depths.min : depths.max;
-        const double along = n.x * x.offset + n.y * y.offset + b * d,
-                     centre = n.x * c.x + n.y * c.y + n.z * c.depth;
-        const double sizes =
-            std::abs(n.x * x.offset) + std::abs(n.y * y.offset) +
-            (std::abs(n.x * x.slope) + std::abs(n.y * y.slope) + std::abs(n.z)) * std::abs(d) +
-            std::abs(n.x * c.x) + std::abs(n.y * c.y) + std::abs(n.z * c.depth);
+        sizes = std::abs(n.x * x.offset) + std::abs(n.y * y.offset) +
+                (std::abs(n.x * x.slope) + std::abs(n.y * y.slope) + std::abs(n.z)) * std::abs(d);
+        return n.x * x.offset + n.y * y.offset + b * d;
+    }
+
+    static bool separates(const Direction& n, const Cell& cell, const FlatDepths& depths, const FlatBall& c) {
+        double sizes = 0;
+        const auto along = least_along(n, cell, depths, sizes);
+        if (!along) return false;
+        const double centre = n.x * c.x + n.y * c.y + n.z * c.depth;
+        sizes += std::abs(n.x * c.x) + std::abs(n.y * c.y) + std::abs(n.z * c.depth);
         const double length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
-        const double gap = along - centre;
+        const double gap = *along - centre;
         return gap > 0x1p-800 && gap - 0x1p-47 * sizes > c.radius * length * (1 + 0x1p-47);
     }
 

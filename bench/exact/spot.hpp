@@ -12,8 +12,9 @@
 // A certificate needs no trust in how it was found, and a bad one proves nothing. Where none is found, the point of the
 // cell that is nearest to the apex is asked for without rounding; if it is out of the ball, they are apart, too.
 //
-// From 90 degrees on, and of infinite range, a spot counts as its whole ball: then "they meet" is that of the ball, which
-// the spot need not.
+// From 90 degrees on a spot counts as its convex hull: the ball cut off by the plane of the rim, the circle where cone
+// and ball meet. Then "they meet" is that of the hull, which the spot need not. Of infinite range it counts as its
+// whole ball.
 #pragma once
 
 #include "oracle.hpp"
@@ -33,7 +34,14 @@ struct ExactSpot {
     Ball ball;
     Vector axis;      ///< of any length but 0
     Rational cosine;  ///< of the half angle
+    /// It has no certificates: it is decided as a ball, and from 90 degrees on the half-space of its rim.
     bool whole() const { return ball.all || cosine <= 0; }
+    /// The half-space that the rim ends, its plane moved by a part of its distance from the apex: the length of the
+    /// axis, a root, is rounded.
+    HalfSpace before_rim(double outward) const {
+        const Rational length = exact(std::sqrt(nearly(dot(axis, axis))) * (1 + outward));
+        return {axis, -ball.radius * cosine * length - dot(axis, ball.centre)};
+    }
 };
 
 inline ExactSpot exact_spot(float x, float y, float z, float radius, float axis_x, float axis_y, float axis_z,
@@ -557,7 +565,14 @@ private:
 
 /// Whether a spot meets a cell; nothing: no certificate was found.
 inline std::optional<bool> meets(const std::vector<HalfSpace>& cell, const ExactSpot& spot) {
-    if (spot.whole()) return meets(cell, spot.ball);
+    if (spot.ball.all || spot.cosine == -1) return meets(cell, spot.ball);
+    if (spot.whole()) {
+        std::vector<HalfSpace> all = cell;
+        all.push_back(spot.before_rim(0x1p-50));
+        if (!meets(all, spot.ball)) return false;
+        all.back() = spot.before_rim(-0x1p-50);
+        return meets(all, spot.ball) ? std::optional(true) : std::nullopt;
+    }
     return SpotSearch(cell, spot).verdict();
 }
 

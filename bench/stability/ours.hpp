@@ -54,7 +54,7 @@ inline Projected project_with(lightbin::Isa isa, const lightbin::View& view, con
                 all.rects[arrays.ids[i]] = {{arrays.x0[i], arrays.y0[i]}, {arrays.x1[i], arrays.y1[i]}};
         if (scene.cones.empty())
             for (std::size_t i = 0; i < scene.lights.size(); ++i)
-                all.in_view.push_back(lightbin::detail::load_sphere(arrays.spheres + i));
+                all.in_view.push_back(lightbin::detail::load_sphere(arrays.view_lights.spheres + i));
         return all;
     });
 }
