@@ -24,6 +24,11 @@ void BinnedLights::place(const glm::dmat4& world_to_view) {
     placed_.clear();
     for (const Light& light : scene_.lights)
         placed_.push_back(gpu_light(light, world_to_view));
+    boxes_.clear();
+    for (const SceneBox& box : scene_.boxes) {
+        boxes_.push_back(gpu_box(box, world_to_view));
+        placed_.push_back(entry_of(boxes_.back(), boxes_.size() - 1));
+    }
     const glm::dmat3 turn(world_to_view);
     for (const Sun& sun : scene_.suns)
         placed_.push_back({glm::vec4(-glm::vec3(turn * glm::dvec3(sun.direction)), 0),
@@ -32,8 +37,20 @@ void BinnedLights::place(const glm::dmat4& world_to_view) {
 
 BinnedLights::Grids BinnedLights::bin(const lightbin::View& view, const BinSettings& settings,
                                       const lightbin::ZBounds& z_bounds) {
-    return visit_lights(settings.dropped_light,
-                        [&](const auto& lights) { return bin(view, lights, settings, z_bounds); });
+    const auto bin_all = [&](const auto& lights) { return bin(view, lights, settings, z_bounds); };
+    if (!has_boxes()) return visit_lights(settings.dropped_light, bin_all);
+
+    // In every list ids ascend, so the shader finds all lights before the first box. A Spot that is a whole sphere takes no
+    // longer than a Sphere.
+    const std::span<const GpuLight> lights = this->lights();
+    const auto to_box = [&](const GpuBox& box) {
+        lightbin::Box listed = box_of(box);
+        if (static_cast<std::ptrdiff_t>(lights.size()) + (&box - boxes_.data()) == settings.dropped_light)
+            listed.radius = -1;
+        return listed;
+    };
+    return bin_all(lightbin::lights(lightbin::view_space(lights, to_spot(settings.dropped_light)),
+                                    lightbin::view_space(boxes_, to_box)));
 }
 
 template <class Lights>
@@ -55,12 +72,12 @@ BinnedLights::Grids BinnedLights::bin(const lightbin::View& view, const Lights& 
     }
 
     // What is at any depth has its lights, glass too.
-    slices_ = slices_for(settings, view.orthographic(), this->lights());
+    slices_ = slices_for(settings, view.orthographic(), std::span(placed_).first(listed_count()));
     if (settings.method == DepthMethod::clusters)
         return same(value_of(cluster_binner_.bin(view, lights, {.slices = *slices_})));
     const auto grid = value_of(bin_binner_.bin(view, lights, {.slices = *slices_}));
     order_.assign(grid.ranks().order.begin(), grid.ranks().order.end());
-    std::vector<bool> ranked(scene_.lights.size());
+    std::vector<bool> ranked(listed_count());
     for (const std::uint32_t light : order_)
         ranked[light] = true;
     for (std::uint32_t light = 0; light < ranked.size(); ++light)

@@ -26,7 +26,7 @@ struct BinSettings {
     DepthMethod method = DepthMethod::none;
     int clusters = 24;       // slices of depth
     bool glass = false;      // Z bounds: lists for it, too
-    int dropped_light = -1;  // left out of the lists, so that a check can be seen to fail
+    int dropped_light = -1;  // id of what the lists leave out, so that a check can be seen to fail
 };
 
 // The slices of the depths that lights in view space reach; of z-bins a thousand.
@@ -40,34 +40,46 @@ public:
     explicit BinnedLights(const Scene& scene);
 
     bool has_spots() const { return has_spots_; }
+    bool has_boxes() const { return !scene_.boxes.empty(); }
 
-    // Has lights and suns where the camera has them. In double, as a scene can be far from the origin.
+    // Has lights, boxes and suns where the camera has them. In double, as a scene can be far from the origin.
     void place(const glm::dmat4& world_to_view);
 
-    // In view space, without the suns.
+    // In view space, without boxes and suns.
     std::span<const GpuLight> lights() const { return {placed_.data(), scene_.lights.size()}; }
 
-    // The lights and then the suns.
+    // The lights, then entries for the boxes, then the suns.
     std::span<const GpuLight> lights_and_suns() const { return placed_; }
 
-    // Which lights can reach which tile, and at what depths. Both grids are the same one where glass needs no lists of its
+    std::span<const GpuBox> boxes() const { return boxes_; }
+
+    // Of lights and boxes, which have the ids below this number: first all lights, then all boxes.
+    std::size_t listed_count() const { return scene_.lights.size() + scene_.boxes.size(); }
+
+    // Which lights and boxes can reach which tile, and at what depths. Both grids are the same one where glass needs no lists of its
     // own. Valid until the next call.
     Grids bin(const lightbin::View& view, const BinSettings& settings, const lightbin::ZBounds& z_bounds);
 
     // Of the last bin(), with z-bins or clusters.
     const std::optional<lightbin::Slices>& slices() const { return slices_; }
 
-    // The lights in the order of the ids of the last bin(), which are ranks with z-bins, and then the suns.
+    // Lights and entries for boxes in the order of the ids of the last bin(), which are ranks with z-bins, and then the
+    // suns.
     std::span<const GpuLight> in_order();
 
-    // Calls visit with the lights as a Binner takes them: as spots where any is one, and by their spheres alone where
-    // none is, which takes less time.
-    template <class Visit> auto visit_lights(int dropped_light, Visit visit) const {
-        const auto as_spot = [=, first = placed_.data()](const GpuLight& light) {
+    // Returns the callable that makes a Spot of a light, and of the one to be dropped a Spot that is skipped.
+    auto to_spot(int dropped_light) const {
+        return [=, first = placed_.data()](const GpuLight& light) {
             lightbin::Spot spot = spot_of(light);
             if (&light - first == dropped_light) spot.radius = -1;
             return spot;
         };
+    }
+
+    // Calls visit with the lights, without boxes, as a Binner takes them: as spots where any is one, and by their spheres alone where
+    // none is, which takes less time.
+    template <class Visit> auto visit_lights(int dropped_light, Visit visit) const {
+        const auto as_spot = to_spot(dropped_light);
         const auto as_sphere = [=](const GpuLight& light) {
             const lightbin::Spot spot = as_spot(light);
             return lightbin::Sphere{spot.x, spot.y, spot.z, spot.radius};
@@ -87,7 +99,8 @@ private:
     const Scene& scene_;
     bool has_spots_;
     std::vector<GpuLight> placed_, ordered_;
-    std::vector<std::uint32_t> order_;  // z-bins: of the lights, those out of view last
+    std::vector<GpuBox> boxes_;
+    std::vector<std::uint32_t> order_;  // z-bins: of the ids, those out of view last
     std::optional<lightbin::Slices> slices_;
     lightbin::Binner<> binner_;
     lightbin::Binner<lightbin::Options{.depth_test = lightbin::DepthTest::interval}> interval_binner_;

@@ -41,9 +41,20 @@ Scene make_scene(int light_count) {
                                                  inner),
                               colour);
                 }
+                if (kind >= 0.3f && kind <= 0.6f)  // a flat roof
+                    add_decal(scene, centre + glm::vec3(0, height, 0), 2,
+                              0.2f + 0.8f * rainbow(0.13f * static_cast<float>(i + 3 * j)));
                 if (kind < 0.3f) add_dome(scene, centre + glm::vec3(0, height, 0), half * 0.8f, colour);
             }
         }
+
+    for (int i = 1; i < blocks; ++i)  // where streets cross
+        for (int j = 1; j < blocks; ++j)
+            if ((i + 2 * j) % 3 == 0)
+                add_decal(scene,
+                          {pitch * static_cast<float>(i) - edge, 0, pitch * static_cast<float>(j) - edge},
+                          1.3f, 0.2f + 0.8f * rainbow(0.17f * static_cast<float>(2 * i + j)));
+    add_probe(scene, {-11, -1, 9}, {13, 14, 33}, {0.2f, 0.7f, 1.1f});
 
     // Along the streets and up the walls; their colours go round the rainbow across the city.
     const float range = 8 * std::pow(1024 / static_cast<float>(std::max(light_count, 1)), 0.33f);

@@ -70,6 +70,31 @@ inline glm::vec3 rainbow(float hue) {
     return {channel(0.0f), channel(0.667f), channel(0.333f)};
 }
 
+// A round sign painted on what is level, at this height and a little above and below.
+inline void add_decal(Scene& scene, glm::vec3 middle, float radius, glm::vec3 colour) {
+    const glm::mat3 half_axes(radius, 0, 0, 0, 0, -radius, 0, 0.3f, 0);
+    scene.boxes.push_back({SceneBox::Kind::decal, colour, middle, half_axes});
+}
+
+// An upright box between two corners. Surfaces inside reflect the light of what is around.
+inline void add_probe(Scene& scene, glm::vec3 low, glm::vec3 high, glm::vec3 lux) {
+    const glm::vec3 half = (high - low) / 2.0f;
+    const glm::mat3 half_axes(half.x, 0, 0, 0, 0, -half.z, 0, half.y, 0);
+    scene.boxes.push_back({SceneBox::Kind::probe, lux, (low + high) / 2.0f, half_axes});
+}
+
+// A frustum whose far face has its middle at eye + forward, and this half width and half height. The first twentieth of
+// the way from the eye is not lit.
+inline void add_projector(Scene& scene, glm::vec3 eye, glm::vec3 forward, float half_width, float half_height,
+                          glm::vec3 candela) {
+    constexpr float begin = 0.05f;
+    const glm::vec3 right = glm::normalize(glm::cross(forward, glm::vec3(0, 1, 0)));
+    const glm::vec3 up = glm::normalize(glm::cross(right, forward));
+    const glm::mat3 half_axes(half_width * right, half_height * up, (1 - begin) / 2 * forward);
+    scene.boxes.push_back(
+        {SceneBox::Kind::projector, candela, eye + (1 + begin) / 2 * forward, half_axes, begin});
+}
+
 inline Camera look(const char* name, glm::dvec3 from, glm::dvec3 to, double fov_degrees) {
     Camera camera;
     camera.name = name;

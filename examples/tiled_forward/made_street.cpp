@@ -151,6 +151,10 @@ void add_street_block(Scene& scene, Dice& dice, float start) {
         const float split = start - dice.between(18, 34);
         add_building(scene, dice, side, start, split);
         add_building(scene, dice, side, split, end);
+        // From the walls down to the road.
+        for (float at = start - (side > 0 ? 8.0f : 17.0f); at > end; at -= 17)
+            add_projector(scene, {side * (kerb - 0.6f), 7, at}, {-side * 10, -9, 0}, 4, 3,
+                          450.0f * (0.15f + 0.85f * rainbow(0.03f * at)));
         for (float at = start - (side > 0 ? 12.0f : 5.0f); at > start - block; at -= 15)
             add_lamp(scene, {side * 7.6f, 0.15f, at}, {-side * 2.3f, 0, 0}, sodium);
         add_cross_street(scene, dice, side, start, end);
@@ -171,6 +175,8 @@ void add_tower(Scene& scene, Dice& dice) {
     add_block(scene, {-17, 0, last - 40}, {17, 30, last - 12}, stone);
     add_block(scene, {-11, 30, last - 36}, {11, 52, last - 14}, stone);
     add_block(scene, {-5, 52, last - 30}, {5, 74, last - 18}, stone);
+    for (const float side : {-1.0f, 1.0f})
+        add_projector(scene, {side * 5, 12, last + 30}, {side * 4, 12, -56}, 9, 8, 2500.0f * white);
     for (int i = 0; i < 30; ++i) {
         const glm::vec3 from{dice.between(-16, 16), 0.4f, last + dice.between(0, 12)};
         const glm::vec3 to{dice.between(-13, 13), dice.between(12, 66), last - 13};

@@ -107,7 +107,8 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
         ->excludes(app.get_option("--heat-map"))
         ->excludes(app.get_option("--msaa"));
     app.add_option("--drop-light", options.frame.dropped_light,
-                   "Leave this light out of the lists, to see --check and --check-in-shader fail")
+                   "Leave this light out of the lists (boxes follow the lights), to see --check and "
+                   "--check-in-shader fail")
         ->check(CLI::NonNegativeNumber);
 
     exit_code = 0;
@@ -151,17 +152,21 @@ Scene open_scene(const Options& options) {
     return scene;
 }
 
+std::string and_boxes(const Scene& scene) {
+    return scene.boxes.empty() ? "" : " and " + std::to_string(scene.boxes.size()) + " boxes";
+}
+
 void print(const Scene& scene, const FrameSettings& frame, const Camera& camera, const FrameReport& report) {
     const auto unsigned_long = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
-    const double every = static_cast<double>(scene.lights.size());
+    const double every = static_cast<double>(scene.lights.size() + scene.boxes.size());
     const bool many = frame.samples > 1;
     const char* const shaded = frame.shades_samples() ? "sample" : "pixel";
     std::printf("view         \"%s\", %d x %d pixels%s in %d x %d tiles of %d\n", camera.name.c_str(),
                 frame.width, frame.height,
                 many ? (" of " + std::to_string(frame.samples) + " samples").c_str() : "", report.tiles_x,
                 report.tiles_y, frame.tile_size);
-    std::printf("lights       %llu in view of %zu", unsigned_long(report.lights_in_view),
-                scene.lights.size());
+    std::printf("lights       %llu in view of %zu%s", unsigned_long(report.lights_in_view),
+                scene.lights.size(), and_boxes(scene).c_str());
     if (report.rejected > 0) std::printf(", %llu rejected as bad input", unsigned_long(report.rejected));
     std::printf("\nlists        %llu entries, the longest has %u", unsigned_long(report.entries),
                 report.longest_list);
@@ -186,8 +191,8 @@ bool check(Renderer& renderer, const Scene& scene, const Camera& camera, const F
     const Difference difference = compare(tiled, renderer.read_picture());
     if (difference.pixels == 0) {
         std::printf(
-            "check        identical: %d x %d pixels, each lit by its tile's list and by all %zu lights\n",
-            frame.width, frame.height, scene.lights.size());
+            "check        identical: %d x %d pixels, each lit by its tile's list and by all %zu lights%s\n",
+            frame.width, frame.height, scene.lights.size(), and_boxes(scene).c_str());
         return true;
     }
     std::printf("check        DIFFERENT: %zu of %d x %d pixels, by up to %d of 255; the first is x %d, y %d "
@@ -266,9 +271,10 @@ int run(const Options& options) {
     const auto spots =
         std::count_if(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return l.spot; });
     const std::string of_spots = spots == 0 ? "" : ", " + std::to_string(spots) + " of them with a cone";
-    std::printf("scene        %s: %s%s, %s%s, %s\n", scene.name.c_str(),
+    const std::string boxes = scene.boxes.empty() ? "" : ", " + std::to_string(scene.boxes.size()) + " boxes";
+    std::printf("scene        %s: %s%s, %s%s%s, %s\n", scene.name.c_str(),
                 counted(scene.triangles.size() / 3, "triangle").c_str(), glass.c_str(),
-                counted(scene.lights.size(), "light").c_str(), of_spots.c_str(),
+                counted(scene.lights.size(), "light").c_str(), of_spots.c_str(), boxes.c_str(),
                 counted(scene.cameras.size(), "view").c_str());
     for (const std::string& note : scene.notes)
         std::printf("note         %s\n", note.c_str());

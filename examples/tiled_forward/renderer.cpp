@@ -130,7 +130,7 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     // 5. The picture.
     const std::uint32_t longest = list_lengths(opaque).longest;
     check_loop(glass ? list_lengths(transparent).longest : longest);  // no shorter than the opaque one
-    if (settings.checks.lists) check_loop(scene_.lights.size());
+    if (settings.checks.lists) check_loop(binned_.listed_count());
     draw_triangles(tiled_program(settings), true, settings);
     report.milliseconds.draw = watch.lap();
 
@@ -149,7 +149,7 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
 }
 
 void Renderer::draw_every_light(const Camera& camera, const FrameSettings& settings) {
-    check_loop(scene_.lights.size());
+    check_loop(binned_.listed_count());
     start(camera, settings);
     if (settings.depth == DepthUse::pre_pass) draw_depth();
     upload_lights();
@@ -231,7 +231,8 @@ Renderer::Renderer(const Scene& scene, int glsl)
     const std::string geometry = geometry_vertex_shader(glsl);
     depth_program_ = link_program(geometry, depth_fragment_shader(glsl));
     brute_force_program_ =
-        link_program(geometry, forward_fragment_shader(glsl, LightLoop::every_light, binned_.has_spots()));
+        link_program(geometry, forward_fragment_shader(glsl, LightLoop::every_light,
+                                                       {binned_.has_spots(), binned_.has_boxes()}));
 
     glGenVertexArrays(1, &vertex_array_);
     glBindVertexArray(vertex_array_);
@@ -252,11 +253,13 @@ Renderer::Renderer(const Scene& scene, int glsl)
     lights_ = {lightbin::ShaderResource::texture_2d, {GL_RGBA32F, GL_RGBA, GL_FLOAT}, 16};
     opaque_lists_ = {{list_binding_.resource, lightbin::gl_format(TexelFormat::rg32ui), 8},
                      {list_binding_.resource, lightbin::gl_format(TexelFormat::r32ui), 4}};
+    boxes_ = lights_;
     transparent_lists_ = opaque_lists_;
     slices_buffer_ = opaque_lists_.indices;
     bins_buffer_ = opaque_lists_.tiles;
-    for (GpuBuffer* made : {&lights_, &opaque_lists_.tiles, &opaque_lists_.indices, &transparent_lists_.tiles,
-                            &transparent_lists_.indices, &slices_buffer_, &bins_buffer_}) {
+    for (GpuBuffer* made :
+         {&lights_, &boxes_, &opaque_lists_.tiles, &opaque_lists_.indices, &transparent_lists_.tiles,
+          &transparent_lists_.indices, &slices_buffer_, &bins_buffer_}) {
         glGenBuffers(1, &made->buffer);
         glGenTextures(1, &made->texture);
     }
@@ -302,8 +305,9 @@ GLuint Renderer::tiled_program(const FrameSettings& settings) {
     GLuint& program = tiled_programs_[{slicing, settings.checks}];
     if (program == 0)
         program = link_program(geometry_vertex_shader(glsl_),
-                               forward_fragment_shader(glsl_, LightLoop::tile_list, binned_.has_spots(),
-                                                       slicing, settings.checks));
+                               forward_fragment_shader(glsl_, LightLoop::tile_list,
+                                                       {binned_.has_spots(), binned_.has_boxes()}, slicing,
+                                                       settings.checks));
     return program;
 }
 
@@ -329,9 +333,12 @@ void Renderer::draw_triangles(GLuint program, bool with_lists, const FrameSettin
                 static_cast<float>(frame_buffer_.height()));
     glUniform3fv(uniform(program, "moon"), 1, glm::value_ptr(glm::mat3(view_) * way_to_moon));
     glUniform1f(uniform(program, "exposure"), settings.exposure);
-    glUniform1i(uniform(program, "light_count"), static_cast<int>(scene_.lights.size()));
+    // Only shaders for boxes read the number of lights alone.
+    glUniform1i(glGetUniformLocation(program, "light_count"), static_cast<int>(scene_.lights.size()));
+    glUniform1i(uniform(program, "listed_count"), static_cast<int>(binned_.listed_count()));
     glUniform1i(uniform(program, "sun_count"), static_cast<int>(scene_.suns.size()));
     bind_texture(program, 2, lights_, "lights");
+    if (binned_.has_boxes()) bind_texture(program, 6, boxes_, "boxes");
     const auto opaque = static_cast<GLsizei>(scene_.triangles.size());
     if (with_lists) bind_lists(program, opaque_lists_);
     glDrawArrays(GL_TRIANGLES, 0, opaque);
@@ -381,6 +388,8 @@ void Renderer::bind_texture(GLuint program, int unit, const GpuBuffer& source, c
 void Renderer::upload_lights() {
     const std::span<const GpuLight> lights = binned_.in_order();
     upload(lights_, lights.data(), lights.size_bytes(), lights_width, "lights");
+    const std::span<const GpuBox> boxes = binned_.boxes();
+    if (!boxes.empty()) upload(boxes_, boxes.data(), boxes.size_bytes(), lights_width, "boxes");
 }
 
 void Renderer::upload_lists(const Lists& target, const lightbin::LightGrid<std::uint32_t>& grid) const {

@@ -42,7 +42,7 @@ struct FrameSettings {
     bool count_evaluations = false;          // takes longer than the picture
     float exposure = 1;                      // 0: linear radiance, see Renderer::meter
     ShaderChecks checks;
-    int dropped_light = -1;   // left out of the lists, to see --check fail
+    int dropped_light = -1;   // a light's or box's id, left out of the lists, to see --check fail
     bool stale_size = false;  // lists for a smaller picture than is drawn, to see --check-in-shader fail
 
     bool has_z_bounds() const { return depth == DepthUse::pre_pass && z_bounds != ZBoundsUse::none; }
@@ -132,7 +132,7 @@ private:
     std::map<std::tuple<int, bool, bool>, GLuint> reduce_programs_;  // [samples, orthographic, skip]
     FrameBuffer frame_buffer_;
     GLuint reduce_framebuffer_ = 0, reduced_ = 0;
-    GpuBuffer lights_;
+    GpuBuffer lights_, boxes_;
     Lists opaque_lists_, transparent_lists_;
     GpuBuffer slices_buffer_, bins_buffer_;
 

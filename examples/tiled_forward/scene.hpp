@@ -33,6 +33,21 @@ struct Sun {
     glm::vec3 illuminance{0};  // lux, linear colour
 };
 
+// A box, or with a taper below 1 a frustum, that changes the surfaces inside. `half_axes` lead from its centre to the
+// middles of three faces and are at right angles; `taper` is as in lightbin::Box.
+struct SceneBox {
+    enum class Kind {
+        decal,  // multiplies base colours by `colour`, in a round pattern, on what faces the third half axis
+        probe,  // adds `colour` (lux) as light of the surroundings, most of it from the third half axis
+        projector  // sends `colour` (candela) along the third half axis, in the pattern of a window
+    };
+    Kind kind = Kind::decal;
+    glm::vec3 colour{1};
+    glm::vec3 centre{0};
+    glm::mat3 half_axes{1};
+    float taper = 1;
+};
+
 struct Camera {
     std::string name;
     glm::dmat4 to_world{1};  // rigid; the camera looks down its -z, as in OpenGL and glTF
@@ -48,6 +63,7 @@ struct Scene {
     std::vector<Vertex> triangles;    // opaque, three vertices each
     std::vector<Vertex> transparent;  // glass: adds its light to that from behind
     std::vector<Light> lights;
+    std::vector<SceneBox> boxes;
     std::vector<Sun> suns;
     std::vector<Camera> cameras;     // at least one
     std::vector<std::string> notes;  // what was read in a way the user may not expect, a line each
@@ -60,10 +76,11 @@ Scene load_glb(const std::string& path, float cutoff);
 // The same of a file that was read; `path` is where it was found, and its errors' name.
 Scene read_glb(std::span<const unsigned char> bytes, const std::string& path, float cutoff);
 
-// A small city at night with this many coloured lights in its streets. The same every time.
+// A small city at night with this many coloured lights in its streets, decals and a probe. The same every time.
 Scene make_scene(int light_count);
 
-// A street at night: lamps, cars, shops and beams, nearly all of them lights with a cone. The same every time.
+// A street at night: lamps, cars, shops and beams, nearly all of them lights with a cone, and projectors. The same every
+// time.
 Scene make_street();
 
 // A camera that has all of the scene in sight, from the front and above.

@@ -39,6 +39,7 @@ std::string tile_lists(int glsl, lightbin::Slicing slicing, bool heat_map = fals
 const char* const lighting = R"(
 uniform highp sampler2D lights;  // three texels each, see GpuLight
 uniform int light_count;
+uniform int listed_count;  // of lights and boxes
 
 vec4 light_texel(int i) {
     return texelFetch(lights, ivec2(i % LIGHTS_WIDTH, i / LIGHTS_WIDTH), 0);
@@ -65,6 +66,56 @@ vec3 irradiance(int id, vec3 position, vec3 normal) {
 #endif
     return colour.rgb * (facing * falloff(square_distance, inverse_square_range));
 }
+
+#ifdef BOXES
+uniform highp sampler2D boxes;  // five texels each, see GpuBox
+
+vec4 box_texel(int i) {
+    return texelFetch(boxes, ivec2(i % LIGHTS_WIDTH, i / LIGHTS_WIDTH), 0);
+}
+
+// What a decal, a probe or a projector does to the surface at `position`, if it is in the box.
+void apply_box(int box, vec3 position, vec3 normal, inout vec3 albedo, inout vec3 light) {
+    vec4 x_row = box_texel(5 * box), y_row = box_texel(5 * box + 1), z_row = box_texel(5 * box + 2);
+    vec4 colour = box_texel(5 * box + 3), eye_taper = box_texel(5 * box + 4);
+    vec4 point = vec4(position, 1.0);
+    vec3 place = vec3(dot(x_row, point), dot(y_row, point), dot(z_row, point));
+    float width = 0.5 * (1.0 + eye_taper.w + place.z * (1.0 - eye_taper.w));  // 1 but for a projector
+    if (any(greaterThanEqual(abs(place), vec3(width, width, 1.0)))) return;
+
+    vec3 axis = normalize(z_row.xyz);
+    if (colour.w == 0.0) {  // a decal: a ring around a disc
+        float radius = length(place.xy);
+        float paint = (1.0 - smoothstep(0.94, 1.0, radius)) *
+                      (1.0 - smoothstep(0.5, 0.56, radius) + smoothstep(0.7, 0.76, radius));
+        albedo *= mix(vec3(1.0), colour.rgb, paint * clamp(2.0 * dot(normal, axis), 0.0, 1.0));
+    } else if (colour.w == 1.0) {  // a probe: light from where the eye's ray is reflected to, less towards the faces
+        vec3 inward = clamp(4.0 - 4.0 * abs(place), 0.0, 1.0);
+        float surroundings = 1.0 + dot(reflect(normalize(position), normal), axis);
+        light += colour.rgb * (inward.x * inward.y * inward.z * surroundings);
+    } else {  // a projector: the light that six panes let through
+        vec2 from_middle = abs(fract(vec2(1.5, 1.0) * (place.xy / width + 1.0)) - 0.5);
+        vec2 glass = 1.0 - smoothstep(0.4, 0.46, from_middle);
+        vec3 to_eye = eye_taper.xyz - position;
+        float square_distance = dot(to_eye, to_eye);
+        float facing = max(dot(normal, to_eye * inversesqrt(max(square_distance, 1e-20))), 0.0);
+        float square_share = width * width / max(square_distance, 1e-20);  // 1 over the square of the range
+        light += colour.rgb * (facing * glass.x * glass.y * falloff(square_distance, square_share));
+    }
+}
+#endif
+
+// What an entry of the array of lights does to the surface, be it a light or a box.
+void shade(int id, vec3 position, vec3 normal, inout vec3 albedo, inout vec3 light) {
+#ifdef BOXES
+    int box = int(light_texel(3 * id + 1).w) - 1;
+    if (box >= 0) {
+        apply_box(box, position, normal, albedo, light);
+        return;
+    }
+#endif
+    light += irradiance(id, position, normal);
+}
 )";
 
 const char* const surface = R"(
@@ -87,7 +138,7 @@ vec3 view_position() {
 const char* const forward_main = R"(
 uniform vec3 moon;       // the way to it, in view space
 uniform float exposure;  // 0: write linear radiance, for the light meter
-uniform int sun_count;   // the directional lights follow the others
+uniform int sun_count;   // the directional lights follow lights and boxes
 
 in vec3 surface_normal;
 in vec3 base_colour;
@@ -98,22 +149,32 @@ void main() {
     vec3 normal = normalize(gl_FrontFacing ? surface_normal : -surface_normal);
 
     vec3 light = vec3(0.0);
-    for (int sun = light_count; sun < light_count + sun_count; ++sun)
+    vec3 albedo = base_colour;
+    for (int sun = listed_count; sun < listed_count + sun_count; ++sun)
         light += light_texel(3 * sun + 1).rgb * max(dot(normal, light_texel(3 * sun).xyz), 0.0);
-#ifdef EVERY_LIGHT
-    for (int id = 0; id < light_count; ++id)
-        light += irradiance(id, position, normal);
-#else
-    lightbin_for_each_light(listed, uvec2(gl_FragCoord.xy), -position.z)
+#if defined(EVERY_LIGHT)
+    for (int id = 0; id < listed_count; ++id)
+        shade(id, position, normal, albedo, light);
+#elif defined(BOXES) && !defined(RANKS)
+    // Kind by kind: ids ascend, and those of all lights are below those of all boxes.
+    lightbin_cursor listed = lightbin_begin(uvec2(gl_FragCoord.xy), -position.z);
+    bool more = lightbin_next(listed);
+    for (; more && int(listed.id) < light_count; more = lightbin_next(listed))
         light += irradiance(int(listed.id), position, normal);
+    for (; more; more = lightbin_next(listed))
+        apply_box(int(listed.id) - light_count, position, normal, albedo, light);
+#else
+    // Without boxes each entry is a light. With z-bins ids are ranks in order of depth, so each entry says what it is.
+    lightbin_for_each_light(listed, uvec2(gl_FragCoord.xy), -position.z)
+        shade(int(listed.id), position, normal, albedo, light);
 #endif
 
-    vec3 radiance = base_colour * light / 3.14159265;
+    vec3 radiance = albedo * light / 3.14159265;
     if (exposure == 0.0) {
         pixel = vec4(radiance, 1.0);
     } else {
         // Moonlight, so that nothing is all black.
-        vec3 night = base_colour * vec3(0.012, 0.015, 0.024) * (1.0 + dot(normal, moon));
+        vec3 night = albedo * vec3(0.012, 0.015, 0.024) * (1.0 + dot(normal, moon));
         vec3 display = 1.0 - exp(-exposure * radiance - night);
         pixel = vec4(pow(display, vec3(1.0 / 2.2)), 1.0);
     }
@@ -130,8 +191,11 @@ std::string check_function(ShaderChecks checks) {
                 "    uvec2 here = uvec2(gl_FragCoord.xy);\n";
     if (checks.view) text += "    if (!lightbin_check_view(here, position)) pixel = magenta;\n";
     if (checks.lists)
-        text += "    lightbin_for_each_missing(light, uint(light_count), here, -position.z)\n"
-                "        if (irradiance(int(light.id), position, normal) != vec3(0.0)) pixel = magenta;\n";
+        text += "    lightbin_for_each_missing(missing, uint(listed_count), here, -position.z) {\n"
+                "        vec3 albedo = vec3(1.0), light = vec3(0.0);\n"
+                "        shade(int(missing.id), position, normal, albedo, light);\n"
+                "        if (albedo != vec3(1.0) || light != vec3(0.0)) pixel = magenta;\n"
+                "    }\n";
     return text + "}\n";
 }
 
@@ -174,10 +238,12 @@ std::string depth_fragment_shader(int glsl) {
     return version_line(glsl) + "void main() {}\n";
 }
 
-std::string forward_fragment_shader(int glsl, LightLoop loop, bool has_spots, lightbin::Slicing slicing,
+std::string forward_fragment_shader(int glsl, LightLoop loop, LightKinds kinds, lightbin::Slicing slicing,
                                     ShaderChecks checks) {
     std::string text = version_line(glsl) + "#define LIGHTS_WIDTH " + std::to_string(lights_width) + "\n";
-    if (has_spots) text += "#define SPOTS\n";
+    if (kinds.spots) text += "#define SPOTS\n";
+    if (kinds.boxes) text += "#define BOXES\n";
+    if (slicing == lightbin::Slicing::z_bins) text += "#define RANKS\n";
     if (loop == LightLoop::every_light)
         text += "#define EVERY_LIGHT\n";
     else

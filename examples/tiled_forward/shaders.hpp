@@ -33,7 +33,12 @@ struct ShaderChecks {
     bool lists = false;  // has its list every light that reaches it?
     auto operator<=>(const ShaderChecks&) const = default;
 };
-std::string forward_fragment_shader(int glsl, LightLoop loop, bool has_spots,
+
+// What a scene has beside lights that shine in all directions.
+struct LightKinds {
+    bool spots = false, boxes = false;
+};
+std::string forward_fragment_shader(int glsl, LightLoop loop, LightKinds kinds,
                                     lightbin::Slicing slicing = lightbin::Slicing::none,
                                     ShaderChecks checks = {});
 

@@ -43,6 +43,7 @@ void Stage::open(std::span<const unsigned char> bytes, const std::string& name) 
 
 void Stage::show(Scene scene, const std::string& kind) {
     scene_ = std::move(scene);
+    scene_.boxes.clear();  // the shaders of the page know lights only
     kind_ = kind;
     places_ = scene_.lights;
     frame_ = {};
