@@ -54,31 +54,6 @@ std::vector<Box> random_boxes(std::size_t count, std::uint32_t seed) {
     return boxes;
 }
 
-ZBounds box_bounds(const View& view, std::vector<float>& min, std::vector<float>& max) {
-    for (std::size_t tile = 0; tile < view.tile_count(); ++tile) {
-        min.push_back(static_cast<float>(tile % 97));
-        max.push_back(min.back() + static_cast<float>(tile % 5));
-    }
-    return {.min = min, .max = max};
-}
-
-template <Options options, class LightRange>
-test::Lists box_lists(const View& view, const LightRange& lights, const Parallel& parallel = {}) {
-    std::vector<float> min, max;
-    const Slices slices = *Slices::exponential(7, 3, 90);
-    Binner<options> binner;
-    const auto grid = binner.bin(view, lights, inputs_for<options>(box_bounds(view, min, max), slices), parallel);
-    REQUIRE(grid);
-    auto lists = test::to_lists(*grid);
-    if (options.slicing == Slicing::z_bins)  // from ranks back to ids
-        for (auto& list : lists) {
-            for (auto& id : list)
-                id = grid->ranks().order[id];
-            std::sort(list.begin(), list.end());
-        }
-    return lists;
-}
-
 /// Calls visit with every rung that boxes have kernels of their own for.
 template <class Visit> void on_box_rungs(Visit visit) {
     visit.template operator()<Options{}>();
@@ -112,13 +87,13 @@ TEST_CASE("each rung lists fewer boxes than their spheres, and none that a lower
     const View view = test::view({1283, 721}, 16);
     const std::vector<Box> boxes = random_boxes(400, 5);
     const std::vector<Sphere> spheres(boxes.begin(), boxes.end());
-    const auto in_rectangles = box_lists<Options{}>(view, boxes);
+    const auto in_rectangles = test::id_lists<Options{}>(view, boxes);
     on_box_rungs([&]<Options options> {
-        const auto here = box_lists<options>(view, boxes), of_spheres = box_lists<options>(view, spheres);
+        const auto here = test::id_lists<options>(view, boxes), of_spheres = test::id_lists<options>(view, spheres);
         if constexpr (options.slicing != Slicing::clusters) CHECK(test::is_superset(in_rectangles, here));
         CHECK(4 * test::entries(here) < 3 * test::entries(of_spheres));
         CHECK(test::entries(here) > 0);
-        const auto alone = box_lists<options>(view, std::vector<Box>{boxes[1]});
+        const auto alone = test::id_lists<options>(view, std::vector<Box>{boxes[1]});
         for (std::size_t cell = 0; cell < here.size(); ++cell)
             REQUIRE(alone[cell].size() ==
                     static_cast<std::size_t>(std::count(here[cell].begin(), here[cell].end(), 1u)));
@@ -130,12 +105,12 @@ TEST_CASE("boxes have the same lists on all tiers and threads") {
     const std::vector<Box> boxes = random_boxes(700, 6);
     const glm::mat4 sheared = glm::mat4(1, 0.2f, 0, 0, 0, -1, 0.1f, 0, 0.4f, 0, 1, 0, 1, 2, 3, 1);
     on_box_rungs([&]<Options options> {
-        const auto in_view = box_lists<on_tier(options, Isa::scalar)>(view, boxes);
-        const auto in_world = box_lists<on_tier(options, Isa::scalar)>(view, world_space(boxes, sheared));
+        const auto in_view = test::id_lists<on_tier(options, Isa::scalar)>(view, boxes);
+        const auto in_world = test::id_lists<on_tier(options, Isa::scalar)>(view, world_space(boxes, sheared));
         test::on_machine_tiers([&]<Isa isa>() {
-            CHECK((box_lists<on_tier(options, isa)>(view, boxes) == in_view));
-            CHECK((box_lists<on_tier(options, isa)>(view, world_space(boxes, sheared)) == in_world));
-            CHECK((box_lists<on_tier(options, isa)>(view, boxes, {3, test::on_threads, 0}) == in_view));
+            CHECK((test::id_lists<on_tier(options, isa)>(view, boxes) == in_view));
+            CHECK((test::id_lists<on_tier(options, isa)>(view, world_space(boxes, sheared)) == in_world));
+            CHECK((test::id_lists<on_tier(options, isa)>(view, boxes, {3, test::on_threads, 0}) == in_view));
         });
     });
 }
@@ -144,7 +119,7 @@ TEST_CASE("bitmasks of boxes are those of their lists, and transparent ones are 
     const View view = test::view({641, 361}, 16);
     const std::vector<Box> boxes = random_boxes(300, 7);
     std::vector<float> min, max;
-    const ZBounds bounds = box_bounds(view, min, max);
+    const ZBounds bounds = test::some_bounds(view, min, max);
     Binner<Options{.depth_test = DepthTest::box}> binner;
     const auto listed = test::to_lists(*binner.bin(view, boxes, {.bounds = bounds}));
     std::vector<std::uint32_t> bits(view.tile_count() * 10);
@@ -175,8 +150,8 @@ TEST_CASE("an affine matrix makes of a box the box of the transformed half axes"
         }
     }
     on_box_rungs([&]<Options options> {
-        const double before = static_cast<double>(test::entries(box_lists<options>(view, world_space(boxes, m)))),
-                     after = static_cast<double>(test::entries(box_lists<options>(view, moved)));
+        const double before = static_cast<double>(test::entries(test::id_lists<options>(view, world_space(boxes, m)))),
+                     after = static_cast<double>(test::entries(test::id_lists<options>(view, moved)));
         CHECK(before == doctest::Approx(after).epsilon(0.002));
     });
 }
@@ -184,7 +159,7 @@ TEST_CASE("an affine matrix makes of a box the box of the transformed half axes"
 TEST_CASE("footprints for shaders have the boxes' rectangles and spheres around the boxes") {
     const View view = test::view({641, 361}, 16);
     const std::vector<Box> boxes = random_boxes(300, 10);
-    const auto in_rectangles = box_lists<Options{}>(view, boxes);
+    const auto in_rectangles = test::id_lists<Options{}>(view, boxes);
     const auto footprints = shader_footprints(view, boxes);
     REQUIRE(footprints);
     std::size_t area = 0;

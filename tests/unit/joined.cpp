@@ -37,29 +37,11 @@ Kinds random_kinds(std::size_t spheres, std::size_t spots, std::size_t boxes, st
     return kinds;
 }
 
-/// The lists of ids, with z-bins those of the ranks, sorted.
+const Parallel on_three_threads(3, test::on_threads, 0);
+
 template <Options options, class LightRange>
 test::Lists joined_lists(const View& view, const LightRange& all, LightCounts* counts = nullptr) {
-    std::vector<float> min, max;
-    for (std::size_t tile = 0; tile < view.tile_count(); ++tile) {
-        min.push_back(static_cast<float>(tile % 97));
-        max.push_back(min.back() + static_cast<float>(tile % 5));
-    }
-    const Slices slices = *Slices::exponential(7, 3, 90);
-    const ZBounds bounds = {.min = min, .max = max};
-    Binner<options> binner;
-    const Parallel threads(3, test::on_threads, 0);
-    const auto grid = binner.bin(view, all, inputs_for<options>(bounds, slices), threads);
-    REQUIRE(grid);
-    if (counts != nullptr) *counts = grid->light_counts();
-    test::Lists made = test::to_lists(*grid);
-    if (options.slicing == Slicing::z_bins)
-        for (auto& list : made) {
-            for (auto& id : list)
-                id = grid->ranks().order[id];
-            std::sort(list.begin(), list.end());
-        }
-    return made;
+    return test::id_lists<options>(view, all, on_three_threads, counts);
 }
 
 /// Appends to each list those of another kind, whose ids go on from `first`.

@@ -140,4 +140,34 @@ inline constexpr auto backwards = [](std::size_t n, const auto& body) {
         body(--n);
 };
 
+/// Z bounds of a few units of depth that differ from tile to tile. They refer to `min` and `max`, which must be empty.
+inline lightbin::ZBounds some_bounds(const lightbin::View& view, std::vector<float>& min, std::vector<float>& max) {
+    for (std::size_t tile = 0; tile < view.tile_count(); ++tile) {
+        min.push_back(static_cast<float>(tile % 97));
+        max.push_back(min.back() + static_cast<float>(tile % 5));
+    }
+    return {.min = min, .max = max};
+}
+
+/// Returns the lists of ids of a grid, with z-bins those of the ranks, sorted. Its bounds are some_bounds().
+template <lightbin::Options options, class LightRange>
+Lists id_lists(const lightbin::View& view, const LightRange& lights, const lightbin::Parallel& threads = {},
+               lightbin::LightCounts* counts = nullptr) {
+    std::vector<float> min, max;
+    const lightbin::Slices slices = *lightbin::Slices::exponential(7, 3, 90);
+    lightbin::Binner<options> binner;
+    const auto inputs = lightbin::inputs_for<options>(some_bounds(view, min, max), slices);
+    const auto grid = binner.bin(view, lights, inputs, threads);
+    REQUIRE(grid);
+    if (counts != nullptr) *counts = grid->light_counts();
+    Lists lists = to_lists(*grid);
+    if (options.slicing == lightbin::Slicing::z_bins)
+        for (auto& list : lists) {
+            for (auto& id : list)
+                id = grid->ranks().order[id];
+            std::sort(list.begin(), list.end());
+        }
+    return lists;
+}
+
 }  // namespace test

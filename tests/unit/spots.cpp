@@ -21,30 +21,6 @@ std::vector<Spot> random_spots(std::size_t count, std::uint32_t seed) {
     return spots;
 }
 
-ZBounds some_bounds(const View& view, std::vector<float>& min, std::vector<float>& max) {
-    for (std::size_t tile = 0; tile < view.tile_count(); ++tile) {
-        min.push_back(static_cast<float>(tile % 97));
-        max.push_back(min.back() + static_cast<float>(tile % 5));
-    }
-    return {.min = min, .max = max};
-}
-
-template <Options options, class LightRange> test::Lists lists(const View& view, const LightRange& lights) {
-    std::vector<float> min, max;
-    const Slices slices = *Slices::exponential(7, 3, 90);
-    Binner<options> binner;
-    const auto grid = binner.bin(view, lights, inputs_for<options>(some_bounds(view, min, max), slices));
-    REQUIRE(grid);
-    auto lists = test::to_lists(*grid);
-    if (options.slicing == Slicing::z_bins)  // from ranks back to ids
-        for (auto& list : lists) {
-            for (auto& id : list)
-                id = grid->ranks().order[id];
-            std::sort(list.begin(), list.end());
-        }
-    return lists;
-}
-
 /// Calls visit with every rung that spots have kernels of their own for.
 template <class Visit> void on_rungs(Visit visit) {
     visit.template operator()<Options{}>();
@@ -78,23 +54,23 @@ TEST_CASE("whole spheres as spots are binned as spheres are") {
             return test::is_superset(of_spheres, of_spots) &&
                    test::entries(of_spots) >= test::entries(of_spheres) * 999 / 1000;
         };
-        const auto expected = lists<options>(view, spheres);
-        CHECK(same(lists<options>(view, spots), expected));
-        CHECK(same(lists<options>(view, beyond_138_degrees), expected));
-        CHECK(same(lists<options>(view, world_space(spots, to_view)),
-                   lists<options>(view, world_space(spheres, to_view))));
+        const auto expected = test::id_lists<options>(view, spheres);
+        CHECK(same(test::id_lists<options>(view, spots), expected));
+        CHECK(same(test::id_lists<options>(view, beyond_138_degrees), expected));
+        CHECK(same(test::id_lists<options>(view, world_space(spots, to_view)),
+                   test::id_lists<options>(view, world_space(spheres, to_view))));
     });
 }
 
 TEST_CASE("each rung lists fewer spots, and none that a lower one leaves out") {
     const View view = test::view({1283, 721}, 16);
     const std::vector<Spot> spots = random_spots(500, 5);
-    const auto in_rectangles = lists<Options{}>(view, spots);
+    const auto in_rectangles = test::id_lists<Options{}>(view, spots);
     on_rungs([&]<Options options> {
-        const auto here = lists<options>(view, spots);
+        const auto here = test::id_lists<options>(view, spots);
         if constexpr (options.slicing != Slicing::clusters) CHECK(test::is_superset(in_rectangles, here));
         const std::vector<Spot> one = {spots[1]};
-        const auto alone = lists<options>(view, one);
+        const auto alone = test::id_lists<options>(view, one);
         for (std::size_t cell = 0; cell < here.size(); ++cell)
             REQUIRE(alone[cell].size() ==
                     static_cast<std::size_t>(std::count(here[cell].begin(), here[cell].end(), 1u)));
@@ -102,14 +78,14 @@ TEST_CASE("each rung lists fewer spots, and none that a lower one leaves out") {
     std::vector<Spot> balls = spots;
     for (Spot& spot : balls)
         spot.cos_half_angle = -1;
-    CHECK(3 * test::entries(in_rectangles) < 2 * test::entries(lists<Options{}>(view, balls)));
+    CHECK(3 * test::entries(in_rectangles) < 2 * test::entries(test::id_lists<Options{}>(view, balls)));
 }
 
 TEST_CASE("bitmasks of spots are those of their lists, and transparent ones are not cut in front") {
     const View view = test::view({641, 361}, 16);
     const std::vector<Spot> spots = random_spots(300, 6);
     std::vector<float> min, max;
-    const ZBounds bounds = some_bounds(view, min, max);
+    const ZBounds bounds = test::some_bounds(view, min, max);
     Binner<Options{.depth_test = DepthTest::box}> binner;
     const auto listed = test::to_lists(*binner.bin(view, spots, {.bounds = bounds}));
     std::vector<std::uint32_t> bits(view.tile_count() * 10);
@@ -131,8 +107,8 @@ TEST_CASE("a matrix that bends cones makes spheres of spots") {
     for (const Spot& spot : spots)
         least.push_back(spot);
     const glm::mat4 stretched = glm::scale(glm::mat4(1.0f), glm::vec3(1, 1, 2));
-    const auto as_spheres = lists<Options{}>(view, world_space(least, stretched)),
-               as_spots = lists<Options{}>(view, world_space(spots, stretched));
+    const auto as_spheres = test::id_lists<Options{}>(view, world_space(least, stretched)),
+               as_spots = test::id_lists<Options{}>(view, world_space(spots, stretched));
     CHECK(test::is_superset(as_spheres, as_spots));
     CHECK(test::entries(as_spots) >= test::entries(as_spheres) * 999 / 1000);
     // A matrix of floats is never exactly a rotation: that takes next to nothing from cones.
@@ -143,6 +119,6 @@ TEST_CASE("a matrix that bends cones makes spheres of spots") {
                         axis = turned * glm::vec4(spot.axis_x, spot.axis_y, spot.axis_z, 0);
         spot = {centre.x, centre.y, centre.z, spot.radius, axis.x, axis.y, axis.z, spot.cos_half_angle};
     }
-    CHECK(test::entries(lists<Options{}>(view, world_space(spots, turned))) <=
-          test::entries(lists<Options{}>(view, moved)) * 1001 / 1000);
+    CHECK(test::entries(test::id_lists<Options{}>(view, world_space(spots, turned))) <=
+          test::entries(test::id_lists<Options{}>(view, moved)) * 1001 / 1000);
 }
