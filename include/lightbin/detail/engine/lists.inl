@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Step 1 of binning: lists the lights of each block of 8x8 tiles. Included once per tier (instruction set).
+// Step 1 of binning: lists the lights of each block of 8x8 tiles. This text is included once for each instruction set.
 //
 //   1. Each vector of lights is compared with each band of 8 tile rows. A saturating subtraction and two byte shuffles
 //      make a byte for each light, with a bit for each of the band's rows that its rectangle covers. Lights with a

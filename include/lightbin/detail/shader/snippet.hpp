@@ -307,7 +307,8 @@ float $window(float apart, float range) {
     vec2 apart = abs(at - (vec2(here) + 0.5));
     return apart.x < $depths.w && apart.y < $depths.w && depth >= $depths.z)" +
                             is_view + ";\n}\n";
-        // The constants of view v are elements 2v and 2v + 1 of an array. A number that no view has reads the last ones.
+        // The constants of view v are elements 2v and 2v + 1 of an array. A view number that is too large is clamped to the
+        // last view's, so that no element beyond the array is read.
         if (several)
             check = "    uint first = 2u * min(view, " + std::to_string(options.views - 1) +
                     "u);\n    vec4 image = $image[first];\n    vec4 depths = $image[first + 1u];\n" +
