@@ -29,7 +29,8 @@ template <DepthTest depth_test, Slicing slicing = Slicing::none> struct Inputs {
 /// Returns Inputs with the bounds if the options read bounds, else without. For templates whose options vary, such as
 /// callables given to with_options() of advise.hpp.
 template <Options options>
-requires(options.slicing == Slicing::none) Inputs<options.depth_test> inputs_for([[maybe_unused]] const ZBounds& bounds) {
+requires(options.slicing == Slicing::none)
+Inputs<options.depth_test> inputs_for([[maybe_unused]] const ZBounds& bounds) {
     if constexpr (options.depth_test == DepthTest::none)
         return {};
     else
@@ -84,15 +85,15 @@ public:
 
     /// Returns the light grid of `lights` in `view`. Its memory belongs to the Binner and is valid until the next call.
     ///
-    /// lights   view_space(...), world_space(...), or a contiguous range of vec4 (x, y, z, radius), Sphere, Spot or Box in
-    ///          view space; or lights(...), which joins several of these
+    /// lights   view_space(...), world_space(...), or a contiguous range of vec4 (x, y, z, radius), Sphere, Spot or Box
+    ///          in view space; or lights(...), which joins several of these
     /// inputs   {.slices = ...} with clusters or z_bins, {.bounds = ...} with a depth test unless with clusters, and
     ///          {.slices = ..., .bounds = ...} with z_bins and a depth test; else nothing
     /// threads  a Parallel, to share the work among the caller's threads. The grid does not depend on it.
     ///
-    /// Afterwards every tile lists, in ascending order, every light whose sphere, spot or box meets the tile's cell. Errors:
-    /// more lights than Id can number; more than 2^32 - 1 entries, cells, or pairs of a light and a slice or block of 8x8
-    /// tiles; a world_space() matrix that is not affine; Z bounds shorter than view.tile_count().
+    /// Afterwards every tile lists, in ascending order, every light whose sphere, spot or box meets the tile's cell.
+    /// Errors: more lights than Id can number; more than 2^32 - 1 entries, cells, or pairs of a light and a slice or
+    /// block of 8x8 tiles; a world_space() matrix that is not affine; Z bounds shorter than view.tile_count().
     template <class LightRange, std::convertible_to<Parallel> Threads = Serial>
     Result<LightGrid<Id>> bin(const View& view, const LightRange& lights, const Inputs& inputs = {},
                               const Threads& threads = {}) {
@@ -148,7 +149,7 @@ public:
                 isa_, view, visible(), inputs.bounds, scratch_, threads, bits.data(),
                 static_cast<std::size_t>(each)))
             return *error;
-        return LightBits{counts(), visible().ranks()};
+        return LightBits{footprints_.counts(), visible().ranks()};
     }
 
     /// Returns what each light in view covers, in ascending order of id, for the lights and the view of the last call
@@ -200,15 +201,8 @@ private:
                                 const Threads& threads) {
         if (const auto error = lists.template build<of_kind>(isa_, view, visible(), bounds, scratch_, threads))
             return *error;
-        return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), counts(),
+        return LightGrid<Id>(view.tiles_x(), view.tiles_y(), lists.tiles(), lists.indices(), footprints_.counts(),
                              visible().slices(), visible().ranks());
-    }
-
-    LightCounts counts() const {
-        const auto all = static_cast<std::uint32_t>(footprints_.lights());
-        const detail::ViewLights& kinds = footprints_.arrays().view_lights;
-        return {all, footprints_.rejected(), all - footprints_.rejected() - footprints_.visible(), kinds.first_spot,
-                kinds.first_box};
     }
 
     void swap(Binner& other) noexcept {

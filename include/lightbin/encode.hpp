@@ -125,16 +125,17 @@ Result<Encoded> encode(const LightGrid<Id>& grid, const ListFormat& format, std:
     return encoded;
 }
 
-/// The list of one tile, with a count for each kind of light: from index `offset` of the light index list on, the ids of
-/// `spheres` Spheres, then of `spots` Spots, then of `boxes` Boxes. 16 bytes, laid out as a GPU's uvec4.
+/// The list of one tile, with a count for each kind of light: from index `offset` of the light index list on, the ids
+/// of `spheres` Spheres, then of `spots` Spots, then of `boxes` Boxes. 16 bytes, laid out as a GPU's uvec4.
 struct KindRange {
     std::uint32_t offset, spheres, spots, boxes;
 };
 
-/// Writes a KindRange for each element of grid.ranges(): the same list, with the numbers of its Spheres, Spots and Boxes in
-/// place of one count. With it a shader has one loop for each kind, and asks no light for its kind. For a grid whose arrays
-/// lights() joined. Returns the part of `out` that was written. Errors, after which `out` is unchanged: the grid was made
-/// with Slicing::z_bins; `out` is smaller than grid.ranges().
+/// Writes a KindRange for each element of grid.ranges(): the same list, with the numbers of its Spheres, Spots and
+/// Boxes in place of one count. A shader made with ShaderOptions::split_kinds reads them in place of grid.ranges(): it
+/// has one loop for each kind, and asks no light for its kind. For a grid whose arrays lights() joined. Returns the
+/// part of `out` that was written. Errors, after which `out` is unchanged: the grid was made with Slicing::z_bins;
+/// `out` is smaller than grid.ranges().
 template <class Id>
 Result<std::span<const KindRange>> split_kinds(const LightGrid<Id>& grid, std::span<KindRange> out) {
     if (!grid.ranks().bins.empty()) return Error{ErrorCode::kinds_of_ranks};

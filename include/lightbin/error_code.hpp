@@ -52,6 +52,7 @@ enum class ErrorCode : std::uint8_t {
     // encodings and shader text
     ids_too_narrow,
     kinds_of_ranks,
+    kinds_without_table,
     list_buffer_too_small,
     bit_buffer_too_small,
     capacity_unknown,
@@ -140,6 +141,8 @@ inline constexpr const char* error_sentences[] = {
     "the lists' format numbers {available} lights and {needed} are needed: use wider ids, or a larger max_lights",
     ("with z-bins ids are ranks, in order of depth, so a list is not ordered by kind: look each id up in ranks().order, and "
      "compare that with LightCounts::first_spot and first_box"),
+    ("only lists of ListEncoding::offset_count have a KindRange: set ShaderOptions::split_kinds to false, and compare "
+     "ids with LightCounts::first_spot and first_box"),
     "the buffer for the encoded lists holds {available} bytes and {needed} are needed",
     "the buffer for bitmasks holds {available} words of 32 bits and {needed} are needed",
     "sentinel lists need ListFormat::capacity, the lights a tile can hold",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lights as the caller has them: arrays of vec4, Sphere, Spot, Box or the caller's own structs, in view space or world space.
+// Lights as the caller has them: arrays of vec4, Sphere, Spot, Box or the caller's own structs, in view space or world
+// space.
 #pragma once
 
 #include <lightbin/detail/project/to_light.hpp>
@@ -39,8 +40,8 @@ template <class Light, class ToLight> struct Lights {
         return to_view ? (*to_view)(sphere) : sphere;
     }
 
-    /// Returns the Sphere, Spot or Box, in view space, of an array element. The axis of a Spot, and the centre and the half
-    /// axes of a Box, are rounded to nearest, not outward.
+    /// Returns the Sphere, Spot or Box, in view space, of an array element. The axis of a Spot, and the centre and the
+    /// half axes of a Box, are rounded to nearest, not outward.
     auto view_light(const Light& light) const {
         if constexpr (kind == detail::LightKind::box) {
             Box box = made(light);
@@ -74,7 +75,7 @@ template <class Light, class ToLight> struct Lights {
 };
 
 /// What view_space() and world_space() return for a temporary array, such as a std::vector that a function returned.
-/// The array was moved into `array`. (Of a temporary std::span only the span is copied.)
+/// The array was moved into `array`.
 template <class Range, class ToLight> struct OwnedLights {
     Range array;
     ToLight to_light;
@@ -82,15 +83,18 @@ template <class Range, class ToLight> struct OwnedLights {
 };
 
 /// Describes lights that are in view space, the space that the projection matrix is applied to. The array is read where
-/// it is, so it must live until the Binner's call returns. A temporary array is moved into the returned object.
+/// it is, so it must live until the Binner's call returns. A temporary array is moved into the returned object, but not
+/// the elements that a temporary std::span or another borrowed range (std::ranges::borrowed_range) refers to.
 ///
 /// lights    a contiguous range of any type: structs, pointers or smart pointers to them, std::reference_wrapper
-/// to_light  a callable or a pointer to a member that makes a Sphere, a Spot or a Box of an element. If it does not take an
-///           element itself, it is called with the object that the element points to, and a null pointer is bad input. A
-///           to_light that takes pointers is called with null pointers, too. It is copied, and called as const.
+/// to_light  a callable or a pointer to a member that makes a Sphere, a Spot or a Box of an element. If it does not take
+///           an element itself, it is called with the object that the element points to, and a null pointer is bad
+///           input. A to_light that takes pointers is called with null pointers, too. It is copied, and called as
+///           const.
 template <class Range, class ToLight = AsLight>
 auto view_space(Range&& lights, const ToLight& to_light = {}) {
-    constexpr bool temporary = !std::is_lvalue_reference_v<Range>,
+    constexpr bool temporary = !std::is_lvalue_reference_v<Range> &&
+                               !std::ranges::enable_borrowed_range<std::remove_cvref_t<Range>>,
                    movable = std::is_move_constructible_v<Range>;
     static_assert(!temporary || movable,
                   "lightbin: these lights are gone after the expression and can't be moved: give the array a "
@@ -145,22 +149,25 @@ const JoinedLights<First, Rest>& as_lights(const JoinedLights<First, Rest>& ligh
     return lights;
 }
 
-/// Calls `visit` with each array of lights that a call was given, in the order of their ids.
+/// Returns the number of lights in all arrays that a call was given.
+template <class Light, class ToLight> std::size_t light_count(const Lights<Light, ToLight>& lights) {
+    return lights.array.size();
+}
+template <class First, class Rest> std::size_t light_count(const JoinedLights<First, Rest>& lights) {
+    return lights.first.array.size() + light_count(lights.rest);
+}
+
+/// Calls `visit` with each array of lights that a call was given, in the order of their ids. Empty arrays are left out,
+/// unless all are empty: then `visit` is called with one of them.
 template <class Light, class ToLight, class Visit>
 void for_each_array(const Lights<Light, ToLight>& lights, const Visit& visit) {
     visit(lights);
 }
 template <class First, class Rest, class Visit>
 void for_each_array(const JoinedLights<First, Rest>& lights, const Visit& visit) {
-    visit(lights.first);
-    for_each_array(lights.rest, visit);
-}
-
-/// Returns the number of lights in all arrays.
-template <class Source> std::size_t light_count(const Source& source) {
-    std::size_t count = 0;
-    for_each_array(source, [&](const auto& lights) { count += lights.array.size(); });
-    return count;
+    const bool rest = light_count(lights.rest) > 0;
+    if (!rest || lights.first.array.size() > 0) visit(lights.first);
+    if (rest) for_each_array(lights.rest, visit);
 }
 
 /// Returns the kind of the lights in the first of the arrays that a call was given.
@@ -180,11 +187,13 @@ template <class Range> auto lasting_lights(Range&& lights) {
     return Given(as_lights(lights));
 }
 
-/// Returns a pointer to the caller's array if its elements are Spheres or float vec4s of the same layout, so that kernels
-/// can read the array directly, by load_sphere(); else null.
-template <class Light, class ToLight> const Sphere* as_they_are(const Lights<Light, ToLight>& lights) {
-    if constexpr (std::is_same_v<ToLight, AsLight> && Lights<Light, ToLight>::kind == LightKind::sphere &&
-                  sizeof(Light) == sizeof(Sphere) && std::is_trivially_copyable_v<Light>) {
+/// Returns a pointer to the caller's array if its elements are Spheres, Spots or Boxes, or float vec4s of a Sphere's
+/// layout, so that kernels can read the array directly; else null.
+template <class Light, class ToLight> const void* as_they_are(const Lights<Light, ToLight>& lights) {
+    if constexpr (std::is_same_v<ToLight, AsLight> && (std::is_same_v<Light, Spot> || std::is_same_v<Light, Box>)) {
+        return lights.array.data();
+    } else if constexpr (std::is_same_v<ToLight, AsLight> && Lights<Light, ToLight>::kind == LightKind::sphere &&
+                         sizeof(Light) == sizeof(Sphere) && std::is_trivially_copyable_v<Light>) {
         if (lights.array.empty()) return nullptr;
         if constexpr (std::is_base_of_v<Sphere, Light>) {
             return lights.array.data();
@@ -194,7 +203,7 @@ template <class Light, class ToLight> const Sphere* as_they_are(const Lights<Lig
             const Light& first = lights.array.front();
             if (&first.x == numbers && &first.y == numbers + 1 && &first.z == numbers + 2 &&
                 &first.w == numbers + 3)
-                return static_cast<const Sphere*>(array);
+                return array;
         }
     }
     return nullptr;
@@ -202,13 +211,14 @@ template <class Light, class ToLight> const Sphere* as_they_are(const Lights<Lig
 
 }  // namespace detail
 
-/// Joins two or three arrays of lights of different kinds, for one call of a Binner: at most one of Spheres (or vec4s), one
-/// of Spots and one of Boxes, in this order. Each array may be in a space of its own. Ids number the arrays through, so the
-/// ids of Spots begin behind those of the Spheres, and in every list of a grid the Spheres come first, then the Spots, then
-/// the Boxes. (With Slicing::z_bins ids are ranks, in order of depth.) Each kind costs what it costs alone.
+/// Joins two or three arrays of lights of different kinds, for one call of a Binner: at most one of Spheres (or vec4s),
+/// one of Spots and one of Boxes, in this order. Each array may be in a space of its own. Ids number the arrays
+/// through, so the ids of Spots begin behind those of the Spheres, and in every list of a grid the Spheres come first,
+/// then the Spots, then the Boxes. (With Slicing::z_bins ids are ranks, in order of depth.) Each kind costs what it
+/// costs alone.
 ///
-/// first, second  view_space(...), world_space(...), or a contiguous range of lights in view space. Arrays are read where
-///                they are, so they must live until the Binner's call returns
+/// first, second  view_space(...), world_space(...), or a contiguous range of lights in view space. Arrays are read
+///                where they are, so they must live until the Binner's call returns
 template <class First, class Second> auto lights(First&& first, Second&& second) {
     auto one = detail::lasting_lights(static_cast<First&&>(first));
     auto other = detail::lasting_lights(static_cast<Second&&>(second));

@@ -25,10 +25,13 @@ struct Error {
     std::uint64_t available = 0;
 
     /// Returns to_string(code) with `needed` and `available` in place of its placeholders.
-    Text message() const {
+    Text message() const { return message(to_string(code)); }
+
+    /// Returns a sentence with the numbers filled in where it has {needed}, {available} and {given}.
+    Text message(const char* sentence) const {
         const bool negative = static_cast<std::int64_t>(needed) < 0;
         Text text;
-        for (const char* from = to_string(code); *from != 0;)
+        for (const char* from = sentence; *from != 0;)
             if (skip(from, "{needed}"))
                 text.append(needed);
             else if (skip(from, "{available}"))

@@ -161,7 +161,7 @@ inline Result<ZBounds> reduce_depth(const View& view, const DepthBuffer& buffer,
             });
     }
     const auto given = [&](std::span<float> side) {
-        return side.empty() ? std::span<const float>{} : std::span<const float>(side.first(tiles));
+        return side.empty() ? std::span<const float>{} : std::span<const float>(side.data(), tiles);
     };
     return ZBounds{.min = given(out.min),
                    .max = given(out.max),

@@ -27,7 +27,7 @@ inline std::string to_string(const Verdict& verdict) {
     return words + "instead: " + verdict.instead + "\n";
 }
 
-inline std::string Advice::text() const {
+LIGHTBIN_SMALL inline std::string Advice::text() const {
     std::string lines = "   cost  tile  footprint   depth test  slicing      entries   build us  "
                         "M evaluations   total us\n";
     for (const Plan& plan : plans()) {
@@ -45,7 +45,7 @@ inline std::string Advice::text() const {
     return lines;
 }
 
-inline std::vector<Verdict> Advice::verdicts(const Plan& plan) const {
+LIGHTBIN_SMALL inline std::vector<Verdict> Advice::verdicts(const Plan& plan) const {
     constexpr std::pair<const char*, bool (*)(const Plan&)> parts[] = {
         {"tiles", [](const Plan& p) { return p.tiled; }},
         {"pre-pass", [](const Plan& p) { return p.has_z_bounds(); }},
@@ -201,12 +201,19 @@ auto moved_aside(const JoinedLights<First, Rest>& joined, float aside, bool orth
     return lights(moved_aside(joined.first, aside, orthographic), moved_aside(joined.rest, aside, orthographic));
 }
 
+/// The Binner that weigh() measures with lights of a type, and whether the program has the code for options. The file
+/// that implements lightbin.h has specialisations.
+template <class LightRange, Options options> struct WeighedBinner : Binner<options> {};
+template <class LightRange> constexpr bool has_code(const Options&) {
+    return true;
+}
+
 /// Measures the options in each row of a table on grids of several tile sizes.
 ///
 /// for_each_visible  for_each_visible(visit) calls visit(x, y, depth, pixels) for every point with something to light:
 ///                   its pixel, its depth (read only with slices), and the number of pixels that it stands for
 template <const auto& table, Options base, class Clock, class LightRange, class ForEachVisible>
-Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlices& slices,
+LIGHTBIN_SMALL Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlices& slices,
                      const LightRange& lights, const Costs& costs, ForEachVisible for_each_visible) {
     // The grids: tiles of the view's tile size, of 2, 4 and 8 times that size while that is smaller than the screen,
     // and one tile as large as the screen.
@@ -217,7 +224,7 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
         grids.emplace_back(view, bounds, size);
     grids.emplace_back(view, bounds, whole);
     auto binners = []<std::size_t... i>(std::index_sequence<i...>) {
-        return std::tuple<Binner<weighed_options(base, table[i])>...>();
+        return std::tuple<WeighedBinner<LightRange, weighed_options(base, table[i])>...>();
     }(std::make_index_sequence<std::size(table)>());
     // Builds a plan's lists and keeps the time this took in plan.build_ns if it is the plan's shortest so far. A plan's
     // first call also counts the list entries and how often pixels evaluate a light.
@@ -230,8 +237,8 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
                 options.depth_test != DepthTest::none && options.slicing == Slicing::none;
             const Slices& by = options.slicing == Slicing::clusters ? slices.clusters : slices.z_bins;
             const auto start = Clock::now();
-            const auto built = std::get<Binner<options>>(binners).bin(grid->view, moved,
-                                                                      inputs_for<options>(grid->bounds, by));
+            const auto built = std::get<WeighedBinner<LightRange, options>>(binners).bin(
+                grid->view, moved, inputs_for<options>(grid->bounds, by));
             const std::chrono::duration<double, std::nano> time = Clock::now() - start;
             if (!built) return built.error();
             plan.build_ns = (std::min)(plan.build_ns, time.count() + (with_bounds ? costs.z_bounds_ns : 0));
@@ -262,6 +269,7 @@ Result<Advice> weigh(const View& view, const ZBounds& bounds, const WeighedSlice
     });
     for (const WeighedGrid& grid : grids)
         for (const Options& options : table) {
+            if (!has_code<LightRange>(options)) continue;
             const ZBounds& given = grid.bounds;
             const bool lacks_bounds = options.depth_test == DepthTest::split_box
                                           ? given.gap_min.empty() || given.gap_max.empty()

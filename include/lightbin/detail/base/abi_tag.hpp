@@ -84,8 +84,13 @@
 #endif
 // clang-format on
 
-#if defined(LIGHTBIN_NO_SIMD)  // chooses other kernels, so needs another name
-#define LIGHTBIN_ABI_TAG LIGHTBIN_PASTE(built_for_, LIGHTBIN_INSTRUCTION_SET, _no_simd, , , , , )
+#if defined(LIGHTBIN_CALLERS_MEMORY)  // set by the file that implements lightbin.h, whose Buffers allocate otherwise
+#define LIGHTBIN_MEMORY_TAG _in_c
 #else
-#define LIGHTBIN_ABI_TAG LIGHTBIN_PASTE(built_for_, LIGHTBIN_INSTRUCTION_SET, , , , , , )
+#define LIGHTBIN_MEMORY_TAG
+#endif
+#if defined(LIGHTBIN_NO_SIMD)  // chooses other kernels, so needs another name
+#define LIGHTBIN_ABI_TAG LIGHTBIN_PASTE(built_for_, LIGHTBIN_INSTRUCTION_SET, _no_simd, LIGHTBIN_MEMORY_TAG, , , , )
+#else
+#define LIGHTBIN_ABI_TAG LIGHTBIN_PASTE(built_for_, LIGHTBIN_INSTRUCTION_SET, LIGHTBIN_MEMORY_TAG, , , , , )
 #endif

@@ -21,27 +21,27 @@ public:
         swap(other);
         return *this;
     }
-    ~Buffer() { delete[] memory_; }
+    LIGHTBIN_SMALL ~Buffer() {
+#if defined(LIGHTBIN_CALLERS_MEMORY)  // in the file that implements lightbin.h
+        for (std::size_t i = 0; i < size_; ++i)
+            memory_[i].~T();
+        c::release(memory_);
+#else
+        delete[] memory_;
+#endif
+    }
 
     /// Returns memory for `size` elements or more. If it has to grow, all values are lost. Throws as `new` does if
     /// there is not enough memory or if `size` exceeds std::size_t; the Buffer remains usable.
     T* reserve(std::uint64_t size) {
-        if (size > size_) {
-            Buffer().swap(*this);
-            Buffer(size).swap(*this);
-        }
+        if (size > size_) replace(size);
         return memory_;
     }
 
     /// Returns memory for `size` elements or more and keeps the values of the first `used` elements. Grows to twice
     /// `size`, so that appending one element at a time takes linear time.
     T* reserve(std::uint64_t size, std::size_t used) {
-        if (size > size_) {
-            Buffer larger(sum_of_sizes(size, size));
-            for (std::size_t i = 0; i < min_of(used, size_); ++i)
-                larger.memory_[i] = std::move(memory_[i]);
-            swap(larger);
-        }
+        if (size > size_) grow(size, used);
         return memory_;
     }
 
@@ -56,13 +56,30 @@ private:
     /// Allocates `size` uninitialised elements. A size beyond std::size_t is reduced to its maximum: then `new` throws.
     explicit Buffer(std::uint64_t size)
         : size_(static_cast<std::size_t>(min_of<std::uint64_t>(size, ~std::size_t{0}))) {
-#if defined(LIGHTBIN_MEMORY_SANITIZER)
+#if defined(LIGHTBIN_CALLERS_MEMORY)
+        static_assert(alignof(T) <= alignof(std::max_align_t));
+        memory_ = static_cast<T*>(c::allocate(size_, sizeof(T)));
+        for (std::size_t i = 0; i < size_; ++i)
+            new (memory_ + i) T;
+#elif defined(LIGHTBIN_MEMORY_SANITIZER)
         // Initialised, because kernels read whole words and vectors and ignore parts of them. The sanitizer would
         // report those parts as used.
         memory_ = new T[size_]();
 #else
         memory_ = new T[size_];
 #endif
+    }
+
+    // Not inlined, as the kernels call reserve() in many places and it seldom has to allocate.
+    LIGHTBIN_NOINLINE void replace(std::uint64_t size) {
+        Buffer().swap(*this);
+        Buffer(size).swap(*this);
+    }
+    LIGHTBIN_NOINLINE void grow(std::uint64_t size, std::size_t used) {
+        Buffer larger(sum_of_sizes(size, size));
+        for (std::size_t i = 0; i < min_of(used, size_); ++i)
+            larger.memory_[i] = std::move(memory_[i]);
+        swap(larger);
     }
 
     T* memory_ = nullptr;

@@ -46,6 +46,28 @@
 #endif
 #endif
 
+// Unrolls the loop that follows, of at most 16 turns. GCC does so with -O3, but with -O2 it would keep the arrays of
+// vectors that such loops run over in memory instead of registers. Other compilers unroll short loops with -O2.
+#if defined(__GNUC__) && !defined(__clang__)
+#define LIGHTBIN_UNROLL LIGHTBIN_PRAGMA(GCC unroll 16)
+#else
+#define LIGHTBIN_UNROLL
+#endif
+
+// The file that implements lightbin.h has the code for all options, other files that for one or two. LIGHTBIN_SMALL
+// marks functions that run once in a call: in that file they are compiled for size. LIGHTBIN_SHARED_PART marks what the
+// kernels of several options have in common: in that file it stands once, and elsewhere it is inlined.
+#if defined(LIGHTBIN_CALLERS_MEMORY)
+#define LIGHTBIN_SHARED_PART LIGHTBIN_NOINLINE
+#else
+#define LIGHTBIN_SHARED_PART LIGHTBIN_INLINE
+#endif
+#if defined(LIGHTBIN_CALLERS_MEMORY) && defined(__GNUC__)
+#define LIGHTBIN_SMALL __attribute__((noinline, cold))
+#else
+#define LIGHTBIN_SMALL
+#endif
+
 // LIGHTBIN_FORGET(value) makes the compiler forget how a number or vector was computed, so that it cannot fuse the
 // computation with a later one; see rounded(). Microsoft's compiler fuses only if told to, and WebAssembly has no fused
 // instructions. Without vector kernels the value goes through memory ("+m"), a constraint of all processors.

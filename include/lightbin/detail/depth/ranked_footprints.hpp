@@ -82,7 +82,8 @@ private:
             to[rank] = from[sources[rank]];
     }
 
-    /// Finds, for each z-bin, the least and the greatest rank of the lights that meet it.
+    /// Finds, for each z-bin, the least and the greatest rank of the lights that meet it. A light's rank is its place in
+    /// the order of the first z-bins that lights meet.
     void find_ranges() {
         const std::uint32_t *const sources = sources_.data(), *const last_bins = last_bins_.data();
         BinRange* const bins = bins_.reserve(bin_count_);

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
 // Half spaces around a light, and how a depth test finds that a tile's cell lies outside of one of them.
 //
-// A half space holds the points p with  n.p <= most,  where n has the length 1. A cell is part of the view frustum: its
-// points are (s z, t z, z)  with a perspective projection and  (s, t, z)  with an orthographic one, where s and t lie
-// between the edges of the tile, see tile_edges(), and the view depth z lies between z0 and z1. The cell lies outside
-// of the half space if its deepest point does, the one with the least n.p:
+// A half space holds the points p with  n.p <= most,  where n is a vector of any length. A cell is part of the view
+// frustum: its points are (s z, t z, z)  with a perspective projection and  (s, t, z)  with an orthographic one, where s
+// and t lie between the edges of the tile, see tile_edges(), and the view depth z lies between z0 and z1. The cell lies
+// outside of the half space if its deepest point does, the one with the least n.p:
 //     perspective:     (n_x s + n_y t + n_z) z > most,     orthographic:  n_x s + n_y t + n_z z > most.
 // Each of s and t is the low edge where n_x or n_y is positive, else the high edge. With an orthographic projection z
 // is z0 where n_z is positive, else z1. With a perspective projection z is z0 where `most` is positive, else z1: if the
 // inequality holds for this z, it holds for all depths of the cell. Unlike a test of the box around the cell, this test
 // is exact for one half space.
 //
-// Rounding, with u = 2^-24: let the light lie in a ball around P with the radius r, and S = |P_x| + |P_y| + |P_z| + r.
-// A cell that holds a point p of the ball is not rejected if  n.p <= most - 4u S.  Rounding is monotone: an expression
+// Rounding, with u = 2^-24: let S be |P_x| + |P_y| + |P_z| + r of a light in a ball around P with the radius r, and of a
+// box the sum of the absolute values of all coordinates of its centre and half axes. Let n have the length 1: with other
+// lengths, all numbers below but for those of underflow grow with the length.
+// A cell that holds a point p of the light is not rejected if  n.p <= most - 4u S.  Rounding is monotone: an expression
 // of floats is at most what the same expression, rounded likewise, gives for larger operands.
 // - Edges are rounded outward by more than the rounding error of a product, so each rounded product of an edge is at
 //   most that of p, but for underflow of 2^-126. The rounded sum of both exceeds the sum of p's by at most u |p|,
@@ -22,8 +24,12 @@
 //   is positive, z is at most z_p, else the factor is negative and z is at least z_p. Rounding this product can't raise
 //   it above `most`, which is a float.
 // - orthographic: the rounded n_z z is at most n_z p_z + u |p|, and the last sum adds u |p|.
-// What is left of 4u S exceeds the underflow, as S is at least 2^-62: a light whose half spaces are tested has a radius
-// of at least 2^-40, before a transform that shrinks it to no less than 2^-21 of that.
+// What is left of 4u S exceeds the underflow, as S is at least 2^-62: a spot whose half spaces are tested has a radius
+// of at least 2^-40, before a transform that shrinks it to no less than 2^-21 of that. Boxes may be smaller, and the sums
+// of their normals' absolute values are from 2^-50 on, so 2^-100 is added to their `most`. With an orthographic projection
+// this exceeds the underflow. With a perspective one, the underflow is at most 2^-124 z_p, where S is at least z_p, and
+// what is left of 4u S |n| is at least 2^-74 z_p; and if `most` is negative, the last product is below -2^-101, so that
+// it does not underflow.
 //
 // An edge or a depth may be infinite: products of 0 and infinity, and sums of opposite infinities, are NaN, which
 // rejects no cell.
@@ -53,8 +59,9 @@ struct CellPlane {
 /// Half spaces around a light, each of which holds the whole light.
 template <std::size_t count> struct CellPlanes {
     CellPlane planes[count];
-    /// For each half space, which point of a cell is tested: the offsets of the low or the high edges in TileEdges::x
-    /// and in TileEdges::y, and that of the depths z0 or z1 in the arrays that store_box() stores for cells.
-    std::uint16_t arrays[count][3];
+    /// For each half space, which point of a cell is tested. Bits 0 to 7 are the offset of the low or the high edges in
+    /// TileEdges::x, bits 8 to 15 in TileEdges::y, and bits 16 and above that of the depths z0 or z1 in the arrays that
+    /// store_box() stores for cells. The elements from `count` on are padding to whole vec4s.
+    std::uint32_t arrays[(count + 3) / 4 * 4];
 };
 }}}  // namespace lightbin::detail

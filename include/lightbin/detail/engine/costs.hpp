@@ -44,7 +44,7 @@ inline double block_ns(Isa isa, bool tested, double lights, double entries) {
 }
 
 /// Estimates how many ns one thread takes to bin lights with the faster method: scattering, or by blocks of 8x8 tiles.
-template <bool tested> double bin_ns(Isa isa, std::uint64_t tiles, std::uint64_t lights, std::uint64_t area) {
+inline double bin_ns(bool tested, Isa isa, std::uint64_t tiles, std::uint64_t lights, std::uint64_t area) {
     const double count = static_cast<double>(lights), entries = static_cast<double>(area);
     return !tested && scatter_is_faster(isa, tiles, area) ? scatter_ns(count, entries)
                                                                   : block_ns(isa, tested, count, entries);

@@ -49,10 +49,10 @@ LIGHTBIN_INLINE Mask or_outside(Mask missed, const float* cells, const float* x_
                                 const CellPlanes<count>& around) {
     for (std::size_t i = 0; i < count; ++i) {
         const CellPlane& plane = around.planes[i];
-        const std::uint16_t(&arrays)[3] = around.arrays[i];
-        const Floats across = mul(load_floats(x_edges + arrays[0]), broadcast(plane.x)) +
-                              mul(load_floats(y_edges + arrays[1]), broadcast(plane.y)),
-                     z = load_floats(cells + arrays[2]), n_z = broadcast(plane.z);
+        const std::uint32_t arrays = around.arrays[i];
+        const Floats across = mul(load_floats(x_edges + (arrays & 0xff)), broadcast(plane.x)) +
+                              mul(load_floats(y_edges + (arrays >> 8 & 0xff)), broadcast(plane.y)),
+                     z = load_floats(cells + (arrays >> 16)), n_z = broadcast(plane.z);
         const Floats least = orthographic ? across + mul(z, n_z) : mul(across + n_z, z);
         missed = either(missed, less(broadcast(plane.most), least));
     }
@@ -232,7 +232,8 @@ template <class Light> struct TestedLights {
     /// Constructs lights[i] from `from`, in place, as copying an object just stored in parts would stall on store
     /// forwarding. Its bit in in_range is set if it meets `depths`, the view depths of all the block's cells together.
     /// Most lights that miss all of the cells miss these depths.
-    template <class... From> LIGHTBIN_INLINE void add(std::uint32_t i, const DepthInterval& depths, const From&... from) {
+    template <class... From>
+    LIGHTBIN_INLINE void add(std::uint32_t i, const DepthInterval& depths, const From&... from) {
         const Light& light = *std::construct_at(lights + i, from...);
         const bool missed = (light.farthest < depths.min) | (depths.max < light.nearest);
         in_range |= std::uint64_t{!missed} << i;
@@ -297,13 +298,14 @@ template <bool by_slab> void store_rectangles(Scratch& scratch, const BlockList&
     const std::uint32_t padded = list.padded_count();
     std::uint8_t* const columns = scratch.list_columns.data() + list.begin;
     const std::uint8_t* const rows = scratch.list_rows.data() + list.begin;
-    const std::uint8_t* met = reinterpret_cast<const std::uint8_t*>(scratch.tile_masks.data());
+    [[maybe_unused]] const auto* const met = reinterpret_cast<const std::uint8_t*>(scratch.tile_masks.data());
     std::uint8_t* to = scratch.row_columns_of(list);
     std::memset(columns + list.count, 0, 16);
-    for (unsigned row = 0; row < 8; ++row, to += padded, met += padded)
+    for (unsigned row = 0; row < 8; ++row, to += padded)
         for (std::uint32_t i = 0; i < padded; i += byte_lanes) {
             const Bytes in_row = load_bytes(rows + i) & broadcast_byte(1u << row);
-            const Bytes in_columns = by_slab ? load_bytes(columns + i) & load_bytes(met + i) : load_bytes(columns + i);
+            Bytes in_columns = load_bytes(columns + i);
+            if constexpr (by_slab) in_columns = in_columns & load_bytes(met + row * padded + i);
             store_bytes(to + i, keep_where(in_columns, in_row));
         }
 }
@@ -328,7 +330,8 @@ inline void store_masks(Scratch& scratch, const BlockList& list) {
 /// Stores in Scratch::tile_masks the tiles of each light of a list, for the block that begins at column 8 x and row
 /// `top`. Removes lights that are in none of its tiles from the list, and replaces the others' indices by ids.
 template <Footprint footprint, DepthTest depth_test, bool by_slab, LightKind kind, class Id>
-void mask_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab, unsigned x, unsigned top, BlockList& list) {
+void mask_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab, unsigned x, unsigned top,
+                 BlockList& list) {
     [[maybe_unused]] BlockCells<depth_test> cells;
     if constexpr (depth_test != DepthTest::none) {
         cells.drawn = arrange_cells<depth_test>(job, x, top, cells.arrays, cells.edges);
@@ -351,7 +354,8 @@ void mask_lights(const BinJob<Id>& job, Scratch& scratch, const SlabBoxes& slab,
             std::uint64_t tiles = spread_bits(rows[i]) & columns[i] * std::uint64_t{0x0101010101010101};
             if constexpr (depth_test != DepthTest::none)
                 tiles &= met[i - begin] & cells.drawn;
-            if constexpr (footprint == Footprint::silhouette) tiles = silhouette_tiles(job.lights, light, x, top, tiles);
+            if constexpr (footprint == Footprint::silhouette)
+                tiles = silhouette_tiles(job.lights, light, x, top, tiles);
             indices[left] = job.lights.ids[light];
             masks[left] = tiles;
             left += tiles != 0;

@@ -45,7 +45,8 @@ inline RowLights pick_row(Scratch& scratch, const BlockList& list, unsigned row)
 
 /// Appends to `out` each of `count` ids, up to 64, whose bit in `chosen` is set. Returns the end. It has branches in
 /// place of a loop, whose end would be mispredicted more often.
-template <class Id> LIGHTBIN_INLINE Id* append_64(Id* out, const std::uint32_t* ids, std::uint64_t chosen, std::uint32_t count) {
+template <class Id>
+LIGHTBIN_INLINE Id* append_64(Id* out, const std::uint32_t* ids, std::uint64_t chosen, std::uint32_t count) {
     out = append_16(out, ids, static_cast<unsigned>(chosen & 0xffff));
     if (count <= 16) return out;
     out = append_16(out, ids + 16, static_cast<unsigned>(chosen >> 16 & 0xffff));
@@ -61,7 +62,7 @@ template <class Id> LIGHTBIN_INLINE Id* append_64(Id* out, const std::uint32_t* 
 /// columns  the number of tiles, up to 8
 /// offset   the offset of `out` in the whole index list
 /// words    for each 64 lights 8 words, one for each tile, with a bit for each light
-template <bool up_to_64, class Id>
+template <class Id>
 LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset, const RowLights& row,
                                  const std::uint64_t* words) {
     const std::uint32_t* const ids = row.ids;
@@ -69,9 +70,8 @@ LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned columns, st
     for (unsigned column = 0; column < columns; ++column) {
         Id* const begin = out;
         std::uint32_t i = 0;
-        if constexpr (!up_to_64)
-            for (; i + 64 < count; i += 64)
-                out = append_64(out, ids + i, words[i / 8 + column], 64);
+        for (; i + 64 < count; i += 64)
+            out = append_64(out, ids + i, words[i / 8 + column], 64);
         out = append_64(out, ids + i, words[i / 8 + column], count - i);
         const std::uint32_t size = static_cast<std::uint32_t>(out - begin);
         tiles[column] = {offset, size};
@@ -88,8 +88,8 @@ LIGHTBIN_NOINLINE Id* emit_tiles(Id* out, ListRange* tiles, unsigned columns, st
 /// offset       the offset of `out` in the whole index list
 /// row_columns  for each light a byte with a bit for each tile that it is in
 template <unsigned at_most, class Id>
-LIGHTBIN_NOINLINE Id* emit_short(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset, const std::uint32_t* ids,
-                                 const std::uint8_t* row_columns) {
+LIGHTBIN_NOINLINE Id* emit_short(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset,
+                                 const std::uint32_t* ids, const std::uint8_t* row_columns) {
     std::uint64_t words[8];
     split_16_bytes(row_columns, words);
     for (unsigned column = 0; column < columns; ++column) {
@@ -111,8 +111,8 @@ LIGHTBIN_NOINLINE Id* emit_short(Id* out, ListRange* tiles, unsigned columns, st
 /// lists  the lists of the blocks of 8x8 tiles that the row runs through, from left to right
 /// row    the row's number in these blocks, 0 to 7
 template <class Id>
-Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t offset, Scratch& scratch,
-             const BlockList* lists, unsigned row) {
+LIGHTBIN_NOINLINE Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t offset, Scratch& scratch,
+                               const BlockList* lists, unsigned row) {
     for (unsigned x = 0; x < tiles_x; x += 8, ++lists) {
         const unsigned columns = min_of(tiles_x - x, 8u);
         RowLights lights = {};
@@ -125,15 +125,12 @@ Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t offset, 
         if (lights.count <= 16) {
             end = lights.count <= 8 ? emit_short<8>(out, tiles + x, columns, offset, lights.ids, lights.columns)
                                     : emit_short<16>(out, tiles + x, columns, offset, lights.ids, lights.columns);
-        } else if (lights.count <= 64) {
-            std::uint64_t words[8];
-            split_bits(lights.columns, words);
-            end = emit_tiles<true>(out, tiles + x, columns, offset, lights, words);
         } else {
-            std::uint64_t* const words = scratch.row_words.reserve(lights.count / 8 + std::uint64_t{16});
+            std::uint64_t few[8], *words = few;
+            if (lights.count > 64) words = scratch.row_words.reserve(lights.count / 8 + std::uint64_t{16});
             for (std::uint32_t i = 0; i < lights.count; i += 64)
                 split_bits(lights.columns + i, words + i / 8);
-            end = emit_tiles<false>(out, tiles + x, columns, offset, lights, words);
+            end = emit_tiles(out, tiles + x, columns, offset, lights, words);
         }
         offset += static_cast<std::uint32_t>(end - out);
         out = end;
@@ -143,8 +140,12 @@ Id* emit_row(Id* out, ListRange* tiles, unsigned tiles_x, std::uint32_t offset, 
 
 /// Bins one thread's share of tile rows, band by band: lists the lights of each block of 8x8 tiles, tests them, and
 /// writes the tiles' lists. Returns the number of list entries. May write up to BinShare::slack elements past them.
-template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, LightKind kind>
-std::uint64_t bin_blocks(const BinJob<Id>& job, Scratch& scratch, const BinShare<Id>& share) {
+///
+/// slab       the boxes around a depth slice's cells, if list_band reads them
+/// list_band  list_lights() for the options
+template <class Id, class ListLights>
+LIGHTBIN_SHARED_PART std::uint64_t bin_blocks_by(const BinJob<>& job, Scratch& scratch, const BinShare<Id>& share,
+                                                 const SlabBoxes& slab, ListLights list_band) {
     const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles);
     ListRange* tiles = job.tiles + share.begin * std::size_t{tiles_x};
     Id* out = share.out;
@@ -153,12 +154,9 @@ std::uint64_t bin_blocks(const BinJob<Id>& job, Scratch& scratch, const BinShare
         fill_empty(tiles, (share.end - share.begin) * std::size_t{tiles_x}, offset);
         return 0;
     }
-    SlabBoxes slab;
-    if constexpr (by_slab) slab = arrange_slab(job, scratch);
     BandLists bands;
     for (unsigned top = share.begin; top < share.end; top += 8) {
-        const BlockList* const lists =
-            list_lights<footprint, depth_test, by_slab, kind>(job, scratch, slab, bands, top, share.end);
+        const BlockList* const lists = list_band(job, scratch, slab, bands, top, share.end);
         const unsigned rows = min_of(share.end - top, 8u);
         if (lists == nullptr) {
             fill_empty(tiles, rows * std::size_t{tiles_x}, offset);
@@ -172,6 +170,15 @@ std::uint64_t bin_blocks(const BinJob<Id>& job, Scratch& scratch, const BinShare
         }
     }
     return offset - share.offset;
+}
+
+/// bin_blocks_by() for certain options.
+template <Footprint footprint, DepthTest depth_test, class Id, bool by_slab, LightKind kind>
+std::uint64_t bin_blocks(const BinJob<>& job, Scratch& scratch, const BinShare<Id>& share) {
+    SlabBoxes slab;
+    if constexpr (by_slab)
+        if (job.visible != 0) slab = arrange_slab(job, scratch);
+    return bin_blocks_by(job, scratch, share, slab, list_lights<footprint, depth_test, by_slab, kind, std::uint32_t>);
 }
 
 /// Returns how many list entries (pairs of cell and light) the grid will have, without writing it.
@@ -193,9 +200,11 @@ std::uint64_t count_entries(const BinJob<Id>& job, Scratch& scratch) {
 
 /// Writes a bitmask of lights for each tile in the rows begin..end-1. A tile has `stride` words, and bit b of its word
 /// w stands for the light with the id 32 w + b.
-template <Footprint footprint, DepthTest depth_test, class Id, LightKind kind>
-void write_bits(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigned end, std::uint32_t* bits,
-                std::size_t stride) {
+///
+/// list_band  list_lights() for the options
+template <class ListLights>
+LIGHTBIN_SHARED_PART void write_bits_by(const BinJob<>& job, Scratch& scratch, unsigned begin, unsigned end,
+                                       std::uint32_t* bits, std::size_t stride, ListLights list_band) {
     const unsigned tiles_x = static_cast<unsigned>(job.camera->x.tiles);
     const std::size_t row_stride = tiles_x * stride;
     fill_items(bits + begin * row_stride, (end - begin) * row_stride, 0);
@@ -204,7 +213,7 @@ void write_bits(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigne
         positions[tile] = tile / 8 * row_stride + tile % 8 * stride;
     BandLists bands;
     for (unsigned top = begin; top < end; top += 8) {
-        const BlockList* list = list_lights<footprint, depth_test, false, kind>(job, scratch, {}, bands, top, end);
+        const BlockList* list = list_band(job, scratch, {}, bands, top, end);
         for (unsigned x = 0; list != nullptr && x < tiles_x; x += 8, ++list) {
             const std::uint8_t* const row_columns = scratch.row_columns_of(*list);
             std::uint32_t* const first = bits + top * row_stride + x * stride;
@@ -222,6 +231,14 @@ void write_bits(const BinJob<Id>& job, Scratch& scratch, unsigned begin, unsigne
             }
         }
     }
+}
+
+/// write_bits_by() for certain options.
+template <Footprint footprint, DepthTest depth_test, LightKind kind>
+void write_bits(const BinJob<>& job, Scratch& scratch, unsigned begin, unsigned end, std::uint32_t* bits,
+                std::size_t stride) {
+    write_bits_by(job, scratch, begin, end, bits, stride,
+                  list_lights<footprint, depth_test, false, kind, std::uint32_t>);
 }
 
 }}}}  // namespace lightbin::detail

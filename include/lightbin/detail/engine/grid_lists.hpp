@@ -9,26 +9,47 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
-/// A light grid, or if `sliced` one per depth slice, stored one after another. Its memory is kept from call to call.
-template <class Id, Footprint footprint, DepthTest depth_test, bool sliced> class GridLists {
-    static_assert(!sliced || depth_test == DepthTest::none || depth_test == DepthTest::box,
-                  "lightbin: with slices the depth test is none, as lights are in the slices that they meet, or box");
-    static constexpr bool tested = has_tests<footprint, depth_test>;
+/// Whether spheres are tested by SlabCells, for a slice's boxes of equal depths. This is faster than the test for
+/// boxes that differ in depth: a build of clusters without it takes 1.2 to 2 times as long.
+template <DepthTest depth_test, LightKind kind, bool sliced>
+inline constexpr bool by_slab = sliced && depth_test == DepthTest::box && kind != LightKind::box;
 
+/// What a TileLists is asked for, as constants. The file that implements lightbin.h has in its place a struct whose
+/// `tested`, `with_boxes` and `sliced` are set at run time.
+template <bool any_test, bool any_box, bool any_slice> struct FixedLists {
+    static constexpr bool may_test = any_test, may_have_boxes = any_box, may_slice = any_slice;
+    /// Whether a silhouette or a depth test decides in which tiles of its rectangle a light is listed; whether the test
+    /// is against boxes around cells; and whether there is a grid for each depth slice.
+    static constexpr bool tested = any_test, with_boxes = any_box, sliced = any_slice;
+};
+
+/// A light grid, or if How::sliced one per depth slice, stored one after another. Its memory is kept from call to call.
+/// The binning kernels are arguments of its functions.
+///
+/// How  a FixedLists, or a struct with the same members
+template <class Id, class How> class TileLists {
 public:
-    /// Builds the grid with the kernels of an instruction set. Tiles are in row-major order, slice after slice. Returns
-    /// an error, and has no grid, if Z bounds have too few elements, or 32 bits can't count the entries.
+    using Job = BinJob<>;
+
+    /// Builds the grid. Tiles are in row-major order, slice after slice. Returns an error, and has no grid, if Z bounds
+    /// have too few elements, or 32 bits can't count the entries.
     ///
-    /// footprints  SlicedFootprints if `sliced`, a parameter of the class, else Footprints or RankedFootprints; with a
-    ///             depth test, ones that keep the lights in view space (with_spheres)
-    /// parallel    Serial or Parallel
-    template <LightKind kind, class AnyFootprints, class Threads>
-    std::optional<Error> build(Isa isa, const View& view, const AnyFootprints& footprints, const ZBounds& bounds,
-                       Buffer<Scratch>& scratch, [[maybe_unused]] const Threads& parallel) {
+    /// footprints     SlicedFootprints if how.sliced, else Footprints or RankedFootprints; with a depth test, ones that
+    ///                keep the lights in view space (with_spheres)
+    /// parallel       Serial or Parallel
+    /// choose_kernel  choose_kernel(isa, view, job) returns the kernel, a BinKernel, for one slice
+    /// count_entries  count_entries(job, scratch) returns how many entries the lists of one slice have; called if
+    ///                how.tested
+    template <class AnyFootprints, class Threads, class ChooseKernel, class CountEntries>
+    LIGHTBIN_SMALL std::optional<Error> build(Isa isa, const View& view, const AnyFootprints& footprints,
+                                              const ZBounds& bounds, Buffer<Scratch>& scratch,
+                                              [[maybe_unused]] const Threads& parallel, const How& how,
+                                              const ChooseKernel& choose_kernel,
+                                              [[maybe_unused]] const CountEntries& count_entries) {
         tile_count_ = entries_ = 0;  // until there is a grid
         shared_ = false;
         Job common = {};
-        if (const auto error = prepare(view, bounds, common)) return error;
+        if (const auto error = prepare(view, bounds, how, common)) return error;
         const std::size_t tiles = view.tile_count(), slices = static_cast<std::size_t>(footprints.slices());
         const unsigned rows = static_cast<unsigned>(view.tiles_y());
         std::uint64_t lights = 0, area = 0;
@@ -40,12 +61,11 @@ public:
         }
         std::uint64_t capacity = area;
         // Tests leave fewer entries than rectangles have tiles: if 32 bits can't count the tiles, count the entries.
-        if constexpr (tested)
-            if (area > max_entries) {
+        if constexpr (How::may_test)
+            if (how.tested && area > max_entries) {
                 capacity = 0;
                 for (std::size_t slice = 0; slice < slices; ++slice)
-                    capacity += scalar::count_entries<footprint, depth_test, by_slab<kind>, kind>(
-                        job_of(common, footprints, slice), scratch.data()[0]);
+                    capacity += count_entries(job_of(common, footprints, slice), scratch.data()[0]);
             }
         if (capacity > max_entries) return Error{ErrorCode::too_many_entries, capacity, max_entries};
 
@@ -57,38 +77,45 @@ public:
             for (std::size_t slice = begin; slice < end; ++slice) {
                 Job job = job_of(common, footprints, slice);
                 job.tiles += slice * tiles;
-                const auto kernel = kernel_of<kind>(isa, view, job);
+                const auto kernel = choose_kernel(isa, view, job);
                 offset += static_cast<std::uint32_t>(kernel(job, memory, {0, rows, out + offset, offset}));
             }
             return std::uint64_t{offset};
         };
         if constexpr (!std::is_same_v<Threads, Serial>) {
-            const std::size_t steps = sliced ? slices : rows, count = min_of<std::size_t>(parallel.workers(), steps);
+            const std::size_t steps = how.sliced ? slices : rows,
+                              count = min_of<std::size_t>(parallel.workers(), steps);
             shared_ = count > 1 && area <= max_entries &&
-                      parallel.pays_off(bin_ns<tested>(isa, tile_count_, lights, area));
+                      parallel.pays_off(bin_ns(how.tested, isa, tile_count_, lights, area));
             if (shared_) {
                 scratch.reserve(count, count);
                 const Items<Share> shares = {shares_.reserve(count), count};
-                const Job job = job_of(common, footprints, 0);
-                [[maybe_unused]] const auto kernel = kernel_of<kind>(isa, view, job);
-                if constexpr (sliced)
-                    share_steps(shares, slices, empty_row_cost(tiles),
-                                [&](std::size_t slice) { return footprints.slice(slice).area; });
-                else
-                    share_rows(job, parallel, row_sums_, shares, kernel == scatter_lights<Id> ? 0 : BinShare<Id>::slack);
-                if constexpr (!sliced && !tested)
-                    entries_ = static_cast<std::size_t>(build_rectangles(
-                        parallel, Items<const Share>{shares.first, count}, share_lists_, list,
-                        [&](std::size_t i, const BinShare<Id>& part) { kernel(job, scratch.data()[i], part); }));
-                else
-                    entries_ = static_cast<std::size_t>(build_shares(
-                        parallel, shares, common.tiles, tiles / (sliced ? 1 : rows), share_lists_, list,
-                        [&](const Share& share, std::size_t i, Id* out) {
-                            if constexpr (sliced)
+                if constexpr (How::may_slice)
+                    if (how.sliced) {
+                        share_steps(shares, slices, empty_row_cost(tiles),
+                                    [&](std::size_t slice) { return footprints.slice(slice).area; });
+                        entries_ = static_cast<std::size_t>(build_shares(
+                            parallel, shares, common.tiles, tiles, share_lists_, list,
+                            [&](const Share& share, std::size_t i, Id* out) {
                                 return build_slices(share.begin, share.end, out, scratch.data()[i]);
-                            else
+                            }));
+                        return {};
+                    }
+                const Job job = job_of(common, footprints, 0);
+                const auto kernel = choose_kernel(isa, view, job);
+                share_rows(job, parallel, row_sums_, shares, kernel == scatter_lights<Id> ? 0 : BinShare<Id>::slack);
+                if constexpr (How::may_test)
+                    if (how.tested) {
+                        entries_ = static_cast<std::size_t>(build_shares(
+                            parallel, shares, common.tiles, tiles / rows, share_lists_, list,
+                            [&](const Share& share, std::size_t i, Id* out) {
                                 return kernel(job, scratch.data()[i], {share.begin, share.end, out, 0});
-                        }));
+                            }));
+                        return {};
+                    }
+                entries_ = static_cast<std::size_t>(build_rectangles(
+                    parallel, Items<const Share>{shares.first, count}, share_lists_, list,
+                    [&](std::size_t i, const BinShare<Id>& part) { kernel(job, scratch.data()[i], part); }));
                 return {};
             }
         }
@@ -98,15 +125,16 @@ public:
 
     /// Writes for each tile a bitmask of `stride` words: bit b of word w stands for the light with the id 32 w + b.
     /// Drops the last built grid: tiles() is empty. Returns build()'s errors but too many entries, as none are counted.
-    template <LightKind kind, class AnyFootprints>
-    std::optional<Error> write_bits(Isa isa, const View& view, const AnyFootprints& footprints, const ZBounds& bounds,
-                            Buffer<Scratch>& scratch, const Parallel& parallel, std::uint32_t* bits, std::size_t stride) {
+    template <class AnyFootprints>
+    LIGHTBIN_SMALL std::optional<Error> write_bits(Isa isa, const View& view, const AnyFootprints& footprints,
+                                                   const ZBounds& bounds, Buffer<Scratch>& scratch,
+                                                   const Parallel& parallel, const How& how, BitsKernel kernel,
+                                                   std::uint32_t* bits, std::size_t stride) {
         tile_count_ = entries_ = 0;
         Job common = {};
-        if (const auto error = prepare(view, bounds, common)) return error;
+        if (const auto error = prepare(view, bounds, how, common)) return error;
         const Job job = job_of(common, footprints, 0);
         if (const auto error = check_list_size(view, job)) return error;
-        const auto kernel = bits_kernel<footprint, depth_test, Id, kind>(isa);
         const std::size_t rows = static_cast<std::size_t>(view.tiles_y()), bands = (rows + 7) / 8;
         const bool share = parallel.pays_off(block_ns(isa, true, job.visible, static_cast<double>(job.area)));
         const std::size_t count = share ? max_of<std::size_t>(min_of(parallel.workers(), bands), 1) : 1;
@@ -127,16 +155,11 @@ public:
     bool shared() const { return shared_; }
 
 private:
-    using Job = BinJob<Id>;
     static constexpr std::uint64_t max_entries = (std::numeric_limits<std::uint32_t>::max)();
 
-    /// Whether spheres are tested by SlabCells, for a slice's boxes of equal depths. This is faster than the test for
-    /// boxes that differ in depth: a build of clusters without it takes 1.2 to 2 times as long.
-    template <LightKind kind>
-    static constexpr bool by_slab = sliced && depth_test == DepthTest::box && kind != LightKind::box;
-
     /// Sets the camera, the Z bounds and the tiles' edges, which the jobs of all slices have in common.
-    std::optional<Error> prepare(const View& view, const ZBounds& bounds, Job& common) {
+    std::optional<Error> prepare(const View& view, const ZBounds& bounds, [[maybe_unused]] const How& how,
+                                 Job& common) {
         const std::size_t tiles = view.tile_count();
         common.camera = &camera_of(view);
         const std::span<const float> sides[] = {bounds.min, bounds.max, bounds.gap_min, bounds.gap_max};
@@ -145,7 +168,8 @@ private:
             if (sides[side].size() < tiles) return Error{ErrorCode::z_bounds_too_small, tiles, sides[side].size()};
             common.bounds[side] = sides[side].data();
         }
-        if constexpr (with_boxes<depth_test>) find_edges(common);
+        if constexpr (How::may_have_boxes)
+            if (how.with_boxes) find_edges(common);
         return {};
     }
 
@@ -165,7 +189,8 @@ private:
         }
     }
 
-    template <class AnyFootprints> static Job job_of(const Job& common, const AnyFootprints& footprints, std::size_t slice) {
+    template <class AnyFootprints>
+    static Job job_of(const Job& common, const AnyFootprints& footprints, std::size_t slice) {
         Job job = common;
         static_cast<FootprintSlice&>(job) = footprints.slice(slice);
         return job;
@@ -178,10 +203,6 @@ private:
         return {};
     }
 
-    template <LightKind kind> static BinKernel<Id> kernel_of(Isa isa, const View& view, const Job& job) {
-        return bin_kernel<footprint, depth_test, Id, by_slab<kind>, kind>(isa, view, job.area);
-    }
-
     Buffer<ListRange> tiles_;
     Buffer<Id> indices_;
     Buffer<float> edges_[4];
@@ -190,6 +211,43 @@ private:
     Buffer<std::uint64_t> row_sums_;
     std::size_t tile_count_ = 0, entries_ = 0;
     bool shared_ = false;
+};
+
+/// The TileLists for a footprint and a depth test that are known when it is compiled, with their kernels.
+template <class Id, Footprint footprint, DepthTest depth_test, bool sliced> class GridLists {
+    static_assert(!sliced || depth_test == DepthTest::none || depth_test == DepthTest::box,
+                  "lightbin: with slices the depth test is none, as lights are in the slices that they meet, or box");
+    using How = FixedLists<has_tests<footprint, depth_test>, with_boxes<depth_test>, sliced>;
+
+public:
+    template <LightKind kind, class AnyFootprints, class Threads>
+    std::optional<Error> build(Isa isa, const View& view, const AnyFootprints& footprints, const ZBounds& bounds,
+                               Buffer<Scratch>& scratch, const Threads& parallel) {
+        constexpr bool slab = by_slab<depth_test, kind, sliced>;
+        return lists_.build(
+            isa, view, footprints, bounds, scratch, parallel, How(),
+            [](Isa set, const View& of, const BinJob<>& job) {
+                return bin_kernel<footprint, depth_test, Id, slab, kind>(set, of, job.area);
+            },
+            [](const auto& job, Scratch& memory) {  // `auto`, so that it is not compiled where nothing is tested
+                return scalar::count_entries<footprint, depth_test, slab, kind>(job, memory);
+            });
+    }
+
+    template <LightKind kind, class AnyFootprints>
+    std::optional<Error> write_bits(Isa isa, const View& view, const AnyFootprints& footprints, const ZBounds& bounds,
+                                    Buffer<Scratch>& scratch, const Parallel& parallel, std::uint32_t* bits,
+                                    std::size_t stride) {
+        return lists_.write_bits(isa, view, footprints, bounds, scratch, parallel, How(),
+                                 bits_kernel<footprint, depth_test, kind>(isa), bits, stride);
+    }
+
+    template <class Range = ListRange> std::span<const Range> tiles() const { return lists_.tiles(); }
+    std::span<const Id> indices() const { return lists_.indices(); }
+    bool shared() const { return lists_.shared(); }
+
+private:
+    TileLists<Id, How> lists_;
 };
 
 }}}  // namespace lightbin::detail

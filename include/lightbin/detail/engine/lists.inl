@@ -34,7 +34,8 @@ inline Bytes covered_bytes(Bytes first, Bytes end, unsigned begin) {
     static constexpr std::uint8_t from[16] = {255, 254, 252, 248, 240, 224, 192, 128};
     static constexpr std::uint8_t before[16] = {0, 1, 3, 7, 15, 31, 63, 127, 255};
     const Bytes start = broadcast_byte(begin), eight = broadcast_byte(8);
-    return shuffle(from, minimum(subtract(first, start), eight)) & shuffle(before, minimum(subtract(end, start), eight));
+    return shuffle(from, minimum(subtract(first, start), eight)) &
+           shuffle(before, minimum(subtract(end, start), eight));
 }
 
 /// Returns the mask of the first `count` bytes of a vector, or of all bytes if `count` is larger than a vector.

@@ -76,12 +76,13 @@ void prepend_id(Id* list, ListRange* row, const ListRange* end, std::size_t pitc
 /// Prepends all lights' ids to the lists of the tile rows begin..end-1, the last light first, so that ids ascend in
 /// each list. It is not inlined, as it takes a tenth longer inside another loop.
 template <class Id>
-LIGHTBIN_NOINLINE void fill_rows(const BinJob<Id>& job, Id* list, std::size_t begin, std::size_t end) {
+LIGHTBIN_NOINLINE void fill_rows(const BinJob<>& job, Id* list, std::size_t begin, std::size_t end) {
     const FootprintArrays lights = job.lights;  // a local copy, so that compilers need not reload it after each store
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
     for (std::size_t run = job.runs.size(); run-- > 0;)
         for (std::uint32_t i = job.runs[run].end; i-- > job.runs[run].begin;) {
-            const std::size_t y0 = max_of<std::size_t>(lights.y0[i], begin), y1 = min_of<std::size_t>(lights.y1[i] + 1u, end);
+            const std::size_t y0 = max_of<std::size_t>(lights.y0[i], begin),
+                              y1 = min_of<std::size_t>(lights.y1[i] + 1u, end);
             if (y0 < y1)
                 prepend_id(list, job.tiles + y0 * width + lights.x0[i], job.tiles + y1 * width, width,
                            lights.x1[i] - lights.x0[i] + std::size_t{1}, static_cast<Id>(lights.ids[i]));
@@ -90,7 +91,7 @@ LIGHTBIN_NOINLINE void fill_rows(const BinJob<Id>& job, Id* list, std::size_t be
 
 /// Bins one light or none, without prefix sums, as the index list is one id repeated. Returns the number of entries.
 template <class Id>
-std::uint64_t scatter_one(const BinJob<Id>& job, const FootprintRun& run, const BinShare<Id>& share) {
+std::uint64_t scatter_one(const BinJob<>& job, const FootprintRun& run, const BinShare<Id>& share) {
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);
     ListRange *tile = job.tiles + share.begin * width, *const end = job.tiles + share.end * width;
     std::uint32_t offset = share.offset;
@@ -112,7 +113,7 @@ std::uint64_t scatter_one(const BinJob<Id>& job, const FootprintRun& run, const 
 /// Bins one thread's share of tile rows: counts each tile's lights, then writes each light's id to its tiles' lists.
 /// Returns the number of list entries, and writes no element past the last entry.
 template <class Id>
-std::uint64_t scatter_lights(const BinJob<Id>& job, Scratch& scratch, const BinShare<Id>& share) {
+std::uint64_t scatter_lights(const BinJob<>& job, Scratch& scratch, const BinShare<Id>& share) {
     const FootprintRun run = job.runs[0];
     if (job.runs.size() == 1 && run.end - run.begin <= 1) return scatter_one(job, run, share);
     const std::size_t width = static_cast<std::size_t>(job.camera->x.tiles);

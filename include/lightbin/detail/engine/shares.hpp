@@ -91,12 +91,13 @@ void share_rows(const BinJob<Id>& job, const Parallel& parallel, Buffer<std::uin
 /// memory  the memory of the last rows, kept from call to call
 /// build   build(i, rows) builds some rows of share i, a BinShare
 template <class Id, class Build>
-std::uint64_t build_rectangles(const Parallel& parallel, Items<const Share> shares, Buffer<Buffer<Id>>& memory, Id* list,
-                               Build build) {
+std::uint64_t build_rectangles(const Parallel& parallel, Items<const Share> shares, Buffer<Buffer<Id>>& memory,
+                               Id* list, Build build) {
     memory.reserve(shares.size(), shares.size());
     parallel.run(shares.size(), [&](std::size_t i) {
         const Share& share = shares[i];
-        // Where in `list` the entries of the share's last tile rows, which are built in separate memory, begin.
+        // Where in `list` the entries of this thread's last tile rows begin. They are built in separate memory, as the
+        // kernel would write past their end, where another thread's entries are.
         const std::uint64_t tail = share.before + share.entries - share.tail_entries;
         build(i, {share.begin, share.tail_begin, list + share.before, static_cast<std::uint32_t>(share.before)});
         Id* const copied = memory.data()[i].reserve(share.tail_entries + BinShare<Id>::slack);

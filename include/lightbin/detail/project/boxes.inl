@@ -12,10 +12,6 @@
 // world_to_view.hpp the centre is within error_rate (|x| + |y| + |z|) + error_at_origin of the exact one, where x, y
 // and z are relative to the origin; the half axes are transformed by the same products and sums. In the sum of the
 // three coordinates' differences this is less than twice as much.
-//
-// Rounding in double, with e = 2^-53: let M be the sum of the absolute values of all terms in the three rows of the
-// transform, for the centre and the half axes. Each term goes through at most 8 roundings, so corners are within 8e M
-// = 2^-50 M; the error is 2^-46 M.
 #if !defined(LIGHTBIN_KERNELS)  // opened alone, by an editor: see tiers/in_editor.hpp
 #pragma once
 #include <lightbin/detail/project/box_vectors.inl>
@@ -24,32 +20,16 @@
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
 /// Finds 1 / a and 1 / b from the reciprocal of a b, as divisions take long.
-template <class Reals> LIGHTBIN_INLINE void reciprocals(Reals a, Reals b, Reals& per_a, Reals& per_b) {
-    const Reals per_both = all<Reals>(1) / mul(a, b);
+LIGHTBIN_INLINE void reciprocals(Floats a, Floats b, Floats& per_a, Floats& per_b) {
+    const Floats per_both = 1.0f / mul(a, b);
     per_a = mul(b, per_both);
     per_b = mul(a, per_both);
 }
 
-/// Finds bounds on the slopes of the parts of boxes beyond the near plane, with a perspective projection.
-///
-/// which    a bit for each box whose bounds are asked for
-/// nearest  a lower bound on the boxes' view depths
-///
-/// Let E be BoxLanes::error and d the view depth of the near plane. Each exact point q of a box with q_z >= d is
-/// within E of a point p of the computed box. Let D be the greater one of d and `nearest`: then q_z is at least D, and
-/// p_z at least D - E. The computed box is cut at the depth D - E, where that is at least D / 2; else there are no
-/// bounds. The slopes of q and p differ by at most  E (1 + |p_x / p_z|) / D.  Rounding in the point where an edge
-/// crosses the depth, in quotients and in products moves p by less than 10u S, and so by less than E. For both together
-/// bounds are moved outward by  2 E (1 + |s|) / D,  where s is the bound. That holds for the slopes s of all points of
-/// the computed box, as the factor 2 E / D is at most 1 and so the moved slope grows with s.
-template <class Reals>
-void corner_slopes(const BoxLanes<Reals>& box, unsigned which, Reals nearest, double near_depth,
-                   ImageBounds<Reals>& bounds) {
-    const Reals infinite = all<Reals>(static_cast<double>(infinity)), front = all<Reals>(near_depth),
-                least = maximum(nearest, front), cut = least - box.error;
-    // Corners in the order of binary numbers: bits 0, 1 and 2 are set on the side that half axis 0, 1 or 2 points to.
-    Reals corners[8][3];
-    for (unsigned i = 0; i < 3; ++i) {
+/// Finds the corners of boxes in the order of binary numbers: bits 0, 1 and 2 are set on the side that half axis 0, 1
+/// or 2 points to.
+template <class Reals> LIGHTBIN_INLINE void find_corners(const BoxLanes<Reals>& box, Reals (&corners)[8][3]) {
+    LIGHTBIN_UNROLL for (unsigned i = 0; i < 3; ++i) {
         const Reals sum = box.half_axes[0][i] + box.half_axes[1][i],
                     difference = box.half_axes[1][i] - box.half_axes[0][i];
         const Reals wide = box.centre[i] + box.half_axes[2][i], narrow = box.centre[i] - box.half_axes[2][i];
@@ -63,52 +43,79 @@ void corner_slopes(const BoxLanes<Reals>& box, unsigned which, Reals nearest, do
         corners[6][i] = wide + difference;
         corners[7][i] = wide + sum;
     }
-    Reals low[] = {infinite, infinite}, high[] = {-infinite, -infinite};
-    const auto crosses = less(nearest, front);
-    if ((movemask(crosses) & which) == 0) {
-        for (unsigned i = 0; i < 8; i += 2) {
-            const Reals(&a)[3] = corners[i], (&b)[3] = corners[i + 1];
-            Reals per_a, per_b;
-            reciprocals(a[2], b[2], per_a, per_b);
-            for (unsigned axis = 0; axis < 2; ++axis) {
-                const Reals of_a = mul(a[axis], per_a), of_b = mul(b[axis], per_b);
-                low[axis] = minimum(minimum(of_a, of_b), low[axis]);
-                high[axis] = maximum(maximum(of_a, of_b), high[axis]);
-            }
-        }
-    } else {
-        const Reals per_cut = all<Reals>(1) / cut;
-        for (unsigned from = 0; from < 8; ++from) {
-            const Reals(&a)[3] = corners[from];
-            const auto a_before = less(a[2], cut);
-            Reals per_z, unused;
-            reciprocals(a[2], corners[from ^ 1][2], per_z, unused);
-            per_z = select(crosses, all<Reals>(1) / a[2], per_z);
-            for (unsigned axis = 0; axis < 2; ++axis) {
-                const Reals slope = mul(a[axis], per_z);
-                low[axis] = select(a_before, low[axis], minimum(slope, low[axis]));
-                high[axis] = select(a_before, high[axis], maximum(slope, high[axis]));
-            }
-            for (unsigned bit = 1; bit < 8; bit *= 2) {
-                if ((from & bit) != 0) continue;
-                const Reals(&b)[3] = corners[from | bit];
-                const auto b_before = less(b[2], cut),
-                           crossing = either(and_not(a_before, b_before), and_not(b_before, a_before));
-                const Reals part = (cut - a[2]) / (b[2] - a[2]);
-                for (unsigned axis = 0; axis < 2; ++axis) {
-                    const Reals slope = mul(a[axis] + mul(part, b[axis] - a[axis]), per_cut);
-                    low[axis] = select(crossing, minimum(slope, low[axis]), low[axis]);
-                    high[axis] = select(crossing, maximum(slope, high[axis]), high[axis]);
-                }
-            }
-        }
-    }
-    const auto bounded = less_equal(box.error, mul(least, all<Reals>(0.5)));
-    const Reals blur = mul(box.error, all<Reals>(2)) / least;
+}
+
+/// Moves bounds on the slopes of boxes outward, with a perspective projection.
+///
+/// least  D: the view depth from which on the boxes' points are bounded; at least twice BoxLanes::error
+///
+/// Let E be BoxLanes::error. Each exact point q of a box with q_z >= D is within E of a point p of the computed box,
+/// where p_z is at least D - E. The slopes of q and p differ by at most  E (1 + |p_x / p_z|) / D.  Rounding in the
+/// point where an edge crosses a depth, in quotients and in products moves p by less than 10u S, with u and S as at the
+/// top of this file, and so by less than E. For both together bounds are moved outward by  2 E (1 + |s|) / D,  where s
+/// is the bound. That holds for the slopes s of all points of the computed box, as the factor 2 E / D is at most 1 and
+/// so the moved slope grows with s.
+template <class Reals>
+LIGHTBIN_INLINE void move_outward(Reals error, Reals least, ImageBounds<Reals>& bounds) {
+    const Reals blur = mul(error, all<Reals>(2)) / least;
     for (unsigned axis = 0; axis < 2; ++axis) {
-        bounds.low[axis] = select(bounded, low[axis] - mul(blur, all<Reals>(1) + abs(low[axis])), -infinite);
-        bounds.high[axis] = select(bounded, high[axis] + mul(blur, all<Reals>(1) + abs(high[axis])), infinite);
+        bounds.low[axis] = bounds.low[axis] - mul(blur, all<Reals>(1) + abs(bounds.low[axis]));
+        bounds.high[axis] = bounds.high[axis] + mul(blur, all<Reals>(1) + abs(bounds.high[axis]));
     }
+}
+
+/// Finds bounds on the slopes of boxes wholly beyond the near plane, with a perspective projection.
+///
+/// nearest  a lower bound on the boxes' view depths; at least twice BoxLanes::error
+LIGHTBIN_INLINE void corner_slopes(const BoxLanes<Floats>& box, Floats nearest, ImageBounds<Floats>& bounds) {
+    Floats corners[8][3];
+    find_corners(box, corners);
+    LIGHTBIN_UNROLL for (unsigned i = 0; i < 8; i += 2) {
+        const Floats(&a)[3] = corners[i], (&b)[3] = corners[i + 1];
+        Floats per_a, per_b;
+        reciprocals(a[2], b[2], per_a, per_b);
+        for (unsigned axis = 0; axis < 2; ++axis) {
+            const Floats of_a = mul(a[axis], per_a), of_b = mul(b[axis], per_b);
+            bounds.low[axis] = i == 0 ? minimum(of_a, of_b) : minimum(minimum(of_a, of_b), bounds.low[axis]);
+            bounds.high[axis] = i == 0 ? maximum(of_a, of_b) : maximum(maximum(of_a, of_b), bounds.high[axis]);
+        }
+    }
+    move_outward(box.error, nearest, bounds);
+}
+
+/// Finds bounds on the slopes of the parts of boxes beyond the near plane, with a perspective projection. The computed
+/// boxes are cut at the depth D - E of move_outward().
+///
+/// least  the greater one of the near plane's view depth and of a lower bound on the boxes' view depths; at least twice
+///        BoxLanes::error
+template <class Reals>
+LIGHTBIN_NOINLINE void clipped_corner_slopes(const BoxLanes<Reals>& box, Reals least, ImageBounds<Reals>& bounds) {
+    const Reals cut = least - box.error, per_cut = all<Reals>(1) / cut,
+                infinite = all<Reals>(static_cast<double>(infinity));
+    Reals corners[8][3];
+    find_corners(box, corners);
+    bounds = {{infinite, infinite}, {-infinite, -infinite}};
+    const auto hold = [&](auto where, unsigned axis, Reals slope) {
+        bounds.low[axis] = select(where, minimum(slope, bounds.low[axis]), bounds.low[axis]);
+        bounds.high[axis] = select(where, maximum(slope, bounds.high[axis]), bounds.high[axis]);
+    };
+    for (unsigned from = 0; from < 8; ++from) {
+        const Reals(&a)[3] = corners[from];
+        const Reals per_z = all<Reals>(1) / a[2];
+        const auto a_beyond = less_equal(cut, a[2]);
+        for (unsigned axis = 0; axis < 2; ++axis)
+            hold(a_beyond, axis, mul(a[axis], per_z));
+        for (unsigned bit = 1; bit < 8; bit *= 2) {
+            if ((from & bit) != 0) continue;
+            const Reals(&b)[3] = corners[from | bit];
+            const auto b_beyond = less_equal(cut, b[2]);
+            const Reals part = (cut - a[2]) / (b[2] - a[2]);
+            for (unsigned axis = 0; axis < 2; ++axis)
+                hold(either(and_not(a_beyond, b_beyond), and_not(b_beyond, a_beyond)), axis,
+                     mul(a[axis] + mul(part, b[axis] - a[axis]), per_cut));
+        }
+    }
+    move_outward(box.error, least, bounds);
 }
 
 /// Bounds of a vector of boxes, and of the parts of them in their balls.
@@ -127,28 +134,37 @@ template <class Reals> struct BoxBounds {
 /// Rounding is monotone, and the depths of the near and far plane are floats, so comparing rounded sums with these is
 /// exact.
 template <class Reals>
-LIGHTBIN_INLINE auto find_box_depths(const Camera& camera, const BoxLanes<Reals>& box, const Reals (&ball)[4],
+LIGHTBIN_INLINE decltype(less(Reals{}, Reals{})) find_box_depths(const Camera& camera, const BoxLanes<Reals>& box, const Reals (&ball)[4],
                                      BoxBounds<Reals>& bounds) {
-    // The squared distance of any corner from the ball's centre is at most the sum of the squared lengths of the half
-    // axes and of the way from the ball's centre to the box's, and of the absolute values of twice their scalar
-    // products. In boxes around their ball's centre with half axes at right angles these products are 0. A ball that
-    // holds all corners, up to rounding, cuts nothing off. It is forgotten, which loses no light.
+    // The corners of the two faces along half axis 2 lie at  way +- k h_0 +- k h_1  from the ball's centre, where `way`
+    // leads to the face's middle and k is 1 or the taper. Such a squared distance is at most the sum of the squared
+    // lengths of all three and of the absolute values of twice their scalar products. In boxes with half axes at right
+    // angles, and their ball's centre on half axis 2, these products are 0. A ball that holds all corners, up to
+    // rounding, cuts nothing off. It is forgotten, which loses no light.
     const Reals(&h)[3][3] = box.half_axes;
-    const Reals way[] = {box.centre[0] - ball[0], box.centre[1] - ball[1], box.centre[2] - ball[2]};
-    const Reals products = abs(dot(way, h[0])) + abs(dot(way, h[1])) + abs(dot(way, h[2])) + abs(dot(h[0], h[1])) +
-                           abs(dot(h[0], h[2])) + abs(dot(h[1], h[2]));
-    const Reals farthest2 =
-        dot(way, way) + dot(h[0], h[0]) + dot(h[1], h[1]) + dot(h[2], h[2]) + (products + products);
+    const Reals squares = dot(h[0], h[0]) + dot(h[1], h[1]), product = abs(dot(h[0], h[1]));
+    const auto face_reach2 = [&](const Reals(&way)[3], Reals k) {
+        const Reals products = abs(dot(way, h[0])) + abs(dot(way, h[1])) + mul(k, product);
+        return dot(way, way) + mul(k, mul(k, squares) + (products + products));
+    };
+    Reals wide[3], narrow[3];
+    LIGHTBIN_UNROLL for (unsigned i = 0; i < 3; ++i) {
+        const Reals way = box.centre[i] - ball[i];
+        wide[i] = way + h[2][i];
+        narrow[i] = way - h[2][i];
+    }
+    const Reals farthest2 = maximum(face_reach2(wide, all<Reals>(1)), face_reach2(narrow, box.taper));
     // An infinite error, of a box that bounds nothing, leaves each ball but infinite ones.
     const auto ball_cuts =
         less(mul(mul(ball[3], ball[3]), all<Reals>(1 + 0x1p-16)), farthest2 + mul(box.error, all<Reals>(0x1p-100)));
     bounds.radius = select(ball_cuts, ball[3], all<Reals>(static_cast<double>(infinity)));
 
-    Reals low[3], high[3];
-    for (unsigned axis = camera.orthographic ? 0 : 2; axis < 3; ++axis) {
-        const Reals along = h[2][axis], across = abs(h[0][axis]) + abs(h[1][axis]), narrow = mul(across, box.taper);
-        low[axis] = box.centre[axis] - maximum(across - along, narrow + along) - box.error;
-        high[axis] = box.centre[axis] + maximum(across + along, narrow - along) + box.error;
+    Reals low[3] = {}, high[3] = {};
+    LIGHTBIN_UNROLL for (unsigned axis = 0; axis < 3; ++axis) {
+        if (axis < 2 && !camera.orthographic) continue;
+        const Reals along = h[2][axis], across = abs(h[0][axis]) + abs(h[1][axis]), tapered = mul(across, box.taper);
+        low[axis] = box.centre[axis] - maximum(across - along, tapered + along) - box.error;
+        high[axis] = box.centre[axis] + maximum(across + along, tapered - along) + box.error;
     }
     if (camera.orthographic) bounds.image = {{low[0], low[1]}, {high[0], high[1]}};
     bounds.box_nearest = low[2];
@@ -177,132 +193,14 @@ LIGHTBIN_INLINE Mask narrow_to_balls(const Camera& camera, const ImageBounds<Rea
     return visible;
 }
 
-/// The numbers of a vector of boxes that later stages read, with an array for each.
-struct StoredBoxes {
-    float ball[4][lanes], nearest[lanes], farthest[lanes], centre[3][lanes], half_axes[3][3][lanes], tolerance[lanes];
-};
-
-/// The transform from the lights' space to view space after the camera's signs, in double.
-struct BoxTransform {
-    BoxTransform(const Camera& camera, const WorldToView* to_view) {
-        const double signs[] = {static_cast<double>(camera.x.sign), static_cast<double>(camera.y.sign),
-                                static_cast<double>(camera.z_sign)};
-        for (unsigned row = 0; row < 3; ++row) {
-            for (unsigned column = 0; column < 4; ++column)
-                matrix[column][row] = to_view != nullptr
-                                          ? signs[row] * to_view->matrix()[static_cast<int>(column)][row]
-                                      : column == row ? signs[row]
-                                                      : 0.0;
-            translation += abs_of(matrix[3][row]);
-        }
-        for (unsigned column = 0; column < 3; ++column)
-            norm = max_of(norm, abs_of(matrix[column][0]) + abs_of(matrix[column][1]) + abs_of(matrix[column][2]));
-    }
-
-    double matrix[4][3];
-    /// The absolute values of the terms of an image's three rows add up to at most  norm (|x| + |y| + |z|) +
-    /// translation.
-    double norm = 0, translation = 0;
-};
-
-/// Projects in double those boxes of a vector whose bit in `which` is set. Stores their rectangles from index i of
-/// the chunk on, sets the bits of those in view in chunk.visible, and replaces their numbers in `stored`.
+/// Finds and stores the half spaces of the six faces of boxes, whose BoxLanes::error is the ViewBox's tolerance. The
+/// normals are of any lengths.
 ///
-/// ball   the balls in view space after the camera's signs
-/// given  the boxes' centres, half axes and tapers as they are given
-LIGHTBIN_NOINLINE inline void project_boxes_in_double(const Camera& camera, const BoxTransform& transform,
-                                                      unsigned which, const Floats (&ball)[4],
-                                                      const Floats (&given)[13], std::uint32_t i,
-                                                      ProjectedChunk& chunk, StoredBoxes& stored) {
-    for (unsigned half = 0; half < lanes / double_lanes; ++half) {
-        const unsigned chosen = which >> half * double_lanes & ((1u << double_lanes) - 1);
-        if (chosen == 0) continue;
-        BoxLanes<Doubles> box;
-        Doubles size = broadcast(0.0);
-        for (unsigned part = 0; part < 4; ++part) {
-            Doubles from[3];
-            for (unsigned k = 0; k < 3; ++k) {
-                from[k] = widened(given[3 * part + k], half);
-                size = size + abs(from[k]);
-            }
-            for (unsigned row = 0; row < 3; ++row) {
-                const Doubles image = mul(from[0], broadcast(transform.matrix[0][row])) +
-                                      mul(from[1], broadcast(transform.matrix[1][row])) +
-                                      mul(from[2], broadcast(transform.matrix[2][row]));
-                if (part == 0)
-                    box.centre[row] = image + transform.matrix[3][row];
-                else
-                    box.half_axes[part - 1][row] = image;
-            }
-        }
-        box.taper = widened(given[12], half);
-        box.error = mul(mul(size, broadcast(transform.norm)) + transform.translation, broadcast(0x1p-46));
-        // A box that is too large to be rounded to float bounds nothing: the light is then its whole ball.
-        const Doubles view_size = size_of(box), infinite = broadcast(static_cast<double>(infinity)),
-                      zero = broadcast(0.0);
-        const auto fits = less_equal(view_size + box.error, broadcast(0x1p60));
-        box.error = select(fits, box.error, infinite);
-        for (unsigned k = 0; k < 3; ++k) {
-            box.centre[k] = select(fits, box.centre[k], zero);
-            for (Doubles(&h)[3] : box.half_axes)
-                h[k] = select(fits, h[k], zero);
-        }
-        const Doubles sphere[] = {widened(ball[0], half), widened(ball[1], half), widened(ball[2], half),
-                                  widened(ball[3], half)};
-        BoxBounds<Doubles> bounds;
-        auto visible = find_box_depths(camera, box, sphere, bounds);
-        if (!camera.orthographic)
-            corner_slopes(box, chosen, bounds.box_nearest, static_cast<double>(camera.near_depth), bounds.image);
-        visible =
-            narrow_to_balls<double>(camera, bounds_in_double(camera, sphere[0], sphere[1], sphere[2], sphere[3]),
-                                    bounds.radius, bounds.image, visible);
-        ChunkRects rects;
-        const unsigned in_view = movemask(tile_rects<double>(camera, bounds.image, visible, rects, 0)) & chosen;
-
-        // Depths are rounded outward to float: 2^-23 of a number is at least one unit in its last place. The limits
-        // keep them in the range of floats. Rounding a box to float moves each point by less than 2^-24 of the box's
-        // size, see StoredBoxes and ViewBox.
-        const Doubles largest = broadcast(static_cast<double>(FLT_MAX) * 0.5);
-        const Doubles numbers[] = {
-            bounds.radius,
-            maximum(bounds.nearest - mul(abs(bounds.nearest), broadcast(0x1p-23)) - 0x1p-120, -largest),
-            minimum(bounds.farthest + mul(abs(bounds.farthest), broadcast(0x1p-23)) + 0x1p-120, largest),
-            box.error + mul(select(fits, view_size, infinite), broadcast(0x1p-19)) + 0x1p-120};
-        float* const to[] = {stored.ball[3], stored.nearest, stored.farthest, stored.tolerance};
-        const auto put = [&](float* floats, Doubles values) {
-            double of_lanes[double_lanes];
-            store_doubles(of_lanes, values);
-            for (unsigned lane = 0; lane < double_lanes; ++lane)
-                if ((chosen >> lane & 1) != 0)
-                    floats[half * double_lanes + lane] = static_cast<float>(of_lanes[lane]);
-        };
-        for (unsigned k = 0; k < 4; ++k)
-            put(to[k], numbers[k]);
-        for (unsigned k = 0; k < 3; ++k) {
-            put(stored.centre[k], box.centre[k]);
-            for (unsigned axis = 0; axis < 3; ++axis)
-                put(stored.half_axes[axis][k], box.half_axes[axis][k]);
-        }
-        for (unsigned lane = 0; lane < double_lanes; ++lane) {
-            if ((chosen >> lane & 1) == 0) continue;
-            const std::uint32_t at = i + half * double_lanes + lane;
-            chunk.rects.x0[at] = rects.x0[lane];
-            chunk.rects.y0[at] = rects.y0[lane];
-            chunk.rects.x1[at] = rects.x1[lane];
-            chunk.rects.y1[at] = rects.y1[lane];
-        }
-        chunk.visible |= std::uint64_t{in_view} << (i + half * double_lanes);
-    }
-}
-
-/// Finds and stores the half spaces of the six faces of boxes, whose BoxLanes::error is the ViewBox's tolerance.
-///
-/// Rounding, with u = 2^-24 and S = size_of(box): the greatest n.p of a box is computed with an error of at most 8u
-/// S, which the tolerance covers, see ViewBox. For the 4u S that cell_planes.hpp asks for, 8u S = 2^-21 S is added. S
-/// is not bounded from below as cell_planes.hpp wants it for underflow: with a perspective projection S is at least
-/// the depth of any point of the light, and with an orthographic one the tolerance's 2^-120 is enough.
+/// Rounding, with u = 2^-24, S = size_of(box) and L = |n_x| + |n_y| + |n_z|: the greatest n.p of a box is computed with
+/// an error of at most 8u L S, which the tolerance covers, see ViewBox. For the 4u L S that cell_planes.hpp asks for,
+/// 8u L S = 2^-21 L S is added, and its 2^-100 for underflow. Faces with L up to 2^-50 are left out.
 inline void store_box_planes(const Camera& camera, ViewBox* to, const BoxLanes<Floats>& box) {
-    Floats axes[3][3], normals[6][3];
+    Floats axes[3][3], normals[6][3], arrays[8];
     find_unit_axes(box, axes);
     find_normals(axes, box.taper, normals);
     const Floats slack = box.error + mul(size_of(box), broadcast(0x1p-21f));
@@ -310,122 +208,102 @@ inline void store_box_planes(const Camera& camera, ViewBox* to, const BoxLanes<F
     const bool tapered = movemask(less(box.taper, broadcast(1.0f))) != 0;
     for (unsigned face = 0; face < 6; face += tapered ? 1 : 2) {
         Floats(&n)[3] = normals[face];
-        const Floats length2 = dot(n, n);
-        const auto has_area = less(broadcast(0x1p-100f), length2);
-        const Floats per_length = select(has_area, 1.0f / sqrt(length2), Floats{});
-        for (unsigned i = 0; i < 3; ++i)
-            n[i] = mul(n[i], per_length);
-        const Floats at_centre = dot(n, box.centre), from_centre = reach_from_centre(box, n);
-        store_plane(camera, to, face, n, select(has_area, at_centre + from_centre + slack, broadcast(infinity)));
+        const Floats size = manhattan_length(n), at_centre = dot(n, box.centre);
+        const Floats reach = reach_from_centre(box, n) + (mul(size, slack) + 0x1p-100f),
+                     from_centre = select(less(broadcast(0x1p-50f), size), reach, broadcast(infinity));
+        arrays[face] = store_plane(camera, to, face, n, from_centre + at_centre);
         if (tapered) continue;
         for (unsigned i = 0; i < 3; ++i)
             n[i] = -n[i];
-        store_plane(camera, to, face + 1, n, select(has_area, from_centre - at_centre + slack, broadcast(infinity)));
+        arrays[face + 1] = store_plane(camera, to, face + 1, n, from_centre - at_centre);
     }
+    arrays[6] = arrays[7] = Floats{};
+    for (unsigned face = 0; face < 8; face += 4)
+        store_vec4s(to->around.arrays + face, sizeof *to, arrays[face], arrays[face + 1], arrays[face + 2],
+                    arrays[face + 3]);
 }
 
-/// Stores a vector of boxes, except the half spaces around them, which store_box_planes() stores.
-inline void store_boxes_in_view(ViewBox* to, const StoredBoxes& stored, Floats taper) {
-    Sphere vec4s[lanes];
-    const auto load = [](const float(&numbers)[lanes]) { return load_floats(numbers); };
-    const auto store = [&](std::size_t offset, Floats a, Floats b, Floats c, Floats d) {
-        store_spheres(vec4s, a, b, c, d);
-        store_vec4s(to, offset, vec4s);
-    };
-    store(offsetof(ViewBox, ball), load(stored.ball[0]), load(stored.ball[1]), load(stored.ball[2]),
-          load(stored.ball[3]));
-    store(offsetof(ViewBox, nearest), load(stored.nearest), load(stored.farthest), taper, load(stored.tolerance));
-    const float(&h)[3][3][lanes] = stored.half_axes;
-    store(offsetof(ViewBox, centre), load(stored.centre[0]), load(stored.centre[1]), load(stored.centre[2]),
-          load(h[0][0]));
-    store(offsetof(ViewBox, centre) + sizeof *vec4s, load(h[0][1]), load(h[0][2]), load(h[1][0]), load(h[1][1]));
-    store(offsetof(ViewBox, centre) + 2 * sizeof *vec4s, load(h[1][2]), load(h[2][0]), load(h[2][1]), load(h[2][2]));
-}
-
-/// Returns which boxes of a vector are good input, see Box: the balls, and the boxes' centres, half axes and tapers.
-LIGHTBIN_INLINE unsigned good_boxes(const Floats (&ball)[4], const Floats (&given)[13]) {
+/// Returns which boxes of a vector are good input, see Box. `given` has the numbers of each in their order in memory.
+LIGHTBIN_INLINE unsigned good_boxes(const Floats (&given)[17]) {
     const Floats largest = broadcast(FLT_MAX);
-    auto good =
-        both(less(Floats{}, ball[3]), both(less_equal(Floats{}, given[12]), less_equal(given[12], broadcast(1.0f))));
+    auto good = both(less(Floats{}, given[3]),
+                     both(less_equal(Floats{}, given[16]), less_equal(given[16], broadcast(1.0f))));
     Floats longest = Floats{};
-    for (unsigned i = 0; i < 3; ++i)
-        good = both(good, both(less_equal(abs(ball[i]), largest), less_equal(abs(given[i]), largest)));
-    for (unsigned i = 3; i < 12; ++i) {
+    LIGHTBIN_UNROLL for (unsigned i = 0; i < 16; ++i) {
+        if (i == 3) continue;  // a radius may be infinite
         good = both(good, less_equal(abs(given[i]), largest));
-        longest = maximum(abs(given[i]), longest);
     }
+    LIGHTBIN_UNROLL for (unsigned i = 7; i < 16; ++i)
+        longest = maximum(abs(given[i]), longest);
     return movemask(both(good, less(Floats{}, longest)));
 }
 
 /// Appends the footprints of those of the boxes first..first + count - 1 that are in view. Boxes are projected in
 /// float where its rounding errors are at most 2^-9 of their depths and nothing overflows or underflows, and their
 /// balls if these cut them and lie wholly beyond the near plane; all others in double.
-inline void project_boxes(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
-                          const FootprintArrays& out, ProjectCounts& counts) {
+template <LightKind kind>
+    requires(kind == LightKind::box)
+void project_lights(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
+                    const FootprintArrays& out, ProjectCounts& counts) {
     ProjectedChunk chunk;
-    Sphere balls[ChunkRects::size], parts[4][ChunkRects::size];  // as LightSource::copy writes them
-    StoredBoxes stored;
+    Box buffer[ChunkRects::size], padded[lanes];
     const TransformLanes transform(source.to_view);
-    const BoxTransform double_transform(camera, source.to_view);
     const ViewLanes view(camera);
     const Floats signs[] = {view.sign_x, view.sign_y, view.sign_z}, largest = broadcast(float_safe_max),
                  infinite = broadcast(infinity);
     const Floats front = broadcast(camera.near_depth);
     for (std::uint32_t here; count > 0; count -= here, first += here) {
         here = min_of(count, ChunkRects::size);
-        source.copy(source.lights, first, here, balls, parts[0]);
-        float tapers[ChunkRects::size];
-        std::memcpy(tapers, parts[3], here * sizeof *tapers);
-        for (std::uint32_t i = here; i % lanes != 0; ++i) {
-            balls[i] = balls[0];
-            for (unsigned part = 0; part < 3; ++part)
-                parts[part][i] = parts[part][0];
-            tapers[i] = tapers[0];
-        }
+        const Box* const given_boxes = source.array != nullptr ? static_cast<const Box*>(source.array) + first : buffer;
+        if (source.copy != nullptr) source.copy(source.lights, first, here, buffer);
         chunk.visible = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
-            const unsigned valid = (1u << min_of(lanes, here - i)) - 1;
-            Floats ball[4], given[13];
-            load_spheres(balls + i, ball[0], ball[1], ball[2], ball[3]);
-            for (unsigned part = 0; part < 3; ++part)
-                load_spheres(parts[part] + i, given[4 * part], given[4 * part + 1], given[4 * part + 2],
-                             given[4 * part + 3]);
-            given[12] = load_floats(tapers + i);
-            const Floats given_ball[] = {ball[0], ball[1], ball[2], ball[3]};
+            const std::uint32_t used = min_of(lanes, here - i);
+            const unsigned valid = (1u << used) - 1;
+            const Box* const from = whole_vector(given_boxes + i, used, padded);
+            Floats given[17];  // the numbers of each Box in their order in memory
+            static_assert(sizeof(Box) == sizeof(float) * 17);
+            LIGHTBIN_UNROLL for (unsigned k = 0; k < 16; k += 4)
+                load_vec4s(&from->x + k, sizeof *from, given[k], given[k + 1], given[k + 2], given[k + 3]);
+            float tapers[lanes];
+            for (std::uint32_t lane = 0; lane < lanes; ++lane)
+                tapers[lane] = from[lane].taper;
+            given[16] = load_floats(tapers);
+            Floats ball[] = {given[0], given[1], given[2], given[3]};
             BoxLanes<Floats> box;
-            box.taper = given[12];
+            box.taper = given[16];
             Floats moved_error = Floats{};
             auto safe = less_equal(Floats{}, Floats{});  // all
             if (source.to_view != nullptr) {
                 transform_spheres(transform, ball[0], ball[1], ball[2], ball[3]);
                 Floats from_origin[3], size = Floats{};
-                for (unsigned k = 0; k < 3; ++k) {
-                    from_origin[k] = given[k] - transform.origin[k];
+                LIGHTBIN_UNROLL for (unsigned k = 0; k < 3; ++k) {
+                    from_origin[k] = given[4 + k] - transform.origin[k];
                     size = size + abs(from_origin[k]);
                 }
                 safe = less_equal(size, transform.max_distance);
-                for (unsigned k = 3; k < 12; ++k)
+                LIGHTBIN_UNROLL for (unsigned k = 7; k < 16; ++k)
                     size = size + abs(given[k]);
                 moved_error = (mul(size, transform.error_rate) + transform.error_at_origin) * 2.0f;
-                for (unsigned row = 0; row < 3; ++row) {
+                LIGHTBIN_UNROLL for (unsigned row = 0; row < 3; ++row) {
                     box.centre[row] =
                         transformed_row(transform, row, from_origin[0], from_origin[1], from_origin[2]) +
                         transform.origin_image[row];
-                    for (unsigned axis = 0; axis < 3; ++axis)
-                        box.half_axes[axis][row] = transformed_row(transform, row, given[3 * axis + 3],
-                                                                   given[3 * axis + 4], given[3 * axis + 5]);
+                    LIGHTBIN_UNROLL for (unsigned axis = 0; axis < 3; ++axis)
+                        box.half_axes[axis][row] = transformed_row(transform, row, given[3 * axis + 7],
+                                                                   given[3 * axis + 8], given[3 * axis + 9]);
                 }
             } else {
-                for (unsigned row = 0; row < 3; ++row) {
-                    box.centre[row] = given[row];
-                    for (unsigned axis = 0; axis < 3; ++axis)
-                        box.half_axes[axis][row] = given[3 * axis + 3 + row];
+                LIGHTBIN_UNROLL for (unsigned row = 0; row < 3; ++row) {
+                    box.centre[row] = given[4 + row];
+                    LIGHTBIN_UNROLL for (unsigned axis = 0; axis < 3; ++axis)
+                        box.half_axes[axis][row] = given[3 * axis + 7 + row];
                 }
             }
-            for (unsigned row = 0; row < 3; ++row) {
+            LIGHTBIN_UNROLL for (unsigned row = 0; row < 3; ++row) {
                 ball[row] = ball[row] * signs[row];
                 box.centre[row] = box.centre[row] * signs[row];
-                for (Floats(&h)[3] : box.half_axes)
+                LIGHTBIN_UNROLL for (Floats(&h)[3] : box.half_axes)
                     h[row] = h[row] * signs[row];
             }
             const Floats centre_size = abs(ball[0]) + abs(ball[1]) + abs(ball[2]), ball_size = centre_size + ball[3];
@@ -435,15 +313,15 @@ inline void project_boxes(const Camera& camera, const LightSource& source, std::
                                    less_equal(broadcast(float_safe_min), axes)));
             // Most boxes are seen to be good by numbers that are needed anyway: sums that are not NaN or infinite, of
             // axes that are not 0.
-            const auto in_range = both(both(less(Floats{}, given_ball[3]), less_equal(given[12], broadcast(1.0f))),
-                                       less_equal(Floats{}, given[12]));
+            const auto in_range = both(both(less(Floats{}, given[3]), less_equal(given[16], broadcast(1.0f))),
+                                       less_equal(Floats{}, given[16]));
             unsigned good = movemask(both(safe, in_range)) & valid;
-            if (good != valid) good = good_boxes(given_ball, given) & valid;
+            if (good != valid) good = good_boxes(given) & valid;
             counts.rejected += static_cast<std::uint32_t>(std::popcount(valid & ~good));
-            const unsigned culled =
-                ~good | movemask(both(ball_safe, out_of_view(view, ball[0], ball[1], ball[2], ball[3],
+            const unsigned kept =
+                good & ~movemask(both(ball_safe, out_of_view(view, ball[0], ball[1], ball[2], ball[3],
                                                              ball[2] - ball[3], ball[2] + ball[3], ball_size)));
-            if ((~culled & valid) == 0) continue;
+            if (kept == 0) continue;
 
             box.error = mul(size, broadcast(0x1p-20f)) + moved_error;
             BoxBounds<Floats> bounds;
@@ -451,13 +329,21 @@ inline void project_boxes(const Camera& camera, const LightSource& source, std::
             const auto whole = less_equal(infinite, bounds.radius);
             safe = both(safe, either(whole, ball_safe));
             if (!camera.orthographic) {
-                const Floats nearest_ball = ball[2] - bounds.radius;
-                safe = both(safe, both(less_equal(box.error * 0x1p9f, maximum(bounds.box_nearest, front)),
+                const Floats nearest_ball = ball[2] - bounds.radius, least = maximum(bounds.box_nearest, front);
+                safe = both(safe, both(less_equal(box.error * 0x1p9f, least),
                                        either(whole, less(broadcast(camera.min_float_depth), nearest_ball))));
-                corner_slopes(box, movemask(visible) & ~culled & valid, bounds.box_nearest,
-                              static_cast<double>(camera.near_depth), bounds.image);
+                corner_slopes(box, bounds.box_nearest, bounds.image);
+                const auto clipped = less(bounds.box_nearest, front);
+                if ((movemask(both(visible, clipped)) & kept) != 0) {
+                    ImageBounds<Floats> of_clipped;
+                    clipped_corner_slopes(box, least, of_clipped);
+                    for (unsigned axis = 0; axis < 2; ++axis) {
+                        bounds.image.low[axis] = select(clipped, of_clipped.low[axis], bounds.image.low[axis]);
+                        bounds.image.high[axis] = select(clipped, of_clipped.high[axis], bounds.image.high[axis]);
+                    }
+                }
             }
-            if ((~movemask(whole) & ~culled & valid) != 0) {
+            if ((~movemask(whole) & kept) != 0) {
                 ImageBounds<Floats> of_balls = {{ball[0] - ball[3], ball[1] - ball[3]},
                                                 {ball[0] + ball[3], ball[1] + ball[3]}};
                 if (!camera.orthographic) {
@@ -467,33 +353,32 @@ inline void project_boxes(const Camera& camera, const LightSource& source, std::
                 }
                 visible = narrow_to_balls<float>(camera, of_balls, bounds.radius, bounds.image, visible);
             }
-            const unsigned in_float = movemask(safe) & ~culled & valid, in_double = ~movemask(safe) & ~culled & valid;
             const auto in_view = tile_rects<float>(camera, bounds.image, visible, chunk.rects, i);
+            const unsigned in_float = movemask(safe) & kept, in_double = kept & ~in_float;
             chunk.visible |= std::uint64_t{movemask(in_view) & in_float} << i;
-            if (source.out_boxes == nullptr && in_double == 0) continue;
-
-            for (unsigned k = 0; k < 3; ++k) {
-                store_floats(stored.ball[k], ball[k]);
-                store_floats(stored.centre[k], box.centre[k]);
-                for (unsigned axis = 0; axis < 3; ++axis)
-                    store_floats(stored.half_axes[axis][k], box.half_axes[axis][k]);
+            ViewBox* const to = source.out_boxes != nullptr ? source.out_boxes + first + i : nullptr;
+            const Floats(&h)[3][3] = box.half_axes;
+            if (to != nullptr) {
+                box.error = box.error + 0x1p-120f;
+                store_vec4s(&to->ball, sizeof *to, ball[0], ball[1], ball[2], bounds.radius);
+                store_vec4s(&to->nearest, sizeof *to, bounds.nearest, bounds.farthest, box.taper, box.error);
+                store_vec4s(to->centre, sizeof *to, box.centre[0], box.centre[1], box.centre[2], h[0][0]);
+                store_vec4s(to->half_axes[0] + 1, sizeof *to, h[0][1], h[0][2], h[1][0], h[1][1]);
+                store_vec4s(to->half_axes[1] + 2, sizeof *to, h[1][2], h[2][0], h[2][1], h[2][2]);
             }
-            store_floats(stored.ball[3], bounds.radius);
-            store_floats(stored.nearest, bounds.nearest);
-            store_floats(stored.farthest, bounds.farthest);
-            store_floats(stored.tolerance, box.error + 0x1p-120f);
-            if (in_double != 0)
-                project_boxes_in_double(camera, double_transform, in_double, ball, given, i, chunk, stored);
-            if (source.out_boxes == nullptr) continue;
-            store_boxes_in_view(source.out_boxes + first + i, stored, box.taper);
-            if (!source.with_planes) continue;
-            for (unsigned k = 0; k < 3; ++k) {
-                box.centre[k] = load_floats(stored.centre[k]);
-                for (unsigned axis = 0; axis < 3; ++axis)
-                    box.half_axes[axis][k] = load_floats(stored.half_axes[axis][k]);
+            if (in_double != 0) {
+                Sphere balls[lanes];
+                store_spheres(balls, ball[0], ball[1], ball[2], ball[3]);
+                for (unsigned rest = in_double; rest != 0; rest &= rest - 1) {
+                    const std::uint32_t lane = static_cast<std::uint32_t>(std::countr_zero(rest));
+                    project_box_in_double(camera, source.to_view, balls[lane], from[lane], i + lane, chunk,
+                                          to != nullptr ? to + lane : nullptr);
+                }
+                Floats nearest;
+                if (to != nullptr)
+                    load_boxes([=](std::uint32_t lane) -> const ViewBox& { return to[lane]; }, box, ball, nearest);
             }
-            box.error = load_floats(stored.tolerance);
-            store_box_planes(camera, source.out_boxes + first + i, box);
+            if (source.with_planes) store_box_planes(camera, to, box);
         }
         append_chunk(chunk, source.first_id + first, here, out, counts);
     }

@@ -11,14 +11,13 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// Where a projection kernel reads lights from, and where it writes what later stages need of them in view space.
 /// Arrays are indexed by a light's id.
 struct LightSource {
-    const Sphere* spheres;  ///< the caller's own array, to be read with load_sphere(); null: `copy` is called
-    const void* lights;     ///< the caller's lights, an object of the class template Lights that `copy` reads
-    /// Writes lights first..first + count - 1: to `to` the Sphere of each, which a spot's cone or a box cuts, and to
-    /// `more` the rest as vec4s. Of spots these are the axes and the cosines of the half angles. Of boxes they are
-    /// three arrays of ChunkRects::size vec4s, with twelve of the numbers of a Box each in their order in memory, from
-    /// box_x on, and then an array of floats, the members Box::taper.
-    void (*copy)(const void* lights, std::size_t first, std::size_t count, Sphere* to, Sphere* more) = nullptr;
-    std::uint32_t first_id;      ///< the id of the first one of the lights in `spheres` or `lights`
+    /// The caller's own array if it has the layout of Spheres, Spots or Boxes; null: `copy` is called. It may be an
+    /// array of another type, so its bytes are to be copied, as by load_sphere().
+    const void* array;
+    const void* lights;  ///< the caller's lights, an object of the class template Lights that `copy` reads
+    /// Writes lights first..first + count - 1, as Spheres, Spots or Boxes, to an array at `to`.
+    void (*copy)(const void* lights, std::size_t first, std::size_t count, void* to) = nullptr;
+    std::uint32_t first_id;      ///< the id of the first one of the lights in `array` or `lights`
     const WorldToView* to_view;  ///< the transform to view space; null: the lights are given in view space
     /// Store the half spaces around each spot or box for the depth tests, too: `around` in ViewSpot and ViewBox.
     bool with_planes;
@@ -49,7 +48,10 @@ struct ViewLights {
 
     /// Returns the kind of the light with an id, if the lights are of mixed kinds.
     LightKind kind_of(std::uint32_t id) const {
-        return id < first_spot ? LightKind::sphere : id < first_box ? LightKind::spot : LightKind::box;
+        if (id < first_spot) return LightKind::sphere;
+        if constexpr (!kinds_have_spots) return LightKind::box;
+        if constexpr (!kinds_have_boxes) return LightKind::spot;
+        return id < first_box ? LightKind::spot : LightKind::box;
     }
     /// Returns the light with an id, which is of the kind spot or box.
     template <LightKind kind> const auto& shape(std::uint32_t id) const {
@@ -127,6 +129,14 @@ struct ChunkRects {
     std::uint32_t x0[size], y0[size], x1[size], y1[size];
 };
 
+/// A chunk of lights while they are projected. A light's index is counted from the chunk's first light.
+struct ProjectedChunk {
+    ChunkRects rects;
+    std::uint64_t visible;                       ///< a mask of the chunk's lights that are in view
+    std::uint32_t fallback[ChunkRects::size];    ///< the indices of the lights to be projected in double precision
+    std::uint32_t fallback_count;
+};
+
 /// The footprints of all lights in view, or of the lights in view that intersect one depth slice.
 struct FootprintSlice {
     FootprintArrays lights;
@@ -136,8 +146,9 @@ struct FootprintSlice {
     float slab[2] = {-infinity, infinity};  ///< the slice's depths, which depth tests use in place of absent Z bounds
 };
 
-/// What the binning kernels read, and where they write each tile's ListRange, the offset and count of its list.
-template <class Id> struct BinJob : FootprintSlice {
+/// What the binning kernels read, and where they write each tile's ListRange, the offset and count of its list. It is
+/// the same type for all widths of ids.
+template <class Id = std::uint32_t> struct BinJob : FootprintSlice {
     const Camera* camera;
     const float* bounds[4];  ///< the tiles' depths ZBounds::min, max, gap_min, gap_max; null for absent ones
     const float* edges[4];   ///< the tiles' edges for boxes around cells: low x, high x, low y, high y, by tile_edges()

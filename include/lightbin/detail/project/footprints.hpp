@@ -32,25 +32,11 @@ inline std::size_t parts_of(std::size_t lights, const Parallel& parallel) {
 }
 
 /// Writes the lights that `lights`, a Lights, makes of its array. LightSource::copy points to this function.
-template <class Array>
-void copy_lights(const void* lights, std::size_t first, std::size_t count, Sphere* to, [[maybe_unused]] Sphere* more) {
-    const auto& from = *static_cast<const Array*>(lights);
+template <class Array> void copy_lights(const void* lights, std::size_t first, std::size_t count, void* to) {
+    const Array& from = *static_cast<const Array*>(lights);
+    auto* const made = static_cast<decltype(from.made(from.array[0]))*>(to);
     for (std::size_t i = 0; i < count; ++i)
-        if constexpr (Array::kind == LightKind::box) {
-            const Box box = from.made(from.array[first + i]);
-            const char* const bytes = reinterpret_cast<const char*>(&box);
-            std::memcpy(to + i, bytes, sizeof *to);
-            for (std::size_t part = 0; part < 3; ++part)
-                std::memcpy(more + part * ChunkRects::size + i, bytes + (part + 1) * sizeof *more, sizeof *more);
-            char* const tapers = reinterpret_cast<char*>(more + 3 * ChunkRects::size);
-            std::memcpy(tapers + i * sizeof box.taper, &box.taper, sizeof box.taper);
-        } else if constexpr (Array::kind == LightKind::spot) {
-            const Spot spot = from.made(from.array[first + i]);
-            to[i] = {spot.x, spot.y, spot.z, spot.radius};
-            more[i] = {spot.axis_x, spot.axis_y, spot.axis_z, spot.cos_half_angle};
-        } else {
-            to[i] = from.made(from.array[first + i]);
-        }
+        made[i] = from.made(from.array[first + i]);
 }
 
 }  // namespace detail
@@ -72,8 +58,8 @@ public:
     ///                 stage that follows has enough
     /// for_boxes       store with each spot or Box what depth tests against boxes need; only if with_spheres
     template <class Source>
-    void project(Isa isa, const View& view, const Source& source, const Parallel& parallel, bool force_parallel = false,
-                 bool for_boxes = false) {
+    LIGHTBIN_SMALL void project(Isa isa, const View& view, const Source& source, const Parallel& parallel,
+                                bool force_parallel = false, bool for_boxes = false) {
         lights_ = detail::light_count(source);
         const bool share = force_parallel || parallel.pays_off(detail::project_ns(isa, static_cast<double>(lights_)));
         const Parallel threads = share ? parallel : Parallel();
@@ -119,6 +105,13 @@ public:
     const detail::FootprintArrays& arrays() const { return arrays_; }
     detail::Items<const detail::FootprintRun> runs() const { return {runs_.data(), run_count_}; }
 
+    /// How many lights were given and left out, and the ids at which kinds begin.
+    LightCounts counts() const {
+        const auto all = static_cast<std::uint32_t>(lights_);
+        const detail::ViewLights& kinds = arrays_.view_lights;
+        return {all, rejected(), all - rejected() - visible(), kinds.first_spot, kinds.first_box};
+    }
+
     int slices() const { return 1; }
     detail::FootprintSlice slice(std::size_t) const { return {arrays_, runs(), visible(), area()}; }
     LightRanks ranks() const { return {}; }
@@ -134,16 +127,16 @@ private:
                        std::size_t first_id, std::size_t first_part, std::size_t parts) {
         constexpr detail::LightKind kind = Array::kind;
         const std::size_t count = lights.array.size();
-        detail::LightSource source = {.spheres = detail::as_they_are(lights),
+        detail::LightSource source = {.array = detail::as_they_are(lights),
                                       .lights = &lights,
                                       .first_id = static_cast<std::uint32_t>(first_id),
                                       .to_view = lights.to_view ? &*lights.to_view : nullptr,
                                       .with_planes = for_boxes};
-        if (source.spheres == nullptr) source.copy = detail::copy_lights<Array>;
+        if (source.array == nullptr) source.copy = detail::copy_lights<Array>;
         detail::ViewLights& kept = arrays_.view_lights;
         [[maybe_unused]] const std::uint64_t capacity = std::uint64_t{count} + chunk;
         if constexpr (kind == detail::LightKind::sphere) {
-            kept.spheres = source.spheres;
+            kept.spheres = static_cast<const Sphere*>(source.array);
             if constexpr (keeps_lights)
                 if (source.copy != nullptr || source.to_view != nullptr)
                     kept.spheres = source.out_spheres = spheres_.reserve(capacity);

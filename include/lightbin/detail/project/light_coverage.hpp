@@ -4,7 +4,7 @@
 
 #include <lightbin/box.hpp>
 #include <lightbin/coverage.hpp>
-#include <lightbin/detail/tiers/scalar.hpp>
+#include <lightbin/detail/project/spheres_in_double.hpp>
 #include <lightbin/parallel.hpp>
 #include <lightbin/view.hpp>
 
@@ -39,8 +39,8 @@ template <LightKind kind> LightExtent extent_of(const Camera& camera, const View
             copy_items(&light.half_axes[0][0], 9, &box.half_axes[0][0]);
             sphere = bounding_sphere(box);
         } else if (light.tolerance > 0) {
-            sphere = least_sphere({sphere.x, sphere.y, sphere.z, sphere.radius, light.axis_x, light.axis_y, light.axis_z,
-                                   light.cosine});
+            sphere = least_sphere(
+                {sphere.x, sphere.y, sphere.z, sphere.radius, light.axis_x, light.axis_y, light.axis_z, light.cosine});
         }
         sphere.radius = float_above(static_cast<double>(sphere.radius) + static_cast<double>(light.tolerance));
         return {sphere, light.nearest, light.farthest};
@@ -65,7 +65,7 @@ inline double tiles_across(const Camera& camera, const Sphere& sphere) {
         if (!camera.orthographic && z - r > near_depth)
             scalar::tangent_slopes(centre[axis], z, r, e, 1 / e, low, high);
         else if (!camera.orthographic)
-            scalar::clipped_slopes(centre[axis], z, r, near_depth, low, high);
+            clipped_slopes(centre[axis], z, r, near_depth, low, high);
         const double width = high - low + rounded((abs_of(low) + abs_of(high)) * 0x1p-49);
         tiles = max_of(tiles, width * (axis == 0 ? camera.x : camera.y).scale);
     }

@@ -12,4 +12,16 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// several kinds.
 enum class LightKind : std::uint8_t { sphere, spot, box, mixed };
 
+/// Whether mixed kinds can have spots, and boxes. The file that implements lightbin.h may leave out the code for either.
+#if defined(LIGHTBIN_CALLERS_MEMORY) && defined(LIGHTBIN_NO_SPOTS)
+inline constexpr bool kinds_have_spots = false;
+#else
+inline constexpr bool kinds_have_spots = true;
+#endif
+#if defined(LIGHTBIN_CALLERS_MEMORY) && defined(LIGHTBIN_NO_BOXES)
+inline constexpr bool kinds_have_boxes = false;
+#else
+inline constexpr bool kinds_have_boxes = true;
+#endif
+
 }}}  // namespace lightbin::detail

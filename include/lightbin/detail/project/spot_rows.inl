@@ -24,12 +24,34 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
-/// The two lines that bound each of `lanes` spots' cones in the image. A spot covers a span of tiles in each tile row.
-/// In a row between the slopes y / depth = v0 and v1, a line ends the span (if per_x > 0) or begins it at the x, in
-/// tiles, (limit - min(n_y v0, n_y v1)) per_x + offset.  Here n is the normal of the plane through eye and line; the
-/// spot's slopes x and y have  n_x x + n_y y <= limit;  and per_x = ImageAxis::scale / n_x, offset = ImageAxis::offset.
-struct WedgeTerms {
-    double per_x[2][lanes], n_y[2][lanes], limit[2][lanes];
+/// For each of `lanes` lights `count` lines in the image that bound it. In a tile row a line ends or begins the span of
+/// tiles that the light covers. Let n be the normal of the plane through eye and line, away from the light: the slopes
+/// x and y of the light's points have  n_x x + n_y y <= L.  At the slope y the line is at  `at` - `drift` y,  in tiles.
+template <unsigned count> struct LineTerms {
+    /// Prepares for the lines of other lights.
+    void reset(const Camera& camera) {
+        margin[0] = 0x1p-40 * (abs_of(camera.x.offset) + camera.x.tiles);
+        for (unsigned line = 0; line < count; ++line)
+            ends[line] = rises[line] = 0;
+    }
+
+    /// Stores one of the lines of each light of a vector of doubles.
+    ///
+    /// lane   the first of the lights' lanes
+    /// here   L / n_x, infinite if the light has no such line
+    /// slope  n_y / n_x
+    void store(const Camera& camera, unsigned line, unsigned lane, Doubles here, Doubles slope) {
+        const Doubles scale = broadcast(camera.x.scale);
+        store_doubles(at[line] + lane, mul(here, scale) + camera.x.offset);
+        store_doubles(drift[line] + lane, slope * scale);
+    }
+
+    double at[count][lanes], drift[count][lanes];
+    unsigned ends[count];   ///< a mask of the lights whose n_x is positive: the line ends spans, else it begins them
+    unsigned rises[count];  ///< a mask of the lights whose n_y is positive
+    /// By how many tiles a line is moved outward before spans are cut at it. [0]: at that end of the spans, left or
+    /// right, which the line bounds, for rounding. [1]: at the opposite end; infinity keeps the line from cutting there.
+    double margin[2] = {0, static_cast<double>(infinity)};
 };
 
 /// A vector of spots in double, for find_wedges(): the cones' apexes, unit axes and the sines of their half angles.
@@ -42,8 +64,8 @@ struct WedgeLanes {
 };
 
 /// Finds the two image lines that bound each spot's cone, and stores them from lane `at` on. A cone that no
-/// such lines bound gets infinite limits.
-inline void find_wedges(const Camera& camera, const WedgeLanes& spots, unsigned at, WedgeTerms& terms) {
+/// such lines bound gets lines at infinity.
+inline void find_wedges(const Camera& camera, const WedgeLanes& spots, unsigned at, LineTerms<2>& lines) {
     const Doubles zero = broadcast(0.0), one = broadcast(1.0), none = broadcast(static_cast<double>(infinity));
     Doubles u[3] = {zero, zero, one};
     if (!camera.orthographic) {
@@ -72,21 +94,33 @@ inline void find_wedges(const Camera& camera, const WedgeLanes& spots, unsigned 
             n[i] = (side == 0 ? aside[i] : -aside[i]) - back[i];
         const Doubles limit =
             camera.orthographic ? slack + mul(n[0], spots.apex[0]) + mul(n[1], spots.apex[1]) : slack - n[2];
-        store_doubles(terms.per_x[side] + at, select(eye_outside, camera.x.scale / n[0], one));
-        store_doubles(terms.n_y[side] + at, select(eye_outside, n[1], zero));
-        store_doubles(terms.limit[side] + at, select(eye_outside, limit, none));
+        const Doubles per_x = 1.0 / select(eye_outside, n[0], one);
+        lines.store(camera, side, at, mul(select(eye_outside, limit, none), per_x),
+                    mul(select(eye_outside, n[1], zero), per_x));
+        lines.ends[side] |= movemask(less(zero, per_x)) << at;
+        lines.rises[side] |= movemask(less(zero, n[1])) << at;
     }
 }
 
-/// Shortens spans of tiles, begin..end, in rows between the slopes v0 and v1 to a spot's side of a line in the image,
-/// with the WedgeTerms per_x, n_y and limit. low, high: the view axis' x in tiles, less and plus a margin for rounding.
-LIGHTBIN_INLINE void cut_at_line(double per_x_of_all, double n_y_of_all, double limit, double low, double high, Doubles v0,
-                                 Doubles v1, Doubles& begin, Doubles& end) {
-    const Doubles per_x = broadcast(per_x_of_all), n_y = broadcast(n_y_of_all);
-    const Doubles here = mul(limit - minimum(mul(n_y, v0), mul(n_y, v1)), per_x);
-    const auto to_right = less(broadcast(0.0), per_x);
-    end = minimum(select(to_right, here + high, end), end);
-    begin = maximum(select(to_right, begin, here + low), begin);
+/// The slopes v1, then v0, of the edges of a vector of tile rows, for cut_at_line().
+struct RowEdges {
+    RowEdges(Doubles v0, Doubles v1) {
+        store_doubles(slopes[0], v1);
+        store_doubles(slopes[1], v0);
+    }
+    alignas(DoubleRegister) double slopes[2][double_lanes];  ///< aligned: loads of vectors just stored would else wait
+};
+
+/// Shortens the spans of tiles, begin..end, of light i in a vector of tile rows to the light's side of a line.
+template <unsigned count>
+LIGHTBIN_INLINE void cut_at_line(const LineTerms<count>& lines, unsigned line, std::uint32_t i, const RowEdges& rows,
+                                 Doubles& begin, Doubles& end) {
+    // In a row, the light reaches farthest at the edge v0 if n_y is positive, else at v1.
+    const Doubles v = load_doubles(rows.slopes[lines.rises[line] >> i & 1]);
+    const Doubles here = broadcast(lines.at[line][i]) - mul(broadcast(lines.drift[line][i]), v);
+    const unsigned ends = lines.ends[line] >> i & 1;
+    end = minimum(here + lines.margin[1 - ends], end);
+    begin = maximum(here - lines.margin[ends], begin);
 }
 
 /// Stores the spans begin..end, clamped to tile columns leftmost..rightmost; as 1..0 where end < begin.
@@ -110,6 +144,7 @@ struct SpotRows {
         load_spheres(balls, apex[0], apex[1], apex[2], r);
         load_spheres(axes, axis[0], axis[1], axis[2], cosine);
         load_spheres(rest, nearest, farthest, sine, tolerance);
+        wedges.reset(camera);
         balls_known = 0;
         for (unsigned half = 0; half < lanes / double_lanes; ++half) {
             WedgeLanes wedge;
@@ -130,16 +165,14 @@ struct SpotRows {
                                   maximum(widened(nearest, half), broadcast(static_cast<double>(camera.near_depth)));
             find_wedges(camera, wedge, half * double_lanes, wedges);
         }
-        const double margin = 0x1p-40 * (abs_of(camera.x.offset) + camera.x.tiles);
-        low = camera.x.offset - margin;
-        high = camera.x.offset + margin;
         return ~0u;
     }
 
     /// Stores the spans of tiles that light i covers in a vector of tile rows. The edges of each row lie at the slopes
     /// y / depth = v0 and v1 in view space (orthographic: y = v0 and v1). The spans are clamped to the tile columns
     /// leftmost..rightmost; empty spans are stored as 1..0.
-    void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost, RowSpan* to) const {
+    LIGHTBIN_INLINE void store(std::uint32_t i, Doubles v0, Doubles v1, Doubles leftmost, Doubles rightmost,
+                               RowSpan* to) const {
         Doubles begin = leftmost, end = rightmost + 1.0;
         if ((balls_known >> i & 1) != 0) {
             Doubles ball_begin, ball_end;
@@ -147,15 +180,15 @@ struct SpotRows {
             begin = maximum(ball_begin, begin);
             end = minimum(ball_end, end);
         }
+        const RowEdges rows(v0, v1);
         for (unsigned side = 0; side < 2; ++side)
-            cut_at_line(wedges.per_x[side][i], wedges.n_y[side][i], wedges.limit[side][i], low, high, v0, v1, begin, end);
+            cut_at_line(wedges, side, i, rows, begin, end);
         store_cut_spans(to, begin, end, leftmost, rightmost);
     }
 
     RowTerms ball;         ///< the silhouettes of the balls, the spheres that the spots' cones cut
     unsigned balls_known;  ///< a mask of the spots whose sphere has a silhouette in `ball`: beyond the near plane
-    WedgeTerms wedges;
-    double low, high;  ///< the x of the view axis in the image, in tiles, less and plus a margin for rounding
+    LineTerms<2> wedges;
 };
 
 }}}}  // namespace lightbin::detail

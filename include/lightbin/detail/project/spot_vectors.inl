@@ -20,16 +20,14 @@ LIGHTBIN_INLINE Floats manhattan_length(const Floats (&v)[3]) {
 /// In each lane whose bit in `which` is set, stores as spots.apex and spots.radius the spot's least_sphere() in view
 /// space, in place of the sphere that the cone cuts.
 ///
-/// balls, cones  the spots as they were given: spheres, and vec4s of the cones' axes and half angles' cosines
-LIGHTBIN_NOINLINE inline void use_least_spheres(const WorldToView* to_view, unsigned which, const Sphere* balls,
-                                                const Sphere* cones, SpotLanes& spots) {
+/// given  the spots as they were given
+LIGHTBIN_NOINLINE inline void use_least_spheres(const WorldToView* to_view, unsigned which, const Spot* given,
+                                                SpotLanes& spots) {
     Sphere moved[lanes];
     store_spheres(moved, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);
     for (; which != 0; which &= which - 1) {
         const unsigned lane = static_cast<unsigned>(std::countr_zero(which));
-        const Sphere ball = load_sphere(balls + lane), cone = load_sphere(cones + lane);
-        const Sphere least =
-            least_sphere(Spot{ball.x, ball.y, ball.z, ball.radius, cone.x, cone.y, cone.z, cone.radius});
+        const Sphere least = least_sphere(given[lane]);
         moved[lane] = to_view != nullptr ? (*to_view)(least) : least;
     }
     load_spheres(moved, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);
@@ -37,12 +35,12 @@ LIGHTBIN_NOINLINE inline void use_least_spheres(const WorldToView* to_view, unsi
 
 /// Transforms a vector of spots to view space, signed so that tile indices grow with x and y, and z is view depth.
 ///
-/// balls, cones  the spots as they were given: spheres, and vec4s of the cones' axes and half angles' cosines
-LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& transform, const Sphere* balls,
-                                const Sphere* cones, SpotLanes& spots) {
+/// given  the spots as they were given
+LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& transform, const Spot* given,
+                                SpotLanes& spots) {
     Floats apex[3], axis[3], cosine;
-    load_spheres(balls, apex[0], apex[1], apex[2], spots.radius);
-    load_spheres(cones, axis[0], axis[1], axis[2], cosine);
+    load_vec4s(given, sizeof *given, apex[0], apex[1], apex[2], spots.radius);
+    load_vec4s(&given->axis_x, sizeof *given, axis[0], axis[1], axis[2], cosine);
     const Floats given_radius = spots.radius, axis_size = manhattan_length(axis);
     // A mask of the spots with which float can compute without overflow and underflow.
     auto safe =
@@ -55,9 +53,9 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
         const Floats from_origin[] = {apex[0] - transform.origin[0], apex[1] - transform.origin[1],
                                       apex[2] - transform.origin[2]};
         safe = both(safe, less_equal(manhattan_length(from_origin), transform.max_distance));
-        const Floats given[] = {axis[0], axis[1], axis[2]};
+        const Floats given_axis[] = {axis[0], axis[1], axis[2]};
         for (unsigned row = 0; row < 3; ++row)
-            axis[row] = transformed_row(transform, row, given[0], given[1], given[2]);
+            axis[row] = transformed_row(transform, row, given_axis[0], given_axis[1], given_axis[2]);
         transform_spheres(transform, apex[0], apex[1], apex[2], spots.radius);
         // transform_spheres() stretched the radius and added its bound on the centre's error; this recovers the bound.
         const Floats centre_error = spots.radius - mul(given_radius, transform.stretch);
@@ -76,7 +74,7 @@ LIGHTBIN_INLINE void load_spots(const Camera& camera, const TransformLanes& tran
     spots.sine = select(with_cone, sqrt(mul(1.0f - cosine, 1.0f + cosine)), broadcast(1.0f));
     spots.tolerance = select(with_cone, tolerance, Floats{});
     if (const unsigned fallback = ~movemask(safe) & static_cast<unsigned>(every_lane); fallback != 0)
-        use_least_spheres(transform.to_view, fallback, balls, cones, spots);
+        use_least_spheres(transform.to_view, fallback, given, spots);
     const Floats signs[] = {broadcast(camera.x.sign), broadcast(camera.y.sign), broadcast(camera.z_sign)};
     for (unsigned i = 0; i < 3; ++i) {
         spots.apex[i] = spots.apex[i] * signs[i];
@@ -94,30 +92,21 @@ inline Floats spot_reach(const SpotLanes& spots, Floats along, Floats across) {
     return minimum(mul(spots.radius, part) + spots.tolerance, spots.radius);
 }
 
-/// Copies a vec4 to each ViewSpot or ViewBox of a vector of lights, `offset` bytes from its begin.
-template <class Shape> inline void store_vec4s(Shape* to, std::size_t offset, const Sphere (&vec4s)[lanes]) {
-    for (std::uint32_t lane = 0; lane < lanes; ++lane)
-        std::memcpy(reinterpret_cast<char*>(to + lane) + offset, vec4s + lane, sizeof(Sphere));
-}
-
 /// Stores half space i of those around a vector of lights: the points p with  n.p <= most.  As depth tests round,
-/// `most` must exceed n.p of the light by 4u S, where u = 2^-24 and S = |x| + |y| + |z| + r of the light's sphere.
+/// `most` must exceed n.p of the light by what cell_planes.hpp asks for. Returns the elements of CellPlanes::arrays,
+/// which tell what point of a cell is tested, for these half spaces: whole numbers in the bits of floats.
 template <class Light>
-inline void store_plane(const Camera& camera, Light* to, std::size_t i, const Floats (&n)[3], Floats most) {
-    Sphere vec4s[lanes];
-    store_spheres(vec4s, n[0], n[1], n[2], most);
-    const auto first_of = [](unsigned high, Floats deepest_if_positive) {
-        return select(less(Floats{}, deepest_if_positive), Floats{}, broadcast(static_cast<float>(high)));
+inline Floats store_plane(const Camera& camera, Light* to, std::size_t i, const Floats (&n)[3], Floats most) {
+    store_vec4s(to->around.planes + i, sizeof *to, n[0], n[1], n[2], most);
+    const auto first_of = [](float high, Floats deepest_if_positive) {
+        return select(less(Floats{}, deepest_if_positive), Floats{}, broadcast(high));
     };
-    std::uint32_t arrays[3][lanes];
-    store_tiles(arrays[0], first_of(TileEdges::high_x, n[0]));
-    store_tiles(arrays[1], first_of(TileEdges::high_y, n[1]));
-    store_tiles(arrays[2], first_of(64, camera.orthographic ? n[2] : most));
-    for (std::uint32_t lane = 0; lane < lanes; ++lane) {
-        std::memcpy(to[lane].around.planes + i, vec4s + lane, sizeof *vec4s);
-        for (std::size_t k = 0; k < 3; ++k)
-            to[lane].around.arrays[i][k] = static_cast<std::uint16_t>(arrays[k][lane]);
-    }
+    std::uint32_t arrays[lanes];
+    float bits[lanes];
+    store_tiles(arrays, first_of(TileEdges::high_x, n[0]) + first_of(TileEdges::high_y << 8, n[1]) +
+                            first_of(64 << 16, camera.orthographic ? n[2] : most));
+    std::memcpy(bits, arrays, sizeof bits);
+    return load_floats(bits);
 }
 
 /// Finds and stores the half spaces around the cones of a vector of spots. Let t be the half angle, and e and f two
@@ -149,6 +138,7 @@ inline void store_planes(const Camera& camera, ViewSpot* to, const SpotLanes& sp
     Floats back[3];
     for (unsigned i = 0; i < 3; ++i)
         back[i] = mul(axis[i], sine);
+    Floats arrays[4];
     for (unsigned plane = 0; plane < 4; ++plane) {
         Floats n[3], most = slack - rim;
         for (unsigned i = 0; i < 3; ++i) {
@@ -156,19 +146,16 @@ inline void store_planes(const Camera& camera, ViewSpot* to, const SpotLanes& sp
             n[i] = (plane % 2 == 0 ? aside : -aside) - back[i];
             most = most + mul(n[i], apex[i]);
         }
-        store_plane(camera, to, plane, n, most);
+        arrays[plane] = store_plane(camera, to, plane, n, most);
     }
+    store_vec4s(to->around.arrays, sizeof *to, arrays[0], arrays[1], arrays[2], arrays[3]);
 }
 
 /// Stores a vector of spots, except the half spaces around them, which store_planes() stores.
 inline void store_spots(ViewSpot* to, const SpotLanes& spots, Floats nearest, Floats farthest) {
-    Sphere vec4s[lanes];
-    store_spheres(vec4s, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);
-    store_vec4s(to, offsetof(ViewSpot, ball), vec4s);
-    store_spheres(vec4s, spots.axis[0], spots.axis[1], spots.axis[2], spots.cosine);
-    store_vec4s(to, offsetof(ViewSpot, axis_x), vec4s);
-    store_spheres(vec4s, nearest, farthest, spots.sine, spots.tolerance);
-    store_vec4s(to, offsetof(ViewSpot, nearest), vec4s);
+    store_vec4s(&to->ball, sizeof *to, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);
+    store_vec4s(&to->axis_x, sizeof *to, spots.axis[0], spots.axis[1], spots.axis[2], spots.cosine);
+    store_vec4s(&to->nearest, sizeof *to, nearest, farthest, spots.sine, spots.tolerance);
 }
 
 }}}}  // namespace lightbin::detail

@@ -131,25 +131,25 @@ LIGHTBIN_INLINE void find_slopes(const SpotLanes& spots, Floats size, Floats nea
 /// Appends the footprints of the spots first..first + count - 1 that are in view. Spots are projected in float where
 /// nothing overflows, underflows or is NaN, the sphere that the cone cuts lies beyond the near plane, and the spot's
 /// least view depth is at least 2^-16 of that sphere's |x| + |y| + |z| + r. All others are projected in double.
-inline void project_spots(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
-                          const FootprintArrays& out, ProjectCounts& counts) {
+template <LightKind kind>
+    requires(kind == LightKind::spot)
+void project_lights(const Camera& camera, const LightSource& source, std::uint32_t first, std::uint32_t count,
+                    const FootprintArrays& out, ProjectCounts& counts) {
     ProjectedChunk chunk;
-    // The spots as they are given: balls, and vec4s of the cones' axes and cosines. For spots that are projected in
-    // double they are overwritten by the balls and the least spheres in view space.
-    Sphere balls[ChunkRects::size], cones[ChunkRects::size];
+    Spot buffer[ChunkRects::size], padded[lanes];
+    // The spots that are projected in double: in view space, the spheres that the cones cut, and the least spheres.
+    Sphere balls[ChunkRects::size], least[ChunkRects::size];
     const TransformLanes transform(source.to_view);
     const ViewLanes view(camera);
     for (std::uint32_t here; count > 0; count -= here, first += here) {
         here = min_of(count, ChunkRects::size);
-        source.copy(source.lights, first, here, balls, cones);
-        for (std::uint32_t i = here; i % lanes != 0; ++i) {
-            balls[i] = balls[0];
-            cones[i] = cones[0];
-        }
+        const Spot* const given = source.array != nullptr ? static_cast<const Spot*>(source.array) + first : buffer;
+        if (source.copy != nullptr) source.copy(source.lights, first, here, buffer);
         chunk.visible = chunk.fallback_count = 0;
         for (std::uint32_t i = 0; i < here; i += lanes) {
+            const std::uint32_t used = min_of(lanes, here - i);
             SpotLanes spots;
-            load_spots(camera, transform, balls + i, cones + i, spots);
+            load_spots(camera, transform, whole_vector(given + i, used, padded), spots);
             const Floats(&apex)[3] = spots.apex, (&axis)[3] = spots.axis;
             const Floats across_z = sqrt(mul(axis[0], axis[0]) + mul(axis[1], axis[1]));
             const Floats nearest = apex[2] - spot_reach(spots, -axis[2], across_z),
@@ -159,7 +159,7 @@ inline void project_spots(const Camera& camera, const LightSource& source, std::
             const auto safe = safe_in_float(size, spots.radius);
             const auto culled =
                 both(safe, out_of_view(view, apex[0], apex[1], apex[2], spots.radius, nearest, farthest, size));
-            const unsigned valid = (1u << min_of(lanes, here - i)) - 1;
+            const unsigned valid = (1u << used) - 1;
             if ((~movemask(culled) & valid) == 0) continue;
             if (source.out_spots != nullptr) store_spots(source.out_spots + first + i, spots, nearest, farthest);
             if (source.with_planes) store_planes(camera, source.out_spots + first + i, spots);
@@ -177,10 +177,10 @@ inline void project_spots(const Camera& camera, const LightSource& source, std::
                 find_slopes(spots, size, nearest, across_z, bounds);
             }
             const unsigned fallback = ~movemask(either(in_float, culled)) & valid;
-            if (fallback != 0) store_both_spheres(camera, spots, balls + i, cones + i);
+            if (fallback != 0) store_both_spheres(camera, spots, balls + i, least + i);
             put_vector(camera, bounds, in_float, fallback, valid, i, chunk);
         }
-        project_spots_in_double(camera, balls, cones, chunk, counts);
+        project_spots_in_double(camera, balls, least, chunk, counts);
         append_chunk(chunk, source.first_id + first, here, out, counts);
     }
 }

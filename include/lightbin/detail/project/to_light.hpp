@@ -31,8 +31,9 @@ concept Vec4Of = requires(const Light& light) {
 struct AsLight {
     template <class Light>
     requires(std::convertible_to<const Light&, Sphere> || std::convertible_to<const Light&, Spot> ||
-             std::convertible_to<const Light&, Box> || detail::Vec4Of<Light, float> || detail::Vec4Of<Light, double>) constexpr auto
-    operator()(const Light& light) const {
+             std::convertible_to<const Light&, Box> || detail::Vec4Of<Light, float> ||
+             detail::Vec4Of<Light, double>)
+    constexpr auto operator()(const Light& light) const {
         if constexpr (std::convertible_to<const Light&, Box>)
             return static_cast<Box>(light);
         else if constexpr (std::convertible_to<const Light&, Spot>)

@@ -53,8 +53,8 @@ inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options) {
 }
 
 vec2 $view_depths(uvec2 range) {
-    uint endless_bits = 0x7f800000u;
-    float endless = uintBitsToFloat(endless_bits);
+    uint infinity_bits = 0x7f800000u;
+    float infinity = uintBitsToFloat(infinity_bits);
 )");
     // The shader's function `view_depths` converts a tile's range of window depths to view depths, rounded outward. If
     // e is a window depth's distance from the far plane's, the view depth is 1 / (far_end + slope e) in perspective.
@@ -81,13 +81,13 @@ vec2 $view_depths(uvec2 range) {
                    ? "    vec2 depths = vec2($planes.x - $planes.y * e.x - $planes.z, "
                      "$planes.x - $planes.y * e.y + $planes.z);\n"
                    : R"(    vec2 w = vec2($planes.x + $planes.y * e.x, $planes.x + $planes.y * e.y);
-    vec2 depths = vec2(1.0 / w.x * 0.999998, endless);
+    vec2 depths = vec2(1.0 / w.x * 0.999998, infinity);
     if (w.y > 0.0) { depths.y = 1.0 / w.y * 1.000002; }
 )");
     // `view_depths` has a single return statement, because the HLSL compiler fxc complains of functions that return
     // early. A range without samples has x > y. `pixel` widens a tile's `range` of window depths by the depth samples
     // of the tile's pixel i, counted row by row.
-    writer.add(R"(    if (range.x > range.y) { depths = vec2(endless, -endless); }
+    writer.add(R"(    if (range.x > range.y) { depths = vec2(infinity, -infinity); }
     return depths;
 }
 
@@ -140,7 +140,8 @@ Result<std::vector<ShaderFootprint>> shader_footprints(const View& view, const L
     const detail::DefaultFloatEnvironment environment;
     const auto& source = detail::as_lights(lights);
     constexpr detail::LightKind kind = std::remove_cvref_t<decltype(source)>::kind;
-    static_assert(kind != detail::LightKind::mixed, "lightbin: shader_footprints() takes one array of lights, not lights()");
+    static_assert(kind != detail::LightKind::mixed,
+                  "lightbin: shader_footprints() takes one array of lights, not lights()");
     if (const auto error = detail::refuse(source)) return *error;
     Footprints<Footprint::rectangle, true> footprints;
     footprints.project(machine_isa(), view, source, Parallel{});
@@ -267,10 +268,10 @@ void $run(uvec2 group, uint thread) {
     if (depths) {
         // A Z bound that is NaN excludes nothing. NaN is recognised by its bits: compilers may assume no float is NaN.
         const std::string nan = ") & 0x7fffffffu) > 0x7f800000u) ";
-        writer.add("    uint endless_bits = 0x7f800000u;\n    float endless = uintBitsToFloat(endless_bits);\n"
+        writer.add("    uint infinity_bits = 0x7f800000u;\n    float infinity = uintBitsToFloat(infinity_bits);\n"
                    "    vec2 z = $z_bounds[" + std::string(clusters ? "slice" : "place") + "];\n    " +
-                   (max_only ? "z.x = -endless;" : "if ((floatBitsToUint(z.x" + nan + "{ z.x = -endless; }") +
-                   "\n    if ((floatBitsToUint(z.y" + nan + "{ z.y = endless; }\n    bool lit = z.x <= z.y;\n");
+                   (max_only ? "z.x = -infinity;" : "if ((floatBitsToUint(z.x" + nan + "{ z.x = -infinity; }") +
+                   "\n    if ((floatBitsToUint(z.y" + nan + "{ z.y = infinity; }\n    bool lit = z.x <= z.y;\n");
         arguments += ", z";
     }
     if (box) {  // the cell's view-space box, as engine/cell_boxes.hpp computes it

@@ -5,6 +5,7 @@
 // prefix of names, and `&` marks an argument for an `inout` parameter.
 #pragma once
 
+#include <lightbin/detail/base/platform.hpp>
 #include <lightbin/result.hpp>
 #include <lightbin/shader_text.hpp>
 
@@ -61,7 +62,7 @@ inline ShaderWord shader_word(std::string_view word) {
 }
 
 /// Returns `text` with every `from` replaced by `to`.
-inline std::string replaced(std::string text, std::string_view from, std::string_view to) {
+LIGHTBIN_SMALL inline std::string replaced(std::string text, std::string_view from, std::string_view to) {
     for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
         text.replace(at, from.size(), to);
     return text;
@@ -70,7 +71,7 @@ inline std::string replaced(std::string text, std::string_view from, std::string
 /// Translates the writer's GLSL, which is described at the head of this file, to HLSL or to the GLSL of OpenGL, Vulkan
 /// or OpenGL ES. In OpenGL ES every declaration is marked highp, since a fragment shader's integers may have only 16
 /// bits otherwise. (A default precision would change the user's code, too.)
-inline std::string translate(std::string_view glsl, bool hlsl, bool es) {
+LIGHTBIN_SMALL inline std::string translate(std::string_view glsl, bool hlsl, bool es) {
     std::string text;
     for (std::size_t at = 0; at < glsl.size();) {
         const std::string_view word = word_at(glsl, at);
@@ -102,7 +103,7 @@ struct WgslName {
 /// Translates a text from GLSL to WGSL in one pass over its words and signs. text() returns the result.
 class WgslTranslation {
 public:
-    WgslTranslation(std::string_view glsl, const std::vector<WgslName>& constants)
+    LIGHTBIN_SMALL WgslTranslation(std::string_view glsl, const std::vector<WgslName>& constants)
         : glsl_(glsl), names_(constants), constants_(constants.size()) {
         while (at_ < glsl_.size())
             if (const std::string_view word = word_at(glsl_, at_); word.empty())
@@ -156,7 +157,7 @@ private:
         }
     }
 
-    void declare(std::string_view type, std::string_view its_name) {
+    LIGHTBIN_SMALL void declare(std::string_view type, std::string_view its_name) {
         const std::string what(type), name(its_name);
         if (depth_ == 0 && !in_parameters_) {
             wgsl_ += "fn " + name;
@@ -256,7 +257,7 @@ public:
 
     /// Appends text in the part of GLSL that the head of this file describes. `$name[i]` reads element i of the
     /// ShaderBuffer `name`, whatever kind of resource it is.
-    void add(std::string glsl) {
+    LIGHTBIN_SMALL void add(std::string glsl) {
         for (const ShaderBuffer& buffer : buffers_) {
             const std::string name = "$" + buffer.name + "[";
             for (std::size_t at = 0; (at = glsl.find(name, at)) != glsl.npos;) {
@@ -271,7 +272,7 @@ public:
 
     /// Declares a resource by the member of `text` in the language of the result. `@` in it stands for the layout,
     /// register or attribute that binds the resource. The prefix of names is added to binding.name.
-    void declare(ShaderBinding binding, const ByLanguage& text) {
+    LIGHTBIN_SMALL void declare(ShaderBinding binding, const ByLanguage& text) {
         const std::string& own = dialect.hlsl ? text.hlsl : dialect.webgpu ? text.wgsl : text.glsl;
         shader_.text += replaced(own, "@", binding_text(binding)) + ";\n";
         binding.name.insert(0, prefix_);
@@ -279,7 +280,7 @@ public:
     }
 
     /// Declares a texture or another resource that has an opaque type.
-    void declare_opaque(ShaderBinding binding, const ByLanguage& type) {
+    LIGHTBIN_SMALL void declare_opaque(ShaderBinding binding, const ByLanguage& type) {
         const std::string name = " $" + binding.name, highp = dialect.es ? "highp " : "";
         declare(std::move(binding), {.glsl = "@uniform " + highp + type.glsl + name,
                                      .hlsl = type.hlsl + name + "@",
@@ -287,7 +288,7 @@ public:
     }
 
     /// Declares a storage buffer, an array of `type`. `access` is "readonly", "writeonly", or "" for both.
-    void declare_storage(const std::string& name, const std::string& type, const std::string& access,
+    LIGHTBIN_SMALL void declare_storage(const std::string& name, const std::string& type, const std::string& access,
                          ShaderSlot slot, std::uint32_t stride) {
         const bool writable = access != "readonly", block = !dialect.hlsl && !dialect.webgpu;
         const ShaderResource resource =
@@ -301,7 +302,7 @@ public:
     }
 
     /// Declares a read-only buffer, whatever kind of resource it is.
-    void declare(const ShaderBuffer& buffer) {
+    LIGHTBIN_SMALL void declare(const ShaderBuffer& buffer) {
         buffers_.push_back(buffer);
         const std::string type = buffer.format == TexelFormat::rg32ui ? "uvec2" : "uint";
         const std::uint32_t stride = std::array{0u, 1u, 2u, 4u, 8u}[static_cast<std::size_t>(buffer.format)];
@@ -328,7 +329,7 @@ public:
     /// Declares constants. In OpenGL each is a uniform by itself. In the other APIs they form one block, named after
     /// the first one, in which each begins at a multiple of 16 bytes; `push` makes it a block of push constants. If `length` is
     /// more than 1, each constant is an array of so many vec4s.
-    void declare_constants(const std::vector<ShaderConstant>& constants, ShaderSlot slot, bool push,
+    LIGHTBIN_SMALL void declare_constants(const std::vector<ShaderConstant>& constants, ShaderSlot slot, bool push,
                            std::uint32_t length = 1) {
         const bool loose = !dialect.hlsl && !dialect.vulkan && !dialect.webgpu;
         const std::string name = std::string(constants.front().second) + "_block";
@@ -352,7 +353,7 @@ public:
     }
 
     /// Returns the expression that reads a texel of a texture at `at`, an ivec2; of a multisampled texture, one sample.
-    std::string read_texel(const std::string& texture, const std::string& at,
+    LIGHTBIN_SMALL std::string read_texel(const std::string& texture, const std::string& at,
                            const std::string& sample = "0") const {
         return dialect.hlsl
                    ? texture + ".Load(" + (sample == "0" ? "int3(" + at + ", 0)" : at + ", " + sample) + ")"
@@ -362,14 +363,14 @@ public:
 
     /// Declares an array of uint in the memory that a work group shares. If `atomic`, WGSL makes it one of atomic<u32>,
     /// and so the text may use it only by atomicLoad(), atomicStore(), and GLSL's functions such as atomicMin().
-    void declare_shared(const std::string& name, int count, bool atomic) {
+    LIGHTBIN_SMALL void declare_shared(const std::string& name, int count, bool atomic) {
         const std::string size = std::to_string(count), type = atomic ? "atomic<uint>" : "uint";
         add(dialect.webgpu ? "var<workgroup> $" + name + " : array<" + type + ", " + size + ">;\n"
                           : "shared uint $" + name + "[" + size + "];\n");
     }
 
     /// Adds a compute shader's entry point, with `threads` threads per group. It calls the text's $run(group, thread).
-    void add_compute_main(unsigned threads) {
+    LIGHTBIN_SMALL void add_compute_main(unsigned threads) {
         const std::string count = std::to_string(threads);
         add(dialect.webgpu ? "\n@compute @workgroup_size(" + count + ")\nfn main(@builtin(workgroup_id) group : vec3u, "
                              "@builtin(local_invocation_index) thread : u32) {\n"
@@ -398,7 +399,7 @@ public:
 
 private:
     /// Returns the expression that reads the element `index` of a buffer, a uint or a uvec2.
-    std::string read(const ShaderBuffer& buffer, const std::string& index) const {
+    LIGHTBIN_SMALL std::string read(const ShaderBuffer& buffer, const std::string& index) const {
         const bool pairs = buffer.format == TexelFormat::rg32ui;
         const std::string name = "$" + buffer.name;
         const auto word = [&](const std::string& i) { return name + "[(" + i + ") >> 2u][(" + i + ") & 3u]"; };
@@ -416,7 +417,7 @@ private:
         return name + "[" + index + "]";
     }
 
-    void declare_block(const std::string& name, ShaderSlot slot, bool push, std::uint32_t bytes,
+    LIGHTBIN_SMALL void declare_block(const std::string& name, ShaderSlot slot, bool push, std::uint32_t bytes,
                        const std::string& lines, const std::string& wgsl) {
         declare({name, push ? ShaderResource::push_constants : ShaderResource::uniform_block, slot,
                  TexelFormat::none, bytes, bytes},
@@ -426,7 +427,7 @@ private:
     }
 
     /// Returns the layout, register or attribute by which a declaration says where the resource is bound.
-    std::string binding_text(const ShaderBinding& binding) const {
+    LIGHTBIN_SMALL std::string binding_text(const ShaderBinding& binding) const {
         const std::string number = std::to_string(binding.slot.binding),
                           set = std::to_string(binding.slot.set);
         if (dialect.webgpu) return "@group(" + set + ") @binding(" + number + ") ";

@@ -52,29 +52,35 @@ inline void transpose(Floats& a, Floats& b, Floats& c, Floats& d) {
     c = _mm256_shuffle_ps(high, high_after, 0x44);
     d = _mm256_shuffle_ps(high, high_after, 0xee);
 }
-inline Floats load_pair(const Sphere* sphere) {  // it and the fourth after it
-    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(&sphere->x)), _mm_loadu_ps(&sphere[4].x),
-                                1);
+inline Floats load_pair(const char* from, std::size_t stride) {  // a vec4, and the fourth after it
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(reinterpret_cast<const float*>(from))),
+                                _mm_loadu_ps(reinterpret_cast<const float*>(from + 4 * stride)), 1);
 }
-inline void store_pair(Sphere* sphere, Floats pair) {
-    _mm_storeu_ps(&sphere->x, _mm256_castps256_ps128(pair));
-    _mm_storeu_ps(&sphere[4].x, _mm256_extractf128_ps(pair, 1));
+inline void store_pair(char* to, std::size_t stride, Floats pair) {
+    _mm_storeu_ps(reinterpret_cast<float*>(to), _mm256_castps256_ps128(pair));
+    _mm_storeu_ps(reinterpret_cast<float*>(to + 4 * stride), _mm256_extractf128_ps(pair, 1));
 }
-
-inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z,
-                                         Floats& radius) {
-    x = load_pair(spheres);
-    y = load_pair(spheres + 1);
-    z = load_pair(spheres + 2);
-    radius = load_pair(spheres + 3);
-    transpose(x, y, z, radius);
+inline void load_vec4s(const void* from, std::size_t stride, Floats& x, Floats& y, Floats& z, Floats& w) {
+    const char* const bytes = static_cast<const char*>(from);
+    x = load_pair(bytes, stride);
+    y = load_pair(bytes + stride, stride);
+    z = load_pair(bytes + 2 * stride, stride);
+    w = load_pair(bytes + 3 * stride, stride);
+    transpose(x, y, z, w);
+}
+inline void store_vec4s(void* to, std::size_t stride, Floats x, Floats y, Floats z, Floats w) {
+    char* const bytes = static_cast<char*>(to);
+    transpose(x, y, z, w);
+    store_pair(bytes, stride, x);
+    store_pair(bytes + stride, stride, y);
+    store_pair(bytes + 2 * stride, stride, z);
+    store_pair(bytes + 3 * stride, stride, w);
+}
+inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z, Floats& radius) {
+    load_vec4s(spheres, sizeof *spheres, x, y, z, radius);
 }
 inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
-    transpose(x, y, z, radius);
-    store_pair(spheres, x);
-    store_pair(spheres + 1, y);
-    store_pair(spheres + 2, z);
-    store_pair(spheres + 3, radius);
+    store_vec4s(spheres, sizeof *spheres, x, y, z, radius);
 }
 
 inline Floats ascending_bits(Floats values) {
@@ -161,12 +167,14 @@ inline ByteMask not_zero(Bytes bytes) {
     return ~static_cast<ByteMask>(_mm256_movemask_epi8(_mm256_cmpeq_epi8(bytes.v, _mm256_setzero_si256())));
 }
 inline Bytes coordinates(const std::uint16_t* from, unsigned more, unsigned begin) {
-    const __m256i add = _mm256_set1_epi16(static_cast<short>(more)), start = _mm256_set1_epi16(static_cast<short>(begin)),
+    const __m256i add = _mm256_set1_epi16(static_cast<short>(more)),
+                  start = _mm256_set1_epi16(static_cast<short>(begin)),
                   max = _mm256_set1_epi16(255);  // packing takes words as signed, and there are some from 0x8000 on
     const __m256i* const halves = reinterpret_cast<const __m256i*>(from);
     const __m256i low = _mm256_subs_epu16(_mm256_add_epi16(_mm256_loadu_si256(halves), add), start),
                   high = _mm256_subs_epu16(_mm256_add_epi16(_mm256_loadu_si256(halves + 1), add), start);
-    return {_mm256_permute4x64_epi64(_mm256_packus_epi16(_mm256_min_epu16(low, max), _mm256_min_epu16(high, max)), 0xd8)};
+    return {
+        _mm256_permute4x64_epi64(_mm256_packus_epi16(_mm256_min_epu16(low, max), _mm256_min_epu16(high, max)), 0xd8)};
 }
 inline void compress_store(ByteMask chosen, Bytes from, std::uint8_t* to) {
     const __m128i halves[] = {_mm256_castsi256_si128(from.v), _mm256_extracti128_si256(from.v, 1)};

@@ -98,6 +98,35 @@ inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats 
     _mm512_storeu_ps(&spheres[12].x, d);
 }
 
+inline Floats load_quads(const char* from, std::size_t stride) {  // a vec4, and the fourth, eighth and twelfth after it
+    const auto vec4 = [=](std::size_t i) { return _mm_loadu_ps(reinterpret_cast<const float*>(from + i * stride)); };
+    const __m512 two = _mm512_insertf32x4(_mm512_castps128_ps512(vec4(0)), vec4(4), 1);
+    return _mm512_insertf32x4(_mm512_insertf32x4(two, vec4(8), 2), vec4(12), 3);
+}
+inline void store_quads(char* to, std::size_t stride, __m512 quads) {
+    const auto vec4 = [=](std::size_t i) { return reinterpret_cast<float*>(to + i * stride); };
+    _mm_storeu_ps(vec4(0), _mm512_castps512_ps128(quads));
+    _mm_storeu_ps(vec4(4), _mm512_extractf32x4_ps(quads, 1));
+    _mm_storeu_ps(vec4(8), _mm512_extractf32x4_ps(quads, 2));
+    _mm_storeu_ps(vec4(12), _mm512_extractf32x4_ps(quads, 3));
+}
+inline void load_vec4s(const void* from, std::size_t stride, Floats& x, Floats& y, Floats& z, Floats& w) {
+    const char* const bytes = static_cast<const char*>(from);
+    x = load_quads(bytes, stride);
+    y = load_quads(bytes + stride, stride);
+    z = load_quads(bytes + 2 * stride, stride);
+    w = load_quads(bytes + 3 * stride, stride);
+    transpose(x, y, z, w);
+}
+inline void store_vec4s(void* to, std::size_t stride, Floats x, Floats y, Floats z, Floats w) {
+    char* const bytes = static_cast<char*>(to);
+    transpose(x, y, z, w);
+    store_quads(bytes, stride, x);
+    store_quads(bytes + stride, stride, y);
+    store_quads(bytes + 2 * stride, stride, z);
+    store_quads(bytes + 3 * stride, stride, w);
+}
+
 inline Floats ascending_bits(Floats values) {
     const __m512i bits = _mm512_castps_si512(values);
     return _mm512_cvtepi32_ps(_mm512_xor_si512(bits, _mm512_srli_epi32(_mm512_srai_epi32(bits, 31), 1)));
@@ -169,8 +198,10 @@ template <int lights, class Id> Id* append_several(Id* out, __m512i ids, std::ui
     store_ids(out, _mm512_permutexvar_epi32(_mm512_cvtepu8_epi32(_mm512_castsi512_si128(positions)), ids));
     store_ids(out + 16, _mm512_permutexvar_epi32(_mm512_cvtepu8_epi32(_mm512_extracti32x4_epi32(positions, 1)), ids));
     if (count > 32) {
-        store_ids(out + 32, _mm512_permutexvar_epi32(_mm512_cvtepu8_epi32(_mm512_extracti32x4_epi32(positions, 2)), ids));
-        store_ids(out + 48, _mm512_permutexvar_epi32(_mm512_cvtepu8_epi32(_mm512_extracti32x4_epi32(positions, 3)), ids));
+        store_ids(out + 32,
+                  _mm512_permutexvar_epi32(_mm512_cvtepu8_epi32(_mm512_extracti32x4_epi32(positions, 2)), ids));
+        store_ids(out + 48,
+                  _mm512_permutexvar_epi32(_mm512_cvtepu8_epi32(_mm512_extracti32x4_epi32(positions, 3)), ids));
     }
     return out + count;
 }
@@ -235,7 +266,8 @@ inline ByteMask not_zero(Bytes bytes) {
     return _mm512_test_epi8_mask(bytes.v, bytes.v);
 }
 inline Bytes coordinates(const std::uint16_t* from, unsigned more, unsigned begin) {
-    const __m512i add = _mm512_set1_epi16(static_cast<short>(more)), start = _mm512_set1_epi16(static_cast<short>(begin));
+    const __m512i add = _mm512_set1_epi16(static_cast<short>(more)),
+                  start = _mm512_set1_epi16(static_cast<short>(begin));
     const __m512i low = _mm512_subs_epu16(_mm512_add_epi16(_mm512_loadu_si512(from), add), start),
                   high = _mm512_subs_epu16(_mm512_add_epi16(_mm512_loadu_si512(from + 32), add), start);
     return {_mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtusepi16_epi8(low)), _mm512_cvtusepi16_epi8(high), 1)};

@@ -62,11 +62,38 @@ template <class Reals> void cross(const Reals (&a)[3], const Reals (&b)[3], Real
         to[i] = mul(a[(i + 1) % 3], b[(i + 2) % 3]) - mul(a[(i + 2) % 3], b[(i + 1) % 3]);
 }
 
+/// Loads as four vectors the vec4s, one for each lane, that begin `stride` bytes apart, the first one at `from`.
+template <class Reals>
+void load_vec4s(const void* from, std::size_t stride, Reals& x, Reals& y, Reals& z, Reals& w) {
+    Sphere vec4s[lanes];
+    for (std::uint32_t lane = 0; lane < lanes; ++lane)
+        std::memcpy(vec4s + lane, static_cast<const char*>(from) + lane * stride, sizeof *vec4s);
+    load_spheres(vec4s, x, y, z, w);
+}
+/// Stores four vectors as vec4s, one for each lane, that begin `stride` bytes apart, the first one at `to`.
+template <class Reals> void store_vec4s(void* to, std::size_t stride, Reals x, Reals y, Reals z, Reals w) {
+    Sphere vec4s[lanes];
+    store_spheres(vec4s, x, y, z, w);
+    for (std::uint32_t lane = 0; lane < lanes; ++lane)
+        std::memcpy(static_cast<char*>(to) + lane * stride, vec4s + lane, sizeof *vec4s);
+}
+
+/// Returns where a whole vector of lights can be read: `from` or, if only `used` lights lie there, `padded`, to which
+/// they are copied, and the first of them for the other lanes. The lights at `from` may be objects of another type with
+/// the same layout, which load_vec4s() and load_sphere() can read.
+template <class Light>
+LIGHTBIN_INLINE const Light* whole_vector(const Light* from, std::uint32_t used, Light (&padded)[lanes]) {
+    if (used == lanes) return from;
+    for (std::uint32_t lane = 0; lane < lanes; ++lane)
+        std::memcpy(static_cast<void*>(padded + lane), from + (lane < used ? lane : 0), sizeof *padded);
+    return padded;
+}
+
 /// Loads the spheres with `count` indices, but no more than a vector holds, as four vectors. If they are fewer, the
 /// last sphere fills the other lanes.
 template <class Index>
-void load_listed_spheres(const Sphere* spheres, const Index* indices, std::uint32_t count, Floats& x, Floats& y, Floats& z,
-                         Floats& radius) {
+void load_listed_spheres(const Sphere* spheres, const Index* indices, std::uint32_t count, Floats& x, Floats& y,
+                         Floats& z, Floats& radius) {
     Sphere some[lanes];
     for (std::uint32_t i = 0; i < lanes; ++i)
         some[i] = load_sphere(spheres + indices[min_of(i, count - 1)]);

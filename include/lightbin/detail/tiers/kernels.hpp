@@ -5,6 +5,7 @@
 #include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/engine/costs.hpp>
 #include <lightbin/detail/engine/scatter.hpp>
+#include <lightbin/detail/project/boxes_in_double.hpp>
 #include <lightbin/detail/project/footprint_arrays.hpp>
 #include <lightbin/detail/tiers/avx2.hpp>
 #include <lightbin/detail/tiers/avx512.hpp>
@@ -48,10 +49,9 @@ template <bool by_split> DepthKernel depth_kernel(Isa isa, std::size_t columns) 
     return depth_kernel<by_split>(static_cast<Isa>(static_cast<int>(isa) - 1), columns);
 }
 
-template <Footprint footprint, DepthTest depth_test, class Id, LightKind kind>
-BitsKernel<Id> bits_kernel(Isa isa) {
+template <Footprint footprint, DepthTest depth_test, LightKind kind> BitsKernel bits_kernel(Isa isa) {
     return with_tier(isa, [](auto tier) {
-        return tier.template bits_kernel<footprint, depth_test, Id, kind_read<depth_test, kind>>();
+        return tier.template bits_kernel<footprint, depth_test, kind_read<depth_test, kind>>();
     });
 }
 

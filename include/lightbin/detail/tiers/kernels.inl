@@ -73,17 +73,8 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { name
 struct Tier {
     static constexpr std::size_t vector = lanes;
 
-    template <LightKind kind> static ProjectKernel project_kernel() {
-        if constexpr (kind == LightKind::box)
-            return project_boxes;
-        else if constexpr (kind == LightKind::spot)
-            return project_spots;
-        else
-            return project;
-    }
-    template <LightKind kind> static RowSpanKernel row_span_kernel() {
-        return row_spans<RowsOf<kind>>;
-    }
+    template <LightKind kind> static ProjectKernel project_kernel() { return project_lights<kind>; }
+    template <LightKind kind> static RowSpanKernel row_span_kernel() { return row_spans<RowsOf<kind>>; }
     template <LightKind kind> static DepthBucketsKernel depth_buckets_kernel() { return find_depth_buckets<kind>; }
     template <bool by_split> static DepthKernel depth_kernel() { return column_extremes<by_split>; }
 
@@ -94,8 +85,8 @@ struct Tier {
         else
             return bin_blocks<footprint, depth_test, Id, by_slab, kind>;
     }
-    template <Footprint footprint, DepthTest depth_test, class Id, LightKind kind> static BitsKernel<Id> bits_kernel() {
-        return write_bits<footprint, depth_test, Id, kind>;
+    template <Footprint footprint, DepthTest depth_test, LightKind kind> static BitsKernel bits_kernel() {
+        return write_bits<footprint, depth_test, kind>;
     }
 };
 

@@ -68,7 +68,8 @@ inline ByteMask not_zero(Bytes bytes) {
     return static_cast<ByteMask>(movemask_of_bytes(bytes_not_zero(bytes.v)));
 }
 inline Bytes coordinates(const std::uint16_t* from, unsigned more, unsigned begin) {
-    return {narrow(relative_words(load_register(from), more, begin), relative_words(load_register(from + 8), more, begin))};
+    return {
+        narrow(relative_words(load_register(from), more, begin), relative_words(load_register(from + 8), more, begin))};
 }
 inline void compress_store(ByteMask chosen, Bytes from, std::uint8_t* to) {
     const unsigned low = chosen & 0xffu, high = chosen >> 8;

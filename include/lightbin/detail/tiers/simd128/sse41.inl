@@ -27,21 +27,27 @@ using DoubleRegister = __m128d;
 inline Doubles widened(Floats a, unsigned half) {
     return _mm_cvtps_pd(half == 0 ? a.v : _mm_movehl_ps(a, a));
 }
+inline void load_vec4s(const void* from, std::size_t stride, Floats& x, Floats& y, Floats& z, Floats& w) {
+    const char* const bytes = static_cast<const char*>(from);
+    x = _mm_loadu_ps(reinterpret_cast<const float*>(bytes));
+    y = _mm_loadu_ps(reinterpret_cast<const float*>(bytes + stride));
+    z = _mm_loadu_ps(reinterpret_cast<const float*>(bytes + 2 * stride));
+    w = _mm_loadu_ps(reinterpret_cast<const float*>(bytes + 3 * stride));
+    _MM_TRANSPOSE4_PS(x.v, y.v, z.v, w.v);
+}
+inline void store_vec4s(void* to, std::size_t stride, Floats x, Floats y, Floats z, Floats w) {
+    char* const bytes = static_cast<char*>(to);
+    _MM_TRANSPOSE4_PS(x.v, y.v, z.v, w.v);
+    _mm_storeu_ps(reinterpret_cast<float*>(bytes), x);
+    _mm_storeu_ps(reinterpret_cast<float*>(bytes + stride), y);
+    _mm_storeu_ps(reinterpret_cast<float*>(bytes + 2 * stride), z);
+    _mm_storeu_ps(reinterpret_cast<float*>(bytes + 3 * stride), w);
+}
 inline void load_spheres(const Sphere* spheres, Floats& x, Floats& y, Floats& z, Floats& radius) {
-    const float* p = &spheres->x;
-    x = _mm_loadu_ps(p);
-    y = _mm_loadu_ps(p + 4);
-    z = _mm_loadu_ps(p + 8);
-    radius = _mm_loadu_ps(p + 12);
-    _MM_TRANSPOSE4_PS(x.v, y.v, z.v, radius.v);
+    load_vec4s(spheres, sizeof *spheres, x, y, z, radius);
 }
 inline void store_spheres(Sphere* spheres, Floats x, Floats y, Floats z, Floats radius) {
-    _MM_TRANSPOSE4_PS(x.v, y.v, z.v, radius.v);
-    float* p = &spheres->x;
-    _mm_storeu_ps(p, x);
-    _mm_storeu_ps(p + 4, y);
-    _mm_storeu_ps(p + 8, z);
-    _mm_storeu_ps(p + 12, radius);
+    store_vec4s(spheres, sizeof *spheres, x, y, z, radius);
 }
 inline Floats ascending_bits(Floats values) {
     const __m128i bits = _mm_castps_si128(values);
