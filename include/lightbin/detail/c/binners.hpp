@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT
+// The C side's functions that make lists.
+#pragma once
+
+#include <lightbin/detail/c/any_binner.hpp>
+#include <lightbin/detail/c/views.hpp>
+
+#include <atomic>
+
+struct lightbin_binner {
+    lightbin::c::Memory memory;
+    lightbin::c::AnyBinner value;
+};
+
+namespace lightbin {
+namespace c {
+
+inline lightbin_grid grid_of(const LightRanks& ranks, const LightCounts& counts) {
+    static_assert(sizeof(ListRange) == sizeof(lightbin_range) &&
+                  sizeof(BinRange) == sizeof(lightbin_bin_range));
+    lightbin_grid grid = {};
+    grid.lights = counts.lights;
+    grid.rejected = counts.rejected;
+    grid.culled = counts.culled;
+    grid.first_spot = counts.first_spot;
+    grid.first_box = counts.first_box;
+    grid.order = ranks.order.data();
+    grid.bins = reinterpret_cast<const lightbin_bin_range*>(ranks.bins.data());
+    grid.order_count = ranks.order.size();
+    grid.bin_count = ranks.bins.size();
+    return grid;
+}
+
+/// Writes a LightGrid to the caller's struct.
+template <class Id> void write_grid(const LightGrid<Id>& from, lightbin_grid* to) {
+    lightbin_grid grid = grid_of(from.ranks(), from.light_counts());
+    grid.tiles_x = from.tiles_x();
+    grid.tiles_y = from.tiles_y();
+    grid.slices = from.slices();
+    grid.ranges = reinterpret_cast<const lightbin_range*>(from.ranges().data());
+    grid.ids = from.ids().data();
+    grid.range_count = from.ranges().size();
+    grid.id_count = from.ids().size();
+    grid.id_bytes = sizeof(Id);
+    write(grid, to);
+}
+
+/// Calls body(Id()) with the type of ids that options ask for.
+template <class Body> lightbin_result with_id([[maybe_unused]] const Options& options, const Body& body) {
+#if !defined(LIGHTBIN_NO_U16)
+    if (options.ids == IdWidth::u16) return body(std::uint16_t());
+#endif
+    return body(std::uint32_t());
+}
+
+/// Runs tasks on the caller's threads. What a task throws is thrown again on the thread that called run(), as
+/// exceptions must not pass through the caller's functions.
+class CallersThreads {
+public:
+    CallersThreads(const lightbin_threads& threads, const Memory& memory)
+        : threads_(threads), memory_(memory) {}
+
+    template <class Body> void operator()(std::size_t count, Body body) const {
+        Context<Body> context = {body, memory_};
+        threads_.run(
+            threads_.user, count, [](void* at, std::size_t i) { static_cast<Context<Body>*>(at)->run(i); },
+            &context);
+        if (context.failed) throw_out_of_memory();
+    }
+
+private:
+    template <class Body> struct Context {
+        void run(std::size_t i) {
+            const MemoryOfCall scope(memory);
+#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+            try {
+                body(i);
+            } catch (...) {  // only memory can run out: the library calls nothing of the program here
+                failed = true;
+            }
+#else
+            body(i);
+#endif
+        }
+
+        Body body;
+        const Memory& memory;
+        std::atomic<bool> failed = false;
+    };
+
+    lightbin_threads threads_;
+    const Memory& memory_;
+};
+
+/// Checks the arguments of a binner's call and calls body(call) with them.
+template <class Body>
+lightbin_result with_call(lightbin_binner* binner, const lightbin_view* view,
+                          const lightbin_lights* given_lights, const lightbin_inputs* given_inputs,
+                          const Body& body) {
+    if (binner == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "binner");
+    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
+    CallLights lights;
+    lightbin_inputs inputs = {};
+    lightbin_result result = read_lights(given_lights, lights);
+    if (result.error == LIGHTBIN_OK && given_inputs != nullptr) result = read(given_inputs, inputs, "inputs");
+    if (result.error != LIGHTBIN_OK) return result;
+    const bool with_slices = reads_slices(binner->value.options()),
+               with_bounds = reads_bounds(binner->value.options());
+    if (with_slices && inputs.slices == nullptr) return refused(LIGHTBIN_NO_SLICES_GIVEN, "inputs.slices");
+    if (with_bounds && inputs.bounds == nullptr) return refused(LIGHTBIN_NO_BOUNDS_GIVEN, "inputs.bounds");
+    if (!with_slices && inputs.slices != nullptr) return refused(LIGHTBIN_NOT_READ, "inputs.slices");
+    if (!with_bounds && inputs.bounds != nullptr) return refused(LIGHTBIN_NOT_READ, "inputs.bounds");
+    ZBounds bounds;
+    if (with_bounds) result = read_bounds(inputs.bounds, view->value, bounds);
+    lightbin_threads threads = {};
+    if (result.error == LIGHTBIN_OK && inputs.threads != nullptr) {
+        result = read(inputs.threads, threads, "inputs.threads");
+        if (result.error == LIGHTBIN_OK && threads.run == nullptr)
+            result = refused(LIGHTBIN_NULL_ARGUMENT, "inputs.threads.run");
+    }
+    if (result.error != LIGHTBIN_OK) return result;
+    const Slices* const slices = inputs.slices != nullptr ? &inputs.slices->value : nullptr;
+#if defined(LIGHTBIN_NO_THREADS)
+    if (threads.run != nullptr) return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_THREADS");
+    return guarded(binner->memory, [&] { return body(Call{view->value, lights, slices, bounds, {}}); });
+#else
+    const CallersThreads run(threads, binner->memory);
+    const double start_ns = threads.start_ns < 0 ? 0 : threads.start_ns == 0 ? 50000 : threads.start_ns;
+    const Threads parallel = threads.run != nullptr ? Threads(threads.workers, run, start_ns) : Threads();
+    return guarded(binner->memory, [&] { return body(Call{view->value, lights, slices, bounds, parallel}); });
+#endif
+}
+
+/// Returns the options that a caller asks for.
+inline lightbin_result read_options(const lightbin_binner_options* given, Options& options) {
+    lightbin_binner_options known = {};
+    lightbin_result result = given != nullptr ? read(given, known, "options") : succeeded();
+    if (result.error == LIGHTBIN_OK)
+        result = first_error(check_value(known.footprint, LIGHTBIN_SILHOUETTE, "options.footprint"),
+                             check_value(known.depth_test, LIGHTBIN_SPLIT_BOX, "options.depth_test"),
+                             check_value(known.slicing, LIGHTBIN_Z_BINS, "options.slicing"));
+    if (result.error != LIGHTBIN_OK) return result;
+    if (known.ids != LIGHTBIN_U32 && known.ids != LIGHTBIN_U16)
+        return refused(LIGHTBIN_NOT_A_VALUE, "options.ids",
+                       static_cast<std::uint64_t>(std::int64_t{known.ids}));
+    options = {.ids = known.ids == LIGHTBIN_U16 ? IdWidth::u16 : IdWidth::u32,
+               .footprint = static_cast<Footprint>(known.footprint),
+               .depth_test = static_cast<DepthTest>(known.depth_test),
+               .slicing = static_cast<Slicing>(known.slicing),
+               .coverage = known.coverage != 0};
+    if (!go_together(options)) return refused(LIGHTBIN_OPTIONS_NOT_TOGETHER, "options");
+    const char* const define = left_out(options);
+    return define != nullptr ? refused(LIGHTBIN_LEFT_OUT, define) : result;
+}
+
+}  // namespace c
+}  // namespace lightbin
+
+extern "C" {
+
+lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
+                                       const lightbin_allocator* allocator, lightbin_binner** binner) {
+    using namespace lightbin::c;
+    if (binner == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "binner");
+    lightbin::Options known;
+    const lightbin_result result = read_options(options, known);
+    if (result.error != LIGHTBIN_OK) return result;
+    const Memory memory(allocator);
+    return guarded(memory, [&] { return make_handle(memory, binner, known); });
+}
+
+void lightbin_binner_destroy(lightbin_binner* binner) {
+    lightbin::c::destroy_handle(binner);
+}
+
+lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,
+                             const lightbin_lights* lights, const lightbin_inputs* inputs,
+                             lightbin_grid* grid) {
+    using namespace lightbin::c;
+    const lightbin_result result = check_size(grid, "grid");
+    if (result.error != LIGHTBIN_OK) return result;
+    return with_call(binner, view, lights, inputs, [&](const Call& call) {
+        return with_id(binner->value.options(), [&](auto id) {
+            const auto made = binner->value.template bin<decltype(id)>(call);
+            if (!made) return refused(made.error());
+            write_grid(*made, grid);
+            return succeeded();
+        });
+    });
+}
+
+lightbin_result lightbin_bin_transparency(lightbin_binner* binner, const lightbin_view* view,
+                                          const lightbin_lights* lights, const lightbin_inputs* inputs,
+                                          lightbin_grid* opaque, lightbin_grid* transparent) {
+    using namespace lightbin::c;
+    const lightbin_result result =
+        first_error(check_size(opaque, "opaque"), check_size(transparent, "transparent"));
+    if (result.error != LIGHTBIN_OK) return result;
+    if (opaque == transparent) return refused(LIGHTBIN_OVERLAP, "transparent");
+    return with_call(binner, view, lights, inputs, [&]([[maybe_unused]] const Call& call) {
+#if defined(LIGHTBIN_NO_TRANSPARENCY)
+        return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_TRANSPARENCY");
+#else
+        if (!reads_bounds(binner->value.options())) return refused(LIGHTBIN_OPTIONS_NOT_TOGETHER, "binner");
+        return with_id(binner->value.options(), [&](auto id) {
+            const auto made = binner->value.template bin_transparency<decltype(id)>(call);
+            if (!made) return refused(made.error());
+            write_grid(made->opaque, opaque);
+            write_grid(made->transparent, transparent);
+            return succeeded();
+        });
+#endif
+    });
+}
+
+lightbin_result lightbin_bin_bits(lightbin_binner* binner, const lightbin_view* view,
+                                  const lightbin_lights* lights, const lightbin_inputs* inputs,
+                                  [[maybe_unused]] std::uint32_t max_lights, std::uint32_t* words,
+                                  std::uint64_t word_count, lightbin_bits* bits) {
+    using namespace lightbin::c;
+    const lightbin_result result = check_size(bits, "bits");
+    if (result.error != LIGHTBIN_OK) return result;
+    if (words == nullptr && word_count > 0) return refused(LIGHTBIN_NULL_ARGUMENT, "words");
+    return with_call(binner, view, lights, inputs, [&](const Call& call) {
+        const Bytes memory = {words, lightbin::detail::product_of_sizes(word_count, sizeof *words)};
+        for (const std::span<const float> bound : {call.bounds.min, call.bounds.max, call.bounds.gap_min,
+                                                   call.bounds.gap_max, call.bounds.transparent_max})
+            if (overlap(memory, {bound.data(), bound.size_bytes()}))
+                return refused(LIGHTBIN_OVERLAP, "words");
+        if (call.lights.overlaps(memory)) return refused(LIGHTBIN_OVERLAP, "words");
+        if constexpr (!has_bits) {
+            return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_BITS");
+        } else {
+            if (binner->value.options().slicing == lightbin::Slicing::clusters)
+                return refused(LIGHTBIN_OPTIONS_NOT_TOGETHER, "binner");
+            const auto made =
+                binner->value.bin_bits(call, max_lights, {words, static_cast<std::size_t>(word_count)});
+            if (!made) return refused(made.error());
+            const lightbin_grid grid = grid_of(made->ranks, made->counts);
+            write(lightbin_bits{0, grid.lights, grid.rejected, grid.culled, grid.order, grid.bins,
+                                grid.order_count, grid.bin_count},
+                  bits);
+            return succeeded();
+        }
+    });
+}
+
+lightbin_result lightbin_binner_coverage(const lightbin_binner* binner, const lightbin_coverage** lights,
+                                         std::size_t* count) {
+    using namespace lightbin::c;
+    static_assert(sizeof(lightbin::LightCoverage) == sizeof(lightbin_coverage));
+    if (binner == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "binner");
+    if (lights == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "lights");
+    if (count == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "count");
+    if (!binner->value.options().coverage) return refused(LIGHTBIN_COVERAGE_IS_OFF, "binner");
+    const std::span<const lightbin::LightCoverage> all = binner->value.coverage();
+    *lights = reinterpret_cast<const lightbin_coverage*>(all.data());
+    *count = all.size();
+    return succeeded();
+}
+
+}  // extern "C"

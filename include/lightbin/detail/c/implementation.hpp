@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// The functions of lightbin.h, for the file that defines LIGHTBIN_IMPLEMENTATION. Defines leave out what the program
+// never asks for; docs/c.md says what each saves:
+//
+//   LIGHTBIN_NO_SPOTS, LIGHTBIN_NO_BOXES                            kinds of lights
+//   LIGHTBIN_NO_U16, LIGHTBIN_NO_SILHOUETTES                        ids and footprints
+//   LIGHTBIN_NO_INTERVAL, LIGHTBIN_NO_BOX, LIGHTBIN_NO_SPLIT_BOX    depth tests
+//   LIGHTBIN_NO_CLUSTERS, LIGHTBIN_NO_Z_BINS                        slicings
+//   LIGHTBIN_NO_TRANSPARENCY, LIGHTBIN_NO_BITS                      lightbin_bin_transparency(), lightbin_bin_bits()
+//   LIGHTBIN_NO_COVERAGE                                            lightbin_binner_options::coverage
+//   LIGHTBIN_NO_BUDGETS                                             lightbin_limit_grid()
+//   LIGHTBIN_NO_THREADS                                             lightbin_inputs::threads
+//   LIGHTBIN_NO_SHADERS, LIGHTBIN_NO_BUILD_SHADERS                  shader text; the shaders that work on the GPU
+//   LIGHTBIN_NO_ADVICE                                              lightbin_advise(), lightbin_advise_slices()
+//   LIGHTBIN_NO_SIMD                                                all kernels but the scalar ones
+#pragma once
+
+#include <lightbin/detail/c/memory.hpp>
+
+#if defined(LIGHTBIN_NO_SHADERS) && !defined(LIGHTBIN_NO_BUILD_SHADERS)
+#define LIGHTBIN_NO_BUILD_SHADERS 1
+#endif
+
+#include <lightbin/detail/c/grids.hpp>
+#if !defined(LIGHTBIN_NO_SHADERS)
+#include <lightbin/detail/c/shaders.hpp>
+#endif
+#if !defined(LIGHTBIN_NO_BUILD_SHADERS)
+#include <lightbin/detail/c/build_shaders.hpp>
+#endif
+#if !defined(LIGHTBIN_NO_ADVICE)
+#include <lightbin/detail/c/advice.hpp>
+#endif
+#include <lightbin/detail/c/left_out.hpp>
+
+extern "C" {
+
+float lightbin_light_range(float intensity, float cutoff) {
+    return lightbin::light_range(intensity, cutoff);
+}
+
+float lightbin_light_window(float distance, float range) {
+    return lightbin::light_window(distance, range);
+}
+
+}  // extern "C"

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+// The C side's shader texts that read lists, and the data that the shaders read.
+#pragma once
+
+#include <lightbin/detail/c/grids.hpp>
+
+#include <lightbin/shader.hpp>
+
+/// A shader's text, bindings and the names of these, which follow the struct in the same piece of memory.
+struct lightbin_shader {
+    lightbin::c::Memory memory;
+    const char* text;
+    const lightbin_binding* bindings;
+    std::size_t binding_count;
+};
+
+namespace lightbin {
+namespace c {
+
+/// Makes a handle with a copy of what shader_snippet() and the like return.
+inline lightbin_result make_shader(const Memory& memory, const ShaderText& made, lightbin_shader** shader) {
+    static_assert(alignof(lightbin_binding) <= alignof(lightbin_shader));
+    std::size_t bytes =
+        sizeof(lightbin_shader) + made.bindings.size() * sizeof(lightbin_binding) + made.text.size() + 1;
+    for (const ShaderBinding& binding : made.bindings)
+        bytes += binding.name.size() + 1;
+    char* const place = static_cast<char*>(memory.allocate(bytes));
+    if (place == nullptr) return refused(LIGHTBIN_OUT_OF_MEMORY, "");
+    char* const bindings = place + sizeof(lightbin_shader);
+    char* at = bindings + made.bindings.size() * sizeof(lightbin_binding);
+    const auto copy = [&](const std::string& text) {
+        char* const begin = at;
+        std::memcpy(begin, text.c_str(), text.size() + 1);
+        at += text.size() + 1;
+        return begin;
+    };
+    for (std::size_t i = 0; i < made.bindings.size(); ++i) {
+        const ShaderBinding& from = made.bindings[i];
+        const GlFormat gl = gl_format(from.format);
+        new (bindings + i * sizeof(lightbin_binding))
+            lightbin_binding{sizeof(lightbin_binding),
+                             static_cast<std::int32_t>(from.resource),
+                             copy(from.name),
+                             {from.slot.binding, from.slot.set},
+                             from.stride,
+                             from.bytes,
+                             from.width,
+                             gl.internal,
+                             gl.layout,
+                             gl.type,
+                             vk_format(from.format),
+                             dxgi_format(from.format),
+                             webgpu_format(from.format)};
+    }
+    *shader = new (place) lightbin_shader{
+        memory, copy(made.text), reinterpret_cast<const lightbin_binding*>(bindings), made.bindings.size()};
+    return succeeded();
+}
+
+/// Makes a handle of the text that make() returns.
+template <class Make>
+lightbin_result make_shader(const lightbin_allocator* allocator, lightbin_shader** shader, const Make& make) {
+    const Memory memory(allocator);
+    return guarded(memory, [&] {
+        const Result<ShaderText> made = make();
+        return made ? make_shader(memory, *made, shader) : refused(made.error());
+    });
+}
+
+inline std::string_view prefix_of(const char* prefix) {
+    return prefix != nullptr ? prefix : "lightbin_";
+}
+
+inline ShaderSlot slot_of(const lightbin_slot& slot) {
+    return {slot.binding, slot.set};
+}
+
+/// Copies `needed` items to the caller's memory and writes their number to *count, if that is given.
+template <class From, class To>
+lightbin_result write_items(const From* from, std::size_t needed, To* to, std::size_t capacity,
+                            std::size_t* count, const char* name) {
+    static_assert(sizeof(From) == sizeof(To));
+    if (count != nullptr) *count = needed;
+    if (to == nullptr && needed > 0 && capacity > 0) return refused(LIGHTBIN_NULL_ARGUMENT, name);
+    if (capacity < needed) return refused(LIGHTBIN_BUFFER_TOO_SMALL, name, needed, capacity);
+    if (needed > 0) std::memcpy(to, from, needed * sizeof *from);
+    return succeeded();
+}
+
+/// Copies constants to the caller's struct, which has the layout of the library's.
+template <class From, class To> lightbin_result write_constants(const From& from, To* to) {
+    static_assert(sizeof(From) == sizeof(To));
+    std::memcpy(to, &from, sizeof from);
+    return succeeded();
+}
+
+}  // namespace c
+}  // namespace lightbin
+
+extern "C" {
+
+lightbin_result lightbin_shader_snippet(const lightbin_snippet_options* options,
+                                        const lightbin_allocator* allocator, lightbin_shader** shader) {
+    using namespace lightbin::c;
+    if (shader == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "shader");
+    lightbin_snippet_options given;
+    lightbin_result result = read(options, given, "options");
+    if (result.error != LIGHTBIN_OK) return result;
+    lightbin::ShaderOptions known;
+    result = first_error(check_value(given.language, LIGHTBIN_WGSL, "options.language"),
+                         check_value(given.storage, LIGHTBIN_BYTE_ADDRESS, "options.storage"),
+                         check_value(given.slicing, LIGHTBIN_Z_BINS, "options.slicing"));
+    if (result.error == LIGHTBIN_OK && given.format != nullptr)
+        result = read_format(given.format, known.format, "options.format");
+    if (result.error != LIGHTBIN_OK) return result;
+    known.language = static_cast<lightbin::ShaderLanguage>(given.language);
+    known.storage = static_cast<lightbin::ListStorage>(given.storage);
+    known.slicing = static_cast<lightbin::Slicing>(given.slicing);
+    known.prefix = prefix_of(given.prefix);
+    known.tile_size = given.tile_size;
+    known.tiles_in_uniform_block = given.tiles_in_uniform_block != 0;
+    known.packed_ids = given.packed_ids != 0;
+    known.flip_y = given.flip_y != 0;
+    known.viewport_corner = given.viewport_corner != 0;
+    known.heat_map = given.heat_map != 0;
+    known.wave_loop = given.wave_loop != 0;
+    known.view_check = given.view_check != 0;
+    known.list_check = given.list_check != 0;
+    known.window = given.window != 0;
+    known.push_constants = given.push_constants != 0;
+    if (given.texture_width != 0) known.texture_width = given.texture_width;
+    if (given.views != 0) known.views = given.views;
+    known.split_kinds = given.split_kinds != 0;
+    known.max_tiles = given.max_tiles;
+    known.max_entries = given.max_entries;
+    known.max_slices = given.max_slices;
+    if (given.uniform_block_bytes != 0) known.uniform_block_bytes = given.uniform_block_bytes;
+    if (given.slots_given != 0) {
+        known.tiles = slot_of(given.tiles);
+        known.lists = slot_of(given.lists);
+        known.grid = slot_of(given.grid);
+        known.slices = slot_of(given.slices);
+        known.bins = slot_of(given.bins);
+        known.view = slot_of(given.view);
+    }
+    return make_shader(allocator, shader, [&] { return lightbin::shader_snippet(known); });
+}
+
+void lightbin_shader_destroy(lightbin_shader* shader) {
+    lightbin::c::destroy_handle(shader);
+}
+
+const char* lightbin_shader_text(const lightbin_shader* shader) {
+    return shader != nullptr ? shader->text : nullptr;
+}
+
+std::size_t lightbin_shader_binding_count(const lightbin_shader* shader) {
+    return shader != nullptr ? shader->binding_count : 0;
+}
+
+lightbin_result lightbin_shader_binding(const lightbin_shader* shader, std::size_t index,
+                                        lightbin_binding* binding) {
+    using namespace lightbin::c;
+    if (shader == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "shader");
+    const lightbin_result result = check_size(binding, "binding");
+    if (result.error != LIGHTBIN_OK) return result;
+    if (index >= shader->binding_count)
+        return refused(LIGHTBIN_NOT_A_VALUE, "index", index, shader->binding_count);
+    write(shader->bindings[index], binding);
+    return result;
+}
+
+lightbin_result lightbin_shader_grid(const lightbin_view* view, std::int32_t corner_x, std::int32_t corner_y,
+                                     lightbin_grid_constants* constants) {
+    using namespace lightbin::c;
+    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
+    if (constants == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "constants");
+    return write_constants(lightbin::shader_grid(view->value, corner_x, corner_y), constants);
+}
+
+lightbin_result lightbin_shader_view(const lightbin_view* view, float tolerance,
+                                     lightbin_view_constants* constants) {
+    using namespace lightbin::c;
+    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
+    if (constants == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "constants");
+    return write_constants(lightbin::shader_view(view->value, tolerance), constants);
+}
+
+lightbin_result lightbin_shader_slices(const lightbin_slices* slices, std::uint32_t* words,
+                                       std::size_t capacity) {
+    using namespace lightbin::c;
+    if (slices == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "slices");
+    return guarded(slices->memory, [&] {
+        const std::vector<std::uint32_t> made = lightbin::shader_slices(slices->value);
+        return write_items(made.data(), made.size(), words, capacity, nullptr, "words");
+    });
+}
+
+}  // extern "C"

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT
+// The C side's errors as text, views, slices and Z bounds.
+#pragma once
+
+#include <lightbin/detail/c/arguments.hpp>
+
+#include <lightbin/slices.hpp>
+#include <lightbin/version.hpp>
+#include <lightbin/view.hpp>
+#include <lightbin/z_bounds.hpp>
+
+struct lightbin_view {
+    lightbin::c::Memory memory;
+    lightbin::View value;
+};
+
+struct lightbin_slices {
+    lightbin::c::Memory memory;
+    lightbin::Slices value;
+};
+
+namespace lightbin {
+namespace c {
+
+/// Returns the View that options describe, or why they are refused.
+inline lightbin_result read_view(const lightbin_view_options* given, std::optional<View>& view) {
+    lightbin_view_options options;
+    Matrix projection;
+    lightbin_result result = read(given, options, "options");
+    if (result.error != LIGHTBIN_OK) return result;
+    result = first_error(read_matrix(options.projection, projection, "options.projection"),
+                         check_value(options.clip_depth, LIGHTBIN_ZERO_TO_ONE, "options.clip_depth"),
+                         check_value(options.origin, LIGHTBIN_UPPER_LEFT, "options.origin"));
+    if (result.error != LIGHTBIN_OK) return result;
+    const auto made = View::from_projection(projection, {options.width, options.height},
+                                            {.tile_size = options.tile_size != 0 ? options.tile_size : 32,
+                                             .clip_depth = static_cast<ClipDepth>(options.clip_depth),
+                                             .origin = static_cast<WindowOrigin>(options.origin),
+                                             .reversed_z = options.reversed_z != 0});
+    if (!made) return refused(made.error());
+    view = *made;
+    return result;
+}
+
+/// Makes a handle of the slices that make() returns.
+template <class Make>
+lightbin_result make_slices(float margin, const lightbin_allocator* allocator, lightbin_slices** slices,
+                            const Make& make) {
+    if (slices == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "slices");
+    if (!(0 <= margin && margin <= 0.5f)) return refused(LIGHTBIN_NOT_A_VALUE, "margin");
+    const Memory memory(allocator);
+    return guarded(memory, [&] {
+        const Result<Slices> made = make();
+        if (!made) return refused(made.error());
+        return make_handle(memory, slices, margin > 0 ? made->with_margin(margin) : *made);
+    });
+}
+
+inline std::span<const float> bound_of(const float* bound, std::size_t tiles) {
+    if (bound == nullptr) return {};
+    return {bound, tiles};
+}
+
+/// Returns the Z bounds that the caller describes for a view, or why they are refused.
+inline lightbin_result read_bounds(const lightbin_z_bounds* given, const View& view, ZBounds& bounds) {
+    lightbin_z_bounds known;
+    const lightbin_result result = read(given, known, "inputs.bounds");
+    if (result.error != LIGHTBIN_OK) return result;
+    const auto side = [&](const float* bound) { return bound_of(bound, known.tiles); };
+    for (const float* const bound :
+         {known.min, known.max, known.gap_min, known.gap_max, known.transparent_max})
+        if (bound != nullptr && known.tiles < view.tile_count())
+            return refused(LIGHTBIN_Z_BOUNDS_TOO_SMALL, "inputs.bounds", view.tile_count(), known.tiles);
+    bounds = {side(known.min),
+              side(known.max),
+              side(known.gap_min),
+              side(known.gap_max),
+              side(known.transparent_max),
+              known.background_skipped != 0};
+    return result;
+}
+
+}  // namespace c
+}  // namespace lightbin
+
+extern "C" {
+
+std::size_t lightbin_error_text(lightbin_result result, char* text, std::size_t capacity) {
+    const lightbin::Text whole = lightbin::c::text_of(result);
+    return lightbin::c::write_text(whole.c_str(), whole.size(), text, capacity);
+}
+
+std::uint32_t lightbin_version(void) {
+    return 10000 * LIGHTBIN_VERSION_MAJOR + 100 * LIGHTBIN_VERSION_MINOR + LIGHTBIN_VERSION_PATCH;
+}
+
+lightbin_result lightbin_view_create(const lightbin_view_options* options,
+                                     const lightbin_allocator* allocator, lightbin_view** view) {
+    using namespace lightbin::c;
+    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
+    std::optional<lightbin::View> made;
+    const lightbin_result result = read_view(options, made);
+    return result.error != LIGHTBIN_OK ? result : make_handle(Memory(allocator), view, *made);
+}
+
+lightbin_result lightbin_view_update(lightbin_view* view, const lightbin_view_options* options) {
+    using namespace lightbin::c;
+    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
+    std::optional<lightbin::View> made;
+    const lightbin_result result = read_view(options, made);
+    if (result.error == LIGHTBIN_OK) view->value = *made;
+    return result;
+}
+
+void lightbin_view_destroy(lightbin_view* view) {
+    lightbin::c::destroy_handle(view);
+}
+
+lightbin_result lightbin_view_describe(const lightbin_view* view, lightbin_view_info* info) {
+    using namespace lightbin::c;
+    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
+    const lightbin_result result = check_size(info, "info");
+    if (result.error != LIGHTBIN_OK) return result;
+    const lightbin::View& value = view->value;
+    const lightbin::ViewSummary summary = value.summary();
+    lightbin_view_info known = {};
+    known.width = value.viewport().width;
+    known.height = value.viewport().height;
+    known.tile_size = value.tile_size();
+    known.tiles_x = value.tiles_x();
+    known.tiles_y = value.tiles_y();
+    known.orthographic = value.orthographic();
+    known.reversed_z = value.reversed_z();
+    known.near_depth = value.near_depth();
+    known.far_depth = value.far_depth();
+    known.x_flipped = summary.x_flipped;
+    known.y_flipped = summary.y_flipped;
+    known.looks_down_negative_z = summary.looks_down_negative_z;
+    known.looks_transposed = summary.looks_transposed;
+    known.looks_like_view_matrix = summary.looks_like_view_matrix;
+    known.looks_turned = summary.looks_turned;
+    known.looks_behind = summary.looks_behind;
+    known.looks_zero_to_one = summary.looks_zero_to_one;
+    known.pixels_not_square = summary.pixels_not_square;
+    write(known, info);
+    return result;
+}
+
+std::size_t lightbin_view_text(const lightbin_view* view, char* text, std::size_t capacity) {
+    if (view == nullptr) return 0;
+    const lightbin::Text whole = to_string(view->value.summary());
+    return lightbin::c::write_text(whole.c_str(), whole.size(), text, capacity);
+}
+
+lightbin_result lightbin_view_project(const lightbin_view* view, const double* point, double* image) {
+    using namespace lightbin::c;
+    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
+    if (point == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "point");
+    if (image == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "image");
+    const auto [x, y, depth] = view->value.image_point({point[0], point[1], point[2]});
+    image[0] = x;
+    image[1] = y;
+    image[2] = depth;
+    return succeeded();
+}
+
+lightbin_result lightbin_view_unproject(const lightbin_view* view, const double* image, double* point) {
+    using namespace lightbin::c;
+    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
+    if (image == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "image");
+    if (point == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "point");
+    const auto [x, y, z] = view->value.view_point({image[0], image[1], image[2]});
+    point[0] = x;
+    point[1] = y;
+    point[2] = z;
+    return succeeded();
+}
+
+lightbin_result lightbin_view_depths(const lightbin_view* view, double lower, double upper, float* depths) {
+    using namespace lightbin::c;
+    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
+    if (depths == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "depths");
+    const lightbin::DepthInterval range = view->value.view_depths(lower, upper);
+    depths[0] = range.min;
+    depths[1] = range.max;
+    return succeeded();
+}
+
+lightbin_result lightbin_slices_exponential(std::int32_t count, float first, float last, float margin,
+                                            const lightbin_allocator* allocator, lightbin_slices** slices) {
+    return lightbin::c::make_slices(margin, allocator, slices,
+                                    [=] { return lightbin::Slices::exponential(count, first, last); });
+}
+
+lightbin_result lightbin_slices_linear(std::int32_t count, float begin, float end, float margin,
+                                       const lightbin_allocator* allocator, lightbin_slices** slices) {
+    return lightbin::c::make_slices(margin, allocator, slices,
+                                    [=] { return lightbin::Slices::linear(count, begin, end); });
+}
+
+lightbin_result lightbin_slices_from_boundaries(const float* boundaries, std::size_t count, float margin,
+                                                const lightbin_allocator* allocator,
+                                                lightbin_slices** slices) {
+    if (boundaries == nullptr && count > 0) return lightbin::c::refused(LIGHTBIN_NULL_ARGUMENT, "boundaries");
+    return lightbin::c::make_slices(margin, allocator, slices, [=] {
+        return lightbin::Slices::from_boundaries({boundaries, count});
+    });
+}
+
+void lightbin_slices_destroy(lightbin_slices* slices) {
+    lightbin::c::destroy_handle(slices);
+}
+
+std::int32_t lightbin_slices_count(const lightbin_slices* slices) {
+    return slices != nullptr ? slices->value.count() : 0;
+}
+
+const float* lightbin_slices_boundaries(const lightbin_slices* slices) {
+    return slices != nullptr ? slices->value.boundaries().data() : nullptr;
+}
+
+std::int32_t lightbin_slices_at(const lightbin_slices* slices, float depth) {
+    return slices != nullptr ? slices->value.slice_at(depth) : -1;
+}
+
+lightbin_result lightbin_reduce_depth(const lightbin_view* view, const lightbin_depth_buffer* buffer,
+                                      const lightbin_z_bounds_buffers* out, lightbin_z_bounds* bounds) {
+    using namespace lightbin::c;
+    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
+    lightbin_depth_buffer from;
+    lightbin_z_bounds_buffers to;
+    lightbin_result result =
+        first_error(read(buffer, from, "buffer"), read(out, to, "out"), check_size(bounds, "bounds"));
+    if (result.error == LIGHTBIN_OK) result = check_value(from.format, LIGHTBIN_UNORM16, "buffer.format");
+    if (result.error != LIGHTBIN_OK) return result;
+    if (from.depth == nullptr && from.count > 0) return refused(LIGHTBIN_NULL_ARGUMENT, "buffer.depth");
+    const std::uint64_t bytes = to.tiles * std::uint64_t{sizeof(float)};
+    const Bytes written[] = {{to.min, bytes},
+                             {to.max, bytes},
+                             {to.gap_min, bytes},
+                             {to.gap_max, bytes},
+                             {to.transparent_max, bytes}};
+    for (const Bytes& one : written) {
+        if (one.first != nullptr && to.tiles < view->value.tile_count())
+            return refused(LIGHTBIN_Z_BOUNDS_TOO_SMALL, "out", view->value.tile_count(), to.tiles);
+        if (overlap(one, {from.depth, from.count * std::uint64_t{sizeof(float)}}))
+            return refused(LIGHTBIN_OVERLAP, "out");
+        for (const Bytes* other = written; other != &one; ++other)
+            if (overlap(one, *other)) return refused(LIGHTBIN_OVERLAP, "out");
+    }
+    const auto side = [&](float* bound) {
+        return bound != nullptr ? std::span<float>{bound, to.tiles} : std::span<float>{};
+    };
+    return guarded(view->memory, [&] {
+        const auto reduced = lightbin::reduce_depth(
+            view->value,
+            {{from.depth, from.count},
+             from.samples != 0 ? from.samples : 1,
+             from.row_pitch,
+             static_cast<lightbin::DepthFormat>(from.format),
+             from.skip_background != 0},
+            {side(to.min), side(to.max), side(to.gap_min), side(to.gap_max), side(to.transparent_max)});
+        if (!reduced) return refused(reduced.error());
+        lightbin_z_bounds known = {};
+        const auto first = [](std::span<const float> bound) {
+            return bound.empty() ? nullptr : bound.data();
+        };
+        known.background_skipped = reduced->background_skipped;
+        known.min = first(reduced->min);
+        known.max = first(reduced->max);
+        known.gap_min = first(reduced->gap_min);
+        known.gap_max = first(reduced->gap_max);
+        known.transparent_max = first(reduced->transparent_max);
+        known.tiles = to.tiles;
+        write(known, bounds);
+        return succeeded();
+    });
+}
+
+}  // extern "C"

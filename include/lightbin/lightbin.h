@@ -1,0 +1,1092 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * lightbin for C99, every C++ and whatever language calls C. Header-only: in one file of the program, compiled as
+ * C++20,
+ *
+ *     #define LIGHTBIN_IMPLEMENTATION
+ *     #include <lightbin/lightbin.h>
+ *
+ * and everywhere else the include alone. That one file must include no C++ header of lightbin before this one. All
+ * headers lie in one folder, so one include path serves C and C++; docs/c.md has a whole program.
+ *
+ * What it does: a renderer gives it a camera and its lights each frame. The screen is divided into tiles, squares of
+ * pixels. The library returns for each tile the list of the lights that can reach what is seen there, in two arrays
+ * that are ready to be uploaded to the GPU, and it writes shader code that reads them. No light is ever missed. The C++
+ * headers beside this one have the same library for C++20; the same input gives the same bytes.
+ *
+ *     lightbin_view_create()    once for each camera          lightbin_view_update()  when it changes
+ *     lightbin_binner_create()  once                          lightbin_bin()          each frame
+ *     lightbin_shader_snippet() once for each shader
+ *
+ * Words
+ *   View space    the space that the projection matrix is applied to, with the eye at the origin
+ *   View depth    the distance of a point from the eye along the viewing direction: positive in front of the eye
+ *   Window depth  what a depth buffer holds, from 0 to 1
+ *   Cell          a tile or, if the view depths are divided into slices, a tile in one slice
+ *   Entry         a light in the list of one cell
+ *
+ * Conventions that hold for every function
+ *   Results   A function that can refuse its input returns a lightbin_result. It worked if result.error is LIGHTBIN_OK;
+ *             lightbin_error_text() writes a sentence. After an error nothing was written to the caller's memory and no
+ *             handle was made or changed, unless the function says otherwise; the next call works as usual.
+ *   Structs   A struct whose first member is `size` is passed with size = sizeof of the struct, and all members that
+ *             are not set must be 0, which is the default of each. So a program goes on working with a later lightbin
+ *             whose structs have more members. A struct that is newer than the library works as long as the members
+ *             that the library does not know are 0.
+ *   Enums     Members of structs that hold an enum's value have the type int32_t, so that their size is the same for
+ *             all compilers and languages. A number that is no value of the enum is refused.
+ *   Handles   A handle, such as a lightbin_view, is made by functions whose comments name the one that frees it. That
+ *             one ends in _destroy, and accepts a null pointer. Different handles may be used on different threads at
+ *             the same time; one handle may be used by one thread at a time, except that a view or slices may be read
+ *             by several calls at once.
+ *   Pointers  Null where something is needed, sizes too small, and memory to be written that overlaps other memory of
+ *             the call are refused; lightbin_result.name says which. Pointers are not kept after the call.
+ *   Memory    Handles keep their memory for the next call, so that calls allocate nothing once warm. If memory runs
+ *             out, the error is LIGHTBIN_OUT_OF_MEMORY. (Where the implementing file is compiled without exceptions, as
+ *             by -fno-exceptions, the program is ended by abort() instead.)
+ */
+#ifndef LIGHTBIN_LIGHTBIN_H
+#define LIGHTBIN_LIGHTBIN_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* LIGHTBIN_API: how the functions are declared. Define LIGHTBIN_SHARED to use lightbin as a shared library, and
+ * LIGHTBIN_BUILD_SHARED, too, in the file that implements it. */
+#if !defined(LIGHTBIN_API)
+#if !defined(LIGHTBIN_SHARED)
+#define LIGHTBIN_API
+#elif defined(_WIN32)
+#if defined(LIGHTBIN_BUILD_SHARED)
+#define LIGHTBIN_API __declspec(dllexport)
+#else
+#define LIGHTBIN_API __declspec(dllimport)
+#endif
+#else
+#define LIGHTBIN_API __attribute__((visibility("default")))
+#endif
+#endif
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+/* ---- Results ---- */
+
+/* Why a call was refused. Values are never given to another error; new ones are added. From 100 on they are the causes
+ * that the C++ side has, in ErrorCode of error_code.hpp. */
+typedef enum lightbin_error {
+    LIGHTBIN_OK = 0,
+    LIGHTBIN_OUT_OF_MEMORY = 1,
+    LIGHTBIN_NULL_ARGUMENT = 2,    /* a pointer that the call needs is null */
+    LIGHTBIN_WRONG_SIZE = 3,       /* a struct's `size` is not that of a version that the library knows */
+    LIGHTBIN_OVERLAP = 4,          /* memory to be written overlaps other memory of the call */
+    LIGHTBIN_LEFT_OUT = 5,         /* the program was compiled without this part, see docs/c.md */
+    LIGHTBIN_NOT_A_VALUE = 6,      /* a number that is no value of its enum, or outside of its range */
+    LIGHTBIN_STRIDE_TOO_SMALL = 7, /* a stride is less than the element that it steps over */
+    LIGHTBIN_NO_SLICES_GIVEN = 8,  /* the binner's options read slices */
+    LIGHTBIN_NO_BOUNDS_GIVEN = 9,  /* the binner's options read Z bounds */
+    LIGHTBIN_NOT_READ = 10,        /* slices or Z bounds were given that the binner's options do not read */
+    LIGHTBIN_OPTIONS_NOT_TOGETHER = 11, /* clusters have no interval or split_box test */
+    LIGHTBIN_BUFFER_TOO_SMALL = 12,
+    LIGHTBIN_CALLBACK_THREW = 13,  /* a C++ callback of the program threw an exception */
+    LIGHTBIN_COVERAGE_IS_OFF = 14, /* the binner's options do not ask for coverage */
+    /* A grid is not at the beginning of the memory that another is copied behind it in */
+    LIGHTBIN_OTHER_MEMORY = 15,
+
+    LIGHTBIN_MATRIX_NOT_FINITE = 100,
+    LIGHTBIN_NOT_A_PROJECTION = 101,
+    LIGHTBIN_PROJECTION_TRANSPOSED = 102,
+    LIGHTBIN_EYE_NOT_AT_ORIGIN = 103,
+    LIGHTBIN_IMAGE_AXES_ROTATED = 104,
+    LIGHTBIN_OBLIQUE_DEPTH = 105,
+    LIGHTBIN_NO_NEAR_PLANE = 106,
+    LIGHTBIN_NEAR_PLANE_TOO_CLOSE = 107,
+    LIGHTBIN_DEPTH_RANGE_NOT_FINITE = 108,
+    LIGHTBIN_DEGENERATE_SCALE = 109,
+    LIGHTBIN_IMAGE_OFFSET_OUT_OF_RANGE = 110,
+    LIGHTBIN_VIEWPORT_OUT_OF_RANGE = 111,
+    LIGHTBIN_TILE_SIZE_OUT_OF_RANGE = 112,
+    LIGHTBIN_VIEW_MATRIX_NOT_AFFINE = 113,
+    LIGHTBIN_VIEW_MATRIX_TRANSPOSED = 114,
+    LIGHTBIN_TOO_MANY_LIGHTS = 115,
+    LIGHTBIN_TOO_MANY_ENTRIES = 116,
+    LIGHTBIN_TOO_MANY_LIST_PLACES = 117,
+    LIGHTBIN_RANGE_BUFFER_TOO_SMALL = 118,
+    LIGHTBIN_ID_BUFFER_TOO_SMALL = 119,
+    LIGHTBIN_Z_BOUNDS_TOO_SMALL = 120,
+    LIGHTBIN_DEPTH_BUFFER_TOO_SMALL = 121,
+    LIGHTBIN_SAMPLES_OUT_OF_RANGE = 122,
+    LIGHTBIN_ROW_PITCH_TOO_SMALL = 123,
+    LIGHTBIN_NO_TRANSPARENT_MAX = 124,
+    LIGHTBIN_NO_SLICES = 125,
+    LIGHTBIN_SLICE_RANGE_EMPTY = 126,
+    LIGHTBIN_SLICES_DO_NOT_ASCEND = 127,
+    LIGHTBIN_TOO_MANY_CELLS = 128,
+    LIGHTBIN_IDS_TOO_NARROW = 129,
+    LIGHTBIN_LIST_BUFFER_TOO_SMALL = 130,
+    LIGHTBIN_BIT_BUFFER_TOO_SMALL = 131,
+    LIGHTBIN_CAPACITY_UNKNOWN = 132,
+    LIGHTBIN_MAX_LIGHTS_UNKNOWN = 133,
+    LIGHTBIN_BLOCK_SIZE_UNKNOWN = 134,
+    LIGHTBIN_UNIFORM_BLOCK_TOO_SMALL = 135,
+    LIGHTBIN_NO_STORAGE_BUFFERS = 136,
+    LIGHTBIN_NO_TEXEL_BUFFERS = 137,
+    LIGHTBIN_NO_BYTE_ADDRESS_BUFFERS = 138,
+    LIGHTBIN_SLOT_OUT_OF_RANGE = 139,
+    LIGHTBIN_NO_SETS = 140,
+    LIGHTBIN_NO_PUSH_CONSTANTS = 141,
+    LIGHTBIN_NO_MULTISAMPLE_TEXTURES = 142,
+    LIGHTBIN_NO_SPLIT_BOX_SHADER = 143,
+    LIGHTBIN_NO_SUCH_SLICING_SHADER = 144,
+    LIGHTBIN_NO_WAVE_OPERATIONS = 145,
+    LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE = 146,
+    LIGHTBIN_BINDINGS_OVERLAP = 147,
+    LIGHTBIN_NOT_A_PREFIX = 148,
+    LIGHTBIN_GRIDS_DIFFER = 149,
+    LIGHTBIN_IDS_ARE_RANKS = 150,
+    LIGHTBIN_TOO_FEW_WEIGHTS = 151,
+    LIGHTBIN_LIGHT_BUFFER_TOO_SMALL = 152,
+    LIGHTBIN_KINDS_OF_RANKS = 153,
+    LIGHTBIN_VIEWS_OUT_OF_RANGE = 154,
+    LIGHTBIN_KINDS_WITHOUT_TABLE = 155,
+
+    LIGHTBIN_ERROR_32_BITS = 0x7fffffff /* no error: makes the enum as wide as int32_t */
+} lightbin_error;
+
+/* What a call returns. The numbers are those of Error in result.hpp: the size that was needed and the one that there
+ * was, or the number given and the greatest one allowed. */
+typedef struct lightbin_result {
+    int32_t error; /* a lightbin_error */
+    int32_t unused;
+    /* The parameter or member that was refused, such as "lights.spheres.centre", or an empty text */
+    const char* name;
+    uint64_t needed;
+    uint64_t available;
+} lightbin_result;
+
+/* Writes an English sentence that names the cause and a remedy, and a 0 after it. Returns the number of characters of
+ * the whole sentence; what exceeds capacity - 1 characters is not written. Sentences have less than 512 characters.
+ *
+ * text  `capacity` characters; may be null if capacity is 0 */
+LIGHTBIN_API size_t lightbin_error_text(lightbin_result result, char* text, size_t capacity);
+
+/* Returns the version of the library that implements these functions, as 10000 * major + 100 * minor + patch. */
+LIGHTBIN_API uint32_t lightbin_version(void);
+
+/* ---- Memory and threads of the caller ---- */
+
+/* The caller's memory for a handle and all that it keeps. Null pointers for both functions mean malloc() and free().
+ * The functions may be called on any thread that runs tasks of lightbin_threads, several at a time.
+ *
+ * While a shader text or advice is made, parts of it are in memory of the C++ library's operator new. All of that
+ * memory is freed before the call returns. */
+typedef struct lightbin_allocator {
+    void* (*allocate)(void* user,
+                      size_t bytes); /* memory aligned as that of malloc(), or null if there is none */
+    void (*release)(void* user, void* memory); /* is not called with a null pointer */
+    void* user;
+} lightbin_allocator;
+
+/* The library's function that does one of several tasks. The caller's threads call it. */
+typedef void (*lightbin_task)(void* context, size_t index);
+
+/* The caller's threads. lightbin starts none of its own. */
+typedef struct lightbin_threads {
+    uint32_t size;
+    /* The number of threads that `run` uses; a wrong number costs speed, never the result */
+    uint32_t workers;
+    /* Must call task(context, i) once for each i from 0 to count - 1, in any order and on any threads, and return when
+     * all these calls have returned. */
+    void (*run)(void* user, size_t count, lightbin_task task, void* context);
+    void* user;
+    /* About how many nanoseconds pass until the threads of `run` have started working. Work that would gain less from
+     * sharing is done by the calling thread alone. 0: 50,000, for sleeping threads. Less than 0: share everything. */
+    double start_ns;
+} lightbin_threads;
+
+/* ---- Matrices and views ---- */
+
+/* How sixteen numbers in memory make a matrix. */
+typedef enum lightbin_matrix_layout {
+    /* The columns of a matrix for M v, one after another: OpenGL's, GLM's, cglm's */
+    LIGHTBIN_COLUMN_MAJOR = 0,
+    LIGHTBIN_ROW_MAJOR = 1,  /* the rows of a matrix for M v, one after another: as it is written on paper */
+    LIGHTBIN_ROW_VECTORS = 2 /* the rows of a matrix for v M, one after another: Direct3D's */
+} lightbin_matrix_layout;
+
+/* Sixteen numbers: either floats or doubles are given, and the other pointer is null. */
+typedef struct lightbin_matrix {
+    const float* floats;
+    const double* doubles;
+    int32_t layout; /* a lightbin_matrix_layout */
+    int32_t unused;
+} lightbin_matrix;
+
+/* The range of clip-space depth, a setting of the graphics API that a matrix does not show. */
+typedef enum lightbin_clip_depth {
+    LIGHTBIN_MINUS_ONE_TO_ONE = 0, /* OpenGL */
+    LIGHTBIN_ZERO_TO_ONE = 1       /* Direct3D, Vulkan, Metal, WebGPU, OpenGL with glClipControl */
+} lightbin_clip_depth;
+
+/* The corner of the window that holds pixel (0, 0) and tile (0, 0), where the lower side is the one with NDC y = -1. */
+typedef enum lightbin_window_origin {
+    LIGHTBIN_LOWER_LEFT = 0, /* OpenGL, Vulkan */
+    LIGHTBIN_UPPER_LEFT = 1  /* Direct3D, Metal, WebGPU */
+} lightbin_window_origin;
+
+typedef struct lightbin_view_options {
+    uint32_t size;
+    int32_t width, height; /* of the viewport, 0 to 32768 pixels; an empty viewport has no tiles */
+    int32_t tile_size;     /* side of a square tile in pixels, 1 or more; 0: 32 */
+    /* Maps view space to clip space: any perspective or orthographic projection, also off-centre, with an infinite far
+     * plane, with reversed Z, and of a right-handed or left-handed view space. Any other matrix is an error. */
+    lightbin_matrix projection;
+    int32_t clip_depth; /* a lightbin_clip_depth */
+    int32_t origin;     /* a lightbin_window_origin */
+    /* Not 0: the near plane has the larger window depth. Read for orthographic matrices alone */
+    int32_t reversed_z;
+    int32_t unused;
+} lightbin_view_options;
+
+/* A projection, a viewport and a tile size, which fix the tile grid. Tile (x, y) has index y * tiles_x + x. */
+typedef struct lightbin_view lightbin_view;
+
+/* Makes a view. On success *view is the view, to be freed with lightbin_view_destroy().
+ *
+ * allocator  null: malloc() and free(). It is copied.
+ *
+ * Errors: LIGHTBIN_MATRIX_NOT_FINITE to LIGHTBIN_TILE_SIZE_OUT_OF_RANGE, which say what is wrong with the matrix, the
+ * viewport or the tile size. */
+LIGHTBIN_API lightbin_result lightbin_view_create(const lightbin_view_options* options,
+                                                  const lightbin_allocator* allocator, lightbin_view** view);
+
+/* Gives a view another projection, viewport or tile size, as when the camera or the window changes. Allocates nothing.
+ * Errors: those of lightbin_view_create(); the view is then as before. */
+LIGHTBIN_API lightbin_result lightbin_view_update(lightbin_view* view, const lightbin_view_options* options);
+LIGHTBIN_API void lightbin_view_destroy(lightbin_view* view);
+
+/* What lightbin_view_describe() returns: what was read from the matrix, and what looks like a mistake. */
+typedef struct lightbin_view_info {
+    uint32_t size;
+    int32_t width, height, tile_size; /* in pixels */
+    int32_t tiles_x, tiles_y;
+    int32_t orthographic, reversed_z; /* 0 or 1 */
+    float near_depth, far_depth;      /* rounded outward; far_depth is +inf if there is no far plane */
+    int32_t x_flipped, y_flipped;     /* 1: NDC x (or y) falls where view-space x (or y) grows */
+    int32_t looks_down_negative_z;    /* 1 for right-handed view spaces */
+    /* Each of these is 1 where the matrix or the viewport looks like a common mistake, and 0 elsewhere. A view with a 1
+     * is right if that was intended. */
+    int32_t looks_transposed; /* the entry of 1 is where a transposed perspective matrix has it */
+    /* An orthographic matrix that scales nothing: an identity, or the view matrix? */
+    int32_t looks_like_view_matrix;
+    int32_t looks_turned;       /* upside down and mirrored: degrees where radians are wanted? */
+    int32_t looks_behind;       /* all orthographic depths are behind the eye: is reversed_z right? */
+    int32_t looks_zero_to_one; /* no depth reaches NDC -1: is clip_depth right? */
+    int32_t pixels_not_square; /* by more than 2 %: is the viewport's size stale, or the aspect inverted? */
+} lightbin_view_info;
+
+/* Describes a view. Set info->size before. */
+LIGHTBIN_API lightbin_result lightbin_view_describe(const lightbin_view* view, lightbin_view_info* info);
+
+/* Writes what was read from the matrix as one line of text, with a question for each likely mistake. Returns the number
+ * of characters, as lightbin_error_text() does; 0 if view is null. */
+LIGHTBIN_API size_t lightbin_view_text(const lightbin_view* view, char* text, size_t capacity);
+
+/* Computes where in the image a point of view space lies: x and y in pixels from the corner of the window origin, and
+ * its view depth. Where the depth of a perspective view is 0 or less, x and y mean nothing. */
+LIGHTBIN_API lightbin_result lightbin_view_project(const lightbin_view* view, const double point[3],
+                                                   double image[3]);
+
+/* Computes the point of view space that an image point (x, y, view depth) shows: the inverse of
+ * lightbin_view_project(). The viewport must not be empty. */
+LIGHTBIN_API lightbin_result lightbin_view_unproject(const lightbin_view* view, const double image[3],
+                                                     double point[3]);
+
+/* Computes the view depths that the window depths from `lower` to `upper` stand for, rounded outward: depths[0] is the
+ * least of them, depths[1] the greatest. */
+LIGHTBIN_API lightbin_result lightbin_view_depths(const lightbin_view* view, double lower, double upper,
+                                                  float depths[2]);
+
+/* ---- Lights ---- */
+
+/* Where the lights' floats are, in an array of the caller's structs or in an array of their own. For an array `lamps`
+ * of structs with a member float position[3] it is {lamps[0].position, sizeof lamps[0]}. Addresses need no alignment.
+ */
+typedef struct lightbin_floats {
+    const void* first; /* the first light's floats */
+    size_t stride; /* bytes from one light's floats to the next light's: not less than these floats take */
+} lightbin_floats;
+
+/* Spheres outside of which lights give no light. A radius of +inf covers everything. A light with a NaN or infinite
+ * centre, or a NaN or negative radius, is skipped and counted. */
+typedef struct lightbin_spheres {
+    size_t count;
+    lightbin_floats centre; /* 3 floats */
+    lightbin_floats radius; /* 1 float */
+} lightbin_spheres;
+
+/* Spots: spheres that are cut by a cone whose tip is the centre. A spot whose axis is zero, or whose axis or cosine is
+ * NaN, is skipped and counted, as bad spheres are. */
+typedef struct lightbin_spots {
+    size_t count;
+    lightbin_floats centre; /* 3 floats */
+    lightbin_floats radius; /* 1 float */
+    lightbin_floats axis;   /* 3 floats: the direction in which the light shines, of any length but zero */
+    lightbin_floats cosine; /* 1 float: of the angle between the axis and the cone's side, from 1 to -1 */
+} lightbin_spots;
+
+/* Boxes: oriented boxes or frustums, which may be cut by a sphere: decals, probes, projectors, lights in a room. The
+ * points of a box are
+ *
+ *     box_centre + a k u + b k v + c w     with a, b and c from -1 to 1, and k = (1 + taper + c (1 - taper)) / 2
+ *
+ * where u, v and w are its three half axes. A box whose numbers are NaN or infinite, whose radius is 0 or less, whose
+ * taper is not from 0 to 1, or all of whose half axes are zero, is skipped and counted. (A radius may be +inf.) */
+typedef struct lightbin_boxes {
+    size_t count;
+    /* 3 floats and 1 float: the sphere. Null in both: no sphere cuts the boxes, as if each radius were +inf. */
+    lightbin_floats centre, radius;
+    lightbin_floats box_centre; /* 3 floats */
+    /* 9 floats: three vectors, one after another, from the box's centre to the middles of three of its faces. They need
+     * not be at right angles. One of zero makes the box flat. */
+    lightbin_floats half_axes;
+    /* 1 float from 0 to 1: the size of the face at centre - third vector, as a fraction of the face at centre + third
+     * vector. Null: 1, for boxes. */
+    lightbin_floats taper;
+} lightbin_boxes;
+
+/* The lights of a call, which are read in place. Ids number the arrays through: the id of a sphere is its position in
+ * its array, ids of spots begin behind those of the spheres, and ids of boxes behind those of the spots. So in every
+ * list the spheres come first, then the spots, then the boxes (with LIGHTBIN_Z_BINS ids are ranks, in order of depth).
+ * Each kind costs what it costs alone.
+ *
+ * Spheres whose radius follows the centre, 16 bytes from one to the next (vec4s), are read without a copy. */
+typedef struct lightbin_lights {
+    uint32_t size;
+    uint32_t unused;
+    /* World space to view space: the lights are in world space, and are enlarged by a bound on the rounding of the
+     * transform. It must be affine. Without numbers the lights are in view space. */
+    lightbin_matrix view_matrix;
+    lightbin_spheres spheres;
+    lightbin_spots spots;
+    lightbin_boxes boxes;
+} lightbin_lights;
+
+/* ---- Slices ---- */
+
+/* Adjacent intervals of view depth, for clusters and z-bins. */
+typedef struct lightbin_slices lightbin_slices;
+
+/* Make slices. In all three the first slice begins at the near plane, the last one ends at the far plane, and *slices
+ * is to be freed with lightbin_slices_destroy().
+ *
+ *   exponential      the first slice ends at depth `first`, and each further one at a constant times the depth where it
+ *                    begins, so that the last would end at `last`: cells are then about as deep as they are wide
+ *   linear           the depths from `begin` to `end` are divided into equal parts
+ *   from_boundaries  one slice more than there are boundaries, which ascend
+ *
+ * margin     from 0 to 1/2. A shader that finds the slice of a depth d by a formula of its own, which may be wrong by
+ *            up to margin * |d|, finds all lights in the slice that it reads. 0 for shaders with the library's own text
+ * allocator  null: malloc() and free(). It is copied.
+ *
+ * Errors: LIGHTBIN_NO_SLICES, a count below 1; LIGHTBIN_SLICE_RANGE_EMPTY, not 0 < first < last, or not begin < end,
+ * with two slices or more; LIGHTBIN_SLICES_DO_NOT_ASCEND, boundaries that do not ascend, are not finite, or are equal
+ * once they are rounded to float. */
+LIGHTBIN_API lightbin_result lightbin_slices_exponential(int32_t count, float first, float last, float margin,
+                                                         const lightbin_allocator* allocator,
+                                                         lightbin_slices** slices);
+LIGHTBIN_API lightbin_result lightbin_slices_linear(int32_t count, float begin, float end, float margin,
+                                                    const lightbin_allocator* allocator,
+                                                    lightbin_slices** slices);
+LIGHTBIN_API lightbin_result lightbin_slices_from_boundaries(const float* boundaries, size_t count,
+                                                             float margin,
+                                                             const lightbin_allocator* allocator,
+                                                             lightbin_slices** slices);
+LIGHTBIN_API void lightbin_slices_destroy(lightbin_slices* slices);
+
+/* Returns the number of slices; 0 if slices is null. */
+LIGHTBIN_API int32_t lightbin_slices_count(const lightbin_slices* slices);
+
+/* Returns the boundaries in ascending order, one less than there are slices. Valid as long as the slices; null if
+ * slices is null. */
+LIGHTBIN_API const float* lightbin_slices_boundaries(const lightbin_slices* slices);
+
+/* Returns the index of the slice that contains a depth, which must not be NaN; -1 if slices is null. */
+LIGHTBIN_API int32_t lightbin_slices_at(const lightbin_slices* slices, float depth);
+
+/* ---- Z bounds ---- */
+
+/* The number format of a depth buffer, which decides how much rounding the bounds allow for. */
+typedef enum lightbin_depth_format {
+    LIGHTBIN_FLOAT32 = 0,
+    LIGHTBIN_UNORM24 = 1,
+    LIGHTBIN_UNORM16 = 2
+} lightbin_depth_format;
+
+/* A depth buffer in main memory that covers the viewport and nothing else: window depths from 0 to 1, rows of pixels
+ * from the window origin on, the samples of a pixel next to each other. */
+typedef struct lightbin_depth_buffer {
+    uint32_t size;
+    int32_t samples; /* a pixel, 1 to 8; 0: 1 */
+    const float* depth;
+    size_t count;     /* the number of floats in `depth` */
+    size_t row_pitch; /* floats from one row to the next; 0: width * samples */
+    int32_t format;   /* a lightbin_depth_format */
+    /* Not 0: samples at the far end of the depth range are background, where nothing is drawn. */
+    int32_t skip_background;
+} lightbin_depth_buffer;
+
+/* The view depths that bound what is drawn in each tile: arrays of one float for each tile, row by row. Where a pointer
+ * is null, lights are not tested against that bound. A tile whose min is greater than its max shows nothing and lists
+ * no light. A NaN stands for no bound. */
+typedef struct lightbin_z_bounds {
+    uint32_t size;
+    int32_t background_skipped; /* not 0: min, max and the gaps were made without the background */
+    const float *min, *max;
+    const float *gap_min, *gap_max; /* read by LIGHTBIN_SPLIT_BOX: nothing is drawn strictly between them */
+    const float* transparent_max; /* read by lightbin_bin_transparency(): maxima that count the background */
+    size_t tiles;                 /* the number of floats in each array, the view's number of tiles or more */
+} lightbin_z_bounds;
+
+/* Memory for Z bounds: arrays of `tiles` floats for the bounds that are wanted, null for the others. Gaps are wanted if
+ * both their arrays are given. */
+typedef struct lightbin_z_bounds_buffers {
+    uint32_t size;
+    uint32_t unused;
+    float *min, *max, *gap_min, *gap_max, *transparent_max;
+    size_t tiles;
+} lightbin_z_bounds_buffers;
+
+/* Reduces a depth buffer to Z bounds in the memory of `out`. On success *bounds refers to that memory. Errors: a sample
+ * count outside 1 to 8; a row pitch shorter than a row; too few samples or tiles; overlapping memory. */
+LIGHTBIN_API lightbin_result lightbin_reduce_depth(const lightbin_view* view,
+                                                   const lightbin_depth_buffer* buffer,
+                                                   const lightbin_z_bounds_buffers* out,
+                                                   lightbin_z_bounds* bounds);
+
+/* ---- Binners ---- */
+
+typedef enum lightbin_ids {
+    LIGHTBIN_U32 = 0,
+    LIGHTBIN_U8 = 1, /* made by lightbin_encode(), not by a binner */
+    LIGHTBIN_U16 = 2 /* up to 65,536 lights */
+} lightbin_ids;
+
+/* How the tiles that a light's projection covers are computed. */
+typedef enum lightbin_footprint {
+    LIGHTBIN_RECTANGLE = 0, /* the tiles of the projection's bounding rectangle */
+    LIGHTBIN_SILHOUETTE = 1 /* one exact span of tiles a tile row */
+} lightbin_footprint;
+
+/* The test that keeps a light out of tiles by depth. All but NO_DEPTH_TEST need Z bounds or clusters. */
+typedef enum lightbin_depth_test {
+    LIGHTBIN_NO_DEPTH_TEST = 0,
+    LIGHTBIN_INTERVAL = 1, /* the light's depths must meet the tile's Z bounds */
+    /* And the light must meet the box, in view space, around the tile between its Z bounds */
+    LIGHTBIN_BOX = 2,
+    LIGHTBIN_SPLIT_BOX = 3 /* as BOX, with two boxes, one in front of and one behind the tile's depth gap */
+} lightbin_depth_test;
+
+/* How slices narrow the lights of a tile by depth. */
+typedef enum lightbin_slicing {
+    LIGHTBIN_NO_SLICING = 0,
+    LIGHTBIN_CLUSTERS = 1, /* each tile has one list for each slice; no Z bounds are read */
+    /* Each tile has one list, whose ids are ranks: places of the lights in order of depth. Each slice is a bin that has
+     * the least and greatest rank of its lights, and a shader reads the part of the list between them. */
+    LIGHTBIN_Z_BINS = 2
+} lightbin_slicing;
+
+typedef struct lightbin_binner_options {
+    uint32_t size;
+    int32_t ids;        /* LIGHTBIN_U32 or LIGHTBIN_U16 */
+    int32_t footprint;  /* a lightbin_footprint */
+    int32_t depth_test; /* a lightbin_depth_test; with clusters NO_DEPTH_TEST or BOX */
+    int32_t slicing;    /* a lightbin_slicing */
+    int32_t coverage;   /* not 0: find what each light covers, for lightbin_binner_coverage() */
+} lightbin_binner_options;
+
+/* Bins lights into tiles, and keeps the memory that this takes. */
+typedef struct lightbin_binner lightbin_binner;
+
+/* Makes a binner. On success *binner is the binner, to be freed with lightbin_binner_destroy().
+ *
+ * options    null: the defaults, all 0
+ * allocator  null: malloc() and free(). It is copied.
+ *
+ * Errors: an option that the program was compiled without; a value or a combination that there is not. */
+LIGHTBIN_API lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
+                                                    const lightbin_allocator* allocator,
+                                                    lightbin_binner** binner);
+LIGHTBIN_API void lightbin_binner_destroy(lightbin_binner* binner);
+
+/* The inputs of a call beside the lights. Slices are read with CLUSTERS and Z_BINS, bounds with a depth test unless
+ * with CLUSTERS. What is read must be given, and what is not read must be null. */
+typedef struct lightbin_inputs {
+    uint32_t size;
+    uint32_t unused;
+    const lightbin_slices* slices;
+    const lightbin_z_bounds* bounds;
+    const lightbin_threads* threads; /* null: the calling thread alone */
+} lightbin_inputs;
+
+/* The list of one tile: `count` ids from index `offset` on. 8 bytes, laid out as a GPU's uvec2. */
+typedef struct lightbin_range {
+    uint32_t offset, count;
+} lightbin_range;
+
+/* The least and greatest rank of the lights whose depths meet a z-bin; least > greatest if there is none. */
+typedef struct lightbin_bin_range {
+    uint32_t least, greatest;
+} lightbin_bin_range;
+
+/* A finished light grid. Set `size` before the call that fills it in. It refers to memory of the binner, which is valid
+ * until the binner's next call, or to the caller's memory after lightbin_copy_grid(). */
+typedef struct lightbin_grid {
+    uint32_t size;
+    int32_t tiles_x, tiles_y;
+    int32_t slices; /* 1 unless made with clusters */
+    /* tiles_x * tiles_y ranges, row-major; with clusters as many for each slice */
+    const lightbin_range* ranges;
+    const void* ids; /* the light index list: uint16_t or uint32_t, as id_bytes says */
+    uint64_t range_count, id_count;
+    uint32_t id_bytes;
+    uint32_t lights, rejected,
+        culled; /* how many lights were given, are bad input, and are outside of the view */
+    /* With z-bins, else null: for each rank the light's id, and the ranks in each bin. */
+    const uint32_t* order;
+    const lightbin_bin_range* bins;
+    uint64_t order_count, bin_count;
+    uint32_t first_spot,
+        first_box; /* ids below first_spot are spheres, from there to first_box spots, others boxes */
+} lightbin_grid;
+
+/* Makes the lists. On success every cell's list has, in ascending order, the id of every light that meets the cell.
+ * Errors: more lights than the ids can number; more than 2^32 - 1 entries, cells, or pairs of a light and a slice or
+ * block of 8x8 tiles; a view matrix that is not affine; inputs that are missing, too short or not read.
+ *
+ * inputs  null: none */
+LIGHTBIN_API lightbin_result lightbin_bin(lightbin_binner* binner, const lightbin_view* view,
+                                          const lightbin_lights* lights, const lightbin_inputs* inputs,
+                                          lightbin_grid* grid);
+
+/* Makes two grids in one call, one for opaque and one for transparent geometry, which may lie anywhere in front of what
+ * is opaque: there lights are tested against bounds->transparent_max alone, or against bounds->max if that is null. The
+ * binner needs a depth test, and no clusters. Errors: those of lightbin_bin(); LIGHTBIN_OPTIONS_NOT_TOGETHER for other
+ * binners; LIGHTBIN_NO_TRANSPARENT_MAX, if the bounds leave out the background (background_skipped) and have a max but
+ * no transparent_max. */
+LIGHTBIN_API lightbin_result lightbin_bin_transparency(lightbin_binner* binner, const lightbin_view* view,
+                                                       const lightbin_lights* lights,
+                                                       const lightbin_inputs* inputs, lightbin_grid* opaque,
+                                                       lightbin_grid* transparent);
+
+/* What lightbin_bin_bits() returns beside the bitmasks. The arrays are valid until the binner's next call. */
+typedef struct lightbin_bits {
+    uint32_t size;
+    uint32_t lights, rejected, culled;
+    const uint32_t* order; /* with z-bins, else null; as in lightbin_grid */
+    const lightbin_bin_range* bins;
+    uint64_t order_count, bin_count;
+} lightbin_bits;
+
+/* Writes a bitmask for each tile in place of lists: bit b of a tile's word w stands for the light with the id 32 w + b.
+ * This is faster than lists up to about a thousand lights. Not with clusters.
+ *
+ * max_lights         all ids must be less. A tile has (max_lights + 31) / 32 words
+ * words, word_count  the caller's memory, and how many words of 32 bits it has. Other words than the tiles' are not
+ *                    written
+ *
+ * Errors: those of lightbin_bin() except for too many entries; LIGHTBIN_BIT_BUFFER_TOO_SMALL; LIGHTBIN_IDS_TOO_NARROW,
+ * more lights than max_lights. After LIGHTBIN_OUT_OF_MEMORY some of the words may have been written. */
+LIGHTBIN_API lightbin_result lightbin_bin_bits(lightbin_binner* binner, const lightbin_view* view,
+                                               const lightbin_lights* lights, const lightbin_inputs* inputs,
+                                               uint32_t max_lights, uint32_t* words, uint64_t word_count,
+                                               lightbin_bits* bits);
+
+/* What a light in view covers. */
+typedef struct lightbin_coverage {
+    uint32_t id;             /* the light's id as lightbin_lights numbers it, with LIGHTBIN_Z_BINS, too */
+    uint16_t x0, y0, x1, y1; /* tile columns x0 to x1 and tile rows y0 to y1, ends included */
+    float nearest, farthest; /* the least and greatest view depth of the light, rounded outward */
+    float pixels; /* larger side of the rectangle around its projection in the image, rounded up; +inf if unknown */
+} lightbin_coverage;
+
+/* Returns what each light in view covers, in ascending order of id, for the last lightbin_bin(),
+ * lightbin_bin_transparency() or lightbin_bin_bits() of a binner made with lightbin_binner_options::coverage: for
+ * shadow atlases and levels of detail. On success *lights refers to *count elements in memory of the binner, which is
+ * valid until its next call. Errors: LIGHTBIN_COVERAGE_IS_OFF. */
+LIGHTBIN_API lightbin_result lightbin_binner_coverage(const lightbin_binner* binner,
+                                                      const lightbin_coverage** lights, size_t* count);
+
+/* ---- Finished grids ----
+ *
+ * The functions below read a lightbin_grid as lightbin_bin() or one of these functions filled it in. They rely on its
+ * numbers: all offsets and ids must be inside of the arrays that they refer to. */
+
+/* Copies the ranges and ids of a grid to the beginning of the caller's memory, which is only written, in ascending
+ * order, and so may be a mapped GPU buffer. On success grid->ranges and grid->ids refer to the copies. Errors: memory
+ * that is too small.
+ *
+ * range_capacity, id_capacity  how many ranges and ids there is memory for */
+LIGHTBIN_API lightbin_result lightbin_copy_grid(lightbin_grid* grid, lightbin_range* ranges,
+                                                uint64_t range_capacity, void* ids, uint64_t id_capacity);
+
+/* Copies the ranges and ids of a grid behind those of other views, in the caller's memory, for shaders made with
+ * lightbin_snippet_options::views. On success *grid is the grid of all views so far: its ranges are those of view 0,
+ * then those of view 1, and so on, and so are its ids; offsets count from the beginning of `ids`. Its counts and ranks
+ * are those of the last view. The memory is only written, in ascending order.
+ *
+ * before  the grid of the views before, in the same memory: what lightbin_copy_grid() made of view 0, and this function
+ *         of all later ones
+ *
+ * Errors, after which nothing was written: the grids have different numbers of tiles or slices, or ids of different
+ * widths; `before` is in other memory; all views together have more cells or entries than 32 bits count; memory that is
+ * too small. */
+LIGHTBIN_API lightbin_result lightbin_append_grid(lightbin_grid* grid, const lightbin_grid* before,
+                                                  lightbin_range* ranges, uint64_t range_capacity, void* ids,
+                                                  uint64_t id_capacity);
+
+/* Makes unions of grids, in memory that it keeps. */
+typedef struct lightbin_grid_union lightbin_grid_union;
+
+/* Makes a lightbin_grid_union, to be freed with lightbin_grid_union_destroy(). */
+LIGHTBIN_API lightbin_result lightbin_grid_union_create(const lightbin_allocator* allocator,
+                                                        lightbin_grid_union** grid_union);
+LIGHTBIN_API void lightbin_grid_union_destroy(lightbin_grid_union* grid_union);
+
+/* Makes a grid each of whose cells lists the lights that the same cell of either grid lists, each once, in ascending
+ * order: one list for two views, such as two eyes. *grid is valid until the next call with this grid_union. Its counts
+ * are those of `first`.
+ *
+ * first, second  grids of the same lights, with ids of the same width. Neither may be what this grid_union made
+ *
+ * Errors: grids with different numbers of tiles or slices, or ids of different widths; grids with z-bins; more than
+ * 2^32 - 1 entries. */
+LIGHTBIN_API lightbin_result lightbin_unite_grids(lightbin_grid_union* grid_union, const lightbin_grid* first,
+                                                  const lightbin_grid* second, lightbin_grid* grid);
+
+/* Limits the lists of grids, in memory that it keeps. */
+typedef struct lightbin_budget lightbin_budget;
+
+/* Makes a lightbin_budget, to be freed with lightbin_budget_destroy(). */
+LIGHTBIN_API lightbin_result lightbin_budget_create(const lightbin_allocator* allocator,
+                                                    lightbin_budget** budget);
+LIGHTBIN_API void lightbin_budget_destroy(lightbin_budget* budget);
+
+/* What lightbin_limit_grid() left out. An entry is one light in one cell's list. */
+typedef struct lightbin_cut {
+    uint32_t size;
+    uint32_t entries_cut;
+    const uint32_t* cut_in_cell; /* the number of entries left out of each cell, in the order of the ranges */
+    uint64_t cell_count;
+} lightbin_cut;
+
+/* Shortens the lists of a grid to limits. First, each cell keeps its per_cell heaviest lights; then, of the entries
+ * that are left, the per_frame heaviest stay, of one light those in the cells that come first. Of lights that weigh the
+ * same, those with the lower id stay. *limited is valid until the next call with this budget, and no longer than
+ * `grid`: if nothing is left out, it refers to the memory of `grid`.
+ *
+ * weights    one for each light, by its id as lightbin_lights numbers it, with LIGHTBIN_Z_BINS, too. NaN weighs least
+ * per_cell   the most lights in the list of a cell; LIGHTBIN_NO_LIMIT: any number
+ * per_frame  the most entries in all lists together; LIGHTBIN_NO_LIMIT: any number
+ * limited    may be `grid`, which then is overwritten
+ * cut        what was left out; null: is not wanted. Its array is valid as long as *limited
+ *
+ * Errors: fewer weights than lights; a grid that this budget made. */
+#define LIGHTBIN_NO_LIMIT 0xffffffffu
+LIGHTBIN_API lightbin_result lightbin_limit_grid(lightbin_budget* budget, const lightbin_grid* grid,
+                                                 const float* weights, size_t weight_count, uint32_t per_cell,
+                                                 uint32_t per_frame, lightbin_grid* limited,
+                                                 lightbin_cut* cut);
+
+/* Writes to `entries` in how many cells each light is listed, by its id as lightbin_lights numbers it, with
+ * LIGHTBIN_Z_BINS, too. *listed is the number of lights that any cell lists. Errors: fewer elements than grid->lights.
+ */
+LIGHTBIN_API lightbin_result lightbin_count_entries(const lightbin_grid* grid, uint32_t* entries,
+                                                    size_t capacity, uint32_t* listed);
+
+/* The list of one tile, with a count for each kind of light: from `offset` on the ids of so many spheres, then spots,
+ * then boxes. 16 bytes, laid out as a GPU's uvec4. */
+typedef struct lightbin_kind_range {
+    uint32_t offset, spheres, spots, boxes;
+} lightbin_kind_range;
+
+/* Writes a lightbin_kind_range for each range of a grid, so that a shader has a loop for each kind and asks no light
+ * for its kind. Errors: a grid with z-bins; fewer elements than grid->range_count. */
+LIGHTBIN_API lightbin_result lightbin_split_kinds(const lightbin_grid* grid, lightbin_kind_range* kinds,
+                                                  uint64_t capacity);
+
+/* Counts the lengths of a grid's lists. histogram[0] counts the lists without lights, histogram[k] those with 2^(k-1)
+ * to 2^k - 1 lights. */
+LIGHTBIN_API lightbin_result lightbin_list_lengths(const lightbin_grid* grid, uint32_t* longest,
+                                                   uint64_t histogram[33]);
+
+/* ---- Encodings ---- */
+
+/* How the list of a tile is stored. */
+typedef enum lightbin_encoding {
+    LIGHTBIN_OFFSET_COUNT = 0, /* a grid's ranges and one list of ids */
+    LIGHTBIN_SENTINEL = 1,     /* memory for `capacity` ids a tile; a shorter list ends with the largest id */
+    LIGHTBIN_BITMASK = 2       /* (max_lights + 31) / 32 words a tile */
+} lightbin_encoding;
+
+typedef struct lightbin_format {
+    uint32_t size;
+    int32_t encoding;    /* a lightbin_encoding */
+    int32_t ids;         /* a lightbin_ids */
+    uint32_t capacity;   /* for SENTINEL: the ids that a tile has memory for, 1 or more */
+    uint32_t max_lights; /* all ids are less; BITMASK needs it, else 0 means as many as the ids can number */
+} lightbin_format;
+
+/* What lightbin_encode() left out of lists that are longer than the capacity of a sentinel format. */
+typedef struct lightbin_encoded {
+    uint32_t size;
+    uint32_t tiles_cut; /* the number of tiles whose list was cut */
+    uint64_t entries_cut;
+    uint32_t capacity_needed; /* the length of the longest list: the least capacity that cuts none */
+    uint32_t unused;
+} lightbin_encoded;
+
+/* Computes how many bytes lightbin_encode() needs for so many tiles and list entries. */
+LIGHTBIN_API lightbin_result lightbin_encoded_bytes(const lightbin_format* format, uint64_t tiles,
+                                                    uint64_t entries, uint64_t* bytes);
+
+/* Writes the lists of a grid in another format, in this machine's byte order. Every list is complete, except that the
+ * sentinel format cuts lists that are longer than its capacity and counts what it cut. Errors: a format without its
+ * capacity or max_lights; an id that is too large for the format; memory that is too small. */
+LIGHTBIN_API lightbin_result lightbin_encode(const lightbin_grid* grid, const lightbin_format* format,
+                                             void* out, uint64_t out_bytes, lightbin_encoded* encoded);
+
+/* ---- Shader text that reads the lists ---- */
+
+typedef enum lightbin_shader_language {
+    LIGHTBIN_GLSL_330 = 0,    /* OpenGL 3.3 to 4.2 */
+    LIGHTBIN_GLSL_430 = 1,    /* OpenGL 4.3 and later */
+    LIGHTBIN_GLSL_VULKAN = 2, /* GLSL 450 for Vulkan */
+    LIGHTBIN_ESSL_300 = 3,    /* OpenGL ES 3.0, WebGL 2 */
+    LIGHTBIN_ESSL_310 = 4,    /* OpenGL ES 3.1 and later */
+    LIGHTBIN_HLSL_5_0 = 5,    /* shader model 5.0: Direct3D 11 */
+    LIGHTBIN_HLSL_5_1 = 6,    /* shader models 5.1 and 6.x: Direct3D 12 */
+    LIGHTBIN_WGSL = 7         /* WebGPU */
+} lightbin_shader_language;
+
+/* The kind of resource that holds the lists. */
+typedef enum lightbin_list_storage {
+    LIGHTBIN_STORAGE_BUFFER = 0,
+    LIGHTBIN_TEXEL_BUFFER = 1, /* buffer textures in GLSL, Buffer in HLSL; ES and WGSL have none */
+    LIGHTBIN_TEXTURE_2D = 2,   /* 2D textures, in every language */
+    LIGHTBIN_UNIFORM_BLOCK = 3,
+    LIGHTBIN_BYTE_ADDRESS = 4 /* ByteAddressBuffer, in HLSL only */
+} lightbin_list_storage;
+
+/* Where a resource is bound: binding and set in GLSL, register number and space in HLSL, binding and group in WGSL. */
+typedef struct lightbin_slot {
+    int32_t binding, set;
+} lightbin_slot;
+
+/* What lightbin_shader_snippet() generates. An option that is 0 is off and leaves nothing in the text. */
+typedef struct lightbin_snippet_options {
+    uint32_t size;
+    int32_t language;              /* a lightbin_shader_language */
+    int32_t storage;               /* a lightbin_list_storage */
+    int32_t slicing;               /* a lightbin_slicing, that of the binner */
+    const lightbin_format* format; /* of the lists; null: those of a binner whose ids have 32 bits */
+    const char* prefix;            /* every name in the text begins with it; null: "lightbin_" */
+    int32_t tile_size; /* in pixels, fixed in the text; 0: read at run time from the constant `grid` */
+    /* Read the ranges from a uniform block, and only the ids from `storage` */
+    int32_t tiles_in_uniform_block;
+    int32_t packed_ids;      /* texels of 32 bits hold several ids of 8 or 16 bits, as storage buffers do */
+    int32_t flip_y;          /* the shader counts pixel rows from the opposite end to the view's origin */
+    int32_t viewport_corner; /* the shader counts pixels in the window: subtract the constant `corner` */
+    int32_t heat_map;        /* add the functions `count` and `heat`, which show a pixel's number of lights */
+    int32_t wave_loop;       /* the lanes of a wave (subgroup) loop together over the union of their lists */
+    int32_t view_check;      /* add the function `check_view`: whether a pixel shows a view-space position */
+    int32_t list_check;      /* add the loop `for_each_missing` over the lights that a pixel's list lacks */
+    int32_t window;          /* add the function `window`, as lightbin_light_window() */
+    int32_t push_constants;  /* Vulkan: `grid` and `corner` are push constants */
+    uint32_t texture_width;  /* of 2D textures: texels in a row, up to 16384; 0: 2048 */
+    /* With uniform blocks, which have a fixed size: the most tiles in all slices and views, ids in all lists, slices.
+     * */
+    uint32_t max_tiles, max_entries, max_slices;
+    uint32_t uniform_block_bytes; /* the device's limit for one block; 0: 16384 */
+    int32_t slots_given;          /* 0: the slots are the bindings 0 to 5 of set 0 in the order below */
+    lightbin_slot tiles, lists, grid, slices, bins, view;
+    uint32_t views; /* how many views' lists lie one after another in the buffers, up to 512; 0: 1 */
+    int32_t split_kinds; /* the ranges are what lightbin_split_kinds() writes; adds `for_each_of_kind` */
+} lightbin_snippet_options;
+
+/* A shader text and the resources to bind for it. */
+typedef struct lightbin_shader lightbin_shader;
+
+/* Makes shader text that reads the lists, to be inserted after `#version`. In the shader, with the default prefix,
+ *
+ *     lightbin_for_each_light(light, uvec2(gl_FragCoord.xy), view_depth) { colour += shade(light.id); }
+ *
+ * then loops over the lights of a pixel. docs/opengl.md, vulkan.md, direct3d.md and webgpu.md have whole shaders, and
+ * the comment at shader_snippet() in shader.hpp lists all that the text declares. On success *shader is to be freed
+ * with lightbin_shader_destroy(). Errors: LIGHTBIN_CAPACITY_UNKNOWN to LIGHTBIN_NOT_A_PREFIX, LIGHTBIN_KINDS_OF_RANKS,
+ * LIGHTBIN_KINDS_WITHOUT_TABLE and LIGHTBIN_VIEWS_OUT_OF_RANGE, which name the option that the language, the lists or
+ * the device do not allow. */
+LIGHTBIN_API lightbin_result lightbin_shader_snippet(const lightbin_snippet_options* options,
+                                                     const lightbin_allocator* allocator,
+                                                     lightbin_shader** shader);
+LIGHTBIN_API void lightbin_shader_destroy(lightbin_shader* shader);
+
+/* Returns the text, which ends with a 0. Valid as long as the shader; null if shader is null. */
+LIGHTBIN_API const char* lightbin_shader_text(const lightbin_shader* shader);
+
+/* Returns the number of resources that the text reads; 0 if shader is null. */
+LIGHTBIN_API size_t lightbin_shader_binding_count(const lightbin_shader* shader);
+
+/* The kind of resource that a name in the text stands for. */
+typedef enum lightbin_shader_resource {
+    LIGHTBIN_RESOURCE_UNIFORM_VECTOR = 0, /* OpenGL: a uniform by itself, such as `grid` (uvec4) */
+    /* GLSL: std140 block; HLSL: cbuffer, register b; WGSL: var<uniform> */
+    LIGHTBIN_RESOURCE_UNIFORM_BLOCK = 1,
+    LIGHTBIN_RESOURCE_PUSH_CONSTANTS = 2, /* Vulkan */
+    /* Read-only; GLSL: std430 block; HLSL: StructuredBuffer, register t */
+    LIGHTBIN_RESOURCE_STORAGE_BUFFER = 3,
+    LIGHTBIN_RESOURCE_BYTE_ADDRESS = 4,   /* HLSL: ByteAddressBuffer, register t */
+    LIGHTBIN_RESOURCE_TEXEL_BUFFER = 5,   /* GLSL: buffer texture; HLSL: Buffer, register t */
+    LIGHTBIN_RESOURCE_TEXTURE_2D = 6,     /* read without a sampler; GLSL: set NEAREST and no mipmaps */
+    LIGHTBIN_RESOURCE_WRITABLE_BUFFER = 7 /* a storage buffer that is written; HLSL: register u */
+} lightbin_shader_resource;
+
+/* One resource that the program has to bind. */
+typedef struct lightbin_binding {
+    uint32_t size;
+    int32_t resource; /* a lightbin_shader_resource */
+    const char* name; /* the name in the text; valid as long as the shader */
+    lightbin_slot slot;
+    uint32_t stride; /* bytes of an element of a buffer */
+    uint32_t bytes;  /* the size of a uniform block or of push constants; 0 for others */
+    uint32_t width;  /* texels in a row of a 2D texture; 0 for others */
+    /* The format of texels in each graphics API's numbers: glTexImage2D()'s three arguments, of which glTexBuffer()
+     * needs the first; VkFormat; DXGI_FORMAT. 0 if there are no texels. */
+    uint32_t gl_internal_format, gl_format, gl_type, vk_format, dxgi_format;
+    const char* webgpu_format; /* such as "r32uint"; an empty text if there are no texels */
+} lightbin_binding;
+
+/* Writes the resource with an index, which is less than lightbin_shader_binding_count(). Set binding->size before. */
+LIGHTBIN_API lightbin_result lightbin_shader_binding(const lightbin_shader* shader, size_t index,
+                                                     lightbin_binding* binding);
+
+/* The constants `grid` and `corner` of the text, with the layout of its uniform block. `corner` is the least x and y of
+ * the viewport's pixels in the shader's own coordinates; only shaders with viewport_corner read it. */
+typedef struct lightbin_grid_constants {
+    uint32_t tile_size, tiles_x, width, height;
+    int32_t corner_x, corner_y, unused[2];
+} lightbin_grid_constants;
+LIGHTBIN_API lightbin_result lightbin_shader_grid(const lightbin_view* view, int32_t corner_x,
+                                                  int32_t corner_y, lightbin_grid_constants* constants);
+
+/* The constants `image` and `depths` that the text's function `check_view` reads.
+ *
+ * tolerance  how many pixels a position may be projected from its pixel's centre; 2 is usual */
+typedef struct lightbin_view_constants {
+    float scale_x, scale_y, offset_x, offset_y, forward, perspective, nearest, tolerance;
+} lightbin_view_constants;
+LIGHTBIN_API lightbin_result lightbin_shader_view(const lightbin_view* view, float tolerance,
+                                                  lightbin_view_constants* constants);
+
+/* Writes the content of the text's buffer `slices`: lightbin_slices_count() + 3 words. Errors: memory that is too
+ * small. */
+LIGHTBIN_API lightbin_result lightbin_shader_slices(const lightbin_slices* slices, uint32_t* words,
+                                                    size_t capacity);
+
+/* ---- Shaders that reduce depth and build grids on the GPU ---- */
+
+/* What lightbin_reduce_shader() generates: a shader that reduces a depth texture to the least and greatest view depth
+ * of each tile, as lightbin_reduce_depth() does. As a compute shader it is dispatched with one work group for each
+ * tile, and writes a vec2 for each tile to the storage buffer `z_bounds`. As a fragment shader it draws one fragment
+ * for each tile to a target of two 32-bit floats. */
+typedef struct lightbin_reduce_options {
+    uint32_t size;
+    int32_t language;                 /* a lightbin_shader_language */
+    const char* prefix;               /* null: "lightbin_" */
+    int32_t fragment;                 /* 0: a compute shader; not 0: a fragment shader */
+    int32_t samples;                  /* a pixel of the depth texture, 1 to 8; 0: 1 */
+    int32_t format;                   /* a lightbin_depth_format */
+    int32_t reversed_z, orthographic; /* those of lightbin_view_info */
+    int32_t skip_background;          /* not 0: ignore samples at the far plane, where nothing is drawn */
+    int32_t flip_y;                   /* not 0: row 0 of the texture is opposite to the view's origin */
+    int32_t viewport_corner;          /* not 0: the viewport begins at the texel `corner` of the texture */
+    int32_t push_constants;           /* not 0: Vulkan: the constants are push constants */
+    int32_t slots_given;              /* 0: the slots are the bindings 0 to 2 of set 0 in the order below */
+    lightbin_slot depth, z_bounds, grid;
+} lightbin_reduce_options;
+
+/* On success *shader is to be freed with lightbin_shader_destroy(). Errors name the option that the language or the
+ * device does not allow. */
+LIGHTBIN_API lightbin_result lightbin_reduce_shader(const lightbin_reduce_options* options,
+                                                    const lightbin_allocator* allocator,
+                                                    lightbin_shader** shader);
+
+/* The constants `grid`, `planes` and `corner` of lightbin_reduce_shader(), with the layout of its uniform block. */
+typedef struct lightbin_reduce_constants {
+    uint32_t tile_size, tiles_x, width, height;
+    float far_end, slope, margin, unused;
+    int32_t corner_x, corner_y, unused_corner[2];
+} lightbin_reduce_constants;
+LIGHTBIN_API lightbin_result lightbin_shader_reduce(const lightbin_view* view, int32_t corner_x,
+                                                    int32_t corner_y, lightbin_reduce_constants* constants);
+
+/* The three compute shaders that build a light grid on the GPU, in the order of their dispatches. */
+typedef enum lightbin_build_pass {
+    /* Counts the lights of each tile; tiles_x by tiles_y work groups, with clusters slices * tiles_y */
+    LIGHTBIN_COUNT = 0,
+    LIGHTBIN_OFFSETS = 1, /* makes offsets and the total of the counts; one work group */
+    LIGHTBIN_FILL = 2     /* writes the lists; as many work groups as COUNT */
+} lightbin_build_pass;
+
+/* What lightbin_build_shader() generates. The three passes need the same options except for `pass`. */
+typedef struct lightbin_build_options {
+    uint32_t size;
+    int32_t language;   /* a lightbin_shader_language */
+    const char* prefix; /* null: "lightbin_" */
+    int32_t pass;       /* a lightbin_build_pass */
+    int32_t depth_test; /* a lightbin_depth_test; SPLIT_BOX is an error */
+    int32_t slicing;    /* a lightbin_slicing; Z_BINS is an error */
+    /* Not 0: test with the maximum Z bound alone, for transparent geometry; not with clusters */
+    int32_t max_only;
+    int32_t orthographic;   /* that of lightbin_view_info; read with BOX */
+    int32_t push_constants; /* not 0: Vulkan: the constants are push constants */
+    int32_t slots_given;    /* 0: bindings 0, 1, 2, 3, 3 and 4 of set 0 in the order below */
+    lightbin_slot footprints, z_bounds, tiles, lists, total, grid;
+    int32_t unused;
+} lightbin_build_options;
+
+/* On success *shader is to be freed with lightbin_shader_destroy(). Errors name the option that the language or the
+ * device does not allow. */
+LIGHTBIN_API lightbin_result lightbin_build_shader(const lightbin_build_options* options,
+                                                   const lightbin_allocator* allocator,
+                                                   lightbin_shader** shader);
+
+/* The constants `grid` and `planes` of lightbin_build_shader(), with the layout of its uniform block. */
+typedef struct lightbin_build_constants {
+    uint32_t tiles_x, rows, footprints, capacity;
+    float near_depth, far_depth, tiles_y, unused;
+} lightbin_build_constants;
+
+/* Writes the constants of lightbin_build_shader() for a view.
+ *
+ * footprints  how many footprints lightbin_shader_footprints() wrote
+ * capacity    how many ids fit in the buffer `lists`
+ * slices      the number of slices with clusters, otherwise 1 */
+LIGHTBIN_API lightbin_result lightbin_shader_build(const lightbin_view* view, uint32_t footprints,
+                                                   uint32_t capacity, int32_t slices,
+                                                   lightbin_build_constants* constants);
+
+/* A light in view, as the build shaders read it: its id, its tiles x0 to x1 and y0 to y1, ends included, and a sphere
+ * around it: x and y are in view space, negated where tile indices fall as they grow, z is the view depth, and reach2
+ * is the squared radius, rounded up. */
+typedef struct lightbin_shader_footprint {
+    uint32_t id;
+    uint16_t x0, y0, x1, y1;
+    float reach2, x, y, z, radius;
+} lightbin_shader_footprint;
+
+/* Writes the footprints of the lights in view, by ascending id, the input of the build shaders, and their number to
+ * *count. If the memory is too small, *count is the number that is needed and the error LIGHTBIN_BUFFER_TOO_SMALL. */
+LIGHTBIN_API lightbin_result lightbin_shader_footprints(const lightbin_view* view,
+                                                        const lightbin_lights* lights,
+                                                        lightbin_shader_footprint* footprints,
+                                                        size_t capacity, size_t* count);
+
+/* The ends of an interval: the sides of a tile column or row, or the view depths of a slice. */
+typedef struct lightbin_edges {
+    float low, high;
+} lightbin_edges;
+
+/* Write what the build shaders read in the buffer `z_bounds`: the two sides of each tile column and then of each tile
+ * row; the depths of the slices. *count is their number; errors are those of lightbin_shader_footprints(). */
+LIGHTBIN_API lightbin_result lightbin_shader_edges(const lightbin_view* view, lightbin_edges* edges,
+                                                   size_t capacity, size_t* count);
+LIGHTBIN_API lightbin_result lightbin_shader_slabs(const lightbin_slices* slices, lightbin_edges* slabs,
+                                                   size_t capacity, size_t* count);
+
+/* ---- Advice ---- */
+
+/* Costs that depend on the renderer and the GPU and so can't be measured here, in nanoseconds. */
+typedef struct lightbin_costs {
+    uint32_t size;
+    uint32_t unused;
+    double evaluation_ns; /* of one light at one pixel, 0.005 to 0.05 on a whole GPU; 0: 0.02 */
+    /* Of the depth pre-pass and its reduction to Z bounds; 0 if the renderer does both anyway */
+    double z_bounds_ns;
+    double upload_byte_ns; /* of moving one byte of the lists to the GPU: 0.1 at 10 GB/s */
+    double overdraw;       /* fragments shaded per visible pixel without a pre-pass; 0: 1 */
+} lightbin_costs;
+
+/* One way to light a view, and its costs a frame. */
+typedef struct lightbin_plan {
+    uint32_t size;
+    int32_t tiled; /* 0: every pixel evaluates every light, and all members up to tile_size mean nothing */
+    int32_t footprint, depth_test, slicing, tile_size;
+    double build_ns;    /* of building the lists, with z_bounds_ns if the plan has Z bounds */
+    double upload_ns;   /* of moving the lists to the GPU */
+    double evaluations; /* of a light at a pixel; with `overdraw` if the plan has no Z bounds */
+    double total_ns;    /* build_ns + upload_ns + evaluations * evaluation_ns */
+    uint64_t entries;   /* in all lists together */
+} lightbin_plan;
+
+/* Plans that were measured. */
+typedef struct lightbin_advice lightbin_advice;
+
+/* Measures on this machine what each way to light a view costs: every light at every pixel; tiles of the view's tile
+ * size, of 2, 4 and 8 times that size and of the whole screen, with rectangles, silhouettes, and the depth tests that
+ * the bounds allow and the program has. To be called once for each scene, as it takes as long as some hundreds of
+ * builds. On success *advice is to be freed with lightbin_advice_destroy(). Errors: those of lightbin_bin().
+ *
+ * view    with the smallest tiles that the program would use
+ * costs   null: the defaults
+ * bounds  of the view's own tiles; null: no depth test is measured, and every pixel is taken to have something to light
+ *         */
+LIGHTBIN_API lightbin_result lightbin_advise(const lightbin_view* view, const lightbin_lights* lights,
+                                             const lightbin_costs* costs, const lightbin_z_bounds* bounds,
+                                             const lightbin_allocator* allocator, lightbin_advice** advice);
+
+/* Measures, as lightbin_advise() does, the ways that need no depth pre-pass: tiles, clusters and z-bins.
+ *
+ * clusters, z_bins       the slices to measure each with: typically some dozens, and some hundreds
+ * depths, columns, rows  columns * rows view depths of visible surfaces, at points spread evenly over the viewport, row
+ *                        by row from its origin. NaN or infinity marks a point with nothing to light */
+LIGHTBIN_API lightbin_result lightbin_advise_slices(
+    const lightbin_view* view, const lightbin_lights* lights, const lightbin_slices* clusters,
+    const lightbin_slices* z_bins, const float* depths, int32_t columns, int32_t rows,
+    const lightbin_costs* costs, const lightbin_allocator* allocator, lightbin_advice** advice);
+LIGHTBIN_API void lightbin_advice_destroy(lightbin_advice* advice);
+
+/* Returns the number of plans; 0 if advice is null. */
+LIGHTBIN_API size_t lightbin_advice_count(const lightbin_advice* advice);
+
+/* Writes the plan with an index, which is less than lightbin_advice_count(); 0 is the cheapest. Set plan->size before.
+ */
+LIGHTBIN_API lightbin_result lightbin_advice_plan(const lightbin_advice* advice, size_t index,
+                                                  lightbin_plan* plan);
+
+/* Returns the cheapest plan and a line for each part with what it saves or would cost, and a table of all plans, for
+ * people to read. Valid as long as the advice; null if advice is null. */
+LIGHTBIN_API const char* lightbin_advice_text(const lightbin_advice* advice);
+LIGHTBIN_API const char* lightbin_advice_table(const lightbin_advice* advice);
+
+/* ---- Lights' ranges ---- */
+
+/* Returns the distance at which a point light has fallen to a cutoff, sqrt(intensity / cutoff), rounded up: in metres
+ * for an intensity in candela and a cutoff in lux. An intensity of 0 or less gives 0; a cutoff of 0 or less gives +inf.
+ */
+LIGHTBIN_API float lightbin_light_range(float intensity, float cutoff);
+
+/* Returns the factor by which to multiply a light so that it fades smoothly to nothing at its range, and no seams show
+ * at the borders of tiles: (1 - (distance / range)^4)^2, and 0 from the range on. A range of +inf gives 1. */
+LIGHTBIN_API float lightbin_light_window(float distance, float range);
+
+#if defined(__cplusplus)
+} /* extern "C" */
+#endif
+
+#endif /* LIGHTBIN_LIGHTBIN_H */
+
+#if defined(LIGHTBIN_IMPLEMENTATION)
+#include <lightbin/detail/c/implementation.hpp>
+#endif
