@@ -22,15 +22,18 @@ mkdir -p $work
 common="-std=c++20 -Iinclude"
 failed=
 
+# verdicts_of LOG: what shape_proof.hpp counted, a camera kind a line: kind|verdicts|by_shape|open|missed
+verdicts_of() {
+    sed -n 's/.*MESSAGE: \([a-z_ ]*\): \([0-9]*\) verdicts, \([0-9]*\) not by balls alone, \([0-9]*\) left open, \([0-9]*\) missed/\1|\2|\3|\4|\5/p' \
+        "$1"
+}
 # spots_with NAME COMPILER FLAGS ROUNDS: tests/oracle/spots.cpp at length; what it counted, a camera kind a line, in NAME.spots
 spots_with() {
     echo "$me: spots, $2 $3: $4 rounds of each camera kind"
     # shellcheck disable=SC2086  # several flags
     "$2" $common $3 tests/oracle/spots.cpp $work/doctest_main.o -lgmp -o "$work/spots_$1" || fail "$1 does not compile"
-    LIGHTBIN_SPOT_ROUNDS=$4 nice -n 19 "$work/spots_$1" >"$work/spots_$1.log" || failed="$failed $work/spots_$1.log"
-    # kind verdicts certificates open missed
-    sed -n 's/.*MESSAGE: \([a-z_ ]*\): \([0-9]*\) verdicts, \([0-9]*\) by certificates, \([0-9]*\) left open, \([0-9]*\) missed/\1|\2|\3|\4|\5/p' \
-        "$work/spots_$1.log" | tr ' |' '_ ' >"$work/$1.spots"
+    LIGHTBIN_ROUNDS=$4 nice -n 19 "$work/spots_$1" >"$work/spots_$1.log" || failed="$failed $work/spots_$1.log"
+    verdicts_of "$work/spots_$1.log" | tr ' |' '_ ' >"$work/$1.spots"
     [ "$(wc -l <"$work/$1.spots")" -ge 20 ] || fail "spots, $2 $3: camera kinds are missing, see $work/spots_$1.log"
     echo "$2 $3" >"$work/$1.spots_name"
 }
@@ -81,23 +84,23 @@ spots() {
 # boxes ROUNDS: tests/oracle/boxes.cpp at length, and that part of the report in boxes.md
 boxes() {
     echo "$me: boxes, $1 rounds of each camera kind"
+    begin=$(date +%s)
     g++ $common -O1 -c tests/doctest_main.cpp -o $work/doctest_main.o
     g++ $common -O2 tests/oracle/boxes.cpp $work/doctest_main.o -lgmp -o $work/boxes || fail "boxes.cpp does not compile"
-    LIGHTBIN_BOX_ROUNDS=$1 nice -n 19 $work/boxes >$work/boxes.log || failed="$failed $work/boxes.log"
+    LIGHTBIN_ROUNDS=$1 nice -n 19 $work/boxes >$work/boxes.log || failed="$failed $work/boxes.log"
     {
         echo "## Boxes"
         echo
         echo "Made by \`sh tests/campaign.sh boxes $1\` on $(date -u +%Y-%m-%d), at commit $(git rev-parse --short HEAD)," \
-            "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), g++ -O2."
+            "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), g++ -O2, in $((($(date +%s) - begin + 59) / 60)) minutes."
         echo
         echo "Boxes and balls cut by boxes in view and world space: random, flat, thin, sheared, huge, tapered, around the eye, at"
         echo "the near plane, touching and of any bits, on the rungs that the spots are on. A verdict says that a light does not"
         echo "meet cells whose lists lack it. None is left open: what double precision can't prove is decided in rationals."
         echo
-        echo "| cameras | verdicts | not by balls alone | in rationals | misses |"
-        echo "| --- | --- | --- | --- | --- |"
-        sed -n 's/.*MESSAGE: \([a-z_ ]*\): \([0-9]*\) verdicts, \([0-9]*\) not [a-z ]*, \([0-9]*\) in rat.*, \([0-9]*\) missed/| \1 | \2 | \3 | \4 | \5 |/p' \
-            $work/boxes.log | tr _ ' '
+        echo "| cameras | verdicts | not by balls alone | misses |"
+        echo "| --- | --- | --- | --- |"
+        verdicts_of $work/boxes.log | awk -F '|' '{ gsub("_", " "); printf "| %s | %s | %s | %s |\n", $1, $2, $3, $5 }'
     } >$work/boxes.md
     [ "$(grep -c '^| [a-z ]* | [0-9]' $work/boxes.md)" -ge 20 ] || fail "boxes: camera kinds are missing, see $work/boxes.log"
 }

@@ -70,6 +70,7 @@ END {
     echo '#include "given.hpp"'
     echo 'lightbin::Sphere to_sphere(const Lamp&);'
     echo 'lightbin::Spot to_spot(const Lamp&);'
+    echo 'lightbin::Box to_box(const Decal&);'
     echo 'void advised() {'
     echo 'const auto run = [&](std::size_t n, const auto& body) { pool.parallel_for(n, body); };'
     sed '1,/^code$/d' "$work/said"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the example bins a light as holds every point that its shader gives light to: the shader's falloff again, in
-// floats and with the worst roots that GLSL allows, at points all around the cone's edge.
+// What the example bins a light or a box as holds every point that its shader changes. The light: the shader's falloff
+// again, in floats and with the worst roots that GLSL allows, at points all around the cone's edge. The box: the shader's
+// coordinates again, in floats, at points beside the faces.
 #include "gpu_light.hpp"
 
 #include <doctest/doctest.h>
@@ -46,7 +47,77 @@ double above(const lightbin::Spot& spot, const glm::vec3& point) {
            static_cast<double>(spot.cos_half_angle);
 }
 
+// Whether the shader's function apply_box changes the point. It may add up its products in any order.
+bool is_changed(const GpuBox& box, const glm::vec3& point, bool backwards) {
+    glm::vec3 place;
+    for (int i = 0; i < 3; ++i) {
+        const glm::vec4 product = box.rows[i] * glm::vec4(point, 1);
+        place[i] = backwards ? product.w + product.z + product.y + product.x
+                             : product.x + product.y + product.z + product.w;
+    }
+    const float taper = box.eye_taper.w, width = 0.5f * (1 + taper + place.z * (1 - taper));
+    return std::abs(place.x) < width && std::abs(place.y) < width && std::abs(place.z) < 1;
+}
+
+// How far out a point is between the middle of a box and its faces, where it is 1. `rows` are those of a GpuBox.
+double outwards(const glm::dmat4& rows, double taper, const glm::vec3& point) {
+    const glm::dvec3 place(glm::dvec4(glm::dvec3(point), 1) * rows);
+    const double width = (1 + taper + place.z * (1 - taper)) / 2;
+    return std::max({std::abs(place.z), std::abs(place.x) / width, std::abs(place.y) / width});
+}
+
+// The rows of a Box, from its contract.
+glm::dmat4 rows_of(const lightbin::Box& box) {
+    glm::dmat4 axes(1);
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k)
+            axes[i][k] = static_cast<double>(box.half_axes[i][k]);
+    axes[3] = {box.box_x, box.box_y, box.box_z, 1};
+    return glm::transpose(glm::inverse(axes));
+}
+
 }  // namespace
+
+TEST_CASE("every point that a box changes lies in what it is binned as") {
+    Dice dice;
+    int changed = 0, outside = 0, outside_without_margin = 0;
+    for (int round = 0; round < 3000; ++round) {
+        const glm::dvec3 z = dice.direction(), x = glm::normalize(glm::cross(z, dice.direction())),
+                         y = glm::cross(z, x);
+        const double taper = round % 2 == 0 ? 1 : dice.between(0.02, 0.9);
+        SceneBox scene_box;
+        scene_box.centre = glm::vec3(dice.between(1, 100) * dice.direction());
+        scene_box.half_axes =
+            glm::mat3(dice.between(0.1, 5) * x, dice.between(0.1, 5) * y, dice.between(0.1, 5) * z);
+        scene_box.taper = static_cast<float>(taper);
+        const GpuBox gpu = gpu_box(scene_box, glm::dmat4(1));
+        const lightbin::Box box = box_of(gpu);
+        const glm::dmat4 rows = rows_of(box);
+        glm::dmat4 read(1);  // what the shader reads
+        for (int i = 0; i < 3; ++i)
+            read[i] = glm::dvec4(gpu.rows[i]);
+
+        for (int i = 0; i < 100; ++i) {
+            glm::dvec3 place = {dice.between(-1, 1), dice.between(-1, 1), dice.between(-1, 1)};
+            place[i % 3] =
+                (i % 2 == 0 ? 1 : -1) * (1 + dice.between(-1, 1) * std::pow(2, -dice.between(12, 24)));
+            const double width = (1 + taper + place.z * (1 - taper)) / 2;
+            const glm::vec3 point(glm::dvec3(scene_box.centre) +
+                                  glm::dmat3(scene_box.half_axes) * (place * glm::dvec3(width, width, 1)));
+            for (const bool backwards : {false, true}) {
+                if (!is_changed(gpu, point, backwards)) continue;
+                ++changed;
+                const double apart = glm::length(glm::dvec3(point) - glm::dvec3(box.x, box.y, box.z));
+                outside += outwards(rows, static_cast<double>(box.taper), point) > 1 ||
+                           apart > static_cast<double>(box.radius);
+                outside_without_margin += outwards(read, static_cast<double>(gpu.eye_taper.w), point) > 1;
+            }
+        }
+    }
+    CHECK(changed > 100000);
+    CHECK(outside == 0);
+    CHECK(outside_without_margin > 100);
+}
 
 TEST_CASE("every lit point lies in the spot") {
     Dice dice;

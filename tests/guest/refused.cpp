@@ -129,5 +129,8 @@ void mistake() {
 #elif MISTAKE == 36  // these lights are gone after the expression
     const std::vector<lightbin::Spot> spots;
     (void)binner.bin(*view, lightbin::lights(std::vector<lightbin::Sphere>(), spots));
+#elif MISTAKE == 37  // these lights are gone after the expression
+    const std::vector<lightbin::Spot> spots;
+    (void)binner.bin(*view, lightbin::lights(lightbin::view_space(std::vector<lightbin::Sphere>()), spots));
 #endif
 }

@@ -241,9 +241,12 @@ void use_view(Hash& hash, const View& view) {
         hash, view, spheres, {min, max, min, max});
     const std::vector<Spot> spots = {to_spot(vectors[0]), to_spot(vectors[1]), Spot::whole(spheres[2])};
     const glm::vec3 up(0, 1, 0), along(0, 0, -1);
-    const std::vector<Box> boxes = {whole_box(corner, side, up, along), whole_box(camera, 0.5), half_sphere(spheres[3], up),
+    const std::vector<Box> boxes = {whole_box(corner, side, up, along),
+                                    whole_box(camera, 0.5),
+                                    half_sphere(spheres[3], up),
                                     clipped_sphere(spheres[4], whole_box(corner, side, up, along)),
-                                    projector_box(corner, along, side, up, 0.1), tube_box(corner, side, 2)};
+                                    projector_box(corner, along, side, up, 0.1),
+                                    tube_box(corner, side, 2)};
     const auto all = lights(spheres, spots, world_space(boxes, camera));
     use_lights(hash, view, boxes, bounds);
     use_lights(hash, view, lights(spots, boxes), bounds);

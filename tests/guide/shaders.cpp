@@ -28,11 +28,13 @@ std::string whole(lightbin::ShaderLanguage language, const std::string& block) {
     const bool multiview = block.find("gl_ViewID_OVR") != std::string::npos;
     const auto snippet = lightbin::shader_snippet({.language = language,
                                                    .views = multiview ? 2u : 1u,
+                                                   .split_kinds = block.find("for_each_of_kind") != std::string::npos,
                                                    .view_check = true,
                                                    .list_check = true,
                                                    .window = true});
     if (language == lightbin::ShaderLanguage::hlsl_5_0)
-        return snippet->text + "float3 shade(uint id, float3 position) { return float3(id, 0, 0) + position; }\n" + block;
+        return snippet->text + "float3 shade(uint id, float3 position) { return float3(id, 0, 0) + position; }\n" +
+               block;
     const std::string start = std::string("#version 450\n") +
                               (multiview ? "#extension GL_OVR_multiview2 : require\n" : "") + snippet->text + given;
     if (block.find("main(") != std::string::npos) return start + block;
@@ -49,7 +51,8 @@ void compile_opengl(const std::string& text) {
 }
 
 /// Compiles the blocks of a language in a page, and returns how many there are.
-int compile_blocks(const char* page, const std::string& text, lightbin::ShaderLanguage language, const std::string& name) {
+int compile_blocks(const char* page, const std::string& text, lightbin::ShaderLanguage language,
+                   const std::string& name) {
     const bool hlsl = language == lightbin::ShaderLanguage::hlsl_5_0;
     int blocks = 0;
     const std::string begin = "```" + name + "\n";

@@ -4,8 +4,9 @@
 //
 //     hunt [--rounds N | --seconds N] [--seed N | --seed random] [--first ROUND]
 //
-// A round makes a camera, lights, points in the lights, Z bounds and slices, and looks for the light of each point in the
-// grids of every kind. A fault is printed with its seed and round: `hunt --seed S --first R --rounds 1` goes there again.
+// A round makes a camera, lights, points in the lights, Z bounds and slices, and looks for the light of each point in
+// the grids of every kind. A fault is printed with its seed and round: `hunt --seed S --first R --rounds 1` goes there
+// again.
 #include "scene.hpp"
 
 #include <lightbin/shader_build.hpp>
@@ -16,9 +17,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
-#include <new>
 #include <numeric>
 #include <random>
+#include <string>
 #include <string_view>
 
 namespace hunt {
@@ -27,9 +28,6 @@ namespace {
 using lightbin::DepthTest;
 using lightbin::Isa;
 using lightbin::Slicing;
-using Long = long double;
-
-constexpr const char* bounds_kinds[] = {"absent", "minimum", "maximum", "both", "tight", "gaps", "nasty bounds"};
 
 /// A point of a light that is surely seen, and surely in one tile.
 struct Placed {
@@ -56,31 +54,26 @@ bool surely_within(const Bounds& bounds, bool with_gaps, std::size_t tile, Real 
            surely_at_most(static_cast<Long>(gap_max[tile]), depth);
 }
 
-/// Makes Z bounds as a caller may have them: those of a tile hold some of the points in the tile, and hardly more.
-Bounds make_bounds(std::string_view name, const lightbin::View& view, const std::vector<Placed>& points, Random& random) {
+/// Makes Z bounds as a caller may have them: both, one or none, with gaps or without. Those of a tile hold two of the
+/// points in the tile, or one, and hardly more; where there is no point they are as for nothing drawn, or for anything.
+/// Now and then they are floats that nobody would pass.
+Bounds make_bounds(const lightbin::View& view, const std::vector<Placed>& points, Random& random) {
     Bounds bounds;
-    if (name == "absent") return bounds;
     const std::size_t tiles = view.tile_count(), size = tiles + (random.coin() ? 0 : random.below(std::size_t{70}));
-    const bool gaps = name == "gaps" || random.one_in(4), nasty = name == "nasty bounds";
-    if (name != "maximum") bounds.sides[0].resize(size, -7.0f);
-    if (name != "minimum") bounds.sides[1].resize(size, 7.0f);
-    if (gaps)
-        for (int i = 2; i < 4; ++i)
-            bounds.sides[i].resize(size, 0.0f);
-    const auto side = [&](int i, std::size_t tile) -> float& {
-        static float none;
-        return bounds.sides[i].empty() ? none : bounds.sides[i][tile];
+    const bool nasty = random.one_in(6);
+    const int absent = random.below(6);  // a side, or none
+    for (int i = 0; i < 4; ++i)
+        if (absent != 5 && absent != i && (i < 2 || random.coin())) bounds.sides[i].resize(size, 7.0f);
+    const auto set = [&](std::size_t tile, std::initializer_list<float> values) {
+        for (int i = 0; i < static_cast<int>(values.size()); ++i)
+            if (!bounds.sides[i].empty())
+                bounds.sides[i][tile] = nasty && random.one_in(3) ? nasty_float(random) : values.begin()[i];
     };
-    for (std::size_t tile = 0; tile < tiles; ++tile) {
-        if (nasty && random.coin())
-            for (int i = 0; i < 4; ++i)
-                side(i, tile) = nasty_float(random);
-        else if (random.one_in(3))
-            side(0, tile) = infinite, side(1, tile) = -infinite;  // nothing is drawn
+    for (std::size_t tile = 0; tile < tiles; ++tile)
+        if (random.one_in(3))
+            set(tile, {infinite, -infinite, 0, 0});
         else
-            side(0, tile) = view.near_depth(), side(1, tile) = view.far_depth();
-    }
-    // Between two points of a tile's, with the gap between them.
+            set(tile, {view.near_depth(), view.far_depth(), 0, 0});
     std::vector<std::pair<std::size_t, std::size_t>> by_tile;
     for (std::size_t i = 0; i < points.size(); ++i)
         by_tile.emplace_back(points[i].tile, i);
@@ -89,16 +82,12 @@ Bounds make_bounds(std::string_view name, const lightbin::View& view, const std:
         const std::size_t tile = by_tile[begin].first;
         for (end = begin; end < by_tile.size() && by_tile[end].first == tile;)
             ++end;
-        if (nasty && random.coin()) continue;
         const auto depth = [&] { return points[by_tile[begin + random.below(end - begin)].second].seen.depth; };
-        Real least = depth(), most = depth();
+        Real least = depth(), most = random.one_in(4) ? least : depth();
         if (most.value < least.value) std::swap(least, most);
-        if (name == "tight") most = least;
-        side(0, tile) = float_down(least.low());
-        side(1, tile) = float_up(most.high());
-        side(2, tile) = float_up(least.high());
-        side(3, tile) = float_down(most.low());
-        if (name == "gaps" && random.one_in(4)) side(0, tile) = -infinite, side(1, tile) = infinite;
+        const bool gap_alone = random.one_in(8);
+        set(tile, {gap_alone ? -infinite : float_down(least.low()), gap_alone ? infinite : float_up(most.high()),
+                   float_up(least.high()), float_down(most.low())});
     }
     return bounds;
 }
@@ -125,10 +114,10 @@ lightbin::Slices make_slices(const std::vector<Placed>& points, int count, Rando
 }
 
 struct Input {
-    const lightbin::View* view;
-    const Scene* scene;
-    lightbin::ZBounds bounds;
-    const lightbin::Slices* slices;
+    const lightbin::View& view;
+    const Scene& scene;
+    const Bounds& bounds;
+    const lightbin::Slices& slices;
     std::uint64_t seed;  ///< of how the work is shared
 };
 
@@ -138,27 +127,36 @@ struct Grid {
     std::vector<std::uint32_t> ids, order;
     std::vector<lightbin::BinRange> bins;
     lightbin::LightCounts counts;
-
-    std::span<const std::uint32_t> of(std::size_t cell) const {
-        return std::span(ids).subspan(ranges[cell].offset, ranges[cell].count);
-    }
 };
 
-/// A loop for lightbin::Parallel that runs the bodies on the calling thread, forward, backward or shuffled.
+bool same(const Grid& a, const Grid& b) {
+    const auto bytes = [](const auto& one, const auto& other) {
+        return one.size() == other.size() &&
+               (one.empty() || std::memcmp(one.data(), other.data(), one.size() * sizeof one[0]) == 0);
+    };
+    return bytes(a.ranges, b.ranges) && bytes(a.ids, b.ids) && bytes(a.order, b.order) && bytes(a.bins, b.bins);
+}
+
+/// Runs the bodies on the calling thread, in any order.
 struct Runner {
     template <class Body> void operator()(std::size_t n, const Body& body) const {
         std::vector<std::size_t> order(n);
         std::iota(order.begin(), order.end(), std::size_t{0});
         Random random(seed);
-        if (random.coin()) std::reverse(order.begin(), order.end());
-        if (random.coin())
-            for (std::size_t i = n; i > 1; --i)
-                std::swap(order[i - 1], order[random.below(i)]);
+        for (std::size_t i = n; i > 1; --i)
+            std::swap(order[i - 1], order[random.below(i)]);
         for (const std::size_t i : order)
             body(i);
     }
     std::uint64_t seed;
 };
+
+/// Calls with lights that are in view space, or with a matrix of floats or doubles.
+template <class Call> auto with_lights(const Scene& scene, Call call) {
+    if (!scene.in_world) return call(lightbin::view_space(scene.lights));
+    if (scene.in_float) return call(lightbin::world_space(scene.lights, glm::mat4(scene.to_view)));
+    return call(lightbin::world_space(scene.lights, scene.to_view));
+}
 
 /// Bins with a Binner that lives on from call to call, unless its grid is large.
 template <lightbin::Options options> lightbin::Result<Grid> bin(const Input& input) {
@@ -167,12 +165,9 @@ template <lightbin::Options options> lightbin::Result<Grid> bin(const Input& inp
     if (!binner || random.one_in(8)) binner = std::make_unique<lightbin::Binner<options>>();
     const Runner runner = {input.seed};
     const lightbin::Parallel threads(random.pick<std::size_t>({1, 1, 2, 3, 4, 7, 8, 16, 33, 64}), runner, 0);
-    const auto inputs = lightbin::inputs_for<options>(input.bounds, *input.slices);
-    const auto run = [&](const auto& lights) { return binner->bin(*input.view, lights, inputs, threads); };
-    const Scene& scene = *input.scene;
-    const auto grid = !scene.in_world  ? run(scene.lights)
-                      : scene.in_float ? run(lightbin::world_space(scene.lights, glm::mat4(scene.to_view)))
-                                       : run(lightbin::world_space(scene.lights, scene.to_view));
+    const auto inputs = lightbin::inputs_for<options>(input.bounds.spans(), input.slices);
+    const auto grid =
+        with_lights(input.scene, [&](const auto& lights) { return binner->bin(input.view, lights, inputs, threads); });
     if (!grid) return grid.error();
     const auto copy = [](auto from, auto& to) { to.assign(from.begin(), from.end()); };
     Grid out;
@@ -185,95 +180,82 @@ template <lightbin::Options options> lightbin::Result<Grid> bin(const Input& inp
 
 /// A Binner's options, compiled for each instruction set.
 struct BinnerKind {
-    std::string name;
+    lightbin::Footprint footprint;
     DepthTest depth_test;
     Slicing slicing;
     lightbin::Result<Grid> (*bins[4])(const Input&);
+    std::uint64_t points = 0;  ///< that were looked for
 
     template <lightbin::Footprint footprint, DepthTest depth_test, Slicing slicing = Slicing::none>
     static BinnerKind of() {
         constexpr auto on = [](Isa isa) {
             return lightbin::Options{.footprint = footprint, .depth_test = depth_test, .slicing = slicing, .isa = isa};
         };
-        return {std::string(to_string(footprint)) + ", " + to_string(depth_test) + ", " + to_string(slicing),
+        return {footprint,
                 depth_test,
                 slicing,
                 {bin<on(Isa::scalar)>, bin<on(Isa::simd128)>, bin<on(Isa::avx2)>, bin<on(lightbin::compiled_isa)>}};
     }
+    std::string name() const {
+        return std::string(to_string(footprint)) + ", " + to_string(depth_test) + ", " + to_string(slicing);
+    }
 };
 
-const std::vector<BinnerKind>& binner_kinds() {
+std::vector<BinnerKind> binner_kinds() {
     using enum lightbin::Footprint;
     using enum DepthTest;
-    static const std::vector<BinnerKind> all = {
-        BinnerKind::of<rectangle, none>(),
-        BinnerKind::of<rectangle, interval>(),
-        BinnerKind::of<rectangle, box>(),
-        BinnerKind::of<rectangle, split_box>(),
-        BinnerKind::of<silhouette, none>(),
-        BinnerKind::of<silhouette, interval>(),
-        BinnerKind::of<silhouette, box>(),
-        BinnerKind::of<silhouette, split_box>(),
-        BinnerKind::of<rectangle, none, Slicing::clusters>(),
-        BinnerKind::of<rectangle, box, Slicing::clusters>(),
-        BinnerKind::of<silhouette, box, Slicing::clusters>(),
-        BinnerKind::of<rectangle, none, Slicing::z_bins>(),
-        BinnerKind::of<silhouette, none, Slicing::z_bins>(),
-    };
-    return all;
+    return {BinnerKind::of<rectangle, none>(),
+            BinnerKind::of<rectangle, interval>(),
+            BinnerKind::of<rectangle, box>(),
+            BinnerKind::of<rectangle, split_box>(),
+            BinnerKind::of<silhouette, none>(),
+            BinnerKind::of<silhouette, interval>(),
+            BinnerKind::of<silhouette, box>(),
+            BinnerKind::of<silhouette, split_box>(),
+            BinnerKind::of<rectangle, none, Slicing::clusters>(),
+            BinnerKind::of<rectangle, box, Slicing::clusters>(),
+            BinnerKind::of<silhouette, box, Slicing::clusters>(),
+            BinnerKind::of<rectangle, none, Slicing::z_bins>(),
+            BinnerKind::of<silhouette, none, Slicing::z_bins>()};
 }
-
-/// What a hunt has come to so far.
-struct Report {
-    Tally tally;               ///< views of each kind, and points looked for
-    std::uint64_t points = 0;  ///< looked for in lists, all kinds of Binners together
-    std::uint64_t grids = 0;
-    std::vector<std::string> faults;
-};
 
 class Round {
 public:
-    Round(std::uint64_t seed, std::uint64_t round, Report& report)
-        : seed_(seed), round_(round), random_(seed ^ round * 0xd1342543de82ef95), report_(report) {}
+    Round(std::uint64_t seed, std::uint64_t round, std::vector<BinnerKind>& kinds, std::vector<std::string>& faults)
+        : name_("seed " + std::to_string(seed) + ", round " + std::to_string(round)),
+          random_(seed ^ round * 0xd1342543de82ef95), kinds_(kinds), faults_(faults) {}
 
     void run() {
-        // Each kind comes up once in as many rounds as there are kinds.
-        const auto deal = [&](int salt, auto& kinds) {
-            return dealt(seed_ * 31 + static_cast<std::uint64_t>(salt), round_, static_cast<int>(std::size(kinds)));
-        };
-        const int camera_kind = deal(1, camera_kinds), grid_kind = deal(2, grid_kinds), space = deal(3, space_kinds);
-        const char* const bounds_kind = bounds_kinds[deal(4, bounds_kinds)];
-        const std::uint32_t lights = light_counts[deal(5, light_counts)];
-        what_ = std::string(camera_kinds[camera_kind]) + ", " + grid_kinds[grid_kind] + ", " + space_kinds[space] +
-                ", bounds " + bounds_kind + ", " + std::to_string(lights) + " lights";
-
+        const bool ordinary = random_.coin();
         std::optional<lightbin::View> view;
         for (int tries = 0; tries < 20 && !view; ++tries) {
-            camera_ = make_camera(camera_kind, random_);
-            set_grid(camera_, grid_kind, random_);
-            const auto made = camera_.in_float ? lightbin::View::from_projection(glm::mat4(camera_.matrix),
-                                                                                 camera_.viewport, camera_.options)
-                                               : lightbin::View::from_projection(camera_.matrix, camera_.viewport,
-                                                                                 camera_.options);
+            camera_ = make_camera(ordinary, random_);
+            set_grid(camera_, random_);
+            const auto made =
+                camera_.in_float
+                    ? lightbin::View::from_projection(glm::mat4(camera_.matrix), camera_.viewport, camera_.options)
+                    : lightbin::View::from_projection(camera_.matrix, camera_.viewport, camera_.options);
             if (made)
                 view = *made;
-            else if (ordinary(camera_kind))
-                fault("an ordinary camera is refused: " + std::string(made.error().message()));
+            else if (ordinary)
+                return fault("an ordinary camera is refused: " + std::string(made.error().message()));
         }
         if (!view) return;
         view_ = &*view;
-        for (const char* kind : {camera_kinds[camera_kind], grid_kinds[grid_kind], space_kinds[space], bounds_kind})
-            ++report_.tally[kind];
-
+        // As many lights as fill a block of a kernel, give or take one; few that cover all where there are many tiles.
+        const std::uint32_t lights = random_.pick(
+            {0u,   1u,   2u,   3u,   7u,   8u,   9u,   16u,   31u,   33u,   63u,    64u,    65u,    100u,
+             127u, 129u, 255u, 256u, 257u, 300u, 513u, 1000u, 4097u, 8193u, 65535u, 65536u, 65537u, 131073u});
         const std::uint64_t tiles = view->tile_count(), most = 250'000;
         const auto large = static_cast<std::uint32_t>(
             lights * tiles <= most ? lights : std::min<std::uint64_t>(lights, most / (2 * tiles) + 1));
-        scene_ = make_scene(camera_, space, lights, large, random_);
+        scene_ = make_scene(camera_, lights, large, random_);
         keep_small(large);
+        Maker(camera_, scene_, random_).find_points();
         place_points();
-        bounds_ = make_bounds(bounds_kind, *view_, placed_, random_);
+        bounds_ = make_bounds(*view_, placed_, random_);
         const bool costly = tiles > 20'000 || scene_.lights.size() > 2000;
-        for (const BinnerKind& kind : binner_kinds())
+        for (BinnerKind& kind : kinds_)
             if (!costly || random_.one_in(3)) hunt(kind, costly);
     }
 
@@ -282,36 +264,24 @@ private:
     void keep_small(std::uint32_t large) {
         for (int tries = 0; large < scene_.lights.size(); ++tries) {
             const auto rectangles =
-                scene_.in_world
-                    ? lightbin::shader_footprints(*view_, lightbin::world_space(scene_.lights, scene_.to_view))
-                    : lightbin::shader_footprints(*view_, scene_.lights);
+                with_lights(scene_, [&](const auto& lights) { return lightbin::shader_footprints(*view_, lights); });
             double entries = 0;
             for (const lightbin::ShaderFootprint& f : *rectangles)
                 entries += (f.x1 - f.x0 + 1.0) * (f.y1 - f.y0 + 1.0);
             if (entries < 2e6) return;
-            if (tries < 4) {
-                for (Sphere& light : scene_.lights)
-                    if (random_.coin() && light.radius > 0) light.radius *= 0.01f;
-            } else {
-                scene_.lights.resize(std::max<std::size_t>(large, scene_.lights.size() / 8));
-                std::erase_if(scene_.inside, [&](const Inside& i) { return i.light >= scene_.lights.size(); });
-            }
+            for (Sphere& light : scene_.lights)
+                if (random_.coin() && light.radius > 0) light.radius *= 0.01f;
+            if (tries > 3) scene_.lights.resize(std::max<std::size_t>(large, scene_.lights.size() / 8));
         }
     }
 
-    void fault(const std::string& what) {
-        if (++faults_ > 3) return;  // the rest says no more
-        report_.faults.push_back(what + "\n    in seed " + std::to_string(seed_) + ", round " + std::to_string(round_) +
-                                 ": " + what_);
-    }
+    void fault(const std::string& what) { faults_.push_back(what + ", in " + name_); }
 
     /// Keeps the points that are surely in their light, surely in view and surely in one tile.
     void place_points() {
-        std::vector<Inside> points = scene_.inside;
-        find_points(camera_, scene_, random_, points);
-        if (view_->tile_count() == 0) return;
-        for (const Inside& point : points) {
-            if (!surely_inside(scene_.lights[point.light], point.point)) continue;
+        for (const Inside& point : scene_.inside) {
+            if (point.light >= scene_.lights.size() || !surely_inside(scene_.lights[point.light], point.point))
+                continue;
             const auto seen = see(camera_, in_view_space(scene_, point.point));
             if (!seen) continue;
             const int size = view_->tile_size();
@@ -330,38 +300,35 @@ private:
     }
 
     /// Looks into one grid of the kind. Grids of other instruction sets and numbers of threads must be the same bytes.
-    void hunt(const BinnerKind& kind, bool costly) {
+    void hunt(BinnerKind& kind, bool costly) {
         const bool clusters = kind.slicing == Slicing::clusters;
         const bool few = clusters && view_->tile_count() * scene_.lights.size() > 20'000;
         const lightbin::Slices slices =
             make_slices(placed_, few ? random_.from_to(1, 5) : random_.pick({1, 2, 7, 24, 65, 1024}), random_);
         if (clusters && view_->tile_count() * static_cast<std::size_t>(slices.count()) > 1'000'000) return;
-        const Input input = {view_, &scene_, bounds_.spans(), &slices, random_.bits()};
+        const auto binned = [&](int tier) {
+            return kind.bins[tier]({*view_, scene_, bounds_, slices, random_.bits()});
+        };
         const int first = random_.below(4);
-        const auto grid = kind.bins[first](input);
-        ++report_.grids;
+        const auto grid = binned(first);
         if (!grid) {
             using lightbin::ErrorCode;
-            if (grid.error().code != ErrorCode::too_many_entries && grid.error().code != ErrorCode::too_many_list_places)
-                fault("refused: " + std::string(grid.error().message()) + "; " + kind.name);
+            if (grid.error().code != ErrorCode::too_many_entries &&
+                grid.error().code != ErrorCode::too_many_list_places)
+                fault("refused: " + std::string(grid.error().message()) + "; " + kind.name());
             return;
         }
-        if (const std::string wrong = look(*grid, slices, kind); !wrong.empty()) fault(wrong + "; " + kind.name);
+        if (const std::string wrong = look(*grid, slices, kind); !wrong.empty()) fault(wrong + "; " + kind.name());
         for (int tier = 0; tier < 4; ++tier) {
             if (costly ? !random_.one_in(3) : tier == first && random_.coin()) continue;
-            const auto other = kind.bins[tier]({view_, &scene_, bounds_.spans(), &slices, random_.bits()});
-            ++report_.grids;
-            const auto same = [](const auto& a, const auto& b) {
-                return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
-            };
-            if (!other || !same(other->ranges, grid->ranges) || !same(other->ids, grid->ids) ||
-                !same(other->order, grid->order) || !same(other->bins, grid->bins))
-                fault("another grid on instruction set " + std::to_string(tier) + "; " + kind.name);
+            const auto other = binned(tier);
+            if (!other || !same(*other, *grid))
+                fault("another grid on instruction set " + std::to_string(tier) + "; " + kind.name());
         }
     }
 
     /// Returns what is wrong with a grid, or an empty string.
-    std::string look(const Grid& grid, const lightbin::Slices& slices, const BinnerKind& kind) {
+    std::string look(const Grid& grid, const lightbin::Slices& slices, BinnerKind& kind) {
         const bool clusters = kind.slicing == Slicing::clusters, ranked = kind.slicing == Slicing::z_bins;
         const std::size_t tiles = view_->tile_count(), count = static_cast<std::size_t>(slices.count());
         const auto bad = static_cast<std::uint32_t>(std::ranges::count_if(scene_.lights, is_bad));
@@ -394,36 +361,34 @@ private:
                                                 slices.boundaries().begin());
             };
             const std::size_t slice = slice_of(depth.low());
-            if (kind.slicing != Slicing::none ? slice != slice_of(depth.high())
-                                              : kind.depth_test != DepthTest::none &&
-                                                    !surely_within(bounds_, kind.depth_test == DepthTest::split_box,
-                                                                   point.tile, depth))
+            if (kind.slicing != Slicing::none) {
+                if (slice != slice_of(depth.high())) continue;
+            } else if (kind.depth_test != DepthTest::none &&
+                       !surely_within(bounds_, kind.depth_test == DepthTest::split_box, point.tile, depth)) {
                 continue;
-            ++report_.points;
-            ++report_.tally["points, " + kind.name];
+            }
+            ++kind.points;
             const std::uint32_t light = point.inside.light, id = ranked ? rank_of[light] : light;
-            const auto list = grid.of(point.tile + (clusters ? slice * tiles : 0));
-            if (std::ranges::binary_search(list, id) &&
+            const lightbin::ListRange range = grid.ranges[point.tile + (clusters ? slice * tiles : 0)];
+            if (std::ranges::binary_search(std::span(grid.ids).subspan(range.offset, range.count), id) &&
                 (!ranked || (grid.bins[slice].least <= id && id <= grid.bins[slice].greatest)))
                 continue;
             const Sphere& s = scene_.lights[light];
             const Point& p = point.inside.point;
             char line[400];
             std::snprintf(line, sizeof line,
-                          "MISS: light %u (%.9g, %.9g, %.9g, %.9g) holds (%.21Lg, %.21Lg, %.21Lg), seen at pixel %.12Lg, "
-                          "%.12Lg in tile %zu at depth %.12Lg, slice %zu of %zu, but the list of %zu or the bin lacks it",
-                          light, s.x, s.y, s.z, s.radius, p[0], p[1], p[2], point.seen.x.value, point.seen.y.value,
-                          point.tile, depth.value, slice, count, list.size());
+                          "MISS: light %u (%.9g, %.9g, %.9g, %.9g) holds (%.21Lg, %.21Lg, %.21Lg), seen in tile %zu at "
+                          "depth %.12Lg, slice %zu of %zu, but the list or the bin lacks it",
+                          light, s.x, s.y, s.z, s.radius, p[0], p[1], p[2], point.tile, depth.value, slice, count);
             return line;
         }
         return "";
     }
 
-    std::uint64_t seed_, round_;
-    int faults_ = 0;
+    std::string name_;
     Random random_;
-    Report& report_;
-    std::string what_;
+    std::vector<BinnerKind>& kinds_;
+    std::vector<std::string>& faults_;
     Camera camera_;
     const lightbin::View* view_ = nullptr;
     Scene scene_;
@@ -431,73 +396,40 @@ private:
     Bounds bounds_;
 };
 
-/// Counts the kinds of cameras, grids, spaces, bounds and Binners that no round has had.
-std::size_t left_out(Tally& tally) {
-    const auto name = [&](const auto& kinds) {
-        for (const char* kind : kinds)
-            tally[kind];
-    };
-    name(camera_kinds), name(grid_kinds), name(space_kinds), name(bounds_kinds);
-    for (const BinnerKind& kind : binner_kinds())
-        tally["points, " + kind.name];
-    return static_cast<std::size_t>(std::ranges::count(tally, 0, [](const auto& times) { return times.second; }));
-}
-
 }  // namespace
 }  // namespace hunt
 
 int main(int count, char** words) {
-    std::uint64_t rounds = 0, seed = 1, first = 0;
-    double seconds = 0;
+    std::uint64_t rounds = ~std::uint64_t{0}, seconds = ~std::uint64_t{0}, seed = 1, first = 0;
     for (int i = 1; i < count; i += 2) {
-        const std::string_view word = words[i], value = i + 1 < count ? words[i + 1] : "";
-        const std::uint64_t number = std::strtoull(value.data(), nullptr, 10);
-        if (word == "--rounds")
-            rounds = number;
-        else if (word == "--seconds")
-            seconds = static_cast<double>(number);
-        else if (word == "--first")
-            first = number;
-        else if (word == "--seed")
-            seed = value == "random" ? std::random_device{}() : number;
-        else
-            return std::fprintf(stderr, "hunt [--rounds N | --seconds N] [--seed N | --seed random] [--first ROUND]\n"), 2;
+        const std::string_view word = words[i];
+        std::uint64_t* const number = word == "--rounds"    ? &rounds
+                                      : word == "--seconds" ? &seconds
+                                      : word == "--first"   ? &first
+                                      : word == "--seed"    ? &seed
+                                                            : nullptr;
+        if (number == nullptr || i + 1 == count)
+            return std::fputs("hunt [--rounds N | --seconds N] [--seed N | --seed random] [--first ROUND]\n", stderr), 2;
+        const std::string_view value = words[i + 1];
+        *number = value == "random" ? std::random_device{}() : std::strtoull(words[i + 1], nullptr, 10);
     }
-    if (rounds == 0 && seconds == 0) rounds = 200;
-    std::setvbuf(stdout, nullptr, _IOLBF, 1 << 12);
-    std::printf("hunt: seed %llu\n", static_cast<unsigned long long>(seed));
-
-    hunt::Report report;
+    std::vector<hunt::BinnerKind> kinds = hunt::binner_kinds();
+    std::vector<std::string> faults;
     const auto start = std::chrono::steady_clock::now();
-    const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-    double next_line = 10;
-    std::size_t printed = 0;
-    std::uint64_t round = first;
-    const auto progress = [&] {
-        std::printf("hunt: %.0f s, %llu rounds, %llu grids, %.4g points looked for, %zu faults\n", elapsed(),
-                    static_cast<unsigned long long>(round - first), static_cast<unsigned long long>(report.grids),
-                    static_cast<double>(report.points), report.faults.size());
-    };
-    while ((rounds == 0 || round - first < rounds) && (seconds == 0 || elapsed() < seconds) &&
-           report.faults.size() < 10) {
-        try {
-            hunt::Round(seed, round, report).run();
-        } catch (const std::bad_alloc&) {
-            report.faults.push_back("out of memory in round " + std::to_string(round));
-        }
-        ++round;
-        for (; printed < report.faults.size(); ++printed)
-            std::printf("FAULT after %.1f s: %s\n", elapsed(), report.faults[printed].c_str());
-        if (elapsed() < next_line) continue;
-        progress();
-        next_line = elapsed() * 1.2 + 5;
+    std::uint64_t done = 0;
+    while (done < rounds && faults.size() < 10 &&
+           std::chrono::steady_clock::now() - start < std::chrono::duration<double>(static_cast<double>(seconds))) {
+        hunt::Round(seed, first + done++, kinds, faults).run();
+        if (done % 100 == 0)
+            std::printf("hunt: %llu rounds\n", static_cast<unsigned long long>(done)), std::fflush(stdout);
     }
-    progress();
-
-    // A few rounds can't have had everything: 200 must.
-    const std::size_t kinds_left_out = hunt::left_out(report.tally);
-    for (const auto& [name, times] : report.tally)
-        std::printf("  %10llu  %s\n", static_cast<unsigned long long>(times), name.c_str());
-    if (kinds_left_out > 0) std::printf("hunt: %zu kinds had no turn\n", kinds_left_out);
-    return !report.faults.empty() || (round - first >= 200 && kinds_left_out > 0);
+    for (const std::string& fault : faults)
+        std::printf("FAULT: %s\n", fault.c_str());
+    bool all_had_points = true;
+    for (const hunt::BinnerKind& kind : kinds) {
+        std::printf("%10llu points: %s\n", static_cast<unsigned long long>(kind.points), kind.name().c_str());
+        all_had_points = all_had_points && kind.points > 0;
+    }
+    // A few rounds may have no point for a kind: 200 must.
+    return !faults.empty() || (done >= 200 && !all_had_points);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Random numbers that are the same on every platform, and choices that leave nothing out.
+// Random numbers that are the same on every platform.
 #pragma once
 
 #include <cmath>
@@ -26,9 +26,7 @@ public:
 
     /// 0 to n - 1.
     int below(int n) { return static_cast<int>((bits() >> 32) * static_cast<std::uint64_t>(n) >> 32); }
-    std::size_t below(std::size_t n) {
-        return static_cast<std::size_t>(static_cast<double>(n) * 0.999999999 * unit());
-    }
+    std::size_t below(std::size_t n) { return static_cast<std::size_t>(static_cast<double>(n) * 0.999999999 * unit()); }
     int from_to(int first, int last) { return first + below(last - first + 1); }
     bool one_in(int n) { return below(n) == 0; }
     bool coin() { return (bits() >> 63) != 0; }
@@ -37,9 +35,7 @@ public:
     double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
     double between(double least, double most) { return least + (most - least) * unit(); }
     /// Positive numbers, each power of two as likely as another.
-    double log_between(double least, double most) {
-        return std::exp2(between(std::log2(least), std::log2(most)));
-    }
+    double log_between(double least, double most) { return std::exp2(between(std::log2(least), std::log2(most))); }
     double sign() { return coin() ? 1 : -1; }
 
     template <class T> T pick(std::initializer_list<T> from) {
@@ -50,37 +46,20 @@ private:
     std::uint64_t state_;
 };
 
-/// Place `at` of a shuffled 0 .. kinds - 1, shuffled anew each time it has gone through: so all come up soon, and
-/// any round can be made again alone.
-inline int dealt(std::uint64_t seed, std::uint64_t at, int kinds) {
-    const std::uint64_t count = static_cast<std::uint64_t>(kinds);
-    Random random(seed * 0x9e3779b97f4a7c15 + at / count * 0x2545f4914f6cdd1d + count);
-    int deck[64];
-    for (int i = 0; i < kinds; ++i) {
-        const int j = random.below(i + 1);
-        deck[i] = deck[j];
-        deck[j] = i;
-    }
-    return deck[at % count];
-}
-
 /// A float that nobody would pass: signed zeros, denormals, powers of two, the ends of the range, infinity, NaN.
 inline float nasty_float(Random& random) {
     using Limits = std::numeric_limits<float>;
-    const float value =
-        random.pick({0.0f, Limits::denorm_min(), Limits::min(), Limits::max(), Limits::infinity(),
-                     Limits::quiet_NaN(), 1.0f, Limits::epsilon(), Limits::max() / 2,
-                     static_cast<float>(random.log_between(0x1p-149, 0x1p127)),
-                     static_cast<float>(random.log_between(0x1p-20, 0x1p20))});
+    const float value = random.pick({0.0f, Limits::denorm_min(), Limits::min(), Limits::max(), Limits::infinity(),
+                                     Limits::quiet_NaN(), 1.0f, Limits::epsilon(), Limits::max() / 2,
+                                     static_cast<float>(random.log_between(0x1p-149, 0x1p127)),
+                                     static_cast<float>(random.log_between(0x1p-20, 0x1p20))});
     return random.coin() ? value : -value;
 }
 
 /// The nearest float that is not below (not above) a number, whatever rounding the conversion does.
 inline float float_up(long double value) {
     const float nearest = static_cast<float>(value);
-    return static_cast<long double>(nearest) < value
-               ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
-               : nearest;
+    return static_cast<long double>(nearest) < value ? std::nextafter(nearest, infinite) : nearest;
 }
 inline float float_down(long double value) {
     return -float_up(-value);

@@ -5,23 +5,12 @@
 #include "camera.hpp"
 
 #include <cstdint>
-#include <map>
-#include <string>
 #include <vector>
 
 namespace hunt {
 
 using lightbin::Sphere;
-
-/// How often something was done, by name.
-using Tally = std::map<std::string, std::uint64_t>;
-
-inline constexpr const char* space_kinds[] = {"view",   "view space",    "rigid",     "far from origin",
-                                              "scaled", "mirrored",      "sheared",   "squashed",
-                                              "flat",   "extreme scale", "vast scale"};
-inline constexpr std::uint32_t light_counts[] = {0,   1,    2,    3,    7,     8,     9,     16,    31,  33,
-                                                 63,  64,   65,   100,  127,   129,   255,   256,   257, 300,
-                                                 513, 1000, 4097, 8193, 65535, 65536, 65537, 131073};
+using Long = long double;
 
 /// A point inside a light, in the space of the lights.
 struct Inside {
@@ -34,22 +23,302 @@ struct Scene {
     glm::dmat4 to_view = glm::dmat4(1);
     bool in_float = false;  ///< that matrix is given as floats
     std::vector<Sphere> lights;
-    std::vector<Inside> inside;  ///< one a light made to touch something, just inside it
+    std::vector<Inside> inside;
 };
 
+inline Long dot(const Point& a, const Point& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Point plus(const Point& a, const Point& b, Long times = 1) {
+    return {a[0] + times * b[0], a[1] + times * b[1], a[2] + times * b[2]};
+}
+inline Long length(const Point& a) {
+    return std::sqrt(dot(a, a));
+}
+inline Point centre(const Sphere& light) {
+    return {light.x, light.y, light.z};
+}
+inline Point direction(Random& random) {
+    for (;;) {
+        const Point p = {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+        if (const Long size = length(p); size > 0.1L && size < 1) return plus({}, p, 1 / size);
+    }
+}
+
 /// By the words of the library: skipped and counted.
-bool is_bad(const Sphere& light);
+inline bool is_bad(const Sphere& light) {
+    return !std::isfinite(light.x) || !std::isfinite(light.y) || !std::isfinite(light.z) || !(light.radius >= 0);
+}
 
 /// Whether a point is in a sphere, surface included, beyond doubt.
-bool surely_inside(const Sphere& light, const Point& point);
+inline bool surely_inside(const Sphere& light, const Point& point) {
+    if (is_bad(light)) return false;
+    if (light.radius == infinite) return true;
+    Real square = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Real off = Real(point[i]) - Real(centre(light)[i]);
+        square = square + off * off;
+    }
+    const Real radius = static_cast<Long>(light.radius);
+    return surely_at_most(square, radius * radius);
+}
 
-RealPoint in_view_space(const Scene& scene, const Point& point);
+inline RealPoint in_view_space(const Scene& scene, const Point& point) {
+    RealPoint moved;
+    for (std::size_t row = 0; row < 3; ++row) {
+        moved[row] = point[row];
+        if (!scene.in_world) continue;
+        const int r = static_cast<int>(row);
+        moved[row] = static_cast<Long>(scene.to_view[3][r]);
+        for (int column = 0; column < 3; ++column)
+            moved[row] = moved[row] + Real(static_cast<Long>(scene.to_view[column][r])) *
+                                          Real(point[static_cast<std::size_t>(column)]);
+    }
+    return moved;
+}
 
-/// Makes `count` lights. At most `large` of them may cover the whole window, the others some tiles.
-Scene make_scene(const Camera& camera, int space, std::uint32_t count, std::uint32_t large, Random& random);
+/// Makes a world's matrix: turned, mirrored, scaled, sheared, squashed or flat, near its origin or far from it, or none
+/// of these.
+inline glm::dmat4 make_world(double reach, Random& random) {
+    glm::dmat4 m(1);
+    for (int mirror = 0; mirror < 2 && !random.one_in(4); ++mirror) {  // two make a rotation
+        const Point n = direction(random);
+        const glm::dvec3 v(n[0], n[1], n[2]);
+        m = m * (glm::dmat4(1) - 2.0 * glm::dmat4(glm::outerProduct(v, v)));
+        m[3] = glm::dvec4(0, 0, 0, 1);
+    }
+    if (random.one_in(3)) m[random.below(3)] *= random.pick({-1.0, 0.0, random.log_between(1e-3, 10)});
+    if (random.one_in(6)) m[0] += random.between(-2, 2) * m[1] + random.between(-2, 2) * m[2];
+    if (random.one_in(3)) {  // in the last case squares are more than a double holds
+        const double scale =
+            random.pick({0.01, 3.0, random.log_between(1e-30, 1e30), random.log_between(1e140, 1e300)});
+        for (int i = 0; i < 3; ++i)
+            m[i] *= scale;
+    }
+    const double away = reach * random.pick({0.0, 0.1, 1.0, 10.0, random.log_between(100, 1e9)});
+    for (int row = 0; row < 3; ++row)
+        m[3][row] = away * random.between(-1, 1);
+    return m;
+}
 
-/// Appends more points: the extremes of some lights on screen, and points all over the view with the lights they
-/// are in.
-void find_points(const Camera& camera, const Scene& scene, Random& random, std::vector<Inside>& points);
+/// Makes lights and points for a camera.
+class Maker {
+public:
+    Maker(const Camera& camera, Scene& scene, Random& random) : camera_(camera), scene_(scene), random_(random) {
+        if (!scene.in_world) return;
+        // The cofactors of the matrix over its determinant.
+        const glm::dmat4& m = scene.to_view;
+        const auto at = [&](int row, int column) { return static_cast<Long>(m[column % 3][row % 3]); };
+        const auto cofactor = [&](int row, int column) {
+            return at(row + 1, column + 1) * at(row + 2, column + 2) -
+                   at(row + 1, column + 2) * at(row + 2, column + 1);
+        };
+        Long determinant = 0;
+        for (int i = 0; i < 3; ++i)
+            determinant += at(0, i) * cofactor(0, i);
+        regular_ = determinant != 0;
+        for (std::size_t row = 0; row < 3; ++row)
+            for (std::size_t column = 0; column < 3; ++column)
+                inverse_[row][column] = cofactor(static_cast<int>(column), static_cast<int>(row)) / determinant;
+    }
+
+    /// Makes `count` lights. At most `large` of them may cover the whole window, the others some tiles.
+    void make_lights(std::uint32_t count, std::uint32_t large) {
+        const bool seen = camera_.viewport.width > 0 && camera_.viewport.height > 0 && regular_;
+        for (std::uint32_t id = 0; id < count; ++id) {
+            const bool small = id >= large;
+            if (seen && (small || random_.coin())) {
+                Point point;
+                scene_.lights.push_back(touching(small, point));
+                if (scene_.inside.size() < 2000) scene_.inside.push_back({id, point});
+            } else {
+                scene_.lights.push_back(any_light());
+            }
+        }
+        if (large == 0) return;
+        if (random_.coin()) scene_.lights[random_.below(std::size_t{large})].radius = infinite;
+        // Large lights may be anywhere among the small ones.
+        for (std::uint32_t i = 0; large < count && i < std::min(large, 64u); ++i) {
+            const std::uint32_t j = static_cast<std::uint32_t>(random_.below(std::size_t{count}));
+            std::swap(scene_.lights[i], scene_.lights[j]);
+            for (Inside& inside : scene_.inside)
+                inside.light = inside.light == i ? j : inside.light == j ? i : inside.light;
+        }
+    }
+
+    /// Appends points of some lights: the middle, any, and the extremes on screen; and points all over the view with
+    /// the lights that they are in.
+    void find_points() {
+        const std::uint32_t count = static_cast<std::uint32_t>(scene_.lights.size()), some = std::min(count, 3000u);
+        if (count == 0 || camera_.viewport.width == 0 || camera_.viewport.height == 0) return;
+        for (int i = 0; i < 40; ++i) {
+            const std::uint32_t id = static_cast<std::uint32_t>(random_.below(std::size_t{count}));
+            const Sphere& light = scene_.lights[id];
+            if (!is_bad(light) && light.radius != infinite) {
+                const Long reach = static_cast<Long>(light.radius) * random_.log_between(1e-3, 1);
+                scene_.inside.push_back({id, centre(light)});
+                scene_.inside.push_back({id, extreme_point(light)});
+                scene_.inside.push_back({id, plus(centre(light), direction(random_), reach)});
+            }
+            const Point at = from_view(any_point());
+            const std::uint32_t first = static_cast<std::uint32_t>(random_.below(std::size_t{count - some + 1}));
+            for (std::uint32_t other = first; other < first + some; ++other)
+                if (surely_inside(scene_.lights[other], at)) scene_.inside.push_back({other, at});
+        }
+    }
+
+private:
+    /// From view space to the space of the lights, about. A matrix that has no inverse leaves the point where it is.
+    Point from_view(const Point& p) const {
+        if (!scene_.in_world || !regular_) return p;
+        const glm::dvec4& moved = scene_.to_view[3];
+        const Point q = plus(p, {moved[0], moved[1], moved[2]}, -1);
+        return {dot(inverse_[0], q), dot(inverse_[1], q), dot(inverse_[2], q)};
+    }
+
+    /// A view depth to put something at: anywhere, or right at the planes.
+    Long pick_depth() {
+        const Long near_depth = camera_.near_hint, far_depth = camera_.far_hint,
+                   step = random_.log_between(0x1p-45, 0x1p-3);
+        if (camera_.orthographic)
+            return near_depth +
+                   (far_depth - near_depth) * random_.pick<Long>({step, 1 - step, random_.unit(), random_.unit()});
+        if (random_.one_in(6)) return near_depth * (1 + step);
+        if (std::isfinite(far_depth) && random_.one_in(6)) return far_depth * (1 - step);
+        const double most =
+            std::isfinite(far_depth) ? camera_.far_hint : camera_.near_hint * random_.pick({1e6, 1e6, 1e40});
+        return random_.log_between(camera_.near_hint, std::clamp(most, camera_.near_hint * 1.0000001, 1e37));
+    }
+    Point any_point() {
+        return point_at(camera_, random_.unit() * camera_.viewport.width, random_.unit() * camera_.viewport.height,
+                        pick_depth());
+    }
+
+    /// A light that holds a chosen point of a tile, but hardly more: the point is beside an edge or a corner of the
+    /// tile, or none, and the light lies beyond that edge, before or behind the point, or anywhere.
+    Sphere touching(bool small, Point& point) {
+        const int size = camera_.options.tile_size, sides[] = {camera_.viewport.width, camera_.viewport.height};
+        int outward[2];
+        Long at[2];
+        for (int axis = 0; axis < 2; ++axis) {
+            const int tiles = (sides[axis] - 1) / size + 1,
+                      tile = random_.one_in(6) ? random_.pick({0, tiles - 1}) : random_.below(tiles);
+            outward[axis] = random_.from_to(-1, 1);
+            const double step = random_.log_between(0x1p-28, 0x1p-3);
+            const double place = outward[axis] < 0 ? step : outward[axis] > 0 ? 1 - step : random_.between(0.01, 0.99);
+            const Long from = static_cast<Long>(tile) * size, end = std::min<Long>(from + size, sides[axis]);
+            at[axis] = from + (end - from) * place;
+        }
+        const Long depth = pick_depth();
+        const Point seen_at = point_at(camera_, at[0], at[1], depth);
+
+        // Square to the planes through the eye and the tile's edges, and along the depth.
+        Point away = {0, 0, random_.pick({0.0, 0.0, random_.between(-1, 1)})};
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            if (outward[axis] == 0) continue;
+            const Long step = outward[axis] * 0.001L * size;
+            const Point beside =
+                point_at(camera_, at[0] + (axis == 0 ? step : 0), at[1] + (axis == 1 ? step : 0), depth);
+            Point normal = {};
+            normal[axis] = beside[axis] < seen_at[axis] ? -1 : 1;
+            if (!camera_.orthographic) {
+                Point ray = seen_at;
+                ray[1 - axis] = 0;
+                normal = plus(normal, ray, -dot(normal, ray) / dot(ray, ray));
+            }
+            away = plus(away, normal, random_.pick({1.0, random_.unit()}) / length(normal));
+        }
+        if (!(length(away) > 0)) away = direction(random_);
+        away = plus({}, away, 1 / length(away));
+
+        // About a tile's width there, as a radius whose light covers few tiles.
+        const Long across = std::fabs(point_at(camera_, at[0] + size, at[1], depth)[0] - seen_at[0]),
+                   up = std::fabs(point_at(camera_, at[0], at[1] + size, depth)[1] - seen_at[1]),
+                   slope = camera_.orthographic ? 0 : length({seen_at[0], seen_at[1], 0}) / std::fabs(seen_at[2]),
+                   tile_reach = std::min(across, up) / (1 + slope);
+        Long most = 30 * tile_reach;
+        if (!small && random_.one_in(3)) most = std::max<Long>(most, 10 * length(seen_at));
+        if (small)
+            most = std::min<Long>(1.2L * tile_reach, camera_.orthographic ? most : (depth - camera_.near_hint) / 4);
+        return holding(seen_at, away, std::min(1e-4L * tile_reach, most), most, point);
+    }
+
+    /// Of some lights of the point and a direction, the one whose rounding makes it the least larger than needed.
+    Sphere holding(const Point& in_view, const Point& away, Long least, Long most, Point& point) {
+        point = from_view(in_view);
+        Sphere best = {};
+        Long best_excess = 2;
+        for (int i = 0; i < 4; ++i) {
+            const Long radius = random_.log_between(std::max(1e-44, static_cast<double>(least)),
+                                                    std::clamp(static_cast<double>(most), 1e-43, 1e38));
+            Sphere light = sphere(from_view(plus(in_view, away, radius)), 0);
+            const Long reach = length(plus(point, centre(light), -1));
+            light.radius = float_up(reach * (1 + 0x1p-58L));
+            const Long excess = (light.radius - reach) / reach;
+            if (i > 0 && !(excess < best_excess)) continue;
+            best = light;
+            best_excess = excess;
+        }
+        return best;
+    }
+
+    /// A light anywhere, tiny or huge; some around the eye, of numbers that nobody would pass, or there twice.
+    Sphere any_light() {
+        if (random_.one_in(12) && !scene_.lights.empty()) return scene_.lights[random_.below(scene_.lights.size())];
+        const Point at = any_point();
+        const Long reach = std::max(length(at), 1e-30L) * random_.pick({1.0, random_.log_between(1e-12, 1e6)});
+        Sphere light =
+            sphere(from_view(random_.one_in(6) ? plus({}, direction(random_), reach * random_.unit())
+                                               : plus(at, direction(random_), reach * random_.between(0, 1.5))),
+                   reach);
+        for (float* number : {&light.x, &light.y, &light.z, &light.radius})
+            if (random_.one_in(8)) *number = nasty_float(random_);
+        return light;
+    }
+    static Sphere sphere(const Point& at, Long radius) {
+        return {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2]),
+                static_cast<float>(radius)};
+    }
+
+    /// The point of a light that is seen farthest in a direction of the window, as far as trying finds it.
+    Point extreme_point(const Sphere& light) {
+        const Long inner = static_cast<Long>(light.radius) * (1 - random_.log_between(0x1p-50, 0x1p-10));
+        const Point goal = direction(random_);
+        const auto worth = [&](const Point& unit) -> Long {
+            const auto seen = see(camera_, in_view_space(scene_, plus(centre(light), unit, inner)));
+            return seen ? goal[0] * seen->x.value + goal[1] * seen->y.value : -std::numeric_limits<Long>::infinity();
+        };
+        Point best = direction(random_);
+        Long best_worth = worth(best), step = 1;
+        for (int i = 0; i < 60; ++i, step *= 0.85L) {
+            Point next = plus(best, direction(random_), step);
+            next = plus({}, next, 1 / length(next));
+            if (const Long here = worth(next); here >= best_worth) best = next, best_worth = here;
+        }
+        return plus(centre(light), best, inner);
+    }
+
+    const Camera& camera_;
+    Scene& scene_;
+    Random& random_;
+    Point inverse_[3] = {};
+    bool regular_ = true;
+};
+
+/// Makes `count` lights, of which `large` may cover the whole window, and points in them.
+inline Scene make_scene(const Camera& camera, std::uint32_t count, std::uint32_t large, Random& random) {
+    Scene scene;
+    // What a matrix adds to a radius is large where all else is next to nothing: not with many lights.
+    if (random.one_in(4) || (large < count && std::fabs(camera.near_hint) < 1e-30)) {
+        Maker(camera, scene, random).make_lights(count, large);
+        return scene;
+    }
+    scene.in_world = true;
+    scene.to_view = make_world(std::clamp(std::fabs(camera.near_hint), 1e-20, 1e20) * 100, random);
+    scene.in_float = random.coin() && std::fabs(scene.to_view[0][0]) < 1e37;
+    if (scene.in_float) scene.to_view = glm::dmat4(glm::mat4(scene.to_view));
+    Maker(camera, scene, random).make_lights(count, large);
+    return scene;
+}
 
 }  // namespace hunt

@@ -170,25 +170,9 @@ inline BoxLight at_near(const Aim& aim, Random& random) {
     return box(aim, aim.light(at[0], at[1], at[2], size * random.power_of_two(-3, 1)), at, f, 1);
 }
 
-/// Just touches a tile's cell at a point of its side, edge or corner with a corner of the box, or misses that by 2^-k
-/// of its size.
+/// Just touches a tile's cell with a corner of the box, or misses that by 2^-k of its size.
 inline BoxLight touching(const Aim& aim, Random& random) {
-    const double d = random.chance(0.2) ? aim.near_plane : aim.depth(random);
-    const double h = aim.half_height(std::max(d, aim.unit)), size = h * random.power_of_two(-10, 2);
-    Triple n{};
-    double pixel[2];
-    const int sides = random.integer(1, 7);
-    for (const int i : {0, 1}) {
-        const bool edge = (sides >> i & 1) != 0;
-        pixel[i] = edge ? aim.tile_edge(i, random) : aim.pixel(i, random, 0);
-        if (!edge) continue;
-        const double weight = random.sign() * random.power_of_two(-6, 0);
-        n[static_cast<std::size_t>(i)] += weight;
-        n[2] -= weight * aim.slope(i, pixel[i]);
-    }
-    if (sides >> 2 != 0) n[2] += random.sign() * random.power_of_two(-6, 0);
-    n = unit(n);
-    Triple at = {aim.at(0, pixel[0], d), aim.at(1, pixel[1], d), d};
+    auto [at, n, size] = on_cell(aim, random);
     const Frame f = half_axes(at, size, random);
     for (const Triple& axis : f)
         at = plus(at, axis, along(axis, n) > 0 ? -1 : 1);

@@ -89,14 +89,6 @@ void examine_silhouettes(const Camera& camera, Tally& tally, std::uint64_t& seed
     }
 }
 
-/// What a tile has to light: one run of depths, or with split_box one on each side of its gap.
-std::vector<Examiner::Cell> cells_of(const Examiner& examiner, float min, float max, float gap_min, float gap_max,
-                                     bool split) {
-    if (!split || !(gap_min < gap_max)) return {{examiner, min, max}};
-    if (min > max) return {};
-    return {{examiner, min, std::min(gap_min, max)}, {examiner, std::max(gap_max, min), max}};
-}
-
 /// Every pair that a Binner of these options lists or, of those that rectangles give, does not list.
 template <lightbin::DepthTest depth_test>
 void examine_depth_test(const Camera& camera, Tally& tally, std::uint64_t& seed) {

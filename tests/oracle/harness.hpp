@@ -41,6 +41,16 @@ struct Emitted {
     bool rectangle() const { return !any() || entries == std::int64_t{x1 - x0 + 1} * (y1 - y0 + 1); }
 };
 
+/// The blocks of tiles outside a light's rectangle: left and right of it, below and above it, or the whole image if the
+/// light has no rectangle.
+inline std::vector<Block> blocks_around(const Emitted& e, int nx, int ny) {
+    std::vector<Block> blocks = {{0, nx, 0, ny}};
+    if (e.any())
+        blocks = {{0, e.x0, 0, ny}, {e.x1 + 1, nx, 0, ny}, {e.x0, e.x1 + 1, 0, e.y0}, {e.x0, e.x1 + 1, e.y1 + 1, ny}};
+    std::erase_if(blocks, [](const Block& b) { return b.empty(); });
+    return blocks;
+}
+
 /// Turns lists a tile into tiles a light, checking what every grid must be: tiles in order without gaps, ids
 /// ascending.
 template <class Id>
@@ -120,7 +130,8 @@ public:
         // A perspective sphere is cut at the near plane, held as a float, and not at the far plane; an orthographic one
         // is not cut.
         if (!oracle.orthographic()) beyond_near_.at_least(*oracle.range().min * (1 - Rational(1) / (1 << 22)));
-        const auto add_slack = [](std::vector<Rational>& slacks, const std::vector<Slab>& slabs, const Rational& offset) {
+        const auto add_slack = [](std::vector<Rational>& slacks, const std::vector<Slab>& slabs,
+                                  const Rational& offset) {
             for (const Slab& slab : slabs)
                 slacks.push_back(slack(slab, offset, static_cast<int>(slabs.size())));
         };
@@ -139,7 +150,9 @@ public:
     }
     Subject subject(const Ball& ball) const {
         const CameraBall seen = oracle.in_camera(ball);
-        return {ball, seen, {nearly(seen.x), nearly(seen.y), nearly(seen.depth), ball.all ? INFINITY : nearly(ball.radius)}};
+        return {ball,
+                seen,
+                {nearly(seen.x), nearly(seen.y), nearly(seen.depth), ball.all ? INFINITY : nearly(ball.radius)}};
     }
 
     /// The depths of a tile between two bounds, infinite where there is none, and within near and far. In rationals once
@@ -169,14 +182,14 @@ public:
         return [&s]() -> const CameraBall& { return s.seen; };
     }
 
-    /// In three dimensions: does the light meet the block of tiles [x0, x1) x [y0, y1)? In every 97th case decided exactly,
-    /// by both deciders.
-    bool meets_block(const Subject& s, int x0, int x1, int y0, int y1) {
+    /// In three dimensions: does the light meet the block of tiles? In every 97th case decided exactly, by both
+    /// deciders.
+    bool meets_block(const Subject& s, const Block& block) {
         const Depths& depths = oracle.range();
         const auto exact_depths = [&] { return depths; };
         if (++asked_ % 97 != 0)
-            return truth.meets({x0, x1, y0, y1}, truth.range, s.flat, exact_depths, exactly(s));
-        const Edges columns = oracle.columns(x0, x1), rows = oracle.rows(y0, y1);
+            return truth.meets(block, truth.range, s.flat, exact_depths, exactly(s));
+        const Edges columns = oracle.columns(block.x0, block.x1), rows = oracle.rows(block.y0, block.y1);
         const bool verdict = meets({{oracle.column_slab(columns)}, {oracle.row_slab(rows)}}, depths, s.seen);
         ++tally.twice;
         REQUIRE(verdict == meets(oracle.half_spaces(columns, rows, depths), s.ball));
@@ -210,22 +223,15 @@ public:
         const int nx = oracle.tiles_x(), ny = oracle.tiles_y();
         CHECK(e.rectangle());
 
-        const auto ask = [&](int x0, int x1, int y0, int y1) {
-            if (x0 >= x1 || y0 >= y1) return;
+        for (const Block& block : blocks_around(e, nx, ny)) {
             ++tally.verdicts;
-            if (meets_block(s, x0, x1, y0, y1))
-                tally.report(tally.misses, "MISS", oracle.camera(), set, id, light, at());
-        };
+            if (meets_block(s, block)) tally.report(tally.misses, "MISS", oracle.camera(), set, id, light, at());
+        }
         if (!e.any()) {
-            ask(0, nx, 0, ny);
             if (meets_columns(s, 0, nx) && meets_rows(s, 0, ny))
                 tally.report(tally.below, "not emitted", oracle.camera(), set, id, light, at());
             return;
         }
-        ask(0, e.x0, 0, ny);
-        ask(e.x1 + 1, nx, 0, ny);
-        ask(e.x0, e.x1 + 1, 0, e.y0);
-        ask(e.x0, e.x1 + 1, e.y1 + 1, ny);
 
         // From below: a column (row) whose wedge is met belongs to the rectangle, if any row (column) is met
         // at all.
@@ -391,5 +397,13 @@ private:
     Rational grow_x_, grow_y_;
     std::uint64_t asked_ = 0;
 };
+
+/// What a tile has to light: one run of depths, or with split_box one on each side of its gap.
+inline std::vector<Examiner::Cell> cells_of(const Examiner& examiner, float min, float max, float gap_min,
+                                            float gap_max, bool split) {
+    if (!split || !(gap_min < gap_max)) return {{examiner, min, max}};
+    if (min > max) return {};
+    return {{examiner, min, std::min(gap_min, max)}, {examiner, std::max(gap_max, min), max}};
+}
 
 }  // namespace oracle

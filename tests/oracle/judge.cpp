@@ -242,7 +242,8 @@ private:
         constexpr float inf = std::numeric_limits<float>::infinity();
         if (min > max || min == inf || max == -inf) return;
         const double low = static_cast<double>(min), high = static_cast<double>(max);
-        const FlatDepths flat = {low > truth_.range.min ? low : truth_.range.min, high < truth_.range.max ? high : truth_.range.max};
+        const FlatDepths flat = {low > truth_.range.min ? low : truth_.range.min,
+                                 high < truth_.range.max ? high : truth_.range.max};
         if (!flat.surely_empty()) ranges_.push_back({flat, min, max});
     }
 

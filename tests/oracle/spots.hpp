@@ -164,11 +164,14 @@ inline SpotLight at_eye(const Aim& aim, Random& random) {
                 half_angle(random));
 }
 
-/// Just touches a tile's cell at a point of its side, edge or corner, or misses that by 2^-k of its size: by the apex, the
-/// rim or the cap, as the direction has it. The direction is the side's, at an angle of `turn` to the axis.
-inline SpotLight touching(const Aim& aim, Random& random) {
+/// A point on a side, an edge or a corner of a tile's cell, a direction out of the cell there, and a size for a light.
+struct OnCell {
+    Triple at, outward;
+    double size;
+};
+inline OnCell on_cell(const Aim& aim, Random& random) {
     const double d = random.chance(0.2) ? aim.near_plane : aim.depth(random);
-    const double h = aim.half_height(std::max(d, aim.unit)), r = h * random.power_of_two(-10, 2);
+    const double h = aim.half_height(std::max(d, aim.unit)), size = h * random.power_of_two(-10, 2);
     Triple n{};
     double pixel[2];
     const int sides = random.integer(1, 7);
@@ -181,9 +184,13 @@ inline SpotLight touching(const Aim& aim, Random& random) {
         n[2] -= weight * aim.slope(i, pixel[i]);
     }
     if (sides >> 2 != 0) n[2] += random.sign() * random.power_of_two(-6, 0);
-    n = unit(n);
-    const Triple at = {aim.at(0, pixel[0], d), aim.at(1, pixel[1], d), d};
+    return {{aim.at(0, pixel[0], d), aim.at(1, pixel[1], d), d}, unit(n), size};
+}
 
+/// Just touches a tile's cell, or misses that by 2^-k of its size: by the apex, the rim or the cap, as the direction
+/// has it. The direction is the cell's, at an angle of `turn` to the axis.
+inline SpotLight touching(const Aim& aim, Random& random) {
+    const auto [at, n, r] = on_cell(aim, random);
     const double angle = half_angle(random), cosine = std::cos(angle), sine = std::sin(angle);
     // Any, or that of the tangent plane of the least sphere, too, at the rim or at the apex.
     double turn = std::acos(random.uniform(-1, 1));

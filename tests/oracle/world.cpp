@@ -34,23 +34,14 @@ void examine_rectangles(const Camera& camera, Tally& tally, std::uint64_t& seed)
                 }
                 const Ball ball = exact_ball(lights[i].x, lights[i].y, lights[i].z, lights[i].w);
                 const FlatBall around = around_image(lights[i]);
-                const auto ask = [&](int x0, int x1, int y0, int y1) {
-                    if (x0 >= x1 || y0 >= y1) return;
-                    if (++tally.verdicts % 97 != 0 && examiner.apart(x0, x1, y0, y1, range, around)) return;
-                    if (image_meets(exact_view,
-                                    oracle.half_spaces(oracle.columns(x0, x1), oracle.rows(y0, y1), {}),
+                for (const Block& block : blocks_around(e, nx, ny)) {
+                    const auto [x0, x1, y0, y1] = block;
+                    if (++tally.verdicts % 97 != 0 && examiner.apart(x0, x1, y0, y1, range, around)) continue;
+                    if (image_meets(exact_view, oracle.half_spaces(oracle.columns(x0, x1), oracle.rows(y0, y1), {}),
                                     ball))
-                        tally.report(tally.misses, "MISS", camera, matrix.name + ", " + set.name, i,
-                                     lights[i], "");
-                };
-                if (!e.any()) {
-                    ask(0, nx, 0, ny);
-                    continue;
+                        tally.report(tally.misses, "MISS", camera, matrix.name + ", " + set.name, i, lights[i], "");
                 }
-                ask(0, e.x0, 0, ny);
-                ask(e.x1 + 1, nx, 0, ny);
-                ask(e.x0, e.x1 + 1, 0, e.y0);
-                ask(e.x0, e.x1 + 1, e.y1 + 1, ny);
+                if (!e.any()) continue;
 
                 // A rotation and scale gives the ball back, but for the rounding of its matrix and of the
                 // moved centre. A centre that leaves the range of float is taken to be everywhere.
@@ -114,11 +105,9 @@ void examine_pairs(const Camera& camera, Tally& tally, std::uint64_t& seed) {
                     const int x = static_cast<int>(tile) % oracle.tiles_x(),
                               y = static_cast<int>(tile) / oracle.tiles_x();
                     const float min = with_depth && (sides & 1) ? bounds.min[tile] : -INFINITY,
-                                max = with_depth && (sides & 2) ? bounds.max[tile] : INFINITY,
-                                from = bounds.gap_min[tile], to = bounds.gap_max[tile];
-                    std::vector<Examiner::Cell> lit = {{examiner, min, max}};
-                    if (split && from < to && min <= max)
-                        lit = {{examiner, min, std::min(from, max)}, {examiner, std::max(to, min), max}};
+                                max = with_depth && (sides & 2) ? bounds.max[tile] : INFINITY;
+                    const std::vector<Examiner::Cell> lit =
+                        cells_of(examiner, min, max, bounds.gap_min[tile], bounds.gap_max[tile], split);
                     for (std::size_t i = 0; i < lights.size(); ++i) {
                         if (i % 16 != 0 && bounds.owner[tile] != i) continue;  // for time
                         added |= in_list[tile][i] && !in_rectangle[tile][i];

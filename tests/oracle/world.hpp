@@ -135,21 +135,29 @@ inline bool image_meets(const ExactView& view, std::vector<HalfSpace> cell, cons
     return meets(cell, ball);
 }
 
+/// A view matrix whose images are in the camera's axes: x and y as in the image, and depth.
+using AxesMatrix = std::array<std::array<double, 3>, 4>;
+inline AxesMatrix to_axes(const Oracle& oracle, const Affine& m) {
+    const CameraBall signs = oracle.in_camera({{1, 1, 1}, 0});
+    const double sign[] = {nearly(signs.x), nearly(signs.y), nearly(signs.depth)};
+    AxesMatrix result;
+    for (std::size_t c = 0; c < 4; ++c)
+        for (std::size_t r = 0; r < 3; ++r)
+            result[c][r] = sign[r] * static_cast<double>(m[static_cast<int>(c)][static_cast<int>(r)]);
+    return result;
+}
+constexpr Affine identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+
 /// A ball around the image of a light's under a view matrix, for the filter: in most cases that is apart from the cell, too.
 class AroundImage {
 public:
-    AroundImage(const Oracle& oracle, const Affine& m) {
-        const CameraBall signs = oracle.in_camera({{1, 1, 1}, 0});
-        const Rational* const sign[] = {&signs.x, &signs.y, &signs.depth};
-        for (int c = 0; c < 4; ++c)
-            for (int r = 0; r < 3; ++r)
-                m_[c][r] = nearly(*sign[r]) * static_cast<double>(m[c][r]);
+    AroundImage(const Oracle& oracle, const Affine& m) : m_(to_axes(oracle, m)) {
         // The square of the greatest stretch is an eigenvalue of the transpose times the matrix: at most the greatest sum
         // of a row's sizes (Gershgorin).
         double most = 0;
-        for (int a = 0; a < 3; ++a) {
+        for (std::size_t a = 0; a < 3; ++a) {
             double sum = 0;
-            for (int b = 0; b < 3; ++b)
+            for (std::size_t b = 0; b < 3; ++b)
                 sum += std::abs(m_[a][0] * m_[b][0] + m_[a][1] * m_[b][1] + m_[a][2] * m_[b][2]);
             most = std::max(most, sum);
         }
@@ -161,14 +169,15 @@ public:
         const double from[] = {static_cast<double>(light.x), static_cast<double>(light.y),
                                static_cast<double>(light.z), 1};
         double at[3] = {}, terms = 0;
-        for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 4; ++c)
+        for (std::size_t r = 0; r < 3; ++r)
+            for (std::size_t c = 0; c < 4; ++c)
                 at[r] += m_[c][r] * from[c], terms += std::abs(m_[c][r] * from[c]);
         return {at[0], at[1], at[2], static_cast<double>(light.w) * stretch_ + 0x1p-48 * terms};
     }
 
 private:
-    double m_[4][3], stretch_;
+    AxesMatrix m_;
+    double stretch_;
 };
 
 }  // namespace oracle

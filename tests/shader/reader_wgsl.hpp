@@ -81,27 +81,24 @@ inline std::string reader_wgsl(const lightbin::ShaderOptions& options, const lig
                           std::string(options.viewport_corner ? " - corner.y" : "") + ") / " + band +
                           ";\n    let pixel = vec2u(place.x, place.y - view * " + band + ");\n"
                     : "fn read_list(pixel : vec2u) -> vec4u {\n";
-    text += "    let depth = " + wgsl_depth(options) + R"(;
+    const std::string arguments = several ? "pixel, depth, view);" : "pixel, depth);",
+                      body = options.wave_loop ? " {\n        if (!light.own) { continue; }\n" : " {\n";
+    text +=
+        "    let depth = " + wgsl_depth(options) + R"(;
     var hash = 2166136261u;
     var sum = 0u;
     var count = 0u;
     var listed = 0u;
-    var light = $begin(pixel, depth)" +
-            std::string(several ? ", view" : "") + R"();
-    while ($next(&light)) {
-)" + (options.wave_loop ? "        if (!light.own) { continue; }\n" : "") +
-            R"(        hash = (hash ^ light.id) * 16777619u;
-        count += 1u;
-        sum += count * light.id;
-        if (light.id < )" +
-            std::to_string(checked_lights(width)) + "u) { listed += light.id + 1u; }\n    }\n" +
-            wgsl_checks(options, width) + R"(    let tile = $tile(pixel);
+)" +
+        reader_loops(options, "    var light = $begin(" + arguments + "\n    while ($next(&light))" + body,
+                     "    for (var light = $begin_kind(@, " + arguments + " $next(&light);)" + body, width) +
+        wgsl_checks(options, width) + R"(    let tile = $tile(pixel);
     return vec4u(tile.x + (tile.y << 16u), count, hash, sum);
 }
 
 const size = vec2u()" +
-            std::to_string(width) + "u, " + std::to_string(height) + "u);\nconst corner = vec2u(" +
-            std::to_string(corner_x) + "u, " + std::to_string(corner_y) + "u);\n";
+        std::to_string(width) + "u, " + std::to_string(height) + "u);\nconst corner = vec2u(" +
+        std::to_string(corner_x) + "u, " + std::to_string(corner_y) + "u);\n";
     if (stage == Stage::compute)
         text += "@group(0) @binding(" + std::to_string(result_binding) +
                 R"() var<storage, read_write> result : array<vec4u>;

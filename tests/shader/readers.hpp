@@ -39,6 +39,7 @@ inline std::string name_of(const lightbin::ShaderOptions& options) {
     option(options.view_check, "view check");
     option(options.list_check, "list check");
     option(options.views > 1, "two views");
+    option(options.split_kinds, "kinds");
     return name;
 }
 
@@ -144,8 +145,23 @@ inline std::vector<lightbin::ShaderOptions> every_list_of_views(lightbin::Shader
     return every;
 }
 
-/// Every list of a language with every set of switches; with slicing two sets of each, which take turns and between them
-/// have every switch on and off; with wave loops one, with two views one.
+/// The lists whose tiles have a range for each kind of light; every second one has wave loops, if the language and the
+/// device (`waves`) have them, and every third one two views.
+inline std::vector<lightbin::ShaderOptions> every_list_of_kinds(lightbin::ShaderLanguage language,
+                                                                lightbin::Slicing slicing, bool waves) {
+    std::vector<lightbin::ShaderOptions> every;
+    for (lightbin::ShaderOptions list : every_list(language, slicing)) {
+        list.split_kinds = true;
+        list.views = every.size() % 3 == 2 ? 2 : 1;
+        list.wave_loop = waves && every.size() % 2 == 1;
+        if (!shader_snippet(list)) list.wave_loop = false;
+        if (shader_snippet(list)) every.push_back(list);
+    }
+    return every;
+}
+
+/// Every list of a language with every set of switches; with slicing two sets of each, which take turns and between
+/// them have every switch on and off; with wave loops one, with two views one, with ranges for each kind one.
 inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguage language) {
     using lightbin::Slicing;
     std::vector<lightbin::ShaderOptions> every;
@@ -161,6 +177,8 @@ inline std::vector<lightbin::ShaderOptions> every_reader(lightbin::ShaderLanguag
         for (const lightbin::ShaderOptions& list : every_wave_list(language, slicing))
             every.push_back(with_switches(list, ++turn % switch_count));
         for (const lightbin::ShaderOptions& list : every_list_of_views(language, slicing, true))
+            every.push_back(with_switches(list, ++turn % switch_count));
+        for (const lightbin::ShaderOptions& list : every_list_of_kinds(language, slicing, true))
             every.push_back(with_switches(list, ++turn % switch_count));
     }
     return every;
@@ -202,6 +220,7 @@ inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin
     Input input;
     input.binding = binding;
     const std::vector<std::uint32_t> slices = lightbin::shader_slices(reader_slices());
+    std::vector<lightbin::KindRange> kinds(grid.ranges().size());
     std::span<const std::byte> data = lists;
     if (name.starts_with("grid"))
         data = std::as_bytes(std::span(&constants, 1));
@@ -212,7 +231,7 @@ inline Input reader_input(const lightbin::ShaderBinding& binding, const lightbin
     else if (name.starts_with("image"))
         data = std::as_bytes(views);
     else if (name.starts_with("tiles"))
-        data = std::as_bytes(grid.ranges());
+        data = options.split_kinds ? std::as_bytes(*split_kinds(grid, kinds)) : std::as_bytes(grid.ranges());
     else if (name.starts_with("slices"))
         data = std::as_bytes(std::span(slices));
     else if (name.starts_with("bins"))
@@ -240,10 +259,18 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
     constexpr Options of_binner = {.slicing = slicing};
     const Slices slices = reader_slices();
     std::vector<Binner<of_binner>> binners(options.views);
-    const std::size_t lights = options.format.encoding == ListEncoding::bitmask ? options.format.max_lights
-                               : options.format.ids == IdWidth::u8              ? 200
-                               : options.format.ids == IdWidth::u16             ? 50000
-                                                                                : 100000;
+    const std::size_t in_all = reader_light_count(options), of_kind = in_all / 3;
+    const std::vector<Sphere> spheres = reader_lights(in_all);
+    std::vector<Spot> spots;
+    std::vector<Box> boxes;
+    for (std::size_t i = of_kind; options.split_kinds && i < in_all; ++i) {
+        const auto [x, y, z, radius] = spheres[i];
+        if (i < 2 * of_kind)
+            spots.push_back({x, y, z, radius, 0, -1, 0, 0.3f});
+        else
+            boxes.push_back(
+                {x, y, z, radius, x, y, z, {{radius, 0, 0}, {0, radius, 0}, {0, 0, 0.3f * radius}}});
+    }
     std::vector<View> views;
     std::vector<ShaderView> view_constants;
     std::vector<LightGrid<std::uint32_t>> grids;
@@ -255,7 +282,11 @@ Job reader_job(lightbin::ShaderOptions options, Stage stage, const ScreenSize& s
         views.push_back(*View::from_projection(projection, {screen.width, screen.height},
                                                {.tile_size = screen.tile_size}));
         view_constants.push_back(shader_view(views.back()));
-        grids.push_back(*binner.bin(views.back(), reader_lights(lights), inputs_for<of_binner>({}, slices)));
+        const auto inputs = inputs_for<of_binner>({}, slices);
+        grids.push_back(
+            options.split_kinds
+                ? *binner.bin(views.back(), lights(std::span(spheres).first(of_kind), spots, boxes), inputs)
+                : *binner.bin(views.back(), spheres, inputs));
         bins.insert(bins.end(), grids.back().ranks().bins.begin(), grids.back().ranks().bins.end());
     }
     // The views' grids one after another.
@@ -373,9 +404,9 @@ inline std::vector<ReaderRun> multiview_runs(lightbin::ShaderLanguage language) 
 
 /// What a language runs: every list, flipped and not, in fragment and compute shaders, at each small screen;
 /// the other options take turns, and now and then the
-/// constants are not set. At the large screen: one width of ids. With slicing, wave loops or two views:
-/// flipped in compute shaders, not flipped in fragment shaders, or where there are only those in both, at two small
-/// screens in turns.
+/// constants are not set. At the large screen: one width of ids. With slicing, wave loops, two views or ranges for each
+/// kind: flipped in compute shaders, not flipped in fragment shaders, or where there are only those in both, at two
+/// small screens in turns.
 /// each_flip  false: half of the small screens are flipped, the other half not; the next list has it the other way round
 /// waves      the device has what wave loops need
 inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, bool each_flip = true,
@@ -394,7 +425,8 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
             runs.push_back({with_switches(list, 2 * turn + flip), stage, screen});
             if (turn == 3) runs.push_back({with_switches(list, 2 * (place % 8) + flip), stage, screen, true});
         };
-        const bool few = list.slicing != Slicing::none || list.wave_loop || list.views > 1;
+        const bool few =
+            list.slicing != Slicing::none || list.wave_loop || list.views > 1 || list.split_kinds;
         if (few && computes && (stage == Stage::compute) != (flip == 1)) return;
         for (unsigned i = 0; i < (few ? 2 : std::size(small)); ++i)
             if ((each_flip && !few) || (i + flip + place) % 2 == 0) add(small[i]);
@@ -409,6 +441,8 @@ inline std::vector<ReaderRun> reader_runs(lightbin::ShaderLanguage language, boo
             for (const lightbin::ShaderOptions& list : every_wave_list(language, slicing))
                 lists.push_back(list);
         for (const lightbin::ShaderOptions& list : every_list_of_views(language, slicing, waves))
+            lists.push_back(list);
+        for (const lightbin::ShaderOptions& list : every_list_of_kinds(language, slicing, waves))
             lists.push_back(list);
         for (const lightbin::ShaderOptions& list : lists) {
             for (unsigned flip = 0; flip < 2; ++flip)

@@ -42,6 +42,15 @@ struct Bounds {
     ZBounds reduced;
 };
 
+/// What most cases here are about: ground, and lights on it.
+struct Street {
+    Extent size = {640, 360};
+    View view = test::view(size, 8);
+    std::vector<float> depth = ground_depth(size);
+    Bounds bounds = Bounds(view, depth);
+    std::vector<glm::vec4> lights = test::random_lights(200, 5);
+};
+
 /// A clock that stands still but for builds, which last as long as `build_ns` says of the first, second ... one.
 struct WoundClock {
     using duration = std::chrono::nanoseconds;
@@ -56,13 +65,21 @@ struct WoundClock {
     }
 };
 
+constexpr std::int64_t none_takes_time(std::size_t) {
+    return 0;
+}
+constexpr std::int64_t each_100(std::size_t) {
+    return 100;
+}
+
 constexpr Options narrow = {.ids = IdWidth::u16, .isa = Isa::scalar};
 
 Advice checked(const Result<Advice>& advice, const Costs& costs) {
     REQUIRE(advice);
     double before = 0;
     for (const Plan& plan : advice->plans()) {
-        CHECK(plan.build_ns >= (plan.depth_test == DepthTest::none ? 0 : costs.z_bounds_ns));
+        const bool bounded = plan.depth_test != DepthTest::none && plan.slicing == Slicing::none;
+        CHECK(plan.build_ns >= (bounded ? costs.z_bounds_ns : 0));
         CHECK(plan.build_ns < 1e12);
         CHECK(plan.total_ns == plan.build_ns + plan.upload_ns + plan.evaluations * costs.evaluation_ns);
         CHECK(plan.total_ns >= before);
@@ -87,6 +104,10 @@ Advice advised_on(std::int64_t (*build_ns)(std::size_t build), const View& view,
     CHECK(builds >= 3 * grids);  // the first finds no memory, the second may be disturbed
     CHECK(builds <= 9 * grids);
     return advice;
+}
+
+Advice advised_on(std::int64_t (*build_ns)(std::size_t build), const Street& street, const Costs& costs) {
+    return advised_on(build_ns, street.view, street.lights, costs, street.bounds.reduced);
 }
 
 /// The lists of a plan's grid, built by its Binner with bounds of its own tiles.
@@ -130,6 +151,17 @@ const Slices a_dozen = *Slices::exponential(12, 2, 60), hundred = *Slices::linea
 Advice advised_in_slices(const View& view, const auto& lights, const DepthSamples& samples,
                          const Costs& costs = {}) {
     return checked(advise_slices(view, lights, {.clusters = a_dozen, .z_bins = hundred}, samples, costs),
+                   costs);
+}
+
+/// Of the street, on a clock on which each build takes 100 ns.
+Advice advised_in_slices_of(const Street& street, const Costs& costs) {
+    const std::vector<float> depths = view_depths(street.view, street.size);
+    WoundClock::build_ns = each_100;
+    WoundClock::calls = 0;
+    return checked(advise_slices<narrow, WoundClock>(street.view, street.lights,
+                                                     {.clusters = a_dozen, .z_bins = hundred},
+                                                     {.depths = depths, .size = street.size}, costs),
                    costs);
 }
 
@@ -204,22 +236,14 @@ TEST_CASE("in slices, entries and evaluations are those of the plans' grids at t
 }
 
 TEST_CASE("in slices, the cheapest is chosen, and costs of Z bounds are none of theirs") {
-    const Extent size = {640, 360};
-    const View view = test::view(size, 8);
-    const std::vector<float> depths = view_depths(view, size);
-    const auto lights = test::random_lights(200, 5);
+    const Street street;
     const auto best = [&](double evaluation_ns) {
-        WoundClock::build_ns = [](std::size_t) { return std::int64_t{100}; };
-        WoundClock::calls = 0;
-        const auto advice = advise_slices<narrow, WoundClock>(
-            view, lights, {.clusters = a_dozen, .z_bins = hundred}, {.depths = depths, .size = size},
-            {.evaluation_ns = evaluation_ns, .z_bounds_ns = 1e9});
-        REQUIRE(advice);
-        for (const Plan& plan : advice->plans()) {
+        const Advice advice = advised_in_slices_of(street, {.evaluation_ns = evaluation_ns, .z_bounds_ns = 1e9});
+        for (const Plan& plan : advice.plans()) {
             CHECK(plan.build_ns == (plan.tiled ? 100 : 0));
-            CHECK(plan.evaluations * evaluation_ns + plan.build_ns >= advice->best().total_ns);
+            CHECK(plan.evaluations * evaluation_ns + plan.build_ns >= advice.best().total_ns);
         }
-        return advice->best();
+        return advice.best();
     };
     CHECK(!best(0).tiled);
     const Plan plan = best(1);
@@ -374,36 +398,29 @@ TEST_CASE("small tiles' own gaps, endless sides and NaNs merge to what hides not
 }
 
 TEST_CASE("the cheapest is chosen, exactly") {
-    const View view = test::view({640, 360}, 8);
-    const std::vector<float> depth = ground_depth({640, 360});
-    const Bounds bounds(view, depth);
-    const auto lights = test::random_lights(200, 5);
-    const auto each_100 = [](std::size_t) { return std::int64_t{100}; };
-    const auto none = [](std::size_t) { return std::int64_t{0}; };
+    const Street street;
 
     // Nothing to save, nothing to pay for, or all the same: the fewest evaluations.
-    CHECK(!advised_on(each_100, view, lights, {.evaluation_ns = 0}, bounds.reduced).best().tiled);
-    for (const auto clock : {+none, +each_100}) {
-        const Advice advice = advised_on(clock, view, lights, {.evaluation_ns = 1}, bounds.reduced);
+    CHECK(!advised_on(each_100, street, {.evaluation_ns = 0}).best().tiled);
+    for (const auto clock : {none_takes_time, each_100}) {
+        const Advice advice = advised_on(clock, street, {.evaluation_ns = 1});
         for (const Plan& plan : advice.plans())
             CHECK(plan.evaluations >= advice.best().evaluations);
         CHECK(advice.best().tile_size == 8);
         CHECK(advice.best().depth_test == DepthTest::split_box);
     }
     // Z bounds that cost more than they save, and a build that does.
-    const Advice dear =
-        advised_on(each_100, view, lights, {.evaluation_ns = 1, .z_bounds_ns = 1e12 - 200}, bounds.reduced);
+    const Advice dear = advised_on(each_100, street, {.evaluation_ns = 1, .z_bounds_ns = 1e12 - 200});
     CHECK(dear.best().depth_test == DepthTest::none);
     CHECK(dear.best().footprint == Footprint::silhouette);
     CHECK(dear.best().tile_size == 8);
     const auto slow = [](std::size_t) { return std::int64_t{1'000'000'000}; };
-    CHECK(!advised_on(slow, view, lights, {.evaluation_ns = 1}, bounds.reduced).best().tiled);
-    CHECK(advised_on(slow, view, lights, {.evaluation_ns = 1e9}, bounds.reduced).best().tile_size == 8);
+    CHECK(!advised_on(slow, street, {.evaluation_ns = 1}).best().tiled);
+    CHECK(advised_on(slow, street, {.evaluation_ns = 1e9}).best().tile_size == 8);
 }
 
 TEST_CASE("builds that are disturbed change nothing") {
-    const View view = test::view({640, 360}, 8);
-    const auto lights = test::random_lights(200, 5);
+    const Street street;
     // First builds find no memory; later, one in eight is a hundred times as long.
     const auto disturbed = [](std::size_t build) {
         std::mt19937 random(static_cast<std::uint32_t>(build));
@@ -411,8 +428,8 @@ TEST_CASE("builds that are disturbed change nothing") {
     };
     const auto steady = [](std::size_t) { return std::int64_t{1'000'000}; };
     for (const double cost : {0.001, 0.01, 0.1, 1.0, 10.0}) {
-        const Plan quiet = advised_on(steady, view, lights, {.evaluation_ns = cost}).best(),
-                   noisy = advised_on(disturbed, view, lights, {.evaluation_ns = cost}).best();
+        const Plan quiet = advised_on(steady, street.view, street.lights, {.evaluation_ns = cost}).best(),
+                   noisy = advised_on(disturbed, street.view, street.lights, {.evaluation_ns = cost}).best();
         CHECK(noisy.tiled == quiet.tiled);
         CHECK(noisy.tile_size == quiet.tile_size);
         CHECK(noisy.footprint == quiet.footprint);
@@ -474,21 +491,9 @@ TEST_CASE("a plan's options reach a Binner, with the rest from the caller's") {
 }
 
 TEST_CASE("without Z bounds the fragments of all layers count, and a byte of the lists costs what is said") {
-    const View view = test::view({640, 360}, 8);
-    const Bounds bounds(view, ground_depth({640, 360}));
-    const std::vector<float> depths = view_depths(view, {640, 360});
-    const auto lights = test::random_lights(200, 5);
-    const auto each_100 = [](std::size_t) { return std::int64_t{100}; };
+    const Street street;
     const Costs plain = {.evaluation_ns = 1, .z_bounds_ns = 3},
                 dear = {.evaluation_ns = 1, .z_bounds_ns = 3, .upload_byte_ns = 16, .overdraw = 2.5};
-    const auto sliced = [&](const Costs& costs) {
-        WoundClock::build_ns = each_100;
-        WoundClock::calls = 0;
-        return checked(advise_slices<narrow, WoundClock>(view, lights,
-                                                         {.clusters = a_dozen, .z_bins = hundred},
-                                                         {.depths = depths, .size = {640, 360}}, costs),
-                       costs);
-    };
     const auto compare = [&](const Advice& without, const Advice& with, auto bytes_of) {
         REQUIRE(with.plans().size() == without.plans().size());
         for (const Plan& plan : without.plans()) {
@@ -504,16 +509,16 @@ TEST_CASE("without Z bounds the fragments of all layers count, and a byte of the
             CHECK(same->upload_ns == 16 * static_cast<double>(bytes_of(plan)));
         }
     };
-    const auto tiles = [&](const Plan& plan) { return view.with_tile_size(plan.tile_size)->tile_count(); };
-    compare(advised_on(each_100, view, lights, plain, bounds.reduced),
-            advised_on(each_100, view, lights, dear, bounds.reduced), [&](const Plan& plan) {
-                return plan.tiled ? 8 * tiles(plan) + 2 * std::size_t{plan.entries} : 0;
-            });
+    const auto tiles = [&](const Plan& plan) { return street.view.with_tile_size(plan.tile_size)->tile_count(); };
+    compare(advised_on(each_100, street, plain), advised_on(each_100, street, dear), [&](const Plan& plan) {
+        return plan.tiled ? 8 * tiles(plan) + 2 * std::size_t{plan.entries} : 0;
+    });
     const std::size_t in_view = [&] {
         Binner<Options{.slicing = Slicing::z_bins}> binner;
-        return binner.bin(view, lights, {.slices = hundred})->ranks().order.size();
+        return binner.bin(street.view, street.lights, {.slices = hundred})->ranks().order.size();
     }();
-    compare(sliced(plain), sliced(dear), [&](const Plan& plan) -> std::size_t {
+    const Advice without = advised_in_slices_of(street, plain), with = advised_in_slices_of(street, dear);
+    compare(without, with, [&](const Plan& plan) -> std::size_t {
         if (!plan.tiled) return 0;
         const std::size_t slices = plan.slicing == Slicing::clusters ? 12 : 1,
                           ranks = plan.slicing == Slicing::z_bins ? 8 * 100 + 4 * in_view : 0;
@@ -599,12 +604,9 @@ bool keeps(const Advice& advice, const std::string& part) {
 }  // namespace
 
 TEST_CASE("verdicts: a box is kept where it saves evaluations, and what it saves is said") {
-    const View view = test::view({640, 360}, 8);
-    const Bounds bounds(view, ground_depth({640, 360}));
-    const auto lights = test::random_lights(200, 5);
-    const auto each_100 = [](std::size_t) { return std::int64_t{100}; };
-    const Advice advice = advised_on(each_100, view, lights, {.evaluation_ns = 1},
-                                     {.min = bounds.min, .max = bounds.max});  // no gaps
+    const Street street;
+    const Advice advice = advised_on(each_100, street.view, street.lights, {.evaluation_ns = 1},
+                                     {.min = street.bounds.min, .max = street.bounds.max});  // no gaps
     check_verdicts(advice);
     CHECK(keeps(advice, "box"));
     CHECK(keeps(advice, "pre-pass"));
@@ -614,9 +616,9 @@ TEST_CASE("verdicts: a box is kept where it saves evaluations, and what it saves
     CHECK(to_string(box).starts_with("box          keep: saves 0.") == (box.saved_ns < 1e6));
     CHECK(advice.verdicts(advice.best())[3].instead.empty());  // split boxes need gaps
 
-    check_verdicts(advised_on(each_100, view, lights, {.evaluation_ns = 1}, bounds.reduced));
-    check_verdicts(advised(view, lights));
-    check_verdicts(advised(view, std::vector<Sphere>{}));
+    check_verdicts(advised_on(each_100, street, {.evaluation_ns = 1}));
+    check_verdicts(advised(street.view, street.lights));
+    check_verdicts(advised(street.view, std::vector<Sphere>{}));
 }
 
 TEST_CASE("verdicts: from above, where all lights reach the ground, depth is of no use") {
@@ -630,7 +632,6 @@ TEST_CASE("verdicts: from above, where all lights reach the ground, depth is of 
     const float window = (1000 * (50 - 0.1f)) / (999.9f * 50);
     const std::vector<float> depth(640 * 360, window);
     const Bounds bounds(view, depth);
-    const auto each_100 = [](std::size_t) { return std::int64_t{100}; };
     // Evaluations are what is paid for, of which a depth test saves less than the fifth that the pre-pass costs.
     const double evaluations = advised_on(each_100, view, lights, {.evaluation_ns = 1}).best().evaluations;
     const Advice advice = advised_on(each_100, view, lights,
@@ -654,17 +655,15 @@ TEST_CASE("verdicts: from above, where all lights reach the ground, depth is of 
 }
 
 TEST_CASE("verdicts: spots have the same, and fewer evaluations than their spheres") {
-    const View view = test::view({640, 360}, 8);
-    const Bounds bounds(view, ground_depth({640, 360}));
+    const Street street;
     std::vector<Spot> spots;
     std::vector<Sphere> least;
-    for (const glm::vec4& light : test::random_lights(200, 5)) {
+    for (const glm::vec4& light : street.lights) {
         spots.push_back({light.x, light.y, light.z, 2 * light.w, 0, -1, 0.2f, 0.9f});
         least.push_back(spots.back());
     }
-    const auto each_100 = [](std::size_t) { return std::int64_t{100}; };
-    const Advice as_spots = advised_on(each_100, view, spots, {.evaluation_ns = 1}, bounds.reduced),
-                 as_spheres = advised_on(each_100, view, least, {.evaluation_ns = 1}, bounds.reduced);
+    const Advice as_spots = advised_on(each_100, street.view, spots, {.evaluation_ns = 1}, street.bounds.reduced),
+                 as_spheres = advised_on(each_100, street.view, least, {.evaluation_ns = 1}, street.bounds.reduced);
     check_verdicts(as_spots);
     CHECK(keeps(as_spots, "tiles"));
     CHECK(keeps(as_spots, "box"));
@@ -675,7 +674,6 @@ TEST_CASE("scenes that need no grid get none") {
     const View view = test::view({1280, 720}, 8);
     CHECK(!advised(view, std::vector<Sphere>{}).best().tiled);
     CHECK(advised(view, std::vector<Sphere>{}).best().total_ns == 0);
-    const auto each_100 = [](std::size_t) { return std::int64_t{100}; };
     CHECK(!advised_on(each_100, view, std::vector<Sphere>{{0, 0, -20, 500}}).best().tiled);
     const Advice behind = advised(view, std::vector<Sphere>(2000, Sphere{0, 0, 500, 20}));
     for (const Plan& plan : behind.plans()) {
@@ -720,15 +718,14 @@ TEST_CASE(
     const auto lights = test::random_lights(1000, 8);
     const float identity[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
     // On a clock that stands still the order is that of the evaluations.
-    const auto none = [](std::size_t) { return std::int64_t{0}; };
-    const Advice first = advised_on(none, view, lights), wide = advised(view, view_space(lights));
+    const Advice first = advised_on(none_takes_time, view, lights), wide = advised(view, view_space(lights));
     REQUIRE(wide.plans().size() == first.plans().size());
     for (const Plan& plan : first.plans())
         CHECK(std::ranges::count_if(wide.plans(), [&](const Plan& other) {
                   return other.tile_size == plan.tile_size && other.footprint == plan.footprint &&
                          other.entries == plan.entries && other.evaluations == plan.evaluations;
               }) == 1);
-    const Advice moved = advised_on(none, view, world_space(lights, identity));
+    const Advice moved = advised_on(none_takes_time, view, world_space(lights, identity));
     CHECK(moved.best().evaluations == doctest::Approx(first.best().evaluations).epsilon(0.02));
 
     const std::string text = first.text();

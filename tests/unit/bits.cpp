@@ -16,14 +16,14 @@ template <class Id> std::vector<std::uint32_t> bits_of(const LightGrid<Id>& grid
     return bits;
 }
 
-template <Options options> void compare() {
+template <Options options, class Light> void compare(std::vector<Light> test::Kinds::*kind) {
     const Slices slices = *Slices::linear(100, 0, 60);
     Binner<options> binner, other;
     for (const std::size_t count : {0u, 1u, 40u, 700u})
         for (const Extent size : {Extent{640, 480}, Extent{333, 217}, Extent{16, 900}, Extent{0, 0}}) {
             const View view = test::view(size, 16);
             const std::vector<float> min(view.tile_count(), 5), max(view.tile_count(), 30);
-            const auto lights = test::random_lights(count, 61);
+            const auto lights = test::random_kinds(count, count, count, 61).*kind;
             const auto inputs = inputs_for<options>({.min = min, .max = max}, slices);
             const auto grid = binner.bin(view, lights, inputs);
             REQUIRE(grid);
@@ -50,12 +50,14 @@ template <Options options> void compare() {
 
 TEST_CASE("bitmasks without lists have the lists' lights, in every tier, on any number of threads") {
     test::on_machine_tiers([]<Isa isa>() {
-        compare<Options{.isa = isa}>();
-        compare<Options{.ids = IdWidth::u16, .slicing = Slicing::z_bins, .isa = isa}>();
+        compare<Options{.isa = isa}>(&test::Kinds::spheres);
+        compare<Options{.depth_test = DepthTest::box, .isa = isa}>(&test::Kinds::spots);
+        compare<Options{.depth_test = DepthTest::box, .isa = isa}>(&test::Kinds::boxes);
+        compare<Options{.ids = IdWidth::u16, .slicing = Slicing::z_bins, .isa = isa}>(&test::Kinds::spheres);
         compare<Options{.footprint = Footprint::silhouette,
                         .depth_test = DepthTest::box,
                         .slicing = Slicing::z_bins,
-                        .isa = isa}>();
+                        .isa = isa}>(&test::Kinds::spheres);
     });
 }
 

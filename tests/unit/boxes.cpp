@@ -76,11 +76,6 @@ bool contains(const Box& box, const glm::vec3& p) {
            std::abs(at.z) <= 1.001f;
 }
 
-constexpr Options on_tier(Options options, Isa isa) {
-    options.isa = isa;
-    return options;
-}
-
 }  // namespace
 
 TEST_CASE("each rung lists fewer boxes than their spheres, and none that a lower one leaves out") {
@@ -98,40 +93,6 @@ TEST_CASE("each rung lists fewer boxes than their spheres, and none that a lower
             REQUIRE(alone[cell].size() ==
                     static_cast<std::size_t>(std::count(here[cell].begin(), here[cell].end(), 1u)));
     });
-}
-
-TEST_CASE("boxes have the same lists on all tiers and threads") {
-    const View view = test::view({1283, 721}, 16);
-    const std::vector<Box> boxes = random_boxes(700, 6);
-    const glm::mat4 sheared = glm::mat4(1, 0.2f, 0, 0, 0, -1, 0.1f, 0, 0.4f, 0, 1, 0, 1, 2, 3, 1);
-    on_box_rungs([&]<Options options> {
-        const auto in_view = test::id_lists<on_tier(options, Isa::scalar)>(view, boxes);
-        const auto in_world = test::id_lists<on_tier(options, Isa::scalar)>(view, world_space(boxes, sheared));
-        test::on_machine_tiers([&]<Isa isa>() {
-            CHECK((test::id_lists<on_tier(options, isa)>(view, boxes) == in_view));
-            CHECK((test::id_lists<on_tier(options, isa)>(view, world_space(boxes, sheared)) == in_world));
-            CHECK((test::id_lists<on_tier(options, isa)>(view, boxes, {3, test::on_threads, 0}) == in_view));
-        });
-    });
-}
-
-TEST_CASE("bitmasks of boxes are those of their lists, and transparent ones are not cut in front") {
-    const View view = test::view({641, 361}, 16);
-    const std::vector<Box> boxes = random_boxes(300, 7);
-    std::vector<float> min, max;
-    const ZBounds bounds = test::some_bounds(view, min, max);
-    Binner<Options{.depth_test = DepthTest::box}> binner;
-    const auto listed = test::to_lists(*binner.bin(view, boxes, {.bounds = bounds}));
-    std::vector<std::uint32_t> bits(view.tile_count() * 10);
-    REQUIRE(binner.bin_bits(view, boxes, 300, bits, {.bounds = bounds}));
-    for (std::size_t tile = 0; tile < listed.size(); ++tile)
-        for (std::uint32_t id = 0; id < 300; ++id)
-            REQUIRE((bits[10 * tile + id / 32] >> id % 32 & 1) ==
-                    std::count(listed[tile].begin(), listed[tile].end(), id));
-    const auto both = binner.bin_transparency(view, boxes, {.bounds = bounds});
-    REQUIRE(both);
-    CHECK((test::to_lists(both->opaque) == listed));
-    CHECK((test::to_lists(both->transparent) == test::to_lists(*binner.bin(view, boxes, {.bounds = {.max = max}}))));
 }
 
 TEST_CASE("an affine matrix makes of a box the box of the transformed half axes") {

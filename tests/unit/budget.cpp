@@ -153,7 +153,8 @@ TEST_CASE("a budget refuses too few weights, and takes more") {
     const auto refused = budget.limit(*grid, std::vector<float>(8), {.per_cell = 1});
     REQUIRE(!refused);
     CHECK(refused.error().code == ErrorCode::too_few_weights);
-    CHECK(std::string(refused.error().message()).find("9 lights that were binned, and was given 8") != std::string::npos);
+    CHECK(std::string(refused.error().message()).find("9 lights that were binned, and was given 8") !=
+          std::string::npos);
     CHECK(!budget.limit(*grid, {}, {}));
     CHECK(budget.limit(*grid, std::vector<float>(10), {.per_cell = 1}));
     const View empty = test::view({0, 64}, 32);

@@ -72,7 +72,8 @@ TEST_CASE("a slice of clusters holds what tile lists of the slice alone do") {
     compare_all<Options{.slicing = Slicing::clusters}>();
     compare_all<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
     compare_all<Options{.footprint = Footprint::silhouette, .slicing = Slicing::clusters}>();
-    compare_all<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
+    compare_all<Options{
+        .footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
 }
 
 TEST_CASE("slices of exponential and linear depth end where they should") {

@@ -64,13 +64,11 @@ bool same_rectangles(const std::vector<LightCoverage>& a, const std::vector<Ligh
                       });
 }
 
+/// Of half angles to 90 degrees, or whole spheres.
 std::vector<Spot> some_spots(std::size_t count, std::uint32_t seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<float> side(-1, 1);
-    std::vector<Spot> spots;
-    for (const glm::vec4& light : test::random_lights(count, seed))
-        spots.push_back({light.x, light.y, light.z, light.w, side(random), side(random), side(random),
-                         random() % 8 == 0 ? -1.0f : std::fabs(side(random))});
+    std::vector<Spot> spots = test::random_kinds(0, count, 0, seed).spots;
+    for (Spot& spot : spots)
+        if (spot.cos_half_angle < 0) spot.cos_half_angle = -1;
     return spots;
 }
 

@@ -68,20 +68,25 @@ TEST_CASE("a NaN bound tests nothing; infinite bounds mean what they say") {
     }
 }
 
-TEST_CASE("transparency lists: one call gives what two Binners give") {
-    constexpr Options options = {.ids = IdWidth::u16, .depth_test = DepthTest::interval};
+TEST_CASE("transparency lists: one call gives what two Binners give, of each kind of light") {
+    constexpr Options options = {.ids = IdWidth::u16, .depth_test = DepthTest::box};
     const View view = test::view({960, 540}, 16);
-    const auto lights = test::random_lights(1500, 20);
+    const test::Kinds kinds = test::random_kinds(1500, 300, 300, 20);
     const auto min = random_floats(view.tile_count(), 5.0f, 30.0f, 21),
                max = random_floats(view.tile_count(), 30.0f, 60.0f, 22);
-    Binner<options> binner;
-    const auto grids = binner.bin_transparency(view, lights, {.bounds = {.min = min, .max = max}});
-    REQUIRE(grids);
-    const auto opaque = test::to_lists(grids->opaque), transparent = test::to_lists(grids->transparent);
-    CHECK(opaque == test::lists<options>(view, lights, ZBounds{.min = min, .max = max}));
-    CHECK(transparent == test::lists<options>(view, lights, ZBounds{.min = {}, .max = max}));
-    CHECK(test::is_superset(transparent, opaque));
-    CHECK(test::entries(transparent) > test::entries(opaque));
+    const auto check = [&](const auto& lights) {
+        Binner<options> binner;
+        const auto grids = binner.bin_transparency(view, lights, {.bounds = {.min = min, .max = max}});
+        REQUIRE(grids);
+        const auto opaque = test::to_lists(grids->opaque), transparent = test::to_lists(grids->transparent);
+        CHECK(opaque == test::lists<options>(view, lights, ZBounds{.min = min, .max = max}));
+        CHECK(transparent == test::lists<options>(view, lights, ZBounds{.min = {}, .max = max}));
+        CHECK(test::is_superset(transparent, opaque));
+        CHECK(test::entries(transparent) > test::entries(opaque));
+    };
+    check(kinds.spheres);
+    check(kinds.spots);
+    check(kinds.boxes);
 }
 
 TEST_CASE("what became of the lights, and how long the lists are") {

@@ -1,7 +1,6 @@
 // Arrays of several kinds in one call: the grids must be those of the kinds alone, one after another in every list.
 #include "scene.hpp"
 
-#include <lightbin/box.hpp>
 #include <lightbin/encode.hpp>
 
 #include <glm/ext/matrix_transform.hpp>
@@ -9,33 +8,6 @@
 using namespace lightbin;
 
 namespace {
-
-struct Kinds {
-    std::vector<Sphere> spheres;
-    std::vector<Spot> spots;
-    std::vector<Box> boxes;
-};
-
-Kinds random_kinds(std::size_t spheres, std::size_t spots, std::size_t boxes, std::uint32_t seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<float> unit(-1, 1), angle(0, 3);
-    Kinds kinds;
-    for (const glm::vec4& s : test::random_lights(spheres, seed))
-        kinds.spheres.push_back({s.x, s.y, s.z, s.w});
-    for (const glm::vec4& s : test::random_lights(spots, seed + 1)) {
-        const Sphere ball = {s.x, s.y, s.z, s.w};
-        const Spot spot = {s.x, s.y, s.z, s.w, unit(random), unit(random), unit(random), std::cos(angle(random))};
-        kinds.spots.push_back(kinds.spots.size() % 3 == 0 ? Spot::whole(ball) : spot);
-    }
-    for (const glm::vec4& s : test::random_lights(boxes, seed + 2)) {
-        Box box = {s.x, s.y, s.z, s.w, s.x + unit(random), s.y, s.z, {}};
-        for (float(&axis)[3] : box.half_axes)
-            for (float& coordinate : axis)
-                coordinate = s.w * unit(random);
-        kinds.boxes.push_back(box);
-    }
-    return kinds;
-}
 
 const Parallel on_three_threads(3, test::on_threads, 0);
 
@@ -52,7 +24,7 @@ void append(test::Lists& to, const test::Lists& from, std::size_t first) {
             to[cell].push_back(id + static_cast<std::uint32_t>(first));
 }
 
-template <Options options> void check_joined(const View& view, const Kinds& kinds) {
+template <Options options> void check_joined(const View& view, const test::Kinds& kinds) {
     LightCounts counts, of_spheres, of_spots, of_boxes;
     test::Lists expected = joined_lists<options>(view, kinds.spheres, &of_spheres);
     append(expected, joined_lists<options>(view, kinds.spots, &of_spots), kinds.spheres.size());
@@ -73,7 +45,8 @@ template <Options options> void check_joined(const View& view, const Kinds& kind
 
 TEST_CASE("joined arrays give the lists of each alone, one after another") {
     const View view = test::view({900, 500}, 16);
-    for (const Kinds& kinds : {random_kinds(500, 300, 200, 1), random_kinds(1, 0, 70, 2), random_kinds(0, 65, 0, 3)})
+    for (const test::Kinds& kinds :
+         {test::random_kinds(500, 300, 200, 1), test::random_kinds(1, 0, 70, 2), test::random_kinds(0, 65, 0, 3)})
         test::on_machine_tiers([&]<Isa isa> {
             check_joined<Options{.isa = isa}>(view, kinds);
             check_joined<Options{.ids = IdWidth::u16, .footprint = Footprint::silhouette, .isa = isa}>(view, kinds);
@@ -89,7 +62,7 @@ TEST_CASE("joined arrays give the lists of each alone, one after another") {
 
 TEST_CASE("joined arrays may be in spaces of their own, and of the caller's types") {
     const View view = test::view({640, 360}, 32);
-    const Kinds kinds = random_kinds(200, 150, 100, 7);
+    const test::Kinds kinds = test::random_kinds(200, 150, 100, 7);
     const glm::mat4 matrix = glm::rotate(glm::translate(glm::mat4(1.0f), {3.0f, -2.0f, 4.0f}), 0.5f, {1.0f, 2.0f, 3.0f});
     constexpr Options box = {.depth_test = DepthTest::box};
     const auto spots = world_space(kinds.spots, matrix);
@@ -97,6 +70,8 @@ TEST_CASE("joined arrays may be in spaces of their own, and of the caller's type
     append(expected, joined_lists<box>(view, spots), kinds.spheres.size());
     append(expected, joined_lists<box>(view, kinds.boxes), kinds.spheres.size() + kinds.spots.size());
     CHECK(joined_lists<box>(view, lights(std::span(kinds.spheres), spots, view_space(kinds.boxes))) == expected);
+    // A temporary span inside view_space() refers to an array that lives on.
+    CHECK(joined_lists<box>(view, lights(view_space(std::span(kinds.spheres)), spots, kinds.boxes)) == expected);
 }
 
 TEST_CASE("too many lights in all arrays together are refused") {
@@ -112,7 +87,7 @@ TEST_CASE("too many lights in all arrays together are refused") {
 
 TEST_CASE("split_kinds() counts the lights of each kind") {
     const View view = test::view({640, 360}, 32);
-    const Kinds kinds = random_kinds(200, 150, 100, 13);
+    const test::Kinds kinds = test::random_kinds(200, 150, 100, 13);
     Binner<> binner;
     const auto grid = binner.bin(view, lights(kinds.spheres, kinds.spots, kinds.boxes));
     REQUIRE(grid);
@@ -124,7 +99,8 @@ TEST_CASE("split_kinds() counts the lights of each kind") {
     for (std::size_t cell = 0; cell < ranges.size(); ++cell) {
         const auto list = grid->ids().subspan(grid->ranges()[cell].offset, grid->ranges()[cell].count);
         const auto below = [&](std::size_t end) {
-            return static_cast<std::uint32_t>(std::count_if(list.begin(), list.end(), [&](auto id) { return id < end; }));
+            return static_cast<std::uint32_t>(
+                std::count_if(list.begin(), list.end(), [&](auto id) { return id < end; }));
         };
         const KindRange& range = (*split)[cell];
         CHECK(range.offset == grid->ranges()[cell].offset);

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -123,7 +124,7 @@ TEST_CASE("a view matrix is the same in any type") {
     CHECK(world_space(lights, affine).view_sphere(lights[0]).y == doctest::Approx(6.5));
 }
 
-TEST_CASE("a view matrix that is transposed, or multiplied with a projection, is refused as that") {
+TEST_CASE("a view matrix that is transposed, multiplied with a projection or not affine is refused as that") {
     const glm::mat4 matrix = glm::translate(glm::mat4(1.0f), {1.0f, 2.0f, 3.0f}),
                     projection = glm::perspective(1.0f, 1.5f, 0.1f, 100.0f);
     const auto view = View::from_projection(projection, {64, 48});
@@ -136,6 +137,12 @@ TEST_CASE("a view matrix that is transposed, or multiplied with a projection, is
     };
     CHECK(refusal(glm::transpose(matrix)) == ErrorCode::view_matrix_transposed);
     CHECK(refusal(projection * matrix) == ErrorCode::view_matrix_not_affine);
+    glm::mat4 bad[3] = {matrix, matrix, matrix};
+    bad[0][1][3] = bad[0][3][1] = 0.5f;
+    bad[1][3][3] = 2.0f;
+    bad[2][3][0] = std::nanf("");
+    for (const glm::mat4& m : bad)
+        CHECK(refusal(m) == ErrorCode::view_matrix_not_affine);
 }
 
 TEST_CASE("a Binner names the form of its lists") {

@@ -1,6 +1,7 @@
 // What the unit tests share: a view, random lights, and grids in a form that is easy to compare.
 #pragma once
 
+#include <lightbin/box.hpp>
 #include <lightbin/lightbin.hpp>
 
 #include <doctest/doctest.h>
@@ -85,6 +86,36 @@ inline std::vector<glm::vec4> random_lights(std::size_t count, std::uint32_t see
                             radius(random));
     }
     return lights;
+}
+
+/// Lights of each kind, around and in front of the eye: spots of half angles to 172 degrees, every third a whole
+/// sphere, and balls cut by boxes whose half axes have any angles.
+struct Kinds {
+    std::vector<lightbin::Sphere> spheres;
+    std::vector<lightbin::Spot> spots;
+    std::vector<lightbin::Box> boxes;
+};
+
+inline Kinds random_kinds(std::size_t spheres, std::size_t spots, std::size_t boxes, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(-1, 1), angle(0, 3);
+    Kinds kinds;
+    for (const glm::vec4& s : random_lights(spheres, seed))
+        kinds.spheres.push_back({s.x, s.y, s.z, s.w});
+    for (const glm::vec4& s : random_lights(spots, seed + 1)) {
+        const lightbin::Sphere ball = {s.x, s.y, s.z, s.w};
+        const lightbin::Spot spot = {
+            s.x, s.y, s.z, s.w, unit(random), unit(random), unit(random), std::cos(angle(random))};
+        kinds.spots.push_back(kinds.spots.size() % 3 == 0 ? lightbin::Spot::whole(ball) : spot);
+    }
+    for (const glm::vec4& s : random_lights(boxes, seed + 2)) {
+        lightbin::Box box = {s.x, s.y, s.z, s.w, s.x + unit(random), s.y, s.z, {}};
+        for (float(&axis)[3] : box.half_axes)
+            for (float& coordinate : axis)
+                coordinate = s.w * unit(random);
+        kinds.boxes.push_back(box);
+    }
+    return kinds;
 }
 
 /// Of how many random cases of the same kind one is to be run: LIGHTBIN_TEST_SHARE, such as 16 in an emulator, which is

@@ -101,8 +101,10 @@ TEST_CASE("a wrong option set is refused with a sentence that names the limit") 
     CHECK(has(refusal({.push_constants = true}), "Vulkan"));
     CHECK(has(refusal({.storage = ListStorage::texture_2d, .texture_width = 16385}), "16384"));
     CHECK(has(refusal({.tile_size = -1}), "-1"));
-    CHECK(has(refusal({.storage = ListStorage::uniform_block, .slicing = Slicing::clusters, .max_tiles = 9, .max_entries = 9}),
-              "max_slices"));
+    CHECK(has(
+        refusal(
+            {.storage = ListStorage::uniform_block, .slicing = Slicing::clusters, .max_tiles = 9, .max_entries = 9}),
+        "max_slices"));
     for (const char* prefix : {"", "1a", "gl_a", "GL_", "a__", "a-b", "_a", "vola"})
         CHECK(has(refusal({.prefix = prefix}), "prefix"));
     CHECK(has(refusal({.prefix = std::string(1001, 'a')}), "1000"));
@@ -150,6 +152,42 @@ TEST_CASE("several views: functions that read lists take the view's number, and 
                            .max_entries = 4,
                            .max_slices = 7};
     CHECK(shader_snippet(block)->bindings.back().bytes == 2 * 7 * sizeof(BinRange));
+}
+
+TEST_CASE("split_kinds: tiles are KindRanges, there is a loop over one kind, and without it no trace") {
+    constexpr auto all_on = [](bool split, ShaderLanguage language = ShaderLanguage::glsl_430,
+                               std::uint32_t views = 1) {
+        return ShaderOptions{.language = language,
+                             .slicing = Slicing::clusters,
+                             .views = views,
+                             .split_kinds = split,
+                             .heat_map = true,
+                             .wave_loop = true,
+                             .list_check = true};
+    };
+    for (const char* absent : {"kind", "spots", "boxes", "place *="})
+        CHECK(!has(text_of(all_on(false)), absent));
+    const std::string split = text_of(all_on(true));
+    for (const char* present : {"lightbin_begin_kind(uint kind, uvec2 pixel, float view_depth)",
+                                "#define lightbin_for_each_of_kind(cursor, kind, pixel, view_depth)",
+                                "c.end = c.boxes + others.y;"})
+        CHECK(has(split, present));
+    CHECK(has(text_of(all_on(true, ShaderLanguage::hlsl_5_1, 2)),
+              "lightbin_begin_kind(kind, pixel, view_depth, view)"));
+    CHECK(
+        has(text_of(all_on(true, ShaderLanguage::wgsl)), "fn lightbin_begin_kind(kind : u32, pixel : vec2u"));
+
+    // A KindRange is two elements of `tiles`: a block has 16 bytes for each tile, and a texture has rows as the lists'.
+    const auto tiles_of = [](const ShaderOptions& options) { return shader_snippet(options)->bindings[1]; };
+    CHECK(tiles_of({.tiles_in_uniform_block = true, .split_kinds = true, .max_tiles = 5}).bytes ==
+          5 * sizeof(KindRange));
+    CHECK(tiles_of({.storage = ListStorage::texture_2d, .split_kinds = true, .texture_width = 512}).width ==
+          512);
+    CHECK(2 * tiles_of({.split_kinds = true}).stride == sizeof(KindRange));
+
+    CHECK(has(refusal({.slicing = Slicing::z_bins, .split_kinds = true}), "ranks"));
+    CHECK(has(refusal({.format = {.encoding = ListEncoding::sentinel, .capacity = 4}, .split_kinds = true}),
+              "offset_count"));
 }
 
 TEST_CASE("a negative slot is refused with its sign, in every language and by every generator") {

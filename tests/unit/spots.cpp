@@ -81,25 +81,6 @@ TEST_CASE("each rung lists fewer spots, and none that a lower one leaves out") {
     CHECK(3 * test::entries(in_rectangles) < 2 * test::entries(test::id_lists<Options{}>(view, balls)));
 }
 
-TEST_CASE("bitmasks of spots are those of their lists, and transparent ones are not cut in front") {
-    const View view = test::view({641, 361}, 16);
-    const std::vector<Spot> spots = random_spots(300, 6);
-    std::vector<float> min, max;
-    const ZBounds bounds = test::some_bounds(view, min, max);
-    Binner<Options{.depth_test = DepthTest::box}> binner;
-    const auto listed = test::to_lists(*binner.bin(view, spots, {.bounds = bounds}));
-    std::vector<std::uint32_t> bits(view.tile_count() * 10);
-    REQUIRE(binner.bin_bits(view, spots, 300, bits, {.bounds = bounds}));
-    for (std::size_t tile = 0; tile < listed.size(); ++tile)
-        for (std::uint32_t id = 0; id < 300; ++id)
-            REQUIRE((bits[10 * tile + id / 32] >> id % 32 & 1) ==
-                    std::count(listed[tile].begin(), listed[tile].end(), id));
-    const auto both = binner.bin_transparency(view, spots, {.bounds = bounds});
-    REQUIRE(both);
-    CHECK((test::to_lists(both->opaque) == listed));
-    CHECK((test::to_lists(both->transparent) == test::to_lists(*binner.bin(view, spots, {.bounds = {.max = max}}))));
-}
-
 TEST_CASE("a matrix that bends cones makes spheres of spots") {
     const View view = test::view({641, 361}, 16);
     const std::vector<Spot> spots = random_spots(300, 7);

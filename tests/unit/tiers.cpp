@@ -70,7 +70,9 @@ TEST_CASE("threads write their own parts only") {
 
 TEST_CASE("lights that all but touch the sides of the view are in it on all tiers or on none") {
     std::mt19937 random(5);
-    const auto between = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); };
+    const auto between = [&](float low, float high) {
+        return std::uniform_real_distribution<float>(low, high)(random);
+    };
     for (int camera = 0; camera < 40; ++camera) {
         const float slope = std::exp(between(-2, 1)), slant = std::hypot(slope, 1.0f);
         const auto projection = glm::perspective(2 * std::atan(slope), 1.0f, 0.1f, 1000.0f);

@@ -116,7 +116,8 @@ TEST_CASE("z-bins have the least and greatest rank of the lights in them, and th
     compare_laws<Options{.ids = IdWidth::u16, .slicing = Slicing::z_bins}>();
     compare_laws<Options{.footprint = Footprint::silhouette, .slicing = Slicing::z_bins}>();
     compare_laws<Options{.depth_test = DepthTest::interval, .slicing = Slicing::z_bins}>();
-    compare_laws<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::z_bins}>();
+    compare_laws<Options{
+        .footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::z_bins}>();
 }
 
 TEST_CASE("the part of a list that lies in a bin") {
@@ -162,7 +163,8 @@ TEST_CASE("a copy of a grid of ranks has its ranks") {
 TEST_CASE("a light at a boundary is in the bins on both sides, whatever the sign of 0") {
     const View view = test::view({64, 64}, 16);
     Binner<Options{.slicing = Slicing::z_bins}> binner;
-    for (const Slices& slices : {*Slices::linear(8, -4, 4), *Slices::from_boundaries(std::vector<float>{-1e-40f, 0, 1})})
+    for (const Slices& slices :
+         {*Slices::linear(8, -4, 4), *Slices::from_boundaries(std::vector<float>{-1e-40f, 0, 1})})
         for (const float boundary : slices.boundaries())
             for (const float radius : {0.0f, -0.0f}) {
                 const std::vector<Sphere> lights = {{0, 0, -boundary, radius}, {0, 0, 0, 100}};

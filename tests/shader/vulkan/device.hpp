@@ -54,8 +54,7 @@ public:
         make_instance();
         choose_device();
         VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr, 0, family_};
-        check(vkCreateCommandPool(device_, &pool, nullptr, &pool_), "command pool");
-        undo_.add([this] { vkDestroyCommandPool(device_, pool_, nullptr); });
+        pool_ = make(vkCreateCommandPool, vkDestroyCommandPool, pool, "command pool", undo_);
         vertex_ = compile_spirv(R"(#version 450
 void main() {
     gl_Position = vec4(vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 4.0 - 1.0, 0.0, 1.0);
@@ -201,14 +200,22 @@ private:
         vkGetDeviceQueue(device_, family_, 0, &queue_);
     }
 
+    /// Creates an object of the device, and destroys it when `undo` is gone.
+    template <class Handle, class Info>
+    Handle make(VkResult (*create)(VkDevice, const Info*, const VkAllocationCallbacks*, Handle*),
+                void (*destroy)(VkDevice, Handle, const VkAllocationCallbacks*), const Info& info, const char* what,
+                Undo& undo) {
+        Handle handle = nullptr;
+        check(create(device_, &info, nullptr, &handle), what);
+        undo.add([=, this] { destroy(device_, handle, nullptr); });
+        return handle;
+    }
+
     VkShaderModule make_module(std::span<const std::uint32_t> spirv, Undo& undo) {
         VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
         info.codeSize = spirv.size_bytes();
         info.pCode = spirv.data();
-        VkShaderModule module = nullptr;
-        check(vkCreateShaderModule(device_, &info, nullptr, &module), "shader module");
-        undo.add([=, this] { vkDestroyShaderModule(device_, module, nullptr); });
-        return module;
+        return make(vkCreateShaderModule, vkDestroyShaderModule, info, "shader module", undo);
     }
 
     VkDeviceMemory allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags properties, Undo& undo) {
@@ -217,10 +224,7 @@ private:
                (memory_.memoryTypes[type].propertyFlags & properties) != properties)
             ++type;
         VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, needs.size, type};
-        VkDeviceMemory memory = nullptr;
-        check(vkAllocateMemory(device_, &info, nullptr, &memory), "memory");
-        undo.add([=, this] { vkFreeMemory(device_, memory, nullptr); });
-        return memory;
+        return make(vkAllocateMemory, vkFreeMemory, info, "memory", undo);
     }
 
     Buffer make_buffer(std::span<const std::byte> data, std::size_t bytes, VkBufferUsageFlags usage,
@@ -266,8 +270,7 @@ private:
         view.viewType = layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
         view.format = format;
         view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, layers};
-        check(vkCreateImageView(device_, &view, nullptr, &image.view), "image view");
-        undo.add([=, this] { vkDestroyImageView(device_, image.view, nullptr); });
+        image.view = make(vkCreateImageView, vkDestroyImageView, view, "image view", undo);
         return image;
     }
 
@@ -349,10 +352,8 @@ private:
             VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
             info.bindingCount = static_cast<std::uint32_t>(layout.size());
             info.pBindings = layout.data();
-            VkDescriptorSetLayout handle = nullptr;
-            check(vkCreateDescriptorSetLayout(device_, &info, nullptr, &handle), "set layout");
-            undo.add([=, this] { vkDestroyDescriptorSetLayout(device_, handle, nullptr); });
-            handles.push_back(handle);
+            handles.push_back(
+                make(vkCreateDescriptorSetLayout, vkDestroyDescriptorSetLayout, info, "set layout", undo));
         }
         VkPushConstantRange range{VK_SHADER_STAGE_ALL, 0, 0};
         VkPipelineLayoutCreateInfo layout{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
@@ -363,17 +364,15 @@ private:
             layout.pushConstantRangeCount = 1;
             layout.pPushConstantRanges = &range;
         }
-        check(vkCreatePipelineLayout(device_, &layout, nullptr, &descriptors.layout), "pipeline layout");
-        undo.add([this, made = descriptors.layout] { vkDestroyPipelineLayout(device_, made, nullptr); });
+        descriptors.layout = make(vkCreatePipelineLayout, vkDestroyPipelineLayout, layout, "pipeline layout", undo);
         if (handles.empty()) return descriptors;
 
         VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
         pool.maxSets = static_cast<std::uint32_t>(handles.size());
         pool.poolSizeCount = static_cast<std::uint32_t>(sizes.size());
         pool.pPoolSizes = sizes.data();
-        VkDescriptorPool descriptor_pool = nullptr;
-        check(vkCreateDescriptorPool(device_, &pool, nullptr, &descriptor_pool), "descriptor pool");
-        undo.add([=, this] { vkDestroyDescriptorPool(device_, descriptor_pool, nullptr); });
+        const VkDescriptorPool descriptor_pool =
+            make(vkCreateDescriptorPool, vkDestroyDescriptorPool, pool, "descriptor pool", undo);
         descriptors.sets.resize(handles.size());
         const VkDescriptorSetAllocateInfo allocation{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, nullptr,
                                                      descriptor_pool, pool.maxSets, handles.data()};
@@ -413,8 +412,7 @@ private:
             view.buffer = buffer.handle;
             view.format = format;
             view.range = VK_WHOLE_SIZE;
-            check(vkCreateBufferView(device_, &view, nullptr, &buffer_view), "buffer view");
-            undo.add([=, this] { vkDestroyBufferView(device_, buffer_view, nullptr); });
+            buffer_view = make(vkCreateBufferView, vkDestroyBufferView, view, "buffer view", undo);
         } else if (input.binding.resource == lightbin::ShaderResource::texture_2d) {
             const Image image =
                 make_image(format, input.width, input.height,
@@ -432,8 +430,7 @@ private:
             image_info.imageView = image.view;
             if (!job.hlsl) {
                 const VkSamplerCreateInfo nearest{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
-                check(vkCreateSampler(device_, &nearest, nullptr, &image_info.sampler), "sampler");
-                undo.add([this, made = image_info.sampler] { vkDestroySampler(device_, made, nullptr); });
+                image_info.sampler = make(vkCreateSampler, vkDestroySampler, nearest, "sampler", undo);
             }
         }
         vkUpdateDescriptorSets(device_, 1, &write, 0, nullptr);
@@ -511,9 +508,7 @@ private:
         multiview.subpassCount = 1;
         multiview.pViewMasks = &every_view;
         if (job.views > 1) pass_info.pNext = &multiview;
-        VkRenderPass pass = nullptr;
-        check(vkCreateRenderPass(device_, &pass_info, nullptr, &pass), "render pass");
-        undo.add([=, this] { vkDestroyRenderPass(device_, pass, nullptr); });
+        const VkRenderPass pass = make(vkCreateRenderPass, vkDestroyRenderPass, pass_info, "render pass", undo);
 
         VkFramebufferCreateInfo frame{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
         frame.renderPass = pass;
@@ -522,9 +517,7 @@ private:
         frame.width = width;
         frame.height = height;
         frame.layers = 1;
-        VkFramebuffer framebuffer = nullptr;
-        check(vkCreateFramebuffer(device_, &frame, nullptr, &framebuffer), "framebuffer");
-        undo.add([=, this] { vkDestroyFramebuffer(device_, framebuffer, nullptr); });
+        const VkFramebuffer framebuffer = make(vkCreateFramebuffer, vkDestroyFramebuffer, frame, "framebuffer", undo);
 
         const VkRect2D whole{{0, 0}, {width, height}};
         const VkViewport viewport{static_cast<float>(job.corner[0]),

@@ -118,7 +118,8 @@ class Device {
     }
 
     async fill_samples(texture, bytes) {
-        this.fill ??= await this.draw_pipeline('auto', await this.module(fill_samples), texture.format, texture.sampleCount);
+        this.fill ??= await this.draw_pipeline('auto', await this.module(fill_samples), texture.format,
+            texture.sampleCount);
         const size = Buffer.from(new Uint32Array([texture.width, texture.sampleCount, 0, 0]).buffer);
         const buffers = [this.buffer(bytes, GPUBufferUsage.STORAGE), this.buffer(size, GPUBufferUsage.UNIFORM)];
         const group = this.device.createBindGroup({
@@ -187,7 +188,8 @@ class Device {
         await written.buffer.mapAsync(GPUMapMode.READ);
         const mapped = Buffer.from(written.buffer.getMappedRange());
         const rows = [];
-        for (let at = 0; at < mapped.length; at += written.bytesPerRow) rows.push(mapped.subarray(at, at + written.row));
+        for (let at = 0; at < mapped.length; at += written.bytesPerRow)
+            rows.push(mapped.subarray(at, at + written.row));
         const bytes = Buffer.concat(rows);
         [...resources, ...written.made].forEach(made => made.destroy());
         return bytes;
@@ -216,7 +218,8 @@ function target_of(job) {
 function accepts(job, bytes) {
     const wanted = Buffer.from(job.within ?? job.expected, 'hex');
     if (!job.within) return bytes.equals(wanted);
-    const value = i => bytes.readFloatLE(4 * i), low = i => wanted.readFloatLE(8 * i), high = i => wanted.readFloatLE(8 * i + 4);
+    const value = i => bytes.readFloatLE(4 * i), low = i => wanted.readFloatLE(8 * i),
+        high = i => wanted.readFloatLE(8 * i + 4);
     const all = Array.from({ length: bytes.length / 4 }, (_, i) => value(i) >= low(i) && value(i) <= high(i));
     return 2 * bytes.length === wanted.length && all.every(Boolean);
 }
