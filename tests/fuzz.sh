@@ -1,6 +1,6 @@
 #!/bin/sh
-# sh tests/fuzz.sh [SECONDS]: fuzzes the binning and the shader generators for so long each (60 if not given), under
-# AddressSanitizer and UndefinedBehaviorSanitizer. Starts from the corpus in tests/fuzz, which the normal tests replay,
+# sh tests/fuzz.sh [SECONDS]: fuzzes the binning, the shader generators and the C side for so long each (60 if not
+# given), under AddressSanitizer and UndefinedBehaviorSanitizer. Starts from the corpus in tests/fuzz, which the normal tests replay,
 # and leaves what it found in build/fuzz: inputs that fail, and a minimised corpus to put in the old one's place.
 set -eu
 me=tests/fuzz.sh
@@ -15,13 +15,15 @@ make_build_folder
 mkdir -p $work
 compile() {
     clang++-14 -std=c++20 -O1 -g -Iinclude -fno-omit-frame-pointer -fsanitize=fuzzer-no-link,address,undefined \
-        -fno-sanitize-recover=all -c "$1" -o "$work/$(basename "$1" .cpp).o" || fail "$1 does not compile"
+        -fno-sanitize-recover=all -c "$@" -o "$work/$(basename "$1" .cpp).o" || fail "$1 does not compile"
 }
 for source in oracle/judge oracle/engine fuzz/binning fuzz/shader; do
     compile tests/$source.cpp
 done
+compile tests/fuzz/c.cpp -DLIGHTBIN_NO_SIMD -DLIGHTBIN_NO_SHADERS -DLIGHTBIN_NO_ADVICE
 clang++-14 -fsanitize=fuzzer,address,undefined $work/binning.o $work/judge.o $work/engine.o -lgmp -o $work/fuzz_binning
 clang++-14 -fsanitize=fuzzer,address,undefined $work/shader.o -o $work/fuzz_shader
+clang++-14 -fsanitize=fuzzer,address,undefined $work/c.o -o $work/fuzz_c
 clang++-14 -std=c++20 -O1 -DNO_TARGET tests/fuzz/replay.cpp -o $work/pack
 
 failed=
@@ -40,5 +42,6 @@ fuzz() {
 }
 fuzz binning 700
 fuzz shader 160
+fuzz c 900
 [ -z "$failed" ] || fail "failed:$failed; the inputs and logs are in $work"
 echo "$me: nothing found; $work/*.corpus are the minimised corpora"

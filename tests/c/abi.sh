@@ -1,0 +1,43 @@
+#!/bin/sh
+# abi.sh LIBRARY [write]: the functions of LIBRARY, a shared library of the C side, and the values and layouts of
+# lightbin.h are those of abi.txt: what was published never changes. With `write`, abi.txt is written anew, for what is
+# added. For processors with 64 bits.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+header=$here/../../include/lightbin/lightbin.h
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# The structs and enums of the header, as a program that prints their layouts and values. Comments are taken out first.
+python3 - "$header" >"$work/layouts.c" <<'END'
+import re, sys
+text = re.sub(r"/\*.*?\*/", "", open(sys.argv[1]).read(), flags=re.S)
+print("#include <lightbin/lightbin.h>\n#include <stdio.h>\nint main(void) {")
+for name, body in re.findall(r"typedef struct (\w+) \{(.*?)\} \1;", text, re.S):
+    print(f'printf("struct {name}: %zu bytes\\n", sizeof({name}));')
+    for declaration in body.split(";"):
+        pointer = re.search(r"\(\*(\w+)\)", declaration)
+        names = [pointer.group(1)] if pointer else re.findall(r"(\w+)(?:\[\d+\])?\s*(?:,|$)", declaration.strip())
+        for member in names:
+            print(f'printf("  %zu %s, %zu bytes\\n", offsetof({name}, {member}), "{member}", sizeof((({name}*)0)->{member}));')
+for name, body in re.findall(r"typedef enum (\w+) \{(.*?)\} \1;", text, re.S):
+    print(f'printf("enum {name}\\n");')
+    for value in re.findall(r"(LIGHTBIN_\w+)\s*=", body):
+        print(f'printf("  {value} = %d\\n", (int){value});')
+print("return 0; }")
+END
+cc -std=c99 -I "$here/../../include" "$work/layouts.c" -o "$work/layouts"
+{
+    nm -D --defined-only "$1" | sed -n 's/^[^ ]* T \(lightbin_\)/function \1/p' | LC_ALL=C sort
+    "$work/layouts"
+} >"$work/abi.txt"
+[ "$(grep -c '^function' "$work/abi.txt")" -gt 40 ]
+[ "$(grep -c '^struct' "$work/abi.txt")" -gt 25 ]
+if [ "${2-}" = write ]; then
+    cp "$work/abi.txt" "$here/abi.txt"
+else
+    diff "$here/abi.txt" "$work/abi.txt"
+fi
+# Each function that the header declares is there.
+grep -o 'LIGHTBIN_API [^;]*lightbin_[a-z0-9_]*(' "$header" | grep -o 'lightbin_[a-z0-9_]*($' | tr -d '(' | LC_ALL=C sort >"$work/declared"
+sed -n 's/^function //p' "$work/abi.txt" | diff "$work/declared" -

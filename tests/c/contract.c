@@ -1,0 +1,768 @@
+/* SPDX-License-Identifier: MIT */
+/* What lightbin.h promises beyond lists: errors by name, structs of other sizes, the caller's memory and its failures.
+ * This file is C99 and C++11 at once; languages.sh compiles it as each. */
+#include <lightbin/lightbin.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int failures = 0;
+
+#define CHECK(condition)                                                                                     \
+    do {                                                                                                     \
+        if (!(condition)) {                                                                                  \
+            fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #condition);                                  \
+            ++failures;                                                                                      \
+        }                                                                                                    \
+    } while (0)
+
+/* Whether a result is an error and names the argument. */
+static int refuses(lightbin_result result, int32_t error, const char* name) {
+    char text[600];
+    const size_t length = lightbin_error_text(result, text, sizeof text);
+    if (result.error == error && strcmp(result.name, name) == 0 && length == strlen(text) && length > 10 &&
+        strncmp(text, name, strlen(name)) == 0)
+        return 1;
+    fprintf(stderr, "error %d, name \"%s\": %s\n", (int)result.error, result.name, text);
+    return 0;
+}
+
+/* ---- Memory that is counted, and that fails when it is told to ---- */
+
+typedef struct Heap {
+    long blocks;   /* allocated and not released */
+    long calls;    /* of allocate */
+    long fails_at; /* the call that fails, counted from 0; less than 0: none */
+} Heap;
+
+static void* allocate(void* user, size_t bytes) {
+    Heap* const heap = (Heap*)user;
+    void* memory;
+    if (heap->calls++ == heap->fails_at) return NULL;
+    memory = malloc(bytes);
+    if (memory != NULL) {
+        memset(memory, 0xa5, bytes);
+        ++heap->blocks;
+    }
+    return memory;
+}
+
+static void release(void* user, void* memory) {
+    --((Heap*)user)->blocks;
+    free(memory);
+}
+
+/* ---- Inputs ---- */
+
+enum {
+    light_count = 300,
+    box_count = 20,
+    slice_count = 6,
+    width = 320,
+    height = 200,
+    tile = 16,
+    tile_count = 20 * 13
+};
+
+typedef struct Light {
+    float position[3], range, axis[3], cosine;
+} Light;
+
+static float projection[16];
+static Light lights_memory[light_count];
+static float half_axes_memory[box_count][9];
+static float bounds_memory[2][tile_count];
+
+static void set_inputs(void) {
+    const float near_plane = 0.5f, far_plane = 100.0f;
+    unsigned state = 1;
+    int i, j;
+    projection[0] = 1;
+    projection[5] = 1.5f;
+    projection[10] = -(far_plane + near_plane) / (far_plane - near_plane);
+    projection[11] = -1;
+    projection[14] = -2 * far_plane * near_plane / (far_plane - near_plane);
+    for (i = 0; i < light_count; ++i) {
+        float numbers[8];
+        for (j = 0; j < 8; ++j) {
+            state = state * 1664525u + 1013904223u;
+            numbers[j] = (float)(state >> 8) / 16777216.0f;
+        }
+        lights_memory[i].position[2] = -60 * numbers[2];
+        lights_memory[i].position[0] = (2 * numbers[0] - 1) * (5 - lights_memory[i].position[2]);
+        lights_memory[i].position[1] = (2 * numbers[1] - 1) * (5 - lights_memory[i].position[2]);
+        lights_memory[i].range = 5 * numbers[3];
+        lights_memory[i].axis[0] = numbers[4] - 0.5f;
+        lights_memory[i].axis[1] = numbers[5] - 0.5f;
+        lights_memory[i].axis[2] = numbers[6] - 0.5f;
+        lights_memory[i].cosine = numbers[7];
+    }
+    for (i = 0; i < box_count; ++i)
+        for (j = 0; j < 9; ++j)
+            half_axes_memory[i][j] = (float)(j % 4 == 0) + 0.1f * (float)((i + j) % 5);
+    for (i = 0; i < tile_count; ++i) {
+        bounds_memory[0][i] = (float)(i % 30);
+        bounds_memory[1][i] = (float)(i % 30 + 20);
+    }
+}
+
+static lightbin_view_options view_options(void) {
+    lightbin_view_options options;
+    memset(&options, 0, sizeof options);
+    options.size = sizeof options;
+    options.width = width;
+    options.height = height;
+    options.tile_size = tile;
+    options.projection.floats = projection;
+    return options;
+}
+
+static lightbin_lights lights_given(void) {
+    lightbin_lights lights;
+    memset(&lights, 0, sizeof lights);
+    lights.size = sizeof lights;
+    lights.spheres.count = 200;
+    lights.spheres.centre.first = lights_memory[0].position;
+    lights.spheres.centre.stride = sizeof(Light);
+    lights.spheres.radius.first = &lights_memory[0].range;
+    lights.spheres.radius.stride = sizeof(Light);
+    lights.spots.count = 100;
+    lights.spots.centre.first = lights_memory[200].position;
+    lights.spots.centre.stride = sizeof(Light);
+    lights.spots.radius.first = &lights_memory[200].range;
+    lights.spots.radius.stride = sizeof(Light);
+    lights.spots.axis.first = lights_memory[200].axis;
+    lights.spots.axis.stride = sizeof(Light);
+    lights.spots.cosine.first = &lights_memory[200].cosine;
+    lights.spots.cosine.stride = sizeof(Light);
+    return lights;
+}
+
+static void add_boxes(lightbin_lights* lights) {
+    lights->boxes.count = box_count;
+    lights->boxes.box_centre.first = lights_memory[0].position;
+    lights->boxes.box_centre.stride = sizeof(Light);
+    lights->boxes.half_axes.first = half_axes_memory;
+    lights->boxes.half_axes.stride = sizeof half_axes_memory[0];
+}
+
+static lightbin_z_bounds bounds_given(void) {
+    lightbin_z_bounds bounds;
+    memset(&bounds, 0, sizeof bounds);
+    bounds.size = sizeof bounds;
+    bounds.min = bounds_memory[0];
+    bounds.max = bounds_memory[1];
+    bounds.tiles = tile_count;
+    return bounds;
+}
+
+static lightbin_binner_options options_given(int depth_test, int slicing) {
+    lightbin_binner_options options;
+    memset(&options, 0, sizeof options);
+    options.size = sizeof options;
+    options.depth_test = depth_test;
+    options.slicing = slicing;
+    return options;
+}
+
+static lightbin_grid empty_grid(void) {
+    lightbin_grid grid;
+    memset(&grid, 0, sizeof grid);
+    grid.size = sizeof grid;
+    return grid;
+}
+
+static void run_backwards(void* user, size_t count, lightbin_task task, void* context) {
+    ++*(int*)user;
+    while (count > 0)
+        task(context, --count);
+}
+
+/* ---- Tests ---- */
+
+static void test_views(void) {
+    lightbin_view_options options = view_options();
+    lightbin_view_options larger[2];
+    lightbin_view* view = NULL;
+    lightbin_view_info info;
+    float numbers[16];
+    double point[3] = {0, 0, -1};
+    float depths[2];
+    char text[8] = "";
+    memset(&info, 0, sizeof info);
+    info.size = sizeof info;
+
+    CHECK(refuses(lightbin_view_create(NULL, NULL, &view), LIGHTBIN_NULL_ARGUMENT, "options"));
+    CHECK(refuses(lightbin_view_create(&options, NULL, NULL), LIGHTBIN_NULL_ARGUMENT, "view"));
+    options.size = 12;
+    CHECK(refuses(lightbin_view_create(&options, NULL, &view), LIGHTBIN_WRONG_SIZE, "options"));
+    options = view_options();
+    options.projection.floats = NULL;
+    CHECK(refuses(lightbin_view_create(&options, NULL, &view), LIGHTBIN_NULL_ARGUMENT, "options.projection"));
+    options = view_options();
+    options.clip_depth = 2;
+    CHECK(refuses(lightbin_view_create(&options, NULL, &view), LIGHTBIN_NOT_A_VALUE, "options.clip_depth"));
+    options = view_options();
+    options.origin = -1;
+    CHECK(refuses(lightbin_view_create(&options, NULL, &view), LIGHTBIN_NOT_A_VALUE, "options.origin"));
+    options = view_options();
+    options.projection.layout = 3;
+    CHECK(refuses(lightbin_view_create(&options, NULL, &view), LIGHTBIN_NOT_A_VALUE, "options.projection"));
+    options = view_options();
+    options.tile_size = -3;
+    CHECK(lightbin_view_create(&options, NULL, &view).error == LIGHTBIN_TILE_SIZE_OUT_OF_RANGE);
+    options = view_options();
+    memcpy(numbers, projection, sizeof numbers);
+    numbers[3] = 1;
+    options.projection.floats = numbers;
+    CHECK(lightbin_view_create(&options, NULL, &view).error >= LIGHTBIN_MATRIX_NOT_FINITE);
+    CHECK(view == NULL);
+
+    /* A struct of a later version: more members, which must be 0. */
+    memset(larger, 0, sizeof larger);
+    larger[0] = view_options();
+    larger[0].size = sizeof larger;
+    CHECK(lightbin_view_create(&larger[0], NULL, &view).error == LIGHTBIN_OK);
+    larger[1].height = 1;
+    CHECK(refuses(lightbin_view_update(view, &larger[0]), LIGHTBIN_WRONG_SIZE, "options"));
+
+    options = view_options();
+    CHECK(refuses(lightbin_view_update(NULL, &options), LIGHTBIN_NULL_ARGUMENT, "view"));
+    options.width = 40000;
+    CHECK(lightbin_view_update(view, &options).error == LIGHTBIN_VIEWPORT_OUT_OF_RANGE);
+    CHECK(lightbin_view_describe(view, &info).error == LIGHTBIN_OK);
+    CHECK(info.width == width && info.tiles_x == 20 &&
+          info.tiles_y == 13); /* as before the update that was refused */
+    options = view_options();
+    options.tile_size = 0;
+    CHECK(lightbin_view_update(view, &options).error == LIGHTBIN_OK);
+    CHECK(lightbin_view_describe(view, &info).error == LIGHTBIN_OK);
+    CHECK(info.tile_size == 32 && info.size == sizeof info);
+    CHECK(refuses(lightbin_view_describe(NULL, &info), LIGHTBIN_NULL_ARGUMENT, "view"));
+    CHECK(refuses(lightbin_view_describe(view, NULL), LIGHTBIN_NULL_ARGUMENT, "info"));
+    CHECK(lightbin_view_text(view, text, sizeof text) > 40 && strcmp(text, "perspec") == 0);
+    CHECK(lightbin_view_text(NULL, text, sizeof text) == 0);
+    CHECK(refuses(lightbin_view_project(view, NULL, point), LIGHTBIN_NULL_ARGUMENT, "point"));
+    CHECK(refuses(lightbin_view_unproject(view, point, NULL), LIGHTBIN_NULL_ARGUMENT, "point"));
+    CHECK(refuses(lightbin_view_depths(NULL, 0, 1, depths), LIGHTBIN_NULL_ARGUMENT, "view"));
+    lightbin_view_destroy(view);
+    lightbin_view_destroy(NULL);
+}
+
+static void test_slices(void) {
+    lightbin_slices* slices = NULL;
+    const float boundaries[3] = {1, 2, 2};
+    CHECK(lightbin_slices_exponential(0, 1, 2, 0, NULL, &slices).error == LIGHTBIN_NO_SLICES);
+    CHECK(lightbin_slices_linear(3, 2, 1, 0, NULL, &slices).error == LIGHTBIN_SLICE_RANGE_EMPTY);
+    CHECK(lightbin_slices_from_boundaries(boundaries, 3, 0, NULL, &slices).error ==
+          LIGHTBIN_SLICES_DO_NOT_ASCEND);
+    CHECK(refuses(lightbin_slices_from_boundaries(NULL, 3, 0, NULL, &slices), LIGHTBIN_NULL_ARGUMENT,
+                  "boundaries"));
+    CHECK(refuses(lightbin_slices_from_boundaries(boundaries, 2, 0.6f, NULL, &slices), LIGHTBIN_NOT_A_VALUE,
+                  "margin"));
+    CHECK(refuses(lightbin_slices_linear(3, 1, 2, 0, NULL, NULL), LIGHTBIN_NULL_ARGUMENT, "slices"));
+    CHECK(slices == NULL);
+    CHECK(lightbin_slices_from_boundaries(NULL, 0, 0, NULL, &slices).error == LIGHTBIN_OK);
+    CHECK(lightbin_slices_count(slices) == 1 && lightbin_slices_at(slices, 9) == 0);
+    CHECK(lightbin_slices_count(NULL) == 0 && lightbin_slices_boundaries(NULL) == NULL);
+    lightbin_slices_destroy(slices);
+    lightbin_slices_destroy(NULL);
+}
+
+static void test_binners(void) {
+    lightbin_view_options view_given = view_options();
+    lightbin_binner_options options = options_given(LIGHTBIN_NO_DEPTH_TEST, LIGHTBIN_NO_SLICING);
+    lightbin_lights lights = lights_given();
+    lightbin_grid grid = empty_grid(), other = empty_grid();
+    lightbin_inputs inputs;
+    lightbin_z_bounds bounds = bounds_given();
+    lightbin_threads threads;
+    lightbin_binner *binner = NULL, *boxes = NULL;
+    lightbin_view* view = NULL;
+    lightbin_slices* slices = NULL;
+    lightbin_bits bits;
+    uint32_t* words;
+    uint32_t* ids;
+    lightbin_range ranges[tile_count];
+    float not_affine[16];
+    int calls = 0;
+    memset(&inputs, 0, sizeof inputs);
+    memset(&threads, 0, sizeof threads);
+    memset(&bits, 0, sizeof bits);
+    memset(not_affine, 0, sizeof not_affine);
+    inputs.size = sizeof inputs;
+    threads.size = sizeof threads;
+    bits.size = sizeof bits;
+
+    CHECK(refuses(lightbin_binner_create(NULL, NULL, NULL), LIGHTBIN_NULL_ARGUMENT, "binner"));
+    options.ids = LIGHTBIN_U8;
+    CHECK(refuses(lightbin_binner_create(&options, NULL, &binner), LIGHTBIN_NOT_A_VALUE, "options.ids"));
+    options = options_given(4, LIGHTBIN_NO_SLICING);
+    CHECK(
+        refuses(lightbin_binner_create(&options, NULL, &binner), LIGHTBIN_NOT_A_VALUE, "options.depth_test"));
+    options = options_given(LIGHTBIN_INTERVAL, LIGHTBIN_CLUSTERS);
+    CHECK(refuses(lightbin_binner_create(&options, NULL, &binner), LIGHTBIN_OPTIONS_NOT_TOGETHER, "options"));
+    options = options_given(LIGHTBIN_BOX, LIGHTBIN_NO_SLICING);
+    CHECK(binner == NULL);
+    CHECK(lightbin_binner_create(NULL, NULL, &binner).error == LIGHTBIN_OK);
+    CHECK(lightbin_binner_create(&options, NULL, &boxes).error == LIGHTBIN_OK);
+    CHECK(lightbin_view_create(&view_given, NULL, &view).error == LIGHTBIN_OK);
+    CHECK(lightbin_slices_linear(3, 1, 9, 0, NULL, &slices).error == LIGHTBIN_OK);
+
+    CHECK(refuses(lightbin_bin(NULL, view, &lights, NULL, &grid), LIGHTBIN_NULL_ARGUMENT, "binner"));
+    CHECK(refuses(lightbin_bin(binner, NULL, &lights, NULL, &grid), LIGHTBIN_NULL_ARGUMENT, "view"));
+    CHECK(refuses(lightbin_bin(binner, view, NULL, NULL, &grid), LIGHTBIN_NULL_ARGUMENT, "lights"));
+    CHECK(refuses(lightbin_bin(binner, view, &lights, NULL, NULL), LIGHTBIN_NULL_ARGUMENT, "grid"));
+    grid.size = 4;
+    CHECK(refuses(lightbin_bin(binner, view, &lights, NULL, &grid), LIGHTBIN_WRONG_SIZE, "grid"));
+    grid = empty_grid();
+    lights.spheres.radius.first = NULL;
+    CHECK(refuses(lightbin_bin(binner, view, &lights, NULL, &grid), LIGHTBIN_NULL_ARGUMENT,
+                  "lights.spheres.radius"));
+    lights = lights_given();
+    lights.spots.axis.stride = 8;
+    CHECK(refuses(lightbin_bin(binner, view, &lights, NULL, &grid), LIGHTBIN_STRIDE_TOO_SMALL,
+                  "lights.spots.axis"));
+    lights = lights_given();
+    add_boxes(&lights);
+    lights.boxes.half_axes.stride = 32;
+    CHECK(refuses(lightbin_bin(binner, view, &lights, NULL, &grid), LIGHTBIN_STRIDE_TOO_SMALL,
+                  "lights.boxes.half_axes"));
+    lights = lights_given();
+    add_boxes(&lights);
+    lights.boxes.radius.first = lights_memory;
+    CHECK(refuses(lightbin_bin(binner, view, &lights, NULL, &grid), LIGHTBIN_NULL_ARGUMENT,
+                  "lights.boxes.centre"));
+    lights = lights_given();
+    lights.view_matrix.floats = not_affine;
+    CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_VIEW_MATRIX_NOT_AFFINE);
+    CHECK(grid.ranges == NULL);
+    lights = lights_given();
+    inputs.slices = slices;
+    CHECK(refuses(lightbin_bin(binner, view, &lights, &inputs, &grid), LIGHTBIN_NOT_READ, "inputs.slices"));
+    inputs.slices = NULL;
+    inputs.bounds = &bounds;
+    CHECK(refuses(lightbin_bin(binner, view, &lights, &inputs, &grid), LIGHTBIN_NOT_READ, "inputs.bounds"));
+    CHECK(
+        refuses(lightbin_bin(boxes, view, &lights, NULL, &grid), LIGHTBIN_NO_BOUNDS_GIVEN, "inputs.bounds"));
+    bounds.tiles = 7;
+    CHECK(lightbin_bin(boxes, view, &lights, &inputs, &grid).error == LIGHTBIN_Z_BOUNDS_TOO_SMALL);
+    bounds = bounds_given();
+    inputs.threads = &threads;
+    CHECK(refuses(lightbin_bin(boxes, view, &lights, &inputs, &grid), LIGHTBIN_NULL_ARGUMENT,
+                  "inputs.threads.run"));
+    threads.run = run_backwards;
+    threads.user = &calls;
+    threads.workers = 4;
+    threads.start_ns = -1;
+    CHECK(lightbin_bin(boxes, view, &lights, &inputs, &grid).error == LIGHTBIN_OK);
+    CHECK(calls > 0);
+    bounds.background_skipped = 1;
+    CHECK(lightbin_bin_transparency(boxes, view, &lights, &inputs, &grid, &other).error ==
+          LIGHTBIN_NO_TRANSPARENT_MAX);
+    CHECK(refuses(lightbin_bin_transparency(boxes, view, &lights, &inputs, &grid, &grid), LIGHTBIN_OVERLAP,
+                  "transparent"));
+    CHECK(refuses(lightbin_bin_transparency(binner, view, &lights, NULL, &grid, &other),
+                  LIGHTBIN_OPTIONS_NOT_TOGETHER, "binner"));
+
+    words = (uint32_t*)calloc(tile_count * 10, sizeof *words);
+    CHECK(words != NULL);
+    CHECK(lightbin_bin_bits(binner, view, &lights, NULL, 300, words, 9, &bits).error ==
+          LIGHTBIN_BIT_BUFFER_TOO_SMALL);
+    CHECK(lightbin_bin_bits(binner, view, &lights, NULL, 200, words, tile_count * 10, &bits).error ==
+          LIGHTBIN_IDS_TOO_NARROW);
+    CHECK(refuses(lightbin_bin_bits(binner, view, &lights, NULL, 300, NULL, 9, &bits), LIGHTBIN_NULL_ARGUMENT,
+                  "words"));
+    CHECK(refuses(lightbin_bin_bits(binner, view, &lights, NULL, 300, (uint32_t*)(void*)lights_memory,
+                                    tile_count * 10, &bits),
+                  LIGHTBIN_OVERLAP, "words"));
+    CHECK(words[0] == 0);
+    CHECK(lightbin_bin_bits(binner, view, &lights, NULL, 300, words, tile_count * 10, &bits).error ==
+          LIGHTBIN_OK);
+    CHECK(bits.lights == light_count);
+    free(words);
+
+    /* The caller's memory, copies and encodings. */
+    CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
+    CHECK(grid.range_count == tile_count && grid.id_count > 0 && grid.lights == light_count);
+    ids = (uint32_t*)malloc((size_t)grid.id_count * sizeof *ids);
+    CHECK(lightbin_copy_grid(&grid, ranges, tile_count - 1, ids, grid.id_count).error ==
+          LIGHTBIN_RANGE_BUFFER_TOO_SMALL);
+    CHECK(lightbin_copy_grid(&grid, ranges, tile_count, ids, grid.id_count - 1).error ==
+          LIGHTBIN_ID_BUFFER_TOO_SMALL);
+    CHECK(refuses(lightbin_copy_grid(&grid, ranges, tile_count, NULL, grid.id_count), LIGHTBIN_NULL_ARGUMENT,
+                  "ids"));
+    CHECK(refuses(lightbin_copy_grid(&grid, ranges, tile_count, ranges, grid.id_count), LIGHTBIN_OVERLAP,
+                  "ids"));
+    CHECK(refuses(lightbin_copy_grid(NULL, ranges, tile_count, ids, 1), LIGHTBIN_NULL_ARGUMENT, "grid"));
+    other = grid;
+    CHECK(lightbin_copy_grid(&grid, ranges, tile_count, ids, grid.id_count).error == LIGHTBIN_OK);
+    CHECK(grid.ids == ids && memcmp(ids, other.ids, (size_t)grid.id_count * sizeof *ids) == 0);
+    {
+        lightbin_format format;
+        lightbin_encoded encoded;
+        uint64_t bytes = 0;
+        memset(&format, 0, sizeof format);
+        memset(&encoded, 0, sizeof encoded);
+        encoded.size = sizeof encoded;
+        CHECK(refuses(lightbin_encoded_bytes(&format, 1, 1, &bytes), LIGHTBIN_WRONG_SIZE, "format"));
+        format.size = sizeof format;
+        format.ids = 3;
+        CHECK(refuses(lightbin_encoded_bytes(&format, 1, 1, &bytes), LIGHTBIN_NOT_A_VALUE, "format"));
+        format.ids = LIGHTBIN_U8;
+        format.encoding = LIGHTBIN_SENTINEL;
+        CHECK(lightbin_encode(&grid, &format, ranges, 1, &encoded).error == LIGHTBIN_OVERLAP);
+        CHECK(lightbin_encode(&grid, &format, words = NULL, 0, &encoded).error == LIGHTBIN_CAPACITY_UNKNOWN);
+        format.capacity = 4;
+        CHECK(lightbin_encode(&grid, &format, NULL, 0, &encoded).error == LIGHTBIN_LIST_BUFFER_TOO_SMALL);
+        CHECK(refuses(lightbin_encode(&grid, &format, NULL, 9, &encoded), LIGHTBIN_NULL_ARGUMENT, "out"));
+        grid.id_bytes = 3;
+        CHECK(refuses(lightbin_encode(&grid, &format, NULL, 9, &encoded), LIGHTBIN_NOT_A_VALUE,
+                      "grid.id_bytes"));
+    }
+    free(ids);
+
+    /* No lights are no error. */
+    memset(&lights, 0, sizeof lights);
+    lights.size = sizeof lights;
+    grid = empty_grid();
+    CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
+    CHECK(grid.range_count == tile_count && grid.id_count == 0);
+    lightbin_binner_destroy(binner);
+    lightbin_binner_destroy(boxes);
+    lightbin_binner_destroy(NULL);
+    lightbin_view_destroy(view);
+    lightbin_slices_destroy(slices);
+}
+
+/* What is made of finished grids: coverage, counts, kinds, budgets, unions, several views. */
+static void test_grids(void) {
+    lightbin_view_options view_given = view_options();
+    lightbin_binner_options options = options_given(LIGHTBIN_NO_DEPTH_TEST, LIGHTBIN_NO_SLICING);
+    lightbin_lights lights = lights_given();
+    lightbin_grid grid = empty_grid(), other = empty_grid(), both = empty_grid(), narrow = empty_grid();
+    lightbin_binner *binner = NULL, *plain = NULL, *sixteen = NULL;
+    lightbin_view* view = NULL;
+    lightbin_budget* budget = NULL;
+    lightbin_grid_union* grid_union = NULL;
+    lightbin_cut cut;
+    const lightbin_coverage* coverage = NULL;
+    static uint32_t entries[light_count];
+    static float weights[light_count];
+    static lightbin_kind_range kinds[tile_count];
+    static lightbin_range ranges[2 * tile_count];
+    uint32_t *ids, listed = 0, sum = 0;
+    size_t count = 0, i;
+    memset(&cut, 0, sizeof cut);
+    cut.size = sizeof cut;
+    options.coverage = 1;
+    for (i = 0; i < light_count; ++i)
+        weights[i] = (float)(i % 7);
+    CHECK(lightbin_view_create(&view_given, NULL, &view).error == LIGHTBIN_OK);
+    if (lightbin_binner_create(&options, NULL, &binner).error != LIGHTBIN_OK) {
+        CHECK(binner == NULL); /* coverage is left out */
+        lightbin_view_destroy(view);
+        return;
+    }
+    CHECK(lightbin_binner_create(NULL, NULL, &plain).error == LIGHTBIN_OK);
+
+    CHECK(refuses(lightbin_binner_coverage(NULL, &coverage, &count), LIGHTBIN_NULL_ARGUMENT, "binner"));
+    CHECK(refuses(lightbin_binner_coverage(binner, NULL, &count), LIGHTBIN_NULL_ARGUMENT, "lights"));
+    CHECK(refuses(lightbin_binner_coverage(binner, &coverage, NULL), LIGHTBIN_NULL_ARGUMENT, "count"));
+    CHECK(refuses(lightbin_binner_coverage(plain, &coverage, &count), LIGHTBIN_COVERAGE_IS_OFF, "binner"));
+    CHECK(lightbin_binner_coverage(binner, &coverage, &count).error == LIGHTBIN_OK &&
+          count == 0); /* no call yet */
+    CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
+    CHECK(lightbin_binner_coverage(binner, &coverage, &count).error == LIGHTBIN_OK);
+    CHECK(count == grid.lights - grid.rejected - grid.culled && count > 0);
+    CHECK(coverage[0].x1 >= coverage[0].x0 && coverage[0].x1 < 20 &&
+          coverage[0].nearest <= coverage[0].farthest);
+    CHECK(grid.first_spot == 200 && grid.first_box == light_count);
+
+    CHECK(
+        refuses(lightbin_count_entries(NULL, entries, light_count, &listed), LIGHTBIN_NULL_ARGUMENT, "grid"));
+    CHECK(refuses(lightbin_count_entries(&grid, NULL, light_count, &listed), LIGHTBIN_NULL_ARGUMENT,
+                  "entries"));
+    CHECK(
+        refuses(lightbin_count_entries(&grid, entries, light_count, NULL), LIGHTBIN_NULL_ARGUMENT, "listed"));
+    CHECK(lightbin_count_entries(&grid, entries, light_count - 1, &listed).error ==
+          LIGHTBIN_LIGHT_BUFFER_TOO_SMALL);
+    CHECK(entries[0] == 0 && listed == 0);
+    CHECK(lightbin_count_entries(&grid, entries, light_count, &listed).error == LIGHTBIN_OK);
+    for (i = 0; i < light_count; ++i)
+        sum += entries[i];
+    CHECK(sum == grid.id_count && listed == count);
+
+    CHECK(refuses(lightbin_split_kinds(&grid, NULL, 9), LIGHTBIN_NULL_ARGUMENT, "kinds"));
+    CHECK(lightbin_split_kinds(&grid, kinds, tile_count - 1).error == LIGHTBIN_RANGE_BUFFER_TOO_SMALL);
+    CHECK(lightbin_split_kinds(&grid, kinds, tile_count).error == LIGHTBIN_OK);
+    for (i = 0; i < tile_count; ++i) {
+        CHECK(kinds[i].offset == grid.ranges[i].offset && kinds[i].boxes == 0);
+        CHECK(kinds[i].spheres + kinds[i].spots == grid.ranges[i].count);
+    }
+
+    CHECK(refuses(lightbin_budget_create(NULL, NULL), LIGHTBIN_NULL_ARGUMENT, "budget"));
+    CHECK(lightbin_budget_create(NULL, &budget).error == LIGHTBIN_OK);
+    other = empty_grid();
+    CHECK(refuses(lightbin_limit_grid(NULL, &grid, weights, light_count, 2, 9, &other, &cut),
+                  LIGHTBIN_NULL_ARGUMENT, "budget"));
+    CHECK(refuses(lightbin_limit_grid(budget, NULL, weights, light_count, 2, 9, &other, &cut),
+                  LIGHTBIN_NULL_ARGUMENT, "grid"));
+    CHECK(refuses(lightbin_limit_grid(budget, &grid, NULL, light_count, 2, 9, &other, &cut),
+                  LIGHTBIN_NULL_ARGUMENT, "weights"));
+    CHECK(refuses(lightbin_limit_grid(budget, &grid, weights, light_count, 2, 9, NULL, &cut),
+                  LIGHTBIN_NULL_ARGUMENT, "limited"));
+    CHECK(lightbin_limit_grid(budget, &grid, weights, light_count - 1, 2, 9, &other, &cut).error ==
+          LIGHTBIN_TOO_FEW_WEIGHTS);
+    CHECK(other.ranges == NULL && cut.cell_count == 0);
+    CHECK(lightbin_limit_grid(budget, &grid, weights, light_count, LIGHTBIN_NO_LIMIT, LIGHTBIN_NO_LIMIT,
+                              &other, NULL)
+              .error == LIGHTBIN_OK);
+    CHECK(other.ids == grid.ids &&
+          other.id_count == grid.id_count); /* nothing is left out, nothing is copied */
+    CHECK(
+        lightbin_limit_grid(budget, &grid, weights, light_count, 2, LIGHTBIN_NO_LIMIT, &other, &cut).error ==
+        LIGHTBIN_OK);
+    CHECK(cut.entries_cut > 0 && other.id_count + cut.entries_cut == grid.id_count &&
+          cut.cell_count == tile_count);
+    for (i = 0; i < tile_count; ++i)
+        CHECK(other.ranges[i].count <= 2 &&
+              other.ranges[i].count + cut.cut_in_cell[i] == grid.ranges[i].count);
+    both = other;
+    CHECK(refuses(lightbin_limit_grid(budget, &other, weights, light_count, 1, 9, &both, &cut),
+                  LIGHTBIN_OVERLAP, "grid"));
+
+    CHECK(refuses(lightbin_grid_union_create(NULL, NULL), LIGHTBIN_NULL_ARGUMENT, "grid_union"));
+    CHECK(lightbin_grid_union_create(NULL, &grid_union).error == LIGHTBIN_OK);
+    both = empty_grid();
+    CHECK(refuses(lightbin_unite_grids(NULL, &grid, &other, &both), LIGHTBIN_NULL_ARGUMENT, "grid_union"));
+    CHECK(refuses(lightbin_unite_grids(grid_union, NULL, &other, &both), LIGHTBIN_NULL_ARGUMENT, "first"));
+    CHECK(refuses(lightbin_unite_grids(grid_union, &grid, NULL, &both), LIGHTBIN_NULL_ARGUMENT, "second"));
+    CHECK(refuses(lightbin_unite_grids(grid_union, &grid, &other, NULL), LIGHTBIN_NULL_ARGUMENT, "grid"));
+    CHECK(lightbin_unite_grids(grid_union, &grid, &other, &both).error == LIGHTBIN_OK);
+    CHECK(both.id_count == grid.id_count); /* the other grid is a part of the first */
+    narrow = both;
+    CHECK(refuses(lightbin_unite_grids(grid_union, &both, &other, &narrow), LIGHTBIN_OVERLAP, "first"));
+    CHECK(refuses(lightbin_unite_grids(grid_union, &grid, &both, &narrow), LIGHTBIN_OVERLAP, "second"));
+
+    ids = (uint32_t*)malloc(2 * (size_t)grid.id_count * sizeof *ids);
+    other = grid;
+    both = grid;
+    CHECK(lightbin_copy_grid(&other, ranges, 2 * tile_count, ids, 2 * grid.id_count).error == LIGHTBIN_OK);
+    CHECK(refuses(lightbin_append_grid(&both, NULL, ranges, 2 * tile_count, ids, 2 * grid.id_count),
+                  LIGHTBIN_NULL_ARGUMENT, "before"));
+    CHECK(refuses(lightbin_append_grid(&both, &grid, ranges, 2 * tile_count, ids, 2 * grid.id_count),
+                  LIGHTBIN_OTHER_MEMORY, "before"));
+    CHECK(lightbin_append_grid(&both, &other, ranges, 2 * tile_count - 1, ids, 2 * grid.id_count).error ==
+          LIGHTBIN_RANGE_BUFFER_TOO_SMALL);
+    CHECK(lightbin_append_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count - 1).error ==
+          LIGHTBIN_ID_BUFFER_TOO_SMALL);
+    CHECK(refuses(lightbin_append_grid(&both, &other, NULL, 0, ids, 2 * grid.id_count), LIGHTBIN_OTHER_MEMORY,
+                  "before"));
+    CHECK(ranges[tile_count].count == 0 && both.ids == grid.ids);
+    other.tiles_x = 13;
+    CHECK(lightbin_append_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count).error ==
+          LIGHTBIN_GRIDS_DIFFER);
+    other.tiles_x = 20;
+    CHECK(lightbin_append_grid(&both, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count).error ==
+          LIGHTBIN_OK);
+    CHECK(both.range_count == 2 * tile_count && both.id_count == 2 * grid.id_count);
+    CHECK(ranges[tile_count].offset == grid.id_count && ranges[tile_count + 9].count == ranges[9].count);
+    CHECK(memcmp(ids, ids + grid.id_count, (size_t)grid.id_count * sizeof *ids) == 0);
+    options.ids = LIGHTBIN_U16;
+    options.coverage = 0;
+    if (lightbin_binner_create(&options, NULL, &sixteen).error == LIGHTBIN_OK) {
+        narrow = empty_grid();
+        CHECK(lightbin_bin(sixteen, view, &lights, NULL, &narrow).error == LIGHTBIN_OK);
+        CHECK(refuses(lightbin_unite_grids(grid_union, &grid, &narrow, &both), LIGHTBIN_NOT_A_VALUE,
+                      "second.id_bytes"));
+        CHECK(refuses(lightbin_append_grid(&narrow, &other, ranges, 2 * tile_count, ids, 2 * grid.id_count),
+                      LIGHTBIN_NOT_A_VALUE, "before.id_bytes"));
+    }
+    free(ids);
+    lightbin_budget_destroy(budget);
+    lightbin_budget_destroy(NULL);
+    lightbin_grid_union_destroy(grid_union);
+    lightbin_grid_union_destroy(NULL);
+    lightbin_binner_destroy(sixteen);
+    lightbin_binner_destroy(plain);
+    lightbin_binner_destroy(binner);
+    lightbin_view_destroy(view);
+}
+
+static void test_depth(void) {
+    lightbin_view_options options = view_options();
+    lightbin_view* view = NULL;
+    static float depth[width * height];
+    float min[tile_count], max[tile_count];
+    lightbin_depth_buffer buffer;
+    lightbin_z_bounds_buffers out;
+    lightbin_z_bounds bounds;
+    memset(&buffer, 0, sizeof buffer);
+    memset(&out, 0, sizeof out);
+    memset(&bounds, 0, sizeof bounds);
+    buffer.size = sizeof buffer;
+    buffer.depth = depth;
+    buffer.count = width * height;
+    out.size = sizeof out;
+    out.min = min;
+    out.max = max;
+    out.tiles = tile_count;
+    bounds.size = sizeof bounds;
+    CHECK(lightbin_view_create(&options, NULL, &view).error == LIGHTBIN_OK);
+    CHECK(refuses(lightbin_reduce_depth(view, NULL, &out, &bounds), LIGHTBIN_NULL_ARGUMENT, "buffer"));
+    buffer.samples = 9;
+    CHECK(lightbin_reduce_depth(view, &buffer, &out, &bounds).error == LIGHTBIN_SAMPLES_OUT_OF_RANGE);
+    buffer.samples = 2;
+    CHECK(lightbin_reduce_depth(view, &buffer, &out, &bounds).error == LIGHTBIN_DEPTH_BUFFER_TOO_SMALL);
+    buffer.samples = 1;
+    buffer.row_pitch = 3;
+    CHECK(lightbin_reduce_depth(view, &buffer, &out, &bounds).error == LIGHTBIN_ROW_PITCH_TOO_SMALL);
+    buffer.row_pitch = 0;
+    buffer.format = 7;
+    CHECK(
+        refuses(lightbin_reduce_depth(view, &buffer, &out, &bounds), LIGHTBIN_NOT_A_VALUE, "buffer.format"));
+    buffer.format = LIGHTBIN_UNORM24;
+    out.max = min + 1;
+    CHECK(refuses(lightbin_reduce_depth(view, &buffer, &out, &bounds), LIGHTBIN_OVERLAP, "out"));
+    out.max = depth;
+    CHECK(refuses(lightbin_reduce_depth(view, &buffer, &out, &bounds), LIGHTBIN_OVERLAP, "out"));
+    out.max = max;
+    out.tiles = 5;
+    CHECK(lightbin_reduce_depth(view, &buffer, &out, &bounds).error == LIGHTBIN_Z_BOUNDS_TOO_SMALL);
+    out.tiles = tile_count;
+    CHECK(lightbin_reduce_depth(view, &buffer, &out, &bounds).error == LIGHTBIN_OK);
+    CHECK(bounds.min == min && bounds.max == max && bounds.gap_min == NULL && bounds.tiles == tile_count);
+    lightbin_view_destroy(view);
+}
+
+/* Everything once, with memory of `heap`. Returns the first error. */
+static lightbin_result use_everything(const lightbin_allocator* heap, uint64_t* sum) {
+    lightbin_view_options view_given = view_options();
+    lightbin_snippet_options snippet;
+    lightbin_lights lights = lights_given();
+    lightbin_z_bounds bounds = bounds_given();
+    lightbin_view* view = NULL;
+    lightbin_slices* slices = NULL;
+    lightbin_shader* shader = NULL;
+    lightbin_result result;
+    int test, slicing, calls = 0;
+    *sum = 0;
+    add_boxes(&lights);
+    memset(&snippet, 0, sizeof snippet);
+    snippet.size = sizeof snippet;
+    snippet.language = LIGHTBIN_WGSL;
+    result = lightbin_view_create(&view_given, heap, &view);
+    if (result.error == LIGHTBIN_OK)
+        result = lightbin_slices_exponential(slice_count, 2, 50, 0.01f, heap, &slices);
+    if (result.error == LIGHTBIN_OK) {
+        result = lightbin_shader_snippet(&snippet, heap, &shader);
+        if (result.error == LIGHTBIN_LEFT_OUT) result.error = LIGHTBIN_OK;
+    }
+    for (test = LIGHTBIN_NO_DEPTH_TEST; test <= LIGHTBIN_SPLIT_BOX; ++test)
+        for (slicing = LIGHTBIN_NO_SLICING; slicing <= LIGHTBIN_Z_BINS; ++slicing) {
+            lightbin_binner_options options = options_given(test, slicing);
+            lightbin_binner* binner = NULL;
+            lightbin_inputs inputs;
+            lightbin_threads threads;
+            lightbin_grid grid = empty_grid();
+            uint64_t i;
+            memset(&inputs, 0, sizeof inputs);
+            memset(&threads, 0, sizeof threads);
+            inputs.size = sizeof inputs;
+            threads.size = sizeof threads;
+            threads.workers = 3;
+            threads.run = run_backwards;
+            threads.user = &calls;
+            threads.start_ns = -1;
+            inputs.threads = &threads;
+            if (slicing != LIGHTBIN_NO_SLICING) inputs.slices = slices;
+            if (test != LIGHTBIN_NO_DEPTH_TEST && slicing != LIGHTBIN_CLUSTERS) inputs.bounds = &bounds;
+            options.footprint = test % 2;
+            if (slicing == LIGHTBIN_CLUSTERS && test % 2 == 1) continue;
+            if (result.error == LIGHTBIN_OK) result = lightbin_binner_create(&options, heap, &binner);
+            if (result.error == LIGHTBIN_OK) {
+                result = lightbin_bin(binner, view, &lights, &inputs, &grid);
+                if (result.error == LIGHTBIN_OUT_OF_MEMORY) { /* the next call is right */
+                    const lightbin_result next = lightbin_bin(binner, view, &lights, &inputs, &grid);
+                    CHECK(next.error == LIGHTBIN_OK);
+                    if (next.error == LIGHTBIN_OK)
+                        CHECK(grid.id_count > 0 && grid.lights == light_count + box_count);
+                }
+            }
+            for (i = 0; result.error == LIGHTBIN_OK && i < grid.id_count; ++i)
+                *sum = *sum * 31 + ((const uint32_t*)grid.ids)[i];
+            lightbin_binner_destroy(binner);
+        }
+    lightbin_shader_destroy(shader);
+    lightbin_slices_destroy(slices);
+    lightbin_view_destroy(view);
+    return result;
+}
+
+static void test_memory(int failures_too) {
+    Heap heap = {0, 0, -1};
+    lightbin_allocator allocator;
+    uint64_t expected = 0, sum = 0;
+    long calls, before;
+    lightbin_view_options view_given = view_options();
+    lightbin_lights lights = lights_given();
+    lightbin_grid grid = empty_grid();
+    lightbin_view* view = NULL;
+    lightbin_binner* binner = NULL;
+    allocator.allocate = allocate;
+    allocator.release = release;
+    allocator.user = &heap;
+    CHECK(use_everything(NULL, &expected).error == LIGHTBIN_OK);
+    CHECK(use_everything(&allocator, &sum).error == LIGHTBIN_OK);
+    CHECK(sum == expected);
+    CHECK(heap.blocks == 0); /* nothing leaks */
+    calls = heap.calls;
+    CHECK(calls > 50);
+    for (heap.fails_at = 0; failures_too && heap.fails_at < calls; ++heap.fails_at) {
+        const int before_this = failures;
+        lightbin_result result;
+        heap.calls = 0;
+        result = use_everything(&allocator, &sum);
+        CHECK(result.error == LIGHTBIN_OUT_OF_MEMORY);
+        CHECK(heap.blocks == 0);
+        if (failures != before_this) {
+            fprintf(stderr, "when allocation %ld of %ld fails\n", heap.fails_at, calls);
+            break;
+        }
+    }
+    heap.fails_at = -1;
+
+    /* No allocation once warm. */
+    CHECK(lightbin_view_create(&view_given, &allocator, &view).error == LIGHTBIN_OK);
+    CHECK(lightbin_binner_create(NULL, &allocator, &binner).error == LIGHTBIN_OK);
+    CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
+    before = heap.calls;
+    CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
+    CHECK(lightbin_view_update(view, &view_given).error == LIGHTBIN_OK);
+    CHECK(heap.calls == before);
+    lightbin_binner_destroy(binner);
+    lightbin_view_destroy(view);
+    CHECK(heap.blocks == 0);
+}
+
+int main(int count, char** words) {
+    /* Without exceptions in the implementing file a failed allocation ends the program. */
+    const int no_failures = count > 1 && strcmp(words[1], "--no-exceptions") == 0;
+    char text[4] = "abc";
+    lightbin_result unknown = {99, 0, NULL, 0, 0};
+    set_inputs();
+    CHECK(lightbin_version() > 0);
+    CHECK(lightbin_error_text(unknown, NULL, 0) == strlen("unknown error"));
+    CHECK(lightbin_error_text(unknown, text, 3) == strlen("unknown error") && strcmp(text, "un") == 0);
+    test_views();
+    test_slices();
+    test_binners();
+    test_grids();
+    test_depth();
+    test_memory(!no_failures);
+    if (failures == 0) puts("every check passed");
+    return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: MIT */
+/* A program whose lightbin has plain tiles of spheres alone: that works, and what is left out is refused by name. */
+#include <lightbin/lightbin.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void refuses(lightbin_result result, const char* define) {
+    if (result.error == LIGHTBIN_LEFT_OUT && strcmp(result.name, define) == 0) return;
+    fprintf(stderr, "not refused by %s: error %d, %s\n", define, (int)result.error, result.name);
+    exit(EXIT_FAILURE);
+}
+
+static void works(lightbin_result result) {
+    char text[512];
+    lightbin_error_text(result, text, sizeof text);
+    if (result.error == LIGHTBIN_OK) return;
+    fprintf(stderr, "%s\n", text);
+    exit(EXIT_FAILURE);
+}
+
+static lightbin_result create(int ids, int footprint, int depth_test, int slicing) {
+    lightbin_binner* binner = NULL;
+    lightbin_binner_options options;
+    memset(&options, 0, sizeof options);
+    options.size = sizeof options;
+    options.ids = ids;
+    options.footprint = footprint;
+    options.depth_test = depth_test;
+    options.slicing = slicing;
+    return lightbin_binner_create(&options, NULL, &binner);
+}
+
+static lightbin_result create_with_coverage(void) {
+    lightbin_binner* binner = NULL;
+    lightbin_binner_options options;
+    memset(&options, 0, sizeof options);
+    options.size = sizeof options;
+    options.coverage = 1;
+    return lightbin_binner_create(&options, NULL, &binner);
+}
+
+static void never(void* user, size_t count, lightbin_task task, void* context) {
+    (void)user, (void)count, (void)task, (void)context;
+    abort();
+}
+
+int main(void) {
+    static const float projection[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.2f, 0};
+    static const float lights[8] = {0, 0, -5, 1, 0, 0, -1, 0.5f};
+    static const float half_axes[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    lightbin_view_options view_options;
+    lightbin_lights given;
+    lightbin_grid grid;
+    lightbin_bits bits;
+    uint32_t words[16];
+    lightbin_view* view = NULL;
+    lightbin_binner* binner = NULL;
+    lightbin_shader* shader = NULL;
+    lightbin_advice* advice = NULL;
+    lightbin_budget* budget = NULL;
+    lightbin_grid_constants constants;
+    size_t count = 0;
+    memset(&view_options, 0, sizeof view_options);
+    memset(&given, 0, sizeof given);
+    memset(&grid, 0, sizeof grid);
+    memset(&bits, 0, sizeof bits);
+    view_options.size = sizeof view_options;
+    view_options.width = view_options.height = 100;
+    view_options.projection.floats = projection;
+    given.size = sizeof given;
+    given.spheres.count = 1;
+    given.spheres.centre.first = lights;
+    given.spheres.radius.first = lights + 3;
+    grid.size = sizeof grid;
+    bits.size = sizeof bits;
+    works(lightbin_view_create(&view_options, NULL, &view));
+    works(lightbin_binner_create(NULL, NULL, &binner));
+    works(lightbin_bin(binner, view, &given, NULL, &grid));
+    if (grid.range_count != 16 || grid.id_count == 0) return EXIT_FAILURE;
+
+    refuses(create(LIGHTBIN_U16, 0, 0, 0), "LIGHTBIN_NO_U16");
+    refuses(create(0, LIGHTBIN_SILHOUETTE, 0, 0), "LIGHTBIN_NO_SILHOUETTES");
+    refuses(create(0, 0, LIGHTBIN_INTERVAL, 0), "LIGHTBIN_NO_INTERVAL");
+    refuses(create(0, 0, LIGHTBIN_BOX, 0), "LIGHTBIN_NO_BOX");
+    refuses(create(0, 0, LIGHTBIN_SPLIT_BOX, 0), "LIGHTBIN_NO_SPLIT_BOX");
+    refuses(create(0, 0, 0, LIGHTBIN_CLUSTERS), "LIGHTBIN_NO_CLUSTERS");
+    refuses(create(0, 0, 0, LIGHTBIN_Z_BINS), "LIGHTBIN_NO_Z_BINS");
+    refuses(lightbin_bin_bits(binner, view, &given, NULL, 1, words, 16, &bits), "LIGHTBIN_NO_BITS");
+    {
+        lightbin_grid other = grid;
+        refuses(lightbin_bin_transparency(binner, view, &given, NULL, &grid, &other),
+                "LIGHTBIN_NO_TRANSPARENCY");
+    }
+    {
+        lightbin_inputs inputs;
+        lightbin_threads threads;
+        memset(&inputs, 0, sizeof inputs);
+        memset(&threads, 0, sizeof threads);
+        inputs.size = sizeof inputs;
+        threads.size = sizeof threads;
+        threads.run = never;
+        inputs.threads = &threads;
+        refuses(lightbin_bin(binner, view, &given, &inputs, &grid), "LIGHTBIN_NO_THREADS");
+    }
+    given.spots.count = 1;
+    given.spots.centre.first = lights;
+    given.spots.radius.first = lights + 3;
+    given.spots.axis.first = lights + 4;
+    given.spots.cosine.first = lights + 7;
+    refuses(lightbin_bin(binner, view, &given, NULL, &grid), "LIGHTBIN_NO_SPOTS");
+    given.spots.count = 0;
+    given.boxes.count = 1;
+    given.boxes.box_centre.first = lights;
+    given.boxes.half_axes.first = half_axes;
+    refuses(lightbin_bin(binner, view, &given, NULL, &grid), "LIGHTBIN_NO_BOXES");
+    refuses(create_with_coverage(), "LIGHTBIN_NO_COVERAGE");
+    refuses(lightbin_budget_create(NULL, &budget), "LIGHTBIN_NO_BUDGETS");
+    refuses(lightbin_limit_grid(NULL, &grid, NULL, 0, 1, 1, &grid, NULL), "LIGHTBIN_NO_BUDGETS");
+    refuses(lightbin_shader_snippet(NULL, NULL, &shader), "LIGHTBIN_NO_SHADERS");
+    refuses(lightbin_shader_grid(view, 0, 0, &constants), "LIGHTBIN_NO_SHADERS");
+    refuses(lightbin_build_shader(NULL, NULL, &shader), "LIGHTBIN_NO_BUILD_SHADERS");
+    refuses(lightbin_shader_edges(view, NULL, 0, &count), "LIGHTBIN_NO_BUILD_SHADERS");
+    refuses(lightbin_advise(view, &given, NULL, NULL, NULL, &advice), "LIGHTBIN_NO_ADVICE");
+    lightbin_binner_destroy(binner);
+    lightbin_view_destroy(view);
+    puts("every check passed");
+    return EXIT_SUCCESS;
+}
