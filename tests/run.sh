@@ -15,16 +15,17 @@ compilers="g++ clang-14 clang-19" # the last two to see that they have no warnin
 tools="cmake ninja-build pkgconf python3"
 emulators="g++-aarch64-linux-gnu qemu-user-static" # 64-bit ARM, and x86-64 without AVX and with AVX2
 x86_32="g++-12-multilib" # a machine of 32 bits
-microsoft="libc++-19-dev mingw-w64-x86-64-dev" # the libraries behind a compiler by Microsoft's rules
+microsoft="libc++-19-dev mingw-w64-x86-64-dev g++-mingw-w64-x86-64-posix" # the libraries behind a compiler by Microsoft's rules; MinGW's
 libraries="doctest-dev libglm-dev libeigen3-dev"
 oracle="libboost-dev libgmp-dev"
 examples="libcli11-dev libtinygltf-dev libstb-dev libepoxy-dev libegl-dev libglfw3-dev"
 renderers="libopenscenegraph-dev xvfb" # somebody else's, and a display that nobody sees, for a window
 macros="libx11-dev" # that others' headers define
 opengl="libgl1-mesa-dri libgles2" # Mesa draws where there is no GPU
+javascript="emscripten node-acorn binaryen nodejs node-typescript"
 shaders="glslang-dev glslang-tools spirv-tools" # the first names files of the second
 # shellcheck disable=SC2086  # one word a package
-install_packages $compilers $tools $emulators $x86_32 $microsoft $libraries $oracle $examples $renderers $macros $opengl $shaders
+install_packages $compilers $tools $emulators $x86_32 $microsoft $libraries $oracle $examples $renderers $macros $opengl $javascript $shaders
 
 # Of Qt the headers alone are read.
 make_build_folder

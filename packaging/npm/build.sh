@@ -1,0 +1,73 @@
+#!/bin/sh
+# sh packaging/npm/build.sh [FOLDER]: makes the npm package in FOLDER (default: build/npm/lightbin). Needs emscripten,
+# binaryen and node: on Debian 12 the packages emscripten, node-acorn, binaryen and nodejs. Takes a minute.
+set -eu
+me=packaging/npm/build.sh
+cd "$(dirname "$0")/../.."
+. tests/packages.sh
+takes "a folder" "[^-].*" "$@"
+here=packaging/npm
+out=${1-build/npm/lightbin}
+work=$out.work
+rm -rf "$out" "$work"
+mkdir -p "$out" "$work/include/lightbin/detail/tiers"
+
+node $here/tables.mjs include/lightbin/lightbin.h $here/lightbin.js "$out/tables.js" "$work/layouts.inl"
+cp $here/*.d.ts $here/node.js $here/README.md LICENSE "$out"
+for script in lightbin.js three.js; do
+    grep -v '^ *//[/ ][^S]' $here/$script >"$out/$script" # comments are for who reads the repository
+done
+version=$(sed -n 's/^#define LIGHTBIN_VERSION_[A-Z]* //p' include/lightbin/version.hpp | paste -s -d .)
+sed "s/@VERSION@/$version/" $here/package.json.in >"$out/package.json"
+
+# A module with vectors is only loaded where there are vectors, and so needs no scalar kernels beside those, but for
+# depth buffers of less than four columns.
+sed -e 's/if (isa == Isa::simd128) return pick/return pick/' \
+    -e 's/return depth_kernel<by_split>(static_cast.*;/return scalar::Tier::depth_kernel<by_split>();/' \
+    include/lightbin/detail/tiers/kernels.hpp >"$work/include/lightbin/detail/tiers/kernels.hpp"
+
+# module NAME FLAG...: exports what the package's JavaScript calls, but the functions of shader text, which are a module
+# of their own, named shaders. With emscripten's own settings for -Os, no vector operation would be inlined.
+module() {
+    name=$1
+    shift
+    of_text='lightbin_shader_(snippet|text|destroy|binding)'
+    other=-v
+    [ "$name" != shaders ] || other=
+    # shellcheck disable=SC2086  # a word a flag
+    NODE_PATH=/usr/share/nodejs em++ -std=c++20 -Os -sINLINING_LIMIT=0 -Wall -Wextra -Wshadow -Werror \
+        -fno-exceptions -fno-rtti -DNDEBUG "$@" $left_out \
+        -I "$work" -Iinclude $here/lightbin.cpp -o "$work/$name.wasm" --profiling-funcs -sSTANDALONE_WASM --no-entry \
+        -sERROR_ON_UNDEFINED_SYMBOLS=0 -sWARN_ON_UNDEFINED_SYMBOLS=0 \
+        -sMALLOC=emmalloc -sALLOW_MEMORY_GROWTH -sINITIAL_MEMORY=1MB -sTOTAL_STACK=128KB \
+        -sEXPORTED_FUNCTIONS="$(grep -oE '\<(c|exports)\.lightbin_[a-z_]+' $here/lightbin.js | sort -u |
+            grep -E $other "$of_text" | sed 's/.*\./_/' | paste -s -d ,),_lightbin_error_text,_malloc,_free,_live_allocations"
+    wasm-dis "$work/$name.wasm" -o "$work/$name.wat"
+    node $here/sort_functions.mjs <"$work/$name.wat" >"$work/$name.sorted.wat"
+    wasm-as --enable-simd --enable-sign-ext --enable-nontrapping-float-to-int \
+        "$work/$name.sorted.wat" -o "$out/$name.wasm"
+}
+left_out=$(printf -- '-DLIGHTBIN_NO_%s ' THREADS ADVICE BUILD_SHADERS SPLIT_BOX TRANSPARENCY)
+small='-mllvm -inline-threshold=0 -fno-vectorize -fno-slp-vectorize -fno-unroll-loops'
+# shellcheck disable=SC2086  # a word a flag
+module lightbin $small &
+# shellcheck disable=SC2086
+module lightbin_simd $small -I "$work/include" -msimd128 -msign-ext -mnontrapping-fptoint
+wait $!
+module shaders -Oz
+
+# The shader text of the adapter for three.js, whose options do not change, so that it needs no module for that.
+node --input-type=module - "$out" <<'END'
+import fs from 'node:fs';
+import path from 'node:path';
+import {pathToFileURL} from 'node:url';
+const folder = path.resolve(process.argv[2]), {load} = await import(pathToFileURL(`${folder}/node.js`));
+const {text} = await (await load()).shader(
+    {language: 'essl-300', storage: 'texture-2d', slicing: 'clusters', viewportCorner: true});
+fs.writeFileSync(`${folder}/three_text.js`, `export const text = ${JSON.stringify(text)};\n`);
+END
+
+for name in lightbin lightbin_simd; do
+    echo "$out: $name.wasm has $(stat -c %s "$out/$name.wasm") bytes; a program that loads it reads" \
+        "$(for file in lightbin.js tables.js $name.wasm; do gzip -9c "$out/$file"; done | wc -c) bytes, compressed by gzip"
+done

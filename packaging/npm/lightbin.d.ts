@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: MIT
+
+/** Thrown by every function that refuses its input. The message is a sentence that names the argument and the cause. */
+export class LightbinError extends Error {
+    /** The name of the error in lightbin.h, such as 'tile-size-out-of-range' or 'out-of-memory'. */
+    readonly code: string;
+}
+
+/** Returns whether this machine runs WebAssembly's 128-bit vectors. */
+export function hasSimd(): boolean;
+
+type Wasm = WebAssembly.Module | BufferSource | Response | URL | string;
+export interface LoadOptions {
+    /** Whether to load the module with 128-bit vectors, which takes a third to nine tenths of the time. Default: hasSimd(). */
+    simd?: boolean;
+    /** The module lightbin_simd.wasm or lightbin.wasm, or where it is. Default: beside the package's JavaScript. */
+    wasm?: Wasm | Promise<Wasm> | (() => Wasm | Promise<Wasm>);
+    /** The module shaders.wasm, which the first call of shader() loads, or where it is. */
+    shaders?: Wasm | Promise<Wasm> | (() => Wasm | Promise<Wasm>);
+}
+
+/** Loads the module. Each call returns another one, with memory of its own. */
+export function load(options?: LoadOptions): Promise<Lightbin>;
+
+type Numbers = ArrayLike<number>;
+/** column-major: translation in the last four numbers, as in three.js, PlayCanvas, Babylon.js and gl-matrix. */
+export type MatrixLayout = 'column-major' | 'row-major' | 'row-vectors';
+export type Slicing = 'no-slicing' | 'clusters' | 'z-bins';
+
+export interface ViewOptions {
+    /** Sixteen numbers that map view space to clip space: any perspective or orthographic projection. */
+    projection: Numbers;
+    layout?: MatrixLayout;
+    /** Of the viewport, in pixels: 0 to 32768. */
+    width: number;
+    height: number;
+    /** The side of a square tile in pixels. Default: 32. */
+    tileSize?: number;
+    /** The range of clip-space depth: minus-one-to-one for WebGL (the default), zero-to-one for WebGPU. */
+    clipDepth?: 'minus-one-to-one' | 'zero-to-one';
+    /** The corner of the window that holds pixel (0, 0): lower-left for WebGL (the default), upper-left for WebGPU. */
+    origin?: 'lower-left' | 'upper-left';
+    /** Read for orthographic matrices alone: the near plane has the larger window depth. */
+    reversedZ?: boolean;
+}
+
+/** What a view knows; flags are 0 or 1. */
+export interface ViewInfo {
+    readonly width: number, height: number, tileSize: number, tilesX: number, tilesY: number;
+    /** Rounded outward; farDepth is Infinity if there is no far plane. */
+    readonly nearDepth: number, farDepth: number;
+    readonly orthographic: number, reversedZ: number, xFlipped: number, yFlipped: number, looksDownNegativeZ: number;
+    /** 1 where the matrix or the viewport looks like a common mistake. */
+    readonly looksTransposed: number, looksLikeViewMatrix: number, looksTurned: number, looksBehind: number;
+    readonly looksZeroToOne: number, pixelsNotSquare: number;
+}
+
+interface Disposable {
+    /** Frees the object's memory. Calls that are then given the object throw; a second dispose() does nothing. */
+    dispose(): void;
+}
+
+/** A projection, a viewport and a tile size. Tile (x, y) has index y * tilesX + x. */
+export interface View extends Disposable {
+    readonly info: ViewInfo;
+    /** Changes the given options, as when the camera or the window changes. After an error the view is as before. */
+    update(options: Partial<ViewOptions>): void;
+    /** The constants `grid` (four numbers) and `corner` (two) of the shader text, as in its uniform block. */
+    shaderGrid(cornerX?: number, cornerY?: number): Uint32Array;
+    /** The constants `image` and `depths` of the shader text's view check. */
+    shaderView(tolerance?: number): Float32Array;
+}
+
+/** Floats in the module's memory, all 0 at first. Lights in such memory are read in place, without a copy. */
+export interface Floats extends Disposable {
+    readonly length: number;
+    /** The floats. Read it anew after each call: when the module's memory grows, arrays read before are empty. */
+    readonly array: Float32Array;
+    /** Keeps the values, as far as they fit, and sets new ones to 0. */
+    resize(length: number): void;
+}
+
+type FloatArray = Floats | Numbers;
+/**
+ * Floats of each light: an array of their own, in which light follows light without gaps, or where they begin in each
+ * light of the `array` that the lights' attributes share.
+ */
+type Attribute = FloatArray | number;
+
+interface Kind {
+    /** Default: as many as the array holds. */
+    count?: number;
+    /** An array that attributes share: `stride` floats a light. A `Floats` is read in place, others are copied. */
+    array?: FloatArray;
+    stride?: number;
+}
+/** Spheres outside of which lights give no light. The default is a stride of 4: x, y, z, radius. */
+export interface Spheres extends Kind {
+    centre?: Attribute;
+    /** Infinity: the light reaches everything. */
+    radius?: Attribute;
+}
+/** Spheres that are cut by a cone from their centre. The default is a stride of 8: x, y, z, radius, axis, cosine. */
+export interface Spots extends Spheres {
+    /** 3 floats: the direction in which the light shines, of any length but zero. */
+    axis?: Attribute;
+    /** 1 float: of the angle between the axis and the cone's side, from 1 to -1. */
+    cosine?: Attribute;
+}
+/**
+ * Spheres that are cut by an oriented box or frustum. The default is a stride of 16: x, y, z, radius, the box's centre,
+ * three vectors from that to the middles of three faces. Null for centre and radius: no sphere cuts the boxes.
+ */
+export interface Boxes extends Kind {
+    centre?: Attribute | null;
+    radius?: Attribute | null;
+    boxCentre?: Attribute;
+    /** 9 floats: three vectors. */
+    halfAxes?: Attribute;
+    /** 1 float from 0 to 1: the size of the face at centre - third vector, as a fraction of the opposite face's. */
+    taper?: Attribute;
+}
+/** Ids number spheres, then spots, then boxes. */
+export interface Lights {
+    /** World space to view space, for lights in world space. Without it lights are in view space. */
+    viewMatrix?: Numbers | null;
+    /** Of viewMatrix. */
+    layout?: MatrixLayout;
+    spheres?: Spheres | null;
+    spots?: Spots | null;
+    boxes?: Boxes | null;
+}
+
+/** Adjacent intervals of view depth. */
+export interface Slices extends Disposable {
+    readonly count: number;
+    /** In ascending order, one less than there are slices. */
+    readonly boundaries: Float32Array;
+    /** The content of the shader text's buffer `slices`. */
+    shaderWords(): Uint32Array;
+}
+
+export interface BinnerOptions {
+    ids?: 'u32' | 'u16';
+    footprint?: 'rectangle' | 'silhouette';
+    /** interval and box read Z bounds, but with clusters box does not. */
+    depthTest?: 'no-depth-test' | 'interval' | 'box';
+    slicing?: Slicing;
+}
+
+/** The view depths that bound what is drawn in each tile: arrays of one float a tile, row-major. */
+export interface ZBounds {
+    min?: FloatArray;
+    max?: FloatArray;
+    backgroundSkipped?: boolean;
+}
+
+/** What the binner's options read, and no others. */
+export interface Inputs {
+    slices?: Slices;
+    bounds?: ZBounds;
+}
+
+interface Counts {
+    /** How many lights were given, are bad input, and are outside of the view. */
+    readonly lights: number, rejected: number, culled: number;
+    /** With z-bins: for each rank the light's id, and two numbers for each bin, the least and greatest rank. */
+    readonly order: Uint32Array, bins: Uint32Array;
+    readonly tilesX: number, tilesY: number;
+}
+
+/**
+ * The lists. The arrays are the module's memory. They hold until the binner's next call, and are read anew from the
+ * object after each call to the module, as they are empty when its memory has grown.
+ */
+export interface Grid extends Counts {
+    /** 1 unless made with clusters. */
+    readonly slices: number;
+    /** {offset, count}, two numbers a list: tilesX * tilesY lists, row-major; with clusters as many a slice. */
+    readonly ranges: Uint32Array;
+    readonly ids: Uint32Array | Uint16Array;
+    readonly idBytes: number;
+    /** Writes the lists in another format. The data hold until the binner's next encode(). */
+    encode(format: ListFormat): {data: Uint8Array, tilesCut: number, entriesCut: number, capacityNeeded: number};
+}
+
+/** Bitmasks, which hold as the arrays of a Grid do. */
+export interface Bits extends Counts {
+    readonly words: Uint32Array;
+    readonly wordsPerTile: number;
+}
+
+/** Bins lights into tiles, and keeps the memory that this takes. */
+export interface Binner extends Disposable {
+    /** Makes the lists of the lights in a view. Each call returns the same object, with the new lists. */
+    bin(view: View, lights: Lights, inputs?: Inputs): Grid;
+    /** Makes a bitmask a tile instead, Math.ceil(maxLights / 32) words each. Not with clusters. */
+    bits(view: View, lights: Lights, maxLights: number, inputs?: Inputs): Bits;
+}
+
+export interface ListFormat {
+    encoding?: 'offset-count' | 'sentinel' | 'bitmask';
+    ids?: 'u32' | 'u16' | 'u8';
+    /** For sentinel: the ids that a tile has memory for. */
+    capacity?: number;
+    /** All ids are less; bitmask needs it. */
+    maxLights?: number;
+}
+
+export interface Slot {
+    binding?: number;
+    /** The bind group in WebGPU. */
+    set?: number;
+}
+
+/** docs/shader.md explains each member at length. */
+export interface ShaderOptions {
+    /** essl-300 for WebGL 2, wgsl for WebGPU. */
+    language: 'essl-300' | 'wgsl' | 'essl-310' | 'glsl-330' | 'glsl-430' | 'glsl-vulkan' | 'hlsl-5-0' | 'hlsl-5-1';
+    /** texture-2d or uniform-block for WebGL 2. Default: storage-buffer. */
+    storage?: 'storage-buffer' | 'texel-buffer' | 'texture-2d' | 'uniform-block' | 'byte-address';
+    /** That of the binner. */
+    slicing?: Slicing;
+    /** Default: the lists of a binner whose ids have 32 bits. */
+    format?: ListFormat;
+    /** Every name in the text begins with it. Default: 'lightbin_'. */
+    prefix?: string;
+    /** In pixels, fixed in the text. Default: read at run time from the constant `grid`. */
+    tileSize?: number;
+    tilesInUniformBlock?: boolean;
+    packedIds?: boolean;
+    flipY?: boolean;
+    viewportCorner?: boolean;
+    heatMap?: boolean;
+    waveLoop?: boolean;
+    viewCheck?: boolean;
+    listCheck?: boolean;
+    window?: boolean;
+    pushConstants?: boolean;
+    textureWidth?: number;
+    maxTiles?: number;
+    maxEntries?: number;
+    maxSlices?: number;
+    uniformBlockBytes?: number;
+    /** Default: the bindings 0 to 5 of set 0 in this order. */
+    slots?: {tiles?: Slot, lists?: Slot, grid?: Slot, slices?: Slot, bins?: Slot, view?: Slot};
+}
+
+/** One resource that the program has to bind. */
+export interface ShaderBinding {
+    readonly name: string;
+    readonly resource: 'uniform-vector' | 'uniform-block' | 'push-constants' | 'storage-buffer' | 'byte-address'
+        | 'texel-buffer' | 'texture-2d' | 'writable-buffer';
+    readonly slot: Required<Slot>;
+    readonly stride: number, bytes: number, width: number;
+    /** The three arguments of texImage2D(); 0 if there are no texels. */
+    readonly glInternalFormat: number, glFormat: number, glType: number;
+    readonly vkFormat: number, dxgiFormat: number;
+    /** Such as 'r32uint'; '' if there are no texels. */
+    readonly webgpuFormat: string;
+}
+
+export interface Lightbin {
+    readonly version: string;
+    readonly simd: boolean;
+    /** The compiled module, for load({wasm: module}) in a worker. */
+    readonly module: WebAssembly.Module;
+    view(options: ViewOptions): View;
+    binner(options?: BinnerOptions): Binner;
+    floats(length: number): Floats;
+    /** Slices whose depth grows geometrically from `first`, where the first slice ends, to `last`, where the last one
+     * begins. margin, from 0 to 1/2: how far a reader's own formula may miss, as a part of the depth. */
+    exponentialSlices(options: {count: number, first: number, last: number, margin?: number}): Slices;
+    linearSlices(options: {count: number, begin: number, end: number, margin?: number}): Slices;
+    slicesFromBoundaries(options: {boundaries: Numbers, margin?: number}): Slices;
+    /** Makes shader text that reads the lists, to be inserted after `#version`. The first call loads shaders.wasm. */
+    shader(options: ShaderOptions): Promise<{text: string, bindings: ShaderBinding[]}>;
+    /** Returns the distance at which a light of an intensity falls below `cutoff` by the inverse square law. */
+    lightRange(intensity: number, cutoff: number): number;
+    /** How many blocks of the module's memory views, slices, binners and floats hold: 0 when all were disposed of. */
+    readonly allocations: number;
+}

@@ -1,0 +1,575 @@
+// SPDX-License-Identifier: MIT
+// lightbin for JavaScript. lightbin.d.ts describes what is exported. The names c.lightbin_... below are the functions
+// that the build exports from the module, and tables.js has the structs that they take.
+import {enums, structs} from './tables.js';
+
+export class LightbinError extends Error {
+    constructor(message, code) {
+        super(message);
+        this.name = 'LightbinError';
+        this.code = code;
+    }
+}
+
+const error_names = Object.fromEntries(Object.entries(enums.error).map(([name, number]) => [number, name]));
+const refuse = (message, code = 'not-a-value') => { throw new LightbinError(message, code); };
+const out_of_memory = () => refuse('there is not enough memory', 'out-of-memory');
+
+// The address of an object in the module's memory; 0 once it was disposed of. The Core whose memory that is.
+const address = Symbol('address'), owner = Symbol('owner');
+
+const whole = (number, what) => Number.isInteger(number) && number >= -0x80000000 && number <= 0xffffffff ? number
+    : refuse(`${what}: ${String(number)} is no whole number of 32 bits`);
+
+// The attributes of each kind of light: the number of floats, and the place in a light that has no other given.
+const kinds = {
+    spheres: {stride: 4, attributes: {centre: [3, 0], radius: [1, 3]}},
+    spots: {stride: 8, attributes: {centre: [3, 0], radius: [1, 3], axis: [3, 4], cosine: [1, 7]}},
+    boxes: {stride: 16, attributes: {centre: [3, 0], radius: [1, 3], boxCentre: [3, 4], halfAxes: [9, 7], taper: [1]}},
+};
+
+/// The module's functions and memory.
+class Core {
+    constructor(exports) {
+        this.c = exports;
+        this.data = new DataView(exports.memory.buffer);
+        this.staging = new Block(this);
+        this.staged = [];  // arrays of JavaScript that the call reads, and where their address is to be written
+    }
+
+    /// Calls body() and gives back what it took from the module's stack, also after an error.
+    scope(body) {
+        const top = this.c.stackSave();
+        this.staged.length = 0;
+        try {
+            return body(this.c);
+        } finally {
+            this.c.stackRestore(top);
+        }
+    }
+
+    /// Calls a function that returns a lightbin_result, and throws if it refuses.
+    check(called, ...given) {
+        const {c} = this, result = c.stackAlloc(structs.result.bytes);
+        called(result, ...given);
+        const error = this.heap().getInt32(result, true);
+        if (error === 0) return;
+        const text = c.stackAlloc(512);
+        c.lightbin_error_text(result, text, 512);
+        refuse(this.text(text), error_names[error]);
+    }
+
+    /// Calls a function that makes an object, and returns the object's address.
+    create(called, ...given) {
+        const out = this.c.stackAlloc(4);
+        this.check(called, ...given, out);
+        return this.heap().getUint32(out, true);
+    }
+
+    /// The module's memory, which is another buffer each time it grows.
+    heap() {
+        if (this.data.buffer !== this.c.memory.buffer) this.data = new DataView(this.c.memory.buffer);
+        return this.data;
+    }
+
+    /// An array over the module's memory: `before` if that still is it.
+    array(Type, at, length, before) {
+        const {buffer} = this.c.memory;
+        return before?.buffer === buffer && before.byteOffset === at && before.length === length
+            ? before : new Type(buffer, at, length);
+    }
+
+    text(at) {
+        const bytes = new Uint8Array(this.c.memory.buffer, at);
+        return new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0)));
+    }
+
+    /// Takes memory for a struct from the stack, and writes an object's properties to the members of their names.
+    place(name, given, what) {
+        const {bytes} = structs[name], at = this.c.stackAlloc(bytes);
+        new Uint8Array(this.c.memory.buffer, at, bytes).fill(0);
+        this.write(name, at, 'size' in structs[name].members ? {...given, size: bytes} : given, what);
+        return at;
+    }
+
+    write(name, to, given, what) {
+        const {members} = structs[name], heap = this.heap();
+        for (const key in given) {
+            const value = given[key];
+            if (value === undefined) continue;
+            if (!Object.hasOwn(members, key))
+                refuse(`${what}: there is no '${key}', but `
+                    + Object.keys(members).filter(known => known !== 'size').join(', '));
+            const [kind, offset, more] = members[key], at = to + offset;
+            if (kind === 'struct') {
+                this.write(more, at, value, `${what}.${key}`);
+            } else if (kind === 'pointer' && typeof value === 'object') {
+                this.stage(value, at, 0);
+            } else if (more !== undefined) {
+                if (!Object.hasOwn(enums[more], value))
+                    refuse(`${what}.${key}: '${value}' is none of ${Object.keys(enums[more]).join(', ')}`);
+                heap.setInt32(at, enums[more][value], true);
+            } else {
+                heap.setInt32(at, whole(typeof value === 'boolean' ? +value : value, `${what}.${key}`), true);
+            }
+        }
+    }
+
+    read(name, from) {
+        const heap = this.heap(), values = {};
+        for (const [key, [kind, offset, more]] of Object.entries(structs[name].members)) {
+            const at = from + offset;
+            values[key] = kind === 'float' ? heap.getFloat32(at, true) : kind === 'int32_t' ? heap.getInt32(at, true)
+                : kind === 'struct' ? this.read(more, at) : heap.getUint32(at, true);
+            if (kind === 'uint64_t') values[key] += heap.getUint32(at + 4, true) * 2 ** 32;
+        }
+        return values;
+    }
+
+    /// Writes the address of an array's element at `offset` to `to`: now, or in flush() if the array has to be copied.
+    stage(array, to, offset) {
+        if (array instanceof Floats && array[owner] !== this)
+            this.stage(array.array, to, offset);
+        else if (array instanceof Floats)
+            this.heap().setUint32(to, array[address] + 4 * offset, true);
+        else if (array.buffer === this.c.memory.buffer)
+            this.heap().setUint32(to, array.byteOffset + 4 * offset, true);
+        else
+            this.staged.push([array, to, offset]);
+    }
+
+    /// Copies the arrays of the call that are not in the module's memory.
+    flush() {
+        if (this.staged.length === 0) return;
+        const places = new Map();
+        let end = 0;
+        for (const [array] of this.staged)
+            if (!places.has(array)) {
+                places.set(array, end);
+                end += array.length;
+            }
+        const begin = this.staging.reserve(4 * end);
+        const floats = new Float32Array(this.c.memory.buffer, begin, end);
+        for (const [array, at] of places) floats.set(array, at);
+        const heap = this.heap();
+        for (const [array, to, offset] of this.staged) heap.setUint32(to, begin + 4 * (places.get(array) + offset),
+            true);
+    }
+
+    /// A lightbin_matrix as an object to write. JavaScript's numbers are doubles, so it is one of doubles.
+    matrix(numbers, layout, what) {
+        if (!(numbers?.length >= 16)) refuse(`${what} must be an array of sixteen numbers`);
+        const doubles = this.c.stackAlloc(128), heap = this.heap();
+        for (let i = 0; i < 16; ++i) heap.setFloat64(doubles + 8 * i, numbers[i], true);
+        return {doubles, layout};
+    }
+
+    lights(given, what = 'lights') {
+        const {viewMatrix, layout, ...arrays} = given ?? refuse(`${what} must be an object of spheres, spots or boxes`);
+        for (const kind in arrays)
+            if (!Object.hasOwn(kinds, kind))
+                refuse(`${what}: there is no '${kind}', but viewMatrix, layout, spheres, spots, boxes`);
+        const at = this.place('lights', viewMatrix != null && {viewMatrix: this.matrix(viewMatrix, layout,
+            `${what}.viewMatrix`)});
+        for (const kind in arrays)
+            if (arrays[kind] != null)
+                this.kind(kind, arrays[kind], at + structs.lights.members[kind][1], `${what}.${kind}`);
+        return at;
+    }
+
+    kind(kind, given, to, what) {
+        const {attributes, stride: usual} = kinds[kind], {members} = structs[kind];
+        const {array: shared, stride = usual, count = this.countOf(kind, given, stride), ...own} = given;
+        const heap = this.heap();
+        for (const key in own)
+            if (!Object.hasOwn(attributes, key))
+                refuse(`${what}: there is no '${key}', but count, array, stride, ${Object.keys(attributes).join(', ')}`);
+        if (!(Number.isInteger(count) && count >= 0)) refuse(`${what}.count: ${String(count)} is no number of lights`);
+        heap.setUint32(to, count, true);
+        for (const [key, [floats, usual_offset]] of Object.entries(attributes)) {
+            const value = given[key] === undefined && shared !== undefined ? usual_offset : given[key];
+            if (value == null) continue;
+            const by_offset = typeof value === 'number', from = by_offset ? shared : value;
+            const offset = by_offset ? value : 0, step = by_offset ? stride : floats;
+            if (!(Number.isInteger(offset) && offset >= 0 && Number.isInteger(step) && from?.length >= 0))
+                refuse(`${what}.${key} must be an array of floats, or the place of the floats in each light `
+                    + `of ${what}.array`);
+            if (by_offset && offset + floats > stride)
+                refuse(`${what}.${key}: a light has ${stride} floats, and these end at ${offset + floats}`,
+                    'stride-too-small');
+            if (count > 0 && (count - 1) * step + offset + floats > from.length)
+                refuse(`${what}.${key}: the array has ${from.length} floats, and ${count} lights have more`,
+                    'buffer-too-small');
+            const at = to + members[key][1];
+            this.stage(from, at, offset);
+            heap.setUint32(at + 4, 4 * step, true);
+        }
+    }
+
+    countOf(kind, given, stride) {
+        if (given.array !== undefined) return Math.floor(given.array.length / stride);
+        const [key, [floats]] = Object.entries(kinds[kind].attributes).find(([key]) => given[key] != null) ?? ['', [1]];
+        return Math.floor((given[key]?.length ?? 0) / floats);
+    }
+
+    /// The address of a view or of slices; 0, which the library refuses, for null.
+    addressOf(object, what) {
+        if (object != null && object[owner] !== this) refuse(`${what} was not made by this module`);
+        return object?.[address] ?? 0;
+    }
+
+    inputs({slices, bounds, ...others} = {}) {
+        for (const key in others) refuse(`inputs: there is no '${key}', but slices, bounds`);
+        const given = {};
+        if (slices != null) given.slices = this.addressOf(slices, 'inputs.slices');
+        if (bounds != null) {
+            const lengths = [bounds.min, bounds.max].filter(bound => bound != null).map(bound => bound.length);
+            const tiles = lengths.length > 0 ? Math.min(...lengths) : 0;
+            given.bounds = this.place('zBounds', {tiles, ...bounds}, 'inputs.bounds');
+        }
+        return this.place('inputs', given, 'inputs');
+    }
+
+    /// Copies `bytes` bytes of the module's memory.
+    copy(Type, at, bytes) { return new Type(this.c.memory.buffer.slice(at, at + bytes)); }
+}
+
+/// Memory of the module that grows and loses its contents then.
+class Block {
+    constructor(core) {
+        this.core = core;
+        this.at = this.bytes = 0;
+    }
+    reserve(bytes) {
+        if (bytes <= this.bytes) return this.at;
+        this.free();
+        this.at = this.core.c.malloc(bytes);
+        if (this.at === 0) out_of_memory();
+        this.bytes = bytes;
+        return this.at;
+    }
+    free() {
+        this.core.c.free(this.at);
+        this.at = this.bytes = 0;
+    }
+}
+
+class Floats {
+    #array;
+    constructor(core, length) {
+        this[owner] = core;
+        this.length = 0;
+        this[address] = 0;
+        this.resize(length);
+    }
+    get array() { return this.#array = this[owner].array(Float32Array, this[address], this.length, this.#array); }
+    resize(length) {
+        if (!(Number.isInteger(length) && length >= 0)) refuse(`length: ${String(length)} is no number of floats`);
+        const at = length > 0x3fffffff ? 0 : this[owner].c.malloc(Math.max(4 * length, 4));
+        if (at === 0) out_of_memory();
+        const array = new Float32Array(this[owner].c.memory.buffer, at, length);
+        array.set(this.array.subarray(0, length));
+        array.fill(0, this.length);
+        this[owner].c.free(this[address]);
+        this[address] = at;
+        this.length = length;
+    }
+    dispose() {
+        this[owner].c.free(this[address]);
+        this[address] = this.length = 0;
+    }
+}
+
+class View {
+    #core;
+    #options = {};
+    constructor(core, options) {
+        this.#core = this[owner] = core;
+        this[address] = 0;
+        this.update(options);
+    }
+    update(options) {
+        const core = this.#core, merged = {...this.#options, ...options}, {projection, layout, ...others} = merged;
+        core.scope(c => {
+            const matrix = core.matrix(projection, layout, 'options.projection');
+            const at = core.place('viewOptions', {...others, projection: matrix}, 'options');
+            if (this[address] === 0)
+                this[address] = core.create(c.lightbin_view_create, at, 0);
+            else
+                core.check(c.lightbin_view_update, this[address], at);
+            const info = core.place('viewInfo');
+            core.check(c.lightbin_view_describe, this[address], info);
+            this.info = core.read('viewInfo', info);
+            delete this.info.size;
+        });
+        this.#options = merged;
+    }
+    shaderGrid(corner_x = 0, corner_y = 0) {
+        return this.#constants(Uint32Array, 'gridConstants', this.#core.c.lightbin_shader_grid,
+                               whole(corner_x, 'cornerX'), whole(corner_y, 'cornerY'));
+    }
+    shaderView(tolerance = 2) {
+        return this.#constants(Float32Array, 'viewConstants', this.#core.c.lightbin_shader_view, tolerance);
+    }
+    #constants(Type, struct, called, ...given) {
+        const core = this.#core;
+        return core.scope(() => {
+            const at = core.place(struct);
+            core.check(called, this[address], ...given, at);
+            return core.copy(Type, at, structs[struct].bytes);
+        });
+    }
+    dispose() {
+        this.#core.c.lightbin_view_destroy(this[address]);
+        this[address] = 0;
+        this.#options = {};
+    }
+}
+
+class Slices {
+    #core;
+    constructor(core, made) {
+        this.#core = this[owner] = core;
+        this[address] = core.scope(made);
+        this.count = core.c.lightbin_slices_count(this[address]);
+    }
+    get boundaries() {
+        const core = this.#core, at = core.c.lightbin_slices_boundaries(this[address]);
+        return at === 0 ? new Float32Array(0) : core.copy(Float32Array, at, 4 * (this.count - 1));
+    }
+    shaderWords() {
+        const core = this.#core, count = this.count + 3;
+        const words = new Block(core), at = words.reserve(4 * count);
+        try {
+            return core.scope(c => {
+                core.check(c.lightbin_shader_slices, this[address], at, count);
+                return core.copy(Uint32Array, at, 4 * count);
+            });
+        } finally {
+            words.free();
+        }
+    }
+    dispose() {
+        this.#core.c.lightbin_slices_destroy(this[address]);
+        this[address] = this.count = 0;
+    }
+}
+
+// A member of lightbin_grid or lightbin_bits that is an array: its address and length are members of these names.
+const array_of = {
+    ranges: grid => 2 * grid.rangeCount, ids: grid => grid.idCount, order: grid => grid.orderCount,
+    bins: grid => 2 * grid.binCount, words: grid => grid.wordCount,
+};
+const nothing = {
+    tilesX: 0, tilesY: 0, slices: 0, lights: 0, rejected: 0, culled: 0, ranges: 0, ids: 0, rangeCount: 0, idCount: 0,
+    idBytes: 4, order: 0, bins: 0, orderCount: 0, binCount: 0, words: 0, wordCount: 0, wordsPerTile: 0,
+};
+
+/// The lists of a binner's call, read from the module's memory.
+class Lists {
+    #core;
+    #raw;
+    #encoded;
+    #arrays = {};
+    constructor(core, encoded) {
+        this.#core = core;
+        this.#encoded = encoded;
+        this.set(nothing);
+    }
+    set(raw) {
+        this.#raw = {...nothing, ...raw};
+        for (const key of ['tilesX', 'tilesY', 'slices', 'lights', 'rejected', 'culled', 'idBytes', 'wordsPerTile'])
+            this[key] = this.#raw[key];
+        return this;
+    }
+    #array(key) {
+        const Type = key === 'ids' && this.idBytes === 2 ? Uint16Array : Uint32Array;
+        return this.#arrays[key] = this.#core.array(Type, this.#raw[key], array_of[key](this.#raw), this.#arrays[key]);
+    }
+    get ranges() { return this.#array('ranges'); }
+    get ids() { return this.#array('ids'); }
+    get order() { return this.#array('order'); }
+    get bins() { return this.#array('bins'); }
+    get words() { return this.#array('words'); }
+    encode(format) {
+        const core = this.#core, {wordsPerTile, words, wordCount, ...members} = this.#raw;
+        return core.scope(c => {
+            const from = core.place('format', format, 'format'), grid = core.place('grid', members, 'grid');
+            const bytes_at = c.stackAlloc(8);
+            core.check(c.lightbin_encoded_bytes, from, BigInt(members.rangeCount), BigInt(members.idCount), bytes_at);
+            const bytes = Number(core.heap().getBigUint64(bytes_at, true));
+            if (bytes > 0x7fffffff) out_of_memory();
+            const to = this.#encoded.reserve(bytes), encoded = core.place('encoded');
+            core.check(c.lightbin_encode, grid, from, to, BigInt(bytes), encoded);
+            const {tilesCut, entriesCut, capacityNeeded} = core.read('encoded', encoded);
+            return {data: new Uint8Array(c.memory.buffer, to, bytes), tilesCut, entriesCut, capacityNeeded};
+        });
+    }
+}
+
+class Binner {
+    #core;
+    #encoded;
+    #words;
+    #grid;
+    #bits;
+    constructor(core, options) {
+        this.#core = core;
+        this.#encoded = new Block(core);
+        this.#words = new Block(core);
+        this.#grid = new Lists(core, this.#encoded);
+        this.#bits = new Lists(core, this.#encoded);
+        this[address] = core.scope(c => core.create(c.lightbin_binner_create, core.place('binnerOptions', options,
+            'options'), 0));
+    }
+    bin(view, lights, inputs) {
+        const core = this.#core;
+        return this.#call(view, lights, inputs, (c, ...given) => {
+            const grid = core.place('grid');
+            core.check(c.lightbin_bin, ...given, grid);
+            return this.#grid.set(core.read('grid', grid));
+        });
+    }
+    bits(view, lights, max_lights, inputs) {
+        const core = this.#core;
+        if (!(Number.isInteger(max_lights) && max_lights >= 0 && max_lights <= 0xffffffff))
+            refuse(`maxLights: ${String(max_lights)} is no number of lights`);
+        return this.#call(view, lights, inputs, (c, ...given) => {
+            const {tilesX = 0, tilesY = 0} = view.info, wordsPerTile = Math.ceil(max_lights / 32);
+            const count = tilesX * tilesY * wordsPerTile;
+            if (count > 0x1fffffff) out_of_memory();
+            const bits = core.place('bits'), words = this.#words.reserve(4 * Math.max(count, 1));
+            core.check(c.lightbin_bin_bits, ...given, max_lights, words, BigInt(count), bits);
+            return this.#bits.set({...core.read('bits', bits), tilesX, tilesY, words, wordCount: count, wordsPerTile});
+        });
+    }
+    #call(view, lights, inputs, body) {
+        const core = this.#core;
+        this.#forget();
+        return core.scope(c => {
+            const placed = core.lights(lights), others = core.inputs(inputs);
+            core.flush();
+            return body(c, this[address], core.addressOf(view, 'view'), placed, others);
+        });
+    }
+    dispose() {
+        this.#core.c.lightbin_binner_destroy(this[address]);
+        this[address] = 0;
+        this.#encoded.free();
+        this.#words.free();
+        this.#forget();
+    }
+    #forget() {
+        this.#grid.set(nothing);
+        this.#bits.set(nothing);
+    }
+}
+
+/// What lightbin_shader_snippet() of the second module makes.
+function snippet(core, {format, prefix, slots, ...given}) {
+    const c = core.c;
+    if (format !== undefined) given.format = core.place('format', format, 'options.format');
+    if (prefix !== undefined) {
+        const bytes = new TextEncoder().encode(prefix + '\0');
+        given.prefix = c.stackAlloc(bytes.length);
+        new Uint8Array(c.memory.buffer).set(bytes, given.prefix);
+    }
+    if (slots !== undefined) {
+        ['tiles', 'lists', 'grid', 'slices', 'bins', 'view'].forEach((name, binding) => given[name] = {binding});
+        Object.assign(given, slots, {slotsGiven: 1});
+    }
+    const shader = core.create(c.lightbin_shader_snippet, core.place('snippetOptions', given, 'options'), 0);
+    try {
+        const resources = Object.keys(enums.shaderResource), bindings = [];
+        for (let i = 0; i < c.lightbin_shader_binding_count(shader); ++i) {
+            const at = core.place('binding');
+            core.check(c.lightbin_shader_binding, shader, i, at);
+            const {size, resource, name, webgpuFormat, ...others} = core.read('binding', at);
+            bindings.push({name: core.text(name), resource: resources[resource], ...others,
+                webgpuFormat: core.text(webgpuFormat)});
+        }
+        return {text: core.text(c.lightbin_shader_text(shader)), bindings};
+    } finally {
+        c.lightbin_shader_destroy(shader);
+    }
+}
+
+class Lightbin {
+    #core;
+    #cores;
+    #load_shaders;
+    #shaders;
+    constructor(exports, module, simd, load_shaders) {
+        this.#core = new Core(exports);
+        this.#cores = [this.#core];
+        this.#load_shaders = load_shaders;
+        this.module = module;
+        this.simd = simd;
+        const version = exports.lightbin_version();
+        this.version = [version / 10000, version / 100 % 100, version % 100].map(Math.floor).join('.');
+    }
+    view(options) { return new View(this.#core, options); }
+    binner(options) { return new Binner(this.#core, options); }
+    floats(length) { return new Floats(this.#core, length); }
+    exponentialSlices({count, first, last, margin = 0}) {
+        const core = this.#core;
+        return new Slices(core, c => core.create(c.lightbin_slices_exponential, whole(count, 'count'), first, last,
+            margin, 0));
+    }
+    linearSlices({count, begin, end, margin = 0}) {
+        const core = this.#core;
+        return new Slices(core, c => core.create(c.lightbin_slices_linear, whole(count, 'count'), begin, end, margin,
+            0));
+    }
+    slicesFromBoundaries({boundaries, margin = 0}) {
+        const core = this.#core;
+        return new Slices(core, c => {
+            const at = c.stackAlloc(4);
+            core.stage(boundaries, at, 0);
+            core.flush();
+            const from = core.heap().getUint32(at, true);
+            return core.create(c.lightbin_slices_from_boundaries, from, boundaries.length, margin, 0);
+        });
+    }
+    async shader(options) {
+        this.#shaders ??= this.#load_shaders().then(exports => this.#cores[1] = new Core(exports));
+        const core = await this.#shaders;
+        return core.scope(() => snippet(core, options));
+    }
+    lightRange(intensity, cutoff) { return this.#core.c.lightbin_light_range(intensity, cutoff); }
+    get allocations() {
+        const live = ({c, staging}) => c.live_allocations() - (staging.at !== 0 ? 1 : 0);
+        return this.#cores.reduce((sum, core) => sum + live(core), 0);
+    }
+}
+
+// A function that returns a vector of 128 bits: i32.const 0, i8x16.splat.
+const vectors = Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 8, 1, 6, 0, 65, 0,
+    253, 15, 11);
+export const hasSimd = () => WebAssembly.validate(vectors);
+
+async function compile(wasm) {
+    const source = await (typeof wasm === 'function' ? wasm() : wasm);
+    if (source instanceof WebAssembly.Module) return source;
+    const isAddress = typeof source === 'string' || source instanceof URL;
+    const response = isAddress ? await fetch(source) : source;
+    if (!(typeof Response === 'function' && response instanceof Response)) return WebAssembly.compile(response);
+    if (!response.ok) refuse(`the module could not be loaded: ${response.status} ${response.url}`, 'not-loaded');
+    return WebAssembly.compile(await response.arrayBuffer());
+}
+
+async function instantiate(module) {
+    const {exports} = await WebAssembly.instantiate(module, {
+        env: {out_of_memory, emscripten_notify_memory_growth: () => {}},
+        wasi_snapshot_preview1: {proc_exit: out_of_memory},  // of abort(), where a size exceeds all memory
+    });
+    exports._initialize?.();
+    return exports;
+}
+
+export async function load({simd = hasSimd(), wasm, shaders} = {}) {
+    const module = await compile(wasm ?? (simd ? new URL('./lightbin_simd.wasm', import.meta.url)
+                                               : new URL('./lightbin.wasm', import.meta.url)));
+    const load_shaders = async () => instantiate(await compile(shaders ?? new URL('./shaders.wasm', import.meta.url)));
+    return new Lightbin(await instantiate(module), module, simd, load_shaders);
+}

@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: MIT
+// node tests/npm/module.mjs PACKAGE LISTS: tests the npm package in the folder PACKAGE: it makes the same bytes as this
+// machine's library, whose lists `native` wrote to the file LISTS, in both modules; what it refuses is a sentence; it
+// frees what it allocates; and it is small.
+import assert from 'node:assert/strict';
+import fs from 'node:fs';
+import path from 'node:path';
+import {test} from 'node:test';
+import {pathToFileURL} from 'node:url';
+import {Worker} from 'node:worker_threads';
+import zlib from 'node:zlib';
+
+const [folder, lists] = process.argv.slice(2).map(name => path.resolve(name));
+const entry = pathToFileURL(path.join(folder, 'node.js'));
+const {LightbinError, hasSimd, load} = await import(entry);
+const modules = await Promise.all([load({simd: false}), load({simd: true})]);
+
+// An OpenGL perspective matrix of 90 degrees, and a view whose pixels are square.
+const perspective = (near, far) =>
+    [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -(far + near) / (far - near), -1, 0, 0, -2 * far * near / (far - near), 0];
+const square = {projection: perspective(0.5, 200), width: 320, height: 320, tileSize: 16};
+const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+
+let state = 1;
+const random = (low, high) => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return low + (high - low) * state / 2 ** 32;
+};
+const random_spheres = count => Float32Array.from({length: 4 * count},
+    (_, i) => i % 4 === 3 ? random(0.1, 4) : i % 4 === 2 ? random(-60, 2) : random(-40, 40));
+
+const lists_of = grid => Array.from({length: grid.ranges.length / 2}, (_, i) =>
+    [...grid.ids.subarray(grid.ranges[2 * i], grid.ranges[2 * i] + grid.ranges[2 * i + 1])]);
+const bytes_of = array => Buffer.from(array.buffer, array.byteOffset, array.byteLength);
+
+test('both modules make the bytes of this machine\'s library', () => {
+    const file = fs.readFileSync(lists);
+    for (const lightbin of modules) {
+        let at = 0;
+        const block = (Type = Uint8Array) => {
+            const length = file.readUInt32LE(at), bytes = Uint8Array.from(file.subarray(at + 4, at + 4 + length));
+            at += 4 + length;
+            return new Type(bytes.buffer);
+        };
+        const same = (array, what) => assert.ok(bytes_of(block()).equals(bytes_of(array)), what);
+        const projection = block(Float64Array), camera = block(Float64Array);
+        const [spheres, spots, boxes, min, max] = Array.from({length: 5}, () => block(Float32Array));
+        const view = lightbin.view({projection, width: 500, height: 290, tileSize: 24});
+        const slices = lightbin.exponentialSlices({count: 17, first: 1.5, last: 120});
+        same(slices.boundaries, 'boundaries');
+
+        // Spots and boxes are in the module's memory, spheres and bounds are not.
+        const cones = lightbin.floats(spots.length), rooms = lightbin.floats(boxes.length);
+        cones.array.set(spots);
+        rooms.array.set(boxes);
+        let grids = 0;
+        for (let number = 0; number < 72; ++number) {
+            const world = number % 2 === 1, depthTest = ['no-depth-test', 'interval',
+                'box'][Math.floor(number / 8) % 3];
+            const slicing = ['no-slicing', 'clusters', 'z-bins'][Math.floor(number / 24)];
+            if (slicing === 'clusters' && depthTest === 'interval') continue;
+            const options = {ids: number % 4 < 2 ? 'u32' : 'u16', footprint: number % 8 < 4 ? 'rectangle'
+                : 'silhouette',
+                             depthTest, slicing};
+            const inputs = {...slicing !== 'no-slicing' && {slices},
+                            ...depthTest !== 'no-depth-test' && slicing !== 'clusters' && {bounds: {min, max}}};
+            const lights = {spheres: {array: spheres},
+                            ...world && {viewMatrix: camera, spots: {array: cones, stride: 12}, boxes: {array: rooms}}};
+            const binner = lightbin.binner(options), grid = binner.bin(view, lights, inputs);
+            const what = JSON.stringify({simd: lightbin.simd, world, ...options});
+            same(Uint32Array.of(grid.lights, grid.rejected, grid.culled, grid.slices), what);
+            for (const key of ['ranges', 'ids', 'order', 'bins']) same(grid[key], `${what}: ${key}`);
+            assert.ok(grid.ids.length > 0 && grid.ids.BYTES_PER_ELEMENT === grid.idBytes);
+            if (slicing !== 'clusters') same(binner.bits(view, lights, 640, inputs).words, `${what}: bits`);
+            binner.dispose();
+            ++grids;
+        }
+        assert.equal(at, file.length);
+        assert.equal(grids, 64);
+        for (const made of [view, slices, cones, rooms]) made.dispose();
+        assert.equal(lightbin.allocations, 0);
+    }
+});
+
+// The independent reference: whether the line of sight through a pixel's centre meets a sphere between near and far.
+test('every light that a pixel\'s line of sight meets is in its tile\'s list', () => {
+    const spheres = random_spheres(300);
+    spheres[2] = -100;  // of which both ends must be tried
+    for (const lightbin of modules)
+        for (const options of [{}, {footprint: 'silhouette', ids: 'u16'}]) {
+            const view = lightbin.view(square), binner = lightbin.binner(options);
+            const tiles = lists_of(binner.bin(view, {spheres: {array: spheres}})).map(list => new Set(list));
+            let met = 0;
+            for (let pixel = 0; pixel < 320 * 320; pixel += 7) {
+                const x = pixel % 320, y = Math.floor(pixel / 320);
+                const ray = [(x + 0.5) / 160 - 1, (y + 0.5) / 160 - 1, -1], ray2 = ray[0] ** 2 + ray[1] ** 2 + 1;
+                for (let i = 0; i < 300; ++i) {
+                    const [cx, cy, cz, r] = spheres.subarray(4 * i, 4 * i + 4);
+                    const along = (ray[0] * cx + ray[1] * cy - cz) / ray2;
+                    const away2 = cx ** 2 + cy ** 2 + cz ** 2 - along ** 2 * ray2;
+                    if (away2 > r * r) continue;
+                    const half = Math.sqrt((r * r - away2) / ray2);
+                    if (along + half < 0.5 || along - half > 200) continue;  // depths, as the ray has depth 1
+                    ++met;
+                    assert.ok(tiles[Math.floor(y / 16) * 20 + Math.floor(x / 16)].has(i), `light ${i} at ${x}, ${y}`);
+                }
+            }
+            assert.ok(met > 5000, `${met} meetings`);
+            // And no list is much longer than it has to be.
+            assert.ok(tiles.reduce((sum, list) => sum + list.size, 0) < 25000);
+            view.dispose();
+            binner.dispose();
+        }
+});
+
+test('lights as arrays, interleaved, in the module\'s memory, at any place: the same lists', () => {
+    const count = 100, spheres = random_spheres(count);
+    for (const lightbin of modules) {
+        const view = lightbin.view(square), binner = lightbin.binner();
+        const expected = lists_of(binner.bin(view, {spheres: {array: spheres}}));
+        const centre = Float32Array.from({length: 3 * count}, (_, i) => spheres[4 * Math.floor(i / 3) + i % 3]);
+        const radius = Float32Array.from({length: count}, (_, i) => spheres[4 * i + 3]);
+        const wide = lightbin.floats(9 * count), tight = lightbin.floats(3 * count);
+        for (let i = 0; i < count; ++i) {
+            wide.array.set(spheres.subarray(4 * i, 4 * i + 3), 9 * i + 5);
+            wide.array[9 * i + 2] = radius[i];
+        }
+        tight.array.set(centre);
+        for (const given of [
+            {array: spheres, count}, {array: [...spheres]}, {centre, radius}, {centre: [...centre], radius, count},
+            {array: wide, stride: 9, centre: 5, radius: 2}, {array: wide.array, stride: 9, centre: 5, radius: 2},
+            {centre: tight, radius}, {array: spheres, centre: tight},
+        ]) assert.deepEqual(lists_of(binner.bin(view, {spheres: given})), expected);
+        assert.deepEqual(lists_of(binner.bin(view, {viewMatrix: identity, spheres: {array: spheres,
+            count: 0}})).flat(), []);
+
+        // A light that only stands behind the others' kinds: ids number the kinds through.
+        const all = {array: [0, 0, -5, Infinity, 0, 0, -1, -1]};
+        const grid = binner.bin(view, {spheres: {array: spheres}, spots: all, boxes: {centre: null, radius: null,
+            boxCentre: [0, 0, -5], halfAxes: [50, 0, 0, 0, 50, 0, 0, 0, 50], count: 1}});
+        assert.deepEqual(lists_of(grid).map(list => list.slice(-2)), expected.map(() => [count, count + 1]));
+        for (const made of [view, binner, wide, tight]) made.dispose();
+        assert.equal(lightbin.allocations, 0);
+    }
+});
+
+test('memory grows, and what is read anew is right', async () => {
+    for (const simd of [false, true]) {
+        const lightbin = await load({simd}), view = lightbin.view(square), binner = lightbin.binner();
+        const spheres = random_spheres(100), lamps = lightbin.floats(400);
+        lamps.array.set(spheres);
+        const grid = binner.bin(view, {spheres: {array: lamps}});
+        const old = grid.ids, before = lists_of(grid), array = lamps.array;
+        assert.equal(grid.ids, old);  // not made again while the memory stands
+        const large = lightbin.floats(5e6);
+        assert.equal(large.array.length, 5e6);
+        assert.ok(large.array.every(float => float === 0));
+        assert.equal(old.length, 0);
+        assert.equal(array.length, 0);
+        assert.deepEqual(lists_of(grid), before);
+        assert.deepEqual(lamps.array, spheres);
+        lamps.resize(800);
+        assert.deepEqual(lamps.array.subarray(0, 400), spheres);
+        assert.ok(lamps.array.subarray(400).every(float => float === 0));
+        // The binner's own memory makes it grow.
+        const many = random_spheres(200000), now = binner.bin(view, {spheres: {array: many}});
+        assert.equal(now, grid);
+        assert.equal(now.lights, 200000);
+        assert.ok(now.ids.length > 200000);
+        for (const made of [view, binner, large, lamps]) made.dispose();
+        assert.equal(grid.ids.length, 0);
+        assert.equal(lightbin.allocations, 0);
+    }
+});
+
+test('what is wrong is a sentence, the next call is right, and nothing stays allocated', async () => {
+    for (const lightbin of modules) {
+        const view = lightbin.view(square), binner = lightbin.binner(), spheres = random_spheres(20);
+        const slices = lightbin.linearSlices({count: 4, begin: 1, end: 100});
+        const sliced = lightbin.binner({slicing: 'clusters'}), tested = lightbin.binner({depthTest: 'interval'});
+        const gone = lightbin.view(square);
+        gone.dispose();
+        gone.dispose();
+        const expected = lists_of(binner.bin(view, {spheres: {array: spheres}}));
+        const other = await load(), foreign = other.floats(80), strange = other.view(square),
+            lights = {spheres: {array: spheres}};
+        const live = lightbin.allocations;
+        const huge = {...square, width: 32768, height: 32768, tileSize: 1};
+        const asked = [
+            [() => lightbin.view({...square, tileSize: -1}), 'tile-size-out-of-range',
+                /^the tile size must be at least 1 pixel, and is -1$/],
+            [() => lightbin.view({...square, width: 50000}), 'viewport-out-of-range', /50000/],
+            [() => lightbin.view({...square, width: 1.5}), 'not-a-value', /^options.width: 1.5 is no whole number/],
+            [() => lightbin.view({...square, width: '320'}), 'not-a-value', /^options.width: 320 is no whole number/],
+            [() => lightbin.view({...square, projection: undefined}), 'not-a-value',
+                /^options.projection must be an array/],
+            [() => lightbin.view({...square, projection: identity.map(() => NaN)}), 'matrix-not-finite', /./],
+            [() => lightbin.view({...square, tilesize: 8}), 'not-a-value',
+                /^options: there is no 'tilesize', but width, height, tileSize/],
+            [() => lightbin.view({...square, clipDepth: 'webgpu'}), 'not-a-value',
+                /'webgpu' is none of minus-one-to-one, zero-to-one$/],
+            [() => view.update({tileSize: -3}), 'tile-size-out-of-range', /-3/],
+            [() => lightbin.binner({slicing: 'toString'}), 'not-a-value', /is none of no-slicing, clusters, z-bins$/],
+            [() => lightbin.binner({depthTest: 'split-box'}), 'left-out', /LIGHTBIN_NO_SPLIT_BOX/],
+            [() => lightbin.binner({depthTest: 'interval', slicing: 'clusters'}), 'options-not-together', /./],
+            [() => lightbin.linearSlices({count: 0, begin: 1, end: 2}), 'no-slices', /./],
+            [() => lightbin.slicesFromBoundaries({boundaries: [3, 2]}), 'slices-do-not-ascend', /./],
+            [() => binner.bin(view), 'not-a-value', /^lights must be an object of spheres, spots or boxes$/],
+            [() => binner.bin(null, lights), 'null-argument', /^view: /],
+            [() => binner.bin(gone, lights), 'null-argument', /^view: /],
+            [() => binner.bin(view, {balls: {}}), 'not-a-value', /there is no 'balls'/],
+            [() => binner.bin(view, {spheres: {array: spheres, color: 1}}), 'not-a-value',
+                /^lights.spheres: there is no 'color'/],
+            [() => binner.bin(view, {spheres: {array: spheres, stride: 2}}), 'stride-too-small',
+                /^lights.spheres.centre: /],
+            [() => binner.bin(view, {spheres: {array: spheres, count: 21}}), 'buffer-too-small',
+                /^lights.spheres.centre: the array has 80 floats/],
+            [() => binner.bin(view, {spheres: {array: spheres, radius: 4}}), 'stride-too-small',
+                /^lights.spheres.radius: a light has 4 floats, and these end at 5$/],
+            [() => binner.bin(view, {spheres: {array: spheres, centre: -1}}), 'not-a-value',
+                /^lights.spheres.centre must be/],
+            [() => binner.bin(view, {spheres: {centre: spheres, count: 2}}), 'null-argument',
+                /^lights.spheres.radius: /],
+            [() => binner.bin(view, {spheres: {array: 80, count: 1}}), 'not-a-value', /^lights.spheres.centre must be/],
+            [() => binner.bin(strange, lights), 'not-a-value', /^view was not made by this module$/],
+            [() => lightbin.linearSlices({count: 2.5, begin: 1, end: 2}), 'not-a-value',
+                /^count: 2.5 is no whole number/],
+            [() => view.shaderGrid(0.5), 'not-a-value', /^cornerX: 0.5 is no whole number/],
+            [() => binner.bin(view, {...lights, viewMatrix: square.projection}), 'view-matrix-not-affine', /./],
+            [() => binner.bin(view, lights, {slices}), 'not-read', /^inputs.slices: /],
+            [() => binner.bin(view, lights, {slice: slices}), 'not-a-value', /there is no 'slice'/],
+            [() => sliced.bin(view, lights), 'no-slices-given', /^inputs.slices: /],
+            [() => tested.bin(view, lights), 'no-bounds-given', /^inputs.bounds: /],
+            [() => tested.bin(view, lights, {bounds: {min: new Float32Array(3)}}), 'z-bounds-too-small', /./],
+            [() => sliced.bits(view, lights, 20, {slices}), 'options-not-together', /./],
+            [() => binner.bits(view, lights, 19), 'ids-too-narrow', /20 are needed/],
+            [() => binner.bits(view, lights, -1), 'not-a-value', /^maxLights: /],
+            [() => binner.bin(view, lights).encode({encoding: 'sentinel'}), 'capacity-unknown', /./],
+            [() => lightbin.floats(1.5), 'not-a-value', /^length: /],
+            [() => lightbin.floats(2 ** 29), 'out-of-memory', /^there is not enough memory$/],
+            [() => lightbin.floats(2 ** 40), 'out-of-memory', /^there is not enough memory$/],
+            [() => {
+                const tiny = lightbin.view(huge);
+                try {
+                    binner.bin(tiny, lights);
+                } finally {
+                    tiny.dispose();
+                }
+            }, 'out-of-memory', /^there is not enough memory$/],
+        ];
+        foreign.array.set(spheres);
+        assert.deepEqual(lists_of(binner.bin(view, {spheres: {array: foreign}})), expected);  // it is copied
+        for (const [ask, code, sentence] of asked) {
+            assert.throws(ask, error => error instanceof LightbinError && error.code === code
+                && sentence.test(error.message)
+                || assert.fail(`${ask}: ${error.code}: ${error.message}`), `${ask}`);
+            assert.deepEqual(lists_of(binner.bin(view, lights)), expected, `${ask}`);
+        }
+        // Memory that a call took before it ran out stays with its binner.
+        assert.ok(lightbin.allocations <= live + 2, `${lightbin.allocations} blocks, ${live} before`);
+        for (const made of [view, slices, binner, sliced, tested]) made.dispose();
+        assert.equal(lightbin.allocations, 0);
+        assert.throws(() => binner.bin(view, lights), {code: 'null-argument', message: /^binner: /});
+        assert.throws(() => view.shaderGrid(), {code: 'null-argument'});
+        await assert.rejects(lightbin.shader({language: 'basic'}), {code: 'not-a-value',
+            message: /'basic' is none of glsl-330/});
+        await assert.rejects(lightbin.shader({language: 'essl-300'}), {code: 'no-storage-buffers'});
+        await assert.rejects(lightbin.shader({language: 'wgsl', prefix: '1x'}), {code: 'not-a-prefix'});
+        assert.equal(lightbin.allocations, 0);
+    }
+    await assert.rejects(load({wasm: new Uint8Array(8)}), WebAssembly.CompileError);
+});
+
+test('thousands of calls allocate nothing, and what is disposed of is free', () => {
+    for (const lightbin of modules) {
+        const views = Array.from({length: 50}, () => lightbin.view(square)), binner = lightbin.binner();
+        const spheres = random_spheres(50);
+        binner.bin(views[0], {spheres: {array: spheres}});
+        const live = lightbin.allocations;
+        for (let i = 0; i < 2000; ++i) {
+            views[i % 50].update({tileSize: 16 + i % 3, width: 200 + i % 120});
+            binner.bin(views[i % 50], {viewMatrix: identity, spheres: {array: spheres}});
+            assert.throws(() => binner.bin(views[0], {spheres: {array: spheres, stride: 3}}));
+            assert.equal(lightbin.allocations, live);
+        }
+        for (const made of [...views, binner]) made.dispose();
+        assert.equal(lightbin.allocations, 0);
+    }
+});
+
+test('bits, encodings and views agree with the lists', () => {
+    for (const lightbin of modules) {
+        const view = lightbin.view(square), binner = lightbin.binner(), lights = {spheres: {array: random_spheres(70)}};
+        const grid = binner.bin(view, lights), expected = lists_of(grid);
+        assert.equal(view.info.tilesX * view.info.tilesY, expected.length);
+        const of_words = words => expected.map((_, tile) => Array.from({length: 96}, (_, i) => i)
+            .filter(i => words[3 * tile + (i >> 5)] >> (i & 31) & 1));
+        const words = ({data}) => new Uint32Array(data.buffer, data.byteOffset, data.byteLength / 4);
+        assert.deepEqual(of_words(words(grid.encode({encoding: 'bitmask', maxLights: 96}))), expected);
+        const longest = Math.max(...expected.map(list => list.length));
+        const cut = grid.encode({encoding: 'sentinel', ids: 'u8', capacity: longest - 1, maxLights: 70});
+        assert.equal(cut.capacityNeeded, longest);
+        assert.ok(cut.tilesCut > 0 && cut.entriesCut >= cut.tilesCut);
+        for (const [tile, list] of expected.entries()) {
+            const ids = [...cut.data.subarray(tile * (longest - 1), (tile + 1) * (longest - 1)), 255];
+            assert.deepEqual(ids.slice(0, ids.indexOf(255)), list.slice(0, longest - 1));
+        }
+        const bits = binner.bits(view, lights, 96);
+        assert.equal(bits.wordsPerTile, 3);
+        assert.deepEqual(of_words(bits.words), expected);
+        assert.equal(grid.ids.length, 0);  // the lists ended with the binner's next call
+
+        assert.deepEqual([...view.shaderGrid(5, 7)], [16, 20, 320, 320, 5, 7, 0, 0]);
+        assert.equal(view.shaderView(2)[7], 2);
+        const {nearDepth, farDepth, orthographic, looksDownNegativeZ} = view.info;
+        assert.ok(nearDepth <= 0.5 && nearDepth > 0.4999 && farDepth >= 199.9 && farDepth < 200.1);
+        assert.deepEqual([orthographic, looksDownNegativeZ], [0, 1]);
+        const slices = lightbin.slicesFromBoundaries({boundaries: [1, 2, 4]});
+        assert.equal(slices.count, 4);
+        assert.deepEqual([...slices.boundaries], [1, 2, 4]);
+        assert.deepEqual([...slices.shaderWords().subarray(3)], [3, 0xbf800000, 0xc0000000, 0xc0800000]);
+        assert.equal(lightbin.lightRange(4, 1), Math.fround(lightbin.lightRange(4, 1)));
+        assert.ok(Math.abs(lightbin.lightRange(4, 1) - 2) < 1e-6);
+        for (const made of [view, binner, slices]) made.dispose();
+        assert.equal(lightbin.allocations, 0);
+    }
+});
+
+test('shader text for WebGL 2 and WebGPU, with what to bind', async () => {
+    for (const lightbin of modules) {
+        const webgl = await lightbin.shader({language: 'essl-300', storage: 'texture-2d', slicing: 'clusters',
+            prefix: 'lamps_',
+                                             slots: {lists: {binding: 7}}});
+        assert.match(webgl.text, /usampler2D lamps_lists/);
+        assert.deepEqual(webgl.bindings.map(({name, resource, slot}) => [name, resource, slot.binding]), [
+            ['lamps_grid', 'uniform-vector', 0], ['lamps_tiles', 'texture-2d', 0], ['lamps_lists', 'texture-2d', 7],
+            ['lamps_slices', 'texture-2d',
+                3]].filter(([name]) => webgl.bindings.some(binding => binding.name === name)));
+        assert.equal(webgl.bindings.find(({name}) => name === 'lamps_lists').glInternalFormat, 0x8236);  // R32UI
+        const webgpu = await lightbin.shader({language: 'wgsl', format: {ids: 'u16'}, heatMap: true});
+        assert.match(webgpu.text, /@group\(0\) @binding\(0\) var<storage, read> lightbin_tiles/);
+        assert.equal(lightbin.allocations, 0);
+    }
+});
+
+test('a worker runs the compiled module that it was sent', async () => {
+    const worker = new Worker(`
+        const {parentPort, workerData: {entry, module, square, spheres}} = require('node:worker_threads');
+        import(entry).then(({load}) => load({wasm: module})).then(lightbin => {
+            const grid = lightbin.binner().bin(lightbin.view(square), {spheres: {array: spheres}});
+            parentPort.postMessage({ranges: grid.ranges.slice(), ids: grid.ids.slice()});
+        });`, {eval: true, workerData: {
+            entry: entry.href, module: modules[1].module, square, spheres: random_spheres(30)}});
+    const made = await new Promise((resolve, reject) => worker.once('message', resolve).once('error', reject));
+    assert.ok(made.ids.length > 0 && made.ranges.length === 800);
+});
+
+test('the package is whole and small', async () => {
+    assert.equal(hasSimd(), true);
+    const {version, exports} = JSON.parse(fs.readFileSync(path.join(folder, 'package.json')));
+    for (const lightbin of modules) assert.equal(lightbin.version, version);
+    for (const file of Object.values(exports).flatMap(entry => typeof entry === 'string' ? [entry]
+        : Object.values(entry)))
+        assert.ok(fs.existsSync(path.join(folder, file)), file);
+    const gzip = name => zlib.gzipSync(fs.readFileSync(path.join(folder, name)), {level: 9}).length;
+    for (const name of ['lightbin.wasm', 'lightbin_simd.wasm']) {
+        const bytes = gzip('lightbin.js') + gzip('tables.js') + gzip(name);
+        assert.ok(bytes <= 90000, `${name} and the JavaScript are ${bytes} bytes, compressed`);
+    }
+    // In a browser the module comes by fetch().
+    const fetched = globalThis.fetch;
+    try {
+        globalThis.fetch = async url => new Response(fs.readFileSync(new URL(url)));
+        const in_browser = await import(pathToFileURL(path.join(folder, 'lightbin.js')));
+        const lightbin = await in_browser.load();
+        assert.equal(lightbin.simd, true);
+        assert.match((await lightbin.shader({language: 'wgsl'})).text, /lightbin_lists/);
+        globalThis.fetch = async () => new Response('', {status: 404});
+        await assert.rejects(in_browser.load(), {code: 'not-loaded', message: /404/});
+    } finally {
+        globalThis.fetch = fetched;
+    }
+});
+
+// Its blocks are one program, in which the camera and the context of WebGL are stand-ins.
+test('the program of docs/javascript.md runs', async t => {
+    const page = fs.readFileSync(new URL('../../docs/javascript.md', import.meta.url), 'utf8');
+    const blocks = [...page.matchAll(/^```js\n(.*?)^```$/gms)].map(([,
+        block]) => block).filter(block => !/three/.test(block));
+    assert.ok(blocks.length >= 4);
+    const given = `
+        const uploads = [], gl = new Proxy({}, {get: (_, name) => name === name.toUpperCase() ? name
+            : (...given) => { if (name === 'texSubImage2D') uploads.push(given); }});
+        const camera = {projectionMatrix: {elements: ${JSON.stringify(square.projection)}},
+                        matrixWorldInverse: {elements: ${JSON.stringify(identity)}}};
+        const tilesTexture = 1, listsTexture = 2, program = 3;`;
+    const at = fs.mkdtempSync(path.join(path.dirname(folder), 'guide-'));
+    t.after(() => fs.rmSync(at, {recursive: true}));
+    fs.mkdirSync(path.join(at, 'node_modules'));
+    fs.symlinkSync(folder, path.join(at, 'node_modules/lightbin'));
+    fs.writeFileSync(path.join(at, 'guide.mjs'), given + blocks.join('') +
+        '\nexport {bindings, data, grid, lists, masks, shorter, text, uploads, webgpu};');
+    const made = await import(pathToFileURL(path.join(at, 'guide.mjs')));
+    assert.ok(made.lists.ids.length > 0 && made.shorter.ids.length > 0 && made.masks.words.length > 0
+        && made.data.length > 0);
+    assert.match(made.text, /usampler2D lightbin_lists/);
+    assert.match(made.webgpu.text, /@group\(1\) @binding\(1\)/);
+    assert.equal(made.uploads[0].at(-1), made.grid.ranges);
+});

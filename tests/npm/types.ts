@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// What lightbin.d.ts allows and refuses; compiled, never run.
+import {load} from 'lightbin';
+
+export async function use(gl: WebGL2RenderingContext) {
+    const lightbin = await load({simd: false});
+    const view = lightbin.view({projection: new Float32Array(16), width: 1, height: 2, clipDepth: 'zero-to-one'});
+    view.update({tileSize: 8});
+    const binner = lightbin.binner({slicing: 'clusters', depthTest: 'box'});
+    const lamps = lightbin.floats(16), slices = lightbin.exponentialSlices({count: 3, first: 1, last: 2});
+    const spheres = {array: lamps, stride: 16, centre: 0, radius: [1, 2, 3]};
+    const grid = binner.bin(view, {viewMatrix: [1], spheres, boxes: {centre: null}}, {slices});
+    gl.bufferData(gl.ARRAY_BUFFER, grid.ids, gl.STREAM_DRAW);
+    const {text, bindings} = await lightbin.shader({language: 'essl-300', slots: {lists: {binding: 1}}});
+    // @ts-expect-error
+    lightbin.view({projection: [1], width: 1, height: 2, clipDepth: 'webgpu'});
+    // @ts-expect-error
+    lightbin.view({width: 1, height: 2});
+    // @ts-expect-error
+    binner.bin(view, {spheres: {array: lamps, color: 3}});
+    // @ts-expect-error
+    grid.tilesX = 3;
+    return text + bindings[0].webgpuFormat;
+}

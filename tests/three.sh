@@ -1,0 +1,33 @@
+#!/bin/sh
+# Tests the npm package's adapter for three.js in a browser: `sh tests/three.sh` on Debian 12, as root or with sudo.
+# Installs what is missing, builds the package, fetches three.js, and runs it in headless Chromium on a software
+# renderer. Takes about two minutes, and some more the first time.
+#   --serve  shows the page with 5,000 moving lights instead, at http://localhost:8000/page.html
+set -eu
+me=tests/three.sh
+cd "$(dirname "$0")/.."
+. tests/packages.sh
+takes "nothing, --serve" --serve "$@"
+
+install_packages chromium nodejs emscripten node-acorn binaryen
+command -v npm >/dev/null || install_packages npm
+make_build_folder
+sh packaging/npm/build.sh
+
+# The prefix keeps it here: npm otherwise looks for a project in the folders above.
+tests=build/three-tests
+mkdir -p $tests
+for package in three@0.187.0 playwright-core@1.65.1; do
+    grep -qs '"version": "'${package#*@}'"' $tests/node_modules/${package%@*}/package.json ||
+        npm install --prefix $tests --cache $tests/npm.cache --no-save --ignore-scripts --no-audit --no-fund \
+            three@0.187.0 playwright-core@1.65.1 >$tests/npm.log 2>&1 ||
+            { cat $tests/npm.log; fail "npm could not install $package"; }
+done
+
+modules=$PWD/$tests/node_modules
+export THREE="$modules/three" PLAYWRIGHT="$modules/playwright-core" LIGHTBIN="$PWD/build/npm/lightbin"
+[ $# -eq 0 ] || exec node tests/three/server.mjs 8000
+node --test-reporter=spec tests/three/pictures.mjs >$tests/pictures.log 2>&1 || failed=yes
+grep -E '^(✔|✖|    at |  [A-Z])' $tests/pictures.log || true
+[ -z "${failed-}" ] || fail "not every test passed; the log is $tests/pictures.log"
+echo "$me: every test passed"

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// node --test tests/three/pictures.mjs: the adapter for three.js in headless Chromium. THREE, LIGHTBIN and PLAYWRIGHT
+// are
+// the folders of these packages.
+import assert from 'node:assert/strict';
+import path from 'node:path';
+import {after, before, test} from 'node:test';
+import {pathToFileURL} from 'node:url';
+import {serve} from './server.mjs';
+
+const {chromium} = await import(pathToFileURL(path.join(process.env.PLAYWRIGHT, 'index.mjs')));
+let browser, page, server;
+const complaints = [];
+before(async () => {
+    server = await serve();
+    browser = await chromium.launch({executablePath: '/usr/bin/chromium', args: [
+        '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking',
+            '--disable-component-update',
+        '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader']});
+    page = await browser.newPage();
+    page.setDefaultTimeout(240000);
+    page.on('pageerror', error => complaints.push(error.stack));
+    page.on('console', message => {
+        if (['error', 'warning'].includes(message.type()) && !/GPU stall due to ReadPixels/.test(message.text()))
+            complaints.push(message.text());
+    });
+    await page.goto(`${server.url}page.html#still`);
+    await page.waitForFunction(() => window.stage !== undefined).catch(() => assert.fail(complaints.join('\n')));
+});
+after(async () => {
+    await browser.close();
+    server.close();
+    assert.deepEqual(complaints.filter(text => !/404/.test(text)), []);
+});
+
+// Rounding differs, as three.js' own shader is another program: by 1 of 255 at most.
+for (const [points, spots] of [[70, 30], [200, 100]])
+    test(`${points + spots} lights: as three.js draws them itself`, async () => {
+        const {most, mean} = await page.evaluate(([points, spots]) => {
+            stage.lights(points, spots);
+            stage.model.visible = points < 100;  // compiling takes long, as three.js unrolls its loops
+            stage.own();
+            const own = stage.draw();
+            stage.cluster();
+            const lists = stage.draw();
+            stage.model.visible = true;
+            return difference(own, lists);
+        }, [points, spots]);
+        assert.ok(mean > 20, `the picture is dark: ${mean}`);
+        assert.ok(most <= 1, `${most} of 255 apart`);
+    });
+
+test('5,000 moving lights: as every light in every fragment draws them, byte by byte', async () => {
+    for (const seconds of [0, 1.7]) {
+        const {bytes, mean, grid, control} = await page.evaluate(seconds => {
+            stage.own();
+            stage.resize(240, 150);
+            stage.lights(3500, 1500, {range: 1.5});
+            stage.move(seconds);
+            stage.cluster();
+            const lists = stage.draw(), {tilesX, slices, lights, rejected} = stage.clusters.grid;
+            stage.all(5000);
+            const all = stage.draw();
+            stage.own();
+            stage.cluster();
+            stage.draw();
+            stage.all(4000);
+            const fewer = stage.draw();
+            return {...difference(lists, all), grid: {tilesX, slices, lights, rejected}, control: difference(lists,
+                fewer).bytes};
+        }, seconds);
+        assert.ok(mean > 20, `the picture is dark: ${mean}`);
+        assert.equal(bytes, 0);
+        assert.ok(control > 1000, 'it makes no difference if lights are left out');
+        assert.deepEqual(grid, {tilesX: 8, slices: 24, lights: 5000, rejected: 0});
+    }
+});
+
+test('another size, several cameras, a corner of the window and a render target', async () => {
+    const results = await page.evaluate(() => {
+        const {renderer, THREE} = stage, results = {};
+        const pictures = () => {
+            stage.resize(301, 173);
+            const made = {resized: stage.draw(), orthographic: stage.draw(stage.other)};
+            renderer.autoClear = false;
+            renderer.clear();
+            renderer.setViewport(37, 21, 200, 120);
+            stage.renderer.render(stage.scene, stage.camera);
+            renderer.setViewport(5, 3, 90, 50);
+            renderer.clearDepth();
+            made.corners = stage.draw(stage.other);
+            renderer.autoClear = true;
+            renderer.setViewport(0, 0, 301, 173);
+            const target = new THREE.WebGLRenderTarget(128, 96);
+            renderer.setRenderTarget(target);
+            renderer.render(stage.scene, stage.camera);
+            made.target = new Uint8Array(4 * 128 * 96);
+            renderer.readRenderTargetPixels(target, 0, 0, 128, 96, made.target);
+            renderer.setRenderTarget(null);
+            target.dispose();
+            return made;
+        };
+        stage.own();
+        stage.lights(50, 20);
+        const own = pictures();
+        stage.cluster();
+        const lists = pictures();
+        for (const name in own) results[name] = difference(own[name], lists[name]);
+        return results;
+    });
+    for (const [name, {most, mean}] of Object.entries(results)) {
+        assert.ok(mean > 5, `${name} is dark: ${mean}`);
+        assert.ok(most <= 1, `${name}: ${most} of 255 apart`);
+    }
+});
+
+test('shadows, directional lights and lights that change stay as three.js draws them', async () => {
+    const results = await page.evaluate(() => {
+        const {THREE, renderer, scene} = stage, results = {};
+        stage.resize(240, 150);
+        renderer.shadowMap.enabled = true;
+        stage.own();
+        stage.lights(30, 20);
+        const sun = new THREE.DirectionalLight(0xffffff, 0.3), torch = new THREE.SpotLight(0xffffff, 300, 60, 0.6, 0.5);
+        torch.position.set(2, 12, 3);
+        torch.castShadow = true;
+        scene.add(sun, torch, torch.target);
+        const pictures = () => {
+            const made = {shadow: stage.draw()};
+            torch.castShadow = false;
+            made.none = stage.draw();
+            torch.castShadow = true;
+            made.again = stage.draw();
+            stage.lamps[3].visible = stage.lamps[40].visible = false;
+            stage.lamps[4].layers.set(3);
+            stage.lamps[5].color.set(0x00ff00);
+            made.changed = stage.draw();
+            stage.lamps[3].visible = stage.lamps[40].visible = true;
+            stage.lamps[4].layers.set(0);
+            return made;
+        };
+        const own = pictures();
+        stage.cluster();
+        const lists = pictures();
+        stage.own();
+        const after = pictures();
+        for (const name in own) results[name] = [difference(own[name], lists[name]).most, difference(own[name],
+            after[name]).bytes];
+        results.seen = [difference(own.shadow, own.none).bytes, difference(own.shadow, own.changed).bytes];
+        results.layers = stage.lamps.every(({layers}) => layers.mask === 1);
+        results.allocations = stage.lightbin.allocations;
+        scene.remove(sun, torch, torch.target);
+        return results;
+    });
+    for (const name of ['shadow', 'none', 'again', 'changed']) {
+        assert.ok(results[name][0] <= 1, `${name}: ${results[name][0]} of 255 apart`);
+        assert.equal(results[name][1], 0, `${name}, after dispose()`);
+    }
+    assert.ok(results.seen.every(bytes => bytes > 100), `${results.seen}`);
+    assert.ok(results.layers);
+    assert.equal(results.allocations, 0);
+});
