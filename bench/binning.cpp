@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // A whole build, lights in to lists out, against the flat baseline measured in turns in the same run, on rotating light
-// sets; with clusters and z-bins; from world space and structs against view-space vec4s; of several views; spots against
-// spheres. Says how many of the project's goals are met and which are missed by most, and writes binning.csv and
-// binning_goals.csv.
+// sets; with clusters and z-bins; from world space and structs against view-space vec4s; of several views; spots
+// against spheres, boxes against both. Says how many of the project's goals are met and which are missed by most, and
+// writes binning.csv and binning_goals.csv.
 #include "arguments.hpp"
+#include "boxes_sets.hpp"
 #include "builds.hpp"
 #include "console.hpp"
 #include "flat.hpp"
@@ -146,8 +147,8 @@ struct FrameViews {
     std::vector<std::size_t> view_of;
 };
 
-/// A build against the baseline, which has the depth test `interval` too; against clearing the tile table, and of a million
-/// lights against reading them. Then what threads gain, if there are several.
+/// A build against the baseline, which has the depth test `interval` too; against clearing the tile table, and of a
+/// million lights against reading them. Then what threads gain, if there are several.
 template <Options options>
 void time_build(const std::string& name, const Set<Frame>& set, int tile_size, int thread_count) {
     const std::vector<Frame>& frames = set.frames();
@@ -193,8 +194,8 @@ void time_build(const std::string& name, const Set<Frame>& set, int tile_size, i
         results.push_back({name, to_string(options.isa), to, gain, 0});
 }
 
-/// Clusters against the baseline; z-bins against the same build without them, and bitmasks without lists against building
-/// lists and encoding those.
+/// Clusters against the baseline; z-bins against the same build without them, and bitmasks without lists against
+/// building lists and encoding those.
 template <Options options> void time_slices(const std::string& name, const Set<Frame>& set) {
     constexpr bool clusters = options.slicing == Slicing::clusters;
     constexpr Options without = [] {
@@ -235,8 +236,8 @@ template <Options options> void time_slices(const std::string& name, const Set<F
     }
 }
 
-/// Each form of the lights against view-space vec4s and a loop of one's own. In a turn they take different frames, so that
-/// none finds its lights where another one left them in the cache.
+/// Each form of the lights against view-space vec4s and a loop of one's own. In a turn they take different frames, so
+/// that none finds its lights where another one left them in the cache.
 template <Options options> void time_sources(const std::string& name, const Set<WorldFrame>& set) {
     const std::vector<WorldFrame>& frames = set.frames();
     SourceBuilds<options> builds(frames[0].view.lens, 32);
@@ -279,30 +280,21 @@ template <Options options> void time_views(const std::string& name, const Set<Wo
     }
 }
 
-struct SpotSet {
-    const char* name;
-    std::size_t lights;
-    float median_range;
-};
-
-/// Spots against as many spheres whose lists are as long.
-template <Options options> void time_spots(const std::string& name, const SpotSet& set) {
-    constexpr int tile_size = usual_tile_size(options);
-    const lightbin::View view = Lens().view(tile_size);
-    static std::vector<SpotFrame> frames;
-    static std::string kept;  // the lists are the same on every instruction set
-    if (kept != name) {
-        Build<with(options, lightbin::compiled_isa)> widest(tile_size);
-        frames = matched_frames(set.lights, set.median_range,
-                                [&](const auto& lights) { return widest(view, lights); });
-        kept = name;
-    }
-    Build<options> build(tile_size);
-    const Turns turns =
-        take_turns<SpotFrame>(frames, seconds_a_case,
-                              {[&](const SpotFrame& frame) { return build(view, frame.lights); },
-                               [&](const SpotFrame& frame) { return build(view, frame.spheres); }});
+/// Spots or boxes against as many spheres whose lists are as long, and boxes against such spots.
+template <Options options, class Light>
+void time_kind(const std::string& name, const Set<KindFrame<Light>>& set) {
+    using OneFrame = KindFrame<Light>;
+    const lightbin::View view = Lens().view(usual_tile_size(options));
+    const std::vector<OneFrame>& frames = set.frames();
+    Build<options> build(usual_tile_size(options));
+    const auto of = [&](auto member) {
+        return [&, member](const OneFrame& frame) { return build(view, frame.*member); };
+    };
+    std::vector<Work<OneFrame>> works = {of(&OneFrame::lights), of(&OneFrame::spheres)};
+    if (!frames[0].spots.empty()) works.push_back(of(&OneFrame::spots));
+    const Turns turns = take_turns(frames, seconds_a_case, works);
     add_result(name, options, "spheres", turns, 0, 1, set.lights);
+    if (works.size() > 2) add_result(name, options, "spots", turns, 0, 2, set.lights);
 }
 
 template <Options options> std::string method_name() {
@@ -412,26 +404,60 @@ void add_views(const Set<WorldFrame>& set) {
                          [=]<Options one>(const std::string& name) { time_views<one>(name, set); });
 }
 
-template <Options options> void add_spots(const SpotSet& set) {
-    add_cases<options>("spots/" + std::string(set.name) + text("/%zu/", set.lights) + method_name<options>() +
-                           "/" + to_string(options.slicing),
-                       [=]<Options one>(const std::string& name) { time_spots<one>(name, set); });
+/// How to make the frame of a seed of a set of spots or boxes.
+template <class Light> struct KindSet {
+    std::string name;
+    std::size_t lights;
+    std::function<KindFrame<Light>(std::uint32_t seed)> make;
+};
+
+template <Options options, class Light> void add_kind(const KindSet<Light>& kind) {
+    const std::string name =
+        kind.name + text("/%zu/", kind.lights) + method_name<options>() + "/" + to_string(options.slicing);
+    // The lists have the same lengths on every instruction set.
+    const Set<KindFrame<Light>> set = {name, kind.lights, [=] {
+                                           constexpr int tile_size = usual_tile_size(options);
+                                           const lightbin::View view = Lens().view(tile_size);
+                                           Build<options> build(tile_size);
+                                           return matched_frames(
+                                               frames_in_turn(kind.lights, kind.make),
+                                               [&](const auto& lights) { return build(view, lights); });
+                                       }};
+    add_cases<options>(name,
+                       [=]<Options one>(const std::string& full_name) { time_kind<one>(full_name, set); });
 }
 
 void add_all_spots(bool quick) {
     for (const auto& [name, median_range] : {std::pair("spots20", spots20_median), {"spots4", spots4_median}})
         for (const std::size_t count : {256u, 1000u, 4096u, 10000u}) {
             if (quick && (count == 256 || count == 4096 || median_range == spots4_median)) continue;
-            const SpotSet set = {name, count, median_range};
-            add_spots<Options{}>(set);
-            add_spots<Options{.footprint = Footprint::silhouette}>(set);
-            add_spots<Options{.depth_test = DepthTest::interval}>(set);
-            add_spots<Options{.depth_test = DepthTest::box}>(set);
-            add_spots<Options{.depth_test = DepthTest::split_box}>(set);
-            add_spots<Options{.slicing = Slicing::clusters}>(set);
-            add_spots<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>(set);
-            add_spots<Options{.slicing = Slicing::z_bins}>(set);
+            const KindSet<lightbin::Spot> set = {
+                std::string("spots/") + name, count, [=, median = median_range](std::uint32_t seed) {
+                    return SpotFrame{spot_field(count, median, seed), field(count, median, seed)};
+                }};
+            add_kind<Options{}>(set);
+            add_kind<Options{.footprint = Footprint::silhouette}>(set);
+            add_kind<Options{.depth_test = DepthTest::interval}>(set);
+            add_kind<Options{.depth_test = DepthTest::box}>(set);
+            add_kind<Options{.depth_test = DepthTest::split_box}>(set);
+            add_kind<Options{.slicing = Slicing::clusters}>(set);
+            add_kind<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>(set);
+            add_kind<Options{.slicing = Slicing::z_bins}>(set);
         }
+}
+
+void add_boxes(const char* name, float median, std::span<const BoxFamily> families) {
+    for (const std::size_t count : {1000u, 10000u}) {
+        const KindSet<lightbin::Box> set = {
+            std::string("boxes/") + name, count, [=](std::uint32_t seed) {
+                return KindFrame<lightbin::Box>{box_field(count, median, seed, families),
+                                                field(count, median, seed), spot_field(count, median, seed)};
+            }};
+        add_kind<Options{}>(set);
+        add_kind<Options{.footprint = Footprint::silhouette}>(set);
+        add_kind<Options{.depth_test = DepthTest::box}>(set);
+        add_kind<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>(set);
+    }
 }
 
 /// Lights 99 % of which are out of view: behind the eye, or to the side.
@@ -518,6 +544,8 @@ int main(int argc, char** argv) try {
     add_views(many_lights);
     add_views(field20);
     add_all_spots(quick);
+    add_boxes("boxes20", boxes20_median, timed_boxes());
+    add_boxes("clipped20", clipped20_median, timed_clipped());
     {
         const std::regex wanted(filter);
         std::erase_if(cases, [&](const Case& which) { return !std::regex_search(which.name, wanted); });

@@ -12,12 +12,11 @@
 //   margin          entries / entries of the same method in exact arithmetic: what rounding outward adds; for
 //                   silhouettes, also what keeping some lights' rectangles adds. Not where there are spots
 #include "arguments.hpp"
-#include "boxes_error.hpp"
 #include "console.hpp"
 #include "exact_pairs.hpp"
 #include "glb_scenes.hpp"
 #include "ladder.hpp"
-#include "spots_error.hpp"
+#include "shapes_error.hpp"
 #include "tiled_view.hpp"
 
 #include <cmath>
@@ -214,8 +213,7 @@ int main(int argc, char** argv) try {
     std::vector<int> tile_sizes = {8, 16, 32, 64};
     if (quick) tile_sizes = {32, 64};
     std::vector<Row> rows, clusters;
-    SpotErrors spots;
-    BoxErrors boxes;
+    ShapeErrors spots, boxes;
     {
         Progress progress;
         for (const Case& scene : cases(arguments.scenes_or_fixtures()))
@@ -268,7 +266,7 @@ int main(int argc, char** argv) try {
               text("Whole spheres are listed %.1f to %.0f times as often as the spots in them, in the median "
                    "%.1f.",
                    percentile(spots.saved, 0), percentile(spots.saved, 1), median(spots.saved))},
-             {"error.csv", "spots_error.csv"});
+             {"error.csv", "spots_error.csv", "boxes_error.csv"});
     return misses == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 } catch (const std::exception& problem) {
     std::fprintf(stderr, "error: %s\n", problem.what());

@@ -36,9 +36,9 @@ inline void write_timed(const std::vector<Timed>& rows, const char* path) {
 /// The widest first.
 inline constexpr const char* goal_tiers[] = {"avx512", "avx2", "simd128", "scalar"};
 
-/// A goal for the worst of the rows whose "NAME to TO" the expression matches; for each text that its first brackets match,
-/// a goal of its own. MANY stands for 1,000 to 99,999 lights. Where it is there, 200 to 899 lights have a goal as well, which
-/// is 1.5 times as high.
+/// A goal for the worst of the rows whose "NAME to TO" the expression matches; for each text that its first brackets
+/// match, a goal of its own. MANY stands for 1,000 to 99,999 lights. Where it is there, 200 to 899 lights have a goal
+/// as well, which is 1.5 times as high.
 struct Goal {
     const char *group, *rows;
     double must[std::size(goal_tiers)];  ///< by tier; 0 where there is no goal
@@ -48,7 +48,8 @@ struct Goal {
 inline constexpr const char *to_flat = "builds to the flat loop", *of_scale = "scale",
                             *clusters_to_flat = "clusters to the flat loop",
                             *z_bins_to_none = "z-bins to none", *what_lights_are = "what the lights are",
-                            *spots_to_spheres = "spots to spheres";
+                            *spots_to_spheres = "spots to spheres",
+                            *boxes_to_both = "boxes to spheres and spots";
 
 constexpr Goal goal(const char* group, const char* rows, double avx512, double avx2, double simd128 = 0,
                     double scalar = 0) {
@@ -94,6 +95,11 @@ inline constexpr Goal goals[] = {
     for_all(what_lights_are, "sources/many_lights/.*/world_vec4s to loop_vec4s", 1),
 
     for_all(spots_to_spheres, "spots/[^/]+/[0-9]+/(.*) to spheres", 1.5),
+
+    for_all(boxes_to_both, "boxes/(.*)/[0-9]+/rectangle/none/none to spheres", 1.5),
+    for_all(boxes_to_both, "boxes/(.*)/[0-9]+/silhouette/none/none to spheres", 2.0),
+    for_all(boxes_to_both, "boxes/boxes20/[0-9]+/rectangle/box/none to spots", 1.2),
+    for_all(boxes_to_both, "boxes/clipped20/[0-9]+/rectangle/box/none to spots", 1.7),
 };
 
 /// All goals of a run and what was measured. A miss is one in the figures as they are printed.
@@ -193,8 +199,8 @@ private:
     std::vector<Verdict> all_;
 };
 
-/// The cases in which a wider tier is more than 5 % slower than a narrower one, to the baseline of its own minute, and by more
-/// than half of both spreads.
+/// The cases in which a wider tier is more than 5 % slower than a narrower one, to the baseline of its own minute, and
+/// by more than half of both spreads.
 inline std::string slower_tiers(const std::vector<Timed>& rows) {
     const auto rank = [](const Timed& row) { return std::ranges::find(goal_tiers, row.tier); };
     std::size_t slower = 0;

@@ -26,7 +26,8 @@ esac
 [ -n "${CXX-}" ] || install_packages g++ bash
 compiler=${CXX:-g++}
 flags=${CXXFLAGS:--O0}
-headers="view.hpp light_grid.hpp lights.hpp lightbin.hpp list_format.hpp encode.hpp shader.hpp shader_build.hpp advise.hpp"
+headers="view.hpp light_grid.hpp lights.hpp lightbin.hpp list_format.hpp encode.hpp budget.hpp grid_union.hpp shader.hpp
+    shader_build.hpp advise.hpp"
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -5,12 +5,13 @@
 #   binning [--quick] [SCENE.glb ...] [--filter=REGEX]
 #       (the default) Whole builds as a ratio to the flat baseline; from world space and from structs as a ratio to
 #       view-space vec4s (^sources), of several views as a ratio to one (^views), with clusters and z-bins (^slices), of
-#       spots as a ratio to spheres (^spots): all, or those whose names the expression matches, which it prints. Says how many goals
-#       are met and what is missed by most, where a wider instruction set is slower than a narrower one, and what threads
-#       gain. About 6 minutes, --quick half a minute. Writes build/bench/binning_goals.csv, and what was timed, binning.csv:
-#       a row for each case, instruction set and thing that it is a ratio to. The sets fieldN have a mean footprint of N
-#       tiles of 32 pixels; box and split_box are held against the baseline without Z; a ratio to one thread says how many
-#       times as fast several are; for no light ns_per_light is a whole build's.
+#       spots as a ratio to spheres (^spots), of boxes as a ratio to spheres and to spots (^boxes): all, or those whose
+#       names the expression matches, which it prints. Says how many goals are met and what is missed by most, where a
+#       wider instruction set is slower than a narrower one, and what threads gain. About 7 minutes, --quick half a
+#       minute. Writes build/bench/binning_goals.csv, and what was timed, binning.csv: a row for each case, instruction
+#       set and thing that it is a ratio to. The sets fieldN have a mean footprint of N tiles of 32 pixels; box and
+#       split_box are held against the baseline without Z; a ratio to one thread says how many times as fast several
+#       are; for no light ns_per_light is a whole build's.
 #   report [--quick] [--evaluation-ns NUMBER] [SCENE.glb ...]
 #       Error against run time: of every method and tile size what a frame pays (Z bounds, build, upload, light evaluations
 #       of so many nanoseconds: if none are given, what this machine's GPU takes, or .02 where there is none) and how many

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The synthetic sets of spots, seen by the camera of sets.hpp, and spheres whose lists are as long.
+// The synthetic sets of spots, seen by the camera of sets.hpp, and lights of simpler kinds whose lists are as long.
 #pragma once
 
 #include "dice.hpp"
@@ -58,32 +58,47 @@ inline Spots spots_of_angle(std::size_t count, float half_angle_in_degrees, std:
     return spots;
 }
 
-struct SpotFrame {
-    Spots lights;
-    Lights spheres;  ///< around the same centres
+/// Lights of one kind, and lights of simpler kinds around the same centres.
+template <class Light> struct KindFrame {
+    std::vector<Light> lights;
+    Lights spheres;
+    Spots spots = {};  ///< beside boxes
 };
+using SpotFrame = KindFrame<lightbin::Spot>;
 
-/// Frames of a set of spots, met in turn. The spheres are scaled until they make as many entries as the spots:
+inline float& radius_of(glm::vec4& sphere) {
+    return sphere.w;
+}
+inline float& radius_of(lightbin::Spot& spot) {
+    return spot.radius;
+}
+
+/// Scales the radii of the lights `others` of all frames until they make as many entries as the frames' own lights:
 /// entries(lights) of each.
-template <class Entries>
-std::vector<SpotFrame> matched_frames(std::size_t count, float median_range, Entries entries) {
-    std::vector<SpotFrame> frames = frames_in_turn(count, [&](std::uint32_t seed) {
-        return SpotFrame{spot_field(count, median_range, seed), field(count, median_range, seed)};
-    });
+template <class Light, class Others, class Entries>
+void match_entries(std::vector<KindFrame<Light>>& frames, Others KindFrame<Light>::*others, Entries entries) {
     std::size_t wanted = 0;
-    for (const SpotFrame& frame : frames)
+    for (const KindFrame<Light>& frame : frames)
         wanted += entries(frame.lights);
-    double low = 0.01, high = 4;
+    double low = 0.01, high = 16, last = 1;
     for (int step = 0; step < 20; ++step) {
         const double scale = std::sqrt(low * high);
         std::size_t made = 0;
-        for (SpotFrame& frame : frames) {
-            for (std::size_t i = 0; i < count; ++i)
-                frame.spheres[i].w = float(scale) * frame.lights[i].radius;
-            made += entries(frame.spheres);
+        for (KindFrame<Light>& frame : frames) {
+            for (auto& light : frame.*others)
+                radius_of(light) *= float(scale / last);
+            made += entries(frame.*others);
         }
+        last = scale;
         if (std::abs(double(made) - double(wanted)) < 0.005 * double(wanted)) break;
         (made < wanted ? low : high) = scale;
     }
+}
+
+/// The frames with their spheres, and their spots if they have any, scaled to as many entries as the lights make.
+template <class Light, class Entries>
+std::vector<KindFrame<Light>> matched_frames(std::vector<KindFrame<Light>> frames, Entries entries) {
+    match_entries(frames, &KindFrame<Light>::spheres, entries);
+    if (!frames[0].spots.empty()) match_entries(frames, &KindFrame<Light>::spots, entries);
     return frames;
 }

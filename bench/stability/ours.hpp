@@ -106,18 +106,14 @@ inline Behind behind(const lightbin::detail::Camera& camera, const lightbin::Sph
         }
     } else {
         result.careful = true;
-        const double c[] = {static_cast<double>(x), static_cast<double>(y)}, depth = static_cast<double>(z),
-                     radius = std::max(static_cast<double>(r), 0x1p-400),
-                     near_depth = static_cast<double>(camera.near_depth);
-        const double e = (depth - radius) * (depth + radius);
-        seen = depth + static_cast<double>(r) >= near_depth &&
-               depth - static_cast<double>(r) <= static_cast<double>(camera.far_depth);
+        const double signed_sphere[] = {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z),
+                                        static_cast<double>(r)};
+        seen = signed_sphere[2] + signed_sphere[3] >= static_cast<double>(camera.near_depth) &&
+               signed_sphere[2] - signed_sphere[3] <= static_cast<double>(camera.far_depth);
+        double lows[2], highs[2];
+        bounds_in_double(camera, signed_sphere, lows, highs);
         for (const std::size_t i : {0u, 1u}) {
-            double low, high;
-            if (depth - static_cast<double>(r) > near_depth)
-                scalar::tangent_slopes(c[i], depth, radius, e, 1 / e, low, high);
-            else
-                scalar::clipped_slopes(c[i], depth, radius, near_depth, low, high);
+            const double low = lows[i], high = highs[i];
             result.low[i] = low * axes[i]->scale + axes[i]->offset;
             result.high[i] = high * axes[i]->scale + axes[i]->offset;
             seen = scalar::tile_span<double>(*axes[i], low, high, seen, first + i, last + i);
