@@ -217,13 +217,20 @@ std::string code(const Found& found, WayCosts& costs) {
                      spans + "});\n";
         }
     }
-    if (way.threads)
-        inputs += ", lightbin::Parallel(pool.size(), run)";
-    else if (inputs == "{}")
-        inputs.clear();
-    lines += std::string("auto lights = lightbin::world_space(lamps, view_matrix, ") +
-             (costs.has_cones() && way.cones ? "to_spot" : "to_sphere") + ");\n";
-    lines += "auto grid = binner.bin(*view, lights" + (inputs.empty() ? "" : ", " + inputs) + ");\n";
+    const std::string next =
+        inputs.size() > 60 ? ",\n                       " : ", ";  // lines of 100 columns at most
+    std::string arguments = "*view, lights";
+    if (way.threads || inputs != "{}") arguments += next + inputs;
+    if (way.threads) arguments += next + "lightbin::Parallel(pool.size(), run)";
+    const std::string lamps = std::string("lightbin::world_space(lamps, view_matrix, ") +
+                              (costs.has_cones() && way.cones ? "to_spot)" : "to_sphere)");
+    lines += "auto lights = " +
+             (costs.has_boxes() ? "lightbin::lights(" + lamps +
+                                      ",\n                               "
+                                      "lightbin::world_space(decals, view_matrix, to_box))"
+                                : lamps) +
+             ";\n";
+    lines += "auto grid = binner.bin(" + arguments + ");\n";
     lines += "auto shader = lightbin::shader_snippet({.format = decltype(binner)::list_format";
     if (plan.slicing != Slicing::none)
         lines += std::string(",\n                                        .slicing = lightbin::Slicing::") +
@@ -246,7 +253,7 @@ std::unique_ptr<WayCosts> worst_view(const Scene& scene, const AdviseSettings& s
         BinnedLights lights(scene);
         lights.place(world_to_view);
         auto costs = std::make_unique<WayCosts>(
-            view, projection, lights.lights(),
+            view, projection, lights,
             draw_depth_on_cpu(scene, glm::dmat4(projection) * world_to_view, view.viewport()));
         costs->set({.evaluation_ns = 1});
         const Way plain = {.plan = {.tile_size = 16}};
@@ -306,8 +313,9 @@ std::string advise_scene(const Scene& scene, const AdviseSettings& settings) {
     page += words;
     page += text(
         "overdraw     %.2f: without a pre-pass so many fragments are shaded for each pixel that is seen;\n"
-        "             plain tiles of 16 px evaluate %.1f lights a pixel\n",
-        costs->overdraw(), evaluations / settings.width / settings.height);
+        "             plain tiles of 16 px evaluate %.1f lights%s a pixel\n",
+        costs->overdraw(), evaluations / settings.width / settings.height,
+        costs->has_boxes() ? " and boxes" : "");
     if (!scene.transparent.empty())
         page +=
             "             glass is left out; with Z bounds it needs lists of its own: bin_transparency()\n";

@@ -40,8 +40,8 @@ BinnedLights::Grids BinnedLights::bin(const lightbin::View& view, const BinSetti
     const auto bin_all = [&](const auto& lights) { return bin(view, lights, settings, z_bounds); };
     if (!has_boxes()) return visit_lights(settings.dropped_light, bin_all);
 
-    // In every list ids ascend, so the shader finds all lights before the first box. A Spot that is a whole sphere takes no
-    // longer than a Sphere.
+    // In every list ids ascend, so the shader finds all lights before the first box. A Spot that is a whole sphere takes
+    // no longer than a Sphere.
     const std::span<const GpuLight> lights = this->lights();
     const auto to_box = [&](const GpuBox& box) {
         lightbin::Box listed = box_of(box);
@@ -72,7 +72,7 @@ BinnedLights::Grids BinnedLights::bin(const lightbin::View& view, const Lights& 
     }
 
     // What is at any depth has its lights, glass too.
-    slices_ = slices_for(settings, view.orthographic(), std::span(placed_).first(listed_count()));
+    slices_ = slices_for(settings, view.orthographic(), listed());
     if (settings.method == DepthMethod::clusters)
         return same(value_of(cluster_binner_.bin(view, lights, {.slices = *slices_})));
     const auto grid = value_of(bin_binner_.bin(view, lights, {.slices = *slices_}));

@@ -55,9 +55,10 @@ public:
 
     // Of lights and boxes, which have the ids below this number: first all lights, then all boxes.
     std::size_t listed_count() const { return scene_.lights.size() + scene_.boxes.size(); }
+    std::span<const GpuLight> listed() const { return {placed_.data(), listed_count()}; }
 
-    // Which lights and boxes can reach which tile, and at what depths. Both grids are the same one where glass needs no lists of its
-    // own. Valid until the next call.
+    // Which lights and boxes can reach which tile, and at what depths. Both grids are the same one where glass needs no
+    // lists of its own. Valid until the next call.
     Grids bin(const lightbin::View& view, const BinSettings& settings, const lightbin::ZBounds& z_bounds);
 
     // Of the last bin(), with z-bins or clusters.
@@ -76,8 +77,8 @@ public:
         };
     }
 
-    // Calls visit with the lights, without boxes, as a Binner takes them: as spots where any is one, and by their spheres alone where
-    // none is, which takes less time.
+    // Calls visit with the lights, without boxes, as a Binner takes them: as spots where any is one, and by their spheres
+    // alone where none is, which takes less time.
     template <class Visit> auto visit_lights(int dropped_light, Visit visit) const {
         const auto as_spot = to_spot(dropped_light);
         const auto as_sphere = [=](const GpuLight& light) {

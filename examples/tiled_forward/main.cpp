@@ -271,11 +271,13 @@ int run(const Options& options) {
     const auto spots =
         std::count_if(scene.lights.begin(), scene.lights.end(), [](const Light& l) { return l.spot; });
     const std::string of_spots = spots == 0 ? "" : ", " + std::to_string(spots) + " of them with a cone";
-    const std::string boxes = scene.boxes.empty() ? "" : ", " + std::to_string(scene.boxes.size()) + " boxes";
-    std::printf("scene        %s: %s%s, %s%s%s, %s\n", scene.name.c_str(),
+    const std::string boxes = scene.boxes.empty() ? ""
+                                                  : "             and " + std::to_string(scene.boxes.size()) +
+                                                        " boxes of decals, probes and projectors\n";
+    std::printf("scene        %s: %s%s, %s%s, %s\n%s", scene.name.c_str(),
                 counted(scene.triangles.size() / 3, "triangle").c_str(), glass.c_str(),
-                counted(scene.lights.size(), "light").c_str(), of_spots.c_str(), boxes.c_str(),
-                counted(scene.cameras.size(), "view").c_str());
+                counted(scene.lights.size(), "light").c_str(), of_spots.c_str(),
+                counted(scene.cameras.size(), "view").c_str(), boxes.c_str());
     for (const std::string& note : scene.notes)
         std::printf("note         %s\n", note.c_str());
     std::fflush(stdout);

@@ -21,7 +21,8 @@ lightbin::Advice WayCosts::advise() {
             samples.push_back(
                 view_depth_[static_cast<std::size_t>((y * step + step / 2) * width + x * step + step / 2)]);
 
-    const auto advised = [&](const auto& lights) {
+    const auto advised = [&](const auto& first) {
+        const auto lights = lightbin::lights(first, sets_[0].boxes);
         const lightbin::Advice bounded = value_of(lightbin::advise(
             view_, lights, costs, reduced(view_.tile_size(), has_gaps(), true, true).bounds));
         const lightbin::Advice sliced =

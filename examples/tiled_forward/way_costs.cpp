@@ -2,7 +2,6 @@
 #include "way_costs.hpp"
 
 #include "../../bench/pool.hpp"
-#include "binned_lights.hpp"
 #include "value_of.hpp"
 
 #include <algorithm>
@@ -42,15 +41,14 @@ double median(std::vector<double>& values) {
 
 // Branch predictors learn a scene that is built again and again, so each turn has the lights elsewhere, up to a 32nd of
 // the picture to the side, as lightbin::advise() has them.
-std::vector<ViewLights> sets_of(std::span<const GpuLight> lights, const lightbin::View& view,
+std::vector<ViewLights> sets_of(const BinnedLights& lights, const lightbin::View& view,
                                 const glm::mat4& projection) {
     std::vector<ViewLights> sets(1);
-    const bool cones = std::any_of(lights.begin(), lights.end(), [](const GpuLight& light) {
-        return glm::vec3(light.cone) != glm::vec3(0);
-    });
-    for (const GpuLight& light : lights) {
+    for (const GpuBox& box : lights.boxes())
+        sets[0].boxes.push_back(box_of(box));
+    for (const GpuLight& light : lights.lights()) {
         const lightbin::Spot spot = spot_of(light);
-        if (cones)
+        if (lights.has_spots())
             sets[0].spots.push_back(spot);
         else
             sets[0].spheres.push_back({spot.x, spot.y, spot.z, spot.radius});
@@ -59,16 +57,22 @@ std::vector<ViewLights> sets_of(std::span<const GpuLight> lights, const lightbin
         const float aside =
             (2 * static_cast<float>(turn) / static_cast<float>(turns - 1) - 1) / 32 * 2 / projection[0][0];
         ViewLights set = sets[0];
-        const auto move = [&](auto& light) { light.x += aside * (view.orthographic() ? 1 : light.z); };
-        std::for_each(set.spots.begin(), set.spots.end(), move);
-        std::for_each(set.spheres.begin(), set.spheres.end(), move);
+        const auto way_of = [&](const auto& light) { return aside * (view.orthographic() ? 1 : light.z); };
+        for (lightbin::Spot& spot : set.spots)
+            spot.x += way_of(spot);
+        for (lightbin::Sphere& sphere : set.spheres)
+            sphere.x += way_of(sphere);
+        for (lightbin::Box& box : set.boxes) {
+            box.x += way_of(box);
+            box.box_x += way_of(box);
+        }
         sets.push_back(std::move(set));
     }
     return sets;
 }
 
-lightbin::Slices slices_of(DepthMethod method, const lightbin::View& view, std::span<const GpuLight> lights) {
-    return slices_for({.method = method}, view.orthographic(), lights);
+lightbin::Slices slices_of(DepthMethod method, const lightbin::View& view, const BinnedLights& lights) {
+    return slices_for({.method = method}, view.orthographic(), lights.listed());
 }
 
 // The options of ways, but for the width of ids.
@@ -98,7 +102,7 @@ constexpr Options with_ids(Options way, IdWidth ids) {
 
 }  // namespace
 
-WayCosts::WayCosts(const lightbin::View& view, const glm::mat4& projection, std::span<const GpuLight> lights,
+WayCosts::WayCosts(const lightbin::View& view, const glm::mat4& projection, const BinnedLights& lights,
                    CpuDepth depth)
     : view_(view), depth_(std::move(depth)), sets_(sets_of(lights, view, projection)),
       clusters_(slices_of(DepthMethod::clusters, view, lights)),
@@ -178,8 +182,8 @@ template <Options options> WayCosts::Build WayCosts::build_with(const Way& way) 
     return [=, this, &slices](const ViewLights& lights, Counts* counts) {
         const auto parallel = way.threads ? lightbin::Parallel(workers_, *pool_) : lightbin::Parallel();
         const auto bin = [&](const auto& taken) {
-            return value_of(
-                binner->bin(view, taken, lightbin::inputs_for<options>(bounds, slices), parallel));
+            return value_of(binner->bin(view, lightbin::lights(taken, lights.boxes),
+                                        lightbin::inputs_for<options>(bounds, slices), parallel));
         };
         const double start = now_ns();
         const bool cones = way.cones && !lights.spots.empty();

@@ -2,8 +2,8 @@
 // What a frame costs that is lit in one way or another: measured, all ways in turns.
 #pragma once
 
+#include "binned_lights.hpp"
 #include "cpu_depth.hpp"
-#include "gpu_light.hpp"
 
 #include <lightbin/advise.hpp>
 
@@ -42,12 +42,13 @@ struct Prices {
     double gpu_reduction_ns = HUGE_VAL;  // in place of the read-back and the reduction here
 };
 
-// Lights in view space: as spots where any has a cone, else as spheres.
+// Lights in view space, as spots where any has a cone, else as spheres; and the boxes of decals, probes and projectors.
 struct ViewLights {
     std::vector<lightbin::Spot> spots;
     std::vector<lightbin::Sphere> spheres;
+    std::vector<lightbin::Box> boxes;
 
-    std::size_t size() const { return spots.size() + spheres.size(); }
+    std::size_t size() const { return spots.size() + spheres.size() + boxes.size(); }
 };
 
 class Pool;
@@ -55,8 +56,8 @@ class Pool;
 // A view, what is seen in it, and what there is to measure ways with.
 class WayCosts {
 public:
-    // `lights`: in view space
-    WayCosts(const lightbin::View& view, const glm::mat4& projection, std::span<const GpuLight> lights,
+    // `lights`: placed in the view
+    WayCosts(const lightbin::View& view, const glm::mat4& projection, const BinnedLights& lights,
              CpuDepth depth);
     ~WayCosts();
 
@@ -79,9 +80,10 @@ public:
 
     const lightbin::View& view() const { return view_; }
     std::string slices_in_words(lightbin::Slicing slicing) const;  // the call that makes them
-    std::size_t light_count() const { return sets_[0].size(); }
+    std::size_t light_count() const { return sets_[0].size(); }  // and boxes
     double overdraw() const { return depth_.overdraw; }
     bool has_cones() const { return !sets_[0].spots.empty(); }
+    bool has_boxes() const { return !sets_[0].boxes.empty(); }
     std::size_t workers() const { return workers_; }
 
 private:
