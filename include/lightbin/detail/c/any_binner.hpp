@@ -41,10 +41,11 @@ template <class Body> decltype(auto) with_kind([[maybe_unused]] detail::LightKin
     return body.template operator()<LightKind::sphere>();
 }
 
-/// Whether a binner's build reads depth slices, or Z bounds.
+/// Whether a binner with these options reads Slices.
 constexpr bool reads_slices(const Options& options) {
     return options.slicing != Slicing::none;
 }
+/// Whether a binner with these options reads ZBounds.
 constexpr bool reads_bounds(const Options& options) {
     return options.depth_test != DepthTest::none && options.slicing != Slicing::clusters;
 }

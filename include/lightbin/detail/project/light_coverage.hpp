@@ -54,19 +54,13 @@ template <LightKind kind> LightExtent extent_of(const Camera& camera, const View
 /// are added. The camera's scale, the product with it and the product with 1 + 8u have a relative error of u each,
 /// which the factor 1 + 8u covers. What clipped_slopes() finds is rounded outward.
 inline double tiles_across(const Camera& camera, const Sphere& sphere) {
-    const double centre[] = {static_cast<double>(sphere.x), static_cast<double>(sphere.y)};
-    const double z = static_cast<double>(sphere.z), near_depth = static_cast<double>(camera.near_depth);
-    // As in project_in_double(), a radius of 0 is enlarged so that no square root is taken of 0.
-    const double r = max_of(static_cast<double>(sphere.radius), 0x1p-400);
-    const double e = rounded((z - r) * (z + r));
-    double tiles = 0;
+    const double of_sphere[] = {static_cast<double>(sphere.x), static_cast<double>(sphere.y),
+                                static_cast<double>(sphere.z), static_cast<double>(sphere.radius)};
+    double low[2], high[2], tiles = 0;
+    bounds_in_double(camera, of_sphere, low, high);
     for (unsigned axis = 0; axis < 2; ++axis) {
-        double low = centre[axis] - r, high = centre[axis] + r;
-        if (!camera.orthographic && z - r > near_depth)
-            scalar::tangent_slopes(centre[axis], z, r, e, 1 / e, low, high);
-        else if (!camera.orthographic)
-            clipped_slopes(centre[axis], z, r, near_depth, low, high);
-        const double width = high - low + rounded((abs_of(low) + abs_of(high)) * 0x1p-49);
+        const double width =
+            high[axis] - low[axis] + rounded((abs_of(low[axis]) + abs_of(high[axis])) * 0x1p-49);
         tiles = max_of(tiles, width * (axis == 0 ? camera.x : camera.y).scale);
     }
     return tiles * (1 + 0x1p-50);
