@@ -114,15 +114,12 @@ public:
                                                                         const Inputs& inputs,
                                                                         const Threads& threads = {}) {
         const detail::DefaultFloatEnvironment environment;
-        const ZBounds& bounds = inputs.bounds;
-        const bool own_max = !bounds.transparent_max.empty();
-        if (bounds.background_skipped && !bounds.max.empty() && !own_max)
-            return Error{ErrorCode::no_transparent_max};
+        const Result<ZBounds> in_front = detail::transparent_bounds(inputs.bounds);
+        if (!in_front) return in_front.error();
         if (const auto error = project(view, lights, inputs, threads)) return *error;
-        const ZBounds in_front = {.max = own_max ? bounds.transparent_max : bounds.max};
-        const auto transparent = build<kind<LightRange>>(transparent_, view, in_front, threads);
+        const auto transparent = build<kind<LightRange>>(transparent_, view, *in_front, threads);
         if (!transparent) return transparent.error();
-        const auto opaque = build<kind<LightRange>>(lists_, view, bounds, threads);
+        const auto opaque = build<kind<LightRange>>(lists_, view, inputs.bounds, threads);
         if (!opaque) return opaque.error();
         return TransparencyGrids<Id>{*opaque, *transparent};
     }

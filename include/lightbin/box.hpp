@@ -1,43 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Box: a sphere cut by an oriented box. And functions that make boxes of decals, probes, rooms, projectors and tubes.
+// What a program that bins Boxes (sphere.hpp) includes: their kernels. And functions that make boxes of decals, probes,
+// rooms, projectors and tubes.
 #pragma once
 
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/project/sphere_around.hpp>
+#include <lightbin/detail/tiers/shape_kernels.hpp>
 #include <lightbin/matrix.hpp>
 
 #include <lightbin/detail/base/warnings_off.inl>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// The region that a decal, a probe, a projector or a light in a room can reach: the points of a sphere that lie in
-/// an oriented box. It is listed where both reach.
-///
-/// x, y, z, radius      the sphere. With radius +inf it covers everything, and the region is the whole box.
-/// box_x, box_y, box_z  the box's centre
-/// half_axes            vectors from the box's centre to the middles of three of its faces. They need not be at right
-///                      angles. One that is zero makes the box flat, two make it a line segment.
-/// taper                how large the face at centre - half_axes[2] is, as a fraction of the face at centre +
-///                      half_axes[2]: 1 for a box, 0 for a pyramid, between them a frustum
-///
-/// The points of the box are  centre + a k half_axes[0] + b k half_axes[1] + c half_axes[2]  with a, b and c from -1
-/// to 1
-/// and  k = (1 + taper + c (1 - taper)) / 2.
-///
-/// A radius that is zero, negative or NaN is bad input, as are coordinates that are NaN or infinite, three half axes
-/// of zero, and a taper that is NaN or not from 0 to 1: such a Box is skipped and counted.
-struct Box {
-    float x, y, z, radius;
-    float box_x, box_y, box_z;
-    float half_axes[3][3];
-    float taper = 1;
-
-    /// Converts to bounding_sphere(*this), for functions that take only spheres. A Binner takes boxes themselves, and
-    /// lists fewer tiles for them than for these spheres.
-    operator Sphere() const;
-};
-
 namespace detail {
+
+template <> inline constexpr bool kernels_included<LightKind::box> = true;
 
 /// A Box that is bad input: skipped and counted.
 inline constexpr Box bad_box = {0, 0, 0, -1, 0, 0, 0, {}};

@@ -73,6 +73,11 @@ enum class ErrorCode : std::uint8_t {
     texture_width_out_of_range,
     bindings_overlap,
     not_a_prefix,
+    // light grids made on the GPU
+    no_cull_of_boxes,
+    too_many_slices,
+    view_matrix_distorts,
+    scratch_too_large,
 };
 
 namespace detail {
@@ -160,23 +165,31 @@ inline constexpr const char* error_sentences[] = {
     "this language has no descriptor sets, register spaces or groups: ShaderSlot::set must be 0 and is {given}",
     "push constants are Vulkan GLSL's: set ShaderOptions::push_constants to false",
     "GLSL ES 3.00 has no multisample textures: resolve the depth buffer first",
-    "build_shader() has the depth tests none, interval and box, but not split_box",
-    ("build_shader() slices depth into clusters alone, with DepthTest::none or DepthTest::box: z-bins are made by a "
-     "Binner"),
+    "grids that are built on the GPU have the depth tests none, interval and box, but not split_box",
+    ("on the GPU clusters are built with DepthTest::none or DepthTest::box, and z-bins by cull_shader(), not "
+     "build_shader()"),
     "wave loops need GLSL 4.30, ES 3.10, Vulkan, HLSL 6 (hlsl_5_1) or WGSL",
     "ShaderOptions::texture_width must be 1 to {available} texels, and is {needed}",
     "two resources of the shader are bound to binding {needed} of set {available}",
     ("ShaderOptions::prefix must begin a name in every language: a letter, then letters, digits and single "
      "underscores, 1000 at most, not gl_ or GL_, and not vola, which would make volatile"),
+    // light grids made on the GPU
+    ("cull_shader() projects spheres and spots, not boxes: pass the boxes' bounding spheres, or bin them with a "
+     "Binner"),
+    "a grid that is built on the GPU has at most {available} slices (z-bins: 1024), not {given}",
+    ("the world-to-view matrix distorts lengths by more than 32, or scales them by more than 2^20 or less than 2^-20: "
+     "transform the lights to view space before they are culled"),
+    ("the passes would need {needed} bytes of scratch memory, and their 32-bit indices reach {available}: use larger "
+     "tiles, fewer slices or fewer lights"),
 };
-static_assert(sizeof error_sentences / sizeof *error_sentences == static_cast<int>(ErrorCode::not_a_prefix) + 1);
+static_assert(sizeof error_sentences / sizeof *error_sentences == static_cast<int>(ErrorCode::scratch_too_large) + 1);
 
 }  // namespace detail
 
 /// Returns one English sentence that names the cause and a remedy. Placeholders {needed}, {available} and {given}
 /// stand for the numbers of an Error, which Error::message() fills in; {given} is Error::needed as a signed number.
 constexpr const char* to_string(ErrorCode code) {
-    return code <= ErrorCode::not_a_prefix ? detail::error_sentences[static_cast<int>(code)] : "unknown error";
+    return code <= ErrorCode::scratch_too_large ? detail::error_sentences[static_cast<int>(code)] : "unknown error";
 }
 
 }}  // namespace lightbin

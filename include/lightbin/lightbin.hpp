@@ -18,8 +18,8 @@
 //        threads, add a Parallel as the last argument.                                         parallel.hpp
 //        lights is an array of vec4, Sphere, Spot or Box in view space, or view_space(array, to_light), or
 //        world_space(array, view_matrix[, to_light]), where to_light makes one of an element,  lights.hpp
-//        or lights(spheres, spots, boxes). A Spot is listed where its cone reaches,            spot.hpp
-//        a Box where a sphere and an oriented box intersect.                                   box.hpp
+//        or lights(spheres, spots, boxes). A Spot is listed where its cone reaches, a Box
+//        where a sphere and an oriented box intersect.                                         sphere.hpp
 //   4. Upload grid->ranges() and grid->ids(), or let grid->copy_to(ranges, ids) write to       light_grid.hpp
 //        mapped buffers.
 //      To cover all depths without a depth buffer (no pre-pass, fog, glass), make Slices       slices.hpp
@@ -29,6 +29,8 @@
 //        bindings list. docs/README.md leads on, graphics API by graphics API.
 //
 // This header includes steps 1 to 4. Further headers, to be included by name:
+//   spot.hpp          to bin Spots: their kernels. And spheres around spots, tubes and rectangles
+//   box.hpp           to bin Boxes: their kernels. And boxes around decals, probes, rooms, projectors and tubes
 //   shader.hpp        shader text that reads the lists, in GLSL, HLSL and WGSL
 //   encode.hpp        the lists in other formats: 8-bit ids, sentinel-terminated lists, bitmasks
 //   budget.hpp        lists limited to a number of lights per cell or per frame, by weights
@@ -37,7 +39,8 @@
 //   advise.hpp        advise(view, lights, costs[, bounds]) measures which tile size and options are best
 //
 // Building. No compiler flags are needed. The kernels for the widest instruction set (isa.hpp) that the machine has are
-// chosen at run time, and all give the same bytes. Define LIGHTBIN_NO_SIMD to leave the vector kernels out, and
+// chosen at run time, and all give the same bytes. Define LIGHTBIN_NO_SIMD to leave the vector kernels out,
+// LIGHTBIN_NO_SCALAR to leave out the scalar ones where every machine has vectors (docs/install.md), and
 // LIGHTBIN_ASSERT to replace the assertions. -ffast-math is an error where the compiler tells of it (docs/limits.md
 // says where it does not), and so is x87 arithmetic, the default of some 32-bit compilers. The caller's rounding mode,
 // traps and flushing of denormal numbers do not change the results. The files of a program may be compiled for

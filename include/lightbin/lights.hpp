@@ -26,12 +26,17 @@ template <class Light, class ToLight> struct Lights {
                                         std::conditional_t<kind == detail::LightKind::spot, Spot, Sphere>>;
         if constexpr (detail::by_reference<ToLight, Light> && requires { !light, *light; })
             if (!light) {
-                if constexpr (kind == detail::LightKind::box)
-                    return detail::bad_box;
-                else
-                    return static_cast<Made>(Spot::whole(detail::bad_sphere));
+                Made bad = {};
+                bad.radius = -1;
+                return bad;
             }
         return static_cast<Made>(detail::make_light(to_light, light));
+    }
+
+    /// Writes what made() returns of the elements first..first + count - 1 of the array.
+    template <class Made> void make(std::size_t first, std::size_t count, Made* to) const {
+        for (std::size_t i = 0; i < count; ++i)
+            to[i] = made(array[first + i]);
     }
 
     /// Returns the sphere, in view space, of an array element.

@@ -174,6 +174,8 @@ inline ShaderView shader_view(const View& view, float tolerance = 2) {
 ///     lightbin_for_each_of_kind(light, 0u, pixel, depth) { colour += shade_point(light.id); }
 ///     lightbin_for_each_of_kind(light, 1u, pixel, depth) { colour += shade_spot(light.id - first_spot); }
 ///
+/// The loops may have the same name for the cursor: in HLSL the text switches off fxc's warning X3078 of it.
+///
 /// With several views (options.views is 2 or more), every function and loop above that takes a pixel, except `tile`,
 /// takes the number of the pixel's view, a uint, as its last parameter:
 ///

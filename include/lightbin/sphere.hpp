@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sphere, the region that a light can reach, and the usual falloff of a light to nothing at its range.
+// Sphere, Spot and Box, the regions that lights can reach, and the usual falloff of a light to nothing at its range. A
+// program that bins Spots or Boxes includes spot.hpp or box.hpp, too.
 #pragma once
 
 #include <lightbin/detail/base/math.hpp>
@@ -14,6 +15,60 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 /// radius, is bad input: it is skipped and counted, and all other lights are binned as usual.
 struct Sphere {
     float x, y, z, radius;
+};
+
+/// The region that a spot light can reach: the points of a sphere in a cone from its centre. In memory two vec4s.
+///
+/// axis_x, axis_y, axis_z  the direction in which the light shines, of any length but zero
+/// cos_half_angle          cosine of the angle between the axis and the cone's side: 1 for a ray, 0 for a half sphere,
+///                         -1 for a whole sphere. glTF: cos(outerConeAngle); Unity: cosine of half the spotAngle.
+///
+/// A point p is in the cone if  (p - centre).axis >= cos_half_angle |p - centre| |axis|,  evaluated without rounding
+/// for the floats given. The float nearest to a cosine may be above the cosine, which makes the cone narrower: by up to
+/// 2^-12 radians where it is narrow. If your shader compares with the angle itself, round the cosine down.
+///
+/// With a half angle above 90 degrees a spot is listed where its convex hull reaches, its sphere cut off at the circle
+/// in which cone and sphere meet. With radius +inf, or a cosine of -0.75 or less, it is treated as its whole sphere.
+/// What is bad input in a Sphere is so in a Spot, as are an axis with a NaN or infinite coordinate or of length zero,
+/// and a cosine that is NaN or outside -1 to 1.
+struct Spot {
+    float x, y, z, radius;
+    float axis_x, axis_y, axis_z, cos_half_angle;
+
+    /// A spot that covers a whole sphere, for callables that return Spots although some of their lights are spheres.
+    static constexpr Spot whole(const Sphere& sphere) {
+        return {sphere.x, sphere.y, sphere.z, sphere.radius, 0, 0, 1, -1};
+    }
+
+    /// Converts to least_sphere(*this) (spot.hpp), for functions that take only spheres. A Binner takes spots
+    /// themselves, and lists fewer tiles for them than for these spheres.
+    operator Sphere() const;
+};
+
+/// The region that a decal, a probe, a projector or a light in a room can reach: the points of a sphere that lie in
+/// an oriented box. It is listed where both reach.
+///
+/// x, y, z, radius      the sphere. With radius +inf it covers everything, and the region is the whole box.
+/// box_x, box_y, box_z  the box's centre
+/// half_axes            vectors from the box's centre to the middles of three of its faces. They need not be at right
+///                      angles. One that is zero makes the box flat, two make it a line segment.
+/// taper                how large the face at centre - half_axes[2] is, as a fraction of the face at centre +
+///                      half_axes[2]: 1 for a box, 0 for a pyramid, between them a frustum
+///
+/// The points of the box are  centre + a k half_axes[0] + b k half_axes[1] + c half_axes[2]  with a, b and c from -1
+/// to 1, and  k = (1 + taper + c (1 - taper)) / 2.
+///
+/// A radius that is zero, negative or NaN is bad input, as are coordinates that are NaN or infinite, three half axes
+/// of zero, and a taper that is NaN or not from 0 to 1: such a Box is skipped and counted.
+struct Box {
+    float x, y, z, radius;
+    float box_x, box_y, box_z;
+    float half_axes[3][3];
+    float taper = 1;
+
+    /// Converts to bounding_sphere(*this) (box.hpp), for functions that take only spheres. A Binner takes boxes
+    /// themselves, and lists fewer tiles for them than for these spheres.
+    operator Sphere() const;
 };
 
 /// Returns the distance in metres at which a point light of `intensity` candela (lumen per steradian) has fallen to

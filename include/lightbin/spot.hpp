@@ -1,41 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Spot: a sphere cut by a cone. And the least spheres around spots, tubes and rectangles.
+// What a program that bins Spots (sphere.hpp) includes: their kernels. And the least spheres around spots, tubes and
+// rectangles.
 #pragma once
 
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/project/sphere_around.hpp>
+#include <lightbin/detail/tiers/shape_kernels.hpp>
 
 #include <lightbin/detail/base/warnings_off.inl>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
-/// The region that a spot light can reach: the points of a sphere in a cone from its centre. In memory two vec4s.
-///
-/// axis_x, axis_y, axis_z  the direction in which the light shines, of any length but zero
-/// cos_half_angle          cosine of the angle between the axis and the cone's side: 1 for a ray, 0 for a half sphere,
-///                         -1 for a whole sphere. glTF: cos(outerConeAngle); Unity: cosine of half the spotAngle.
-///
-/// A point p is in the cone if  (p - centre).axis >= cos_half_angle |p - centre| |axis|,  evaluated without rounding
-/// for the floats given. The float nearest to a cosine may be above the cosine, which makes the cone narrower: by up to
-/// 2^-12 radians where it is narrow. If your shader compares with the angle itself, round the cosine down.
-///
-/// With a half angle above 90 degrees a spot is listed where its convex hull reaches, its sphere cut off at the circle
-/// in which cone and sphere meet. With radius +inf, or a cosine of -0.75 or less, it is treated as its whole sphere.
-/// What is bad input in a Sphere is so in a Spot, as are an axis with a NaN or infinite coordinate or of length zero,
-/// and a cosine that is NaN or outside -1 to 1.
-struct Spot {
-    float x, y, z, radius;
-    float axis_x, axis_y, axis_z, cos_half_angle;
-
-    /// A spot that covers a whole sphere, for callables that return Spots although some of their lights are spheres.
-    static constexpr Spot whole(const Sphere& sphere) {
-        return {sphere.x, sphere.y, sphere.z, sphere.radius, 0, 0, 1, -1};
-    }
-
-    /// Converts to least_sphere(*this), for functions that take only spheres. A Binner takes spots themselves, and
-    /// lists fewer tiles for them than for these spheres.
-    operator Sphere() const;
-};
+namespace detail {
+template <> inline constexpr bool kernels_included<LightKind::spot> = true;
+}  // namespace detail
 
 /// Returns the least sphere that contains all points of a spot, up to rounding: its radius exceeds the exact one by at
 /// most 2^-22 (|x| + |y| + |z| + radius) + 2^-123 and never exceeds the spot's own. Half angles of 90 degrees or more

@@ -90,7 +90,11 @@
 #define LIGHTBIN_MEMORY_TAG
 #endif
 #if defined(LIGHTBIN_NO_SIMD)  // chooses other kernels, so needs another name
-#define LIGHTBIN_ABI_TAG LIGHTBIN_PASTE(built_for_, LIGHTBIN_INSTRUCTION_SET, _no_simd, LIGHTBIN_MEMORY_TAG, , , , )
+#define LIGHTBIN_KERNELS_TAG _no_simd
+#elif defined(LIGHTBIN_NO_SCALAR)
+#define LIGHTBIN_KERNELS_TAG _no_scalar
 #else
-#define LIGHTBIN_ABI_TAG LIGHTBIN_PASTE(built_for_, LIGHTBIN_INSTRUCTION_SET, LIGHTBIN_MEMORY_TAG, , , , , )
+#define LIGHTBIN_KERNELS_TAG
 #endif
+#define LIGHTBIN_ABI_TAG \
+    LIGHTBIN_PASTE(built_for_, LIGHTBIN_INSTRUCTION_SET, LIGHTBIN_KERNELS_TAG, LIGHTBIN_MEMORY_TAG, , , , )

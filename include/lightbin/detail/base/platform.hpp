@@ -24,6 +24,14 @@
 #define LIGHTBIN_SIMD128 1
 #endif
 
+// LIGHTBIN_NO_SCALAR, which users may define, leaves the scalar kernels out where the compiler may use vectors of 128 bits
+// in any function, so that the program runs on no machine without them: WebAssembly with -msimd128, 64-bit ARM, x86-64
+// with -march=x86-64-v2 and up. Only the reduction of depth keeps its scalar kernel, for rows of less than four samples.
+#if defined(LIGHTBIN_NO_SCALAR) && defined(LIGHTBIN_SIMD128) && \
+    (!defined(LIGHTBIN_X86) || (defined(__SSSE3__) && defined(__SSE4_1__) && defined(__POPCNT__)))
+#define LIGHTBIN_VECTORS_ONLY 1
+#endif
+
 // Functions, templates and lambdas between LIGHTBIN_TARGET_BEGIN("avx2,bmi") and LIGHTBIN_TARGET_END may use the named
 // instruction sets in addition to those that the compiler's flags allow. Microsoft's compiler allows every function to
 // use all of them.
@@ -54,13 +62,23 @@
 #define LIGHTBIN_UNROLL
 #endif
 
-// The file that implements lightbin.h has the code for all options, other files that for one or two. LIGHTBIN_SMALL
-// marks functions that run once in a call: in that file they are compiled for size. LIGHTBIN_SHARED_PART marks what the
-// kernels of several options have in common: in that file it stands once, and elsewhere it is inlined.
+// LIGHTBIN_PREFETCH(address) begins to load a line of the cache, at an address that need not be valid.
+#if defined(__GNUC__) || defined(__clang__)
+#define LIGHTBIN_PREFETCH(address) __builtin_prefetch(address)
+#else
+#define LIGHTBIN_PREFETCH(address) static_cast<void>(address)
+#endif
+
+// The file that implements lightbin.h has the code for all options, other files that for one or two. There,
+// LIGHTBIN_SMALL marks functions that are compiled for size, as they run seldom; LIGHTBIN_ONCE marks functions that run
+// once in a call of a binner, and LIGHTBIN_SHARED_PART what the kernels of several options have in common: both stand
+// once in that file. Elsewhere the shared parts are inlined, and the other two mean nothing.
 #if defined(LIGHTBIN_CALLERS_MEMORY)
 #define LIGHTBIN_SHARED_PART LIGHTBIN_NOINLINE
+#define LIGHTBIN_ONCE LIGHTBIN_NOINLINE
 #else
 #define LIGHTBIN_SHARED_PART LIGHTBIN_INLINE
+#define LIGHTBIN_ONCE
 #endif
 #if defined(LIGHTBIN_CALLERS_MEMORY) && defined(__GNUC__)
 #define LIGHTBIN_SMALL __attribute__((noinline, cold))

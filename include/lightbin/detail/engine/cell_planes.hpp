@@ -6,10 +6,11 @@
 // and t lie between the edges of the tile, see tile_edges(), and the view depth z lies between z0 and z1. The cell lies
 // outside of the half space if its deepest point does, the one with the least n.p:
 //     perspective:     (n_x s + n_y t + n_z) z > most,     orthographic:  n_x s + n_y t + n_z z > most.
-// Each of s and t is the low edge where n_x or n_y is positive, else the high edge. With an orthographic projection z
-// is z0 where n_z is positive, else z1. With a perspective projection z is z0 where `most` is positive, else z1: if the
-// inequality holds for this z, it holds for all depths of the cell. Unlike a test of the box around the cell, this test
-// is exact for one half space.
+// Each of s and t is the low edge where n_x or n_y is positive, the high edge where it is negative. With an
+// orthographic projection z is z0 where n_z is positive, z1 where it is negative. With a perspective projection z is
+// z0 where `most` is positive, z1 where it is negative: if the inequality holds for this z, it holds for all depths of
+// the cell. Where the number that decides is 0, both choices are right. Unlike a test of the box around the cell, this
+// test is exact for one half space.
 //
 // Rounding, with u = 2^-24: let S be |P_x| + |P_y| + |P_z| + r of a light in a ball around P with the radius r, and of a
 // box the sum of the absolute values of all coordinates of its centre and half axes. Let n have the length 1: with other
@@ -56,12 +57,9 @@ struct CellPlane {
     float x, y, z, most;
 };
 
-/// Half spaces around a light, each of which holds the whole light.
-template <std::size_t count> struct CellPlanes {
-    CellPlane planes[count];
-    /// For each half space, which point of a cell is tested. Bits 0 to 7 are the offset of the low or the high edges in
-    /// TileEdges::x, bits 8 to 15 in TileEdges::y, and bits 16 and above that of the depths z0 or z1 in the arrays that
-    /// store_box() stores for cells. The elements from `count` on are padding to whole vec4s.
-    std::uint32_t arrays[(count + 3) / 4 * 4];
-};
+/// Returns `offset` if a number has its sign bit set, else 0: where the arrays begin that a half space is tested with.
+/// A comparison could become a branch, whose way would be a guess.
+inline std::int32_t offset_if_negative(float number, std::int32_t offset) {
+    return bit_cast<std::int32_t>(number) >> 31 & offset;
+}
 }}}  // namespace lightbin::detail

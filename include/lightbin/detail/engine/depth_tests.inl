@@ -46,13 +46,13 @@ LIGHTBIN_INLINE auto boxes_missed(const float* boxes, const float*, const float*
 /// x_edges, y_edges  the edges of the cells' tiles in TileEdges::x and TileEdges::y
 template <bool orthographic, std::size_t count, class Mask>
 LIGHTBIN_INLINE Mask or_outside(Mask missed, const float* cells, const float* x_edges, const float* y_edges,
-                                const CellPlanes<count>& around) {
-    for (std::size_t i = 0; i < count; ++i) {
-        const CellPlane& plane = around.planes[i];
-        const std::uint32_t arrays = around.arrays[i];
-        const Floats across = mul(load_floats(x_edges + (arrays & 0xff)), broadcast(plane.x)) +
-                              mul(load_floats(y_edges + (arrays >> 8 & 0xff)), broadcast(plane.y)),
-                     z = load_floats(cells + (arrays >> 16)), n_z = broadcast(plane.z);
+                                const CellPlane (&around)[count]) {
+    LIGHTBIN_UNROLL for (const CellPlane& plane : around) {
+        const std::int32_t depths = offset_if_negative(orthographic ? plane.z : plane.most, 64);
+        const Floats x = load_floats(x_edges + offset_if_negative(plane.x, TileEdges::high_x)),
+                     y = load_floats(y_edges + offset_if_negative(plane.y, TileEdges::high_y)),
+                     z = load_floats(cells + depths), n_z = broadcast(plane.z);
+        const Floats across = mul(x, broadcast(plane.x)) + mul(y, broadcast(plane.y));
         const Floats least = orthographic ? across + mul(z, n_z) : mul(across + n_z, z);
         missed = either(missed, less(broadcast(plane.most), least));
     }

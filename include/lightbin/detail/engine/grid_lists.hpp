@@ -41,11 +41,11 @@ public:
     /// count_entries  count_entries(job, scratch) returns how many entries the lists of one slice have; called if
     ///                how.tested
     template <class AnyFootprints, class Threads, class ChooseKernel, class CountEntries>
-    LIGHTBIN_SMALL std::optional<Error> build(Isa isa, const View& view, const AnyFootprints& footprints,
-                                              const ZBounds& bounds, Buffer<Scratch>& scratch,
-                                              [[maybe_unused]] const Threads& parallel, const How& how,
-                                              const ChooseKernel& choose_kernel,
-                                              [[maybe_unused]] const CountEntries& count_entries) {
+    LIGHTBIN_ONCE std::optional<Error> build(Isa isa, const View& view, const AnyFootprints& footprints,
+                                             const ZBounds& bounds, Buffer<Scratch>& scratch,
+                                             [[maybe_unused]] const Threads& parallel, const How& how,
+                                             const ChooseKernel& choose_kernel,
+                                             [[maybe_unused]] const CountEntries& count_entries) {
         tile_count_ = entries_ = 0;  // until there is a grid
         shared_ = false;
         Job common = {};
@@ -126,10 +126,10 @@ public:
     /// Writes for each tile a bitmask of `stride` words: bit b of word w stands for the light with the id 32 w + b.
     /// Drops the last built grid: tiles() is empty. Returns build()'s errors but too many entries, as none are counted.
     template <class AnyFootprints>
-    LIGHTBIN_SMALL std::optional<Error> write_bits(Isa isa, const View& view, const AnyFootprints& footprints,
-                                                   const ZBounds& bounds, Buffer<Scratch>& scratch,
-                                                   const Parallel& parallel, const How& how, BitsKernel kernel,
-                                                   std::uint32_t* bits, std::size_t stride) {
+    LIGHTBIN_ONCE std::optional<Error> write_bits(Isa isa, const View& view, const AnyFootprints& footprints,
+                                                  const ZBounds& bounds, Buffer<Scratch>& scratch,
+                                                  const Parallel& parallel, const How& how, BitsKernel kernel,
+                                                  std::uint32_t* bits, std::size_t stride) {
         tile_count_ = entries_ = 0;
         Job common = {};
         if (const auto error = prepare(view, bounds, how, common)) return error;
@@ -230,7 +230,7 @@ public:
                 return bin_kernel<footprint, depth_test, Id, slab, kind>(set, of, job.area);
             },
             [](const auto& job, Scratch& memory) {  // `auto`, so that it is not compiled where nothing is tested
-                return scalar::count_entries<footprint, depth_test, slab, kind>(job, memory);
+                return least::count_entries<footprint, depth_test, slab, kind>(job, memory);
             });
     }
 

@@ -50,7 +50,7 @@ inline void find_outlines(const Camera& camera, const BoxLanes<Floats>& box, Flo
         seen[face] = less(camera.orthographic ? normals[face][2] : dot(point, normals[face]), zero);
     }
     const bool tapered = movemask(less(box.taper, one)) != 0;
-    for (unsigned axis = 0; axis < 3; ++axis) {
+    LIGHTBIN_UNROLL for (unsigned axis = 0; axis < 3; ++axis) {
         // Faces and edges around the half axis, in their order: edge i lies between the faces i and i + 1.
         const unsigned j = (axis + 1) % 3, k = (axis + 2) % 3;
         const auto f0 = seen[2 * j], f1 = seen[2 * k], f2 = seen[2 * j + 1], f3 = seen[2 * k + 1];
@@ -60,7 +60,7 @@ inline void find_outlines(const Camera& camera, const BoxLanes<Floats>& box, Flo
         // the other two half axes, j and k, it lies: 1 where the half axis points to, or -1.
         const Floats sides[2][2] = {{select(e0, one, -one), select(either(e0, e1), one, -one)},
                                     {select(e3, one, -one), select(either(e2, e3), -one, one)}};
-        for (unsigned line = 0; line < 2; ++line) {
+        LIGHTBIN_UNROLL for (unsigned line = 0; line < 2; ++line) {
             // A point of the edge, centre + q, and the edge's direction. The box is narrower where half axis 2 points
             // away.
             Floats side_j = sides[line][0], side_k = sides[line][1];
@@ -129,7 +129,7 @@ struct BoxRows {
             end = minimum(ball_end, end);
         }
         const RowEdges rows(v0, v1);
-        for (unsigned line = 0; line < 6; ++line)
+        LIGHTBIN_UNROLL for (unsigned line = 0; line < 6; ++line)
             cut_at_line(lines, line, i, rows, begin, end);
         store_cut_spans(to, begin, end, leftmost, rightmost);
     }
@@ -138,10 +138,5 @@ struct BoxRows {
     unsigned balls_known;  ///< a mask of the boxes whose ball's silhouette is in `ball`
     LineTerms<6> lines;
 };
-
-/// The silhouettes of lights of a kind.
-template <LightKind kind>
-using RowsOf = std::conditional_t<kind == LightKind::box, BoxRows,
-                                  std::conditional_t<kind == LightKind::spot, SpotRows, SphereRows>>;
 
 }}}}  // namespace lightbin::detail

@@ -26,23 +26,22 @@ LIGHTBIN_INLINE void reciprocals(Floats a, Floats b, Floats& per_a, Floats& per_
     per_b = mul(a, per_both);
 }
 
-/// Finds the corners of boxes in the order of binary numbers: bits 0, 1 and 2 are set on the side that half axis 0, 1
-/// or 2 points to.
-template <class Reals> LIGHTBIN_INLINE void find_corners(const BoxLanes<Reals>& box, Reals (&corners)[8][3]) {
-    LIGHTBIN_UNROLL for (unsigned i = 0; i < 3; ++i) {
-        const Reals sum = box.half_axes[0][i] + box.half_axes[1][i],
-                    difference = box.half_axes[1][i] - box.half_axes[0][i];
-        const Reals wide = box.centre[i] + box.half_axes[2][i], narrow = box.centre[i] - box.half_axes[2][i];
-        const Reals small_sum = mul(sum, box.taper), small_difference = mul(difference, box.taper);
-        corners[0][i] = narrow - small_sum;
-        corners[1][i] = narrow - small_difference;
-        corners[2][i] = narrow + small_difference;
-        corners[3][i] = narrow + small_sum;
-        corners[4][i] = wide - sum;
-        corners[5][i] = wide - difference;
-        corners[6][i] = wide + difference;
-        corners[7][i] = wide + sum;
-    }
+/// Finds a coordinate of the corners of boxes, in the order of binary numbers: bits 0, 1 and 2 are set on the side that
+/// half axis 0, 1 or 2 points to.
+template <class Reals>
+LIGHTBIN_INLINE void find_corners(const BoxLanes<Reals>& box, unsigned axis, Reals (&corners)[8]) {
+    const Reals sum = box.half_axes[0][axis] + box.half_axes[1][axis],
+                difference = box.half_axes[1][axis] - box.half_axes[0][axis];
+    const Reals wide = box.centre[axis] + box.half_axes[2][axis], narrow = box.centre[axis] - box.half_axes[2][axis];
+    const Reals small_sum = mul(sum, box.taper), small_difference = mul(difference, box.taper);
+    corners[0] = narrow - small_sum;
+    corners[1] = narrow - small_difference;
+    corners[2] = narrow + small_difference;
+    corners[3] = narrow + small_sum;
+    corners[4] = wide - sum;
+    corners[5] = wide - difference;
+    corners[6] = wide + difference;
+    corners[7] = wide + sum;
 }
 
 /// Moves bounds on the slopes of boxes outward, with a perspective projection.
@@ -68,16 +67,16 @@ LIGHTBIN_INLINE void move_outward(Reals error, Reals least, ImageBounds<Reals>& 
 ///
 /// nearest  a lower bound on the boxes' view depths; at least twice BoxLanes::error
 LIGHTBIN_INLINE void corner_slopes(const BoxLanes<Floats>& box, Floats nearest, ImageBounds<Floats>& bounds) {
-    Floats corners[8][3];
-    find_corners(box, corners);
-    LIGHTBIN_UNROLL for (unsigned i = 0; i < 8; i += 2) {
-        const Floats(&a)[3] = corners[i], (&b)[3] = corners[i + 1];
-        Floats per_a, per_b;
-        reciprocals(a[2], b[2], per_a, per_b);
-        for (unsigned axis = 0; axis < 2; ++axis) {
-            const Floats of_a = mul(a[axis], per_a), of_b = mul(b[axis], per_b);
-            bounds.low[axis] = i == 0 ? minimum(of_a, of_b) : minimum(minimum(of_a, of_b), bounds.low[axis]);
-            bounds.high[axis] = i == 0 ? maximum(of_a, of_b) : maximum(maximum(of_a, of_b), bounds.high[axis]);
+    Floats corners[8], per_depth[8];
+    find_corners(box, 2, corners);
+    LIGHTBIN_UNROLL for (unsigned i = 0; i < 8; i += 2)
+        reciprocals(corners[i], corners[i + 1], per_depth[i], per_depth[i + 1]);
+    LIGHTBIN_UNROLL for (unsigned axis = 0; axis < 2; ++axis) {
+        find_corners(box, axis, corners);
+        LIGHTBIN_UNROLL for (unsigned i = 0; i < 8; ++i) {
+            const Floats slope = mul(corners[i], per_depth[i]);
+            bounds.low[axis] = i == 0 ? slope : minimum(slope, bounds.low[axis]);
+            bounds.high[axis] = i == 0 ? slope : maximum(slope, bounds.high[axis]);
         }
     }
     move_outward(box.error, nearest, bounds);
@@ -92,27 +91,28 @@ template <class Reals>
 LIGHTBIN_NOINLINE void clipped_corner_slopes(const BoxLanes<Reals>& box, Reals least, ImageBounds<Reals>& bounds) {
     const Reals cut = least - box.error, per_cut = all<Reals>(1) / cut,
                 infinite = all<Reals>(static_cast<double>(infinity));
-    Reals corners[8][3];
-    find_corners(box, corners);
+    Reals corners[3][8];
+    for (unsigned axis = 0; axis < 3; ++axis)
+        find_corners(box, axis, corners[axis]);
     bounds = {{infinite, infinite}, {-infinite, -infinite}};
     const auto hold = [&](auto where, unsigned axis, Reals slope) {
         bounds.low[axis] = select(where, minimum(slope, bounds.low[axis]), bounds.low[axis]);
         bounds.high[axis] = select(where, maximum(slope, bounds.high[axis]), bounds.high[axis]);
     };
     for (unsigned from = 0; from < 8; ++from) {
-        const Reals(&a)[3] = corners[from];
-        const Reals per_z = all<Reals>(1) / a[2];
-        const auto a_beyond = less_equal(cut, a[2]);
+        const Reals a_z = corners[2][from], per_z = all<Reals>(1) / a_z;
+        const auto a_beyond = less_equal(cut, a_z);
         for (unsigned axis = 0; axis < 2; ++axis)
-            hold(a_beyond, axis, mul(a[axis], per_z));
+            hold(a_beyond, axis, mul(corners[axis][from], per_z));
         for (unsigned bit = 1; bit < 8; bit *= 2) {
             if ((from & bit) != 0) continue;
-            const Reals(&b)[3] = corners[from | bit];
-            const auto b_beyond = less_equal(cut, b[2]);
-            const Reals part = (cut - a[2]) / (b[2] - a[2]);
-            for (unsigned axis = 0; axis < 2; ++axis)
+            const Reals b_z = corners[2][from | bit], part = (cut - a_z) / (b_z - a_z);
+            const auto b_beyond = less_equal(cut, b_z);
+            for (unsigned axis = 0; axis < 2; ++axis) {
+                const Reals a = corners[axis][from], b = corners[axis][from | bit];
                 hold(either(and_not(a_beyond, b_beyond), and_not(b_beyond, a_beyond)), axis,
-                     mul(a[axis] + mul(part, b[axis] - a[axis]), per_cut));
+                     mul(a + mul(part, b - a), per_cut));
+            }
         }
     }
     move_outward(box.error, least, bounds);
@@ -199,8 +199,8 @@ LIGHTBIN_INLINE Mask narrow_to_balls(const Camera& camera, const ImageBounds<Rea
 /// Rounding, with u = 2^-24, S = size_of(box) and L = |n_x| + |n_y| + |n_z|: the greatest n.p of a box is computed with
 /// an error of at most 8u L S, which the tolerance covers, see ViewBox. For the 4u L S that cell_planes.hpp asks for,
 /// 8u L S = 2^-21 L S is added, and its 2^-100 for underflow. Faces with L up to 2^-50 are left out.
-inline void store_box_planes(const Camera& camera, ViewBox* to, const BoxLanes<Floats>& box) {
-    Floats axes[3][3], normals[6][3], arrays[8];
+inline void store_box_planes(ViewBox* to, const BoxLanes<Floats>& box) {
+    Floats axes[3][3], normals[6][3];
     find_unit_axes(box, axes);
     find_normals(axes, box.taper, normals);
     const Floats slack = box.error + mul(size_of(box), broadcast(0x1p-21f));
@@ -211,16 +211,10 @@ inline void store_box_planes(const Camera& camera, ViewBox* to, const BoxLanes<F
         const Floats size = manhattan_length(n), at_centre = dot(n, box.centre);
         const Floats reach = reach_from_centre(box, n) + (mul(size, slack) + 0x1p-100f),
                      from_centre = select(less(broadcast(0x1p-50f), size), reach, broadcast(infinity));
-        arrays[face] = store_plane(camera, to, face, n, from_centre + at_centre);
+        store_vec4s(to->around + face, sizeof *to, n[0], n[1], n[2], from_centre + at_centre);
         if (tapered) continue;
-        for (unsigned i = 0; i < 3; ++i)
-            n[i] = -n[i];
-        arrays[face + 1] = store_plane(camera, to, face + 1, n, from_centre - at_centre);
+        store_vec4s(to->around + face + 1, sizeof *to, -n[0], -n[1], -n[2], from_centre - at_centre);
     }
-    arrays[6] = arrays[7] = Floats{};
-    for (unsigned face = 0; face < 8; face += 4)
-        store_vec4s(to->around.arrays + face, sizeof *to, arrays[face], arrays[face + 1], arrays[face + 2],
-                    arrays[face + 3]);
 }
 
 /// Returns which boxes of a vector are good input, see Box. `given` has the numbers of each in their order in memory.
@@ -261,14 +255,15 @@ void project_lights(const Camera& camera, const LightSource& source, std::uint32
             const std::uint32_t used = min_of(lanes, here - i);
             const unsigned valid = (1u << used) - 1;
             const Box* const from = whole_vector(given_boxes + i, used, padded);
+            // Sixteen boxes take 17 lines of the cache, more than processors load ahead on their own.
+            if constexpr (lanes == 16)
+                for (std::size_t k = 0; k < lanes * sizeof *from; k += 64)
+                    LIGHTBIN_PREFETCH(reinterpret_cast<const char*>(from) + 2 * lanes * sizeof *from + k);
             Floats given[17];  // the numbers of each Box in their order in memory
             static_assert(sizeof(Box) == sizeof(float) * 17);
             LIGHTBIN_UNROLL for (unsigned k = 0; k < 16; k += 4)
                 load_vec4s(&from->x + k, sizeof *from, given[k], given[k + 1], given[k + 2], given[k + 3]);
-            float tapers[lanes];
-            for (std::uint32_t lane = 0; lane < lanes; ++lane)
-                tapers[lane] = from[lane].taper;
-            given[16] = load_floats(tapers);
+            load_vec4s(&from->x + 13, sizeof *from, given[13], given[14], given[15], given[16]);
             Floats ball[] = {given[0], given[1], given[2], given[3]};
             BoxLanes<Floats> box;
             box.taper = given[16];
@@ -378,7 +373,7 @@ void project_lights(const Camera& camera, const LightSource& source, std::uint32
                 if (to != nullptr)
                     load_boxes([=](std::uint32_t lane) -> const ViewBox& { return to[lane]; }, box, ball, nearest);
             }
-            if (source.with_planes) store_box_planes(camera, to, box);
+            if (source.with_planes) store_box_planes(to, box);
         }
         append_chunk(chunk, source.first_id + first, here, out, counts);
     }

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <lightbin/detail/project/spheres_in_double.hpp>
+#include <lightbin/detail/tiers/shape_kernels.hpp>
 
 #include <lightbin/detail/base/warnings_off.inl>
 

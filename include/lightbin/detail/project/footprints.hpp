@@ -34,9 +34,7 @@ inline std::size_t parts_of(std::size_t lights, const Parallel& parallel) {
 /// Writes the lights that `lights`, a Lights, makes of its array. LightSource::copy points to this function.
 template <class Array> void copy_lights(const void* lights, std::size_t first, std::size_t count, void* to) {
     const Array& from = *static_cast<const Array*>(lights);
-    auto* const made = static_cast<decltype(from.made(from.array[0]))*>(to);
-    for (std::size_t i = 0; i < count; ++i)
-        made[i] = from.made(from.array[first + i]);
+    from.make(first, count, static_cast<decltype(from.made(from.array[0]))*>(to));
 }
 
 }  // namespace detail
@@ -58,8 +56,8 @@ public:
     ///                 stage that follows has enough
     /// for_boxes       store with each spot or Box what depth tests against boxes need; only if with_spheres
     template <class Source>
-    LIGHTBIN_SMALL void project(Isa isa, const View& view, const Source& source, const Parallel& parallel,
-                                bool force_parallel = false, bool for_boxes = false) {
+    LIGHTBIN_ONCE void project(Isa isa, const View& view, const Source& source, const Parallel& parallel,
+                               bool force_parallel = false, bool for_boxes = false) {
         lights_ = detail::light_count(source);
         const bool share = force_parallel || parallel.pays_off(detail::project_ns(isa, static_cast<double>(lights_)));
         const Parallel threads = share ? parallel : Parallel();

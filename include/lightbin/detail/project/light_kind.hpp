@@ -12,6 +12,9 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// several kinds.
 enum class LightKind : std::uint8_t { sphere, spot, box, mixed };
 
+/// Whether a program has included the kernels of a kind: spot.hpp and box.hpp say so of Spots and of Boxes.
+template <LightKind kind> inline constexpr bool kernels_included = kind == LightKind::sphere;
+
 /// Whether mixed kinds can have spots, and boxes. The file that implements lightbin.h may leave out the code for either.
 #if defined(LIGHTBIN_CALLERS_MEMORY) && defined(LIGHTBIN_NO_SPOTS)
 inline constexpr bool kinds_have_spots = false;

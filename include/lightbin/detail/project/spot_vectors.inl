@@ -27,7 +27,7 @@ LIGHTBIN_NOINLINE inline void use_least_spheres(const WorldToView* to_view, unsi
     store_spheres(moved, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);
     for (; which != 0; which &= which - 1) {
         const unsigned lane = static_cast<unsigned>(std::countr_zero(which));
-        const Sphere least = least_sphere(given[lane]);
+        const Sphere least = given[lane];
         moved[lane] = to_view != nullptr ? (*to_view)(least) : least;
     }
     load_spheres(moved, spots.apex[0], spots.apex[1], spots.apex[2], spots.radius);
@@ -92,23 +92,6 @@ inline Floats spot_reach(const SpotLanes& spots, Floats along, Floats across) {
     return minimum(mul(spots.radius, part) + spots.tolerance, spots.radius);
 }
 
-/// Stores half space i of those around a vector of lights: the points p with  n.p <= most.  As depth tests round,
-/// `most` must exceed n.p of the light by what cell_planes.hpp asks for. Returns the elements of CellPlanes::arrays,
-/// which tell what point of a cell is tested, for these half spaces: whole numbers in the bits of floats.
-template <class Light>
-inline Floats store_plane(const Camera& camera, Light* to, std::size_t i, const Floats (&n)[3], Floats most) {
-    store_vec4s(to->around.planes + i, sizeof *to, n[0], n[1], n[2], most);
-    const auto first_of = [](float high, Floats deepest_if_positive) {
-        return select(less(Floats{}, deepest_if_positive), Floats{}, broadcast(high));
-    };
-    std::uint32_t arrays[lanes];
-    float bits[lanes];
-    store_tiles(arrays, first_of(TileEdges::high_x, n[0]) + first_of(TileEdges::high_y << 8, n[1]) +
-                            first_of(64 << 16, camera.orthographic ? n[2] : most));
-    std::memcpy(bits, arrays, sizeof bits);
-    return load_floats(bits);
-}
-
 /// Finds and stores the half spaces around the cones of a vector of spots. Let t be the half angle, and e and f two
 /// unit vectors perpendicular to the axis a and to each other (Duff et al., "Building an Orthonormal Basis,
 /// Revisited", JCGT 6(1), 2017). The planes go through the apex, and their unit normals are  +-e cos t - a sin t  and
@@ -122,7 +105,7 @@ inline Floats store_plane(const Camera& camera, Light* to, std::size_t i, const 
 /// the normal for the exact axis, and so n.p - n.P is at most `tolerance` for each point p of the spot. The products
 /// and sums of n.P and of r cos t are off by less than 9u S in all. With the 4u S that cell_planes.hpp asks for this is
 /// less than 2^-20 S = 16u S, which is added.
-inline void store_planes(const Camera& camera, ViewSpot* to, const SpotLanes& spots) {
+inline void store_planes(ViewSpot* to, const SpotLanes& spots) {
     const Floats apex[] = {spots.apex[0], spots.apex[1], spots.apex[2]}, (&axis)[3] = spots.axis;
     const auto backward = less(axis[2], Floats{});
     const Floats sign = select(backward, broadcast(-1.0f), broadcast(1.0f)), p = -1.0f / (sign + axis[2]);
@@ -138,7 +121,6 @@ inline void store_planes(const Camera& camera, ViewSpot* to, const SpotLanes& sp
     Floats back[3];
     for (unsigned i = 0; i < 3; ++i)
         back[i] = mul(axis[i], sine);
-    Floats arrays[4];
     for (unsigned plane = 0; plane < 4; ++plane) {
         Floats n[3], most = slack - rim;
         for (unsigned i = 0; i < 3; ++i) {
@@ -146,9 +128,8 @@ inline void store_planes(const Camera& camera, ViewSpot* to, const SpotLanes& sp
             n[i] = (plane % 2 == 0 ? aside : -aside) - back[i];
             most = most + mul(n[i], apex[i]);
         }
-        arrays[plane] = store_plane(camera, to, plane, n, most);
+        store_vec4s(to->around + plane, sizeof *to, n[0], n[1], n[2], most);
     }
-    store_vec4s(to->around.arrays, sizeof *to, arrays[0], arrays[1], arrays[2], arrays[3]);
 }
 
 /// Stores a vector of spots, except the half spaces around them, which store_planes() stores.

@@ -162,7 +162,7 @@ void project_lights(const Camera& camera, const LightSource& source, std::uint32
             const unsigned valid = (1u << used) - 1;
             if ((~movemask(culled) & valid) == 0) continue;
             if (source.out_spots != nullptr) store_spots(source.out_spots + first + i, spots, nearest, farthest);
-            if (source.with_planes) store_planes(camera, source.out_spots + first + i, spots);
+            if (source.with_planes) store_planes(source.out_spots + first + i, spots);
             auto in_float = and_not(safe, culled);
             ImageBounds<Floats> bounds;
             if (camera.orthographic) {

@@ -2,10 +2,8 @@
 // Turns the elements of the caller's array into Spheres, Spots or Boxes.
 #pragma once
 
-#include <lightbin/box.hpp>
-#include <lightbin/spot.hpp>
-
 #include <lightbin/detail/project/light_kind.hpp>
+#include <lightbin/detail/project/sphere_around.hpp>
 
 #include <concepts>
 #include <span>
@@ -112,6 +110,8 @@ template <class Light, class ToLight> constexpr auto checked_to_light(const ToLi
             "what that points to, and can't be called with either");
     if constexpr (std::convertible_to<Made, Sphere> || std::convertible_to<Made, Spot> ||
                   std::convertible_to<Made, Box>) {
+        static_assert(kernels_included<kind_of<Made>>,
+                      "lightbin: to bin Spots include <lightbin/spot.hpp>, and to bin Boxes <lightbin/box.hpp>");
         return to_light;
     } else {
         static_assert(!can_be_called,

@@ -20,7 +20,7 @@ struct ViewBox {
     float taper;              ///< see Box
     float tolerance;  ///< how far the exact box can reach outside of this one; +inf where the box has no bounds
     float centre[3], half_axes[3][3];  ///< see Box
-    CellPlanes<6> around;  ///< with a depth test against boxes, a half space for each face, see store_box_planes()
+    CellPlane around[6];  ///< with a depth test against boxes, a half space for each face, see store_box_planes()
 };
 
 }}}  // namespace lightbin::detail

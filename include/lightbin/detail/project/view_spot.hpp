@@ -29,13 +29,16 @@ struct ViewSpot {
     float nearest, farthest;
     float sine;               ///< sine of the half angle
     float tolerance;          ///< how far the exact spot can reach outside of this one, which is rounded to float
-    CellPlanes<4> around;  ///< with a depth test against boxes, four half spaces around the spot, see store_planes()
+    CellPlane around[4];  ///< with a depth test against boxes, four half spaces around the spot, see store_planes()
 };
 
 /// A ViewSpot or ViewBox as the depth tests read it.
 template <class Shape> struct TestedShape {
     TestedShape() = default;
-    TestedShape(const Shape& of) : shape(&of), nearest(of.nearest), farthest(of.farthest) {}
+    TestedShape(const Shape& of) : shape(&of), nearest(of.nearest), farthest(of.farthest) {
+        for (const CellPlane& plane : of.around)  // read later, when more lights of the block are known
+            LIGHTBIN_PREFETCH(&plane);
+    }
 
     const Shape* shape;
     float nearest, farthest;

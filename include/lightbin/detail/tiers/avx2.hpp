@@ -11,7 +11,9 @@
 
 #include <lightbin/detail/base/warnings_off.inl>
 
-LIGHTBIN_TARGET_BEGIN("avx2,bmi,popcnt")
+// The region of the tier, which shape_kernels.hpp enters once more.
+#define LIGHTBIN_AVX2_BEGIN LIGHTBIN_TARGET_BEGIN("avx2,bmi,popcnt")
+LIGHTBIN_AVX2_BEGIN
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace avx2 {
 

@@ -19,7 +19,10 @@
 
 #include <lightbin/detail/base/warnings_off.inl>
 
-LIGHTBIN_TARGET_BEGIN("avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2,avx512bitalg,bmi,bmi2,popcnt")
+// The region of the tier, which shape_kernels.hpp enters once more.
+#define LIGHTBIN_AVX512_BEGIN \
+    LIGHTBIN_TARGET_BEGIN("avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2,avx512bitalg,bmi,bmi2,popcnt")
+LIGHTBIN_AVX512_BEGIN
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace avx512 {
 
@@ -144,10 +147,10 @@ inline void store_spans(RowSpan* spans, Doubles first, Doubles last) {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(spans), pairs);
 }
 
-inline void split_16_bytes(const std::uint8_t* bytes, std::uint64_t* words) {
-    const __m128i all = _mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes));
+inline void split_32_bytes(const std::uint8_t* bytes, std::uint64_t* words) {
+    const __m256i all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes));
     for (unsigned bit = 0; bit < 8; ++bit)
-        words[bit] = _mm_test_epi8_mask(all, _mm_set1_epi8(static_cast<char>(1 << bit)));
+        words[bit] = _mm256_test_epi8_mask(all, _mm256_set1_epi8(static_cast<char>(1 << bit)));
 }
 inline void split_bits(const std::uint8_t* bytes, std::uint64_t* words) {
     const __m512i all_bytes = _mm512_loadu_si512(bytes);
@@ -185,33 +188,51 @@ inline constexpr CountingBytes counting_bytes = [] {
         bytes.of[i] = static_cast<std::uint8_t>(i);
     return bytes;
 }();
-/// Returns the positions of a word's set bits, ascending, a byte for each, modulo `period`, a power of two.
-template <int period> __m512i set_positions(std::uint64_t word) {
-    const __m512i positions = _mm512_and_si512(_mm512_loadu_si512(counting_bytes.of), _mm512_set1_epi8(period - 1));
-    return _mm512_mask_compress_epi8(fresh_zeros(), word, positions);
-}
-/// Appends to `out` the ids of several tiles, whose masks of `lights` bits each, 8 or 16, lie one after another in a
-/// word. Returns the end, behind which it may write up to 64 elements.
-template <int lights, class Id> Id* append_several(Id* out, __m512i ids, std::uint64_t masks) {
-    const __m512i positions = set_positions<lights>(masks);
+/// Appends to `out` the ids of several tiles, whose masks of `lights` bits each, 8, 16 or 32, lie one after another in
+/// a word. Returns the end, behind which it may write up to 64 elements.
+template <unsigned lights, class Id>
+LIGHTBIN_INLINE Id* append_several(Id* out, const std::uint32_t* ids, std::uint64_t masks) {
+    // The positions of the set bits within their masks, ascending, a byte for each.
+    const __m512i in_mask = _mm512_and_si512(_mm512_loadu_si512(counting_bytes.of),
+                                             _mm512_set1_epi8(static_cast<char>(lights - 1))),
+                  positions = _mm512_mask_compress_epi8(fresh_zeros(), masks, in_mask);
+    const auto store = [=](Id* to, __m128i some) {
+        const __m512i at = _mm512_cvtepu8_epi32(some), low = _mm512_loadu_si512(ids);
+        if constexpr (lights == 32)
+            store_ids(to, _mm512_permutex2var_epi32(low, at, _mm512_loadu_si512(ids + 16)));
+        else
+            store_ids(to, _mm512_permutexvar_epi32(at, low));
+    };
+    store(out, _mm512_castsi512_si128(positions));
+    store(out + 16, _mm512_extracti32x4_epi32(positions, 1));
     const int count = std::popcount(masks);
-    store_ids(out, _mm512_permutexvar_epi32(_mm512_cvtepu8_epi32(_mm512_castsi512_si128(positions)), ids));
-    store_ids(out + 16, _mm512_permutexvar_epi32(_mm512_cvtepu8_epi32(_mm512_extracti32x4_epi32(positions, 1)), ids));
     if (count > 32) {
-        store_ids(out + 32,
-                  _mm512_permutexvar_epi32(_mm512_cvtepu8_epi32(_mm512_extracti32x4_epi32(positions, 2)), ids));
-        store_ids(out + 48,
-                  _mm512_permutexvar_epi32(_mm512_cvtepu8_epi32(_mm512_extracti32x4_epi32(positions, 3)), ids));
+        store(out + 32, _mm512_extracti32x4_epi32(positions, 2));
+        store(out + 48, _mm512_extracti32x4_epi32(positions, 3));
     }
     return out + count;
 }
 
 #define LIGHTBIN_TIER_EMITS_SHORT
-/// Writes the light ids and the ranges of up to 8 tiles, in place of emit_short() in emit.inl. A compress instruction
-/// finds the lights of 4 or 8 tiles at once: builds of few or small lights take 1.2 to 1.7 times as long without it.
+inline constexpr std::uint32_t longest_short = 32;
+/// Writes the light ids and the ranges of up to 8 tiles, in place of emit_short() in emit.inl, from a list of up to 8,
+/// 16 or 32 lights. A compress instruction finds the lights of 8, 4 or 2 tiles at once: builds of few or small lights
+/// take 1.2 to 1.7 times as long without it.
 template <unsigned at_most, class Id>
 Id* emit_short(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset, const std::uint32_t* ids,
                const std::uint8_t* row_columns) {
+    if constexpr (at_most == 32) {
+        std::uint64_t words[8];
+        split_32_bytes(row_columns, words);
+        for (unsigned column = 0; column < columns; ++column) {
+            const std::uint32_t size = static_cast<std::uint32_t>(std::popcount(words[column]));
+            tiles[column] = {offset, size};
+            offset += size;
+        }
+        for (unsigned column = 0; column < 8; column += 2)
+            out = append_several<32>(out, ids, words[column] | words[column + 1] << 32);
+        return out;
+    }
     // Each tile has a byte of bits for its lights: `low` for lights 0 to 7 of the list, `high` for lights 8 to 15.
     const std::uint64_t low = transpose_bits(load_8_bytes(row_columns)),
                         high = at_most == 8 ? 0 : transpose_bits(load_8_bytes(row_columns + 8));
@@ -224,11 +245,10 @@ Id* emit_short(Id* out, ListRange* tiles, unsigned columns, std::uint32_t offset
     _mm512_mask_storeu_epi64(tiles, static_cast<__mmask8>(0xff >> (8 - columns)),
                              _mm512_or_si512(_mm512_add_epi32(begins, _mm512_set1_epi64(offset)),
                                              _mm512_slli_epi64(_mm512_sub_epi64(ends, begins), 32)));
-    const __m512i table = _mm512_loadu_si512(ids);
-    if constexpr (at_most == 8) return append_several<8>(out, table, low);
+    if constexpr (at_most == 8) return append_several<8>(out, ids, low);
     const __m128i masks = _mm_unpacklo_epi8(lights, _mm_unpackhi_epi64(lights, lights));
-    out = append_several<16>(out, table, static_cast<std::uint64_t>(_mm_cvtsi128_si64(masks)));
-    return append_several<16>(out, table, static_cast<std::uint64_t>(_mm_extract_epi64(masks, 1)));
+    out = append_several<16>(out, ids, static_cast<std::uint64_t>(_mm_cvtsi128_si64(masks)));
+    return append_several<16>(out, ids, static_cast<std::uint64_t>(_mm_extract_epi64(masks, 1)));
 }
 
 struct Bytes {

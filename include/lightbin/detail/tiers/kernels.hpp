@@ -5,8 +5,8 @@
 #include <lightbin/detail/base/abi_tag.hpp>
 #include <lightbin/detail/engine/costs.hpp>
 #include <lightbin/detail/engine/scatter.hpp>
-#include <lightbin/detail/project/boxes_in_double.hpp>
 #include <lightbin/detail/project/footprint_arrays.hpp>
+#include <lightbin/detail/project/spheres_in_double.hpp>
 #include <lightbin/detail/tiers/avx2.hpp>
 #include <lightbin/detail/tiers/avx512.hpp>
 #include <lightbin/detail/tiers/scalar.hpp>
@@ -18,6 +18,13 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
+/// The tier that every machine has that runs the program.
+#if defined(LIGHTBIN_VECTORS_ONLY)
+namespace least = simd128;
+#else
+namespace least = scalar;
+#endif
+
 /// Returns pick(Tier()), where Tier has the kernels of an instruction set, which the machine must support.
 template <class Pick> auto with_tier(Isa isa, Pick pick) {
 #if defined(LIGHTBIN_X86)
@@ -28,7 +35,7 @@ template <class Pick> auto with_tier(Isa isa, Pick pick) {
     if (isa == Isa::simd128) return pick(simd128::Tier{});
 #endif
     static_cast<void>(isa);
-    return pick(scalar::Tier{});
+    return pick(least::Tier{});
 }
 
 template <LightKind kind> ProjectKernel project_kernel(Isa isa) {
@@ -44,6 +51,7 @@ template <LightKind kind> DepthBucketsKernel depth_buckets_kernel(Isa isa) {
 
 /// Returns the kernel that reduces rows of `columns` samples: the widest, up to `isa`, whose vectors a row can fill.
 template <bool by_split> DepthKernel depth_kernel(Isa isa, std::size_t columns) {
+    if (isa == Isa::scalar) return scalar::Tier::depth_kernel<by_split>();
     if (with_tier(isa, [=](auto tier) { return columns >= tier.vector; }))
         return with_tier(isa, [](auto tier) { return tier.template depth_kernel<by_split>(); });
     return depth_kernel<by_split>(static_cast<Isa>(static_cast<int>(isa) - 1), columns);

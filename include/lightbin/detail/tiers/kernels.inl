@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The kernels of one tier (instruction set). The source of a kernel is an .inl file of templates over the tier's vector
-// class. This file includes all of them, each after the files whose functions it calls. A tier is a header that defines
-// the names below and includes this file, so each kernel is compiled once per tier, in the tier's namespace. A kernel
-// also has a member in Tier, at the end of this file, and a function in kernels.hpp that returns it.
+// class. This file includes all of them but those of spots and boxes, which shape_kernels.inl includes, and each after
+// the files whose functions it calls. A tier is a header that defines the names below and includes this file, so each
+// kernel is compiled once per tier, in the tier's namespace. A kernel also has a member in Tier, at the end of this
+// file, and a function in kernels.hpp that returns it.
 //
 // A tier defines LIGHTBIN_TIER, the name of its namespace, and in that
 //   lanes, double_lanes            the number of floats, and of doubles, in a vector
@@ -45,19 +46,7 @@
 
 #include <lightbin/detail/project/spheres.inl>
 
-#include <lightbin/detail/project/spot_vectors.inl>
-
-#include <lightbin/detail/project/spots.inl>
-
-#include <lightbin/detail/project/box_vectors.inl>
-
-#include <lightbin/detail/project/boxes.inl>
-
 #include <lightbin/detail/project/sphere_rows.inl>
-
-#include <lightbin/detail/project/spot_rows.inl>
-
-#include <lightbin/detail/project/box_rows.inl>
 
 #include <lightbin/detail/engine/lists.inl>
 
@@ -69,12 +58,23 @@
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace LIGHTBIN_TIER {
 
+/// The kernels that each kind of lights has of its own: here those of spheres. shape_kernels.inl has those of spots and
+/// boxes, as specialisations, which a program finds if it includes spot.hpp or box.hpp.
+template <LightKind> struct KernelsOf {
+    using Rows = SphereRows;
+    template <LightKind> static ProjectKernel project_kernel() { return project_lights<LightKind::sphere>; }
+};
+
 /// The tier's kernels, for kernels.hpp.
 struct Tier {
     static constexpr std::size_t vector = lanes;
 
-    template <LightKind kind> static ProjectKernel project_kernel() { return project_lights<kind>; }
-    template <LightKind kind> static RowSpanKernel row_span_kernel() { return row_spans<RowsOf<kind>>; }
+    template <LightKind kind> static ProjectKernel project_kernel() {
+        return KernelsOf<kind>::template project_kernel<kind>();
+    }
+    template <LightKind kind> static RowSpanKernel row_span_kernel() {
+        return row_spans<typename KernelsOf<kind>::Rows>;
+    }
     template <LightKind kind> static DepthBucketsKernel depth_buckets_kernel() { return find_depth_buckets<kind>; }
     template <bool by_split> static DepthKernel depth_kernel() { return column_extremes<by_split>; }
 

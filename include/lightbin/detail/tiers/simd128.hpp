@@ -10,17 +10,21 @@
 
 #if defined(LIGHTBIN_X86)
 #include <smmintrin.h>
+#define LIGHTBIN_SIMD128_BEGIN LIGHTBIN_TARGET_BEGIN("ssse3,sse4.1,popcnt")
+#define LIGHTBIN_SIMD128_END LIGHTBIN_TARGET_END
 #elif defined(LIGHTBIN_NEON)
 #include <arm_neon.h>
 #else
 #include <wasm_simd128.h>
 #endif
+#if !defined(LIGHTBIN_SIMD128_BEGIN)  // no region is needed: the compiler's flags allow the instructions
+#define LIGHTBIN_SIMD128_BEGIN
+#define LIGHTBIN_SIMD128_END
+#endif
 
 #include <lightbin/detail/base/warnings_off.inl>
 
-#if defined(LIGHTBIN_X86)
-LIGHTBIN_TARGET_BEGIN("ssse3,sse4.1,popcnt")
-#endif
+LIGHTBIN_SIMD128_BEGIN
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail { namespace simd128 {
 
@@ -116,9 +120,7 @@ inline void compress_store(ByteMask chosen, const std::uint32_t* from, std::uint
 
 #define LIGHTBIN_TIER simd128
 #include <lightbin/detail/tiers/kernels.inl>
-#if defined(LIGHTBIN_X86)
-LIGHTBIN_TARGET_END
-#endif
+LIGHTBIN_SIMD128_END
 
 #include <lightbin/detail/base/warnings_on.inl>
 #endif

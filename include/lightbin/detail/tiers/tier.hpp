@@ -5,8 +5,7 @@
 
 #include <lightbin/detail/depth/slice_table.hpp>
 #include <lightbin/detail/engine/scatter.hpp>
-#include <lightbin/box.hpp>
-#include <lightbin/spot.hpp>
+#include <lightbin/detail/project/sphere_around.hpp>
 
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 
