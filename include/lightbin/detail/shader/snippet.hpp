@@ -315,6 +315,10 @@ bool $next(inout $cursor c) {
     if (!dialect.webgpu)
         writer.add("\n#define $for_each_light(cursor, pixel, view_depth" + view_argument +
                    ") for ($cursor cursor = $begin" + list_arguments + loop_end);
+    // A loop for each kind, all with the same name for the cursor: fxc takes the cursor to live on after its loop, and would
+    // warn of the next one's.
+    if (dialect.hlsl && split)
+        writer.add("#if !defined(__hlsl_dx_compiler)\n#pragma warning(disable : 3078)\n#endif\n");
     if (!dialect.webgpu && split)
         writer.add("#define $for_each_of_kind(cursor, kind, pixel, view_depth" + view_argument +
                    ") for ($cursor cursor = $begin_kind" + kind_arguments + loop_end);

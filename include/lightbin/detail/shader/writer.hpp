@@ -53,6 +53,8 @@ inline ShaderWord shader_word(std::string_view word) {
         {"atomicMin", "InterlockedMin", "atomicMin"},
         {"atomicMax", "InterlockedMax", "atomicMax"},
         {"atomicOr", "InterlockedOr", "atomicOr"},
+        {"atomicAnd", "InterlockedAnd", "atomicAnd"},
+        {"atomicAdd", "InterlockedAdd", "atomicAdd"},
         {"subgroupMin", "WaveActiveMin", "subgroupMin"},
         {"sync_group", "GroupMemoryBarrierWithGroupSync", "workgroupBarrier"},
     };
@@ -216,7 +218,8 @@ std::optional<Error> refuse_common(const Options& options, std::initializer_list
                                    std::initializer_list<std::pair<bool, Error>> others) {
     const Dialect dialect = {options.language};
     if (!is_prefix(options.prefix)) return Error{ErrorCode::not_a_prefix};
-    if (options.push_constants && !dialect.vulkan) return Error{ErrorCode::no_push_constants};
+    if constexpr (requires { options.push_constants; })
+        if (options.push_constants && !dialect.vulkan) return Error{ErrorCode::no_push_constants};
     for (const ShaderSlot& slot : all_slots)
         for (const int number : {slot.binding, slot.set})
             if (number < 0) return Error{ErrorCode::slot_out_of_range, static_cast<std::uint64_t>(number)};
@@ -312,9 +315,13 @@ public:
             // Each array element takes 16 bytes in a uniform block, so the array is one of uvec4.
             const auto vectors = static_cast<std::uint32_t>((buffer.bytes + 15) / 16);
             const std::string name = "$" + buffer.name, count = std::to_string(vectors);
-            return declare_block(buffer.name + (dialect.webgpu ? "" : "_block"), buffer.slot, false,
-                                 16 * vectors, "    uvec4 " + name + "[" + count + "];\n",
-                                 "@var<uniform> " + name + " : array<vec4u, " + count + ">");
+            declare_block(buffer.name + (dialect.webgpu ? "" : "_block"), buffer.slot, false, 16 * vectors,
+                          "    uvec4 " + name + "[" + count + "];\n",
+                          "@var<uniform> " + name + " : array<vec4u, " + count + ">");
+            // A function, as NVIDIA's compiler for OpenGL (driver 580) picks a wrong component where the index is a sum
+            // that it folds into the address: `slices[(slice + 4u) >> 2u][(slice + 4u) & 3u]`.
+            shader_.text += "uint " + name + "_word(uint at) {\n    return " + name + "[at >> 2u][at & 3u];\n}\n";
+            return;
         }
         const bool texture = buffer.resource == ShaderResource::texture_2d,
                    untyped = buffer.resource == ShaderResource::byte_address;
@@ -326,12 +333,12 @@ public:
              .wgsl = "texture_2d<u32>"});
     }
 
-    /// Declares constants. In OpenGL each is a uniform by itself. In the other APIs they form one block, named after
-    /// the first one, in which each begins at a multiple of 16 bytes; `push` makes it a block of push constants. If `length` is
-    /// more than 1, each constant is an array of so many vec4s.
+    /// Declares constants. In OpenGL each is a uniform by itself, unless `block` is true. In the other APIs they form one
+    /// block, named after the first one, in which each begins at a multiple of 16 bytes; `push` makes it a block of push
+    /// constants. If `length` is more than 1, each constant is an array of so many vec4s.
     LIGHTBIN_SMALL void declare_constants(const std::vector<ShaderConstant>& constants, ShaderSlot slot, bool push,
-                           std::uint32_t length = 1) {
-        const bool loose = !dialect.hlsl && !dialect.vulkan && !dialect.webgpu;
+                           std::uint32_t length = 1, bool block = false) {
+        const bool loose = !block && !dialect.hlsl && !dialect.vulkan && !dialect.webgpu;
         const std::string name = std::string(constants.front().second) + "_block";
         std::string lines;
         for (const auto& [constant_type, constant_name] : constants) {
@@ -402,7 +409,7 @@ private:
     LIGHTBIN_SMALL std::string read(const ShaderBuffer& buffer, const std::string& index) const {
         const bool pairs = buffer.format == TexelFormat::rg32ui;
         const std::string name = "$" + buffer.name;
-        const auto word = [&](const std::string& i) { return name + "[(" + i + ") >> 2u][(" + i + ") & 3u]"; };
+        const auto word = [&](const std::string& i) { return name + "_word(" + i + ")"; };
         if (buffer.resource == ShaderResource::uniform_block)
             return pairs ? "uvec2(" + word("2u * " + index) + ", " + word("2u * " + index + " + 1u") + ")"
                          : word(index);

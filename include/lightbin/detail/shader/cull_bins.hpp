@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+// The passes that z-bins add between project and count: a counting sort of the lights in view by the first bin that
+// each meets, stable, so that lights that begin in one bin keep their order. Ranks then take the place of ids.
+//
+// bin_counts and rank have a group for each segment of lights. The words `bin_counts` in `scratch` are first the
+// numbers of lights that begin in each bin, segment by segment, then the ranks from which each segment's go on.
+#pragma once
+
+#include <lightbin/detail/shader/cull_common.hpp>
+#include <lightbin/detail/shader/cull_lists.hpp>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
+
+/// Adds `key_of` a light: the first bin in its lower 16 bits and the last in its upper ones; all bits if it is not
+/// in view. And `bin_batches`, the number of batches of 64 lights that each segment has.
+inline void add_key_of(ShaderWriter& writer, const CullShaderOptions& options) {
+    const std::string words = std::to_string(cull_record_words(options)) + "u";
+    writer.add(R"(
+uint $key_of(uint id) {
+    uint key = 0xffffffffu;
+    if (id < $segments.x) {
+        uint record = $places.x + id * )" + words + R"(;
+        bool seen = ($scratch[record] & 0xffffu) <= ($scratch[record + 1u] & 0xffffu);
+        if (seen) { key = $scratch[record + 2u]; }
+    }
+    return key;
+}
+
+uint $bin_batches() {
+    uint batches = max(($segments.x + 63u) >> 6u, 1u);
+    return (batches + $segments.w - 1u) / $segments.w;
+}
+)");
+}
+
+/// Adds the pass bin_counts.
+inline void add_bin_counts(ShaderWriter& writer, const CullShaderOptions& options) {
+    declare_scratch(writer, options);
+    writer.add("\n");
+    writer.declare_shared("begun", cull_max_bins, true);
+    add_key_of(writer, options);
+    writer.add(R"(
+void $run(uvec2 group, uint thread) {
+    uint bins = $grid.z;
+    for (uint bin = thread; bin < bins; bin += 64u) { atomicStore(&$begun[bin], 0u); }
+    sync_group();
+    uint batches = $bin_batches();
+    for (uint batch = 0u; batch < batches; batch += 1u) {
+        uint key = $key_of((group.x * batches + batch) * 64u + thread);
+        if (key != 0xffffffffu) { atomicAdd(&$begun[key & 0xffffu], 1u); }
+    }
+    sync_group();
+    uint begin = $more.w + group.x * bins;
+    for (uint counted = thread; counted < bins; counted += 64u) { $scratch[begin + counted] = atomicLoad(&$begun[counted]); }
+}
+)");
+}
+
+/// Adds the pass bin_offsets: one group finds where the ranks of each segment in each bin begin, and empties the bins.
+inline void add_bin_offsets(ShaderWriter& writer, const CullShaderOptions& options) {
+    declare_scratch(writer, options);
+    writer.declare_storage("bins", "uvec2", "writeonly", options.bins, 8);
+    add_scan(writer);
+    writer.add(R"(
+void $run(uvec2 group, uint thread) {
+    uint bins = $grid.z;
+    uint before = 0u;
+    for (uint first = 0u; first < bins; first += 128u) {
+        uint bin = first + thread;
+        uint count = 0u;
+        if (bin < bins) {
+            for (uint i = 0u; i < $segments.w; i += 1u) {
+                uint own = $scratch[$more.w + i * bins + bin];
+                $scratch[$more.w + i * bins + bin] = count;
+                count += own;
+            }
+            $bins[bin] = uvec2(0xffffffffu, 0u);
+        }
+        $scan(thread, count);
+        uint base = before;
+        if (thread > 0u) { base += $partial[thread - 1u]; }
+        if (bin < bins) { $scratch[$more.w + $segments.w * bins + bin] = base; }
+        before += $partial[127];
+        sync_group();
+    }
+    if (thread == 0u) { $scratch[2] = before; }
+}
+)");
+}
+
+/// Adds the pass rank. Batch by batch, a light's rank is the next one of its bin, counted up by the lights before it in
+/// the batch that begin in the same bin. Minimum and maximum don't depend on their order, so nor do the bins.
+inline void add_rank(ShaderWriter& writer, const CullShaderOptions& options) {
+    const std::uint32_t words = cull_record_words(options);
+    declare_scratch(writer, options);
+    writer.declare_storage("bins", writer.dialect.webgpu ? "atomic<uint>" : "uint", "", options.bins, 4);
+    writer.declare_storage("order", "uint", "writeonly", options.order, 4);
+    writer.add("\n");
+    writer.declare_shared("next_rank", cull_max_bins, false);
+    writer.declare_shared("least", cull_max_bins, true);
+    writer.declare_shared("greatest", cull_max_bins, true);
+    writer.declare_shared("keys", 64, false);
+    add_key_of(writer, options);
+    writer.add(R"(
+void $run(uvec2 group, uint thread) {
+    uint bins = $grid.z;
+    for (uint bin = thread; bin < bins; bin += 64u) {
+        $next_rank[bin] = $scratch[$more.w + group.x * bins + bin] + $scratch[$more.w + $segments.w * bins + bin];
+        atomicStore(&$least[bin], 0xffffffffu);
+        atomicStore(&$greatest[bin], 0u);
+    }
+    uint batches = $bin_batches();
+    for (uint batch = 0u; batch < batches; batch += 1u) {
+        uint id = (group.x * batches + batch) * 64u + thread;
+        uint key = $key_of(id);
+        uint first = key & 0xffffu;
+        $keys[thread] = first;
+        sync_group();
+        uint before = 0u;
+        uint same = 0u;
+        for (uint i = 0u; i < 64u; i += 1u) {
+            if ($keys[i] == first) {
+                same += 1u;
+                if (i < thread) { before += 1u; }
+            }
+        }
+        uint rank = before;
+        if (key != 0xffffffffu) { rank += $next_rank[first]; }
+        sync_group();
+        if (key != 0xffffffffu) {
+            if (before == 0u) { $next_rank[first] += same; }
+            $order[rank] = id;
+            uint record = $places.x + id * )" + std::to_string(words) + R"(u;
+            uint ranked = $places.y + rank * )" + std::to_string(words) + R"(u;
+            for (uint word = 0u; word < )" + std::to_string(words) + R"(u; word += 1u) {
+                $scratch[ranked + word] = $scratch[record + word];
+            }
+            for (uint met = first; met <= key >> 16u; met += 1u) {
+                atomicMin(&$least[met], rank);
+                atomicMax(&$greatest[met], rank);
+            }
+        }
+        sync_group();
+    }
+    for (uint used = thread; used < bins; used += 64u) {
+        uint least = atomicLoad(&$least[used]);
+        if (least != 0xffffffffu) {
+            atomicMin(&$bins[2u * used], least);
+            atomicMax(&$bins[2u * used + 1u], atomicLoad(&$greatest[used]));
+        }
+    }
+}
+)");
+}
+
+/// Adds the pass masks: marks the mask blocks of the lights by rank.
+inline void add_masks(ShaderWriter& writer, const CullShaderOptions& options) {
+    declare_scratch(writer, options);
+    writer.add("\n");
+    add_masks_of_group(writer, options);
+    writer.add(R"(
+void $run(uvec2 group, uint thread) {
+    uint number = group.y * 32768u + group.x;
+    uint rank = number * 64u + thread;
+    $clear_masks(thread);
+    sync_group();
+    if (rank < $scratch[2]) {
+        uint record = $places.y + rank * )" + std::to_string(cull_record_words(options)) + R"(u;
+        uint first = $scratch[record];
+        uint last = $scratch[record + 1u];
+        $mark(thread, uvec2(first & 0xffffu, last & 0xffffu), uvec2(first >> 16u, last >> 16u), uvec2(0u, 0u));
+    }
+    sync_group();
+    uint groups = max(($segments.x + 63u) >> 6u, 1u);
+    if (number < groups) { $write_masks(number, thread); }
+}
+)");
+}
+
+}}}  // namespace lightbin::detail

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// What the passes that make a light grid on the GPU have in common: the refusal of options, the constants, the buffer
+// `scratch`, and how blocks of tiles are marked.
+#pragma once
+
+#include <lightbin/detail/shader/writer.hpp>
+#include <lightbin/cull_options.hpp>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
+
+// Numbers that the texts and the plan share.
+inline constexpr std::uint32_t cull_max_blocks = 1024;    ///< mask blocks: bits of 64 lights fill 8 KB of shared memory
+inline constexpr std::uint32_t cull_max_bins = 1024;      ///< z-bins: three words each fill 12 KB of shared memory
+inline constexpr std::uint32_t cull_max_slices = 0xffff;  ///< a light's first and last slice share a word
+
+/// Returns the first error among the options, or nothing.
+inline std::optional<Error> refuse_cull(const CullShaderOptions& options) {
+    const bool clusters = options.slicing == Slicing::clusters;
+    return refuse_common(
+        options,
+        {options.lights, options.z_bounds, options.scratch, options.slices, options.bins, options.tiles,
+         options.light_count, options.order, options.lists, options.grid},
+        {{!Dialect{options.language}.storage_buffers, {ErrorCode::no_storage_buffers}},
+         {options.kind == CullKind::box, {ErrorCode::no_cull_of_boxes}},
+         {options.ids != IdWidth::u16 && options.ids != IdWidth::u32, {ErrorCode::ids_too_narrow, 0, 256}},
+         {options.depth_test == DepthTest::split_box, {ErrorCode::no_split_box_shader}},
+         {clusters && options.depth_test == DepthTest::interval, {ErrorCode::no_such_slicing_shader}}});
+}
+
+/// How many invocations a group of a pass has.
+constexpr unsigned cull_threads(CullPass pass) {
+    return pass == CullPass::sums || pass == CullPass::offsets || pass == CullPass::bin_offsets ? 128 : 64;
+}
+
+/// How many words of `scratch` a light takes: its rectangle, its slices, and what the depth test reads.
+inline std::uint32_t cull_record_words(const CullShaderOptions& options) {
+    return 2u + (options.slicing == Slicing::none ? 0u : 1u) +
+           (options.depth_test == DepthTest::none ? 0u : options.depth_test == DepthTest::box ? 4u : 2u);
+}
+
+/// Declares the members of ShaderCull, without those that lights in view space don't need.
+inline void declare_cull_constants(ShaderWriter& writer, const CullShaderOptions& options) {
+    std::vector<ShaderConstant> constants = {{"uvec4", "grid"},     {"uvec4", "blocks"}, {"uvec4", "segments"},
+                                             {"uvec4", "places"},   {"uvec4", "more"},   {"vec4", "axis_x"},
+                                             {"vec4", "axis_y"},    {"vec4", "signs"},   {"vec4", "planes"}};
+    if (options.world_space)
+        for (const char* name : {"origin", "column_x", "column_y", "column_z", "origin_image"})
+            constants.push_back({"vec4", name});
+    writer.declare_constants(constants, options.grid, false, 1, true);
+}
+
+inline void declare_scratch(ShaderWriter& writer, const CullShaderOptions& options) {
+    writer.declare_storage("scratch", "uint", "", options.scratch, 4);
+}
+
+/// Adds `sum`, a sum that stays at the greatest number where 32 bits don't hold it.
+inline void add_saturated_sum(ShaderWriter& writer) {
+    writer.add("\nuint $sum(uint a, uint b) {\n    return a + min(b, ~a);\n}\n");
+}
+
+/// The number of layers of blocks, which are those of the slices of clusters.
+inline const char* cull_layers(const CullShaderOptions& options) {
+    return options.slicing == Slicing::clusters ? "((($grid.z - 1u) >> $blocks.w) + 1u)" : "1u";
+}
+
+/// Adds the functions by which a group of 64 threads finds the mask blocks that 64 lights meet: `clear_masks`
+/// before, `mark` for each light in view, and `write_masks` after. A mask block has a bit for each light, and a
+/// word for each 32.
+inline void add_masks_of_group(ShaderWriter& writer, const CullShaderOptions& options) {
+    const bool clusters = options.slicing == Slicing::clusters;
+    writer.declare_shared("block_bits", 2 * cull_max_blocks, true);
+    writer.add(std::string("\nuint $block_count() {\n    return $blocks.x * $blocks.y * ") + cull_layers(options) +
+               R"(;
+}
+
+void $clear_masks(uint thread) {
+    uint words = 2u * $block_count();
+    for (uint i = thread; i < words; i += 64u) { atomicStore(&$block_bits[i], 0u); }
+}
+
+void $mark(uint thread, uvec2 columns, uvec2 rows, uvec2 layers) {
+    uint row_begin = (thread >> 5u) * $block_count();
+    uint bit = 1u << (thread & 31u);
+)" + (clusters ? "    for (uint z = layers.x >> $blocks.w; z <= layers.y >> $blocks.w; z += 1u) {\n"
+                         : "    {\n        uint z = 0u;\n") +
+               R"(        for (uint y = rows.x >> $blocks.z; y <= rows.y >> $blocks.z; y += 1u) {
+            uint row = row_begin + (z * $blocks.y + y) * $blocks.x;
+            for (uint x = columns.x >> $blocks.z; x <= columns.y >> $blocks.z; x += 1u) {
+                atomicOr(&$block_bits[row + x], bit);
+            }
+        }
+    }
+}
+
+void $write_masks(uint number, uint thread) {
+    uint words = 2u * $block_count();
+    uint begin = $places.z + number * words;
+    for (uint i = thread; i < words; i += 64u) { $scratch[begin + i] = atomicLoad(&$block_bits[i]); }
+}
+)");
+}
+
+}}}  // namespace lightbin::detail

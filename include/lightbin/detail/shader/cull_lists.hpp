@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+// The passes count, sums, offsets and fill: they make the lists of all cells from the lights' rectangles and masks.
+//
+// A group of 64 invocations has the cells of 8x8 tiles, one each. All go through the lights of the mask block that the
+// cells lie in together, by ascending id, so the lists ascend, and which invocation is faster makes no difference. The
+// lights are divided into segments, so that there are enough groups where there are few cells: the counts of a cell's
+// segments are added up to where each segment's part of the list begins.
+#pragma once
+
+#include <lightbin/detail/shader/cull_common.hpp>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
+
+/// Adds the function `depths_of`, which returns the view depths of the cells that the depth test compares lights
+/// with: a tile's Z bounds, or a slice's depths. A Z bound that is NaN excludes nothing; it is recognised by its
+/// bits, as compilers may assume that no float is NaN, and infinity is made a finite depth beyond all lights that
+/// are tested.
+inline void add_cell_depths(ShaderWriter& writer, const CullShaderOptions& options) {
+    const bool max_only = options.max_only && options.slicing != Slicing::clusters;
+    writer.add(std::string(R"(
+float $finite(float depth, float other) {
+    uint bits = floatBitsToUint(depth);
+    float result = clamp(depth, -1e30, 1e30);
+    if ((bits & 0x7fffffffu) == 0x7f800000u) {
+        result = 1e30;
+        if (bits != 0x7f800000u) { result = -1e30; }
+    }
+    if ((bits & 0x7fffffffu) > 0x7f800000u) { result = other; }
+    return result;
+}
+
+vec2 $depths_of(uint place) {
+    vec2 z = $z_bounds[place];
+    return vec2()") + (max_only ? "-1e30" : "$finite(z.x, -1e30)") + ", $finite(z.y, 1e30));\n}\n");
+}
+
+/// Adds the functions with which DepthTest::box finds a cell's view-space box, as engine/cell_boxes.hpp does, and the
+/// function `meets_box`. In perspective the sides of a cell are slopes, which a depth multiplies.
+///
+/// Rounding, u = 2^-24. A box must hold the Binner's: an edge that the Binner computes is within u of the product
+/// of side and depth, and one that a GPU computes within 2u, so 2^-20 = 16u outward is more than enough. The
+/// distances, each a difference, have a relative error of 2u, the sum of their squares of 10u, the Binner's of 5u;
+/// 2^-18 of the squared radius = 64u is more. 2^-80 is for squares that are flushed to zero.
+inline void add_cell_box(ShaderWriter& writer, const CullShaderOptions& options) {
+    if (options.orthographic) {
+        writer.add("\nvec2 $across(vec2 sides, vec2 z) {\n    return sides;\n}\n");
+    } else {
+        writer.add(R"(
+vec2 $across(vec2 sides, vec2 z) {
+    float low = min(sides.x * z.x, sides.x * z.y);
+    float high = max(sides.y * z.x, sides.y * z.y);
+    return vec2(low - abs(low) * 9.5367432e-7 - 1e-37, high + abs(high) * 9.5367432e-7 + 1e-37);
+}
+)");
+    }
+    writer.add(R"(
+float $apart(float at, vec2 ends) {
+    return max(max(ends.x - at, at - ends.y), 0.0);
+}
+
+bool $meets_box(uint at, vec2 columns, vec2 rows, vec2 z) {
+    float radius = uintBitsToFloat($scratch[at + 3u]);
+    float x = $apart(uintBitsToFloat($scratch[at]), columns);
+    float y = $apart(uintBitsToFloat($scratch[at + 1u]), rows);
+    float d = $apart(uintBitsToFloat($scratch[at + 2u]), z);
+    return radius < 0.0 || x * x + y * y + d * d <= radius * radius * 1.0000038 + 8.2718061e-25;
+}
+)");
+}
+
+/// Adds `meets`, which tells whether the cell of a tile, in a slice, has the light whose record begins at `at`.
+inline void add_meets(ShaderWriter& writer, const CullShaderOptions& options) {
+    const bool clusters = options.slicing == Slicing::clusters, box = options.depth_test == DepthTest::box,
+               interval = options.depth_test == DepthTest::interval;
+    const std::string depths = options.slicing == Slicing::none ? "2u" : "3u";
+    writer.add(std::string("\nbool $meets(uint at, uvec2 tile") + (clusters ? ", uint slice" : "") +
+               (box ? ", vec2 columns, vec2 rows" : "") + (box || interval ? ", vec2 z" : "") + R"() {
+    uint first = $scratch[at];
+    uint last = $scratch[at + 1u];
+    bool met = tile.x >= (first & 0xffffu) && tile.y >= (first >> 16u) && tile.x <= (last & 0xffffu) &&
+               tile.y <= (last >> 16u);
+)");
+    if (clusters)
+        writer.add(R"(    uint slices = $scratch[at + 2u];
+    met = met && slice >= (slices & 0xffffu) && slice <= (slices >> 16u);
+)");
+    if (interval)
+        writer.add("    met = met && uintBitsToFloat($scratch[at + " + depths +
+                   "]) <= z.y && uintBitsToFloat($scratch[at + " + depths + " + 1u]) >= z.x;\n");
+    if (box) writer.add("    if (met) { met = $meets_box(at + " + depths + ", columns, rows, z); }\n");
+    writer.add("    return met;\n}\n");
+}
+
+/// The lines that find the cell's depths and box. `lit` is false where the cell has no depth at all.
+inline std::string cull_cell(const CullShaderOptions& options) {
+    const bool clusters = options.slicing == Slicing::clusters, box = options.depth_test == DepthTest::box;
+    if (options.depth_test == DepthTest::none) return "    bool lit = inside;\n";
+    std::string text = std::string("    vec2 z = vec2(0.0, 0.0);\n    if (inside) { z = $depths_of(") +
+                       (clusters ? "slice" : "place") + "); }\n    bool lit = inside && z.x <= z.y;\n";
+    if (box)  // lights that are tested end before the depth 2^42
+        text += std::string("    z = vec2(min(max(z.x, $planes.x), 4.3980465e12), min(max(z.y, ") +
+                (options.orthographic ? "-4.3980465e12" : "$planes.x") + R"(), $planes.z));
+    vec2 columns = vec2(0.0, 0.0);
+    vec2 rows = vec2(0.0, 0.0);
+    if (lit) {
+        uint sides = )" + (clusters ? "$grid.z" : "$grid.x * $grid.y") + R"(;
+        columns = $across($z_bounds[sides + tile.x], z);
+        rows = $across($z_bounds[sides + $grid.x + tile.y], z);
+    }
+)";
+    return text;
+}
+
+/// Adds `store_id`, which writes an id to the lists. Ids of 16 bits share words, also with the lists before and
+/// after: `half` changes its own half of a word and no other, so it makes no difference which half is written
+/// first.
+inline void add_store_id(ShaderWriter& writer, const CullShaderOptions& options) {
+    writer.add(options.ids == IdWidth::u32
+                   ? "\nvoid $store_id(uint at, uint id) {\n    if (at < $grid.w) { $lists[at] = id; }\n}\n"
+                   : R"(
+void $store_id(uint at, uint id) {
+    if (at < $grid.w) {
+        uint word = at >> 1u;
+        uint shift = (at & 1u) * 16u;
+        atomicAnd(&$lists[word], ~(0xffffu << shift));
+        atomicOr(&$lists[word], id << shift);
+    }
+}
+)");
+}
+
+/// Adds the pass count or fill.
+inline void add_lists(ShaderWriter& writer, const CullShaderOptions& options, bool fill) {
+    const bool clusters = options.slicing == Slicing::clusters, box = options.depth_test == DepthTest::box,
+               depths = options.depth_test != DepthTest::none, narrow = options.ids == IdWidth::u16;
+    if (depths) writer.declare_storage("z_bounds", "vec2", "readonly", options.z_bounds, 8);
+    declare_scratch(writer, options);
+    if (fill) {
+        writer.declare_storage("tiles", "uvec2", "writeonly", options.tiles, 8);
+        writer.declare_storage("lists", narrow && writer.dialect.webgpu ? "atomic<uint>" : "uint",
+                               narrow ? "" : "writeonly", options.lists, 4);
+    }
+    writer.add("\n");
+    writer.declare_shared("words", 32, false);
+    if (depths) add_cell_depths(writer, options);
+    if (box) add_cell_box(writer, options);
+    add_meets(writer, options);
+    if (fill) {
+        add_saturated_sum(writer);
+        add_store_id(writer, options);
+    }
+    const std::string records = options.slicing == Slicing::z_bins ? "$places.y" : "$places.x",
+                      layer_count = clusters ? "$grid.z" : "1u";
+    writer.add(R"(
+void $run(uvec2 group, uint thread) {
+    uint number = group.y * 32768u + group.x;
+    uint block_columns = ($grid.x + 7u) >> 3u;
+    uint block_plane = block_columns * (($grid.y + 7u) >> 3u);
+    uint block = number % max(block_plane * )" + layer_count + R"(, 1u);
+    uint segment = number / max(block_plane * )" + layer_count + R"(, 1u);
+    uint slice = block / max(block_plane, 1u);
+    block %= max(block_plane, 1u);
+    uvec2 corner = uvec2(block % max(block_columns, 1u), block / max(block_columns, 1u)) * 8u;
+    uvec2 tile = corner + uvec2(thread & 7u, thread >> 3u);
+    bool inside = segment < $segments.y && tile.x < $grid.x && tile.y < $grid.y;
+    uint cells = $grid.x * $grid.y * )" + layer_count + R"(;
+    uint place = (slice * $grid.y + tile.y) * $grid.x + tile.x;
+    uint mask_blocks = $blocks.x * $blocks.y * )" + cull_layers(options) + R"(;
+    uint mask_block = ((slice >> $blocks.w) * $blocks.y + (corner.y >> $blocks.z)) * $blocks.x;
+    mask_block += corner.x >> $blocks.z;
+)" + cull_cell(options));
+    if (fill)
+        writer.add(R"(    uint at = 0u;
+    if (inside) {
+        uint range = $more.x + 2u * place;
+        uint count = $scratch[range + 1u];
+        uint base = $sum($scratch[range], $scratch[$more.y + (place >> 7u)]);
+        uint begin = min(base, $grid.w);
+        if (segment == 0u) { $tiles[place] = uvec2(begin, min(count, $grid.w - begin)); }
+        at = $sum(base, $scratch[$places.w + segment * cells + place]);
+    }
+)");
+    else
+        writer.add("    uint count = 0u;\n");
+    writer.add(R"(    uint word_count = (($segments.x + 63u) >> 6u) * 2u;
+    for (uint step = 0u; step < $segments.z; step += 1u) {
+        uint first = (segment * $segments.z + step) * 32u;
+        if (thread < 32u) {
+            uint own = 0u;
+            uint word = first + thread;
+            if (word < word_count) { own = $scratch[$places.z + word * mask_blocks + mask_block]; }
+            $words[thread] = own;
+        }
+        sync_group();
+        for (uint i = 0u; i < 32u; i += 1u) {
+            uint bits = $words[i];
+            while (bits != 0u) {
+                uint id = (first + i) * 32u + uint(findLSB(bits));
+                bits &= bits - 1u;
+                bool met = lit && $meets()" + records + " + id * " + std::to_string(cull_record_words(options)) +
+               "u, tile" + (clusters ? ", slice" : "") + (box ? ", columns, rows" : "") + (depths ? ", z" : "") +
+               ");\n" +
+               (fill ? "                if (met) {\n                    $store_id(at, id);\n"
+                       "                    at = $sum(at, 1u);\n                }\n"
+                     : "                if (met) { count += 1u; }\n") +
+               R"(            }
+        }
+        sync_group();
+    }
+)");
+    if (!fill) writer.add("    if (inside) { $scratch[$places.w + segment * cells + place] = count; }\n");
+    writer.add("}\n");
+}
+
+/// Adds a prefix sum over the 128 numbers of a group, in `$sums` (Hillis, Steele, "Data Parallel Algorithms", 1986).
+inline void add_scan(ShaderWriter& writer) {
+    writer.declare_shared("partial", 128, false);
+    add_saturated_sum(writer);
+    writer.add(R"(
+// Adds to each invocation's number those of the invocations before it.
+void $scan(uint thread, uint own) {
+    $partial[thread] = own;
+    sync_group();
+    for (uint distance = 1u; distance < 128u; distance *= 2u) {
+        uint before = 0u;
+        if (thread >= distance) { before = $partial[thread - distance]; }
+        sync_group();
+        $partial[thread] = $sum($partial[thread], before);
+        sync_group();
+    }
+}
+)");
+}
+
+/// Adds the pass sums: an invocation adds up the counts of a cell's segments, and a group those of 128 cells.
+inline void add_sums(ShaderWriter& writer, const CullShaderOptions& options) {
+    declare_scratch(writer, options);
+    add_scan(writer);
+    writer.add(std::string(R"(
+void $run(uvec2 group, uint thread) {
+    uint number = group.y * 32768u + group.x;
+    uint cells = $grid.x * $grid.y)") + (options.slicing == Slicing::clusters ? " * $grid.z" : "") + R"(;
+    uint place = number * 128u + thread;
+    uint count = 0u;
+    if (place < cells) {
+        for (uint i = 0u; i < $segments.y; i += 1u) {
+            uint at = $places.w + i * cells + place;
+            uint own = $scratch[at];
+            $scratch[at] = count;
+            count += own;
+        }
+    }
+    $scan(thread, count);
+    if (place < cells) {
+        uint before = 0u;
+        if (thread > 0u) { before = $partial[thread - 1u]; }
+        $scratch[$more.x + 2u * place] = before;
+        $scratch[$more.x + 2u * place + 1u] = count;
+    }
+    if (thread == 127u && number * 128u < cells) { $scratch[$more.y + number] = $partial[127]; }
+}
+)");
+}
+
+/// Adds the pass offsets: one group adds up the sums of all groups of the pass sums, and writes CullTotals. A word
+/// of each group of lights holds how many of them were rejected, and how many are in view.
+inline void add_offsets(ShaderWriter& writer, const CullShaderOptions& options) {
+    declare_scratch(writer, options);
+    add_scan(writer);
+    writer.add(std::string(R"(
+void $run(uvec2 group, uint thread) {
+    uint cells = $grid.x * $grid.y)") + (options.slicing == Slicing::clusters ? " * $grid.z" : "") + R"(;
+    uint sums = (cells + 127u) >> 7u;
+    uint before = 0u;
+    for (uint first = 0u; first < sums; first += 128u) {
+        uint at = $more.y + first + thread;
+        uint own = 0u;
+        if (first + thread < sums) { own = $scratch[at]; }
+        $scan(thread, own);
+        uint base = before;
+        if (thread > 0u) { base = $sum(base, $partial[thread - 1u]); }
+        if (first + thread < sums) { $scratch[at] = base; }
+        before = $sum(before, $partial[127]);
+        sync_group();
+    }
+    uint groups = ($segments.x + 63u) >> 6u;
+    uint rejected = 0u;
+    uint visible = 0u;
+    for (uint i = thread; i < groups; i += 128u) {
+        uint both = $scratch[$more.z + i];
+        rejected += both & 0xffffu;
+        visible += both >> 16u;
+    }
+    $scan(thread, rejected);
+    uint all_rejected = $partial[127];
+    sync_group();
+    $scan(thread, visible);
+    if (thread == 0u) {
+        $scratch[0] = before;
+        $scratch[1] = all_rejected;
+        $scratch[2] = $partial[127];
+    }
+}
+)");
+}
+
+}}}  // namespace lightbin::detail

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// Compute shaders that make the whole light grid on the GPU, from lights in a buffer on the GPU: cull_shader() returns
+// the text of each pass, and plan_cull() what a program needs to dispatch them. docs/gpu.md shows their use.
+#pragma once
+
+#include <lightbin/cull_options.hpp>
+#include <lightbin/lights.hpp>
+#include <lightbin/shader.hpp>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
+
+/// Returns the text of one pass, a whole compute shader except for `#version`, with the buffers to bind; or an
+/// Error that names the limit that the options exceed. The name of a binding is the prefix, the buffer's name in
+/// CullShaderOptions and, in GLSL, `_block`; that of the constants ends in `grid_block`.
+///
+/// After all passes, the buffers hold what a Binner's LightGrid has in ranges() and ids(), and with z-bins in
+/// ranks(): the shader text of shader_snippet() reads them. No light that the Binner lists is missing in a list,
+/// and ids ascend in each; few lists have more, see docs/gpu.md. The same input gives the same bytes on every run.
+///
+/// If the lists have more entries than there is room for (CullRoom::entries), those that do not fit are left out:
+/// the list of the first tile that does not fit is cut, and the lists after it are empty. CullTotals::entries is
+/// what was needed.
+inline Result<ShaderText> cull_shader(CullPass pass, const CullShaderOptions& options = {});
+
+/// Returns the constants, buffer sizes and group counts for a view. Where only the camera moves, not the viewport,
+/// the tile size or the room, only CullPlan::constants changes.
+///
+/// options   of the texts; language, slots and prefix are not read
+/// slices    with clusters or z-bins, else null. The buffer `slices` holds shader_slices(*slices). With clusters and
+///           DepthTest::box, `z_bounds` holds shader_slabs(*slices) and behind it shader_edges(view): shader_build.hpp
+/// to_view   with options.world_space the matrix from world space to view space, else null
+///
+/// Without clusters, `z_bounds` holds the minimum and maximum of each tile, as reduce_shader() writes them, and with
+/// DepthTest::box behind them shader_edges(view).
+///
+/// Errors: what the options refuse; the matrix is not close enough to a rotation with a uniform scale; more than 65,535
+/// slices or 1,024 z-bins; too many lights for the ids; `scratch` would have more than 2^32 - 1 words.
+inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& options, const CullRoom& room,
+                                  const Slices* slices = nullptr, const Matrix* to_view = nullptr);
+
+}}  // namespace lightbin
+
+// The definitions.
+#include <lightbin/detail/shader/cull.hpp>
