@@ -86,7 +86,7 @@ typedef enum lightbin_error {
     LIGHTBIN_STRIDE_TOO_SMALL = 7, /* a stride is less than the element that it steps over */
     LIGHTBIN_NO_SLICES_GIVEN = 8,  /* the binner's options read slices */
     LIGHTBIN_NO_BOUNDS_GIVEN = 9,  /* the binner's options read Z bounds */
-    LIGHTBIN_NOT_READ = 10,        /* slices or Z bounds were given that the binner's options do not read */
+    LIGHTBIN_NOT_READ = 10,        /* slices, Z bounds or a matrix were given that the options do not read */
     LIGHTBIN_OPTIONS_NOT_TOGETHER = 11, /* clusters have no interval or split_box test */
     LIGHTBIN_BUFFER_TOO_SMALL = 12,
     LIGHTBIN_CALLBACK_THREW = 13,  /* a C++ callback of the program threw an exception */
@@ -150,6 +150,10 @@ typedef enum lightbin_error {
     LIGHTBIN_KINDS_OF_RANKS = 153,
     LIGHTBIN_VIEWS_OUT_OF_RANGE = 154,
     LIGHTBIN_KINDS_WITHOUT_TABLE = 155,
+    LIGHTBIN_NO_CULL_OF_BOXES = 156,
+    LIGHTBIN_TOO_MANY_SLICES = 157,
+    LIGHTBIN_VIEW_MATRIX_DISTORTS = 158,
+    LIGHTBIN_SCRATCH_TOO_LARGE = 159,
 
     LIGHTBIN_ERROR_32_BITS = 0x7fffffff /* no error: makes the enum as wide as int32_t */
 } lightbin_error;
@@ -1004,6 +1008,128 @@ LIGHTBIN_API lightbin_result lightbin_shader_edges(const lightbin_view* view, li
                                                    size_t capacity, size_t* count);
 LIGHTBIN_API lightbin_result lightbin_shader_slabs(const lightbin_slices* slices, lightbin_edges* slabs,
                                                    size_t capacity, size_t* count);
+
+/* ---- Shaders that make light grids on the GPU of lights there ---- */
+
+/* The compute shaders that make a whole light grid of lights in a buffer on the GPU, in the order of their dispatches,
+ * with a barrier between any two. lightbin_cull_passes() has those to dispatch: five, or with z-bins all nine.
+ * docs/gpu.md shows their use. */
+typedef enum lightbin_cull_pass {
+    LIGHTBIN_CULL_PROJECT = 0,     /* finds each light's rectangle of tiles, and the blocks of tiles that it meets */
+    LIGHTBIN_CULL_BIN_COUNTS = 1,  /* z-bins: counts the lights that begin in each bin */
+    LIGHTBIN_CULL_BIN_OFFSETS = 2, /* z-bins: finds the first rank of each bin */
+    /* z-bins: sorts the lights by the bin that they begin in, and finds the range of ranks of each bin */
+    LIGHTBIN_CULL_RANK = 3,
+    LIGHTBIN_CULL_MASKS = 4,   /* z-bins: finds the blocks of tiles that each rank meets */
+    LIGHTBIN_CULL_COUNT = 5,   /* counts the lights of each cell */
+    LIGHTBIN_CULL_SUMS = 6,    /* adds the counts up, over 128 cells at a time */
+    LIGHTBIN_CULL_OFFSETS = 7, /* adds the sums up, and finds the total */
+    LIGHTBIN_CULL_FILL = 8     /* writes the lists */
+} lightbin_cull_pass;
+
+/* Returns the passes to dispatch for a lightbin_slicing, each a lightbin_cull_pass, in order, and writes their number
+ * to *count. They are valid as long as the program. Null, and 0 passes, if slicing is no value, if count is null, or
+ * if the program was compiled without this part. */
+LIGHTBIN_API const int32_t* lightbin_cull_passes(int32_t slicing, size_t* count);
+
+/* What the lights in the buffer are. Boxes are refused. */
+typedef enum lightbin_cull_kind {
+    LIGHTBIN_CULL_SPHERE = 0,
+    LIGHTBIN_CULL_SPOT = 1, /* those with a half angle beyond 138 degrees count as whole spheres */
+    LIGHTBIN_CULL_BOX = 2
+} lightbin_cull_kind;
+
+/* What lightbin_cull_shader() generates. All passes of a build, and its plan, need the same options except for `pass`.
+ * Every device with OpenGL ES 3.1, Vulkan or WebGPU can run them: each pass uses at most four storage buffers, by
+ * default at bindings below 4, 128 invocations in a group and 16 KB of shared memory; none uses subgroups, and no group
+ * waits for another. */
+typedef struct lightbin_cull_options {
+    uint32_t size;
+    int32_t language;   /* a lightbin_shader_language */
+    const char* prefix; /* null: "lightbin_" */
+    int32_t pass;       /* a lightbin_cull_pass */
+    int32_t kind;       /* a lightbin_cull_kind */
+    /* Where the numbers of a light lie in the buffer `lights`, in words of 32 bits. stride: from one light to the next;
+     * 0: lights lie side by side, as x, y, z, radius and with spots axis x, y, z and cosine, and the next four are not
+     * read. centre and axis: x, y and z, side by side. cosine: of the half angle. */
+    uint32_t stride, centre, radius, axis, cosine;
+    int32_t world_space;     /* not 0: the lights are in world space, and are transformed to view space */
+    int32_t count_in_buffer; /* not 0: the number of lights is read from the buffer `light_count` */
+    uint32_t count_at;       /* with count_in_buffer: the index of the word that holds the number */
+    int32_t ids;             /* LIGHTBIN_U32, or LIGHTBIN_U16: then each word of `lists` holds two ids */
+    int32_t depth_test;      /* a lightbin_depth_test; SPLIT_BOX is an error; with clusters, INTERVAL is, too */
+    int32_t slicing;         /* a lightbin_slicing */
+    /* Not 0: test with the maximum Z bound alone, for transparent geometry; not with clusters */
+    int32_t max_only;
+    int32_t orthographic; /* that of lightbin_view_info */
+    int32_t slots_given;  /* 0: bindings 0, 0, 1, 2, 2, 2, 3, 3, 3 and 4 of set 0 in the order below */
+    lightbin_slot lights, z_bounds, scratch, slices, bins, tiles, light_count, order, lists, grid;
+} lightbin_cull_options;
+
+/* Makes the text of one pass, a whole compute shader except for `#version`, with the buffers to bind. The name of a
+ * binding is the prefix, the buffer's name in lightbin_cull_options and, in GLSL, `_block`; that of the constants ends
+ * in `grid_block`. On success *shader is to be freed with lightbin_shader_destroy().
+ *
+ * After all passes, the buffers `tiles` and `lists` hold what a binner's grid has in ranges and ids, and with z-bins
+ * `order` and `bins`: the shader text of lightbin_shader_snippet() reads them. No light that the binner lists is
+ * missing in a list, and ids ascend in each; few lists have more, see docs/gpu.md. The same input gives the same bytes
+ * on every run. If the lists have more entries than there is room for, the list of the first tile that does not fit
+ * is cut, and the lists after it are empty; lightbin_cull_totals has the number that was needed.
+ *
+ * Errors name the option that the language or the device does not allow. */
+LIGHTBIN_API lightbin_result lightbin_cull_shader(const lightbin_cull_options* options,
+                                                  const lightbin_allocator* allocator,
+                                                  lightbin_shader** shader);
+
+/* The work groups of a dispatch, in x and y; z is 1. Neither exceeds 65,535. */
+typedef struct lightbin_cull_groups {
+    uint32_t x, y;
+} lightbin_cull_groups;
+
+/* All that a program needs to run the passes for a view. */
+typedef struct lightbin_cull_plan {
+    uint32_t size;
+    uint32_t unused;
+    /* The sizes of the buffers of a build, in bytes, each a multiple of 4 and at least 16. They need no initial
+     * content. order_bytes and bin_bytes are 0 without z-bins. */
+    uint64_t scratch_bytes; /* the first words of `scratch` are lightbin_cull_totals afterwards */
+    uint64_t tile_bytes;    /* of `tiles`: a lightbin_range for each cell */
+    uint64_t list_bytes;    /* of `lists`: the ids */
+    uint64_t order_bytes;   /* of `order`: the light of each rank, as lightbin_grid::order */
+    uint64_t bin_bytes;     /* of `bins`: a lightbin_bin_range for each bin */
+    lightbin_cull_groups groups[9]; /* by lightbin_cull_pass */
+    /* The content of the uniform block `grid`, all 256 bytes. Its layout is that of the texts of the same version of
+     * lightbin: make both in the same program. */
+    uint32_t constants[64];
+} lightbin_cull_plan;
+
+/* What the passes leave in the first words of `scratch`. */
+typedef struct lightbin_cull_totals {
+    uint32_t entries;  /* of the complete lists; 2^32 - 1 stands for that number and all greater ones */
+    uint32_t rejected; /* lights left out as bad input: see lightbin_spheres and lightbin_spots */
+    uint32_t visible;  /* lights in view */
+    uint32_t lights;   /* how many were given: with count_in_buffer, it may exceed those that there is room for */
+} lightbin_cull_totals;
+
+/* Computes the constants, buffer sizes and group counts for a view. Where only the camera moves, not the viewport, the
+ * tile size or the room, only the constants change. Set plan->size before.
+ *
+ * options   those of the texts; `pass` is not read
+ * lights    the number of lights, with count_in_buffer the greatest
+ * entries   how many ids fit in `lists`
+ * slices    with clusters or z-bins, else null. The buffer `slices` holds what lightbin_shader_slices() writes
+ * to_view   with world_space the matrix from world space to view space, else null
+ *
+ * Without clusters, the buffer `z_bounds` holds the minimum and maximum of each tile, as the shader of
+ * lightbin_reduce_shader() writes them, and with BOX behind them what lightbin_shader_edges() writes. With clusters and
+ * BOX, it holds what lightbin_shader_slabs() writes and behind that lightbin_shader_edges().
+ *
+ * Errors: those of lightbin_cull_shader(); the matrix is not close enough to a rotation with a uniform scale; more than
+ * 65,535 slices or 1,024 z-bins; too many lights for the ids; `scratch` would have more than 2^32 - 1 words. */
+LIGHTBIN_API lightbin_result lightbin_plan_cull(const lightbin_view* view,
+                                                const lightbin_cull_options* options, uint32_t lights,
+                                                uint32_t entries, const lightbin_slices* slices,
+                                                const lightbin_matrix* to_view, lightbin_cull_plan* plan);
 
 /* ---- Advice ---- */
 

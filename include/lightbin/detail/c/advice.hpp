@@ -7,7 +7,7 @@
 #include <lightbin/advise.hpp>
 
 /// Advice: the plans and the texts follow the struct in the same piece of memory.
-struct lightbin_advice {
+struct alignas(lightbin_plan) lightbin_advice {
     lightbin::c::Memory memory;
     const lightbin_plan* plans;
     std::size_t count;
@@ -28,13 +28,12 @@ struct CopiedLights {
 };
 
 template <class Given> auto copied(const Lights<LightCount, InPlace<Given>>& lights) {
-    std::vector<decltype(read_light(lights.to_light.from, 0))> made(lights.array.size());
-    for (std::size_t i = 0; i < made.size(); ++i)
-        made[i] = read_light(lights.to_light.from, i);
+    std::vector<typename Lights<LightCount, InPlace<Given>>::Made> made(lights.array.size());
+    lights.make(0, made.size(), made.data());
     return made;
 }
 inline CopiedLights copied(const CallLights& lights) {
-    return {copied(lights.spheres), copied(lights.spots), copied(lights.boxes), lights.spheres.to_view};
+    return {copied(lights.spheres()), copied(lights.spots()), copied(lights.boxes()), lights.to_view};
 }
 
 /// Returns the lights of a binner's call that reads copies.
@@ -42,20 +41,18 @@ inline CallLights in_call(const CopiedLights& copies) {
     const auto floats = [](const auto& array, auto member) {
         return lightbin_floats{array.empty() ? nullptr : &(array[0].*member), sizeof array[0]};
     };
-    const lightbin_spheres spheres = {copies.spheres.size(), floats(copies.spheres, &Sphere::x),
-                                      floats(copies.spheres, &Sphere::radius)};
-    const lightbin_spots spots = {copies.spots.size(), floats(copies.spots, &Spot::x),
-                                  floats(copies.spots, &Spot::radius), floats(copies.spots, &Spot::axis_x),
-                                  floats(copies.spots, &Spot::cos_half_angle)};
-    const lightbin_boxes boxes = {copies.boxes.size(),
-                                  floats(copies.boxes, &Box::x),
-                                  floats(copies.boxes, &Box::radius),
-                                  floats(copies.boxes, &Box::box_x),
-                                  {copies.boxes.empty() ? nullptr : &copies.boxes[0].half_axes, sizeof(Box)},
-                                  floats(copies.boxes, &Box::taper)};
-    return {{{spheres.count}, {spheres}, copies.to_view},
-            {{spots.count}, {spots}, copies.to_view},
-            {{boxes.count}, {boxes}, copies.to_view}};
+    lightbin_lights given = {};
+    given.spheres = {copies.spheres.size(), floats(copies.spheres, &Sphere::x),
+                     floats(copies.spheres, &Sphere::radius)};
+    given.spots = {copies.spots.size(), floats(copies.spots, &Spot::x), floats(copies.spots, &Spot::radius),
+                   floats(copies.spots, &Spot::axis_x), floats(copies.spots, &Spot::cos_half_angle)};
+    given.boxes = {copies.boxes.size(),
+                   floats(copies.boxes, &Box::x),
+                   floats(copies.boxes, &Box::radius),
+                   floats(copies.boxes, &Box::box_x),
+                   {copies.boxes.empty() ? nullptr : &copies.boxes[0].half_axes, sizeof(Box)},
+                   floats(copies.boxes, &Box::taper)};
+    return {given, copies.to_view};
 }
 
 /// What weigh() calls of lights: see lights.hpp and weigh.hpp.
@@ -125,7 +122,6 @@ inline lightbin_result make_advice(const Memory& memory, const Advice& made, lig
     const std::string text = to_string(made), table = made.text();
     const std::span<const Plan> plans = made.plans();
     const std::size_t plan_bytes = plans.size() * sizeof(lightbin_plan);
-    static_assert(sizeof(lightbin_advice) % alignof(lightbin_plan) == 0);
     char* const place = static_cast<char*>(
         memory.allocate(sizeof(lightbin_advice) + plan_bytes + text.size() + table.size() + 2));
     if (place == nullptr) return refused(LIGHTBIN_OUT_OF_MEMORY, "");

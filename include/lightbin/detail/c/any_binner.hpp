@@ -13,11 +13,6 @@
 namespace lightbin {
 namespace c {
 
-#if defined(LIGHTBIN_NO_SPOTS) && defined(LIGHTBIN_NO_BOXES)
-inline constexpr bool spheres_alone = true;
-#else
-inline constexpr bool spheres_alone = false;
-#endif
 #if defined(LIGHTBIN_NO_BITS)
 inline constexpr bool has_bits = false;
 #else
@@ -145,8 +140,8 @@ class ProjectionOf final : public Projection {
 public:
     LIGHTBIN_SMALL void destroy() override { this->~ProjectionOf(); }
 
-    LIGHTBIN_SMALL std::optional<Error> project(Isa isa, const Call& call, bool shared,
-                                                bool for_boxes) override {
+    LIGHTBIN_ONCE std::optional<Error> project(Isa isa, const Call& call, bool shared,
+                                               bool for_boxes) override {
         footprints_.project(isa, call.view, call.lights.all(), call.threads, shared, for_boxes);
         if constexpr (sliced) {
             return with_kind(call.lights.kind(), [&]<detail::LightKind kind>() {
@@ -157,8 +152,8 @@ public:
         }
     }
 
-    LIGHTBIN_SMALL void find_coverage([[maybe_unused]] const Call& call,
-                                      [[maybe_unused]] detail::CoverageList& coverage) override {
+    LIGHTBIN_ONCE void find_coverage([[maybe_unused]] const Call& call,
+                                     [[maybe_unused]] detail::CoverageList& coverage) override {
 #if !defined(LIGHTBIN_NO_COVERAGE)
         if constexpr (with_spheres)
             coverage.template find<spheres_alone ? detail::LightKind::sphere : detail::LightKind::mixed>(
@@ -281,8 +276,8 @@ inline constexpr auto kernels_of = for_each_number<Kernels<Id>>([]<std::size_t n
         return {choose_kernel<options.footprint, options.depth_test, Id, by_slab, read>, nullptr};
     else
         return {choose_kernel<options.footprint, options.depth_test, Id, by_slab, read>,
-                detail::scalar::count_entries<options.footprint, options.depth_test, by_slab, read,
-                                              std::uint32_t>};
+                detail::least::count_entries<options.footprint, options.depth_test, by_slab, read,
+                                             std::uint32_t>};
 });
 
 /// The kernels that write bitmasks, of all options but clusters. They do not depend on the width of ids.
@@ -323,29 +318,26 @@ public:
     const Options& options() const { return options_; }
     std::span<const LightCoverage> coverage() const { return coverage_.all(); }
 
-    template <class Id> LIGHTBIN_SMALL Result<LightGrid<Id>> bin(const Call& call) {
+    template <class Id> LIGHTBIN_ONCE Result<LightGrid<Id>> bin(const Call& call) {
         const detail::DefaultFloatEnvironment environment;
         if (const auto error = project(call)) return *error;
         return build<Id>(lists<Id>()[0], call, call.bounds);
     }
 
-    template <class Id> LIGHTBIN_SMALL Result<TransparencyGrids<Id>> bin_transparency(const Call& call) {
+    template <class Id> LIGHTBIN_ONCE Result<TransparencyGrids<Id>> bin_transparency(const Call& call) {
         const detail::DefaultFloatEnvironment environment;
-        const ZBounds& bounds = call.bounds;
-        const bool own_max = !bounds.transparent_max.empty();
-        if (bounds.background_skipped && !bounds.max.empty() && !own_max)
-            return Error{ErrorCode::no_transparent_max};
+        const Result<ZBounds> in_front = detail::transparent_bounds(call.bounds);
+        if (!in_front) return in_front.error();
         if (const auto error = project(call)) return *error;
-        const auto transparent =
-            build<Id>(lists<Id>()[1], call, {.max = own_max ? bounds.transparent_max : bounds.max});
+        const auto transparent = build<Id>(lists<Id>()[1], call, *in_front);
         if (!transparent) return transparent.error();
-        const auto opaque = build<Id>(lists<Id>()[0], call, bounds);
+        const auto opaque = build<Id>(lists<Id>()[0], call, call.bounds);
         if (!opaque) return opaque.error();
         return TransparencyGrids<Id>{*opaque, *transparent};
     }
 
-    LIGHTBIN_SMALL Result<LightBits> bin_bits(const Call& call, std::uint32_t max_lights,
-                                              std::span<std::uint32_t> bits) {
+    LIGHTBIN_ONCE Result<LightBits> bin_bits(const Call& call, std::uint32_t max_lights,
+                                             std::span<std::uint32_t> bits) {
         const detail::DefaultFloatEnvironment environment;
         const std::uint64_t each = (max_lights + std::uint64_t{31}) / 32,
                             words = detail::product_of_sizes(call.view.tile_count(), each);
@@ -378,7 +370,7 @@ private:
             return wide_;
     }
 
-    LIGHTBIN_SMALL std::optional<Error> project(const Call& call) {
+    LIGHTBIN_ONCE std::optional<Error> project(const Call& call) {
         coverage_.clear();
         if (const auto error =
                 detail::refuse(call.lights.all(), options_.ids == IdWidth::u16 ? 0x10000 : 0xffffffff))
@@ -392,7 +384,7 @@ private:
     }
 
     template <class Id>
-    LIGHTBIN_SMALL Result<LightGrid<Id>> build(Lists<Id>& lists, const Call& call, const ZBounds& bounds) {
+    LIGHTBIN_ONCE Result<LightGrid<Id>> build(Lists<Id>& lists, const Call& call, const ZBounds& bounds) {
         const std::size_t number = kernel_number(options_);
         const Kernels<Id> kernels = with_kind(call.lights.kind(), [number]<detail::LightKind kind>() {
             return kernels_of<Id, kind>[number];

@@ -85,6 +85,10 @@ inline constexpr lightbin_error error_numbers[] = {
     LIGHTBIN_TEXTURE_WIDTH_OUT_OF_RANGE,
     LIGHTBIN_BINDINGS_OVERLAP,
     LIGHTBIN_NOT_A_PREFIX,
+    LIGHTBIN_NO_CULL_OF_BOXES,
+    LIGHTBIN_TOO_MANY_SLICES,
+    LIGHTBIN_VIEW_MATRIX_DISTORTS,
+    LIGHTBIN_SCRATCH_TOO_LARGE,
 };
 static_assert(sizeof error_numbers / sizeof *error_numbers ==
                   sizeof detail::error_sentences / sizeof *detail::error_sentences,
@@ -125,9 +129,8 @@ inline const char* sentence_of(std::int32_t error) {
                "makes "
                "them";
     case LIGHTBIN_NOT_READ:
-        return "this binner does not read this input: bounds want a depth test, and slices a slicing; "
-               "clusters read no "
-               "bounds";
+        return "the options do not read this input: bounds want a depth test, and slices a slicing; "
+               "clusters read no bounds, and lights in view space no matrix";
     case LIGHTBIN_OPTIONS_NOT_TOGETHER:
         return "this binner's options do not go together: clusters have no interval and no split_box test "
                "and no "
@@ -189,15 +192,17 @@ template <class Struct> lightbin_result check_size(const Struct* given, const ch
 template <class Struct> lightbin_result read(const Struct* given, Struct& known, const char* name) {
     const lightbin_result result = check_size(given, name);
     if (result.error != LIGHTBIN_OK) return result;
-    known = {};
-    std::memcpy(&known, given, detail::min_of<std::size_t>(given->size, sizeof known));
+    const std::size_t given_bytes = detail::min_of<std::size_t>(given->size, sizeof known);
+    std::memcpy(&known, given, given_bytes);
+    std::memset(reinterpret_cast<char*>(&known) + given_bytes, 0, sizeof known - given_bytes);
     return result;
 }
 
 /// Copies a struct to the caller's, as far as that has the members. The caller's keeps its `size`, which was checked.
-template <class Struct> LIGHTBIN_SMALL void write(Struct known, Struct* to) {
-    known.size = to->size;
-    std::memcpy(to, &known, detail::min_of<std::size_t>(to->size, sizeof known));
+template <class Struct> void write(const Struct& known, Struct* to) {
+    const std::uint32_t size = to->size;
+    std::memcpy(to, &known, detail::min_of<std::size_t>(size, sizeof known));
+    to->size = size;
 }
 
 /// Returns why a number is refused that must be 0 to `greatest`.

@@ -40,10 +40,7 @@ lightbin_result lightbin_reduce_shader(const lightbin_reduce_options* options,
 
 lightbin_result lightbin_shader_reduce(const lightbin_view* view, std::int32_t corner_x,
                                        std::int32_t corner_y, lightbin_reduce_constants* constants) {
-    using namespace lightbin::c;
-    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
-    if (constants == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "constants");
-    return write_constants(lightbin::shader_reduce(view->value, corner_x, corner_y), constants);
+    return lightbin::c::write_constants<lightbin::shader_reduce>(view, constants, corner_x, corner_y);
 }
 
 lightbin_result lightbin_build_shader(const lightbin_build_options* options,
@@ -81,10 +78,8 @@ lightbin_result lightbin_build_shader(const lightbin_build_options* options,
 lightbin_result lightbin_shader_build(const lightbin_view* view, std::uint32_t footprints,
                                       std::uint32_t capacity, std::int32_t slices,
                                       lightbin_build_constants* constants) {
-    using namespace lightbin::c;
-    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
-    if (constants == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "constants");
-    return write_constants(lightbin::shader_build(view->value, footprints, capacity, slices), constants);
+    return lightbin::c::write_constants<lightbin::shader_build>(view, constants, footprints, capacity,
+                                                                slices);
 }
 
 lightbin_result lightbin_shader_footprints(const lightbin_view* view, const lightbin_lights* lights,

@@ -10,15 +10,20 @@
 //   LIGHTBIN_NO_COVERAGE                                            lightbin_binner_options::coverage
 //   LIGHTBIN_NO_BUDGETS                                             lightbin_limit_grid()
 //   LIGHTBIN_NO_THREADS                                             lightbin_inputs::threads
-//   LIGHTBIN_NO_SHADERS, LIGHTBIN_NO_BUILD_SHADERS                  shader text; the shaders that work on the GPU
+//   LIGHTBIN_NO_SHADERS                                             all shader text
+//   LIGHTBIN_NO_BUILD_SHADERS                                       lightbin_reduce_shader(), lightbin_build_shader()
+//   LIGHTBIN_NO_CULL_SHADERS                                        lightbin_cull_shader(), lightbin_plan_cull()
 //   LIGHTBIN_NO_ADVICE                                              lightbin_advise(), lightbin_advise_slices()
-//   LIGHTBIN_NO_SIMD                                                all kernels but the scalar ones
+//   LIGHTBIN_NO_SIMD, LIGHTBIN_NO_SCALAR                            the vector kernels; the scalar ones (docs/install.md)
 #pragma once
 
 #include <lightbin/detail/c/memory.hpp>
 
 #if defined(LIGHTBIN_NO_SHADERS) && !defined(LIGHTBIN_NO_BUILD_SHADERS)
 #define LIGHTBIN_NO_BUILD_SHADERS 1
+#endif
+#if defined(LIGHTBIN_NO_SHADERS) && !defined(LIGHTBIN_NO_CULL_SHADERS)
+#define LIGHTBIN_NO_CULL_SHADERS 1
 #endif
 
 #include <lightbin/detail/c/grids.hpp>
@@ -27,6 +32,9 @@
 #endif
 #if !defined(LIGHTBIN_NO_BUILD_SHADERS)
 #include <lightbin/detail/c/build_shaders.hpp>
+#endif
+#if !defined(LIGHTBIN_NO_CULL_SHADERS)
+#include <lightbin/detail/c/cull_shaders.hpp>
 #endif
 #if !defined(LIGHTBIN_NO_ADVICE)
 #include <lightbin/detail/c/advice.hpp>

@@ -4,7 +4,9 @@
 
 #include <lightbin/detail/c/arguments.hpp>
 
+#include <lightbin/box.hpp>
 #include <lightbin/detail/project/footprints.hpp>
+#include <lightbin/spot.hpp>
 
 namespace lightbin {
 namespace c {
@@ -19,58 +21,55 @@ struct LightCount {
 
 /// What Lights has in place of a callable that makes Spheres, Spots or Boxes: the caller's lightbin_spheres,
 /// lightbin_spots or lightbin_boxes.
-template <class Given> struct InPlace { Given from; };
+template <class Given> struct InPlace { const Given& from; };
 
-/// Reads `count` floats of light i.
-template <std::size_t count> void read_floats(const lightbin_floats& floats, std::size_t i, float* to) {
-    std::memcpy(to, static_cast<const char*>(floats.first) + i * floats.stride, count * sizeof(float));
+/// Reads `each` floats of each of the lights first..first + count - 1 into the lights at `to`, from byte `offset` on.
+template <std::size_t each, class Light>
+void read_floats(lightbin_floats floats, std::size_t first, std::size_t count, Light* to,
+                 std::size_t offset) {
+    const char* const from = static_cast<const char*>(floats.first) + first * floats.stride;
+    char* const into = reinterpret_cast<char*>(to) + offset;
+    for (std::size_t i = 0; i < count; ++i)
+        std::memcpy(into + i * sizeof *to, from + i * floats.stride, each * sizeof(float));
 }
 
-/// Whether one float follows three floats in each of the caller's structs, so that the four can be read at once.
-inline bool adjacent(const lightbin_floats& three, const lightbin_floats& one) {
-    return three.stride == one.stride && reinterpret_cast<std::uintptr_t>(three.first) + 3 * sizeof(float) ==
-                                             reinterpret_cast<std::uintptr_t>(one.first);
-}
-
-/// Writes three floats and one of each of the lights first..first + count - 1 to `to`.
-inline void read_fours(const lightbin_floats& three, const lightbin_floats& one, std::size_t first,
-                       std::size_t count, Sphere* to) {
-    if (adjacent(three, one)) {
-        for (std::size_t i = 0; i < count; ++i)
-            std::memcpy(to + i, static_cast<const char*>(three.first) + (first + i) * three.stride,
-                        sizeof *to);
+/// Reads three floats and one of each of the lights, which are read at once where they lie side by side.
+template <class Light>
+void read_fours(const lightbin_floats& three, const lightbin_floats& one, std::size_t first,
+                std::size_t count, Light* to, std::size_t offset) {
+    const std::uintptr_t end = reinterpret_cast<std::uintptr_t>(three.first) + 3 * sizeof(float);
+    if (three.stride == one.stride && reinterpret_cast<std::uintptr_t>(one.first) == end) {
+        read_floats<4>(three, first, count, to, offset);
     } else {
-        for (std::size_t i = 0; i < count; ++i) {
-            float position[3], last = 0;
-            read_floats<3>(three, first + i, position);
-            read_floats<1>(one, first + i, &last);
-            to[i] = {position[0], position[1], position[2], last};
-        }
+        read_floats<3>(three, first, count, to, offset);
+        read_floats<1>(one, first, count, to, offset + 3 * sizeof(float));
     }
 }
 
-/// Return light i of the caller's array.
-inline Sphere read_light(const lightbin_spheres& from, std::size_t i) {
-    Sphere sphere;
-    read_fours(from.centre, from.radius, i, 1, &sphere);
-    return sphere;
+/// Read the lights first..first + count - 1 of the caller's array.
+inline void read_lights(const lightbin_spheres& from, std::size_t first, std::size_t count, Sphere* to) {
+    read_fours(from.centre, from.radius, first, count, to, 0);
 }
-inline Spot read_light(const lightbin_spots& from, std::size_t i) {
-    Sphere ball, cone;
-    read_fours(from.centre, from.radius, i, 1, &ball);
-    read_fours(from.axis, from.cosine, i, 1, &cone);
-    return {ball.x, ball.y, ball.z, ball.radius, cone.x, cone.y, cone.z, cone.radius};
+inline void read_lights(const lightbin_spots& from, std::size_t first, std::size_t count, Spot* to) {
+    read_fours(from.centre, from.radius, first, count, to, 0);
+    read_fours(from.axis, from.cosine, first, count, to, offsetof(Spot, axis_x));
 }
-inline Box read_light(const lightbin_boxes& from, std::size_t i) {
-    float centre[3], middle[3], radius = std::numeric_limits<float>::infinity(), taper = 1, half_axes[9];
-    read_floats<3>(from.box_centre, i, middle);
-    read_floats<9>(from.half_axes, i, half_axes);
-    read_floats<3>(from.centre.first != nullptr ? from.centre : from.box_centre, i, centre);
-    if (from.radius.first != nullptr) read_floats<1>(from.radius, i, &radius);
-    if (from.taper.first != nullptr) read_floats<1>(from.taper, i, &taper);
-    Box box = {centre[0], centre[1], centre[2], radius, middle[0], middle[1], middle[2], {}, taper};
-    std::memcpy(box.half_axes, half_axes, sizeof half_axes);
-    return box;
+inline void read_lights(const lightbin_boxes& from, std::size_t first, std::size_t count, Box* to) {
+    if (from.radius.first != nullptr) {
+        read_fours(from.centre, from.radius, first, count, to, 0);
+    } else {
+        read_floats<3>(from.box_centre, first, count, to, 0);
+        for (std::size_t i = 0; i < count; ++i)
+            to[i].radius = std::numeric_limits<float>::infinity();
+    }
+    read_floats<3>(from.box_centre, first, count, to, offsetof(Box, box_x));
+    read_floats<9>(from.half_axes, first, count, to, offsetof(Box, half_axes));
+    if (from.taper.first != nullptr) {
+        read_floats<1>(from.taper, first, count, to, offsetof(Box, taper));
+    } else {
+        for (std::size_t i = 0; i < count; ++i)
+            to[i].taper = 1;
+    }
 }
 
 /// Whether floats lie in structs of type Light, one behind the other from `first` on, from byte `offset` of each.
@@ -111,22 +110,33 @@ template <class Given> const void* lights_of_own_layout(const Given& from) {
 inline namespace LIGHTBIN_ABI_TAG {
 
 template <class Given> struct Lights<c::LightCount, c::InPlace<Given>> {
+    using Made = std::conditional_t<std::is_same_v<Given, lightbin_spheres>, Sphere,
+                                    std::conditional_t<std::is_same_v<Given, lightbin_spots>, Spot, Box>>;
+
     c::LightCount array;
     c::InPlace<Given> to_light;
-    std::optional<detail::WorldToView> to_view;
+    const detail::WorldToView* to_view;
 
-    static constexpr detail::LightKind kind =
-        std::is_same_v<Given, lightbin_spheres> ? detail::LightKind::sphere
-        : std::is_same_v<Given, lightbin_spots> ? detail::LightKind::spot
-                                                : detail::LightKind::box;
+    static constexpr detail::LightKind kind = std::is_same_v<Made, Sphere> ? detail::LightKind::sphere
+                                              : std::is_same_v<Made, Spot> ? detail::LightKind::spot
+                                                                           : detail::LightKind::box;
+
+    /// Writes the Spheres, Spots or Boxes first..first + count - 1 of the caller's array.
+    void make(std::size_t first, std::size_t count, Made* to) const {
+        c::read_lights(to_light.from, first, count, to);
+    }
 
     /// Returns the Sphere, Spot or Box with an index in the caller's array.
-    auto made(std::size_t i) const { return c::read_light(to_light.from, i); }
+    Made made(std::size_t i) const {
+        Made light;
+        make(i, 1, &light);
+        return light;
+    }
 
     /// Returns a sphere, in view space, that contains the light with an index in the caller's array.
     Sphere view_sphere(std::size_t i) const {
-        const Sphere sphere = c::read_light(to_light.from, i);
-        return to_view ? (*to_view)(sphere) : sphere;
+        const Sphere sphere = made(i);
+        return to_view != nullptr ? (*to_view)(sphere) : sphere;
     }
 };
 
@@ -158,47 +168,47 @@ template <> inline const void* as_they_are(const c::BoxLights& lights) {
 
 namespace c {
 
-/// Returns why the floats of lights are refused.
+/// Returns why the floats of lights, at least one, are refused.
 inline lightbin_result check_floats(const lightbin_floats& floats, std::size_t count, std::size_t each,
                                     const char* name) {
-    if (count > 0 && floats.first == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, name);
+    if (floats.first == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, name);
     if (count > 1 && floats.stride < each * sizeof(float))
         return refused(LIGHTBIN_STRIDE_TOO_SMALL, name, each * sizeof(float), floats.stride);
     return succeeded();
 }
 
+/// Whether spots and boxes are left out.
+inline constexpr bool spheres_alone = !detail::kinds_have_spots && !detail::kinds_have_boxes;
+
 /// The lights of a call.
 struct CallLights {
-    SphereLights spheres;
-    SpotLights spots;
-    BoxLights boxes;
+    lightbin_lights given;
+    std::optional<detail::WorldToView> to_view;
 
     /// Returns the kind of all lights of the call.
     detail::LightKind kind() const {
-        const std::size_t balls = spheres.array.count, cones = spots.array.count, rooms = boxes.array.count;
-        if (cones + rooms == 0) return detail::LightKind::sphere;
-        if (balls + rooms == 0) return detail::LightKind::spot;
-        return balls + cones == 0 ? detail::LightKind::box : detail::LightKind::mixed;
+        const std::size_t spheres = given.spheres.count, spots = given.spots.count, boxes = given.boxes.count;
+        if (spots + boxes == 0) return detail::LightKind::sphere;
+        if (spheres + boxes == 0) return detail::LightKind::spot;
+        return spheres + spots == 0 ? detail::LightKind::box : detail::LightKind::mixed;
     }
 
+    SphereLights spheres() const { return in_place(given.spheres); }
+    SpotLights spots() const { return in_place(given.spots); }
+    BoxLights boxes() const { return in_place(given.boxes); }
+
     /// Returns the lights of all kinds that the program has, for the engine. The result refers to this object.
-#if defined(LIGHTBIN_NO_SPOTS) && defined(LIGHTBIN_NO_BOXES)
-    const SphereLights& all() const {
-        return spheres;
+    auto all() const {
+        if constexpr (spheres_alone)
+            return spheres();
+        else if constexpr (!detail::kinds_have_boxes)
+            return JoinedLights<SphereLights, SpotLights>{spheres(), spots()};
+        else if constexpr (!detail::kinds_have_spots)
+            return JoinedLights<SphereLights, BoxLights>{spheres(), boxes()};
+        else
+            return JoinedLights<SphereLights, JoinedLights<SpotLights, BoxLights>>{spheres(),
+                                                                                   {spots(), boxes()}};
     }
-#elif defined(LIGHTBIN_NO_BOXES)
-    JoinedLights<const SphereLights&, const SpotLights&> all() const {
-        return {spheres, spots};
-    }
-#elif defined(LIGHTBIN_NO_SPOTS)
-    JoinedLights<const SphereLights&, const BoxLights&> all() const {
-        return {spheres, boxes};
-    }
-#else
-    JoinedLights<const SphereLights&, JoinedLights<const SpotLights&, const BoxLights&>> all() const {
-        return {spheres, {spots, boxes}};
-    }
-#endif
 
     /// Whether memory of the caller overlaps that of the lights.
     bool overlaps(const Bytes& memory) const {
@@ -207,9 +217,9 @@ struct CallLights {
             const std::uint64_t before_last = detail::product_of_sizes(count - 1, floats.stride);
             return overlap(memory, {floats.first, detail::sum_of_sizes(before_last, each * sizeof(float))});
         };
-        const lightbin_spheres& balls = spheres.to_light.from;
-        const lightbin_spots& cones = spots.to_light.from;
-        const lightbin_boxes& rooms = boxes.to_light.from;
+        const lightbin_spheres& balls = given.spheres;
+        const lightbin_spots& cones = given.spots;
+        const lightbin_boxes& rooms = given.boxes;
         return meets(balls.centre, balls.count, 3) || meets(balls.radius, balls.count, 1) ||
                meets(cones.centre, cones.count, 3) || meets(cones.radius, cones.count, 1) ||
                meets(cones.axis, cones.count, 3) || meets(cones.cosine, cones.count, 1) ||
@@ -217,52 +227,53 @@ struct CallLights {
                meets(rooms.box_centre, rooms.count, 3) || meets(rooms.half_axes, rooms.count, 9) ||
                meets(rooms.taper, rooms.count, 1);
     }
+
+private:
+    template <class Given> Lights<LightCount, InPlace<Given>> in_place(const Given& from) const {
+        return {{from.count}, {from}, to_view ? &*to_view : nullptr};
+    }
 };
 
 /// Reads what describes the caller's lights, but not the lights; or returns why that is refused.
 inline lightbin_result read_lights(const lightbin_lights* given, CallLights& lights) {
-    lightbin_lights known;
-    lightbin_result result = read(given, known, "lights");
+    lightbin_result result = read(given, lights.given, "lights");
     if (result.error != LIGHTBIN_OK) return result;
-    const lightbin_spheres& spheres = known.spheres;
-    const lightbin_spots& spots = known.spots;
-    const lightbin_boxes& boxes = known.boxes;
-    const bool whole = boxes.centre.first == nullptr && boxes.radius.first == nullptr;
-    result = first_error(
-        check_floats(spheres.centre, spheres.count, 3, "lights.spheres.centre"),
-        check_floats(spheres.radius, spheres.count, 1, "lights.spheres.radius"),
-        check_floats(spots.centre, spots.count, 3, "lights.spots.centre"),
-        check_floats(spots.radius, spots.count, 1, "lights.spots.radius"),
-        check_floats(spots.axis, spots.count, 3, "lights.spots.axis"),
-        check_floats(spots.cosine, spots.count, 1, "lights.spots.cosine"),
-        check_floats(boxes.centre, whole ? 0 : boxes.count, 3, "lights.boxes.centre"),
-        check_floats(boxes.radius, whole ? 0 : boxes.count, 1, "lights.boxes.radius"),
-        check_floats(boxes.box_centre, boxes.count, 3, "lights.boxes.box_centre"),
-        check_floats(boxes.half_axes, boxes.count, 9, "lights.boxes.half_axes"),
-        check_floats(boxes.taper, boxes.taper.first != nullptr ? boxes.count : 0, 1, "lights.boxes.taper"));
+    const lightbin_spheres& spheres = lights.given.spheres;
+    const lightbin_spots& spots = lights.given.spots;
+    const lightbin_boxes& boxes = lights.given.boxes;
+    if (spheres.count > 0)
+        result = first_error(check_floats(spheres.centre, spheres.count, 3, "lights.spheres.centre"),
+                             check_floats(spheres.radius, spheres.count, 1, "lights.spheres.radius"));
+    if (result.error == LIGHTBIN_OK && spots.count > 0)
+        result = first_error(check_floats(spots.centre, spots.count, 3, "lights.spots.centre"),
+                             check_floats(spots.radius, spots.count, 1, "lights.spots.radius"),
+                             check_floats(spots.axis, spots.count, 3, "lights.spots.axis"),
+                             check_floats(spots.cosine, spots.count, 1, "lights.spots.cosine"));
+    if (result.error == LIGHTBIN_OK && boxes.count > 0) {
+        const bool whole = boxes.centre.first == nullptr && boxes.radius.first == nullptr;
+        result = first_error(
+            whole ? result : check_floats(boxes.centre, boxes.count, 3, "lights.boxes.centre"),
+            whole ? result : check_floats(boxes.radius, boxes.count, 1, "lights.boxes.radius"),
+            check_floats(boxes.box_centre, boxes.count, 3, "lights.boxes.box_centre"),
+            check_floats(boxes.half_axes, boxes.count, 9, "lights.boxes.half_axes"),
+            boxes.taper.first == nullptr ? result
+                                         : check_floats(boxes.taper, boxes.count, 1, "lights.boxes.taper"));
+    }
     if (result.error != LIGHTBIN_OK) return result;
-#if defined(LIGHTBIN_NO_SPOTS)
-    if (spots.count > 0) return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_SPOTS");
-#endif
-#if defined(LIGHTBIN_NO_BOXES)
-    if (boxes.count > 0) return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_BOXES");
-#endif
-    std::optional<detail::WorldToView> to_view;
-    if (known.view_matrix.floats != nullptr || known.view_matrix.doubles != nullptr) {
+    if (!detail::kinds_have_spots && spots.count > 0) return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_SPOTS");
+    if (!detail::kinds_have_boxes && boxes.count > 0) return refused(LIGHTBIN_LEFT_OUT, "LIGHTBIN_NO_BOXES");
+    const lightbin_matrix& view_matrix = lights.given.view_matrix;
+    if (view_matrix.floats != nullptr || view_matrix.doubles != nullptr) {
         Matrix matrix;
-        result = read_matrix(known.view_matrix, matrix, "lights.view_matrix");
+        result = read_matrix(view_matrix, matrix, "lights.view_matrix");
         if (result.error != LIGHTBIN_OK) return result;
-        to_view = detail::WorldToView(matrix);
+        lights.to_view.emplace(matrix);
     }
     // The engine adds the counts without a check for overflow.
     constexpr std::uint64_t most = 0xffffffff;
     const std::uint64_t count =
         detail::sum_of_sizes(detail::sum_of_sizes(spheres.count, spots.count), boxes.count);
-    if (count > most) return refused(Error{ErrorCode::too_many_lights, count, most});
-    lights = {{{spheres.count}, {spheres}, to_view},
-              {{spots.count}, {spots}, to_view},
-              {{boxes.count}, {boxes}, to_view}};
-    return result;
+    return count > most ? refused(Error{ErrorCode::too_many_lights, count, most}) : result;
 }
 
 }  // namespace c

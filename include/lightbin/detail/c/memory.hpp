@@ -68,21 +68,22 @@ private:
 #endif
 }
 
+/// Returns the memory that Buffers of this thread use.
+inline Memory current_memory() {
+    return memory_of_thread != nullptr ? *memory_of_thread : Memory();
+}
+
 /// Returns memory for `count` objects of `each` bytes. Throws std::bad_alloc if there is none.
 inline void* allocate(std::size_t count, std::size_t each) {
-    const Memory standard;
     const std::size_t most = ~std::size_t{0} / 2 / each;
-    void* const memory =
-        count > most ? nullptr
-                     : (memory_of_thread != nullptr ? *memory_of_thread : standard).allocate(count * each);
+    void* const memory = count > most ? nullptr : current_memory().allocate(count * each);
     if (memory == nullptr) throw_out_of_memory();
     return memory;
 }
 
 /// Gives back what allocate() returned, or a null pointer, under the same memory_of_thread.
 inline void release(void* memory) {
-    const Memory standard;
-    (memory_of_thread != nullptr ? *memory_of_thread : standard).release(memory);
+    current_memory().release(memory);
 }
 
 }  // namespace c

@@ -87,10 +87,14 @@ lightbin_result write_items(const From* from, std::size_t needed, To* to, std::s
     return succeeded();
 }
 
-/// Copies constants to the caller's struct, which has the layout of the library's.
-template <class From, class To> lightbin_result write_constants(const From& from, To* to) {
-    static_assert(sizeof(From) == sizeof(To));
-    std::memcpy(to, &from, sizeof from);
+/// Writes the constants that make() returns of a view to the caller's struct, which has the layout of the library's.
+template <auto make, class To, class... Arguments>
+lightbin_result write_constants(const lightbin_view* view, To* to, const Arguments&... arguments) {
+    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
+    if (to == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "constants");
+    const auto made = make(view->value, arguments...);
+    static_assert(sizeof made == sizeof *to);
+    std::memcpy(to, &made, sizeof made);
     return succeeded();
 }
 
@@ -172,18 +176,12 @@ lightbin_result lightbin_shader_binding(const lightbin_shader* shader, std::size
 
 lightbin_result lightbin_shader_grid(const lightbin_view* view, std::int32_t corner_x, std::int32_t corner_y,
                                      lightbin_grid_constants* constants) {
-    using namespace lightbin::c;
-    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
-    if (constants == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "constants");
-    return write_constants(lightbin::shader_grid(view->value, corner_x, corner_y), constants);
+    return lightbin::c::write_constants<lightbin::shader_grid>(view, constants, corner_x, corner_y);
 }
 
 lightbin_result lightbin_shader_view(const lightbin_view* view, float tolerance,
                                      lightbin_view_constants* constants) {
-    using namespace lightbin::c;
-    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
-    if (constants == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "constants");
-    return write_constants(lightbin::shader_view(view->value, tolerance), constants);
+    return lightbin::c::write_constants<lightbin::shader_view>(view, constants, tolerance);
 }
 
 lightbin_result lightbin_shader_slices(const lightbin_slices* slices, std::uint32_t* words,
