@@ -68,6 +68,8 @@ END {
 
 {
     echo '#include "given.hpp"'
+    echo '#include <lightbin/box.hpp>'
+    echo '#include <lightbin/spot.hpp>'
     echo 'lightbin::Sphere to_sphere(const Lamp&);'
     echo 'lightbin::Spot to_spot(const Lamp&);'
     echo 'lightbin::Box to_box(const Decal&);'

@@ -327,8 +327,10 @@ TEST_CASE("evaluations are those of the lists") {
         }
     REQUIRE(pixels > 1000);
     CHECK(listed > pixels);
-    for (const auto& technique : {tiled_deferred, tiled_deferred_passes})
-        CHECK(counted(technique(32)) == listed);
+    CHECK(counted(tiled_deferred(32)) == listed);
+    // The passes' margins are those of a GPU's arithmetic.
+    CHECK(counted(tiled_deferred_passes(32)) >= listed);
+    CHECK(counted(tiled_deferred_passes(32)) <= listed + listed / 500);
     // Its bounds are not rounded outward.
     CHECK(counted(tiled_deferred_kernel(32)) <= listed);
     CHECK(counted(tiled_deferred_kernel(32)) > listed * 99 / 100);

@@ -6,6 +6,7 @@
 
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader_build.hpp>
+#include <lightbin/spot.hpp>
 
 #include <algorithm>
 #include <bit>

@@ -4,6 +4,7 @@
 // held against the compilers and the languages' reserved words.  compile PART PARTS: takes every PARTS-th language.
 #include "vulkan/compile.hpp"
 #include "builders.hpp"
+#include "cull.hpp"
 #include "readers.hpp"
 #include "reserved_words.hpp"
 #include "shaders.hpp"
@@ -111,6 +112,21 @@ void compile_language(Compiler& compiler, ShaderLanguage language) {
                 version_line(language) + reduce_shader(options)->text);
     for (const lightbin::BuildShaderOptions& options : every_build(language))
         compile(EShLangCompute, version_line(language) + build_shader(options)->text);
+    for (const CullText& text : every_cull(language))
+        compile(EShLangCompute, version_line(language) + text.shader().text);
+}
+
+/// Returns the name of a list for which ranges for each kind of light are not refused by the right error, or nothing.
+std::string problem_of_kinds(ShaderLanguage language) {
+    using lightbin::Slicing;
+    for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins})
+        for (lightbin::ShaderOptions list : every_list(language, slicing)) {
+            list.split_kinds = true;
+            const auto made = shader_snippet(list);
+            const auto expected = refusal_of_kinds(list);
+            if (expected ? made || made.error().code != *expected : !made) return name_of(list);
+        }
+    return "";
 }
 
 /// A text of each generator for a language, with the same prefix; in `snippet` a whole shader.
@@ -134,6 +150,14 @@ struct PrefixedTexts {
             build.depth_test = lightbin::DepthTest::box;
             build.prefix = prefix;
             if (const auto made = build_shader(build)) builds.push_back(version_line(language) + made->text);
+        }
+        for (const lightbin::CullPass pass : lightbin::cull_passes(lightbin::Slicing::z_bins)) {
+            lightbin::CullShaderOptions cull;
+            cull.language = language;
+            cull.kind = lightbin::CullKind::spot;
+            cull.slicing = lightbin::Slicing::z_bins;
+            cull.prefix = prefix;
+            if (const auto made = cull_shader(pass, cull)) builds.push_back(version_line(language) + made->text);
         }
     }
 
@@ -202,6 +226,10 @@ std::string problem_of_prefixes(Compiler& compiler) {
             options.prefix = "zzq_";
             take_names(names, build_shader(options)->text, "zzq_");
         }
+        for (CullText text : every_cull(language)) {
+            text.options.prefix = "zzq_";
+            take_names(names, text.shader().text, "zzq_");
+        }
     }
     int words = 0, made = 0;
     for (std::size_t at = 1; at < reserved_words.size(); ++words) {
@@ -254,8 +282,13 @@ int main(int count, char** arguments) {
     const int part = count == 3 ? std::atoi(arguments[1]) : 0,
               parts = count == 3 ? std::atoi(arguments[2]) : 1;
     Compiler compiler;
-    for (int language = part; language < 8; language += parts)
+    for (int language = part; language < 8; language += parts) {
         compile_language(compiler, static_cast<ShaderLanguage>(language));
+        if (const std::string name = problem_of_kinds(static_cast<ShaderLanguage>(language)); !name.empty()) {
+            std::printf("%s is not refused as it should be, or is\n", name.c_str());
+            return 1;
+        }
+    }
     if (part == 0)
         for (const int glsl : {330, 430, 300, 310})
             compile_example(compiler, glsl);

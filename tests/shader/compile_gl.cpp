@@ -2,6 +2,7 @@
 // Hands every text of the library for a language to the compiler of this machine's OpenGL:
 // compile_gl 330|430|300|310.
 #include "builders.hpp"
+#include "cull.hpp"
 #include "readers.hpp"
 
 #include "gl_context.hpp"
@@ -54,6 +55,8 @@ int main(int count, char** arguments) {
                     version_line(language) + reduce_shader(options)->text);
         for (const lightbin::BuildShaderOptions& options : every_build(language))
             compile(Stage::compute, version_line(language) + build_shader(options)->text);
+        for (const CullText& text : every_cull(language))
+            compile(Stage::compute, version_line(language) + text.shader().text);
     } catch (const std::exception& problem) {
         std::printf("%s\n", problem.what());
         return EXIT_FAILURE;

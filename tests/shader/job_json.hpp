@@ -68,15 +68,19 @@ inline std::string json(const Input& input) {
         .line();
 }
 
-/// runs  false: the text is compiled only
-inline std::string json(const Job& job, bool runs) {
+/// What a runner does with a job: it compiles the text, also runs it and compares what it wrote, or runs it and hands back
+/// what it wrote.
+enum class JobUse : std::uint8_t { compiles, runs, asks };
+
+inline std::string json(const Job& job, JobUse use) {
     std::string inputs;
     for (const Input& input : job.inputs)
         inputs += (inputs.empty() ? "[" : ", ") + json(input);
     JsonObject object;
     object.text("name", job.name)
         .text("text", job.text)
-        .raw("runs", runs ? "true" : "false")
+        .raw("runs", use == JobUse::compiles ? "false" : "true")
+        .raw("asks", use == JobUse::asks ? "true" : "false")
         .text("stage", job.stage == Stage::compute ? "compute" : "fragment")
         .number("result", job.result)
         .raw("groups", "[" + std::to_string(job.groups[0]) + ", " + std::to_string(job.groups[1]) + "]")

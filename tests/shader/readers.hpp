@@ -5,12 +5,15 @@
 #include "reader_glsl.hpp"
 #include "reader_wgsl.hpp"
 
+#include <lightbin/box.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader.hpp>
+#include <lightbin/spot.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <span>
 #include <string>
@@ -145,17 +148,26 @@ inline std::vector<lightbin::ShaderOptions> every_list_of_views(lightbin::Shader
     return every;
 }
 
+/// Why a text for these lists can't have ranges for each kind of light, or nothing: it must have them.
+inline std::optional<lightbin::ErrorCode> refusal_of_kinds(const lightbin::ShaderOptions& list) {
+    if (list.slicing == lightbin::Slicing::z_bins) return lightbin::ErrorCode::kinds_of_ranks;
+    if (list.format.encoding != lightbin::ListEncoding::offset_count)
+        return lightbin::ErrorCode::kinds_without_table;
+    return {};
+}
+
 /// The lists whose tiles have a range for each kind of light; every second one has wave loops, if the language and the
 /// device (`waves`) have them, and every third one two views.
 inline std::vector<lightbin::ShaderOptions> every_list_of_kinds(lightbin::ShaderLanguage language,
                                                                 lightbin::Slicing slicing, bool waves) {
     std::vector<lightbin::ShaderOptions> every;
     for (lightbin::ShaderOptions list : every_list(language, slicing)) {
+        if (refusal_of_kinds(list)) continue;
         list.split_kinds = true;
         list.views = every.size() % 3 == 2 ? 2 : 1;
         list.wave_loop = waves && every.size() % 2 == 1;
         if (!shader_snippet(list)) list.wave_loop = false;
-        if (shader_snippet(list)) every.push_back(list);
+        every.push_back(list);
     }
     return every;
 }
@@ -388,17 +400,24 @@ struct ReaderRun {
     }
 };
 
-/// Every list of two views, drawn by multiview in fragment shaders; the other options take turns.
+/// Every list of two views, and some of those with ranges for each kind of light, drawn by multiview in fragment shaders;
+/// the other options take turns.
 inline std::vector<ReaderRun> multiview_runs(lightbin::ShaderLanguage language) {
     using lightbin::Slicing;
     std::vector<ReaderRun> runs;
-    for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins})
+    const auto add = [&](const lightbin::ShaderOptions& list) {
+        runs.push_back({with_switches(list, static_cast<unsigned>(runs.size()) % switch_count),
+                        Stage::fragment,
+                        {33, 17, 7},
+                        false,
+                        true});
+    };
+    for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins}) {
         for (const lightbin::ShaderOptions& list : every_list_of_views(language, slicing, false))
-            runs.push_back({with_switches(list, static_cast<unsigned>(runs.size()) % switch_count),
-                            Stage::fragment,
-                            {33, 17, 7},
-                            false,
-                            true});
+            add(list);
+        for (const lightbin::ShaderOptions& list : every_list_of_kinds(language, slicing, false))
+            if (list.views > 1) add(list);
+    }
     return runs;
 }
 

@@ -109,8 +109,8 @@ private:
         "subgroup_uniformity uniform storage read read_write workgroup function ptr array atomic bool i32 "
         "u32 "
         "f32 vec2i vec2u vec3u vec4u vec2f vec3f vec4f texture_2d texture_multisampled_2d abs bitcast clamp "
-        "countOneBits firstTrailingBit log2 max min textureLoad atomicLoad atomicMax atomicMin atomicOr "
-        "atomicStore workgroupBarrier subgroupMin position workgroup_id global_invocation_id "
+        "countOneBits firstTrailingBit log2 max min sqrt textureLoad atomicAdd atomicAnd atomicLoad atomicMax "
+        "atomicMin atomicOr atomicStore workgroupBarrier subgroupMin position workgroup_id global_invocation_id "
         "local_invocation_index ";
     std::vector<std::string> tokens_;
     std::set<std::string> declared_;

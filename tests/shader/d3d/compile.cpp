@@ -3,6 +3,7 @@
 #include "dxc.hpp"
 #include "fxc.hpp"
 
+#include "../cull.hpp"
 #include "../run_jobs.hpp"
 
 namespace {
@@ -42,11 +43,7 @@ template <class Compiler> int compile_all(const std::string& model, const Share&
     const auto multiview = multiview_runs(language);
     for (std::size_t i = share.first; i < multiview.size(); i += share.count) {
         const Job job = multiview[i].job();
-        compiles(job.name,
-                 model >= "6_1"
-                     ? job.text
-                     : lightbin::detail::replaced(job.text, "SV_ViewID", "SV_RenderTargetArrayIndex"),
-                 Stage::fragment);
+        compiles(job.name, model >= "6_1" ? job.text : with_layers(job.text), Stage::fragment);
     }
     for (std::size_t i = share.first; const auto& options : every_reduction(language))
         if (i++ % share.count == 0) {
@@ -57,6 +54,9 @@ template <class Compiler> int compile_all(const std::string& model, const Share&
     for (std::size_t i = share.first; const auto& options : every_build(language))
         if (i++ % share.count == 0)
             compiles("a build", lightbin::build_shader(options)->text, Stage::compute);
+    for (std::size_t i = share.first; const CullText& text : every_cull(language))
+        if (i++ % share.count == 0)
+            compiles(std::string("the pass ") + to_string(text.pass), text.shader().text, Stage::compute);
     std::printf("%d texts, %d refused\n", texts, refused);
     return texts == 0 || refused > 0;
 }

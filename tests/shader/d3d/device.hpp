@@ -55,12 +55,42 @@ float4 main(uint index : SV_VertexID) : SV_Position {  // clockwise, as the othe
 }
 )",
                        "vs_5_0");
+        // A layer for each instance.
+        layered_vertex_ = fxc_(R"(
+struct Corner {
+    float4 position : SV_Position;
+    uint view : VIEW;
+};
+Corner main(uint index : SV_VertexID, uint view : SV_InstanceID) {
+    Corner corner = {float4(float2(index >> 1, index & 1) * 4.0 - 1.0, 0.0, 1.0), view};
+    return corner;
+}
+)",
+                               "vs_5_0");
+        layers_ = fxc_(R"(
+struct Corner {
+    float4 position : SV_Position;
+    uint view : VIEW;
+};
+struct InLayer {
+    float4 position : SV_Position;
+    uint layer : SV_RenderTargetArrayIndex;
+};
+[maxvertexcount(3)] void main(triangle Corner corners[3], inout TriangleStream<InLayer> stream) {
+    for (uint i = 0; i < 3; ++i) {
+        InLayer corner = {corners[i].position, corners[i].view};
+        stream.Append(corner);
+    }
+}
+)",
+                       "gs_5_0");
     }
 
     /// Returns what the job's shader wrote: the words of its result buffer, or four words a pixel of its
     /// picture. Throws std::runtime_error where fxc refuses the text.
     std::vector<std::uint32_t> run(const Job& job) {
-        const std::vector<char> code = fxc_(job.text, job.stage == Stage::compute ? "cs_5_0" : "ps_5_0");
+        const std::vector<char> code = fxc_(job.views > 1 ? with_layers(job.text) : job.text,
+                                            job.stage == Stage::compute ? "cs_5_0" : "ps_5_0");
         context_->ClearState();
         std::vector<Com<ID3D11Buffer>> buffers(job.inputs.size());
         for (std::size_t i = 0; i < job.inputs.size(); ++i)
@@ -169,12 +199,14 @@ private:
         return words;
     }
 
-    // A triangle over the viewport, which lies at job.corner in a picture that is as much larger.
+    // A triangle over the viewport, which lies at job.corner in a picture that is as much larger; with several views,
+    // one in each layer of the picture.
     std::vector<std::uint32_t> draw(const Job& job, const std::vector<char>& code) {
         D3D11_TEXTURE2D_DESC info{};
         info.Width = job.width + job.corner[0];
         info.Height = job.height + job.corner[1];
-        info.MipLevels = info.ArraySize = info.SampleDesc.Count = 1;
+        info.MipLevels = info.SampleDesc.Count = 1;
+        info.ArraySize = job.views;
         info.Format = job.within.empty() ? DXGI_FORMAT_R32G32B32A32_UINT : DXGI_FORMAT_R32G32_FLOAT;
         const std::size_t pixel_bytes = job.within.empty() ? 16 : 8, row_bytes = pixel_bytes * job.width;
         info.BindFlags = D3D11_BIND_RENDER_TARGET;
@@ -184,12 +216,18 @@ private:
         check(device_->CreateRenderTargetView(picture.get(), nullptr, view.out()), "render target");
         ID3D11RenderTargetView* target = view.get();
         context_->OMSetRenderTargets(1, &target, nullptr);
+        const std::vector<char>& corners = job.views > 1 ? layered_vertex_ : vertex_;
         Com<ID3D11VertexShader> vertex;
-        check(device_->CreateVertexShader(vertex_.data(), vertex_.size(), nullptr, vertex.out()),
+        check(device_->CreateVertexShader(corners.data(), corners.size(), nullptr, vertex.out()),
               "vertex shader");
+        Com<ID3D11GeometryShader> layers;
+        if (job.views > 1)
+            check(device_->CreateGeometryShader(layers_.data(), layers_.size(), nullptr, layers.out()),
+                  "geometry shader");
         Com<ID3D11PixelShader> pixel;
         check(device_->CreatePixelShader(code.data(), code.size(), nullptr, pixel.out()), "pixel shader");
         context_->VSSetShader(vertex.get(), nullptr, 0);
+        context_->GSSetShader(layers.get(), nullptr, 0);
         context_->PSSetShader(pixel.get(), nullptr, 0);
         context_->IASetPrimitiveTopology(D3D11_PRIMITIVE_TOPOLOGY_TRIANGLELIST);
         const D3D11_VIEWPORT viewport{static_cast<float>(job.corner[0]),
@@ -199,27 +237,29 @@ private:
                                       0,
                                       1};
         context_->RSSetViewports(1, &viewport);
-        context_->Draw(3, 0);
+        context_->DrawInstanced(3, job.views, 0, 0);
 
         info.BindFlags = 0;
         info.Usage = D3D11_USAGE_STAGING;
         info.CPUAccessFlags = D3D11_CPU_ACCESS_READ;
         check(device_->CreateTexture2D(&info, nullptr, copy.out()), "staging picture");
         context_->CopyResource(copy.get(), picture.get());
-        D3D11_MAPPED_SUBRESOURCE mapped;
-        check(context_->Map(copy.get(), 0, D3D11_MAP_READ, 0, &mapped), "map");
-        std::vector<std::uint32_t> words(row_bytes / 4 * job.height);
-        for (std::size_t y = 0; y < job.height; ++y)
-            std::memcpy(words.data() + row_bytes / 4 * y,
-                        static_cast<const char*>(mapped.pData) + (y + job.corner[1]) * mapped.RowPitch +
-                            pixel_bytes * job.corner[0],
-                        row_bytes);
-        context_->Unmap(copy.get(), 0);
+        std::vector<std::uint32_t> words(row_bytes / 4 * job.height * job.views);
+        for (UINT layer = 0; layer < job.views; ++layer) {
+            D3D11_MAPPED_SUBRESOURCE mapped;
+            check(context_->Map(copy.get(), layer, D3D11_MAP_READ, 0, &mapped), "map");
+            for (std::size_t y = 0; y < job.height; ++y)
+                std::memcpy(words.data() + row_bytes / 4 * (layer * job.height + y),
+                            static_cast<const char*>(mapped.pData) + (y + job.corner[1]) * mapped.RowPitch +
+                                pixel_bytes * job.corner[0],
+                            row_bytes);
+            context_->Unmap(copy.get(), layer);
+        }
         return words;
     }
 
     Fxc fxc_;
-    std::vector<char> vertex_;
+    std::vector<char> vertex_, layered_vertex_, layers_;
     Com<ID3D11Device> device_;
     Com<ID3D11DeviceContext> context_;
 };

@@ -2,6 +2,8 @@
 // Microsoft's d3dcompiler_47.dll, which fxc is a shell of.
 #pragma once
 
+#include <lightbin/shader.hpp>
+
 #include <d3dcompiler.h>
 #include <windows.h>
 
@@ -10,6 +12,11 @@
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+/// A text for multiview, whose view is a layer of the target, as in all models before 6.1.
+inline std::string with_layers(const std::string& text) {
+    return lightbin::detail::replaced(text, "SV_ViewID", "SV_RenderTargetArrayIndex");
+}
 
 class Fxc {
 public:

@@ -10,6 +10,7 @@ int main(int count, char** arguments) {
     D3d11Device device;
     Tally tally;
     run_readers(device, language, share, tally);
+    run_multiview(device, language, share, tally);
     run_builders(device, language, false, share, tally);
     std::printf("%s\n", tally.text().c_str());
     return !tally.good();

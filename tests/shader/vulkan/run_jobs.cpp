@@ -3,6 +3,7 @@
 // run_jobs multiview [FIRST COUNT] a share of those that draw two views at once.
 #include "device.hpp"
 
+#include "../cull_cases.hpp"
 #include "../run_jobs.hpp"
 
 #include <string>
@@ -15,6 +16,7 @@ int main(int count, char** arguments) {
         return 1;
     }
     Tally tally;
+    bool culls = true;
     using enum lightbin::ShaderLanguage;
     if (count > 1 && std::string(arguments[1]) == "multiview")
         run_multiview(device, glsl_vulkan, share, tally);
@@ -22,8 +24,9 @@ int main(int count, char** arguments) {
         for (const auto language : {glsl_vulkan, hlsl_5_1}) {
             run_readers(device, language, share, tally, true, true);
             run_builders(device, language, false, share, tally);
+            culls = CullTests(language, share).run(device) && culls;
         }
     std::printf("%s on %s, %d validation messages\n", tally.text().c_str(), device.name().c_str(),
                 device.messages());
-    return !tally.good() || device.messages() > 0;
+    return !tally.good() || !culls || device.messages() > 0;
 }

@@ -16,13 +16,13 @@ int main(int count, char** arguments) {
         Job job;
         job.name = name_of(readers[i]);
         if (snippet) job.text = reader_text(readers[i], *snippet, Stage::fragment, 100, 100);
-        std::printf("%s,\n", json(job, false).c_str());
+        std::printf("%s,\n", json(job, JobUse::compiles).c_str());
     }
     const auto runs = reader_runs(language);
     for (std::size_t i = share.first; i < runs.size(); i += share.count)
-        if (runs[i].screen.width < 100) std::printf("%s,\n", json(runs[i].job(), true).c_str());
+        if (runs[i].screen.width < 100) std::printf("%s,\n", json(runs[i].job(), JobUse::runs).c_str());
     const auto multiview = multiview_runs(language);
     for (std::size_t i = share.first; i < multiview.size(); i += share.count)
-        std::printf("%s,\n", json(multiview[i].job(), true).c_str());
+        std::printf("%s,\n", json(multiview[i].job(), JobUse::runs).c_str());
     std::printf("]);</script>\n");
 }

@@ -42,6 +42,7 @@ class Device {
     constructor(gpu, device) {
         this.gpu = gpu;
         this.device = device;
+        this.known = new Map();
         this.vertex = { module: device.createShaderModule({ code: full_triangle }), entryPoint: 'main' };
     }
 
@@ -80,7 +81,14 @@ class Device {
         }));
     }
 
+    // Jobs that ask for results come with the same texts again and again, and with the same bindings then.
     async pipeline(job, layouts) {
+        if (!job.asks) return this.new_pipeline(job, layouts);
+        if (!this.known.has(job.text)) this.known.set(job.text, await this.new_pipeline(job, layouts));
+        return this.known.get(job.text);
+    }
+
+    async new_pipeline(job, layouts) {
         const stage = await this.module(job.text);
         const layout = this.device.createPipelineLayout({ bindGroupLayouts: layouts });
         if (job.stage === 'compute') return this.device.createComputePipelineAsync({ layout, compute: stage });
@@ -195,14 +203,16 @@ class Device {
         return bytes;
     }
 
-    // Returns what is wrong, or ''.
-    async try(job) {
+    // Returns what is wrong, or ''. `answer` takes what was written by a job that asks for it.
+    async try(job, answer) {
         this.device.pushErrorScope('validation');
         let problem = '';
         try {
             const layouts = this.layouts(job);
             const pipeline = await this.pipeline(job, layouts);
-            if (job.runs && !accepts(job, await this.run(job, pipeline, layouts))) problem = 'is wrong';
+            const bytes = job.runs && await this.run(job, pipeline, layouts);
+            if (job.asks) answer(bytes);
+            else if (job.runs && !accepts(job, bytes)) problem = 'is wrong';
         } catch (error) {
             problem = 'refused: ' + error.message;
         }
@@ -233,17 +243,23 @@ if (!adapter) {
 }
 const waves = adapter.features.has('subgroups');
 const device = new Device(gpu, await adapter.requestDevice({ requiredFeatures: waves ? ['subgroups'] : [] }));
-const writer = spawn(`${folder}/write_wgsl_jobs`, share, { stdio: ['ignore', 'pipe', 'inherit'] });
+const writer = spawn(`${folder}/write_wgsl_jobs`, share, { stdio: ['pipe', 'pipe', 'inherit'] });
 const written = new Promise(resolve => writer.on('close', (code, signal) => resolve(code ?? signal)));
 let texts = 0, runs = 0, bad = 0, left_out = 0;
 for await (const line of lines_of(writer.stdout)) {
+    if (!line.startsWith('{')) {
+        console.log(line);
+        continue;
+    }
     const job = JSON.parse(line);
     if (!waves && job.text.includes('enable subgroups')) {
         ++left_out;
         continue;
     }
     writeFileSync(`${folder}/${module ? 'dawn' : 'naga'}.${share[0]}.wgsl`, `// ${job.name}\n${job.text}`);
-    const problem = await device.try(job);
+    let answer = '';
+    const problem = await device.try(job, bytes => answer = bytes.toString('hex'));
+    if (job.asks) writer.stdin.write(answer + '\n');
     if (job.runs) ++runs;
     else ++texts;
     if (problem && ++bad <= 3) console.log(`${job.name}: ${problem}\n${job.text}`);

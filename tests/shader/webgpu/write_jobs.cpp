@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Writes the jobs of WGSL, a line of JSON each: every text to compile, then those to run.
+// Writes the jobs of WGSL, a line of JSON each: every text to compile, then those to run, then those whose results it asks
+// for, to compare the light grids that several passes make. Lines that are not JSON are for people.
 // write_jobs [FIRST COUNT]: takes a share of them.
+#include "../cull_cases.hpp"
 #include "../job_json.hpp"
 #include "../run_jobs.hpp"
+#include "piped_device.hpp"
 
 #include <cstdint>
 #include <cstdio>
@@ -43,22 +46,27 @@ Job reduction_text_job(const lightbin::ReduceShaderOptions& options) {
 }  // namespace
 
 int main(int count, char** arguments) {
+    using enum JobUse;
     constexpr auto language = lightbin::ShaderLanguage::wgsl;
     const Share share = share_of(count, arguments);
     std::size_t turn = 0;
-    const auto write = [&](bool runs, const auto& make_job) {
-        if (turn++ % share.count == share.first) std::printf("%s\n", json(make_job(), runs).c_str());
+    const auto write = [&](JobUse use, const auto& make_job) {
+        if (turn++ % share.count == share.first) std::printf("%s\n", json(make_job(), use).c_str());
     };
     for (const auto& options : every_reader(language))
-        write(false, [&] { return reader_text_job(options); });
+        write(compiles, [&] { return reader_text_job(options); });
     for (const auto& options : every_reduction(language))
-        write(false, [&] { return reduction_text_job(options); });
+        write(compiles, [&] { return reduction_text_job(options); });
     for (const auto& options : every_build(language))
-        write(false, [&] { return text_job("build", *build_shader(options), Stage::compute); });
+        write(compiles, [&] { return text_job("build", *build_shader(options), Stage::compute); });
+    for (const CullText& text : every_cull(language))
+        write(compiles, [&] { return text_job(to_string(text.pass), text.shader(), Stage::compute); });
     for (const ReaderRun& run : reader_runs(language, true, true))
-        write(true, [&] { return run.job(); });
+        write(runs, [&] { return run.job(); });
     for (const Job& job : build_jobs(language))
-        write(true, [&] { return job; });
+        write(runs, [&] { return job; });
     for (const Job& job : reduce_jobs(language, true))
-        write(true, [&] { return job; });
+        write(runs, [&] { return job; });
+    PipedDevice device;  // it takes long, so every fifth case must do
+    return CullTests(language, {5 * share.first, 5 * share.count}).run(device) ? 0 : 1;
 }

@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: MIT
+// Light grids that the passes of lightbin/shader_cull.hpp make on a device, held against a Binner's.
+#pragma once
+
+#include "builders.hpp"
+
+#include <lightbin/shader_cull.hpp>
+
+#include <cstdio>
+#include <optional>
+
+/// A pass and its options.
+struct CullText {
+    lightbin::CullPass pass;
+    lightbin::CullShaderOptions options;
+
+    lightbin::ShaderText shader() const { return *lightbin::cull_shader(pass, options); }
+};
+
+/// Every text of the passes that a language has.
+inline std::vector<CullText> every_cull(lightbin::ShaderLanguage language) {
+    using namespace lightbin;
+    std::vector<CullText> every;
+    for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins})
+        for (const DepthTest depth_test : {DepthTest::none, DepthTest::interval, DepthTest::box})
+            for (unsigned switches = 0; switches < 64; ++switches)
+                for (const CullPass pass : cull_passes(slicing)) {
+                    CullShaderOptions options;
+                    options.language = language;
+                    options.slicing = slicing;
+                    options.depth_test = depth_test;
+                    options.kind = switches & 1 ? CullKind::spot : CullKind::sphere;
+                    options.world_space = switches & 2;
+                    options.orthographic = switches & 4;
+                    options.count_in_buffer = switches & 8;
+                    options.max_only = switches & 16;
+                    options.ids = switches & 32 ? IdWidth::u16 : IdWidth::u32;
+                    // The lights matter to the first pass alone, and ids to the last.
+                    const bool same = (pass != CullPass::project && (switches & 11) != 0) ||
+                                      (pass != CullPass::fill && (switches & 32) != 0) ||
+                                      (depth_test == DepthTest::none && (switches & 16) != 0);
+                    if (switches & 1) options.prefix = "my_";
+                    if (!same && cull_shader(pass, options)) every.push_back({pass, options});
+                }
+    return every;
+}
+
+/// What a grid is made of. `lights` are the words of the caller's buffer.
+struct CullCase {
+    std::string name;
+    lightbin::View view;
+    lightbin::CullShaderOptions options;
+    std::vector<std::uint32_t> lights;
+    std::uint32_t count = 0;
+    std::uint32_t room = 0;  // list entries
+    std::vector<float> z_bounds = {};
+    std::optional<lightbin::Slices> slices = {};
+    std::optional<lightbin::Matrix> to_view = {};
+    float margin = 0;  // where not 0: the margins of the image axes, as a multiple of those of the plan
+};
+
+/// What the passes left. Words of buffers that they did not write are 0xeeeeeeee.
+struct CulledGrid {
+    lightbin::CullTotals totals = {};
+    std::vector<lightbin::ListRange> tiles;
+    std::vector<std::uint32_t> lists, order;
+    std::vector<lightbin::BinRange> bins;
+    bool narrow = false;
+    std::uint64_t tests = 0;  // of tiles: how often a light was compared with a tile
+
+    std::uint32_t id(std::size_t at) const {
+        return narrow ? lists[at / 2] >> (at % 2 * 16) & 0xffff : lists[at];
+    }
+    bool operator==(const CulledGrid& other) const {
+        const auto same = [](const auto& a, const auto& b) {
+            return a.size() == b.size() &&
+                   (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
+        };
+        return std::memcmp(&totals, &other.totals, sizeof totals) == 0 && same(tiles, other.tiles) &&
+               same(lists, other.lists) && same(order, other.order) && same(bins, other.bins);
+    }
+    /// Of all bytes: FNV-1a of 64 bits (Fowler, Noll, Vo).
+    std::uint64_t hash() const {
+        std::uint64_t hash = 0xcbf29ce484222325;
+        const auto add = [&hash](auto span) {
+            for (const std::byte each : std::as_bytes(span))
+                hash = (hash ^ static_cast<std::uint64_t>(each)) * 0x100000001b3;
+        };
+        add(std::span(&totals, 1));
+        add(std::span(tiles));
+        add(std::span(lists));
+        add(std::span(order));
+        add(std::span(bins));
+        return hash;
+    }
+};
+
+/// Changes a text before it is run: by nothing, or to arithmetic as bad as specifications allow.
+using TextChange = std::string (*)(std::string);
+
+inline std::string as_it_is(std::string text) {
+    return text;
+}
+
+inline lightbin::CullPlan plan_of(const CullCase& scene) {
+    lightbin::CullPlan plan = *lightbin::plan_cull(scene.view, scene.options, {scene.count, scene.room},
+                                                   scene.slices ? &*scene.slices : nullptr,
+                                                   scene.to_view ? &*scene.to_view : nullptr);
+    if (scene.margin != 0) {
+        plan.constants.margin_x *= scene.margin;
+        plan.constants.margin_y *= scene.margin;
+    }
+    return plan;
+}
+
+/// The words of the buffers that passes write, by name.
+using CullBuffers = std::map<std::string, std::vector<std::uint32_t>>;
+
+/// A few words more than asked for show writes beyond the end.
+inline CullBuffers blank_buffers(const lightbin::CullPlan& plan) {
+    CullBuffers written;
+    const auto blank = [&](const char* name, std::uint64_t bytes) {
+        written[name].assign(static_cast<std::size_t>(bytes / 4 + 16), 0xeeeeeeee);
+    };
+    blank("scratch", plan.bytes.scratch);
+    blank("tiles", plan.bytes.tiles);
+    blank("lists", plan.bytes.lists);
+    blank("order", plan.bytes.order);
+    blank("bins", plan.bytes.bins);
+    return written;
+}
+
+/// Runs passes on a device, one job for each buffer that a pass writes.
+template <class Device>
+void run_passes(Device& device, const CullCase& scene, const lightbin::CullPlan& plan,
+                std::span<const lightbin::CullPass> passes, CullBuffers& written, TextChange change) {
+    using namespace lightbin;
+    BuilderData data;
+    data.put_constants(std::as_bytes(std::span(&plan.constants, 1)), {});
+    data.put("lights", scene.lights);
+    std::vector<std::uint32_t> counts(scene.options.count_at + 1, 0xffffffff);
+    counts.back() = scene.count;
+    data.put("light_count", counts);
+    data.put("z_bounds", scene.z_bounds);
+    if (scene.slices) data.put("slices", shader_slices(*scene.slices));
+    for (const CullPass pass : passes) {
+        ShaderText shader = *cull_shader(pass, scene.options);
+        shader.text = change(std::move(shader.text));
+        for (const auto& [name, words] : written)
+            data.put(name.c_str(), words);
+        for (const ShaderBinding& binding : shader.bindings) {
+            if (binding.resource != ShaderResource::writable_buffer) continue;
+            std::string name = binding.name.substr(scene.options.prefix.size());
+            if (const auto end = name.find("_block"); end != name.npos) name.resize(end);
+            Job job = builder_job(shader, scene.options.language, scene.options.prefix, data, name);
+            job.name = scene.name + ", " + to_string(pass);
+            const CullGroups groups = plan.groups_of(pass);
+            job.groups = {groups.x, groups.y};
+            written[name] = device.run(job);
+        }
+    }
+}
+
+/// How often the passes count and fill compare a light with a tile: for each tile, the lights in the masks of its block.
+inline std::uint64_t count_tests(const lightbin::ShaderCull& plan, const std::vector<std::uint32_t>& scratch) {
+    const std::size_t blocks = std::size_t{plan.blocks_x} * plan.blocks_y, words = (plan.lights + 63) / 64 * 2;
+    std::vector<std::uint64_t> lights(blocks);
+    for (std::size_t i = 0; i < words * blocks; ++i)
+        lights[i % blocks] += static_cast<unsigned>(std::popcount(scratch[plan.masks + i]));
+    std::uint64_t tests = 0;
+    for (std::uint32_t y = 0; y < plan.tiles_y; ++y)
+        for (std::uint32_t x = 0; x < plan.tiles_x; ++x)
+            tests += 2 * lights[(y >> plan.block_shift) * plan.blocks_x + (x >> plan.block_shift)];
+    return tests;
+}
+
+/// Runs all passes on a device.
+template <class Device>
+CulledGrid run_cull(Device& device, const CullCase& scene, TextChange change = as_it_is) {
+    using namespace lightbin;
+    const CullPlan plan = plan_of(scene);
+    CullBuffers written = blank_buffers(plan);
+    run_passes(device, scene, plan, cull_passes(scene.options.slicing), written, change);
+    CulledGrid grid;
+    grid.narrow = scene.options.ids == IdWidth::u16;
+    std::memcpy(&grid.totals, written["scratch"].data(), sizeof grid.totals);
+    grid.tiles.resize((written["tiles"].size() - 16) / 2);
+    std::memcpy(grid.tiles.data(), written["tiles"].data(), grid.tiles.size() * 8);
+    grid.lists = written["lists"];
+    if (scene.options.slicing == Slicing::none) grid.tests = count_tests(plan.constants, written["scratch"]);
+    if (scene.options.slicing == Slicing::z_bins) {
+        grid.order = written["order"];
+        grid.bins.resize((written["bins"].size() - 16) / 2);
+        std::memcpy(grid.bins.data(), written["bins"].data(), grid.bins.size() * 8);
+    }
+    return grid;
+}
+
+/// How a grid compares with a Binner's.
+struct CullTally {
+    std::size_t cases = 0, entries = 0, missed = 0, excess = 0, wrong = 0;
+
+    void add(const CullTally& other) {
+        cases += other.cases;
+        entries += other.entries;
+        missed += other.missed;
+        excess += other.excess;
+        wrong += other.wrong;
+    }
+    void print(const char* name) const {
+        std::printf("%s: %zu cases, %zu entries, %zu missed, %zu excess (%.4f %%), %zu wrong\n", name, cases,
+                    entries, missed, excess,
+                    entries == 0 ? 0.0 : 100.0 * static_cast<double>(excess) / static_cast<double>(entries),
+                    wrong);
+    }
+};
+
+/// Counts what a complete grid lacks of the expected lists, which hold lights by ascending id, what it has beyond them,
+/// and what is wrong in itself: ids that do not ascend, ranges that do not follow each other, a total that differs.
+inline CullTally compare_lists(const CulledGrid& grid, const BuiltLists& expected) {
+    CullTally tally;
+    tally.cases = 1;
+    tally.entries = expected.ids.size();
+    std::size_t end = 0;
+    for (std::size_t cell = 0; cell < expected.tiles.size(); ++cell) {
+        const lightbin::ListRange range = grid.tiles[cell];
+        if (range.offset != end) ++tally.wrong;
+        end += range.count;
+        if (end > grid.lists.size() * (grid.narrow ? 2 : 1)) {
+            ++tally.wrong;
+            break;
+        }
+        std::vector<std::uint32_t> own;
+        for (std::uint32_t i = 0; i < range.count; ++i) {
+            const std::uint32_t id = grid.id(range.offset + i);
+            if (i > 0 && id <= grid.id(range.offset + i - 1)) ++tally.wrong;
+            own.push_back(grid.order.empty() ? id : grid.order[id]);
+        }
+        std::sort(own.begin(), own.end());
+        const auto wanted = expected.of(cell);
+        std::vector<std::uint32_t> lacking, more;
+        std::set_difference(wanted.begin(), wanted.end(), own.begin(), own.end(),
+                            std::back_inserter(lacking));
+        std::set_difference(own.begin(), own.end(), wanted.begin(), wanted.end(), std::back_inserter(more));
+        tally.missed += lacking.size();
+        tally.excess += more.size();
+    }
+    if (grid.totals.entries != end) ++tally.wrong;
+    return tally;
+}
+
+/// The words of an array of lights, each of `stride` words, with the light at word `first`.
+template <class Light>
+std::vector<std::uint32_t> words_of(const std::vector<Light>& lights, std::size_t stride = sizeof(Light) / 4,
+                                    std::size_t first = 0) {
+    std::vector<std::uint32_t> words(lights.size() * stride, 0x7fc00000);
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        std::memcpy(words.data() + i * stride + first, &lights[i], sizeof(Light));
+    if (words.empty()) words.resize(4);
+    return words;
+}
+
+/// Lights in view of ordinary sizes (0), small ones on a shell around a point (1), and hard ones (2): the eye
+/// inside them and on their surface, the near plane at depth 0.1 through them and touched by them, tiny, huge and
+/// bad ones.
+inline std::vector<lightbin::Sphere> cull_lights(int kind, std::size_t count, unsigned seed) {
+    BuilderNumbers number(seed);
+    const auto pick = [&](int choices) {
+        return static_cast<int>(number(0, static_cast<float>(choices) * 0.9999f));
+    };
+    std::vector<lightbin::Sphere> lights;
+    for (std::size_t i = 0; i < count; ++i) {
+        float z = kind == 2 ? std::pow(10.0f, number(-1, 2.3f)) : number(5, 100),
+              y = z * number(-0.55f, 0.55f), x = z * number(-0.98f, 0.98f),
+              r = z * 0.0345f * number(0.7f, 1.4f);
+        if (kind == 1) {
+            const float a = number(0, 6.2831853f), c = number(-1, 1), q = std::sqrt(1 - c * c);
+            x = 50 * q * std::cos(a) - 3;
+            y = 50 * c;
+            z = 50 * q * std::sin(a) + 10;
+            r = 1;
+        }
+        const int trouble = kind == 2 ? pick(16) : 16;
+        if (trouble < 4) {
+            r = std::sqrt(x * x + y * y + z * z) * (1 + number(-0.5f, 0.5f) * std::pow(2.0f, -number(0, 23)));
+        } else if (trouble < 7) {
+            z = 0.1f + number(-2, 2) * r;
+            x *= number(0, 3);
+        } else if (trouble == 7) {
+            r = std::pow(2.0f, number(-60, 60));
+        } else if (trouble == 8) {
+            r = 0;
+        } else if (trouble == 9) {
+            z = -z;
+        } else if (trouble == 10) {
+            constexpr float infinity = std::numeric_limits<float>::infinity(),
+                            nan = std::numeric_limits<float>::quiet_NaN();
+            constexpr float bad[] = {nan, infinity, -1, -0.0f, -infinity, 1e-45f, 3e38f, 1e30f};
+            float* const which[] = {&r, &r, &x, &y, &z};
+            *which[pick(5)] = bad[pick(8)];
+        } else if (trouble == 11) {
+            r = z - 0.1f;
+            if (pick(2) == 0) r = std::nextafter(r, pick(2) == 0 ? 1e9f : 0.0f);
+        }
+        lights.push_back({x, y, -z, r});
+    }
+    return lights;
+}

@@ -1,0 +1,460 @@
+// SPDX-License-Identifier: MIT
+// The cases in which light grids that are made on a device are held against a Binner's.
+#pragma once
+
+#include "cull.hpp"
+#include "run_jobs.hpp"
+
+#include <type_traits>
+
+/// A Binner's lists, with lights by ascending id. With z-bins the ids are ranks, which are looked up.
+template <lightbin::Options options, class Lights>
+BuiltLists binned_by_id(const BuiltScene& scene, const Lights& lights, lightbin::LightCounts& counts) {
+    lightbin::Binner<options> binner;
+    const auto grid =
+        *binner.bin(scene.view, lights, lightbin::inputs_for<options>(scene.bounds, scene.slices));
+    counts = grid.light_counts();
+    const auto ranges = grid.ranges();
+    const auto ids = grid.ids();
+    BuiltLists lists{{ranges.begin(), ranges.end()}, {ids.begin(), ids.end()}, grid.slices()};
+    if (options.slicing != lightbin::Slicing::z_bins) return lists;
+    for (const lightbin::ListRange& range : lists.tiles) {
+        const auto begin = lists.ids.begin() + range.offset, end = begin + range.count;
+        std::transform(begin, end, begin, [&](std::uint32_t rank) { return grid.ranks().order[rank]; });
+        std::sort(begin, end);
+    }
+    return lists;
+}
+
+/// Returns a text whose quotients are off by 3 units in the last place and whose roots are by 5, more than the
+/// specifications allow: always up, always down, or by a number between that depends on the result.
+inline std::string worse(std::string text, const char* step) {
+    const auto replace = [&](const std::string& from, const std::string& to) {
+        if (const auto at = text.find(from); at != text.npos) text.replace(at, from.size(), to);
+    };
+    replace("return a / b;", "return off_by(a / b, 3);");
+    replace("return sqrt(x);", "return off_by(sqrt(x), 5);");
+    const std::string function = R"(
+highp float off_by(highp float value, highp int most) {
+    highp uint bits = floatBitsToUint(value);
+    highp uint exponent = bits & 0x7f800000u;
+    if (exponent == 0x7f800000u || exponent < 0x01000000u) { return value; }
+    highp uint hash = (bits * 2654435761u) >> 7u;
+    return uintBitsToFloat(uint(int(bits) + )" +
+                                 std::string(step) + "));\n}\n";
+    if (const auto at = text.find("lightbin_state_of("); at != text.npos)
+        text.insert(text.rfind('\n', at), function);
+    return text;
+}
+inline std::string worst_up(std::string text) {
+    return worse(std::move(text), "most");
+}
+inline std::string worst_down(std::string text) {
+    return worse(std::move(text), "(-most)");
+}
+inline std::string worst_anywhere(std::string text) {
+    return worse(std::move(text), "int(hash % uint(2 * most + 1)) - most");
+}
+
+/// A way to make a grid, whose options are both the Binner's and the shaders'.
+template <lightbin::DepthTest test, lightbin::Slicing slicing, bool world = false> struct CullWay {
+    static constexpr lightbin::DepthTest depth_test = test;
+    static constexpr lightbin::Options options{.depth_test = test, .slicing = slicing};
+    static constexpr bool world_space = world, max_only = false;
+    static constexpr float slice_margin = 0;
+};
+
+/// The same way with the maximum Z bounds alone.
+template <class Way> struct MaxOnly : Way {
+    static constexpr bool max_only = true;
+};
+
+/// The same way with slices for readers that compute a depth's slice by a formula of their own.
+template <class Way> struct WithMargin : Way {
+    static constexpr float slice_margin = 0x1p-5f;
+};
+
+class CullTests {
+public:
+    CullTests(lightbin::ShaderLanguage language, const Share& share) : language_(language), share_(share) {}
+
+    template <class Device> bool run(Device& device) {
+        using enum lightbin::DepthTest;
+        constexpr auto tiles = lightbin::Slicing::none, clusters = lightbin::Slicing::clusters,
+                       z_bins = lightbin::Slicing::z_bins;
+        smallest_and_largest(device);
+        short_of_room(device);
+        beyond_32_bits(device);
+        as_the_binner(device);
+        ordinary(device);
+        ways<CullWay<none, tiles>>(device, "tiles");
+        ways<CullWay<none, tiles, true>>(device, "tiles, world space");
+        ways<CullWay<none, clusters>>(device, "clusters");
+        ways<CullWay<interval, tiles>>(device, "interval");
+        ways<CullWay<box, tiles>>(device, "box");
+        ways<CullWay<box, clusters>>(device, "clusters and box");
+        ways<CullWay<none, z_bins>>(device, "z-bins");
+        ways<CullWay<box, z_bins>>(device, "z-bins and box");
+        ways<CullWay<interval, z_bins, true>>(device, "z-bins and interval, world space");
+        constexpr int one_size[] = {16};
+        ways<MaxOnly<CullWay<interval, tiles>>>(device, "interval, maximum only", one_size);
+        ways<MaxOnly<CullWay<box, z_bins>>>(device, "z-bins and box, maximum only", one_size);
+        ways<WithMargin<CullWay<box, clusters>>>(device, "clusters and box, slices with a margin", one_size);
+        ways<WithMargin<CullWay<none, z_bins>>>(device, "z-bins with a margin", one_size);
+        for (const TextChange change : {worst_up, worst_down, worst_anywhere}) {
+            if (const lightbin::detail::Dialect dialect{language_}; dialect.hlsl || dialect.webgpu)
+                break;  // the changed lines are GLSL
+            change_ = change;
+            ways<CullWay<none, tiles>>(device, "tiles, worst arithmetic");
+        }
+        total_.print("all");
+        return total_.cases > 0 && total_.missed == 0 && total_.wrong == 0;
+    }
+
+private:
+    bool mine() {
+        made_ = 0;
+        return turn_++ % share_.count == share_.first;
+    }
+
+    static constexpr int both_sizes[] = {16, 11};
+
+    template <class Way, class Device>
+    void ways(Device& device, const char* name, std::span<const int> tile_sizes = both_sizes) {
+        CullTally of_spheres, of_spots;
+        for (int kind = 0; kind < 3; ++kind)
+            for (int camera = 0; camera < camera_count; ++camera)
+                for (const int tile_size : tile_sizes) {
+                    if (!mine()) continue;
+                    const auto spheres = cull_lights(kind, 700, static_cast<unsigned>(kind * 10 + camera));
+                    of_spheres.add(one<Way>(device, name, spheres, camera, tile_size));
+                    of_spots.add(one<Way>(device, name, cull_spots(spheres), camera, tile_size));
+                }
+        of_spheres.print((std::string(name) + ", spheres").c_str());
+        of_spots.print((std::string(name) + ", spots").c_str());
+        total_.add(of_spheres);
+        total_.add(of_spots);
+    }
+
+    CullCase simple(const lightbin::View& view, const std::vector<lightbin::Sphere>& lights,
+                    std::size_t room) const {
+        CullCase made{"tiles",
+                      view,
+                      {},
+                      words_of(lights),
+                      static_cast<std::uint32_t>(lights.size()),
+                      static_cast<std::uint32_t>(room)};
+        made.options.language = language_;
+        made.options.orthographic = view.orthographic();
+        return made;
+    }
+
+    /// Runs all passes; for every fourth case twice, which must leave the same bytes. Prints their hash, so that runs of
+    /// the same case can be compared: on other devices and by more threads.
+    template <class Device> CulledGrid make(Device& device, const CullCase& scene) {
+        const CulledGrid grid = run_cull(device, scene, change_);
+        if (turn_ % 4 == 0 && !(run_cull(device, scene, change_) == grid)) {
+            std::printf("%s: a second run leaves other bytes\n", scene.name.c_str());
+            ++total_.wrong;
+        }
+        if (change_ == as_it_is)
+            std::printf("bytes of case %zu.%zu: %016llx\n", turn_, ++made_,
+                        static_cast<unsigned long long>(grid.hash()));
+        return grid;
+    }
+
+    void add(const char* name, const CullTally& tally) {
+        tally.print(name);
+        total_.add(tally);
+    }
+
+    /// Numbers of lights about the sizes of words, groups and steps, and of pixels from one to the most.
+    template <class Device> void smallest_and_largest(Device& device) {
+        using namespace lightbin;
+        struct Size {
+            int width, height, tile_size;
+            std::size_t lights;
+        };
+        CullTally tally;
+        for (const Size& size :
+             {Size{333, 217, 32, 0}, Size{333, 217, 32, 1}, Size{333, 217, 32, 31}, Size{333, 217, 32, 32},
+              Size{333, 217, 32, 33}, Size{333, 217, 32, 1024}, Size{333, 217, 32, 1025},
+              Size{333, 217, 64, 32769}, Size{1, 1, 32, 100}, Size{64, 64, 64, 100}, Size{33, 17, 1, 100},
+              Size{32768, 32768, 64, 100}, Size{0, 0, 32, 40}}) {
+            if (!mine()) continue;
+            const View view = builder_view(0, size.width, size.height, size.tile_size, false);
+            const auto lights = cull_lights(size.lights == 32769 ? 1 : 2, size.lights, 3);
+            LightCounts counts;
+            const BuiltLists expected =
+                binned_by_id<Options{}>({view, {}, *Slices::linear(1, 0, 1)}, lights, counts);
+            const CulledGrid grid = make(device, simple(view, lights, 2 * expected.ids.size() + 1000));
+            CullTally own = compare_lists(grid, expected);
+            own.wrong += grid.totals.rejected != counts.rejected || grid.totals.lights != lights.size() ||
+                         grid.tests > 2 * lights.size() * view.tile_count();
+            tally.add(own);
+        }
+        add("sizes", tally);
+    }
+
+    /// Rooms for fewer entries than there are: a prefix is written, nothing beyond, and the need is counted. Two runs
+    /// leave the same bytes.
+    template <class Device> void short_of_room(Device& device) {
+        using namespace lightbin;
+        CullTally tally;
+        const View view = builder_view(0, 333, 217, 16, false);
+        const auto lights = cull_lights(0, 1500, 7);
+        for (const IdWidth ids : {IdWidth::u32, IdWidth::u16}) {
+            if (!mine()) continue;
+            CullCase scene = simple(view, lights, 30000);
+            scene.options.ids = ids;
+            const CulledGrid full = run_cull(device, scene);
+            ++tally.cases;
+            tally.wrong += !(run_cull(device, scene) == full);
+            const std::uint32_t total = full.totals.entries;
+            for (const std::uint32_t room : {0u, 1u, total / 2, total - 1, total}) {
+                scene.room = room;
+                const CulledGrid grid = run_cull(device, scene);
+                ++tally.cases;
+                tally.wrong +=
+                    std::memcmp(&grid.totals, &full.totals, sizeof grid.totals) != 0 || total < 100;
+                for (std::size_t cell = 0; cell < full.tiles.size(); ++cell) {
+                    const ListRange whole = full.tiles[cell], cut = grid.tiles[cell];
+                    const std::uint32_t begin = (std::min)(whole.offset, room);
+                    tally.wrong += cut.offset != begin || cut.count != (std::min)(whole.count, room - begin);
+                }
+                const std::uint32_t blank = grid.narrow ? 0xeeee : 0xeeeeeeee;
+                for (std::uint32_t i = 0; i < grid.lists.size() * (grid.narrow ? 2 : 1); ++i)
+                    tally.wrong += grid.id(i) != (i < room ? full.id(i) : blank);
+            }
+        }
+        add("rooms", tally);
+    }
+
+    /// Counts of cells whose sum is just below 2^32 - 1, is that, and exceeds it: the total stays at the greatest number,
+    /// and so do the offsets behind it. Nobody has that many lights; the counts are put where the pass count would.
+    template <class Device> void beyond_32_bits(Device& device) {
+        using namespace lightbin;
+        if (!mine()) return;
+        const View view = builder_view(0, 333, 217, 16, false);
+        constexpr std::uint32_t all = 7, room = 1000;
+        const auto cells = static_cast<std::uint32_t>(view.tile_count());
+        const std::vector<Sphere> lights(all, {0, 0, -9, std::numeric_limits<float>::infinity()});
+        const CullCase scene = simple(view, lights, room);
+        const CullPlan plan = plan_of(scene);
+        CullTally tally;
+        // The two great counts are next to each other, or beyond what one group adds up.
+        for (const std::uint32_t other : {11u, 200u})
+            for (const std::uint64_t total : {0xfffffffeull, 0xffffffffull, 0x100000000ull, 0x180000000ull}) {
+                std::vector<std::uint32_t> counts(cells, all);
+                counts[10] = 0xc0000000;
+                counts[other] = static_cast<std::uint32_t>(total - counts[10] - all * std::uint64_t{cells - 2});
+                CullBuffers written = blank_buffers(plan);
+                const auto passes = cull_passes(Slicing::none);
+                run_passes(device, scene, plan, passes.first(2), written, as_it_is);
+                std::copy(counts.begin(), counts.end(), written["scratch"].begin() + plan.constants.counts);
+                run_passes(device, scene, plan, passes.subspan(2), written, as_it_is);
+
+                std::vector<std::uint32_t> ranges(written["tiles"].size(), 0xeeeeeeee),
+                    lists(written["lists"].size(), 0xeeeeeeee);
+                std::uint64_t end = 0;
+                for (std::uint32_t cell = 0; cell < cells; ++cell) {
+                    const std::uint64_t begin = (std::min)(end, std::uint64_t{room});
+                    for (std::uint32_t id = 0; id < all && end + id < room; ++id)
+                        lists[end + id] = id;
+                    end += counts[cell];
+                    ranges[2 * cell] = static_cast<std::uint32_t>(begin);
+                    ranges[2 * cell + 1] = static_cast<std::uint32_t>((std::min)(end, std::uint64_t{room}) - begin);
+                }
+                ++tally.cases;
+                tally.wrong += end != total || written["tiles"] != ranges || written["lists"] != lists ||
+                               written["scratch"][0] != (std::min)(total, std::uint64_t{0xffffffff});
+            }
+        add("counts beyond 32 bits", tally);
+    }
+
+    /// With the Binner's own margin, and arithmetic that rounds as its does, the bytes are the Binner's.
+    template <class Device> void as_the_binner(Device& device) {
+        using namespace lightbin;
+        if (!mine()) return;
+        CullTally tally;
+        for (const int kind : {0, 1}) {
+            const View view = builder_view(0, 333, 217, 16, false);
+            const auto lights = cull_lights(kind, 1500, 7);
+            LightCounts counts;
+            const BuiltLists expected =
+                binned_by_id<Options{}>({view, {}, *Slices::linear(1, 0, 1)}, lights, counts);
+            CullCase scene = simple(view, lights, expected.ids.size() + 100);
+            scene.margin = 0.2f;
+            const CullTally own = compare_lists(make(device, scene), expected);
+            tally.add(own);
+            tally.wrong += own.excess;
+        }
+        add("the Binner's margin", tally);
+    }
+
+    /// What ordinary lights have beyond the Binner's lists: spheres at most 1 in 1,000, spots 1 in 20. And what they
+    /// cost: spheres of some 11 tiles at most 250 tests each and 150 bytes of memory, and no more tests than if each
+    /// light were tested in each tile.
+    template <class Device> void ordinary(Device& device) {
+        using namespace lightbin;
+        if (!mine()) return;
+        const BuiltScene scene{builder_view(0, 1920, 1080, 32, false), {}, *Slices::linear(1, 0, 1)};
+        LightCounts counts;
+        const auto compare = [&](const auto& lights, CullKind kind) {
+            const BuiltLists expected = binned_by_id<Options{}>(scene, lights, counts);
+            CullCase made{"ordinary lights",
+                          scene.view,
+                          {},
+                          words_of(lights),
+                          static_cast<std::uint32_t>(lights.size()),
+                          static_cast<std::uint32_t>(2 * expected.ids.size())};
+            made.options.language = language_;
+            made.options.kind = kind;
+            if (kind == CullKind::spot) made.options.lights_at.stride = 8;
+            const CulledGrid grid = make(device, made);
+            CullTally tally = compare_lists(grid, expected);
+            const CullBytes bytes = plan_of(made).bytes;
+            const double visible = grid.totals.visible, tiles = static_cast<double>(expected.ids.size()) / visible,
+                         tests = static_cast<double>(grid.tests) / visible,
+                         memory = static_cast<double>(bytes.scratch + bytes.tiles + 4 * expected.ids.size() +
+                                                      4 * made.lights.size()) /
+                                  visible;
+            std::printf("a light in view has %.1f tiles, %.1f tests, %.1f bytes\n", tiles, tests, memory);
+            tally.wrong += grid.tests > 2 * lights.size() * scene.view.tile_count() || grid.tests == 0;
+            if (kind == CullKind::sphere) tally.wrong += tiles < 9 || tests > 250 || memory > 150;
+            return tally;
+        };
+        const auto lights = cull_lights(0, 3000, 1);
+        CullTally spheres = compare(lights, CullKind::sphere),
+                  spots = compare(cull_spots(lights), CullKind::spot);
+        spheres.wrong += spheres.excess * 1000 > spheres.entries;
+        spots.wrong += spots.excess * 20 > spots.entries;
+        add("ordinary spheres", spheres);
+        add("ordinary spots", spots);
+    }
+
+    /// One grid. Lights of world space are those of view space, moved by the inverse of a view matrix; the Binner gets
+    /// the same ones.
+    template <class Way, class Light, class Device>
+    CullTally one(Device& device, const char* name, const std::vector<Light>& lights, int camera,
+                  int tile_size) {
+        using namespace lightbin;
+        constexpr bool spots = std::is_same_v<Light, Spot>;
+        constexpr Slicing slicing = Way::options.slicing;
+        BuiltScene scene{
+            builder_view(camera, 333, 217, tile_size, false),
+            {},
+            Slices::exponential(17, 0.7f, 90)->with_margin(Way::slice_margin)};
+        const auto bounds = cull_z_bounds(scene.view);
+        if (!Way::max_only) scene.bounds.min = bounds[0];
+        scene.bounds.max = bounds[1];
+        CullCase made{name,
+                      scene.view,
+                      {},
+                      words_of(lights, spots ? 11 : 5, 1),
+                      static_cast<std::uint32_t>(lights.size()),
+                      0};
+        made.options.language = language_;
+        made.options.kind = spots ? CullKind::spot : CullKind::sphere;
+        made.options.lights_at = {
+            .stride = spots ? 11u : 5u, .centre = 1, .radius = 4, .axis = 5, .cosine = 8};
+        made.options.depth_test = Way::depth_test;
+        made.options.slicing = slicing;
+        made.options.max_only = Way::max_only;
+        made.options.orthographic = scene.view.orthographic();
+        made.options.world_space = Way::world_space;
+        made.options.ids = turn_ % 2 == 0 ? IdWidth::u16 : IdWidth::u32;
+        made.options.count_in_buffer = turn_ % 3 == 0;
+        made.options.count_at = static_cast<std::uint32_t>(turn_ % 5);
+        if (slicing != Slicing::none) made.slices = scene.slices;
+        made.z_bounds = cull_depths(scene, bounds, Way::depth_test, slicing);
+        if (Way::world_space) made.to_view = to_view();
+        LightCounts counts;
+        BuiltLists expected = Way::world_space
+                                  ? binned_by_id<Way::options>(scene, world_space(lights, to_view()), counts)
+                                  : binned_by_id<Way::options>(scene, lights, counts);
+        // Boxes of cells are tested against the least sphere around a spot, which the Binner does not test.
+        if constexpr (spots && Way::depth_test == DepthTest::box) {
+            const std::vector<Sphere> least(lights.begin(), lights.end());
+            LightCounts unused;
+            expected = intersection(
+                expected, Way::world_space
+                              ? binned_by_id<Way::options>(scene, world_space(least, to_view()), unused)
+                              : binned_by_id<Way::options>(scene, least, unused));
+        }
+        made.room = static_cast<std::uint32_t>(expected.ids.size() + expected.ids.size() + 30000);
+        const CulledGrid grid = make(device, made);
+        CullTally tally = compare_lists(grid, expected);
+        tally.wrong += grid.totals.rejected != counts.rejected || grid.totals.lights != lights.size();
+        if (tally.missed + tally.wrong > 0) {
+            tally.print((made.name + (spots ? ", spots" : ", spheres") + ", camera " +
+                         std::to_string(camera) + ", tile " + std::to_string(tile_size))
+                            .c_str());
+        }
+        return tally;
+    }
+
+    static BuiltLists intersection(const BuiltLists& a, const BuiltLists& b) {
+        BuiltLists both{{}, {}, a.slices};
+        for (std::size_t cell = 0; cell < a.tiles.size(); ++cell) {
+            const auto one = a.of(cell), other = b.of(cell);
+            const std::size_t begin = both.ids.size();
+            std::set_intersection(one.begin(), one.end(), other.begin(), other.end(),
+                                  std::back_inserter(both.ids));
+            both.tiles.push_back(
+                {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(both.ids.size() - begin)});
+        }
+        return both;
+    }
+
+    static lightbin::Matrix to_view() {
+        constexpr float m[4][4] = {{0.6f, 0, -0.8f, 0}, {0, 1, 0, 0}, {0.8f, 0, 0.6f, 0}, {130, -20, 70, 1}};
+        return lightbin::detail::to_matrix(m);
+    }
+
+    static std::vector<lightbin::Spot> cull_spots(const std::vector<lightbin::Sphere>& spheres) {
+        BuilderNumbers number(77);
+        std::vector<lightbin::Spot> spots;
+        for (const lightbin::Sphere& s : spheres) {
+            const float cosine = number(0, 1) < 0.15f ? number(-1, 0.1f) : number(0.5f, 1);
+            spots.push_back({s.x, s.y, s.z, s.radius, number(-1, 1), number(-1, 1), number(-1, 1), cosine});
+        }
+        return spots;
+    }
+
+    static std::array<std::vector<float>, 2> cull_z_bounds(const lightbin::View& view) {
+        BuilderNumbers number(9);
+        std::array<std::vector<float>, 2> bounds;
+        for (std::size_t tile = 0; tile < view.tile_count(); ++tile) {
+            float low = number(0.1f, 60), high = low * number(1, 2);
+            if (tile % 11 == 3) high = std::numeric_limits<float>::infinity();
+            if (tile % 13 == 4) std::swap(low, high);
+            if (tile % 17 == 5) low = std::numeric_limits<float>::quiet_NaN();
+            bounds[0].push_back(low);
+            bounds[1].push_back(high);
+        }
+        return bounds;
+    }
+
+    /// The content of the buffer `z_bounds`.
+    static std::vector<float> cull_depths(const BuiltScene& scene, const std::array<std::vector<float>, 2>& bounds,
+                                          lightbin::DepthTest test, lightbin::Slicing slicing) {
+        std::vector<float> depths;
+        if (slicing == lightbin::Slicing::clusters)
+            for (const lightbin::ShaderEdges& slab : lightbin::shader_slabs(scene.slices))
+                depths.insert(depths.end(), {slab.low, slab.high});
+        else
+            for (std::size_t tile = 0; tile < scene.view.tile_count(); ++tile)
+                depths.insert(depths.end(), {bounds[0][tile], bounds[1][tile]});
+        if (test == lightbin::DepthTest::box)
+            for (const lightbin::ShaderEdges& edge : lightbin::shader_edges(scene.view))
+                depths.insert(depths.end(), {edge.low, edge.high});
+        return depths;
+    }
+
+    lightbin::ShaderLanguage language_;
+    Share share_;
+    std::size_t turn_ = 0, made_ = 0;
+    TextChange change_ = as_it_is;
+    CullTally total_;
+};

@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: MIT
+# Runs every sixth case of cull_gl over 1, 2 and 8 threads: what it prints, with the hashes of all bytes, must be the same.
+foreach(threads 1 2 8)
+    set(ENV{LP_NUM_THREADS} ${threads})  # llvmpipe reads it
+    execute_process(COMMAND ${program} 430 0 6 OUTPUT_VARIABLE said RESULT_VARIABLE result)
+    if(NOT result EQUAL 0 OR NOT said MATCHES "bytes of case")
+        message(FATAL_ERROR "${threads} threads: ${result}\n${said}")
+    elseif(DEFINED before AND NOT said STREQUAL before)
+        message(FATAL_ERROR "${threads} threads leave other bytes:\n${before}\n${said}")
+    endif()
+    set(before "${said}")
+endforeach()

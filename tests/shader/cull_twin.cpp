@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: MIT
+// The shaders' projection of lights, under the worst arithmetic that GLSL, Vulkan and WGSL allow: the text of the pass
+// `project` is compiled as C++ over a number type whose sums and products are rounded up or down at will, whose
+// quotients are off by up to 2.5 units in the last place, and whose roots are 1 / inversesqrt(x), with 2 such units in
+// the latter. Every rectangle must hold the one that the Binner finds. With a margin of 2^-21 instead of the shaders'
+// own, some must not.
+//
+// cull_twin [LIGHTS]   how many lights for each view, kind of light and arithmetic
+#include <lightbin/lightbin.hpp>
+#include <lightbin/spot.hpp>
+#include <lightbin/shader_build.hpp>
+#include <lightbin/shader_cull.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace {
+
+enum class Rounding { nearest, up, down, either, anywhere };
+
+Rounding rounding = Rounding::nearest;
+std::uint64_t random_state = 88172645463325252u;
+
+double uniform() {
+    random_state ^= random_state << 13;
+    random_state ^= random_state >> 7;
+    random_state ^= random_state << 17;
+    return static_cast<double>(random_state >> 11) / 9007199254740992.0;
+}
+
+/// Where between the ends of its error an operation's result lies, -1 to 1.
+double place() {
+    return rounding == Rounding::up       ? 1
+           : rounding == Rounding::down   ? -1
+           : rounding == Rounding::either ? (uniform() < 0.5 ? -1 : 1)
+                                          : 2 * uniform() - 1;
+}
+
+float rounded_sum(double exact) {
+    const float nearest = static_cast<float>(exact);
+    if (rounding == Rounding::nearest) return nearest;
+    const bool up = place() > 0;
+    const float infinity = std::numeric_limits<float>::infinity();
+    if (up) return static_cast<double>(nearest) < exact ? std::nextafter(nearest, infinity) : nearest;
+    return static_cast<double>(nearest) > exact ? std::nextafter(nearest, -infinity) : nearest;
+}
+
+float off_by(double exact, double units) {
+    if (rounding == Rounding::nearest || exact == 0 || !std::isfinite(exact))
+        return static_cast<float>(exact);
+    int exponent = 0;
+    std::frexp(exact, &exponent);
+    return static_cast<float>(exact + place() * units * std::ldexp(1.0, exponent - 24));
+}
+
+struct Real {
+    Real() = default;
+    Real(double of) : v(static_cast<float>(of)) {}
+    explicit operator std::uint32_t() const { return static_cast<std::uint32_t>(v); }
+    static Real exact(float of) {
+        Real r;
+        r.v = of;
+        return r;
+    }
+    double d() const { return static_cast<double>(v); }
+    float v = 0;
+};
+
+Real operator+(Real a, Real b) {
+    return Real::exact(rounded_sum(a.d() + b.d()));
+}
+Real operator-(Real a, Real b) {
+    return Real::exact(rounded_sum(a.d() - b.d()));
+}
+Real operator*(Real a, Real b) {
+    return Real::exact(rounded_sum(a.d() * b.d()));
+}
+Real operator/(Real a, Real b) {
+    return Real::exact(off_by(a.d() / b.d(), 2.5));
+}
+Real operator-(Real a) {
+    return Real::exact(-a.v);
+}
+Real& operator+=(Real& a, Real b) {
+    return a = a + b;
+}
+bool operator<(Real a, Real b) {
+    return a.v < b.v;
+}
+bool operator>(Real a, Real b) {
+    return a.v > b.v;
+}
+bool operator<=(Real a, Real b) {
+    return a.v <= b.v;
+}
+bool operator>=(Real a, Real b) {
+    return a.v >= b.v;
+}
+Real abs(Real a) {
+    return Real::exact(std::fabs(a.v));
+}
+Real min(Real a, Real b) {
+    return b.v < a.v ? b : a;
+}
+Real max(Real a, Real b) {
+    return a.v < b.v ? b : a;
+}
+std::uint32_t max(std::uint32_t a, std::uint32_t b) {
+    return a < b ? b : a;
+}
+Real clamp(Real a, Real low, Real high) {
+    return min(max(a, low), high);
+}
+Real sqrt(Real a) {
+    const Real inverse = Real::exact(off_by(1 / std::sqrt(a.d()), 2));
+    return Real::exact(off_by(1 / inverse.d(), 2.5));
+}
+
+using uint = std::uint32_t;
+
+struct vec2 {
+    Real x, y;
+};
+struct vec3 {
+    Real x, y, z;
+};
+struct vec4 {
+    vec4() = default;
+    vec4(Real a, Real b, Real c, Real d) : x(a), y(b), z(c), w(d) {}
+    vec4(vec3 a, Real d) : x(a.x), y(a.y), z(a.z), w(d) {}
+    vec4(vec2 a, vec2 b) : x(a.x), y(a.y), z(b.x), w(b.y) {}
+    vec3 first_three() const { return {x, y, z}; }
+    vec2 first_two() const { return {x, y}; }
+    vec2 last_two() const { return {z, w}; }
+    Real x, y, z, w;
+};
+struct uvec2 {
+    uint x, y;
+};
+struct uvec4 {
+    uint x, y, z, w;
+};
+vec3 operator+(vec3 a, vec3 b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+vec3 operator-(vec3 a, vec3 b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+vec3 operator*(vec3 a, vec3 b) {
+    return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+vec3 operator*(vec3 a, Real b) {
+    return {a.x * b, a.y * b, a.z * b};
+}
+
+Real uintBitsToFloat(uint bits) {
+    return Real::exact(std::bit_cast<float>(bits));
+}
+
+// What the text reads and writes. All texts have the same.
+std::vector<uint> lights, scratch;
+uvec4 grid, places;
+vec4 axis_x, axis_y, signs, planes, origin, column_x, column_y, column_z, origin_image;
+void mark(uint, uvec2, uvec2, uvec2) {}
+
+#define sphere_lights lights
+#define world_lights lights
+#define flat_lights lights
+#define spot_lights lights
+#define sphere_scratch scratch
+#define world_scratch scratch
+#define flat_scratch scratch
+#define spot_scratch scratch
+#define sphere_grid grid
+#define world_grid grid
+#define flat_grid grid
+#define spot_grid grid
+#define sphere_places places
+#define world_places places
+#define flat_places places
+#define spot_places places
+#define sphere_axis_x axis_x
+#define world_axis_x axis_x
+#define flat_axis_x axis_x
+#define spot_axis_x axis_x
+#define sphere_axis_y axis_y
+#define world_axis_y axis_y
+#define flat_axis_y axis_y
+#define spot_axis_y axis_y
+#define sphere_signs signs
+#define world_signs signs
+#define flat_signs signs
+#define spot_signs signs
+#define sphere_planes planes
+#define world_planes planes
+#define flat_planes planes
+#define spot_planes planes
+#define sphere_mark mark
+#define world_mark mark
+#define flat_mark mark
+#define spot_mark mark
+#define world_origin origin
+#define world_column_x column_x
+#define world_column_y column_y
+#define world_column_z column_z
+#define world_origin_image origin_image
+#define xyz first_three()
+#define xy first_two()
+#define zw last_two()
+#define float Real
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#include "cull_twin_text.inc"
+#pragma GCC diagnostic pop
+#undef float
+#undef xyz
+#undef xy
+#undef zw
+
+using namespace lightbin;
+
+void set_constants(const ShaderCull& c, double margin) {
+    const auto real = [](auto n) { return Real::exact(n); };
+    grid = {c.tiles_x, c.tiles_y, 1, 0};
+    places = {0, 0, 0, 0};
+    axis_x = {real(c.scale_x), real(c.offset_x),
+              real(static_cast<float>(static_cast<double>(c.margin_x) * margin)), real(c.limit_x)};
+    axis_y = {real(c.scale_y), real(c.offset_y),
+              real(static_cast<float>(static_cast<double>(c.margin_y) * margin)), real(c.limit_y)};
+    signs = {real(c.sign_x), real(c.sign_y), real(c.sign_z), real(c.slice_margin)};
+    planes = {real(c.near_depth), real(c.front), real(c.back), real(c.near_fast)};
+    const auto column = [&](const auto& three, auto fourth) {
+        return vec4{real(three[0]), real(three[1]), real(three[2]), real(fourth)};
+    };
+    origin = column(c.origin, c.stretch);
+    column_x = column(c.column_x, c.error_rate);
+    column_y = column(c.column_y, c.error_at_origin);
+    column_z = column(c.column_z, c.cone_error);
+    origin_image = column(c.origin_image, c.max_distance);
+}
+
+class LightMaker {
+public:
+    LightMaker(unsigned seed, const View& view) : engine_(seed), camera_(detail::camera_of(view)) {}
+
+    /// A light in view space: usual ones, the eye inside and on the surface, the near plane through it and touching it,
+    /// extreme radii, and ones that end next to a tile's edge.
+    Sphere next() {
+        double z = std::pow(10.0, real(-1, 2.3)), y = z * real(-0.7, 0.7), x = z * real(-1.2, 1.2),
+               r = z * std::pow(2.0, real(-14, 1));
+        const unsigned trouble = engine_() % 16;
+        const double near_depth = static_cast<double>(camera_.near_depth);
+        if (trouble < 3) {
+            r = std::sqrt(x * x + y * y + z * z) * (1 + real(-0.5, 0.5) * std::pow(2.0, -real(0, 23)));
+        } else if (trouble < 6) {
+            z = near_depth + real(-2, 2) * r;
+        } else if (trouble == 6) {
+            r = std::fabs(z - near_depth);
+            if (engine_() & 1) r *= 1 + (engine_() & 1 ? 0x1p-23 : -0x1p-23);
+        } else if (trouble == 7) {
+            r = std::pow(2.0, real(-60, 60));
+        } else if (trouble < 12) {
+            const double edge = static_cast<double>(engine_() % static_cast<unsigned>(camera_.x.tiles)),
+                         slope = (edge - camera_.x.offset) / camera_.x.scale * (1 + real(-1, 1) * 0x1p-20);
+            r = static_cast<double>(static_cast<float>(z * real(0.001, 0.4)));
+            const double side = engine_() & 1 ? 1 : -1;
+            x = static_cast<double>(camera_.x.sign) *
+                (camera_.orthographic ? slope - side * r
+                                      : slope * z - side * r * std::sqrt(1 + slope * slope));
+        }
+        return {static_cast<float>(x), static_cast<float>(y),
+                static_cast<float>(static_cast<double>(camera_.z_sign) * z), static_cast<float>(r)};
+    }
+    Spot next_spot() {
+        const Sphere s = next();
+        const double cosine = engine_() % 8 == 0 ? real(-1, 0.1) : real(0.3, 1);
+        const auto axis = [&] { return static_cast<float>(real(-1, 1)); };
+        return {s.x, s.y, s.z, s.radius, axis(), axis(), axis(), static_cast<float>(cosine)};
+    }
+
+private:
+    double real(double low, double high) {
+        return low + (high - low) * static_cast<double>(engine_() >> 8) / 16777216.0;
+    }
+
+    std::mt19937 engine_;
+    const detail::Camera& camera_;
+};
+
+struct Tally {
+    std::uint64_t rectangles = 0, lost = 0;
+};
+
+/// Projects lights by the text, under each arithmetic, and compares with the Binner's rectangles.
+template <class Light>
+Tally compare(const View& view, const CullShaderOptions& options, const std::vector<Light>& made,
+              const Matrix* to_view, double margin) {
+    const auto expected = to_view != nullptr ? *shader_footprints(view, world_space(made, *to_view))
+                                             : *shader_footprints(view, made);
+    const auto plan = *plan_cull(view, options, {static_cast<uint>(made.size()), 0}, nullptr, to_view);
+    set_constants(plan.constants, margin);
+    lights.resize(made.size() * sizeof(Light) / 4);
+    std::memcpy(lights.data(), made.data(), made.size() * sizeof(Light));
+    scratch.resize(made.size() * 2);
+    Tally tally;
+    for (const Rounding way :
+         {Rounding::nearest, Rounding::up, Rounding::down, Rounding::either, Rounding::anywhere}) {
+        rounding = way;
+        for (const ShaderFootprint& f : expected) {
+            if constexpr (std::is_same_v<Light, Spot>)
+                spot_project(f.id, 0);
+            else if (to_view != nullptr)
+                world_project(f.id, 0);
+            else if (options.orthographic)
+                flat_project(f.id, 0);
+            else
+                sphere_project(f.id, 0);
+            const uint first = scratch[2 * f.id], last = scratch[2 * f.id + 1];
+            ++tally.rectangles;
+            tally.lost +=
+                (first & 0xffff) > f.x0 || first >> 16 > f.y0 || (last & 0xffff) < f.x1 || last >> 16 < f.y1;
+        }
+    }
+    rounding = Rounding::nearest;
+    return tally;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    const std::size_t light_count = count > 1 ? std::strtoul(arguments[1], nullptr, 10) : 4000;
+    constexpr float
+        perspective[4][4] = {{0.974f, 0, 0, 0}, {0, 1.732f, 0, 0}, {0, 0, -1.001f, -1}, {0, 0, -0.2001f, 0}},
+        off_centre[4][4] = {{2.2f, 0, 0, 0}, {0, 3.9f, 0, 0}, {0.37f, -0.81f, -1, -1}, {0, 0, -0.02f, 0}},
+        flat[4][4] = {{0.02f, 0, 0, 0}, {0, -0.035f, 0, 0}, {0, 0, -0.01f, 0}, {0.1f, 0, -1, 1}},
+        moved[4][4] = {{0.6f, 0, -0.8f, 0}, {0, 1, 0, 0}, {0.8f, 0, 0.6f, 0}, {13, -20, -7, 1}};
+    const Matrix to_view = detail::to_matrix(moved);
+    Tally all, narrow;
+    unsigned seed = 1;
+    for (const auto& matrix : {perspective, off_centre, flat})
+        for (const int tile_size : {32, 1}) {
+            const View view = *View::from_projection(matrix, {1920, 1080}, {.tile_size = tile_size});
+            LightMaker make(seed++, view);
+            std::vector<Sphere> spheres;
+            std::vector<Spot> spots;
+            for (std::size_t i = 0; i < light_count; ++i) {
+                spheres.push_back(make.next());
+                spots.push_back(make.next_spot());
+            }
+            CullShaderOptions options;
+            options.orthographic = view.orthographic();
+            const auto add = [](Tally& to, const Tally& t, const char* what) {
+                to.rectangles += t.rectangles;
+                to.lost += t.lost;
+                if (t.lost > 0 && what != nullptr)
+                    std::printf("%s: %llu of %llu rectangles lost\n", what,
+                                static_cast<unsigned long long>(t.lost),
+                                static_cast<unsigned long long>(t.rectangles));
+            };
+            add(all, compare(view, options, spheres, nullptr, 1), "spheres");
+            add(narrow, compare(view, options, spheres, nullptr, 0.1), nullptr);
+            if (options.orthographic) continue;
+            options.kind = CullKind::spot;
+            add(all, compare(view, options, spots, nullptr, 1), "spots");
+            options.kind = CullKind::sphere;
+            options.world_space = true;
+            add(all, compare(view, options, spheres, &to_view, 1), "world space");
+        }
+    std::printf("%llu rectangles, %llu lost; with a margin of 2^-21 %llu of %llu are\n",
+                static_cast<unsigned long long>(all.rectangles), static_cast<unsigned long long>(all.lost),
+                static_cast<unsigned long long>(narrow.lost),
+                static_cast<unsigned long long>(narrow.rectangles));
+    return all.rectangles == 0 || all.lost > 0 || narrow.lost == 0;
+}
