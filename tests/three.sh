@@ -3,11 +3,14 @@
 # Installs what is missing, builds the package, fetches three.js, and runs it in headless Chromium on a software
 # renderer. Takes about two minutes, and some more the first time.
 #   --serve  shows the page with 5,000 moving lights instead, at http://localhost:8000/page.html
+#   --bench  times frames of three.js' own lights and of the adapter's instead, in turns: the table of docs/threejs.md.
+#            Takes four minutes, most of them for three.js' own shaders to be compiled
 set -eu
 me=tests/three.sh
 cd "$(dirname "$0")/.."
 . tests/packages.sh
-takes "nothing, --serve" --serve "$@"
+takes "nothing, --serve, --bench" "--serve|--bench" "$@"
+[ $# -le 1 ] || fail "takes one option"
 
 install_packages chromium nodejs emscripten node-acorn binaryen
 command -v npm >/dev/null || install_packages npm
@@ -26,7 +29,10 @@ done
 
 modules=$PWD/$tests/node_modules
 export THREE="$modules/three" PLAYWRIGHT="$modules/playwright-core" LIGHTBIN="$PWD/build/npm/lightbin"
-[ $# -eq 0 ] || exec node tests/three/server.mjs 8000
+case ${1-} in
+--serve) exec node tests/three/server.mjs 8000 ;;
+--bench) exec node tests/three/bench.mjs ;;
+esac
 node --test-reporter=spec tests/three/pictures.mjs >$tests/pictures.log 2>&1 || failed=yes
 grep -E '^(✔|✖|    at |  [A-Z])' $tests/pictures.log || true
 [ -z "${failed-}" ] || fail "not every test passed; the log is $tests/pictures.log"

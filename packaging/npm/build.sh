@@ -1,6 +1,6 @@
 #!/bin/sh
 # sh packaging/npm/build.sh [FOLDER]: makes the npm package in FOLDER (default: build/npm/lightbin). Needs emscripten,
-# binaryen and node: on Debian 12 the packages emscripten, node-acorn, binaryen and nodejs. Takes a minute.
+# binaryen and node: on Debian 12 the packages emscripten, node-acorn, binaryen and nodejs. Takes about two minutes.
 set -eu
 me=packaging/npm/build.sh
 cd "$(dirname "$0")/../.."
@@ -10,30 +10,21 @@ here=packaging/npm
 out=${1-build/npm/lightbin}
 work=$out.work
 rm -rf "$out" "$work"
-mkdir -p "$out" "$work/include/lightbin/detail/tiers"
+mkdir -p "$out" "$work"
 
 node $here/tables.mjs include/lightbin/lightbin.h $here/lightbin.js "$out/tables.js" "$work/layouts.inl"
 cp $here/*.d.ts $here/node.js $here/README.md LICENSE "$out"
-for script in lightbin.js three.js; do
+for script in lightbin.js three.js playcanvas.js; do
     grep -v '^ *//[/ ][^S]' $here/$script >"$out/$script" # comments are for who reads the repository
 done
 version=$(sed -n 's/^#define LIGHTBIN_VERSION_[A-Z]* //p' include/lightbin/version.hpp | paste -s -d .)
 sed "s/@VERSION@/$version/" $here/package.json.in >"$out/package.json"
 
-# A module with vectors is only loaded where there are vectors, and so needs no scalar kernels beside those, but for
-# depth buffers of less than four columns.
-sed -e 's/if (isa == Isa::simd128) return pick/return pick/' \
-    -e 's/return depth_kernel<by_split>(static_cast.*;/return scalar::Tier::depth_kernel<by_split>();/' \
-    include/lightbin/detail/tiers/kernels.hpp >"$work/include/lightbin/detail/tiers/kernels.hpp"
-
-# module NAME FLAG...: exports what the package's JavaScript calls, but the functions of shader text, which are a module
-# of their own, named shaders. With emscripten's own settings for -Os, no vector operation would be inlined.
+# module NAME FUNCTIONS FLAG...: exports those functions that the package's JavaScript calls whose names have a word of
+# FUNCTIONS, a pattern. With emscripten's own settings for -Os, no vector operation would be inlined.
 module() {
-    name=$1
-    shift
-    of_text='lightbin_shader_(snippet|text|destroy|binding)'
-    other=-v
-    [ "$name" != shaders ] || other=
+    name=$1 functions=$2
+    shift 2
     # shellcheck disable=SC2086  # a word a flag
     NODE_PATH=/usr/share/nodejs em++ -std=c++20 -Os -sINLINING_LIMIT=0 -Wall -Wextra -Wshadow -Werror \
         -fno-exceptions -fno-rtti -DNDEBUG "$@" $left_out \
@@ -41,20 +32,28 @@ module() {
         -sERROR_ON_UNDEFINED_SYMBOLS=0 -sWARN_ON_UNDEFINED_SYMBOLS=0 \
         -sMALLOC=emmalloc -sALLOW_MEMORY_GROWTH -sINITIAL_MEMORY=1MB -sTOTAL_STACK=128KB \
         -sEXPORTED_FUNCTIONS="$(grep -oE '\<(c|exports)\.lightbin_[a-z_]+' $here/lightbin.js | sort -u |
-            grep -E $other "$of_text" | sed 's/.*\./_/' | paste -s -d ,),_lightbin_error_text,_malloc,_free,_live_allocations"
+            grep -P "$functions" | sed 's/.*\./_/' | paste -s -d ,),_lightbin_error_text,_malloc,_free,_live_allocations"
     wasm-dis "$work/$name.wasm" -o "$work/$name.wat"
     node $here/sort_functions.mjs <"$work/$name.wat" >"$work/$name.sorted.wat"
     wasm-as --enable-simd --enable-sign-ext --enable-nontrapping-float-to-int \
         "$work/$name.sorted.wat" -o "$out/$name.wasm"
 }
-left_out=$(printf -- '-DLIGHTBIN_NO_%s ' THREADS ADVICE BUILD_SHADERS SPLIT_BOX TRANSPARENCY)
+# Modules with vectors are only loaded where there are vectors. Shader text and advice, which few programs ask for, and
+# not in each frame, have modules of their own.
+left_out=$(printf -- '-DLIGHTBIN_NO_%s ' SCALAR THREADS SPLIT_BOX TRANSPARENCY)
 small='-mllvm -inline-threshold=0 -fno-vectorize -fno-slp-vectorize -fno-unroll-loops'
+vectors='-msimd128 -msign-ext -mnontrapping-fptoint'
+text='lightbin_(shader_(snippet|text|destroy|binding)|(reduce|build|cull)_shader|cull_passes|plan_cull)'
+planned='view_(create|update|describe|destroy)|slices_(from_boundaries|count|destroy)' # what plan_cull() takes
 # shellcheck disable=SC2086  # a word a flag
-module lightbin $small &
-# shellcheck disable=SC2086
-module lightbin_simd $small -I "$work/include" -msimd128 -msign-ext -mnontrapping-fptoint
-wait $!
-module shaders -Oz
+{
+    module lightbin "^(?!.*($text|advi[sc]e))" $small -DLIGHTBIN_NO_ADVICE &
+    module lightbin_simd "^(?!.*($text|advi[sc]e))" $small $vectors -DLIGHTBIN_NO_ADVICE
+    wait $!
+    module advice 'advi[sc]e|view|slices' $small $vectors &
+    module shaders "$text|$planned" -Oz -DLIGHTBIN_NO_ADVICE
+    wait $!
+}
 
 # The shader text of the adapter for three.js, whose options do not change, so that it needs no module for that.
 node --input-type=module - "$out" <<'END'

@@ -3,6 +3,8 @@
 #include <lightbin/detail/c/memory.hpp>
 
 #include <lightbin/binner.hpp>
+#include <lightbin/box.hpp>
+#include <lightbin/spot.hpp>
 
 // What no light and no tile goes through is compiled for size alone.
 #pragma clang attribute push(__attribute__((minsize)), apply_to = function)

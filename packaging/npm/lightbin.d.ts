@@ -15,8 +15,10 @@ export interface LoadOptions {
     simd?: boolean;
     /** The module lightbin_simd.wasm or lightbin.wasm, or where it is. Default: beside the package's JavaScript. */
     wasm?: Wasm | Promise<Wasm> | (() => Wasm | Promise<Wasm>);
-    /** The module shaders.wasm, which the first call of shader() loads, or where it is. */
+    /** The module shaders.wasm, which the first call that makes shader text loads, or where it is. */
     shaders?: Wasm | Promise<Wasm> | (() => Wasm | Promise<Wasm>);
+    /** The module advice.wasm, which each call of advise() and adviseSlices() loads, or where it is. */
+    advice?: Wasm | Promise<Wasm> | (() => Wasm | Promise<Wasm>);
 }
 
 /** Loads the module. Each call returns another one, with memory of its own. */
@@ -69,6 +71,16 @@ export interface View extends Disposable {
     shaderGrid(cornerX?: number, cornerY?: number): Uint32Array;
     /** The constants `image` and `depths` of the shader text's view check. */
     shaderView(tolerance?: number): Float32Array;
+    /** The constants of reduceShader(): the words of its uniform block, of which the second four are floats (`planes`). */
+    shaderReduce(cornerX?: number, cornerY?: number): Uint32Array;
+    /** The constants of buildShader(). footprints: their number; capacity: the ids that the buffer `lists` holds; slices:
+     * their number with clusters. */
+    shaderBuild(constants: {footprints: number, capacity: number, slices?: number}): Uint32Array;
+    /** The input of buildShader(), eight words for each light in view: docs/shader.md. An array over the module's memory,
+     * until the next call of anything. */
+    shaderFootprints(lights: Lights): Uint32Array;
+    /** What buildShader() reads with `box`, after the Z bounds: the sides of columns and rows of tiles. */
+    shaderEdges(): Float32Array;
 }
 
 /** Floats in the module's memory, all 0 at first. Lights in such memory are read in place, without a copy. */
@@ -138,6 +150,8 @@ export interface Slices extends Disposable {
     readonly boundaries: Float32Array;
     /** The content of the shader text's buffer `slices`. */
     shaderWords(): Uint32Array;
+    /** What buildShader() reads with clusters in place of Z bounds. */
+    shaderSlabs(): Float32Array;
 }
 
 export interface BinnerOptions {
@@ -213,10 +227,12 @@ export interface Slot {
     set?: number;
 }
 
+/** essl-300 for WebGL 2, wgsl for WebGPU. */
+type Language = 'essl-300' | 'wgsl' | 'essl-310' | 'glsl-330' | 'glsl-430' | 'glsl-vulkan' | 'hlsl-5-0' | 'hlsl-5-1';
+
 /** docs/shader.md explains each member at length. */
 export interface ShaderOptions {
-    /** essl-300 for WebGL 2, wgsl for WebGPU. */
-    language: 'essl-300' | 'wgsl' | 'essl-310' | 'glsl-330' | 'glsl-430' | 'glsl-vulkan' | 'hlsl-5-0' | 'hlsl-5-1';
+    language: Language;
     /** texture-2d or uniform-block for WebGL 2. Default: storage-buffer. */
     storage?: 'storage-buffer' | 'texel-buffer' | 'texture-2d' | 'uniform-block' | 'byte-address';
     /** That of the binner. */
@@ -234,6 +250,8 @@ export interface ShaderOptions {
     heatMap?: boolean;
     waveLoop?: boolean;
     viewCheck?: boolean;
+    views?: number;
+    splitKinds?: boolean;
     listCheck?: boolean;
     window?: boolean;
     pushConstants?: boolean;
@@ -244,6 +262,122 @@ export interface ShaderOptions {
     uniformBlockBytes?: number;
     /** Default: the bindings 0 to 5 of set 0 in this order. */
     slots?: {tiles?: Slot, lists?: Slot, grid?: Slot, slices?: Slot, bins?: Slot, view?: Slot};
+}
+
+/** A shader that reduces a depth texture to Z bounds. Defaults: a compute shader, one sample, 32-bit floats. */
+export interface ReduceShaderOptions {
+    language: Language;
+    fragment?: boolean;
+    samples?: number;
+    format?: 'float32' | 'unorm24' | 'unorm16';
+    reversedZ?: boolean;
+    orthographic?: boolean;
+    skipBackground?: boolean;
+    flipY?: boolean;
+    viewportCorner?: boolean;
+    pushConstants?: boolean;
+    prefix?: string;
+    /** Default: the bindings 0 to 2 of set 0 in this order. */
+    slots?: {depth?: Slot, zBounds?: Slot, grid?: Slot};
+}
+
+/** One of the three compute shaders that build the lists on the GPU. */
+export interface BuildShaderOptions {
+    language: Language;
+    pass: 'count' | 'offsets' | 'fill';
+    depthTest?: 'no-depth-test' | 'interval' | 'box';
+    slicing?: 'no-slicing' | 'clusters';
+    maxOnly?: boolean;
+    orthographic?: boolean;
+    pushConstants?: boolean;
+    prefix?: string;
+    /** Default: the bindings 0, 1, 2, 3, 3 and 4 of set 0 in this order. */
+    slots?: {footprints?: Slot, zBounds?: Slot, tiles?: Slot, lists?: Slot, total?: Slot, grid?: Slot};
+}
+
+/** The compute shaders that make the lists on the GPU of lights in a buffer there. */
+export type CullPass = 'project' | 'bin-counts' | 'bin-offsets' | 'rank' | 'masks' | 'count' | 'sums' | 'offsets'
+    | 'fill';
+
+/** All passes need the same options except for `pass`. docs/gpu.md explains them and the buffers. */
+export interface CullShaderOptions {
+    language: Language;
+    pass?: CullPass;
+    kind?: 'sphere' | 'spot';
+    /** Where a light's numbers lie in the buffer `lights`, in words of 32 bits. Without stride, lights lie side by
+     * side: x, y, z, radius, and with spots axis and cosine. */
+    stride?: number;
+    centre?: number;
+    radius?: number;
+    axis?: number;
+    cosine?: number;
+    worldSpace?: boolean;
+    /** The number of lights is read from word `countAt` of the buffer `light_count`. */
+    countInBuffer?: boolean;
+    countAt?: number;
+    ids?: 'u32' | 'u16';
+    /** interval not with clusters. */
+    depthTest?: 'no-depth-test' | 'interval' | 'box';
+    slicing?: Slicing;
+    maxOnly?: boolean;
+    orthographic?: boolean;
+    prefix?: string;
+    /** Default: the bindings 0, 0, 1, 2, 2, 2, 3, 3, 3 and 4 of set 0 in this order. */
+    slots?: {lights?: Slot, zBounds?: Slot, scratch?: Slot, slices?: Slot, bins?: Slot, tiles?: Slot, lightCount?: Slot,
+             order?: Slot, lists?: Slot, grid?: Slot};
+}
+
+/** What the buffers have room for, and what the options ask for. */
+export interface CullRoom {
+    /** The number of lights, with countInBuffer the greatest. */
+    lights: number;
+    /** Ids that fit in the buffer `lists`. */
+    entries: number;
+    /** With clusters and z-bins. */
+    slices?: Slices;
+    /** With worldSpace. */
+    viewMatrix?: Numbers;
+    layout?: MatrixLayout;
+}
+
+export interface CullPlan {
+    /** The content of the uniform block `grid`. */
+    constants: Uint32Array;
+    /** The sizes of the buffers. The first four words of scratch are, after the passes: the entries of the complete
+     * lists, the lights that are bad input, those in view, and those given. */
+    bytes: {scratch: number, tiles: number, lists: number, order: number, bins: number};
+    /** The passes in the order of their dispatches, and the work groups of each. */
+    passes: {pass: CullPass, x: number, y: number}[];
+}
+
+/** Costs that can't be measured here, in nanoseconds. */
+export interface Costs {
+    /** Of one light at one pixel. Default: 0.02. */
+    evaluationNs?: number;
+    /** Of the depth pre-pass and its reduction to Z bounds. */
+    zBoundsNs?: number;
+    uploadByteNs?: number;
+    /** Fragments shaded per visible pixel without a pre-pass. Default: 1. */
+    overdraw?: number;
+}
+
+/** One way to light a view, and its costs a frame. */
+export interface Plan {
+    /** If not, every pixel evaluates every light, and the next four members mean nothing. */
+    readonly tiled: boolean;
+    readonly footprint: 'rectangle' | 'silhouette';
+    readonly depthTest: 'no-depth-test' | 'interval' | 'box';
+    readonly slicing: Slicing;
+    readonly tileSize: number;
+    /** Of the lists, with zBoundsNs if the plan has Z bounds. */
+    readonly buildNs: number;
+    readonly uploadNs: number;
+    /** Of a light at a pixel. */
+    readonly evaluations: number;
+    /** buildNs + uploadNs + evaluations * evaluationNs */
+    readonly totalNs: number;
+    /** In all lists together. */
+    readonly entries: number;
 }
 
 /** One resource that the program has to bind. */
@@ -260,6 +394,11 @@ export interface ShaderBinding {
     readonly webgpuFormat: string;
 }
 
+export interface ShaderText {
+    text: string;
+    bindings: ShaderBinding[];
+}
+
 export interface Lightbin {
     readonly version: string;
     readonly simd: boolean;
@@ -274,7 +413,25 @@ export interface Lightbin {
     linearSlices(options: {count: number, begin: number, end: number, margin?: number}): Slices;
     slicesFromBoundaries(options: {boundaries: Numbers, margin?: number}): Slices;
     /** Makes shader text that reads the lists, to be inserted after `#version`. The first call loads shaders.wasm. */
-    shader(options: ShaderOptions): Promise<{text: string, bindings: ShaderBinding[]}>;
+    shader(options: ShaderOptions): Promise<ShaderText>;
+    /** Makes a whole shader, but for `#version`: docs/shader.md says what its buffers hold, and how to dispatch it. */
+    reduceShader(options: ReduceShaderOptions): Promise<ShaderText>;
+    buildShader(options: BuildShaderOptions): Promise<ShaderText>;
+    cullShader(options: CullShaderOptions): Promise<ShaderText>;
+    /** Returns the constants, buffer sizes and dispatches of cullShader() for a view. Where only the camera moves, only
+     * the constants change. The first call loads shaders.wasm. */
+    planCull(view: View, options: CullShaderOptions, room: CullRoom): Promise<CullPlan>;
+    /**
+     * Measures on this machine, with vectors, what each way to light a view costs, cheapest first. For development: it
+     * loads advice.wasm, takes as long as some hundreds of builds, and needs a machine that has vectors. bounds: those of
+     * the view's own tiles; without them no depth test is measured.
+     */
+    advise(view: View, lights: Lights, options?: Costs & {bounds?: ZBounds}): Promise<Plan[]>;
+    /** The same of tiles, clusters and z-bins. depths: columns * rows view depths of visible surfaces, at points spread
+     * evenly over the viewport, row by row from its origin. NaN or Infinity marks a point with nothing to light. */
+    adviseSlices(view: View, lights: Lights, options: Costs & {
+        clusters: Slices, zBins: Slices, depths: Numbers, columns: number, rows: number,
+    }): Promise<Plan[]>;
     /** Returns the distance at which a light of an intensity falls below `cutoff` by the inverse square law. */
     lightRange(intensity: number, cutoff: number): number;
     /** How many blocks of the module's memory views, slices, binners and floats hold: 0 when all were disposed of. */

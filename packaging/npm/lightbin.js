@@ -105,6 +105,8 @@ class Core {
                 this.write(more, at, value, `${what}.${key}`);
             } else if (kind === 'pointer' && typeof value === 'object') {
                 this.stage(value, at, 0);
+            } else if (kind === 'double') {
+                heap.setFloat64(at, value, true);
             } else if (more !== undefined) {
                 if (!Object.hasOwn(enums[more], value))
                     refuse(`${what}.${key}: '${value}' is none of ${Object.keys(enums[more]).join(', ')}`);
@@ -119,8 +121,10 @@ class Core {
         const heap = this.heap(), values = {};
         for (const [key, [kind, offset, more]] of Object.entries(structs[name].members)) {
             const at = from + offset;
-            values[key] = kind === 'float' ? heap.getFloat32(at, true) : kind === 'int32_t' ? heap.getInt32(at, true)
-                : kind === 'struct' ? this.read(more, at) : heap.getUint32(at, true);
+            values[key] = kind === 'float' ? heap.getFloat32(at, true) : kind === 'double' ? heap.getFloat64(at, true)
+                : kind === 'struct' ? this.read(more, at) : kind === 'int32_t' ? heap.getInt32(at, true)
+                : heap.getUint32(at, true);
+            if (kind === 'int32_t' && more !== undefined) values[key] = Object.keys(enums[more])[values[key]];
             if (kind === 'uint64_t') values[key] += heap.getUint32(at + 4, true) * 2 ** 32;
         }
         return values;
@@ -222,12 +226,30 @@ class Core {
         for (const key in others) refuse(`inputs: there is no '${key}', but slices, bounds`);
         const given = {};
         if (slices != null) given.slices = this.addressOf(slices, 'inputs.slices');
-        if (bounds != null) {
-            const lengths = [bounds.min, bounds.max].filter(bound => bound != null).map(bound => bound.length);
-            const tiles = lengths.length > 0 ? Math.min(...lengths) : 0;
-            given.bounds = this.place('zBounds', {tiles, ...bounds}, 'inputs.bounds');
-        }
+        if (bounds != null) given.bounds = this.bounds(bounds, 'inputs.bounds');
         return this.place('inputs', given, 'inputs');
+    }
+
+    bounds(given, what) {
+        const lengths = [given.min, given.max].filter(bound => bound != null).map(bound => bound.length);
+        return this.place('zBounds', {tiles: lengths.length > 0 ? Math.min(...lengths) : 0, ...given}, what);
+    }
+
+    /// Lets `called` write items of `words` words each, at most `count`, to a block, and returns them as an array.
+    items(Type, block, words, count, called, ...given) {
+        const at = block.reserve(4 * words * Math.max(count, 1)), written = this.c.stackAlloc(4);
+        this.check(called, ...given, at, count, written);
+        return new Type(this.c.memory.buffer, at, words * this.heap().getUint32(written, true));
+    }
+
+    /// Returns a copy of the array that body() makes in a block.
+    copied(body) {
+        const block = new Block(this);
+        try {
+            return this.scope(() => body(block).slice());
+        } finally {
+            block.free();
+        }
     }
 
     /// Copies `bytes` bytes of the module's memory.
@@ -283,10 +305,17 @@ class Floats {
 class View {
     #core;
     #options = {};
+    #footprints;
     constructor(core, options) {
         this.#core = this[owner] = core;
+        this.#footprints = new Block(core);
         this[address] = 0;
         this.update(options);
+    }
+    /// The same view in another module.
+    static copy(core, view) {
+        if (!(view instanceof View && view[address] !== 0)) refuse('view must be one that is not disposed of');
+        return new View(core, view.#options);
     }
     update(options) {
         const core = this.#core, merged = {...this.#options, ...options}, {projection, layout, ...others} = merged;
@@ -311,6 +340,29 @@ class View {
     shaderView(tolerance = 2) {
         return this.#constants(Float32Array, 'viewConstants', this.#core.c.lightbin_shader_view, tolerance);
     }
+    shaderReduce(corner_x = 0, corner_y = 0) {
+        return this.#constants(Uint32Array, 'reduceConstants', this.#core.c.lightbin_shader_reduce,
+                               whole(corner_x, 'cornerX'), whole(corner_y, 'cornerY'));
+    }
+    shaderBuild({footprints, capacity, slices = 1}) {
+        return this.#constants(Uint32Array, 'buildConstants', this.#core.c.lightbin_shader_build,
+                               whole(footprints, 'footprints'), whole(capacity, 'capacity'), whole(slices, 'slices'));
+    }
+    shaderFootprints(lights) {
+        const core = this.#core;
+        return core.scope(c => {
+            const placed = core.lights(lights);
+            core.flush();
+            const {spheres, spots, boxes} = core.read('lights', placed);
+            return core.items(Uint32Array, this.#footprints, 8, spheres.count + spots.count + boxes.count,
+                              c.lightbin_shader_footprints, this[address], placed);
+        });
+    }
+    shaderEdges() {
+        const core = this.#core, {tilesX = 0, tilesY = 0} = this.info;
+        return core.copied(edges => core.items(Float32Array, edges, 2, tilesX + tilesY, core.c.lightbin_shader_edges,
+                                               this[address]));
+    }
     #constants(Type, struct, called, ...given) {
         const core = this.#core;
         return core.scope(() => {
@@ -322,16 +374,25 @@ class View {
     dispose() {
         this.#core.c.lightbin_view_destroy(this[address]);
         this[address] = 0;
+        this.#footprints.free();
         this.#options = {};
     }
 }
 
 class Slices {
     #core;
-    constructor(core, made) {
+    #margin;
+    constructor(core, margin, made) {
         this.#core = this[owner] = core;
+        this.#margin = margin;
         this[address] = core.scope(made);
         this.count = core.c.lightbin_slices_count(this[address]);
+    }
+    /// The same slices in another module.
+    static copy(core, slices) {
+        if (!(slices instanceof Slices && slices[address] !== 0))
+            refuse('slices must be ones that are not disposed of');
+        return slices_of(core, slices.boundaries, slices.#margin);
     }
     get boundaries() {
         const core = this.#core, at = core.c.lightbin_slices_boundaries(this[address]);
@@ -339,20 +400,31 @@ class Slices {
     }
     shaderWords() {
         const core = this.#core, count = this.count + 3;
-        const words = new Block(core), at = words.reserve(4 * count);
-        try {
-            return core.scope(c => {
-                core.check(c.lightbin_shader_slices, this[address], at, count);
-                return core.copy(Uint32Array, at, 4 * count);
-            });
-        } finally {
-            words.free();
-        }
+        return core.copied(words => {
+            const at = words.reserve(4 * count);
+            core.check(core.c.lightbin_shader_slices, this[address], at, count);
+            return new Uint32Array(core.c.memory.buffer, at, count);
+        });
+    }
+    shaderSlabs() {
+        const core = this.#core;
+        return core.copied(slabs => core.items(Float32Array, slabs, 2, this.count, core.c.lightbin_shader_slabs,
+                                               this[address]));
     }
     dispose() {
         this.#core.c.lightbin_slices_destroy(this[address]);
         this[address] = this.count = 0;
     }
+}
+
+function slices_of(core, boundaries, margin = 0) {
+    return new Slices(core, margin, c => {
+        const at = c.stackAlloc(4);
+        core.stage(boundaries, at, 0);
+        core.flush();
+        const from = core.heap().getUint32(at, true);
+        return core.create(c.lightbin_slices_from_boundaries, from, boundaries.length, margin, 0);
+    });
 }
 
 // A member of lightbin_grid or lightbin_bits that is an array: its address and length are members of these names.
@@ -465,8 +537,18 @@ class Binner {
     }
 }
 
-/// What lightbin_shader_snippet() of the second module makes.
-function snippet(core, {format, prefix, slots, ...given}) {
+// What makes shader text in the second module, its options, and their slots with the default bindings.
+const snippet = {make: c => c.lightbin_shader_snippet, options: 'snippetOptions',
+                 bindings: {tiles: 0, lists: 1, grid: 2, slices: 3, bins: 4, view: 5}};
+const reduce = {make: c => c.lightbin_reduce_shader, options: 'reduceOptions',
+                bindings: {depth: 0, zBounds: 1, grid: 2}};
+const build = {make: c => c.lightbin_build_shader, options: 'buildOptions',
+               bindings: {footprints: 0, zBounds: 1, tiles: 2, lists: 3, total: 3, grid: 4}};
+const cull = {make: c => c.lightbin_cull_shader, options: 'cullOptions',
+              bindings: {lights: 0, zBounds: 0, scratch: 1, slices: 2, bins: 2, tiles: 2, lightCount: 3, order: 3,
+                         lists: 3, grid: 4}};
+
+function shader_options(core, generator, {format, prefix, slots, ...given}) {
     const c = core.c;
     if (format !== undefined) given.format = core.place('format', format, 'options.format');
     if (prefix !== undefined) {
@@ -475,18 +557,21 @@ function snippet(core, {format, prefix, slots, ...given}) {
         new Uint8Array(c.memory.buffer).set(bytes, given.prefix);
     }
     if (slots !== undefined) {
-        ['tiles', 'lists', 'grid', 'slices', 'bins', 'view'].forEach((name, binding) => given[name] = {binding});
+        for (const [name, binding] of Object.entries(generator.bindings)) given[name] = {binding};
         Object.assign(given, slots, {slotsGiven: 1});
     }
-    const shader = core.create(c.lightbin_shader_snippet, core.place('snippetOptions', given, 'options'), 0);
+    return core.place(generator.options, given, 'options');
+}
+
+function shader_text(core, generator, options) {
+    const c = core.c, shader = core.create(generator.make(c), shader_options(core, generator, options), 0);
     try {
-        const resources = Object.keys(enums.shaderResource), bindings = [];
+        const bindings = [];
         for (let i = 0; i < c.lightbin_shader_binding_count(shader); ++i) {
             const at = core.place('binding');
             core.check(c.lightbin_shader_binding, shader, i, at);
-            const {size, resource, name, webgpuFormat, ...others} = core.read('binding', at);
-            bindings.push({name: core.text(name), resource: resources[resource], ...others,
-                webgpuFormat: core.text(webgpuFormat)});
+            const {size, name, webgpuFormat, ...others} = core.read('binding', at);
+            bindings.push({name: core.text(name), ...others, webgpuFormat: core.text(webgpuFormat)});
         }
         return {text: core.text(c.lightbin_shader_text(shader)), bindings};
     } finally {
@@ -494,15 +579,59 @@ function snippet(core, {format, prefix, slots, ...given}) {
     }
 }
 
+/// What the passes of cullShader() need for a view. The view and the slices are copied for the call.
+function cull_plan(core, view, options, {lights, entries, slices, viewMatrix, layout, ...others}) {
+    for (const key in others) refuse(`room: there is no '${key}', but lights, entries, slices, viewMatrix, layout`);
+    const copies = [View.copy(core, view)];
+    try {
+        if (slices != null) copies.push(Slices.copy(core, slices));
+        return core.scope(c => {
+            const {members} = structs.cullPlan, names = Object.keys(enums.cullPass);
+            const at = core.place('cullPlan'), count = c.stackAlloc(4), placed = shader_options(core, cull, options);
+            const to_view = viewMatrix == null ? 0
+                : core.place('matrix', core.matrix(viewMatrix, layout, 'viewMatrix'), 'viewMatrix');
+            core.check(c.lightbin_plan_cull, copies[0][address], placed, whole(lights, 'lights'),
+                whole(entries, 'entries'), copies[1]?.[address] ?? 0, to_view, at);
+            const {scratchBytes, tileBytes, listBytes, orderBytes, binBytes} = core.read('cullPlan', at);
+            const groups = core.copy(Uint32Array, at + members.groups[1], 8 * names.length);
+            const numbers = c.lightbin_cull_passes(enums.slicing[options.slicing ?? 'no-slicing'], count);
+            const passes = core.copy(Int32Array, numbers, 4 * core.heap().getUint32(count, true));
+            return {
+                constants: core.copy(Uint32Array, at + members.constants[1], 256),
+                bytes: {scratch: scratchBytes, tiles: tileBytes, lists: listBytes, order: orderBytes, bins: binBytes},
+                passes: Array.from(passes, i => ({pass: names[i], x: groups[2 * i], y: groups[2 * i + 1]})),
+            };
+        });
+    } finally {
+        for (const made of copies) made.dispose();
+    }
+}
+
+/// The plans of the advice that ask(view, lights, costs) makes. The module is dropped afterwards, with all in it.
+function plans(core, view, lights, costs, ask) {
+    const copy = View.copy(core, view);
+    return core.scope(c => {
+        const advice = ask(copy[address], core.lights(lights), core.place('costs', costs, 'options'));
+        return Array.from({length: c.lightbin_advice_count(advice)}, (_, i) => {
+            const at = core.place('plan');
+            core.check(c.lightbin_advice_plan, advice, i, at);
+            const {size, tiled, ...plan} = core.read('plan', at);
+            return {tiled: tiled !== 0, ...plan};
+        });
+    });
+}
+
 class Lightbin {
     #core;
     #cores;
     #load_shaders;
     #shaders;
-    constructor(exports, module, simd, load_shaders) {
+    #load_advice;
+    constructor(exports, module, simd, load_shaders, load_advice) {
         this.#core = new Core(exports);
         this.#cores = [this.#core];
         this.#load_shaders = load_shaders;
+        this.#load_advice = load_advice;
         this.module = module;
         this.simd = simd;
         const version = exports.lightbin_version();
@@ -513,28 +642,50 @@ class Lightbin {
     floats(length) { return new Floats(this.#core, length); }
     exponentialSlices({count, first, last, margin = 0}) {
         const core = this.#core;
-        return new Slices(core, c => core.create(c.lightbin_slices_exponential, whole(count, 'count'), first, last,
-            margin, 0));
+        return new Slices(core, margin, c => core.create(c.lightbin_slices_exponential, whole(count, 'count'), first,
+            last, margin, 0));
     }
     linearSlices({count, begin, end, margin = 0}) {
         const core = this.#core;
-        return new Slices(core, c => core.create(c.lightbin_slices_linear, whole(count, 'count'), begin, end, margin,
-            0));
+        return new Slices(core, margin, c => core.create(c.lightbin_slices_linear, whole(count, 'count'), begin, end,
+            margin, 0));
     }
     slicesFromBoundaries({boundaries, margin = 0}) {
-        const core = this.#core;
-        return new Slices(core, c => {
-            const at = c.stackAlloc(4);
-            core.stage(boundaries, at, 0);
+        return slices_of(this.#core, boundaries, margin);
+    }
+    shader(options) { return this.#text(snippet, options); }
+    reduceShader(options) { return this.#text(reduce, options); }
+    buildShader(options) { return this.#text(build, options); }
+    cullShader(options) { return this.#text(cull, options); }
+    async planCull(view, options, room) {
+        return cull_plan(await this.#shader_core(), view, options, room);
+    }
+    async #text(generator, options) {
+        const core = await this.#shader_core();
+        return core.scope(() => shader_text(core, generator, options));
+    }
+    #shader_core() {
+        return this.#shaders ??= this.#load_shaders().then(exports => this.#cores[1] = new Core(exports));
+    }
+    async advise(view, lights, {bounds, ...costs} = {}) {
+        const core = await this.#load_advice();
+        return plans(core, view, lights, costs, (...given) => {
+            const placed = bounds == null ? 0 : core.bounds(bounds, 'bounds');
             core.flush();
-            const from = core.heap().getUint32(at, true);
-            return core.create(c.lightbin_slices_from_boundaries, from, boundaries.length, margin, 0);
+            return core.create(core.c.lightbin_advise, ...given, placed, 0);
         });
     }
-    async shader(options) {
-        this.#shaders ??= this.#load_shaders().then(exports => this.#cores[1] = new Core(exports));
-        const core = await this.#shaders;
-        return core.scope(() => snippet(core, options));
+    async adviseSlices(view, lights, {clusters, zBins, depths, columns, rows, ...costs}) {
+        if (!(depths?.length >= columns * rows)) refuse('depths must have columns * rows numbers', 'buffer-too-small');
+        const core = await this.#load_advice();
+        const slices = [clusters, zBins].map(from => slices_of(core, from?.boundaries ?? [])[address]);
+        return plans(core, view, lights, costs, (view, lights, costs) => {
+            const at = core.c.stackAlloc(4);
+            core.stage(depths, at, 0);
+            core.flush();
+            return core.create(core.c.lightbin_advise_slices, view, lights, ...slices, core.heap().getUint32(at, true),
+                whole(columns, 'columns'), whole(rows, 'rows'), costs, 0);
+        });
     }
     lightRange(intensity, cutoff) { return this.#core.c.lightbin_light_range(intensity, cutoff); }
     get allocations() {
@@ -561,15 +712,23 @@ async function compile(wasm) {
 async function instantiate(module) {
     const {exports} = await WebAssembly.instantiate(module, {
         env: {out_of_memory, emscripten_notify_memory_growth: () => {}},
-        wasi_snapshot_preview1: {proc_exit: out_of_memory},  // of abort(), where a size exceeds all memory
+        wasi_snapshot_preview1: {
+            proc_exit: out_of_memory,  // of abort(), where a size exceeds all memory
+            clock_time_get(clock, precision, at) {  // which advise() measures by
+                new DataView(exports.memory.buffer).setBigUint64(at, BigInt(Math.round(performance.now() * 1e6)), true);
+                return 0;
+            },
+        },
     });
     exports._initialize?.();
     return exports;
 }
 
-export async function load({simd = hasSimd(), wasm, shaders} = {}) {
+export async function load({simd = hasSimd(), wasm, shaders, advice} = {}) {
     const module = await compile(wasm ?? (simd ? new URL('./lightbin_simd.wasm', import.meta.url)
                                                : new URL('./lightbin.wasm', import.meta.url)));
     const load_shaders = async () => instantiate(await compile(shaders ?? new URL('./shaders.wasm', import.meta.url)));
-    return new Lightbin(await instantiate(module), module, simd, load_shaders);
+    const load_advice = async () =>
+        new Core(await instantiate(await compile(advice ?? new URL('./advice.wasm', import.meta.url))));
+    return new Lightbin(await instantiate(module), module, simd, load_shaders, load_advice);
 }

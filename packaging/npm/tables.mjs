@@ -16,13 +16,13 @@ const bare = type => type.replace(/^lightbin_/, '');
 const enums = {};
 for (const [, name, body] of header.matchAll(/typedef enum lightbin_(\w+) \{(.*?)\} lightbin_\1;/gs))
     enums[name] = Object.fromEntries(
-        [...body.matchAll(/\bLIGHTBIN_(?:RESOURCE_)?(\w+)\s*=\s*(\d+)/g)].map(([, value, number]) => [kebab(value),
-            +number]));
+        [...body.matchAll(/\bLIGHTBIN_(?:RESOURCE_|CULL_)?(\w+)\s*=\s*(\d+)/g)]
+            .map(([, value, number]) => [kebab(value), +number]));
 
 const script = fs.readFileSync(user, 'utf8');
 const named = name => script.includes(`'${camel(name)}'`) || script.includes(`structs.${camel(name)}.`);
 const structs = {};
-const sizes = {int32_t: 4, uint32_t: 4, uint64_t: 8, float: 4, size_t: 4, pointer: 4};
+const sizes = {int32_t: 4, uint32_t: 4, uint64_t: 8, float: 4, double: 8, size_t: 4, pointer: 4};
 for (const [, name, body] of header.matchAll(/typedef struct lightbin_(\w+) \{(.*?)\n\} lightbin_\1;/gs)) {
     if (/\(\*/.test(body)) continue;  // a member is a function
     const struct = structs[name] = {bytes: 0, alignment: 1, members: {}};

@@ -33,7 +33,7 @@ const lists_of = grid => Array.from({length: grid.ranges.length / 2}, (_, i) =>
     [...grid.ids.subarray(grid.ranges[2 * i], grid.ranges[2 * i] + grid.ranges[2 * i + 1])]);
 const bytes_of = array => Buffer.from(array.buffer, array.byteOffset, array.byteLength);
 
-test('both modules make the bytes of this machine\'s library', () => {
+test('both modules make the bytes of this machine\'s library', async () => {
     const file = fs.readFileSync(lists);
     for (const lightbin of modules) {
         let at = 0;
@@ -75,9 +75,39 @@ test('both modules make the bytes of this machine\'s library', () => {
             binner.dispose();
             ++grids;
         }
-        assert.equal(at, file.length);
         assert.equal(grids, 64);
-        for (const made of [view, slices, cones, rooms]) made.dispose();
+
+        const all = {viewMatrix: camera, spheres: {array: spheres}, spots: {array: cones, stride: 12},
+                     boxes: {array: rooms}};
+        for (const lights of [{spheres: {array: spheres}}, all])
+            same(view.shaderFootprints(lights), `footprints of ${Object.keys(lights)}`);
+        same(view.shaderEdges(), 'edges');
+        same(slices.shaderSlabs(), 'slabs');
+        same(view.shaderReduce(3, 5), 'constants of a reduction');
+        same(view.shaderBuild({footprints: 70, capacity: 9000, slices: 17}), 'constants of a build');
+        const text = () => Buffer.from(block()).toString();
+        for (const options of [{language: 'wgsl'}, {language: 'essl-300', fragment: true}])
+            assert.equal((await lightbin.reduceShader({...options, skipBackground: true})).text, text());
+        for (const pass of ['count', 'offsets', 'fill'])
+            assert.equal((await lightbin.buildShader({language: 'wgsl', pass, depthTest: 'box'})).text, text());
+        const wide = lightbin.exponentialSlices({count: 17, first: 1.5, last: 120, margin: 0.02});
+        for (const slicing of ['no-slicing', 'clusters', 'z-bins']) {
+            const worldSpace = slicing !== 'clusters';
+            const options = {language: 'wgsl', kind: 'spot', stride: 12, radius: 3, axis: 4, cosine: 7, worldSpace,
+                             depthTest: 'box', slicing};
+            const {bytes, constants, passes} = await lightbin.planCull(view, options, {lights: 150, entries: 9000,
+                ...slicing !== 'no-slicing' && {slices: wide}, ...worldSpace && {viewMatrix: camera}});
+            const {scratch, tiles, lists, order, bins} = bytes;
+            same(BigUint64Array.from([scratch, tiles, lists, order, bins], BigInt), `sizes, ${slicing}`);
+            same(constants, `constants, ${slicing}`);
+            assert.equal(passes.length, slicing === 'z-bins' ? 9 : 5);
+            for (const {pass, x, y} of passes) {
+                same(Uint32Array.of(x, y), `groups of ${pass}, ${slicing}`);
+                assert.equal((await lightbin.cullShader({...options, pass})).text, text());
+            }
+        }
+        assert.equal(at, file.length);
+        for (const made of [view, slices, wide, cones, rooms]) made.dispose();
         assert.equal(lightbin.allocations, 0);
     }
 });
@@ -343,6 +373,93 @@ test('shader text for WebGL 2 and WebGPU, with what to bind', async () => {
     }
 });
 
+test('shaders that build lists say what to bind', async () => {
+    const bound = ({bindings}) => bindings.map(({name, resource, slot}) => [name, resource, slot.binding]);
+    const [lightbin] = modules, language = 'wgsl';
+    const expected = [['lightbin_grid_block', 'uniform-block'], ['lightbin_depth', 'texture-2d'],
+                      ['lightbin_z_bounds', 'writable-buffer']];
+    const reduce = bound(await lightbin.reduceShader({language}));
+    assert.deepEqual(reduce.map(binding => binding.slice(0, 2)).sort(), expected.sort());
+    const [, , before] = reduce.find(([name]) => name === 'lightbin_depth');
+    const moved = bound(await lightbin.reduceShader({language, slots: {depth: {binding: before + 7}}}));
+    assert.deepEqual(moved, reduce.map(([name, resource, at]) => [name, resource, name === 'lightbin_depth' ? at + 7 : at]));
+    const fill = options => lightbin.buildShader({language, pass: 'fill', ...options});
+    const slots = {footprints: 0, zBounds: 1, tiles: 2, lists: 3, total: 3, grid: 4};
+    const given = Object.fromEntries(Object.entries(slots).map(([name, binding]) => [name, {binding}]));
+    assert.deepEqual(await fill({}), await fill({slots: given}));
+    assert.deepEqual(await fill({}), await fill({slots: {}}));
+    await assert.rejects(fill({slicing: 'z-bins'}), {code: 'no-such-slicing-shader'});
+    await assert.rejects(fill({depthTest: 'split-box'}), {code: 'no-split-box-shader'});
+    await assert.rejects(lightbin.reduceShader({language: 'essl-300'}), {code: /^no-/});
+    assert.equal(lightbin.allocations, 0);
+});
+
+test('shaders that make lists of lights on the GPU say what they refuse', async () => {
+    const [lightbin] = modules, options = {language: 'wgsl'}, room = {lights: 9, entries: 9};
+    const view = lightbin.view(square), slices = lightbin.linearSlices({count: 1025, begin: 1, end: 2000});
+    const {bindings} = await lightbin.cullShader({...options, pass: 'fill', slots: {lists: {binding: 7}}});
+    assert.deepEqual(bindings.find(({name}) => name === 'lightbin_lists').slot, {binding: 7, set: 0});
+    for (const pass of ['project', 'fill'])
+        assert.deepEqual(await lightbin.cullShader({...options, pass, slots: {}}),
+            await lightbin.cullShader({...options, pass}));
+    await assert.rejects(lightbin.cullShader({...options, pass: 'draw'}), {message: /'draw' is none of project/});
+    await assert.rejects(lightbin.cullShader({...options, kind: 'box'}), {code: 'no-cull-of-boxes'});
+    await assert.rejects(lightbin.cullShader({language: 'essl-300'}), {code: 'no-storage-buffers'});
+    const plan = (more, others = {}) => lightbin.planCull(view, {...options, ...more}, {...room, ...others});
+    assert.deepEqual((await plan({})).passes.map(({pass}) => pass), ['project', 'count', 'sums', 'offsets', 'fill']);
+    await assert.rejects(plan({slicing: 'clusters'}), {code: 'null-argument', message: /^slices: /});
+    await assert.rejects(plan({slicing: 'z-bins'}, {slices}), {code: 'too-many-slices'});
+    await assert.rejects(plan({}, {slices}), {code: 'not-read', message: /^slices: /});
+    await assert.rejects(plan({worldSpace: true}), {code: 'null-argument', message: /^to_view: /});
+    await assert.rejects(plan({ids: 'u16'}, {lights: 65537}), {code: 'too-many-lights'});
+    await assert.rejects(plan({}, {entries: 0.5}), {message: /^entries: 0.5 is no whole number/});
+    await assert.rejects(plan({}, {room: 1}), {message: /there is no 'room'/});
+    view.dispose();
+    slices.dispose();
+    await assert.rejects(plan({}), {message: /^view must be one/});
+    assert.equal(lightbin.allocations, 0);
+});
+
+test('advice weighs the ways to light a view by the lists that they make', async () => {
+    const spheres = random_spheres(200), min = new Float32Array(400).fill(5), max = new Float32Array(400).fill(30);
+    for (const lightbin of modules) {
+        const view = lightbin.view(square), array = lightbin.floats(800), lights = {spheres: {array}};
+        const [clusters, zBins] = [8, 100].map(count => lightbin.exponentialSlices({count, first: 1, last: 60}));
+        array.array.set(spheres);
+        const live = lightbin.allocations, before = spheres.length;
+        const flat = await lightbin.advise(view, lights);
+        const bounded = await lightbin.advise(view, lights, {bounds: {min, max}, zBoundsNs: 1e9});
+        const sliced = await lightbin.adviseSlices(view, lights,
+            {clusters, zBins, depths: max, columns: 20, rows: 20, evaluationNs: 0.5});
+        assert.equal(lightbin.allocations, live);
+        for (const [plans, cost] of [[flat, 0.02], [bounded, 0.02], [sliced, 0.5]]) {
+            assert.ok(plans.length > 5 && plans.every((plan, i) => i === 0 || plans[i - 1].totalNs <= plan.totalNs));
+            for (const {totalNs, buildNs, uploadNs, evaluations} of plans)
+                assert.ok(Math.abs(totalNs - buildNs - uploadNs - cost * evaluations) <= 1e-9 * totalNs);
+        }
+        assert.equal(flat.find(plan => !plan.tiled).evaluations, before / 4 * 320 * 320);
+        const ways = [[flat, {}, {}], [bounded, {depthTest: 'interval'}, {bounds: {min, max}}],
+                      [bounded, {depthTest: 'box'}, {bounds: {min, max}}], [sliced, {slicing: 'z-bins'}, {slices: zBins}],
+                      [sliced, {slicing: 'clusters', depthTest: 'box'}, {slices: clusters}]];
+        for (const [plans, options, inputs] of ways) {
+            const wanted = {tiled: true, tileSize: 16, footprint: 'rectangle', depthTest: 'no-depth-test',
+                            slicing: 'no-slicing', ...options};
+            const plan = plans.find(plan => Object.entries(wanted).every(([key, value]) => plan[key] === value));
+            const binner = lightbin.binner(options);
+            assert.equal(plan?.entries, binner.bin(view, lights, inputs).ids.length, JSON.stringify(options));
+            assert.equal(plan.buildNs > 1e9, 'bounds' in inputs);
+            binner.dispose();
+        }
+        await assert.rejects(lightbin.adviseSlices(view, lights, {clusters, zBins, depths: max, columns: 21, rows: 20}),
+            {code: 'buffer-too-small'});
+        await assert.rejects(lightbin.advise(view, lights, {overdrawn: 2}), {message: /there is no 'overdrawn'/});
+        for (const made of [clusters, zBins, array]) made.dispose();
+        view.dispose();
+        await assert.rejects(lightbin.advise(view, lights), {message: /^view must be one/});
+        assert.equal(lightbin.allocations, 0);
+    }
+});
+
 test('a worker runs the compiled module that it was sent', async () => {
     const worker = new Worker(`
         const {parentPort, workerData: {entry, module, square, spheres}} = require('node:worker_threads');
@@ -399,11 +516,12 @@ test('the program of docs/javascript.md runs', async t => {
     fs.mkdirSync(path.join(at, 'node_modules'));
     fs.symlinkSync(folder, path.join(at, 'node_modules/lightbin'));
     fs.writeFileSync(path.join(at, 'guide.mjs'), given + blocks.join('') +
-        '\nexport {bindings, data, grid, lists, masks, shorter, text, uploads, webgpu};');
+        '\nexport {bindings, data, grid, lists, masks, shorter, text, texts, uploads, webgpu};');
     const made = await import(pathToFileURL(path.join(at, 'guide.mjs')));
     assert.ok(made.lists.ids.length > 0 && made.shorter.ids.length > 0 && made.masks.words.length > 0
         && made.data.length > 0);
     assert.match(made.text, /usampler2D lightbin_lists/);
     assert.match(made.webgpu.text, /@group\(1\) @binding\(1\)/);
+    assert.equal(made.texts.length, 5);
     assert.equal(made.uploads[0].at(-1), made.grid.ranges);
 });

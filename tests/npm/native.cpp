@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <initializer_list>
 #include <limits>
 
 enum { SPHERES = 400, SPOTS = 150, BOXES = 60, WIDTH = 500, HEIGHT = 290, TILE = 24, TILES = 21 * 13, WORDS = 20 };
@@ -40,6 +42,34 @@ static void fill_sphere(float* to) {
     to[1] = random_between(-25, 30);
     to[2] = random_between(-130, 15);
     to[3] = random_between(0, 9);
+}
+
+// Spheres in view space, or with a camera, all kinds in world space.
+static lightbin_lights lights_of(const double* camera) {
+    lightbin_lights lights = {};
+    lights.size = sizeof lights;
+    lights.view_matrix.doubles = camera;
+    lights.spheres.count = SPHERES;
+    lights.spheres.centre.first = spheres[0];
+    lights.spheres.radius.first = spheres[0] + 3;
+    lights.spheres.centre.stride = lights.spheres.radius.stride = sizeof spheres[0];
+    if (camera != nullptr) {
+        lights.spots.count = SPOTS;
+        lights.spots.centre.first = spots[0];
+        lights.spots.radius.first = spots[0] + 3;
+        lights.spots.axis.first = spots[0] + 4;
+        lights.spots.cosine.first = spots[0] + 7;
+        lights.spots.centre.stride = lights.spots.radius.stride = lights.spots.axis.stride =
+            lights.spots.cosine.stride = sizeof spots[0];
+        lights.boxes.count = BOXES;
+        lights.boxes.centre.first = boxes[0];
+        lights.boxes.radius.first = boxes[0] + 3;
+        lights.boxes.box_centre.first = boxes[0] + 4;
+        lights.boxes.half_axes.first = boxes[0] + 7;
+        lights.boxes.centre.stride = lights.boxes.radius.stride = lights.boxes.box_centre.stride =
+            lights.boxes.half_axes.stride = sizeof boxes[0];
+    }
+    return lights;
 }
 
 int main(int count, char** names) {
@@ -89,11 +119,10 @@ int main(int count, char** names) {
         lightbin_binner_options options = {};
         lightbin_z_bounds bounds = {};
         lightbin_inputs inputs = {};
-        lightbin_lights lights = {};
+        const lightbin_lights lights = lights_of(number % 2 == 1 ? camera : nullptr);
         lightbin_grid grid = {};
         lightbin_binner* binner = nullptr;
         uint32_t counts[4];
-        const int world = number % 2;
         options.size = sizeof options;
         options.ids = number / 2 % 2 == 0 ? LIGHTBIN_U32 : LIGHTBIN_U16;
         options.footprint = number / 4 % 2;
@@ -110,28 +139,6 @@ int main(int count, char** names) {
         if (options.slicing != LIGHTBIN_NO_SLICING) inputs.slices = slices;
         if (options.depth_test != LIGHTBIN_NO_DEPTH_TEST
             && options.slicing != LIGHTBIN_CLUSTERS) inputs.bounds = &bounds;
-        lights.size = sizeof lights;
-        if (world) lights.view_matrix.doubles = camera;
-        lights.spheres.count = SPHERES;
-        lights.spheres.centre.first = spheres[0];
-        lights.spheres.radius.first = spheres[0] + 3;
-        lights.spheres.centre.stride = lights.spheres.radius.stride = sizeof spheres[0];
-        if (world) {
-            lights.spots.count = SPOTS;
-            lights.spots.centre.first = spots[0];
-            lights.spots.radius.first = spots[0] + 3;
-            lights.spots.axis.first = spots[0] + 4;
-            lights.spots.cosine.first = spots[0] + 7;
-            lights.spots.centre.stride = lights.spots.radius.stride = lights.spots.axis.stride =
-                lights.spots.cosine.stride = sizeof spots[0];
-            lights.boxes.count = BOXES;
-            lights.boxes.centre.first = boxes[0];
-            lights.boxes.radius.first = boxes[0] + 3;
-            lights.boxes.box_centre.first = boxes[0] + 4;
-            lights.boxes.half_axes.first = boxes[0] + 7;
-            lights.boxes.centre.stride = lights.boxes.radius.stride = lights.boxes.box_centre.stride =
-                lights.boxes.half_axes.stride = sizeof boxes[0];
-        }
         grid.size = sizeof grid;
         succeed(lightbin_bin(binner, view, &lights, &inputs, &grid));
         counts[0] = grid.lights;
@@ -153,6 +160,81 @@ int main(int count, char** names) {
         }
         lightbin_binner_destroy(binner);
     }
+
+    // What shaders read that reduce depth and build the lists on the GPU.
+    {
+        static lightbin_shader_footprint footprints[SPHERES + SPOTS + BOXES];
+        lightbin_edges edges[WIDTH];
+        lightbin_reduce_constants reduce = {};
+        lightbin_build_constants build = {};
+        size_t written = 0;
+        for (const double* each : {(const double*)nullptr, camera}) {
+            const lightbin_lights lights = lights_of(each);
+            succeed(lightbin_shader_footprints(view, &lights, footprints, SPHERES + SPOTS + BOXES, &written));
+            write_block(footprints, written * sizeof *footprints);
+        }
+        succeed(lightbin_shader_edges(view, edges, WIDTH, &written));
+        write_block(edges, written * sizeof *edges);
+        succeed(lightbin_shader_slabs(slices, edges, WIDTH, &written));
+        write_block(edges, written * sizeof *edges);
+        succeed(lightbin_shader_reduce(view, 3, 5, &reduce));
+        write_block(&reduce, sizeof reduce);
+        succeed(lightbin_shader_build(view, 70, 9000, 17, &build));
+        write_block(&build, sizeof build);
+    }
+    for (const int fragment : {0, 1}) {
+        lightbin_reduce_options options = {};
+        lightbin_shader* shader = nullptr;
+        options.size = sizeof options;
+        options.language = fragment ? LIGHTBIN_ESSL_300 : LIGHTBIN_WGSL;
+        options.fragment = fragment;
+        options.skip_background = 1;
+        succeed(lightbin_reduce_shader(&options, nullptr, &shader));
+        write_block(lightbin_shader_text(shader), std::strlen(lightbin_shader_text(shader)));
+        lightbin_shader_destroy(shader);
+    }
+    for (const int pass : {LIGHTBIN_COUNT, LIGHTBIN_OFFSETS, LIGHTBIN_FILL}) {
+        lightbin_build_options options = {};
+        lightbin_shader* shader = nullptr;
+        options.size = sizeof options;
+        options.language = LIGHTBIN_WGSL;
+        options.pass = pass;
+        options.depth_test = LIGHTBIN_BOX;
+        succeed(lightbin_build_shader(&options, nullptr, &shader));
+        write_block(lightbin_shader_text(shader), std::strlen(lightbin_shader_text(shader)));
+        lightbin_shader_destroy(shader);
+    }
+    // What shaders that make the lists of lights on the GPU need, and their texts.
+    lightbin_slices* wide_slices = nullptr;
+    succeed(lightbin_slices_exponential(17, 1.5f, 120, 0.02f, nullptr, &wide_slices));
+    for (const int slicing : {LIGHTBIN_NO_SLICING, LIGHTBIN_CLUSTERS, LIGHTBIN_Z_BINS}) {
+        lightbin_cull_options options = {};
+        lightbin_cull_plan plan = {};
+        const lightbin_matrix to_view = {nullptr, camera, LIGHTBIN_COLUMN_MAJOR, 0};
+        size_t passes = 0;
+        options.size = sizeof options;
+        options.language = LIGHTBIN_WGSL;
+        options.kind = LIGHTBIN_CULL_SPOT;
+        options.stride = 12, options.radius = 3, options.axis = 4, options.cosine = 7;
+        options.world_space = slicing != LIGHTBIN_CLUSTERS;
+        options.depth_test = LIGHTBIN_BOX;
+        options.slicing = slicing;
+        plan.size = sizeof plan;
+        succeed(lightbin_plan_cull(view, &options, SPOTS, 9000, slicing == LIGHTBIN_NO_SLICING ? nullptr : wide_slices,
+                                   options.world_space ? &to_view : nullptr, &plan));
+        write_block(&plan.scratch_bytes, 5 * sizeof plan.scratch_bytes);
+        write_block(plan.constants, sizeof plan.constants);
+        const int32_t* const pass = lightbin_cull_passes(slicing, &passes);
+        for (size_t i = 0; i < passes; ++i) {
+            lightbin_shader* shader = nullptr;
+            options.pass = pass[i];
+            succeed(lightbin_cull_shader(&options, nullptr, &shader));
+            write_block(&plan.groups[pass[i]], sizeof plan.groups[0]);
+            write_block(lightbin_shader_text(shader), std::strlen(lightbin_shader_text(shader)));
+            lightbin_shader_destroy(shader);
+        }
+    }
+    lightbin_slices_destroy(wide_slices);
     lightbin_slices_destroy(slices);
     lightbin_view_destroy(view);
     return std::fclose(file) == 0 ? EXIT_SUCCESS : EXIT_FAILURE;

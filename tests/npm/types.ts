@@ -12,6 +12,17 @@ export async function use(gl: WebGL2RenderingContext) {
     const grid = binner.bin(view, {viewMatrix: [1], spheres, boxes: {centre: null}}, {slices});
     gl.bufferData(gl.ARRAY_BUFFER, grid.ids, gl.STREAM_DRAW);
     const {text, bindings} = await lightbin.shader({language: 'essl-300', slots: {lists: {binding: 1}}});
+    gl.bufferData(gl.ARRAY_BUFFER, view.shaderFootprints({spheres}), gl.STREAM_DRAW);
+    const [plan] = await lightbin.advise(view, {spheres}, {bounds: {max: [1]}, overdraw: 2});
+    binner.bin(view, {spheres}, {bounds: {max: [plan.entries]}});
+    await lightbin.buildShader({language: 'wgsl', pass: 'fill', slots: {lists: {binding: 1}}});
+    // @ts-expect-error
+    await lightbin.buildShader({language: 'wgsl', pass: 'draw'});
+    const room = {lights: 1, entries: 2, slices};
+    const {passes} = await lightbin.planCull(view, {language: 'wgsl', slicing: 'z-bins'}, room);
+    for (const {pass} of passes) await lightbin.cullShader({language: 'wgsl', pass, slicing: 'z-bins'});
+    // @ts-expect-error
+    await lightbin.cullShader({language: 'wgsl', kind: 'box'});
     // @ts-expect-error
     lightbin.view({projection: [1], width: 1, height: 2, clipDepth: 'webgpu'});
     // @ts-expect-error

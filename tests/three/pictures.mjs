@@ -1,36 +1,19 @@
 // SPDX-License-Identifier: MIT
 // node --test tests/three/pictures.mjs: the adapter for three.js in headless Chromium. THREE, LIGHTBIN and PLAYWRIGHT
-// are
-// the folders of these packages.
+// are the folders of these packages.
 import assert from 'node:assert/strict';
-import path from 'node:path';
+import fs from 'node:fs';
 import {after, before, test} from 'node:test';
-import {pathToFileURL} from 'node:url';
-import {serve} from './server.mjs';
+import {open} from './browser.mjs';
 
-const {chromium} = await import(pathToFileURL(path.join(process.env.PLAYWRIGHT, 'index.mjs')));
-let browser, page, server;
-const complaints = [];
+let browser, page;
 before(async () => {
-    server = await serve();
-    browser = await chromium.launch({executablePath: '/usr/bin/chromium', args: [
-        '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking',
-            '--disable-component-update',
-        '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader']});
-    page = await browser.newPage();
-    page.setDefaultTimeout(240000);
-    page.on('pageerror', error => complaints.push(error.stack));
-    page.on('console', message => {
-        if (['error', 'warning'].includes(message.type()) && !/GPU stall due to ReadPixels/.test(message.text()))
-            complaints.push(message.text());
-    });
-    await page.goto(`${server.url}page.html#still`);
-    await page.waitForFunction(() => window.stage !== undefined).catch(() => assert.fail(complaints.join('\n')));
+    browser = await open();
+    page = browser.page;
 });
 after(async () => {
     await browser.close();
-    server.close();
-    assert.deepEqual(complaints.filter(text => !/404/.test(text)), []);
+    assert.deepEqual(browser.complaints.filter(text => !/404/.test(text)), []);
 });
 
 // Rounding differs, as three.js' own shader is another program: by 1 of 255 at most.
@@ -159,4 +142,30 @@ test('shadows, directional lights and lights that change stay as three.js draws 
     assert.ok(results.seen.every(bytes => bytes > 100), `${results.seen}`);
     assert.ok(results.layers);
     assert.equal(results.allocations, 0);
+});
+
+test('the program of docs/threejs.md', async () => {
+    const text = fs.readFileSync(new URL('../../docs/threejs.md', import.meta.url), 'utf8');
+    const blocks = [...text.matchAll(/^```js\n(.*?)^```$/gms)].map(([, block]) => block);
+    assert.equal(blocks.length, 1);
+    const expected = await page.evaluate(() => {
+        stage.own();
+        stage.lights(200, 100);
+        stage.cluster();
+        window.expected = stage.draw();
+        stage.own();
+        return expected.length;
+    });
+    assert.ok(expected > 0);
+    await page.addScriptTag({type: 'module', content:
+        `const {scene, camera, renderer} = stage;\n${blocks[0]}\nwindow.guide = {lights};`});
+    await page.waitForFunction(() => window.guide !== undefined);
+    const {bytes, mean, count} = await page.evaluate(() => {
+        const made = {...difference(expected, stage.draw()), count: guide.lights.grid.lights};
+        guide.lights.dispose();
+        return made;
+    });
+    assert.equal(bytes, 0);
+    assert.equal(count, 300);
+    assert.ok(mean > 5, `the picture is dark: ${mean}`);
 });

@@ -1,0 +1,38 @@
+#!/bin/sh
+# Tests the npm package's adapter for PlayCanvas in a browser: `sh tests/playcanvas.sh` on Debian 12, as root or with
+# sudo. Installs what is missing, builds the package, fetches PlayCanvas, and runs it in headless Chromium on a software
+# renderer. Takes about three minutes, and some more the first time.
+#   --serve  shows 5,000 moving lights instead, with PlayCanvas' own clusters and with lightbin, at
+#            http://localhost:8000/page.html
+#   --bench  measures both in turns instead: lists, pictures and milliseconds
+set -eu
+me=tests/playcanvas.sh
+cd "$(dirname "$0")/.."
+. tests/packages.sh
+takes "nothing, --serve, --bench" "--serve|--bench" "$@"
+
+install_packages chromium nodejs emscripten node-acorn binaryen
+command -v npm >/dev/null || install_packages npm
+make_build_folder
+sh packaging/npm/build.sh
+
+# The prefix keeps it here: npm otherwise looks for a project in the folders above.
+tests=build/playcanvas-tests
+mkdir -p $tests
+for package in playcanvas@2.23.0 playwright-core@1.65.1; do
+    grep -qs '"version": "'${package#*@}'"' $tests/node_modules/${package%@*}/package.json ||
+        npm install --prefix $tests --cache $tests/npm.cache --no-save --ignore-scripts --no-audit --no-fund \
+            playcanvas@2.23.0 playwright-core@1.65.1 >$tests/npm.log 2>&1 ||
+            { cat $tests/npm.log; fail "npm could not install $package"; }
+done
+
+modules=$PWD/$tests/node_modules
+export PLAYCANVAS="$modules/playcanvas" PLAYWRIGHT="$modules/playwright-core" LIGHTBIN="$PWD/build/npm/lightbin"
+case ${1-} in
+--serve) exec node tests/three/server.mjs 8000 tests/playcanvas ;;
+--bench) exec node tests/playcanvas/bench.mjs ;;
+esac
+node --test-reporter=spec tests/playcanvas/pictures.mjs >$tests/pictures.log 2>&1 || failed=yes
+grep -E '^(✔|✖|    at |  [A-Z])' $tests/pictures.log || true
+[ -z "${failed-}" ] || fail "not every test passed; the log is $tests/pictures.log"
+echo "$me: every test passed"
