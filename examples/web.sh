@@ -24,9 +24,9 @@ while [ $# -gt 0 ]; do
     shift
 done
 
-install_packages make python3 emscripten node-acorn nodejs libglm-dev libtinygltf-dev nlohmann-json3-dev
+install_packages make python3 emscripten node-acorn binaryen nodejs libglm-dev libtinygltf-dev nlohmann-json3-dev
 make_build_folder
-echo "$me: building in build/web, which takes about a minute the first time"
+echo "$me: building in build/web, which takes about two minutes the first time"
 make -s -j "$(nproc)" -f examples/web/web.mk 2>build/web.log || { cat build/web.log; fail "the build failed"; }
 echo "$me: build/web has $(du -bc build/web/* | sed -n '$s/\t.*//p') bytes in all"
 [ -n "$serve" ] || exit 0

@@ -20,12 +20,12 @@ grep -qs '"version": "'${playwright#*@}'"' $tests/node_modules/playwright-core/p
     npm install --prefix $tests --cache $tests/npm.cache --no-save --ignore-scripts --no-audit --no-fund \
         $playwright >$tests/npm.log 2>&1 || { cat $tests/npm.log; fail "npm could not install $playwright"; }
 
-echo "$me: the module against this machine's program"
+echo "$me: the lists against this machine's program"
 make -f examples/web/web.mk build/web.objects/lists >$tests/lists.log 2>&1 ||
     { cat $tests/lists.log; fail "the build failed"; }
 build/web.objects/lists tests/fixtures/nova.glb tests/fixtures/darkness.glb >$tests/lists.txt
 failed=
-node --no-warnings tests/web/module.mjs build/web $tests/lists.txt || failed=yes
+node --no-warnings tests/web/lists.mjs build/web $tests/lists.txt || failed=yes
 for part in page controls pictures; do
     echo "$me: $part"
     node --test-reporter=spec tests/web/$part.mjs >$tests/$part.log 2>&1 || failed=yes

@@ -26,7 +26,7 @@ export class FreeCamera {
         this.#apart = forward[1] < -0.15 ? Math.max(to_middle, 0.1 * radius) : 0;
     }
 
-    // What lightbin and the renderers take. aspect: width / height of the picture; a narrow one sees as much across as
+    // What scenes.js and the renderers take. aspect: width / height of the picture; a narrow one sees as much across as
     // the scene's camera sees in its height.
     camera(aspect) {
         const wider = Math.max(1, 1 / aspect), {orthographic, height} = this.#lens;

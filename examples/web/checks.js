@@ -3,11 +3,11 @@
 
 // Three quarters of what is lit stay below the middle of the display's range, whatever unit the scene's lights are in.
 // Found by small pictures, until one is neither too dark nor too bright to tell.
-export async function meter(renderer, lightbin, settings) {
+export async function meter(renderer, lighting, settings) {
     const small = {...settings, width: 96, height: 54, tile_size: 8, look: 'lit', show: false};
     let exposure = 1;
     for (let tries = 0; tries < 12; ++tries) {
-        await renderer.draw(lightbin, {...small, exposure});
+        await renderer.draw(lighting, {...small, exposure});
         const bytes = await renderer.read(), lit = [];
         for (let i = 0; i < bytes.length; i += 4) {
             const brightest = Math.max(bytes[i], bytes[i + 1], bytes[i + 2]);
@@ -27,11 +27,11 @@ export async function meter(renderer, lightbin, settings) {
 
 // Draws with lists and with every light, and compares the pictures byte by byte. `overlay` shows where they differ.
 // Returns {pixels, different, largest, milliseconds: [lists, every]}.
-export async function compare(renderer, lightbin, settings, overlay) {
+export async function compare(renderer, lighting, settings, overlay) {
     const pictures = [], milliseconds = [];
     for (const every_light of [false, true]) {
         const begun = performance.now();
-        await renderer.draw(lightbin, {...settings, look: 'lit', every_light, show: !every_light});
+        await renderer.draw(lighting, {...settings, look: 'lit', every_light, show: !every_light});
         pictures.push(await renderer.read());
         milliseconds.push(performance.now() - begun);
     }

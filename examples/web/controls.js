@@ -152,16 +152,16 @@ export function show_advice(plans, pixels, take) {
     const table = document.createElement('table'), head = table.createTHead().insertRow(), body = table.createTBody();
     for (const title of ['Plan', 'Build', 'Entries', 'A pixel', 'Total']) head.append(cell('th', title));
     for (const plan of cheapest_of_each(plans)) {
-        const {tile_size, milliseconds, build_milliseconds, entries, evaluations} = plan;
+        const {tileSize: tile, totalNs, buildNs, entries, evaluations} = plan;
         const row = body.insertRow(), method = method_of(plan);
-        row.classList.toggle('best', plan.best);
-        const button = cell('button', plan.tiled ? `${tile_size} px, ${words_of(plan)}` : 'every light');
+        row.classList.toggle('best', plan === plans[0]);
+        const button = cell('button', plan.tiled ? `${tile} px, ${words_of(plan)}` : 'every light');
         button.type = 'button';
         button.disabled = !method;
-        button.addEventListener('click', () => take({method, tile: tile_size}));
+        button.addEventListener('click', () => take({method, tile}));
         row.insertCell().append(button);
-        row.append(...[build_milliseconds.toFixed(2), entries.toLocaleString('en'), (evaluations / pixels).toFixed(1),
-            milliseconds.toFixed(1)].map(text => cell('td', text)));
+        row.append(...[(buildNs / 1e6).toFixed(2), entries.toLocaleString('en'), (evaluations / pixels).toFixed(1),
+            (totalNs / 1e6).toFixed(1)].map(text => cell('td', text)));
     }
     by_id('advice').replaceChildren(table, cell('p', 'advise() built this view\'s lists in each way, at four tile '
         + 'sizes, of which the best is shown: milliseconds of a build (Z bounds: with their pre-pass), list entries, '
@@ -172,10 +172,10 @@ export function show_advice(plans, pixels, take) {
 }
 
 // In words, what a plan's lists are of.
-function words_of({footprint, depth_test, slicing}) {
-    const words = {none: [], z_bins: ['z-bins'], clusters: ['clusters']}[slicing];
+function words_of({footprint, depthTest, slicing}) {
+    const words = {'no-slicing': [], 'z-bins': ['z-bins'], clusters: ['clusters']}[slicing];
     if (footprint === 'silhouette') words.push('silhouettes');
-    if (depth_test !== 'none') words.push(slicing === 'none' ? `Z bounds, ${depth_test.replace('_', ' ')}` : 'boxes');
+    if (depthTest !== 'no-depth-test') words.push(slicing === 'no-slicing' ? `Z bounds, ${depthTest}` : 'boxes');
     return words.join(', ') || 'tiles';
 }
 
@@ -190,9 +190,9 @@ function cheapest_of_each(plans) {
 }
 
 // The depth method of a plan, or none where this page does not draw it.
-function method_of({tiled, footprint, depth_test, slicing}) {
+function method_of({tiled, footprint, depthTest, slicing}) {
     if (!tiled || footprint !== 'rectangle') return undefined;
-    if (slicing === 'clusters') return depth_test === 'box' ? 'clusters' : undefined;
-    if (slicing === 'z_bins') return 'z_bins';
-    return depth_test === 'split_box' ? undefined : depth_test;
+    if (slicing === 'clusters') return depthTest === 'box' ? 'clusters' : undefined;
+    if (slicing === 'z-bins') return 'z_bins';
+    return depthTest === 'no-depth-test' ? 'none' : depthTest;
 }

@@ -3,7 +3,7 @@
 import {FlyingKeys, FreeCamera, listen_to_pointers} from './camera.js';
 import {compare, meter} from './checks.js';
 import {by_id, Controls, counted, sentence, show_advice} from './controls.js';
-import {load} from './lightbin.js';
+import {load_lighting} from './lighting.js';
 import {PictureSize} from './picture_size.js';
 import {Plot} from './plot.js';
 import {parse_hash, to_hash} from './settings.js';
@@ -16,8 +16,8 @@ const eye = new FreeCamera(), flying = new FlyingKeys();
 const plot = new Plot(by_id('plot'), by_id('costs'), by_id('costs_note'));
 const summary = new Summary(), picture_size = new PictureSize();
 const jobs = new Set();  // what is to be done before the next frame
-let controls, lightbin, renderer;
-let scene = null;  // what lightbin tells of the one on show; `of` is its name in the settings
+let controls, lighting, renderer;
+let scene = null;  // what scenes.js tells of the one on show; `of` is its name in the settings
 let exposure = 1;
 let seconds = 0;    // how long the lights have moved
 let stale = true;   // the picture is not that of the settings
@@ -66,8 +66,8 @@ async function fetched(url) {
 async function show_scene() {
     const {scene: name} = settings;
     try {
-        if (name === 'city' || name === 'street') lightbin.make(name, settings.lights);
-        else if (name !== 'file') lightbin.open(await fetched(`${name}.glb`), name);
+        if (name === 'city' || name === 'street') lighting.scenes.make(name, settings.lights);
+        else if (name !== 'file') lighting.scenes.open(await fetched(`${name}.glb`), name);
     } catch (error) {
         settings.scene = scene?.of ?? 'city';
         controls.show();
@@ -78,7 +78,7 @@ async function show_scene() {
 }
 
 function take_scene(of) {
-    const {triangles, glass, has_spots, ...told} = lightbin.scene;
+    const {triangles, glass, has_spots, ...told} = lighting.scenes.scene;
     renderer.set_scene({triangles, glass, has_spots});
     scene = {...told, of};
     controls.show_scene(scene, of === 'file');
@@ -86,14 +86,14 @@ function take_scene(of) {
 
 // Other lights in the same city, seen from where one is.
 async function change_lights() {
-    lightbin.make('city', settings.lights);
+    lighting.scenes.make('city', settings.lights);
     take_scene('city');
 }
 
 async function open_file(file) {
     const bytes = new Uint8Array(await file.arrayBuffer());
     try {
-        lightbin.open(bytes, file.name);
+        lighting.scenes.open(bytes, file.name);
     } catch (error) {
         throw new Error(`Can't show ${error.message}`);
     }
@@ -107,7 +107,7 @@ async function go_to(view) {
     eye.start(scene.cameras[settings.view], scene);
     eye.place = settings.at;
     controls.show();
-    exposure = await meter(renderer, lightbin, frame_settings());
+    exposure = await meter(renderer, lighting, frame_settings());
     renew();
 }
 
@@ -147,7 +147,7 @@ async function check() {
     renew();  // not for the sharper picture: every light in each of its pixels takes long
     try {
         await new Promise(requestAnimationFrame);  // so that this can be read
-        const found = await compare(renderer, lightbin, {...frame_settings(), wanted}, by_id('differences'));
+        const found = await compare(renderer, lighting, {...frame_settings(), wanted}, by_id('differences'));
         if (!wanted()) return;
         const of_all = `${found.different.toLocaleString('en')} of ${counted(found.pixels, 'pixel')}`;
         const [lists, every] = found.milliseconds.map(ms => `${Math.round(ms).toLocaleString('en')} ms`);
@@ -166,8 +166,8 @@ async function check() {
 
 async function advise() {
     const frame = {...frame_settings(1), tile_size: 16, clip: renderer.rows_from_below ? 'webgl' : 'webgpu'};
-    const bounds = 'box' in renderer.refused ? null : await renderer.bounds(lightbin, frame);
-    const plans = lightbin.advise({...frame, z_bounds_milliseconds: bounds?.milliseconds ?? 0}, bounds);
+    const bounds = 'box' in renderer.refused ? null : await renderer.bounds(lighting, frame);
+    const plans = await lighting.advise(frame, bounds, bounds?.milliseconds);
     show_advice(plans, frame.width * frame.height, settings => controls.set(settings));
     renew();  // the pre-pass was drawn over the picture's depth
 }
@@ -206,7 +206,7 @@ function change(names) {
 async function draw(exact) {
     const frame = {...frame_settings(), exact};
     const slow = setTimeout(() => by_id('frame').textContent = 'Drawing, which takes a while here', 1000);
-    const report = await renderer.draw(lightbin, frame).finally(() => clearTimeout(slow));
+    const report = await renderer.draw(lighting, frame).finally(() => clearTimeout(slow));
     const {method, look, width, height, tile_size} = frame;
     const of = [renderer.name, scene.of, scene.lights, settings.view, method, look, width, height, tile_size].join();
     plot.add(report.ms, report.timed, of);
@@ -279,7 +279,7 @@ async function start() {
         complain();
     }), true);
     try {
-        [lightbin] = await Promise.all([load(), use_renderer()]);
+        [lighting] = await Promise.all([load_lighting(), use_renderer()]);
         await show_scene().catch(async error => {
             complain(sentence(error.message));
             await show_scene();
@@ -287,7 +287,7 @@ async function start() {
         await draw(false).catch(error => complain(sentence(error.message)));  // another tile size may help
     } catch (error) {
         document.body.classList.add('cannot');
-        complain(`${sentence(error.message)} The page needs WebGL 2 and WebAssembly with vectors: Chrome or Edge 95, `
+        complain(`${sentence(error.message)} The page needs WebGL 2 and WebAssembly with exceptions: Chrome or Edge 95, `
             + 'Firefox 100, Safari 16.4, or later, with graphics switched on.');
         return;
     }

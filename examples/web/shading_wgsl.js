@@ -25,8 +25,8 @@ struct Light {
 `;
 
 export const frame_bindings = [
-    {name: 'frame', resource: 'uniform_block', binding: 0},
-    {name: 'lights', resource: 'storage_buffer', binding: 1},
+    {name: 'frame', resource: 'uniform-block', slot: {binding: 0}},
+    {name: 'lights', resource: 'storage-buffer', slot: {binding: 1}},
 ];
 
 // Returns what makes the words of `frame`, given the length of the longest list.

@@ -1,20 +1,22 @@
-# make -f examples/web/web.mk OUT=FOLDER: the page's folder, its objects beside it. Needs emscripten, GLM, tinygltf and
-# nlohmann-json, where Debian has them. With FOLDER.objects/lists: what tests/web/module.mjs compares with.
+# make -f examples/web/web.mk OUT=FOLDER: the page's folder, its objects beside it. Needs what the npm package is built
+# with, and GLM, tinygltf and nlohmann-json, where Debian has them. With FOLDER.objects/lists: what
+# tests/web/lists.mjs compares with.
 here := examples/web
 OUT := build/web
 objects := $(OUT).objects
 page := $(filter-out %.mk %.py,$(wildcard $(here)/*.*)) $(wildcard tests/fixtures/*.glb)
 
-# Vectors, and exceptions as WebAssembly has them, which every browser since 2022 knows. No file is opened by its name,
+# Exceptions as WebAssembly has them, which every browser since 2022 knows. No file is opened by its name,
 # and no texture is read.
-flags = -std=c++20 -fwasm-exceptions -msimd128 -Wall -Wextra -Werror \
+flags = -std=c++20 -fwasm-exceptions -Wall -Wextra -Werror \
     -DTINYGLTF_NO_FS -DTINYGLTF_NO_STB_IMAGE -DTINYGLTF_NO_STB_IMAGE_WRITE -DTINYGLTF_NO_EXTERNAL_IMAGE \
     $(headers) -isystem $(objects)/include -O2
 headers := -Iinclude -Iexamples/tiled_forward -I$(here)/module
-shared := binned_lights gpu_light load_glb made_scene made_street moving_lights projection
+package := lightbin.js tables.js lightbin.wasm lightbin_simd.wasm shaders.wasm advice.wasm
+shared := gpu_light load_glb made_scene made_street moving_lights projection
 sources := $(wildcard $(here)/module/*.cpp) $(shared:%=examples/tiled_forward/%.cpp)
 compiled := $(patsubst %.cpp,$(objects)/%.o,$(notdir $(sources)))
-native := $(patsubst %,$(objects)/native/%.o,lists stage $(shared))
+native := $(patsubst %,$(objects)/native/%.o,lists binned_lights $(shared))
 vpath %.cpp $(here)/module examples/tiled_forward tests/web
 
 # It asks for a module that lies where its node does not look.
@@ -22,9 +24,18 @@ export NODE_PATH := /usr/share/nodejs
 
 .DELETE_ON_ERROR:
 
-all: $(OUT)/lightbin.wasm $(addprefix $(OUT)/,$(notdir $(page)))
+all: $(OUT)/scenes.wasm $(package:%=$(OUT)/lightbin/%) $(addprefix $(OUT)/,$(notdir $(page)))
 
-$(OUT)/lightbin.wasm: $(compiled) | $(OUT)
+# lightbin as others use it: the npm package. Of its files, those that the page loads.
+$(package:%=$(OUT)/lightbin/%) &: $(objects)/lightbin/package.json | $(OUT)/lightbin
+	@cp $(package:%=$(objects)/lightbin/%) $(OUT)/lightbin
+
+$(objects)/lightbin/package.json: $(shell find include packaging/npm -type f)
+	@echo "    building the npm package"
+	@sh packaging/npm/build.sh $(@D) >$(@D).log 2>&1 || { cat $(@D).log; exit 1; }
+	@touch $@
+
+$(OUT)/scenes.wasm: $(compiled) | $(OUT)
 	@echo "    linking $(@F)"
 	@em++ $(flags) $(compiled) -o $@ -sSTANDALONE_WASM --no-entry -sALLOW_MEMORY_GROWTH
 
@@ -49,7 +60,7 @@ $(objects)/lists: $(native)
 $(objects)/native/%.o: %.cpp | $(objects)/native
 	g++ -std=c++20 -O1 $(headers) -MMD -c $< -o $@
 
-$(objects)/native $(OUT):
+$(objects)/native $(OUT) $(OUT)/lightbin:
 	@mkdir -p $@
 
 -include $(compiled:.o=.d) $(native:.o=.d)

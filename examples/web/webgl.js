@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The WebGL 2 renderer: draw() has the frame from top to bottom.
+import {slicing_of, wants_bounds} from './lighting.js';
 import {depth_text, fragment_text, lights_width, overlay_text, reduce_text, vertex_text} from './shading_glsl.js';
 import {FrameBuffer, Program, Texture, Timer, until_done} from './webgl_parts.js';
-
-// Depth methods that want Z bounds from a depth pre-pass.
-const wants_bounds = method => method === 'interval' || method === 'box';
 
 export class WebGl {
     name = 'WebGL 2';
@@ -69,29 +67,29 @@ export class WebGl {
         }
     }
 
-    async draw(lightbin, settings) {
+    async draw(lighting, settings) {
         settings = {...settings, clip: 'webgl'};
         const {method, width, height} = settings, look = settings.every_light ? 'every' : settings.look;
         const ms = {};
         let last = performance.now();
         const lap = () => -last + (last = performance.now());
         this.#frame_buffer.resize(width, height);
-        const program = this.#forward_program(lightbin, look, wants_bounds(method) ? 'none' : method);
+        const program = await this.#forward_program(lighting, look, slicing_of(method));
         if (wants_bounds(method)) await until_done(this.#gl);  // reading them would wait for the frame before, too
         lap();
 
         // 1. Depth alone, and from it the depths between which each tile has anything to light.
-        const bounds = wants_bounds(method) ? this.#find_bounds(lightbin, settings) : null;
-        ms.pre_pass = lap();
+        const bounds = wants_bounds(method) ? await this.#find_bounds(lighting, settings) : null;
+        ms.pre_pass = bounds === null ? 0 : lap();
 
         // 2. The lists: which lights can reach which tile.
-        const frame = lightbin.frame(settings, bounds);
+        const frame = lighting.frame(settings, bounds);
         ({lights: ms.lights, bin: ms.bin} = frame.ms);
         lap();
 
         // 3. To the GPU. Glass may stand anywhere before the opaque surfaces, so with bounds it has lists of its own.
         const {ranges, ids, slices, bins, glass_ranges, glass_ids, tiles_x} = frame;
-        this.#texture('lights', 'rgba32f').write(frame.lights, lights_width);
+        this.#texture('lights', 'rgba32float').write(frame.lights, lights_width);
         this.#upload(program, 'lightbin', {tiles: ranges, lists: ids, slices, bins}, tiles_x);
         const own_lists = bounds !== null && this.#glass > 0;
         if (own_lists) this.#upload(program, 'glass', {tiles: glass_ranges, lists: glass_ids}, tiles_x);
@@ -115,10 +113,10 @@ export class WebGl {
     }
 
     // The Z bounds of a view's tiles, and what they took.
-    async bounds(lightbin, settings) {
+    async bounds(lighting, settings) {
         this.#frame_buffer.resize(settings.width, settings.height);
         await until_done(this.#gl);
-        const start = performance.now(), bounds = this.#find_bounds(lightbin, settings);
+        const start = performance.now(), bounds = await this.#find_bounds(lighting, settings);
         return {...bounds, milliseconds: performance.now() - start};
     }
 
@@ -129,8 +127,10 @@ export class WebGl {
     }
 
     // Z bounds of the tiles. Glass is lit before the sky, too: its maximum counts the background.
-    #find_bounds(lightbin, settings) {
-        const gl = this.#gl, view = lightbin.view(settings);
+    async #find_bounds(lighting, settings) {
+        const gl = this.#gl, view = lighting.view(settings), {orthographic} = settings.camera;
+        const reduce = await this.#reduce_program(lighting, orthographic, true);
+        const reduce_glass = this.#glass > 0 ? await this.#reduce_program(lighting, orthographic, false) : null;
         const program = this.#named('depth', () => new Program(gl, vertex_text, depth_text));
         program.use();
         program.place_triangles(view);
@@ -141,24 +141,27 @@ export class WebGl {
         gl.drawBuffers([gl.COLOR_ATTACHMENT0]);
 
         gl.disable(gl.DEPTH_TEST);
-        const bounds = this.#reduce(lightbin, settings, view, true);
-        if (this.#glass > 0) bounds.glass_max = this.#reduce(lightbin, settings, view, false).max;
+        const bounds = this.#reduce(reduce, view);
+        if (reduce_glass) bounds.glass_max = this.#reduce(reduce_glass, view).max;
         gl.enable(gl.DEPTH_TEST);
         return bounds;
     }
 
-    #reduce(lightbin, {camera: {orthographic}}, {reduce, tiles_x, tiles_y}, skip_background) {
-        const gl = this.#gl;
-        const program = this.#named(`reduce ${orthographic} ${skip_background}`, () => {
-            const options = {language: 'essl_300', stage: 'fragment', orthographic, skip_background};
-            return new Program(gl, overlay_text, reduce_text(lightbin.text('reduce', options).text));
+    #reduce_program(lighting, orthographic, skipBackground) {
+        return this.#named(`reduce ${orthographic} ${skipBackground}`, async () => {
+            const options = {language: 'essl-300', fragment: true, orthographic, skipBackground};
+            const {text} = await lighting.lightbin.reduceShader(options);
+            return new Program(this.#gl, overlay_text, reduce_text(text));
         });
+    }
+
+    #reduce(program, {reduce, tiles_x, tiles_y}) {
+        const gl = this.#gl;
         program.use();
-        const words = Uint32Array.from(reduce);
-        gl.uniform4uiv(program.at('lightbin_grid'), words.subarray(0, 4));
-        gl.uniform4fv(program.at('lightbin_planes'), new Float32Array(words.buffer, 16, 4));
+        gl.uniform4uiv(program.at('lightbin_grid'), reduce.subarray(0, 4));
+        gl.uniform4fv(program.at('lightbin_planes'), new Float32Array(reduce.buffer, 16, 4));
         program.bind('lightbin_depth', this.#frame_buffer.depth);
-        const target = this.#texture('z_bounds', 'rg32f');
+        const target = this.#texture('z_bounds', 'rg32float');
         target.reserve(tiles_x, tiles_y);
         gl.bindFramebuffer(gl.FRAMEBUFFER, this.#bounds_buffer);
         gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target.texture, 0);
@@ -176,7 +179,7 @@ export class WebGl {
 
     // What lightbin's text reads, by the names, formats and widths that it told. No width: a row for each tile row.
     #upload(program, prefix, lists, tiles_x) {
-        for (const {name, format, width} of program.lists) {
+        for (const {name, webgpuFormat: format, width} of program.lists) {
             const numbers = lists[name.replace('lightbin_', '')];
             if (numbers) this.#texture(name.replace('lightbin', prefix), format).write(numbers, width || tiles_x);
         }
@@ -235,12 +238,12 @@ export class WebGl {
         gl.disable(gl.SCISSOR_TEST);
     }
 
-    #forward_program(lightbin, look, slicing) {
-        return this.#named(`${look} ${slicing} ${this.#spots}`, () => {
+    #forward_program(lighting, look, slicing) {
+        return this.#named(`${look} ${slicing} ${this.#spots}`, async () => {
             const check = look === 'check';
-            const looks = {heat_map: look === 'heat', view_check: check, list_check: check};
+            const looks = {heatMap: look === 'heat', viewCheck: check, listCheck: check};
             const {text, bindings} = look === 'every' ? {text: '', bindings: []}
-                : lightbin.text('snippet', {language: 'essl_300', slicing, ...looks});
+                : await lighting.lightbin.shader({language: 'essl-300', storage: 'texture-2d', slicing, ...looks});
             return new Program(this.#gl, vertex_text, fragment_text(look, text, this.#spots), bindings);
         });
     }

@@ -7,10 +7,10 @@ export class Program {
     #places = new Map();
     #units = new Map();
 
-    // lists: what lightbin.text() says that its text wants bound.
+    // lists: what lightbin.shader() says that its text wants bound.
     constructor(gl, vertex_text, fragment_text, lists = []) {
         this.#gl = gl;
-        this.lists = lists.filter(binding => binding.resource === 'texture_2d');
+        this.lists = lists.filter(binding => binding.resource === 'texture-2d');
         this.#program = gl.createProgram();
         for (const [kind, text] of [[gl.VERTEX_SHADER, vertex_text], [gl.FRAGMENT_SHADER, fragment_text]]) {
             const shader = gl.createShader(kind);
@@ -53,13 +53,13 @@ export class Program {
     }
 }
 
-// A format by lightbin's name for it: what it is in the GPU, in memory, and numbers a texel.
+// A format by WebGPU's name for it: what it is in the GPU, in memory, and numbers a texel.
 const formats = {
-    r32ui: ['R32UI', 'RED_INTEGER', 'UNSIGNED_INT', 1],
-    rg32ui: ['RG32UI', 'RG_INTEGER', 'UNSIGNED_INT', 2],
-    rg32f: ['RG32F', 'RG', 'FLOAT', 2],
-    rgba32f: ['RGBA32F', 'RGBA', 'FLOAT', 4],
-    depth: ['DEPTH_COMPONENT32F', 'DEPTH_COMPONENT', 'FLOAT', 1],
+    r32uint: ['R32UI', 'RED_INTEGER', 'UNSIGNED_INT', 1],
+    rg32uint: ['RG32UI', 'RG_INTEGER', 'UNSIGNED_INT', 2],
+    rg32float: ['RG32F', 'RG', 'FLOAT', 2],
+    rgba32float: ['RGBA32F', 'RGBA', 'FLOAT', 4],
+    depth32float: ['DEPTH_COMPONENT32F', 'DEPTH_COMPONENT', 'FLOAT', 1],
 };
 
 // A 2D texture that is read texel by texel.
@@ -145,7 +145,7 @@ export class FrameBuffer {
         gl.renderbufferStorage(gl.RENDERBUFFER, gl.RGBA8, width, height);
         gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.RENDERBUFFER, this.#colour);
         if (this.#depth) gl.deleteTexture(this.#depth.texture);
-        this.#depth = new Texture(gl, 'depth');
+        this.#depth = new Texture(gl, 'depth32float');
         this.#depth.reserve(width, height);
         gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this.#depth.texture, 0);
         if (gl.checkFramebufferStatus(gl.FRAMEBUFFER) !== gl.FRAMEBUFFER_COMPLETE && !gl.isContextLost())

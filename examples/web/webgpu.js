@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The WebGPU renderer: draw() has the frame from top to bottom.
+import {list_sizes, wants_bounds} from './lighting.js';
 import {frame_constants} from './shading_wgsl.js';
-import {BuiltLists, with_bounds} from './webgpu_lists.js';
+import {BuiltLists} from './webgpu_lists.js';
 import {Store, usages} from './webgpu_parts.js';
 import {Programs, depth_format, picture_format} from './webgpu_programs.js';
 
@@ -73,23 +74,23 @@ export class WebGpu {
     }
 
     // One at a time. Resolves when the device has drawn: what it reports is of this very frame.
-    async draw(lightbin, settings) {
+    async draw(lighting, settings) {
         try {
-            return await this.#draw(lightbin, settings);
+            return await this.#draw(lighting, settings);
         } catch (error) {
             throw this.lost ? new Error(this.lost) : error;
         }
     }
 
-    async #draw(lightbin, settings) {
+    async #draw(lighting, settings) {
         const {width, height, method, exposure} = settings;
         const look = settings.every_light ? 'every_light' : settings.look;
         const scene = {has_spots: this.#spots, has_glass: this.#glass > 0};
-        const programs = await this.#programs.that_draw(lightbin, look, settings, scene);
+        const programs = await this.#programs.that_draw(lighting, look, settings, scene);
         this.#resize(width, height);
 
         // 1. The lists: which lights can reach which tile. With Z bounds: what they are built of.
-        const frame = lightbin.frame({...settings, clip: 'webgpu', on_gpu: with_bounds(method)});
+        const frame = lighting.frame({...settings, clip: 'webgpu', on_gpu: wants_bounds(method)});
         const {in_view, rejected, entries, longest, tiles_x, tiles_y, light_count} = frame;
         const report = {ms: {...frame.ms}, in_view, rejected, entries, longest, tiles_x, tiles_y,
             timed: this.#clock ? 'gpu' : 'wall'};
@@ -114,12 +115,12 @@ export class WebGpu {
     }
 
     // The Z bounds of a view's tiles, and what they took.
-    async bounds(lightbin, settings) {
+    async bounds(lighting, settings) {
         const with_box = {...settings, method: 'box', look: 'lit', clip: 'webgpu', on_gpu: true};
         const scene = {has_spots: this.#spots, has_glass: false};
-        const programs = await this.#programs.that_draw(lightbin, 'lit', with_box, scene);
+        const programs = await this.#programs.that_draw(lighting, 'lit', with_box, scene);
         this.#resize(settings.width, settings.height);
-        const frame = lightbin.frame(with_box), {tiles_x, tiles_y} = frame;
+        const frame = lighting.frame(with_box), {tiles_x, tiles_y} = frame;
         this.#upload(frame, programs);
         this.#store('frame', usages.uniform).write(frame_constants(frame, 1, settings.width, settings.height)(0));
         const {times} = await this.#submit(programs, {tiles_x, tiles_y}, []);
@@ -293,14 +294,4 @@ export class WebGpu {
         for (let y = 0; y < height; y++) bytes.set(padded.subarray(row * y, row * y + 4 * width), 4 * width * y);
         return bytes;
     }
-}
-
-// Of a table of offsets and counts.
-function list_sizes(words) {
-    let entries = 0, longest = 0;
-    for (let at = 1; at < words.length; at += 2) {
-        entries += words[at];
-        longest = Math.max(longest, words[at]);
-    }
-    return {entries, longest};
 }

@@ -3,9 +3,6 @@
 // those.
 import {Program, Store, usages} from './webgpu_parts.js';
 
-// Z bounds come from a depth pre-pass.
-export const with_bounds = method => method === 'interval' || method === 'box';
-
 export class BuiltLists {
     constructor(device) {
         for (const name of ['tiles', 'lists', 'total', 'z_bounds'])
@@ -16,12 +13,13 @@ export class BuiltLists {
 
     // The shaders, in the order of their dispatches. Glass may stand anywhere before what is opaque, and before the
     // sky.
-    static async kernels(device, lightbin, depth_test, orthographic, for_glass) {
-        const language = 'wgsl', max_only = for_glass;
-        const reduce = lightbin.text('reduce', {language, stage: 'compute', orthographic, skip_background: !for_glass});
-        const build = pass => lightbin.text('build', {language, pass, depth_test, max_only, orthographic});
-        return Promise.all([reduce, build('count'), build('offsets'), build('fill')]
-            .map(text => Program.for_compute(device, text)));
+    static async kernels(device, {lightbin}, depthTest, orthographic, for_glass) {
+        const language = 'wgsl', skipBackground = !for_glass, maxOnly = for_glass;
+        const build = pass => lightbin.buildShader({language, pass, depthTest, maxOnly, orthographic});
+        return Promise.all([
+            lightbin.reduceShader({language, orthographic, skipBackground}), build('count'), build('offsets'),
+            build('fill'),
+        ].map(async text => Program.for_compute(device, await text)));
     }
 
     upload({reduce, build, edges, tiles_x, tiles_y}) {

@@ -46,20 +46,20 @@ export class Store {
 
 const {VERTEX: vertex, FRAGMENT: fragment, COMPUTE: compute} = globalThis.GPUShaderStage ?? {};
 const layouts = {  // of the resources that the bindings of lightbin's texts name
-    uniform_block: {visibility: vertex | fragment | compute, buffer: {type: 'uniform'}},
-    storage_buffer: {visibility: fragment | compute, buffer: {type: 'read-only-storage'}},
-    writable_buffer: {visibility: compute, buffer: {type: 'storage'}},
-    texture_2d: {visibility: compute, texture: {sampleType: 'unfilterable-float'}},
+    'uniform-block': {visibility: vertex | fragment | compute, buffer: {type: 'uniform'}},
+    'storage-buffer': {visibility: fragment | compute, buffer: {type: 'read-only-storage'}},
+    'writable-buffer': {visibility: compute, buffer: {type: 'storage'}},
+    'texture-2d': {visibility: compute, texture: {sampleType: 'unfilterable-float'}},
 };
 
-// A pipeline and its groups of bindings, {name, resource, binding} each.
+// A pipeline and its groups of bindings, {name, resource, slot} each.
 export class Program {
     constructor(device, groups) {
         this.device = device;
         this.groups = groups.map(bindings => ({
             bindings,
             layout: device.createBindGroupLayout(
-                {entries: bindings.map(({binding, resource}) => ({binding, ...layouts[resource]}))}),
+                {entries: bindings.map(({slot: {binding}, resource}) => ({binding, ...layouts[resource]}))}),
         }));
         this.layout = device.createPipelineLayout({bindGroupLayouts: this.groups.map(group => group.layout)});
     }
@@ -83,7 +83,7 @@ export class Program {
         const of = what => (what instanceof Store ? {buffer: what.buffer} : what);
         this.groups.forEach(({bindings, layout}, index) => pass.setBindGroup(index, this.device.createBindGroup({
             layout,
-            entries: bindings.map(({name, binding}) => ({binding, resource: of(resources[name])})),
+            entries: bindings.map(({name, slot: {binding}}) => ({binding, resource: of(resources[name])})),
         })));
     }
 }

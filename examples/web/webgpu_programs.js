@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The programs of the WebGPU renderer, each compiled when it is first wanted.
+import {slicing_of, wants_bounds} from './lighting.js';
 import {depth_shader, frame_bindings, surface_shader} from './shading_wgsl.js';
-import {BuiltLists, with_bounds} from './webgpu_lists.js';
+import {BuiltLists} from './webgpu_lists.js';
 import {Program} from './webgpu_parts.js';
 
 export const picture_format = 'rgba8unorm', depth_format = 'depth32float';
@@ -15,14 +16,14 @@ export class Programs {
     }
 
     // Returns those of a frame: surface; glass, where the scene has some; depth and lists, glass_lists, with Z bounds.
-    async that_draw(lightbin, look, {method, camera: {orthographic}}, {has_spots, has_glass}) {
-        const bounded = with_bounds(method), glass = has_glass && look !== 'heat';
-        const wanted = {surface: this.#surface(lightbin, look, method, has_spots, false)};
-        if (glass) wanted.glass = this.#surface(lightbin, look, method, has_spots, true);
+    async that_draw(lighting, look, {method, camera: {orthographic}}, {has_spots, has_glass}) {
+        const bounded = wants_bounds(method), glass = has_glass && look !== 'heat';
+        const wanted = {surface: this.#surface(lighting, look, method, has_spots, false)};
+        if (glass) wanted.glass = this.#surface(lighting, look, method, has_spots, true);
         if (bounded) wanted.depth = this.#once('depth', () => this.#program([[], frame_bindings], depth_shader));
         if (bounded && look !== 'every_light') {
             const kernels = for_glass => this.#once(`${method} ${orthographic} ${for_glass}`,
-                () => BuiltLists.kernels(this.#device, lightbin, method, orthographic, for_glass));
+                () => BuiltLists.kernels(this.#device, lighting, method, orthographic, for_glass));
             wanted.lists = kernels(false);
             if (glass) wanted.glass_lists = kernels(true);
         }
@@ -35,11 +36,12 @@ export class Programs {
         return this.#made.get(name);
     }
 
-    #surface(lightbin, look, method, has_spots, glass) {
-        const slicing = with_bounds(method) ? 'none' : method, check = look === 'check';
-        return this.#once(`${look} ${slicing} ${has_spots} ${glass}`, () => {
-            const {text, bindings} = look === 'every_light' ? {text: '', bindings: []} : lightbin.text('snippet',
-                {language: 'wgsl', slicing, heat_map: look === 'heat', view_check: check, list_check: check});
+    #surface(lighting, look, method, has_spots, glass) {
+        const slicing = slicing_of(method), check = look === 'check';
+        return this.#once(`${look} ${slicing} ${has_spots} ${glass}`, async () => {
+            const {text, bindings} = look === 'every_light' ? {text: '', bindings: []}
+                : await lighting.lightbin.shader(
+                    {language: 'wgsl', slicing, heatMap: look === 'heat', viewCheck: check, listCheck: check});
             // 1 - (1 - glass) (1 - behind): the light of both, whatever is drawn first, and never more than white.
             const add = {srcFactor: 'one', dstFactor: 'one-minus-src'};
             const target = {format: picture_format, blend: glass ? {color: add, alpha: add} : undefined};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Prints a line for each light grid that tests/web/module.mjs makes in WebAssembly too: what it is of, its entries, and
-// a hash of ranges, ids, glass ranges and ids, slices and bins.
-#include "stage.hpp"
+// Prints a line for each light grid that tests/web/lists.mjs makes with the page's lighting.js too: what it is of, its entries, and
+// a hash of ranges, ids, glass ranges and ids, slices, bins and the lights' spheres.
+#include "native_lists.hpp"
 
 #include <cstdint>
 #include <cstdio>
@@ -31,19 +31,21 @@ private:
     std::uint32_t hash_ = 2166136261;
 };
 
-void print_lists(Stage& stage, const std::string& scene, double seconds) {
+void print_lists(Scene scene, const std::string& name, double seconds) {
     static constexpr const char* names[] = {"none", "interval", "box", "z_bins", "clusters"};
+    scene.boxes.clear();  // the page has none
+    NativeLists native(scene);
     for (int method = 0; method < 5; ++method) {
         FrameSettings settings;
-        settings.camera = stage.scene().cameras[0];
+        settings.camera = scene.cameras[0];
         settings.width = 640;
         settings.height = 360;
         settings.bin.method = static_cast<DepthMethod>(method);
         settings.seconds = seconds;
-        const lightbin::View view = stage.prepare(settings).view;
+        const lightbin::View view = view_of(settings);
         const std::vector<float> min(view.tile_count(), 10), max(view.tile_count(), 60),
             glass(view.tile_count(), 100);
-        const Frame& frame = stage.frame(
+        const Frame frame = native.frame(
             view, settings, {.min = min, .max = max, .transparent_max = glass, .background_skipped = true});
         Hash lists;
         lists.add(frame.ranges);
@@ -52,7 +54,9 @@ void print_lists(Stage& stage, const std::string& scene, double seconds) {
         lists.add(frame.glass_ids);
         lists.add(std::span<const std::uint32_t>(frame.slices));
         lists.add(frame.bins);
-        std::printf("%s %g %s %zu %08x\n", scene.c_str(), seconds, names[method], frame.ids.size(),
+        for (const GpuLight& light : frame.lights)  // colours are rounded otherwise in WebAssembly
+            lists.add(std::span(&light.sphere.x, 4));
+        std::printf("%s %g %s %zu %08x\n", name.c_str(), seconds, names[method], frame.ids.size(),
                     lists.value());
     }
 }
@@ -60,16 +64,15 @@ void print_lists(Stage& stage, const std::string& scene, double seconds) {
 }  // namespace
 
 int main(int count, char** files) {
-    Stage stage;
-    for (const char* kind : {"city", "street"})
-        for (const double seconds : {0.0, 2.5}) {
-            stage.make(kind, 2000);
-            print_lists(stage, kind, seconds);
-        }
+    for (const double seconds : {0.0, 2.5})
+        print_lists(make_scene(2000), "city", seconds);
+    for (const double seconds : {0.0, 2.5})
+        print_lists(make_street(), "street", seconds);
     for (int i = 1; i < count; ++i) {
         std::ifstream file(files[i], std::ios::binary);
         const std::string bytes(std::istreambuf_iterator<char>(file), {});
-        stage.open({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()}, "file.glb");
-        print_lists(stage, "file", 0);
+        print_lists(
+            read_glb({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()}, "file.glb", 0.05f),
+            "file", 0);
     }
 }

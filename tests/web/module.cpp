@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the module of examples/web hands to the page: no list lacks a light, by brute force in world space, and a bad
-// file leaves the scene from before.
+// What the module of examples/web hands to the page: the lights that the renderer of examples/tiled_forward has, whose
+// lists lack none, by brute force in world space; and a bad file leaves the scene from before.
 #include "glb.hpp"
 
+#include "native_lists.hpp"
 #include "stage.hpp"
 
 #include <doctest/doctest.h>
@@ -130,11 +131,11 @@ Bounds made_bounds(Dice& dice, const lightbin::View& view, double deepest) {
     return bounds;
 }
 
-Count count_missing(Stage& stage, const FrameSettings& settings, double deepest) {
-    const lightbin::View view = stage.prepare(settings).view;
+Count count_missing(NativeLists& native, const FrameSettings& settings, double deepest) {
+    const lightbin::View view = view_of(settings);
     Dice dice;  // the same points again where a light is left out
     const Bounds bounds = made_bounds(dice, view, deepest);
-    const Frame& frame = stage.frame(view, settings,
+    const Frame frame = native.frame(view, settings,
                                      {.min = bounds.min,
                                       .max = bounds.max,
                                       .transparent_max = bounds.glass_max,
@@ -142,8 +143,8 @@ Count count_missing(Stage& stage, const FrameSettings& settings, double deepest)
     const DepthMethod method = settings.bin.method;
     const bool bounded = method == DepthMethod::interval || method == DepthMethod::box;
     const glm::dmat4 to_view = glm::inverse(settings.camera.to_world);
-    const std::vector<Light>& lights = stage.scene().lights;
-    CHECK(frame.lights.size() == lights.size() + stage.scene().suns.size());
+    const std::vector<Light>& lights = native.scene().lights;
+    CHECK(frame.lights.size() == lights.size() + native.scene().suns.size());
     const std::size_t cells = frame.ranges.size();
     CHECK(cells == view.tile_count() * (method == DepthMethod::clusters ? 24 : 1));
     CHECK(frame.ids.size() < cells * lights.size());
@@ -155,7 +156,7 @@ Count count_missing(Stage& stage, const FrameSettings& settings, double deepest)
                   y = static_cast<int>(dice.between(0, settings.height));
         const auto tile =
             static_cast<std::size_t>(y / settings.tile_size * view.tiles_x() + x / settings.tile_size);
-        const bool glass = i % 3 == 0 && !stage.scene().transparent.empty();
+        const bool glass = i % 3 == 0 && !native.scene().transparent.empty();
         double low = settings.camera.near, high = deepest;
         if (bounded) {
             if (!glass) low = static_cast<double>(bounds.min[tile]);
@@ -188,8 +189,33 @@ FrameSettings settings_for(const Camera& camera, DepthMethod method) {
 constexpr DepthMethod methods[] = {DepthMethod::none, DepthMethod::interval, DepthMethod::box,
                                    DepthMethod::z_bins, DepthMethod::clusters};
 
+// The module's lights are the renderer's.
+void check_lights(Stage& stage, NativeLists& native, const FrameSettings& settings) {
+    const PlacedLights& placed =
+        stage.place(settings.camera.to_world, settings.seconds, settings.bin.dropped_light);
+    FrameSettings in_ids = settings;
+    in_ids.bin.method = DepthMethod::none;  // in which no light has another place
+    const Frame frame = native.frame(view_of(in_ids), in_ids, {});
+    const auto bytes_of = [](const auto& items) { return std::as_bytes(std::span(items)); };
+    CHECK(std::ranges::equal(bytes_of(placed.lights), bytes_of(frame.lights)));
+    REQUIRE(placed.shapes.size() == stage.scene().lights.size());
+    float reach = 0;
+    for (std::size_t i = 0; i < placed.shapes.size(); ++i) {
+        lightbin::Spot expected = spot_of(placed.lights[i]);
+        if (static_cast<int>(i) == settings.bin.dropped_light) expected.radius = -1;
+        CHECK(std::ranges::equal(std::as_bytes(std::span(&placed.shapes[i], 1)),
+                                 std::as_bytes(std::span(&expected, 1))));
+        reach = std::max(reach, placed.lights[i].sphere.w - placed.lights[i].sphere.z);
+    }
+    CHECK(placed.reach == reach);
+    const Look look = stage.look(settings.camera, static_cast<double>(settings.width) / settings.height,
+                                 settings.clip_depth);
+    CHECK(glm::length(glm::vec3(look.world_to_view * glm::vec4(way_to_moon, 0)) - look.moon) < 1e-6f);
+}
+
 // Every method, as each graphics API counts, at rest and in motion; and it is seen where a light is left out.
 void check_lists(Stage& stage, double deepest, int at_least) {
+    NativeLists native(stage.scene());
     for (const DepthMethod method : methods) {
         FrameSettings settings = settings_for(stage.scene().cameras[0], method);
         CAPTURE(static_cast<int>(method));
@@ -200,11 +226,12 @@ void check_lists(Stage& stage, double deepest, int at_least) {
             settings.origin =
                 webgpu ? lightbin::WindowOrigin::upper_left : lightbin::WindowOrigin::lower_left;
             settings.seconds = webgpu ? 12.5 : 0;
-            const Count count = count_missing(stage, settings, deepest);
+            const Count count = count_missing(native, settings, deepest);
             CHECK(count.reached >= at_least);
             CHECK(count.missing == 0);
             settings.bin.dropped_light = static_cast<int>(count.of_most);
-            CHECK(count_missing(stage, settings, deepest).missing > 0);
+            CHECK(count_missing(native, settings, deepest).missing > 0);
+            check_lights(stage, native, settings);
             settings.bin.dropped_light = -1;
         }
     }
@@ -234,8 +261,9 @@ TEST_CASE("no list lacks a light that reaches a point of its tile") {
         stage.open(bytes(everything_glb()), "everything.glb");
         Camera flat = stage.scene().cameras[1];
         REQUIRE(flat.orthographic);
+        NativeLists native(stage.scene());
         for (const DepthMethod method : methods)
-            CHECK(count_missing(stage, settings_for(flat, method), 40).missing == 0);
+            CHECK(count_missing(native, settings_for(flat, method), 40).missing == 0);
     }
 }
 
@@ -243,43 +271,21 @@ TEST_CASE("lights move about their places") {
     Stage stage;
     stage.make("city", 100);
     const std::vector<Light> places = stage.scene().lights;
-    FrameSettings settings = settings_for(stage.scene().cameras[0], DepthMethod::none);
+    const Camera& camera = stage.scene().cameras[0];
+    const glm::dmat4 to_view = glm::inverse(camera.to_world);
     const auto farthest = [&](double seconds) {
-        settings.seconds = seconds;
-        stage.frame(stage.prepare(settings).view, settings, {});
+        const PlacedLights& placed = stage.place(camera.to_world, seconds, -1);
         float most = 0;
-        for (std::size_t i = 0; i < places.size(); ++i)
-            most = std::max(most, glm::length(stage.scene().lights[i].position - places[i].position) /
-                                      places[i].range);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const glm::vec3 place(to_view * glm::dvec4(places[i].position, 1));
+            most = std::max(most, glm::length(glm::vec3(placed.lights[i].sphere) - place) / places[i].range);
+        }
         return most;
     };
     CHECK(farthest(0) == 0);
     CHECK(farthest(3) > 0.05f);
     CHECK(farthest(3) < 0.126f);
     CHECK(farthest(0) == 0);
-}
-
-TEST_CASE("what the GPU makes lists of has room for the lists of the Binner, and every light in view") {
-    Stage stage;
-    stage.make("city", 1500);
-    for (const DepthMethod method : {DepthMethod::none, DepthMethod::clusters}) {
-        FrameSettings settings = settings_for(stage.scene().cameras[0], method);
-        const lightbin::View view = stage.prepare(settings).view;
-        const std::size_t entries = stage.frame(view, settings, {}).ids.size();
-        settings.on_gpu = true;
-        const Frame& frame = stage.frame(view, settings, {});
-        CHECK(frame.ids.empty());
-        CHECK(frame.build.capacity >= entries);
-        CHECK(frame.build.capacity < 2 * entries);
-        CHECK(frame.build.footprints == frame.footprints.size());
-        CHECK(frame.slabs.size() == (method == DepthMethod::clusters ? 24 : 0));
-        for (const lightbin::ShaderFootprint& footprint : frame.footprints)
-            CHECK(footprint.radius == frame.lights[footprint.id].sphere.w);
-    }
-    FrameSettings settings = settings_for(stage.scene().cameras[0], DepthMethod::z_bins);
-    settings.on_gpu = true;
-    CHECK_THROWS_WITH(stage.frame(stage.prepare(settings).view, settings, {}),
-                      "z-bins are made on the processor, not by the GPU");
 }
 
 TEST_CASE("a bad file is refused in a sentence, and the scene from before is there") {
@@ -308,8 +314,11 @@ TEST_CASE("a bad file is refused in a sentence, and the scene from before is the
     refused(with(good, "\"count\": 4", "\"count\":40"), "past the end");
     CHECK_THROWS_WITH(stage.make("moon", 1), "there is no made scene 'moon'");
     CHECK_THROWS_WITH(stage.make("city", 0), "the city has 1 to 1000000 lights, not 0");
-    FrameSettings settings = settings_for(stage.scene().cameras[0], DepthMethod::none);
-    CHECK(!stage.frame(stage.prepare(settings).view, settings, {}).ids.empty());
-    settings.tile_size = 0;
-    CHECK_THROWS_AS(stage.prepare(settings), std::runtime_error);
+    CHECK(stage.place(stage.scene().cameras[0].to_world, 0, -1).shapes.size() == 300);
+}
+
+TEST_CASE("at first there is no scene") {
+    Stage stage;
+    CHECK(stage.scene().lights.empty());
+    CHECK_THROWS_WITH(stage.place(glm::dmat4(1), 0, -1), "there is no scene yet");
 }

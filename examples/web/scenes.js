@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// lightbin in WebAssembly: module/ has what it does. No copy of anything large is made: the typed arrays that are
-// handed out are views of the module's memory, and valid until the next call.
+// The scenes and their lights, in WebAssembly: module/ has what it does. The large typed arrays that are handed out are
+// views of the module's memory, and valid until the next call.
 
-const array_types = {u32: Uint32Array, f32: Float32Array, f64: Float64Array};
+const array_types = {f32: Float32Array, f64: Float64Array};
 
 /** Fetches and starts the module. Throws an Error with a sentence for the user. */
-export async function load(url = 'lightbin.wasm') {
+export async function load_scenes(url = 'scenes.wasm') {
     const response = await fetch(url).catch(() => null);
     if (!response?.ok) throw new Error(`${url} could not be fetched`);
     const typed = response.headers.get('content-type') === 'application/wasm';  // it can be compiled while it arrives
@@ -19,10 +19,6 @@ export async function start(module) {
     const imports = {
         env: {emscripten_notify_memory_growth: nothing},
         wasi_snapshot_preview1: {
-            clock_time_get(clock, precision, at) {
-                new DataView(memory.buffer).setBigUint64(at, BigInt(Math.round(performance.now() * 1e6)), true);
-                return 0;
-            },
             proc_exit(code) {
                 throw new Error(`the module ended with ${code}`);
             },
@@ -37,21 +33,21 @@ export async function start(module) {
     if (!globalThis.WebAssembly) throw new Error('This browser has no WebAssembly.');
     const instantiate = module instanceof Response ? 'instantiateStreaming' : 'instantiate';
     const {instance} = await WebAssembly[instantiate](module, imports).catch(() => {
-        throw new Error('This browser is too old: its WebAssembly has no vectors (SIMD) or no exceptions.');
+        throw new Error('This browser is too old: its WebAssembly has no exceptions.');
     });
     memory = instance.exports.memory;
     instance.exports._initialize();
-    return new Lightbin(instance.exports);
+    return new Scenes(instance.exports);
 }
 
-class Lightbin {
+class Scenes {
     #module;
 
     constructor(module) {
         this.#module = module;
     }
 
-    /** The scene on show, none at first: see scene_json() in module/exports.cpp. */
+    /** The scene on show, none at first: scene_json() in module/exports.cpp has what it tells. */
     get scene() {
         return this.#ask('scene', {});
     }
@@ -67,35 +63,18 @@ class Lightbin {
         return this.#ask('open', {name});
     }
 
-    /** What is drawn with before any light: projection, view, moon, grid, shader_view, reduce, tiles_x, tiles_y. */
-    view(settings) {
-        return this.#ask('view', settings);
-    }
-
-    /** The same, and the lights and their lists. z_bounds: {min, max}, and where there is glass glass_max. */
-    frame(settings, z_bounds = null) {
-        return this.#ask_with('frame', settings, z_bounds);
+    /** What a camera makes of the scene: the matrices `projection` and `view`, and the way to the `moon`. */
+    look(camera, aspect, clip) {
+        return this.#ask('look', {camera, aspect, clip});
     }
 
     /**
-     * What the ways to light this view cost here, the cheapest first; with z_bounds those with depth, too, and
-     * settings.z_bounds_milliseconds is what they took. Takes some hundreds of frames.
+     * The lights as a camera sees them: `lights`, and then suns, twelve floats each, as the shaders read them; `shapes`,
+     * eight floats each, as lightbin's spots are; whether one of them `has_spots`, or all are spheres; `reach`, the greatest depth of any. The shape of light `drop` is one that
+     * lightbin skips.
      */
-    advise(settings, z_bounds = null) {
-        return this.#ask_with('advise', settings, z_bounds);
-    }
-
-    /** A text that lightbin generates: 'snippet', 'reduce' or 'build'. See module/texts.cpp for the options. */
-    text(what, options) {
-        return this.#ask('text', {what, options});
-    }
-
-    #ask_with(what, settings, z_bounds) {
-        if (!z_bounds) return this.#ask(what, settings);
-        const sides = ['min', 'max', 'glass_max'].filter(side => z_bounds[side]);
-        this.#put('data', ...sides.map(side => z_bounds[side]));
-        const bounds = Object.fromEntries(sides.map(side => [side, z_bounds[side].length]));
-        return this.#ask(what, {...settings, bounds});
+    lights(camera, seconds, drop) {
+        return this.#ask('lights', {camera, seconds, drop});
     }
 
     #ask(what, question) {
@@ -132,7 +111,7 @@ class Lightbin {
     }
 
     #revived(key, value) {
-        if (key === 'far') return value ?? Infinity;  // which JSON has not
+        if (key === 'far' || key === 'reach') return value ?? Infinity;  // which JSON has not
         const type = array_types[value?.type];
         if (!type) return value;
         return value.values ? type.from(value.values) : new type(this.#module.memory.buffer, value.at, value.count);

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+// What lightbin makes for a picture: the lists of a scene's lights, and what shaders read beside them.
+import {load} from './lightbin/lightbin.js';
+import {load_scenes} from './scenes.js';
+
+// A binner for each method: what the page's settings call it, and lightbin's options.
+const options = {
+    none: {},
+    interval: {depthTest: 'interval'},
+    box: {depthTest: 'box'},
+    z_bins: {slicing: 'z-bins'},
+    clusters: {depthTest: 'box', slicing: 'clusters'},
+};
+
+// Depth methods that want Z bounds from a depth pre-pass.
+export const wants_bounds = method => method === 'interval' || method === 'box';
+
+// How lightbin's shader text calls the slicing of a method.
+export const slicing_of = method => options[method].slicing ?? 'no-slicing';
+
+// How long the lists in a table of offsets and counts are.
+export function list_sizes(ranges) {
+    let entries = 0, longest = 0;
+    for (let at = 1; at < ranges.length; at += 2) {
+        entries += ranges[at];
+        longest = Math.max(longest, ranges[at]);
+    }
+    return {entries, longest};
+}
+
+export async function load_lighting() {
+    const [lightbin, scenes] = await Promise.all([load(), load_scenes()]);
+    return new Lighting(lightbin, scenes);
+}
+
+// What it hands out is valid until the next call.
+export class Lighting {
+    #view = null;
+    #binners = new Map();
+
+    // lightbin: the package, loaded; scenes: of scenes.js
+    constructor(lightbin, scenes) {
+        this.lightbin = lightbin;
+        this.scenes = scenes;
+    }
+
+    // What is drawn with before any light: projection, view, moon, grid, shader_view, reduce, tiles_x, tiles_y. `clip` is
+    // the graphics API, 'webgl' or 'webgpu'.
+    view({camera, width, height, tile_size, clip}) {
+        const look = this.scenes.look(camera, width / height, clip);
+        const given = {
+            projection: look.projection, width, height, tileSize: tile_size,
+            clipDepth: clip === 'webgpu' ? 'zero-to-one' : 'minus-one-to-one',
+            origin: clip === 'webgpu' ? 'upper-left' : 'lower-left',
+        };
+        if (this.#view) this.#view.update(given);
+        else this.#view = this.lightbin.view(given);
+        return {
+            ...look, grid: this.#view.shaderGrid(), shader_view: this.#view.shaderView(),
+            reduce: this.#view.shaderReduce(), tiles_x: this.#view.info.tilesX, tiles_y: this.#view.info.tilesY,
+        };
+    }
+
+    // The same, and the lights and their lists. z_bounds: {min, max}, and where there is glass glass_max. on_gpu: no
+    // lists, but what the shaders of lightbin.buildShader() make them of.
+    frame(settings, z_bounds = null) {
+        const begin = performance.now(), view = this.view(settings), placed = this.#place(settings);
+        const placed_at = performance.now(), made = settings.on_gpu ? this.#footprints(placed.shapes)
+            : this.#lists(settings, placed, z_bounds);
+        const binned_at = performance.now(), lights = made.order ? in_order(placed.lights, made.order, placed.count)
+            : placed.lights;
+        return {
+            ...view, ...made, lights, light_count: placed.count, sun_count: lights.length / 12 - placed.count,
+            ms: {lights: placed_at - begin + performance.now() - binned_at, bin: binned_at - placed_at},
+        };
+    }
+
+    // What the ways to light this view cost here, the cheapest first; with z_bounds those with depth, too, and
+    // z_bounds_milliseconds is what they took. Takes some hundreds of frames.
+    async advise(settings, z_bounds = null, z_bounds_milliseconds = 0) {
+        const {tiles_x: columns, tiles_y: rows} = this.view(settings), {shapes, reach} = this.#place(settings);
+        if (!z_bounds) return this.lightbin.advise(this.#view, shapes);
+        const {min, max} = z_bounds, bounds = {min, max, backgroundSkipped: true};
+        const plans = await this.lightbin.advise(this.#view, shapes, {bounds, zBoundsNs: 1e6 * z_bounds_milliseconds});
+
+        // The same in slices. What is farthest in each tile tells at which depths there is something to light.
+        const [clusters, zBins] = ['clusters', 'z_bins'].map(method => this.#slices(method, settings, reach));
+        const sliced = await this.lightbin.adviseSlices(this.#view, shapes,
+            {clusters, zBins, depths: max, columns, rows});
+        clusters.dispose();
+        zBins.dispose();
+        plans.push(...sliced.filter(plan => plan.slicing !== 'no-slicing'));
+        return plans.sort((a, b) => a.totalNs - b.totalNs);
+    }
+
+    // The lights of scenes.lights(), their number, and their shapes as lightbin takes them: as spots where any is one, and
+    // by their spheres alone where none is, which takes less time.
+    #place({camera, seconds = 0, drop = -1}) {
+        const {lights, shapes: array, has_spots, reach} = this.scenes.lights(camera, seconds, drop);
+        const shapes = has_spots ? {spots: {array}} : {spheres: {array, stride: 8}};
+        return {lights, shapes, reach, count: array.length / 8};
+    }
+
+    #binner(method, of_glass) {
+        const name = `${method} ${of_glass}`;
+        if (!this.#binners.has(name)) this.#binners.set(name, this.lightbin.binner(options[method]));
+        return this.#binners.get(name);
+    }
+
+    // The slices of the depths that lights reach; of z-bins a thousand.
+    #slices(method, {camera, slices: count = 24}, reach) {
+        const last = reach < 1e30 ? reach || 1 : 1e30;  // 0: all lights are behind the eye
+        if (method === 'z_bins') return this.lightbin.linearSlices({count: 1024, begin: 0, end: last});
+        return camera.orthographic ? this.lightbin.linearSlices({count, begin: 0, end: last})
+            : this.lightbin.exponentialSlices({count, first: last / 40, last});
+    }
+
+    #lists({method, ...settings}, {shapes, reach}, z_bounds) {
+        if (!options[method]) throw new Error(`there is no method '${method}'`);
+        const slices = slicing_of(method) === 'no-slicing' ? null : this.#slices(method, settings, reach);
+        const bounds = wants_bounds(method) ? {min: z_bounds?.min, max: z_bounds?.max, backgroundSkipped: true} : null;
+        try {
+            const grid = this.#binner(method, false).bin(this.#view, shapes, {slices, bounds});
+            // Glass may stand anywhere before the opaque surfaces, so with bounds it has lists of its own.
+            const glass = bounds && z_bounds.glass_max
+                ? this.#binner(method, true).bin(this.#view, shapes, {bounds: {max: z_bounds.glass_max}}) : grid;
+            const words = slices?.shaderWords() ?? new Uint32Array(0), {ranges, ids, bins} = grid;
+            return {
+                ranges, ids, bins, slices: words, glass_ranges: glass.ranges, glass_ids: glass.ids,
+                order: method === 'z_bins' ? grid.order : null,
+                in_view: grid.lights - grid.culled - grid.rejected, rejected: grid.rejected, ...list_sizes(ranges),
+            };
+        } finally {
+            slices?.dispose();
+        }
+    }
+
+    #footprints(shapes) {
+        const edges = this.#view.shaderEdges(), footprints = this.#view.shaderFootprints(shapes);
+        const tiles = new Uint16Array(footprints.buffer, footprints.byteOffset, 2 * footprints.length);
+        let room = 0;  // for all tiles of the lights' rectangles
+        for (let at = 2; at < tiles.length; at += 16)
+            room += (tiles[at + 2] - tiles[at] + 1) * (tiles[at + 3] - tiles[at + 1] + 1);
+        if (room > 0xffffffff) throw new Error(`the lists would have ${room} entries: take larger tiles`);
+        const count = footprints.length / 8;
+        const build = this.#view.shaderBuild({footprints: count, capacity: room});
+        const [ranges, ids, slices, bins] = Array(4).fill(new Uint32Array(0));
+        return {
+            footprints, edges, build, ranges, ids, slices, bins, in_view: count, rejected: 0, ...list_sizes(ranges),
+        };
+    }
+}
+
+// Twelve floats of each light in the order of ids, which are ranks with z-bins; those out of view follow, then the suns.
+function in_order(lights, order, count) {
+    const ordered = lights.slice(), ranked = new Uint8Array(count);
+    let to = 0;
+    const put = light => {
+        for (let i = 12 * light; i < 12 * light + 12; ++i) ordered[to++] = lights[i];
+    };
+    for (const light of order) {
+        ranked[light] = 1;
+        put(light);
+    }
+    for (let light = 0; light < count; ++light) if (!ranked[light]) put(light);
+    return ordered;
+}

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+// node tests/web/lists.mjs FOLDER LISTS: what the page in FOLDER makes of its scenes with the npm package: the lists that
+// this machine's renderer makes, whose output LISTS is; room for those that the GPU makes; advice; sentences where
+// something is wrong; and all files together are small enough for a page.
+import assert from 'node:assert/strict';
+import fs from 'node:fs';
+import path from 'node:path';
+import {pathToFileURL} from 'node:url';
+
+const [folder, lists] = process.argv.slice(2);
+const of_page = name => import(pathToFileURL(path.resolve(folder, name)));
+const bytes = name => fs.readFileSync(path.join(folder, name));
+const [{load}, {Lighting}, {start}] = await Promise.all(['lightbin/lightbin.js', 'lighting.js', 'scenes.js'].map(of_page));
+const lightbin = await load({wasm: bytes('lightbin/lightbin_simd.wasm'), advice: bytes('lightbin/advice.wasm')});
+const scenes = await start(bytes('scenes.wasm')), lighting = new Lighting(lightbin, scenes);
+const settings = {width: 640, height: 360, tile_size: 16, clip: 'webgl', method: 'none'};
+
+// FNV-1a, a word at a time.
+function hash(...arrays) {
+    let value = 2166136261;
+    for (const array of arrays)
+        for (const word of new Uint32Array(array.buffer, array.byteOffset, array.length))
+            value = Math.imul(value ^ word, 16777619);
+    return (value >>> 0).toString(16).padStart(8, '0');
+}
+
+function list_lines(scene, seconds) {
+    const tiles = 40 * 23, {glass, cameras: [camera]} = scenes.scene, has_glass = glass.length > 0;
+    const of_all = depth => new Float32Array(tiles).fill(depth);
+    const bounds = {min: of_all(10), max: of_all(60), ...has_glass && {glass_max: of_all(100)}};
+    return ['none', 'interval', 'box', 'z_bins', 'clusters'].map(method => {
+        const frame = lighting.frame({...settings, camera, method, seconds}, bounds);
+        const {ranges, ids, glass_ranges, glass_ids, slices, bins, lights} = frame;
+        return [scene, seconds, method, ids.length,
+            hash(ranges, ids, glass_ranges, glass_ids, slices, bins, lights.filter((_, i) => i % 12 < 4))].join(' ');
+    });
+}
+
+function same_lists() {
+    const lines = [];
+    for (const kind of ['city', 'street'])
+        for (const seconds of [0, 2.5]) {
+            scenes.make(kind, 2000);
+            lines.push(...list_lines(kind, seconds));
+        }
+    for (const name of ['nova.glb', 'darkness.glb']) {
+        scenes.open(bytes(name), name);
+        lines.push(...list_lines('file', 0));
+    }
+    assert.deepEqual(lines, fs.readFileSync(lists, 'utf8').trim().split('\n'));
+    return `${lines.length} light grids are those of this machine's program, byte for byte`;
+}
+
+function no_scene() {
+    const to_world = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+    const asked = {...settings, camera: {to_world, orthographic: false, height: 1, near: 1, far: Infinity}};
+    assert.equal(scenes.scene.lights, 0);
+    assert.throws(() => lighting.frame(asked), /^Error: there is no scene yet$/);
+    assert.equal(lighting.view(asked).projection[11], -1);
+    return 'there is no scene at first, which is a sentence too';
+}
+
+// A file of one node, with so many arrays in each other.
+function nested_glb(depth) {
+    const extras = '['.repeat(depth) + ']'.repeat(depth);
+    const text = `{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"extras":${extras}}]}`;
+    const json = text.padEnd(2 * depth + 96);
+    const words = (...all) => Buffer.from(Uint32Array.from(all).buffer);
+    const head = words(0x46546c67, 2, 20 + json.length + 12, json.length, 0x4e4f534a);
+    return Buffer.concat([head, Buffer.from(json), words(4, 0x4e4942, 0)]);
+}
+
+function sentences() {
+    const nova = bytes('nova.glb'), camera = scenes.make('city', 100).cameras[0], three = new Float32Array(3);
+    const asked = [
+        [() => scenes.open(nova.subarray(0, 1000), 'a.glb'), /^'a.glb': not a readable glTF binary: .+/],
+        [() => scenes.open(new Uint8Array(0), 'a.glb'), /^'a.glb': not a readable glTF binary: .+/],
+        [() => scenes.open(nested_glb(100), 'a.glb'), /^'a.glb': it has no point or spot lights/],
+        ...Array(30).fill([() => scenes.open(nested_glb(20000), 'a.glb'), /^this is too much for the browser: /]),
+        [() => scenes.make('city', 0), /^the city has 1 to 1000000 lights, not 0$/],
+        [() => lighting.frame({...settings, camera, tile_size: -1}), /^the tile size must be at least 1 pixel/],
+        [() => lighting.frame({...settings, camera, method: 'box'}, {min: three, max: three}), /Z bounds/],
+        [() => lighting.frame({...settings, camera, method: 'clusters', slices: 10000000}), /4294967295|memory/],
+        [() => lighting.frame({...settings, camera, method: 'basic'}), /^there is no method 'basic'$/],
+    ];
+    for (const [ask, sentence] of asked) {
+        assert.throws(ask, error => sentence.test(error.message) && !error.message.includes('\n'), `${ask}`);
+        assert.equal(scenes.scene.lights, 100);
+        assert.ok(lighting.frame({...settings, camera}).entries > 0);
+    }
+    return `${new Set(asked).size} mistakes are sentences, and the scene lives on`;
+}
+
+// The most that the GPU can list are all tiles of the lights' rectangles.
+function room_on_gpu() {
+    const seen = {...settings, camera: scenes.make('city', 1500).cameras[0]}, {entries} = lighting.frame(seen);
+    const {footprints, build, edges, lights, in_view} = lighting.frame({...seen, on_gpu: true});
+    const numbers = new Float32Array(footprints.buffer, footprints.byteOffset, footprints.length);
+    assert.deepEqual([build[2], build[3], footprints.length], [in_view, entries, 8 * in_view]);
+    assert.equal(edges.length, 2 * (40 + 23));
+    for (let at = 0; at < footprints.length; at += 8) assert.equal(numbers[at + 7], lights[12 * footprints[at] + 3]);
+    return `the GPU has room for ${build[3]} entries`;
+}
+
+async function advice() {
+    const seen = {...settings, camera: scenes.make('city', 500).cameras[0]};
+    const {tiles_x, tiles_y} = lighting.view(seen), all = depth => new Float32Array(tiles_x * tiles_y).fill(depth);
+    const bounds = {min: all(20), max: all(60)};
+    const without_depth = await lighting.advise(seen), plans = await lighting.advise(seen, bounds, 1000);
+    for (const some of [without_depth, plans]) {
+        assert.ok(some.length > 5 && some.every((plan, i) => i === 0 || some[i - 1].totalNs <= plan.totalNs));
+        assert.equal(some.find(plan => !plan.tiled).evaluations, 500 * settings.width * settings.height);
+    }
+    assert.ok(without_depth.every(plan => !plan.tiled
+        || plan.depthTest === 'no-depth-test' && plan.slicing === 'no-slicing'));
+
+    // A plan has as many entries as the lists that the page makes of it, and a pre-pass costs what it took.
+    for (const method of ['none', 'interval', 'box', 'z_bins', 'clusters']) {
+        const sliced = method === 'z_bins' || method === 'clusters';
+        const wanted = {
+            tiled: true, footprint: 'rectangle', tileSize: seen.tile_size,
+            depthTest: method === 'clusters' ? 'box' : sliced || method === 'none' ? 'no-depth-test' : method,
+            slicing: sliced ? method.replace('_', '-') : 'no-slicing',
+        };
+        const plan = plans.find(plan => Object.entries(wanted).every(([name, value]) => plan[name] === value));
+        assert.equal(plan.entries, lighting.frame({...seen, method}, bounds).entries, method);
+        assert.equal(plan.buildNs > 1e9, method === 'interval' || method === 'box', method);
+    }
+    return `advise() weighs ${plans.length} plans`;
+}
+
+function small() {
+    const sizes = fs.readdirSync(folder, {recursive: true}).map(name => fs.statSync(path.join(folder, name)))
+        .filter(file => file.isFile()).map(file => file.size), sum = sizes.reduce((a, b) => a + b);
+    assert.ok(sum < 1.8e6, `the page has ${sum} bytes`);
+    return `the page has ${sum} bytes in all`;
+}
+
+// As a page that draws for hours: nothing is left over but what is kept from frame to frame.
+function frees() {
+    const seen = {...settings, camera: scenes.make('city', 500).cameras[0], method: 'clusters'};
+    lighting.frame(seen);
+    const live = lightbin.allocations;
+    for (let i = 0; i < 100; ++i) lighting.frame({...seen, seconds: i});
+    assert.equal(lightbin.allocations, live);
+    return `${live} blocks of memory are kept`;
+}
+
+for (const test of [no_scene, same_lists, sentences, room_on_gpu, advice, small, frees])
+    console.log(`lists: ${await test()}`);
