@@ -35,6 +35,17 @@ void BinnedLights::place(const glm::dmat4& world_to_view) {
                            glm::vec4(sun.illuminance, 0), glm::vec4(0)});
 }
 
+std::vector<lightbin::Spot> BinnedLights::as_spots(int dropped_light) const {
+    std::vector<lightbin::Spot> spots;
+    for (const GpuLight& light : lights())
+        spots.push_back(spot_of(light));
+    for (const GpuBox& box : boxes_)
+        spots.push_back(lightbin::Spot::whole(bounding_sphere(box_of(box))));
+    if (dropped_light >= 0 && static_cast<std::size_t>(dropped_light) < spots.size())
+        spots[static_cast<std::size_t>(dropped_light)].radius = -1;
+    return spots;
+}
+
 BinnedLights::Grids BinnedLights::bin(const lightbin::View& view, const BinSettings& settings,
                                       const lightbin::ZBounds& z_bounds) {
     const auto bin_all = [&](const auto& lights) { return bin(view, lights, settings, z_bounds); };

@@ -57,6 +57,9 @@ public:
     std::size_t listed_count() const { return scene_.lights.size() + scene_.boxes.size(); }
     std::span<const GpuLight> listed() const { return {placed_.data(), listed_count()}; }
 
+    // Lights, then the balls around boxes: for compute shaders, which list no boxes.
+    std::vector<lightbin::Spot> as_spots(int dropped_light) const;
+
     // Which lights and boxes can reach which tile, and at what depths. Both grids are the same one where glass needs no
     // lists of its own. Valid until the next call.
     Grids bin(const lightbin::View& view, const BinSettings& settings, const lightbin::ZBounds& z_bounds);

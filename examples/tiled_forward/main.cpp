@@ -74,6 +74,13 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
             ->capture_default_str();
     app.add_flag("--gpu-z-bounds", options.frame.gpu_reduction,
                  "Reduce depth to Z bounds on the GPU (OpenGL ES does in any case)");
+    std::string build = "cpu";
+    app.add_option("--build", build,
+                   "Where lists are made: by a Binner on the CPU, or by compute shaders on the GPU, which "
+                   "takes OpenGL 4.3 "
+                   "or ES 3.1 and makes no z-bins")
+        ->check(CLI::IsMember({"cpu", "gpu"}))
+        ->capture_default_str();
     app.add_option("--glsl", options.glsl,
                    "Lists in 330: texture buffers, 430: storage buffers; OpenGL ES, 300: textures, 310: "
                    "storage buffers (default: 430, or else 330)")
@@ -124,6 +131,10 @@ bool parse(int argc, char** argv, Options& options, int& exit_code) {
         if (bounds_option->count() > 0 && options.frame.depth != DepthUse::pre_pass)
             throw CLI::ValidationError("--z-bounds",
                                        "they come from the pre-pass, so not with --depth " + depth);
+        options.frame.gpu_build = build == "gpu";
+        if (options.frame.gpu_build && options.frame.depth == DepthUse::z_bins)
+            throw CLI::ValidationError("--build",
+                                       "z-bins are made on the CPU here, so not with --depth z-bins");
         if (options.advise && view->count() == 0) options.view = -1;
         int end = -1;
         if (!size.empty() &&

@@ -16,21 +16,6 @@
 
 namespace {
 
-// Milliseconds since the last call, with OpenGL's work done.
-class Stopwatch {
-public:
-    double lap() {
-        glFinish();
-        const auto now = std::chrono::steady_clock::now();
-        const double milliseconds = std::chrono::duration<double, std::milli>(now - start_).count();
-        start_ = now;
-        return milliseconds;
-    }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 GLenum target_of(lightbin::ShaderResource resource) {
     return resource == lightbin::ShaderResource::texture_2d ? GL_TEXTURE_2D : GL_TEXTURE_BUFFER;
 }
@@ -58,6 +43,21 @@ void check_loop(std::size_t lights) {
 
 }  // namespace
 
+// Milliseconds since the last call, with OpenGL's work done.
+class Renderer::Stopwatch {
+public:
+    double lap() {
+        glFinish();
+        const auto now = std::chrono::steady_clock::now();
+        const double milliseconds = std::chrono::duration<double, std::milli>(now - start_).count();
+        start_ = now;
+        return milliseconds;
+    }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
 // The frame, from top to bottom.
 FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) {
     FrameReport report;
@@ -73,6 +73,30 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     // 2. Depth alone, and from it the depths between which each tile has anything to light.
     const bool pre_pass = settings.depth == DepthUse::pre_pass;
     if (pre_pass) draw_depth();
+    grid_ = lightbin::shader_grid(view);
+    shader_view_ = lightbin::shader_view(view);
+
+    // 3. The lists: which lights can reach which tile. In the end they are in buffers on the GPU.
+    const Listed listed = settings.gpu_build ? list_on_gpu(view, settings, watch, report)
+                                             : list_on_cpu(view, settings, watch, report);
+
+    // 4. The picture.
+    check_loop(listed.longest);
+    if (settings.checks.lists) check_loop(binned_.listed_count());
+    draw_triangles(tiled_program(settings), true, settings);
+    report.milliseconds.draw = watch.lap();
+
+    report.tiles_x = view.tiles_x();
+    report.tiles_y = view.tiles_y();
+    if (settings.count_evaluations) report.evaluations_per_pixel = count_evaluations(settings, listed);
+    if (const GLenum error = glGetError(); error != GL_NO_ERROR)
+        throw std::runtime_error("OpenGL reports error " + std::to_string(error));
+    return report;
+}
+
+// By a Binner, and then uploaded.
+Renderer::Listed Renderer::list_on_cpu(const lightbin::View& view, const FrameSettings& settings,
+                                       Stopwatch& watch, FrameReport& report) {
     const bool bounded = settings.has_z_bounds();
     // OpenGL ES reads no depths back, and no OpenGL those of several samples.
     const bool on_gpu = settings.gpu_reduction || glsl_ < 330 || settings.samples > 1;
@@ -106,20 +130,17 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     }
     report.milliseconds.reduce = watch.lap();
 
-    // 3. The lists: which lights can reach which tile.
     const auto [opaque, transparent] = binned_.bin(
         view, {.method = method_of(settings), .glass = glass, .dropped_light = settings.dropped_light},
         z_bounds);
+    slices_ = binned_.slices();
     report.milliseconds.bin = watch.lap();
 
-    // 4. To the GPU.
-    grid_ = lightbin::shader_grid(view);
-    shader_view_ = lightbin::shader_view(view);
     upload_lights();
     upload_lists(opaque_lists_, opaque);
     if (glass) upload_lists(transparent_lists_, transparent);
-    if (binned_.slices()) {
-        const std::vector<std::uint32_t> words = lightbin::shader_slices(*binned_.slices());
+    if (slices_) {
+        const std::vector<std::uint32_t> words = lightbin::shader_slices(*slices_);
         const auto bins = std::as_bytes(opaque.ranks().bins);
         const int width = static_cast<int>(list_binding_.width);
         upload(slices_buffer_, words.data(), 4 * words.size(), width, "slices");
@@ -127,25 +148,74 @@ FrameReport Renderer::draw(const Camera& camera, const FrameSettings& settings) 
     }
     report.milliseconds.upload = watch.lap();
 
-    // 5. The picture.
-    const std::uint32_t longest = list_lengths(opaque).longest;
-    check_loop(glass ? list_lengths(transparent).longest : longest);  // no shorter than the opaque one
-    if (settings.checks.lists) check_loop(binned_.listed_count());
-    draw_triangles(tiled_program(settings), true, settings);
-    report.milliseconds.draw = watch.lap();
-
     const lightbin::LightCounts& counts = opaque.light_counts();
-    report.tiles_x = view.tiles_x();
-    report.tiles_y = view.tiles_y();
     report.lights_in_view = counts.lights - counts.culled - counts.rejected;
     report.rejected = counts.rejected;
     report.entries = opaque.ids().size();
-    report.longest_list = longest;
+    report.longest_list = list_lengths(opaque).longest;
     report.transparent_entries = glass ? transparent.ids().size() : 0;
-    if (settings.count_evaluations) report.evaluations_per_pixel = count_evaluations(settings, opaque);
-    if (const GLenum error = glGetError(); error != GL_NO_ERROR)
-        throw std::runtime_error("OpenGL reports error " + std::to_string(error));
-    return report;
+    const bool z_bins = settings.depth == DepthUse::z_bins;
+    const auto evaluations = [this, z_bins, grid = opaque](int x, int y, float depth) {
+        const int slice = slices_ ? slices_->slice_at(depth) : 0;
+        const auto list = grid.lights_in(x, y, grid.slices() > 1 ? slice : 0);
+        if (!z_bins) return list.size();
+        return lightbin::lights_of_bin(list, grid.ranks().bins[static_cast<std::size_t>(slice)]).size();
+    };
+    return {evaluations, glass ? list_lengths(transparent).longest
+                               : report.longest_list};  // no shorter than the opaque one
+}
+
+// By compute shaders, where they are read. Lights and depths don't come back to the CPU.
+Renderer::Listed Renderer::list_on_gpu(const lightbin::View& view, const FrameSettings& settings,
+                                       Stopwatch& watch, FrameReport& report) {
+    if (list_binding_.resource != lightbin::ShaderResource::storage_buffer)
+        throw std::runtime_error("lists are made on the GPU by OpenGL 4.3 or ES 3.1, not with GLSL " +
+                                 std::to_string(glsl_));
+    const bool bounded = settings.has_z_bounds(), glass = shows_glass(settings);
+    report.milliseconds.pre_pass = watch.lap();
+    if (bounded) culled_.reduce(view, frame_buffer_, true);
+    report.milliseconds.reduce = watch.lap();
+    upload_lights();
+    culled_.upload(binned_.as_spots(settings.dropped_light));
+    report.milliseconds.upload = watch.lap();
+
+    CulledLights::Lists lists;
+    slices_.reset();
+    if (bounded) lists = {lightbin::DepthTest::interval, settings.z_bounds == ZBoundsUse::max};
+    if (settings.depth == DepthUse::clusters) {
+        slices_ = slices_for({.method = DepthMethod::clusters}, view.orthographic(), binned_.listed());
+        lists = {lightbin::DepthTest::box, false, &*slices_};
+        const std::vector<std::uint32_t> words = lightbin::shader_slices(*slices_);
+        upload(slices_buffer_, words.data(), 4 * words.size(), static_cast<int>(list_binding_.width),
+               "slices");
+    }
+    const auto made = culled_.build(view, lists, opaque_lists_.tiles.buffer, opaque_lists_.indices.buffer);
+    CulledLights::Made for_glass;
+    if (glass) {  // it may stand anywhere before the opaque surfaces
+        lists.max_only = bounded;
+        if (bounded) culled_.reduce(view, frame_buffer_, false);
+        for_glass =
+            culled_.build(view, lists, transparent_lists_.tiles.buffer, transparent_lists_.indices.buffer);
+    }
+    report.milliseconds.bin = watch.lap();
+
+    const auto longest = [](const CulledLights::Made& of) {
+        std::uint32_t most = 0;
+        for (const lightbin::ListRange& range : of.ranges)
+            most = std::max(most, range.count);
+        return most;
+    };
+    report.lights_in_view = made.totals.visible;
+    report.rejected = made.totals.rejected;
+    report.entries = made.totals.entries;
+    report.longest_list = longest(made);
+    report.transparent_entries = glass ? for_glass.totals.entries : 0;
+    const auto evaluations = [this, columns = view.tiles_x(), rows = view.tiles_y(),
+                              ranges = made.ranges](int x, int y, float depth) {
+        const int slice = slices_ ? slices_->slice_at(depth) : 0;
+        return std::size_t{ranges[static_cast<std::size_t>((slice * rows + y) * columns + x)].count};
+    };
+    return {evaluations, glass ? longest(for_glass) : report.longest_list};
 }
 
 void Renderer::draw_every_light(const Camera& camera, const FrameSettings& settings) {
@@ -157,8 +227,7 @@ void Renderer::draw_every_light(const Camera& camera, const FrameSettings& setti
 }
 
 // Counted for each pixel, from its depth, by the lists themselves.
-double Renderer::count_evaluations(const FrameSettings& settings,
-                                   const lightbin::LightGrid<std::uint32_t>& grid) {
+double Renderer::count_evaluations(const FrameSettings& settings, const Listed& listed) {
     const lightbin::View pixels = value_of(
         lightbin::View::from_projection(projection_, {settings.width, settings.height}, {.tile_size = 1}));
     pixel_depth_.resize(pixels.tile_count());
@@ -170,15 +239,7 @@ double Renderer::count_evaluations(const FrameSettings& settings,
                 pixel_depth_[static_cast<std::size_t>(y) * static_cast<std::size_t>(settings.width) +
                              static_cast<std::size_t>(x)];
             if (depth < 0 && std::isinf(depth)) continue;  // nothing is seen there
-            const int slice = binned_.slices() ? binned_.slices()->slice_at(depth) : 0;
-            const auto list =
-                grid.lights_in(x / settings.tile_size, y / settings.tile_size, grid.slices() > 1 ? slice : 0);
-            if (settings.depth != DepthUse::z_bins) {
-                evaluations += list.size();
-                continue;
-            }
-            const lightbin::BinRange bin = grid.ranks().bins[static_cast<std::size_t>(slice)];
-            evaluations += lightbin::lights_of_bin(list, bin).size();
+            evaluations += listed.evaluations(x / settings.tile_size, y / settings.tile_size, depth);
         }
     return static_cast<double>(evaluations) / settings.width / settings.height;
 }
@@ -190,7 +251,7 @@ void Renderer::draw_heat_map(const FrameReport& report, const FrameSettings& set
     glUniform1f(uniform(program, "longest_list"), static_cast<float>(std::max(report.longest_list, 1u)));
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    if (binned_.slices()) {
+    if (slices_) {
         set_matrices(program);
         glDepthFunc(GL_EQUAL);
         glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(scene_.triangles.size()));
@@ -227,7 +288,8 @@ float Renderer::meter(const Camera& camera, const FrameSettings& settings) {
 }
 
 Renderer::Renderer(const Scene& scene, int glsl)
-    : scene_(scene), glsl_(glsl), list_binding_(list_binding(glsl)), binned_(scene), frame_buffer_(glsl) {
+    : scene_(scene), glsl_(glsl), list_binding_(list_binding(glsl)), binned_(scene),
+      culled_(glsl, binned_.has_spots()), frame_buffer_(glsl) {
     const std::string geometry = geometry_vertex_shader(glsl);
     depth_program_ = link_program(geometry, depth_fragment_shader(glsl));
     brute_force_program_ =

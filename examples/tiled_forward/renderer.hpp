@@ -3,6 +3,7 @@
 #pragma once
 
 #include "binned_lights.hpp"
+#include "culled_lights.hpp"
 #include "frame_buffer.hpp"
 #include "picture.hpp"
 #include "projection.hpp"
@@ -16,7 +17,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -37,6 +40,8 @@ struct FrameSettings {
     bool shade_samples = false;  // each of them, where once a pixel is right, too: see shades_samples()
     int tile_size = 16;
     bool gpu_reduction = false;  // Z bounds on the GPU; OpenGL ES has it so in any case
+    bool gpu_build =
+        false;  // lists on the GPU, and the Z bounds too; not with z-bins, nor in GLSL 330 and 300
     DepthUse depth = DepthUse::pre_pass;
     ZBoundsUse z_bounds = ZBoundsUse::both;  // of the pre-pass
     bool count_evaluations = false;          // takes longer than the picture
@@ -102,6 +107,14 @@ private:
         GpuBuffer tiles, indices;
     };
 
+    class Stopwatch;
+    // What the program says of a frame's lists.
+    struct Listed {
+        std::function<std::size_t(int x, int y, float depth)>
+            evaluations;            // of a pixel, x and y those of its tile
+        std::uint32_t longest = 0;  // for glass, too
+    };
+
     void start(const Camera& camera, const FrameSettings& settings);
     void set_camera(const Camera& camera);
     bool shows_glass(const FrameSettings& settings) const;
@@ -116,7 +129,11 @@ private:
                 const char* what) const;
     void upload_lights();
     void upload_lists(const Lists& target, const lightbin::LightGrid<std::uint32_t>& grid) const;
-    double count_evaluations(const FrameSettings& settings, const lightbin::LightGrid<std::uint32_t>& grid);
+    Listed list_on_cpu(const lightbin::View& view, const FrameSettings& settings, Stopwatch& watch,
+                       FrameReport& report);
+    Listed list_on_gpu(const lightbin::View& view, const FrameSettings& settings, Stopwatch& watch,
+                       FrameReport& report);
+    double count_evaluations(const FrameSettings& settings, const Listed& listed);
     void reduce_on_gpu(const lightbin::View& view, bool skip_background, std::span<float> min,
                        std::span<float> max);
 
@@ -125,6 +142,7 @@ private:
 
     lightbin::ShaderBinding list_binding_;
     BinnedLights binned_;
+    CulledLights culled_;
     GLuint depth_program_, brute_force_program_;
     std::map<std::tuple<lightbin::Slicing, ShaderChecks>, GLuint> tiled_programs_;
     GLuint heat_map_programs_[3] = {};  // [slicing]
@@ -140,5 +158,6 @@ private:
     glm::mat4 projection_{1}, view_{1};
     lightbin::ShaderGrid grid_{};
     lightbin::ShaderView shader_view_{};
+    std::optional<lightbin::Slices> slices_;  // with z-bins or clusters
     std::vector<float> depth_buffer_, min_depth_, max_depth_, transparent_max_, pixel_depth_;
 };

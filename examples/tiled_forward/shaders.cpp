@@ -7,11 +7,6 @@ bool is_es(int glsl) {
     return glsl < 330;
 }
 
-std::string version_line(int glsl) {
-    const std::string version = "#version " + std::to_string(glsl);
-    return version + (is_es(glsl) ? " es\nprecision highp float;\nprecision highp int;\n" : " core\n");
-}
-
 lightbin::ShaderOptions list_options(int glsl) {
     using namespace lightbin;
     ShaderOptions options;
@@ -200,6 +195,11 @@ std::string check_function(ShaderChecks checks) {
 }
 
 }  // namespace
+
+std::string version_line(int glsl) {
+    const std::string version = "#version " + std::to_string(glsl);
+    return version + (is_es(glsl) ? " es\nprecision highp float;\nprecision highp int;\n" : " core\n");
+}
 
 lightbin::ShaderBinding list_binding(int glsl) {
     return lightbin::shader_snippet(list_options(glsl))->bindings.back();

@@ -7,6 +7,9 @@
 #include <compare>
 #include <string>
 
+// What a text of lightbin's begins with.
+std::string version_line(int glsl);
+
 std::string geometry_vertex_shader(int glsl);
 std::string depth_fragment_shader(int glsl);
 
