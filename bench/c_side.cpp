@@ -3,7 +3,9 @@
 // caller's: what docs/c.md says of speed. `c_side [SECONDS]` takes so long for each line, 2 if not given.
 #include <lightbin/lightbin.h>
 
+#include <lightbin/box.hpp>
 #include <lightbin/lightbin.hpp>
+#include <lightbin/spot.hpp>
 
 #include "sets.hpp"
 #include "turns.hpp"

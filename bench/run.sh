@@ -27,6 +27,9 @@
 #       What the plan that advise() chooses costs beside the best of all, with Z bounds and without, the same of
 #       advise_slices(), and how long asking takes beside a plain build; on the machine's widest instruction set or the
 #       named one. Writes build/bench/advise.csv.
+#   c_side [SECONDS]
+#       Whole builds through lightbin.h over the same in C++, in turns, on lights in structs of the caller's; two
+#       seconds, or so many, a line.
 #   stability [--quick]
 #       How far off the screen bounds of lights are under stiff and extreme conditions, by decade, in pixels: ours and the
 #       textbooks', in float and in double, against exact ones; what that misses, lists too much and takes. A miss by ours is
@@ -40,6 +43,11 @@
 #       tables, frames.txt; all rows, frames.csv; of the paths frames_paths.csv and the plots frames_times and
 #       frames_evaluations, .svg and .png. --pictures: a PNG a view in build/bench, too. What the repository has of a
 #       machine is made by `sh bench/run.sh frames --into=bench/results/llvmpipe-zen4`, or what its processor is.
+#   gpu [--quick] [--gl | --vulkan]
+#       Builds on the GPU by shader_cull beside builds on the CPU with their upload, of 1,000 to 100,000 lights and of
+#       Bevy's many_lights: milliseconds by the GPU's clock, bytes, tests of a light against a cell, and how many entries the
+#       GPU lists beyond the Binner's; lists that lack one, or are out of order, are an error. In OpenGL and in Vulkan,
+#       or in the one that is named. Some minutes where they draw on the CPU, --quick one. Writes build/bench/gpu.csv.
 set -eu
 me=bench/run.sh
 here=$(pwd)
@@ -48,7 +56,7 @@ cd "$(dirname "$0")/.."
 
 program=binning
 case ${1-} in
-binning | report | error | advise | frames | stability)
+binning | report | error | advise | frames | stability | gpu | c_side)
     program=$1
     shift
     ;;
@@ -58,14 +66,20 @@ case $program in
 binning) options="--quick --filter=..." ;;
 advise) options="--quick --avx2 --simd128 --scalar" ;;
 frames) options="--quick --counts --pictures --into=..." ;;
+c_side) options="" words="a number" pattern='[0-9.]+' ;;
+gpu) options="--quick --gl --vulkan" words="" pattern="" ;;
 report) options="--quick --evaluation-ns" words="a number, scenes (.glb)" pattern='.*\.glb|[0-9.]+' ;;
 esac
-takes "$program, $options, $words" "$(echo "$options" | sed 's/ /|/g; s/\.\.\./.*/')|$pattern" "$@"
+forms=$(echo "$options" | sed 's/ /|/g; s/\.\.\./.*/')
+takes "$program, $options${options:+${words:+, }}$words" "$forms${forms:+${pattern:+|}}$pattern" "$@"
 
 packages="g++ cmake ninja-build gnuplot-nox libglm-dev libboost-dev libgmp-dev libtbb-dev libtinygltf-dev"
 targets=$program
 [ $program != report ] || targets="report evaluation"
-case $program in frames | report) packages="$packages libstb-dev libepoxy-dev libegl-dev libgl-dev libgl1-mesa-dri" ;; esac
+case $program in
+frames | gpu | report) packages="$packages libstb-dev libepoxy-dev libegl-dev libgl-dev libgl1-mesa-dri" ;;
+esac
+[ $program != gpu ] || packages="$packages libvulkan-dev mesa-vulkan-drivers glslang-dev spirv-tools"
 # shellcheck disable=SC2086  # one word a package
 install_packages $packages
 
@@ -110,5 +124,6 @@ frames)
     [ -z "$failed" ]
     exit
     ;;
+gpu) ./bench/gpu/gpu "$@" ;;
 *) "./bench/$program" "$@" ;;
 esac

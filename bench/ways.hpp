@@ -8,6 +8,7 @@
 #include "tiled_view.hpp"
 
 #include <lightbin/lightbin.hpp>
+#include <lightbin/spot.hpp>
 
 #include <cstddef>
 #include <functional>

@@ -51,6 +51,7 @@ public:
         const std::span data(range);
         return buffer(name, data.size_bytes(), data.data());
     }
+    GLuint known(const std::string& name) const { return buffers_.at(name).name; }  ///< a buffer() that is there
     /// Shaders read the bytes of a buffer() at the unit, as texels of that format.
     void read_texels(Unit unit, GLenum format, GLuint buffer);
 

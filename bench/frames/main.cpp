@@ -46,6 +46,7 @@ std::vector<Row> draw_all(std::vector<SceneJobs> plan, RunSettings run, bool pic
             rows.insert(rows.end(), made.begin(), made.end());
             if (pictures && !made.empty()) write_picture(job, jobs.scene, run, runner);
         }
+        write_csv(rows);  // what there is, if the run is broken off
     }
     return rows;
 }
@@ -71,7 +72,7 @@ int run(Arguments arguments) {
         run.width = !software ? 1920 : quick ? 240 : 480;
         run.height = run.width * 9 / 16;
         run.tile_size = run.width / 60;
-        run.timed_frames = only_counts ? 0 : !software ? 25 : quick ? 1 : 3;
+        run.timed_frames = only_counts ? 0 : software ? (quick ? 1 : 3) : quick ? 9 : 25;
         std::printf(
             "OpenGL: %s, GLSL %d; %d x %d pixels, tiles of %d: a sixtieth of the width, as 32 are of 1920\n",
             reinterpret_cast<const char*>(glGetString(GL_RENDERER)), context.glsl(), run.width, run.height,

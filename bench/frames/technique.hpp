@@ -20,6 +20,7 @@ struct Technique {
 
 Technique forward_every_light();  ///< the reference
 Technique tiled_forward();
+Technique tiled_forward_gpu();  ///< its lists made on the GPU
 
 enum class ZEnds { none, min, max, both };
 enum class Reduction { cpu, gpu };
@@ -35,6 +36,7 @@ Technique deferred_stencil(int g_buffer_bits);
 
 Technique light_indexed(int id_bits);
 Technique clustered_forward();
+Technique clustered_forward_gpu();  ///< its lists made on the GPU, without the box test
 Technique z_binned_forward();
 
 /// How the lists for transparent geometry are bounded.

@@ -6,6 +6,7 @@
 #include "conditions.hpp"
 
 #include <lightbin/detail/project/footprints.hpp>
+#include <lightbin/spot.hpp>
 #include <lightbin/view.hpp>
 
 #include <algorithm>

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// Which buffer a shader's binding is for.
+#pragma once
+
+#include <lightbin/shader_text.hpp>
+
+#include <string>
+
+/// The name between the prefix `lightbin_` and `_block`: that of the buffer in the options of the text.
+inline std::string buffer_of(const lightbin::ShaderBinding& binding) {
+    std::string name = binding.name;
+    const std::string prefix = "lightbin_", end = "_block";
+    if (name.starts_with(prefix)) name.erase(0, prefix.size());
+    if (name.ends_with(end)) name.erase(name.size() - end.size());
+    return name;
+}

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "gpu_build.hpp"
+
+#include <value_of.hpp>
+
+#include <algorithm>
+#include <cstring>
+
+namespace {
+
+template <class Range> std::span<const std::byte> bytes_of(const Range& range) {
+    return std::as_bytes(std::span(range));
+}
+
+lightbin::CullPlan plan_of(const GpuFrame& frame, const lightbin::View& view,
+                           const lightbin::CullShaderOptions& options, const lightbin::CullRoom& room,
+                           const std::optional<lightbin::Slices>& slices) {
+    std::optional<lightbin::Matrix> to_view;
+    if (frame.to_view)
+        to_view = lightbin::matrix(&(*frame.to_view)[0][0], lightbin::MatrixLayout::column_major);
+    return value_of(
+        lightbin::plan_cull(view, options, room, slices ? &*slices : nullptr, to_view ? &*to_view : nullptr));
+}
+
+/// What the depth test reads: the interval of each tile, or with clusters of each slice; for boxes the tiles' edges
+/// behind them.
+std::vector<lightbin::ShaderEdges> depths_of(const lightbin::View& view, const lightbin::Options& options,
+                                             const lightbin::Slices* slices,
+                                             const lightbin::ZBounds& bounds) {
+    std::vector<lightbin::ShaderEdges> depths;
+    if (options.slicing == lightbin::Slicing::clusters)
+        depths = lightbin::shader_slabs(*slices);
+    else
+        for (std::size_t tile = 0; tile < bounds.min.size(); ++tile)
+            depths.push_back({bounds.min[tile], bounds.max[tile]});
+    const std::vector<lightbin::ShaderEdges> edges = lightbin::shader_edges(view);
+    depths.insert(depths.end(), edges.begin(), edges.end());
+    return depths;
+}
+
+template <class T> std::vector<T> read_as(GpuDevice& device, const std::string& buffer, std::size_t count) {
+    std::vector<T> values(count);
+    const std::vector<std::uint32_t> words = device.read(buffer, count * sizeof(T) / 4);
+    if (count > 0) std::memcpy(values.data(), words.data(), count * sizeof(T));
+    return values;
+}
+
+}  // namespace
+
+GpuBuild::GpuBuild(GpuDevice& device, const lightbin::Options& options, int tile_size, const GpuFrame& first,
+                   std::uint32_t entries, const lightbin::Slices* slices, const lightbin::ZBounds& bounds)
+    : device_(device),
+      view_(first.lens.view(tile_size)), room_{static_cast<std::uint32_t>(first.lights.size()), entries} {
+    if (slices) slices_ = *slices;
+    options_.language = device.language();
+    options_.world_space = first.to_view.has_value();
+    options_.depth_test = options.depth_test;
+    options_.slicing = options.slicing;
+    plan_ = plan_of(first, view_, options_, room_, slices_);
+    std::vector<ComputePass> passes;
+    for (const lightbin::CullPass pass : lightbin::cull_passes(options.slicing)) {
+        const lightbin::CullGroups groups = plan_.groups_of(pass);
+        passes.push_back(
+            {to_string(pass), value_of(lightbin::cull_shader(pass, options_)), groups.x, groups.y});
+    }
+    device.set_passes(passes);
+    const auto make = [&](const char* name, std::uint64_t bytes) {
+        device.make_buffer(name, static_cast<std::size_t>(std::max<std::uint64_t>(bytes, 16)));
+    };
+    const auto fill = [&](const char* name, std::span<const std::byte> bytes) {
+        make(name, bytes.size());
+        if (!bytes.empty()) device.write(name, bytes);
+    };
+    make("grid", sizeof(lightbin::ShaderCull));
+    make("scratch", plan_.bytes.scratch);
+    make("tiles", plan_.bytes.tiles);
+    make("lists", plan_.bytes.lists);
+    make("order", plan_.bytes.order);
+    make("bins", plan_.bytes.bins);
+    fill("lights", bytes_of(first.lights));
+    fill("slices", slices ? bytes_of(lightbin::shader_slices(*slices)) : std::span<const std::byte>());
+    if (options.depth_test != lightbin::DepthTest::none)
+        fill("z_bounds", bytes_of(depths_of(view_, options, slices, bounds)));
+}
+
+double GpuBuild::upload(const GpuFrame& frame) {
+    plan_ = plan_of(frame, view_, options_, room_, slices_);
+    const auto constants = bytes_of(std::span(&plan_.constants, 1));
+    double milliseconds = device_.write("grid", constants);
+    uploaded_ = constants.size();
+    if (frame.to_view) return milliseconds;
+    milliseconds += device_.write("lights", bytes_of(frame.lights));
+    uploaded_ += bytes_of(frame.lights).size();
+    return milliseconds;
+}
+
+ReadLists GpuBuild::read() {
+    const bool z_bins = options_.slicing == lightbin::Slicing::z_bins;
+    ReadLists lists;
+    lists.totals = read_as<lightbin::CullTotals>(device_, "scratch", 1)[0];
+    lists.ranges =
+        read_as<lightbin::ListRange>(device_, "tiles", static_cast<std::size_t>(plan_.bytes.tiles / 8));
+    lists.ids = read_as<std::uint32_t>(device_, "lists", std::min(lists.totals.entries, room_.entries));
+    if (!z_bins) return lists;
+    lists.order = read_as<std::uint32_t>(device_, "order", lists.totals.visible);
+    lists.bins = read_as<lightbin::BinRange>(device_, "bins", static_cast<std::size_t>(slices_->count()));
+    return lists;
+}

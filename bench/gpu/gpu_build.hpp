@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// The passes of shader_cull on a device, with all buffers that they take.
+#pragma once
+
+#include "device.hpp"
+#include "frames.hpp"
+
+#include <lightbin/lightbin.hpp>
+#include <lightbin/shader_build.hpp>
+#include <lightbin/shader_cull.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+/// Lists as shaders read them; with z-bins ids are ranks.
+struct ReadLists {
+    lightbin::CullTotals totals;
+    std::vector<lightbin::ListRange> ranges;
+    std::vector<std::uint32_t> ids;
+    std::vector<std::uint32_t> order;      ///< with z-bins
+    std::vector<lightbin::BinRange> bins;  ///< with z-bins
+};
+
+/// Builds of frames that have the lens and the number of lights of the first one.
+class GpuBuild {
+public:
+    /// bounds  as the options' depth test reads them, or empty
+    GpuBuild(GpuDevice& device, const lightbin::Options& options, int tile_size, const GpuFrame& first,
+             std::uint32_t entries, const lightbin::Slices* slices, const lightbin::ZBounds& bounds);
+
+    /// Writes what changes from frame to frame: constants, and lights in view space. Returns milliseconds.
+    double upload(const GpuFrame& frame);
+    std::size_t uploaded_bytes() const { return uploaded_; }
+    /// See GpuDevice::run().
+    std::vector<double> run(bool each_pass) { return device_.run(each_pass); }
+    ReadLists read();
+
+    const lightbin::CullPlan& plan() const { return plan_; }
+
+private:
+    GpuDevice& device_;
+    lightbin::View view_;
+    lightbin::CullShaderOptions options_;
+    lightbin::CullRoom room_;
+    std::optional<lightbin::Slices> slices_;
+    lightbin::CullPlan plan_;
+    std::size_t uploaded_ = 0;
+};
