@@ -27,6 +27,17 @@ try() {
             g++ "$place/engine.o" $work/judge.o $work/campaign.o -lgmp -o "$place/proof"
         arguments=2000
         ;;
+    cull)
+        g++ $flags -Iexamples/tiled_forward tests/shader/cull_gl.cpp examples/tiled_forward/gl_context.cpp \
+            examples/tiled_forward/gl_program.cpp -lepoxy -o "$place/proof" 2>"$place/log"
+        arguments=430
+        ;;
+    cull_twin)
+        g++ $flags tests/shader/cull_twin_text.cpp -o "$place/text" 2>"$place/log" &&
+            "$place/text" >"$place/cull_twin_text.inc" &&
+            g++ $flags -I"$place" tests/shader/cull_twin.cpp -o "$place/proof" 2>"$place/log"
+        arguments=1000
+        ;;
     views)
         g++ $flags tests/unit/views.cpp $work/doctest_main.o -o "$place/proof" 2>"$place/log"
         arguments=
@@ -52,7 +63,8 @@ if [ "${1-}" = --one ]; then
     exit
 fi
 
-install_packages g++ python3 libboost-dev libgmp-dev doctest-dev libglm-dev
+install_packages g++ python3 libboost-dev libgmp-dev doctest-dev libglm-dev libepoxy-dev libegl1 libgl1-mesa-dri
+export GALLIVM_PERF=nopt  # what Mesa makes of the shaders runs shortly
 python3 tests/mutate.py || fail "a mutant does not find its code: see tests/mutants.txt"
 make_build_folder
 mkdir -p $work

@@ -18,6 +18,9 @@ static int failures = 0;
         }                                                                                                    \
     } while (0)
 
+/* Makes a struct one with the defaults. */
+#define CLEAR(given) (memset(&(given), 0, sizeof(given)), (given).size = sizeof(given))
+
 /* Whether a result is an error and names the argument. */
 static int refuses(lightbin_result result, int32_t error, const char* name) {
     char text[600];
@@ -110,8 +113,7 @@ static void set_inputs(void) {
 
 static lightbin_view_options view_options(void) {
     lightbin_view_options options;
-    memset(&options, 0, sizeof options);
-    options.size = sizeof options;
+    CLEAR(options);
     options.width = width;
     options.height = height;
     options.tile_size = tile;
@@ -121,8 +123,7 @@ static lightbin_view_options view_options(void) {
 
 static lightbin_lights lights_given(void) {
     lightbin_lights lights;
-    memset(&lights, 0, sizeof lights);
-    lights.size = sizeof lights;
+    CLEAR(lights);
     lights.spheres.count = 200;
     lights.spheres.centre.first = lights_memory[0].position;
     lights.spheres.centre.stride = sizeof(Light);
@@ -150,8 +151,7 @@ static void add_boxes(lightbin_lights* lights) {
 
 static lightbin_z_bounds bounds_given(void) {
     lightbin_z_bounds bounds;
-    memset(&bounds, 0, sizeof bounds);
-    bounds.size = sizeof bounds;
+    CLEAR(bounds);
     bounds.min = bounds_memory[0];
     bounds.max = bounds_memory[1];
     bounds.tiles = tile_count;
@@ -160,8 +160,7 @@ static lightbin_z_bounds bounds_given(void) {
 
 static lightbin_binner_options options_given(int depth_test, int slicing) {
     lightbin_binner_options options;
-    memset(&options, 0, sizeof options);
-    options.size = sizeof options;
+    CLEAR(options);
     options.depth_test = depth_test;
     options.slicing = slicing;
     return options;
@@ -169,8 +168,7 @@ static lightbin_binner_options options_given(int depth_test, int slicing) {
 
 static lightbin_grid empty_grid(void) {
     lightbin_grid grid;
-    memset(&grid, 0, sizeof grid);
-    grid.size = sizeof grid;
+    CLEAR(grid);
     return grid;
 }
 
@@ -191,8 +189,7 @@ static void test_views(void) {
     double point[3] = {0, 0, -1};
     float depths[2];
     char text[8] = "";
-    memset(&info, 0, sizeof info);
-    info.size = sizeof info;
+    CLEAR(info);
 
     CHECK(refuses(lightbin_view_create(NULL, NULL, &view), LIGHTBIN_NULL_ARGUMENT, "options"));
     CHECK(refuses(lightbin_view_create(&options, NULL, NULL), LIGHTBIN_NULL_ARGUMENT, "view"));
@@ -288,13 +285,10 @@ static void test_binners(void) {
     lightbin_range ranges[tile_count];
     float not_affine[16];
     int calls = 0;
-    memset(&inputs, 0, sizeof inputs);
-    memset(&threads, 0, sizeof threads);
-    memset(&bits, 0, sizeof bits);
+    CLEAR(inputs);
+    CLEAR(threads);
+    CLEAR(bits);
     memset(not_affine, 0, sizeof not_affine);
-    inputs.size = sizeof inputs;
-    threads.size = sizeof threads;
-    bits.size = sizeof bits;
 
     CHECK(refuses(lightbin_binner_create(NULL, NULL, NULL), LIGHTBIN_NULL_ARGUMENT, "binner"));
     options.ids = LIGHTBIN_U8;
@@ -405,8 +399,7 @@ static void test_binners(void) {
         lightbin_encoded encoded;
         uint64_t bytes = 0;
         memset(&format, 0, sizeof format);
-        memset(&encoded, 0, sizeof encoded);
-        encoded.size = sizeof encoded;
+        CLEAR(encoded);
         CHECK(refuses(lightbin_encoded_bytes(&format, 1, 1, &bytes), LIGHTBIN_WRONG_SIZE, "format"));
         format.size = sizeof format;
         format.ids = 3;
@@ -425,8 +418,7 @@ static void test_binners(void) {
     free(ids);
 
     /* No lights are no error. */
-    memset(&lights, 0, sizeof lights);
-    lights.size = sizeof lights;
+    CLEAR(lights);
     grid = empty_grid();
     CHECK(lightbin_bin(binner, view, &lights, NULL, &grid).error == LIGHTBIN_OK);
     CHECK(grid.range_count == tile_count && grid.id_count == 0);
@@ -455,8 +447,7 @@ static void test_grids(void) {
     static lightbin_range ranges[2 * tile_count];
     uint32_t *ids, listed = 0, sum = 0;
     size_t count = 0, i;
-    memset(&cut, 0, sizeof cut);
-    cut.size = sizeof cut;
+    CLEAR(cut);
     options.coverage = 1;
     for (i = 0; i < light_count; ++i)
         weights[i] = (float)(i % 7);
@@ -600,17 +591,14 @@ static void test_depth(void) {
     lightbin_depth_buffer buffer;
     lightbin_z_bounds_buffers out;
     lightbin_z_bounds bounds;
-    memset(&buffer, 0, sizeof buffer);
-    memset(&out, 0, sizeof out);
-    memset(&bounds, 0, sizeof bounds);
-    buffer.size = sizeof buffer;
+    CLEAR(buffer);
+    CLEAR(out);
+    CLEAR(bounds);
     buffer.depth = depth;
     buffer.count = width * height;
-    out.size = sizeof out;
     out.min = min;
     out.max = max;
     out.tiles = tile_count;
-    bounds.size = sizeof bounds;
     CHECK(lightbin_view_create(&options, NULL, &view).error == LIGHTBIN_OK);
     CHECK(refuses(lightbin_reduce_depth(view, NULL, &out, &bounds), LIGHTBIN_NULL_ARGUMENT, "buffer"));
     buffer.samples = 9;
@@ -638,6 +626,100 @@ static void test_depth(void) {
     lightbin_view_destroy(view);
 }
 
+/* The shaders that make grids on the GPU of lights there, and their plans. */
+static void test_cull(void) {
+    lightbin_view_options view_given = view_options();
+    lightbin_cull_options options;
+    lightbin_cull_plan plan;
+    lightbin_matrix to_view;
+    lightbin_view* view = NULL;
+    lightbin_slices* slices = NULL;
+    lightbin_shader* shader = NULL;
+    float distorts[16];
+    size_t count = 9;
+    CLEAR(options);
+    CLEAR(plan);
+    memset(&to_view, 0, sizeof to_view);
+    memset(distorts, 0, sizeof distorts);
+    distorts[0] = 100;
+    distorts[5] = distorts[10] = distorts[15] = 1;
+    options.language = LIGHTBIN_GLSL_430;
+    CHECK(lightbin_view_create(&view_given, NULL, &view).error == LIGHTBIN_OK);
+    CHECK(lightbin_slices_linear(1025, 1, 2000, 0, NULL, &slices).error == LIGHTBIN_OK);
+
+    CHECK(lightbin_cull_passes(LIGHTBIN_NO_SLICING, NULL) == NULL);
+    CHECK(lightbin_cull_passes(3, &count) == NULL && count == 0);
+    CHECK(lightbin_cull_passes(LIGHTBIN_Z_BINS, &count)[8] == LIGHTBIN_CULL_FILL && count == 9);
+    CHECK(lightbin_cull_passes(LIGHTBIN_CLUSTERS, &count)[1] == LIGHTBIN_CULL_COUNT && count == 5);
+
+    CHECK(refuses(lightbin_cull_shader(NULL, NULL, &shader), LIGHTBIN_NULL_ARGUMENT, "options"));
+    CHECK(refuses(lightbin_cull_shader(&options, NULL, NULL), LIGHTBIN_NULL_ARGUMENT, "shader"));
+    options.pass = 9;
+    CHECK(refuses(lightbin_cull_shader(&options, NULL, &shader), LIGHTBIN_NOT_A_VALUE, "options.pass"));
+    options.pass = LIGHTBIN_CULL_FILL;
+    options.kind = 3;
+    CHECK(refuses(lightbin_cull_shader(&options, NULL, &shader), LIGHTBIN_NOT_A_VALUE, "options.kind"));
+    options.kind = LIGHTBIN_CULL_BOX;
+    CHECK(lightbin_cull_shader(&options, NULL, &shader).error == LIGHTBIN_NO_CULL_OF_BOXES);
+    options.kind = LIGHTBIN_CULL_SPOT;
+    options.ids = 4;
+    CHECK(refuses(lightbin_cull_shader(&options, NULL, &shader), LIGHTBIN_NOT_A_VALUE, "options.ids"));
+    options.ids = LIGHTBIN_U8;
+    CHECK(lightbin_cull_shader(&options, NULL, &shader).error == LIGHTBIN_IDS_TOO_NARROW);
+    options.ids = LIGHTBIN_U16;
+    options.language = LIGHTBIN_ESSL_300;
+    CHECK(lightbin_cull_shader(&options, NULL, &shader).error == LIGHTBIN_NO_STORAGE_BUFFERS);
+    options.language = LIGHTBIN_GLSL_430;
+    options.size = 20;
+    CHECK(refuses(lightbin_cull_shader(&options, NULL, &shader), LIGHTBIN_WRONG_SIZE, "options"));
+    options.size = sizeof options;
+    CHECK(shader == NULL);
+    CHECK(lightbin_cull_shader(&options, NULL, &shader).error == LIGHTBIN_OK);
+    CHECK(strstr(lightbin_shader_text(shader), "lightbin_lists_block") != NULL);
+    lightbin_shader_destroy(shader);
+
+    CHECK(
+        refuses(lightbin_plan_cull(NULL, &options, 9, 9, NULL, NULL, &plan), LIGHTBIN_NULL_ARGUMENT, "view"));
+    CHECK(
+        refuses(lightbin_plan_cull(view, NULL, 9, 9, NULL, NULL, &plan), LIGHTBIN_NULL_ARGUMENT, "options"));
+    CHECK(
+        refuses(lightbin_plan_cull(view, &options, 9, 9, NULL, NULL, NULL), LIGHTBIN_NULL_ARGUMENT, "plan"));
+    CHECK(
+        refuses(lightbin_plan_cull(view, &options, 9, 9, slices, NULL, &plan), LIGHTBIN_NOT_READ, "slices"));
+    CHECK(refuses(lightbin_plan_cull(view, &options, 9, 9, NULL, &to_view, &plan), LIGHTBIN_NOT_READ,
+                  "to_view"));
+    CHECK(lightbin_plan_cull(view, &options, 65537, 9, NULL, NULL, &plan).error == LIGHTBIN_TOO_MANY_LIGHTS);
+    options.slicing = LIGHTBIN_Z_BINS;
+    CHECK(refuses(lightbin_plan_cull(view, &options, 9, 9, NULL, NULL, &plan), LIGHTBIN_NULL_ARGUMENT,
+                  "slices"));
+    CHECK(lightbin_plan_cull(view, &options, 9, 9, slices, NULL, &plan).error == LIGHTBIN_TOO_MANY_SLICES);
+    options.slicing = LIGHTBIN_CLUSTERS;
+    options.ids = LIGHTBIN_U32;
+    CHECK(lightbin_plan_cull(view, &options, 0xffffffffu, 9, slices, NULL, &plan).error ==
+          LIGHTBIN_SCRATCH_TOO_LARGE);
+    options.slicing = LIGHTBIN_NO_SLICING;
+    options.world_space = 1;
+    CHECK(refuses(lightbin_plan_cull(view, &options, 9, 9, NULL, NULL, &plan), LIGHTBIN_NULL_ARGUMENT,
+                  "to_view"));
+    CHECK(refuses(lightbin_plan_cull(view, &options, 9, 9, NULL, &to_view, &plan), LIGHTBIN_NULL_ARGUMENT,
+                  "to_view"));
+    to_view.floats = distorts;
+    CHECK(lightbin_plan_cull(view, &options, 9, 9, NULL, &to_view, &plan).error ==
+          LIGHTBIN_VIEW_MATRIX_DISTORTS);
+    plan.size = 8;
+    CHECK(refuses(lightbin_plan_cull(view, &options, 9, 9, NULL, &to_view, &plan), LIGHTBIN_WRONG_SIZE,
+                  "plan"));
+    plan.size = sizeof plan;
+    CHECK(plan.scratch_bytes == 0 && plan.constants[0] == 0);
+    distorts[0] = 1;
+    CHECK(lightbin_plan_cull(view, &options, 9, 1000, NULL, &to_view, &plan).error == LIGHTBIN_OK);
+    CHECK(plan.size == sizeof plan && plan.tile_bytes == 8 * tile_count && plan.list_bytes == 4000);
+    CHECK(plan.order_bytes == 0 && plan.constants[0] == 20 && plan.constants[1] == 13);
+    CHECK(plan.groups[LIGHTBIN_CULL_PROJECT].x == 1 && plan.groups[LIGHTBIN_CULL_PROJECT].y == 1);
+    lightbin_slices_destroy(slices);
+    lightbin_view_destroy(view);
+}
+
 /* Everything once, with memory of `heap`. Returns the first error. */
 static lightbin_result use_everything(const lightbin_allocator* heap, uint64_t* sum) {
     lightbin_view_options view_given = view_options();
@@ -651,8 +733,7 @@ static lightbin_result use_everything(const lightbin_allocator* heap, uint64_t* 
     int test, slicing, calls = 0;
     *sum = 0;
     add_boxes(&lights);
-    memset(&snippet, 0, sizeof snippet);
-    snippet.size = sizeof snippet;
+    CLEAR(snippet);
     snippet.language = LIGHTBIN_WGSL;
     result = lightbin_view_create(&view_given, heap, &view);
     if (result.error == LIGHTBIN_OK)
@@ -669,10 +750,8 @@ static lightbin_result use_everything(const lightbin_allocator* heap, uint64_t* 
             lightbin_threads threads;
             lightbin_grid grid = empty_grid();
             uint64_t i;
-            memset(&inputs, 0, sizeof inputs);
-            memset(&threads, 0, sizeof threads);
-            inputs.size = sizeof inputs;
-            threads.size = sizeof threads;
+            CLEAR(inputs);
+            CLEAR(threads);
             threads.workers = 3;
             threads.run = run_backwards;
             threads.user = &calls;
@@ -762,6 +841,7 @@ int main(int count, char** words) {
     test_binners();
     test_grids();
     test_depth();
+    test_cull();
     test_memory(!no_failures);
     if (failures == 0) puts("every check passed");
     return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;

@@ -31,8 +31,78 @@ for compiler in g++ clang++-14 clang++-19; do
     done
 done
 
+# blocks PAGE: its blocks of C
+blocks() {
+    awk '/^```c$/ { inside = 1; next } /^```/ { inside = 0 } inside' "$here/../../docs/$1.md"
+}
+# run_page FILE: compiles it as C99 and runs it
+run_page() {
+    gcc -std=c99 -pedantic -Wall -Wextra -Werror -DLIGHTBIN_SHARED -I "$here/../../include" -o "$work/program" "$1" "$library" \
+        -Wl,-rpath,"$(dirname "$library")"
+    "$work/program"
+}
+
 # The page's program.
-awk '/^```c$/ { inside = 1; next } /^```/ { inside = 0 } inside' "$here/../../docs/c.md" >"$work/page.c"
-gcc -std=c99 -pedantic -Wall -Wextra -Werror -DLIGHTBIN_SHARED -I "$here/../../include" -o "$work/program" "$work/page.c" "$library" \
-    -Wl,-rpath,"$(dirname "$library")"
-"$work/program" | grep -q '^20 x 20 tiles, [1-9]'
+blocks c >"$work/page.c"
+run_page "$work/page.c" | grep -q '^20 x 20 tiles, [1-9]'
+
+# The passes of docs/gpu.md are compiled and dispatched in their order.
+cat >"$work/gpu.c" <<END
+#include <lightbin/lightbin.h>
+#include <string.h>
+static int compiled, dispatched;
+static uint64_t allocated;
+static uint32_t tiles_x;
+static void succeed(lightbin_result result) { compiled += result.error == LIGHTBIN_OK ? 0 : 100; }
+static void compile_compute(const char* version, const char* text) {
+    compiled += strstr(version, "430") != NULL && strstr(text, "void main()") != NULL;
+}
+static void upload(const uint32_t* words, size_t bytes) { tiles_x = bytes == 256 ? words[0] : 0; }
+static void allocate(uint64_t scratch, uint64_t tiles, uint64_t lists) { allocated = scratch > 16 ? tiles + lists : 0; }
+static void dispatch(uint32_t x, uint32_t y) { dispatched += x > 0 && y > 0; }
+static void storage_barrier(void) {}
+int main(void) {
+    const float projection[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1.002f, -1, 0, 0, -0.2002f, 0};
+    lightbin_view_options view_options = {
+        .size = sizeof view_options, .width = 640, .height = 480, .projection = {.floats = projection}};
+    lightbin_view* view = NULL;
+    succeed(lightbin_view_create(&view_options, NULL, &view));
+    {
+        $(blocks gpu)
+    }
+    lightbin_view_destroy(view);
+    return compiled == 5 && dispatched == 5 && tiles_x == 20 && allocated == 8 * 20 * 15 + 4 * 200000 ? 0 : 1;
+}
+END
+run_page "$work/gpu.c"
+
+# The lists of docs/cameras.md are made once a frame.
+cat >"$work/cameras.c" <<END
+#include <lightbin/lightbin.h>
+typedef struct Camera {
+    float projection[16], world_to_view[16];
+    int width, height;
+} Camera;
+$(blocks cameras)
+int main(void) {
+    const Camera camera = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1.002f, -1, 0, 0, -0.2002f, 0},
+                           {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, 640, 480};
+    const float lamp[4] = {0, 0, -5, 2};
+    lightbin_view_options options = {.size = sizeof options, .projection = {.floats = camera.projection}};
+    lightbin_lights lights = {.size = sizeof lights,
+                              .spheres = {.count = 1, .centre = {lamp, sizeof lamp}, .radius = {lamp + 3, sizeof lamp}}};
+    CameraLists lists = {0};
+    uint64_t made[3];
+    for (int draw = 0; draw < 3; ++draw) {
+        if (draw == 0 && (lightbin_view_create(&options, NULL, &lists.view).error != LIGHTBIN_OK ||
+                          lightbin_binner_create(NULL, NULL, &lists.binner).error != LIGHTBIN_OK)) return 1;
+        if (use_lists(&lists, &camera, draw < 2 ? 1 : 2, lights).error != LIGHTBIN_OK) return 2;
+        made[draw] = lists.grid.id_count;
+        lights.spheres.count = 0; /* from the second draw on, which is in the same frame */
+    }
+    lightbin_binner_destroy(lists.binner);
+    lightbin_view_destroy(lists.view);
+    return made[0] > 0 && made[1] == made[0] && made[2] == 0 && lists.grid.tiles_x == 20 ? 0 : 3;
+}
+END
+run_page "$work/cameras.c"

@@ -20,7 +20,7 @@ static void works(lightbin_result result) {
     exit(EXIT_FAILURE);
 }
 
-static lightbin_result create(int ids, int footprint, int depth_test, int slicing) {
+static lightbin_result create(int ids, int footprint, int depth_test, int slicing, int coverage) {
     lightbin_binner* binner = NULL;
     lightbin_binner_options options;
     memset(&options, 0, sizeof options);
@@ -29,15 +29,7 @@ static lightbin_result create(int ids, int footprint, int depth_test, int slicin
     options.footprint = footprint;
     options.depth_test = depth_test;
     options.slicing = slicing;
-    return lightbin_binner_create(&options, NULL, &binner);
-}
-
-static lightbin_result create_with_coverage(void) {
-    lightbin_binner* binner = NULL;
-    lightbin_binner_options options;
-    memset(&options, 0, sizeof options);
-    options.size = sizeof options;
-    options.coverage = 1;
+    options.coverage = coverage;
     return lightbin_binner_create(&options, NULL, &binner);
 }
 
@@ -80,13 +72,13 @@ int main(void) {
     works(lightbin_bin(binner, view, &given, NULL, &grid));
     if (grid.range_count != 16 || grid.id_count == 0) return EXIT_FAILURE;
 
-    refuses(create(LIGHTBIN_U16, 0, 0, 0), "LIGHTBIN_NO_U16");
-    refuses(create(0, LIGHTBIN_SILHOUETTE, 0, 0), "LIGHTBIN_NO_SILHOUETTES");
-    refuses(create(0, 0, LIGHTBIN_INTERVAL, 0), "LIGHTBIN_NO_INTERVAL");
-    refuses(create(0, 0, LIGHTBIN_BOX, 0), "LIGHTBIN_NO_BOX");
-    refuses(create(0, 0, LIGHTBIN_SPLIT_BOX, 0), "LIGHTBIN_NO_SPLIT_BOX");
-    refuses(create(0, 0, 0, LIGHTBIN_CLUSTERS), "LIGHTBIN_NO_CLUSTERS");
-    refuses(create(0, 0, 0, LIGHTBIN_Z_BINS), "LIGHTBIN_NO_Z_BINS");
+    refuses(create(LIGHTBIN_U16, 0, 0, 0, 0), "LIGHTBIN_NO_U16");
+    refuses(create(0, LIGHTBIN_SILHOUETTE, 0, 0, 0), "LIGHTBIN_NO_SILHOUETTES");
+    refuses(create(0, 0, LIGHTBIN_INTERVAL, 0, 0), "LIGHTBIN_NO_INTERVAL");
+    refuses(create(0, 0, LIGHTBIN_BOX, 0, 0), "LIGHTBIN_NO_BOX");
+    refuses(create(0, 0, LIGHTBIN_SPLIT_BOX, 0, 0), "LIGHTBIN_NO_SPLIT_BOX");
+    refuses(create(0, 0, 0, LIGHTBIN_CLUSTERS, 0), "LIGHTBIN_NO_CLUSTERS");
+    refuses(create(0, 0, 0, LIGHTBIN_Z_BINS, 0), "LIGHTBIN_NO_Z_BINS");
     refuses(lightbin_bin_bits(binner, view, &given, NULL, 1, words, 16, &bits), "LIGHTBIN_NO_BITS");
     {
         lightbin_grid other = grid;
@@ -115,13 +107,16 @@ int main(void) {
     given.boxes.box_centre.first = lights;
     given.boxes.half_axes.first = half_axes;
     refuses(lightbin_bin(binner, view, &given, NULL, &grid), "LIGHTBIN_NO_BOXES");
-    refuses(create_with_coverage(), "LIGHTBIN_NO_COVERAGE");
+    refuses(create(0, 0, 0, 0, 1), "LIGHTBIN_NO_COVERAGE");
     refuses(lightbin_budget_create(NULL, &budget), "LIGHTBIN_NO_BUDGETS");
     refuses(lightbin_limit_grid(NULL, &grid, NULL, 0, 1, 1, &grid, NULL), "LIGHTBIN_NO_BUDGETS");
     refuses(lightbin_shader_snippet(NULL, NULL, &shader), "LIGHTBIN_NO_SHADERS");
     refuses(lightbin_shader_grid(view, 0, 0, &constants), "LIGHTBIN_NO_SHADERS");
     refuses(lightbin_build_shader(NULL, NULL, &shader), "LIGHTBIN_NO_BUILD_SHADERS");
     refuses(lightbin_shader_edges(view, NULL, 0, &count), "LIGHTBIN_NO_BUILD_SHADERS");
+    refuses(lightbin_cull_shader(NULL, NULL, &shader), "LIGHTBIN_NO_CULL_SHADERS");
+    refuses(lightbin_plan_cull(view, NULL, 0, 0, NULL, NULL, NULL), "LIGHTBIN_NO_CULL_SHADERS");
+    if (lightbin_cull_passes(LIGHTBIN_NO_SLICING, &count) != NULL || count != 0) return EXIT_FAILURE;
     refuses(lightbin_advise(view, &given, NULL, NULL, NULL, &advice), "LIGHTBIN_NO_ADVICE");
     lightbin_binner_destroy(binner);
     lightbin_view_destroy(view);

@@ -4,12 +4,15 @@
 #include <lightbin/lightbin.h>
 
 #include <lightbin/advise.hpp>
+#include <lightbin/box.hpp>
 #include <lightbin/budget.hpp>
 #include <lightbin/encode.hpp>
 #include <lightbin/grid_union.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader.hpp>
 #include <lightbin/shader_build.hpp>
+#include <lightbin/shader_cull.hpp>
+#include <lightbin/spot.hpp>
 
 #include "../split_mix.hpp"
 
@@ -153,6 +156,13 @@ struct Deleter {
 };
 template <class Handle> using Owned = std::unique_ptr<Handle, Deleter>;
 
+/// Returns one of lightbin.h's structs with the defaults.
+template <class Struct> Struct sized() {
+    Struct made = {};
+    made.size = sizeof made;
+    return made;
+}
+
 std::string text(const lightbin_result& result) {
     std::string text(lightbin_error_text(result, nullptr, 0), ' ');
     lightbin_error_text(result, text.data(), text.size() + 1);
@@ -210,10 +220,8 @@ void compare_uses(const LightGrid<Id>& expected, const lightbin_grid& grid, Rand
     const std::uint32_t per_cell = static_cast<std::uint32_t>(random.integer(1, 20)),
                         per_frame = static_cast<std::uint32_t>(random.integer(1, 3000));
     const BudgetedGrid<Id> cpp_limited = *cpp_budget.limit(expected, weights, {per_cell, per_frame});
-    lightbin_grid limited = {};
-    limited.size = sizeof limited;
-    lightbin_cut cut = {};
-    cut.size = sizeof cut;
+    auto limited = sized<lightbin_grid>();
+    auto cut = sized<lightbin_cut>();
     REQUIRE(lightbin_limit_grid(budget, &grid, weights.data(), weights.size(), per_cell, per_frame, &limited,
                                 &cut)
                 .error == LIGHTBIN_OK);
@@ -225,8 +233,7 @@ void compare_uses(const LightGrid<Id>& expected, const lightbin_grid& grid, Rand
     lightbin_grid_union* grid_union = nullptr;
     REQUIRE(lightbin_grid_union_create(nullptr, &grid_union).error == LIGHTBIN_OK);
     const Owned<lightbin_grid_union> union_owner(grid_union);
-    lightbin_grid united = {};
-    united.size = sizeof united;
+    auto united = sized<lightbin_grid>();
     const auto cpp_united = cpp_union.unite(cpp_limited.grid, expected);
     const lightbin_result unites = lightbin_unite_grids(grid_union, &limited, &grid, &united);
     REQUIRE((unites.error == LIGHTBIN_OK) == cpp_united.has_value());
@@ -243,13 +250,37 @@ void compare_uses(const LightGrid<Id>& expected, const lightbin_grid& grid, Rand
             LIGHTBIN_OK);
     REQUIRE(lightbin_append_grid(&both, &first, ranges.data(), ranges.size(), ids.data(), ids.size()).error ==
             LIGHTBIN_OK);
+    CHECK((cells == 0 || first.ranges == ranges.data()));
     const auto cpp_first = *expected.copy_to(cpp_ranges, cpp_ids);
+    compare(cpp_first, first);
     compare(*cpp_limited.grid.copy_to(cpp_ranges, cpp_ids, cpp_first), both);
 }
 
+/// Compares a shader's text and bindings, or the sentence of the error.
+void compare_shaders(const Result<ShaderText>& expected, const lightbin_result& result,
+                     const lightbin_shader* made) {
+    REQUIRE((result.error == LIGHTBIN_OK) == expected.has_value());
+    if (!expected) {
+        CHECK(text(result) == expected.error().message().c_str());
+        return;
+    }
+    CHECK(lightbin_shader_text(made) == expected->text);
+    REQUIRE(lightbin_shader_binding_count(made) == expected->bindings.size());
+    for (std::size_t i = 0; i < expected->bindings.size(); ++i) {
+        auto binding = sized<lightbin_binding>();
+        REQUIRE(lightbin_shader_binding(made, i, &binding).error == LIGHTBIN_OK);
+        CHECK(binding.name == expected->bindings[i].name);
+        CHECK(binding.slot.binding == expected->bindings[i].slot.binding);
+        CHECK(binding.slot.set == expected->bindings[i].slot.set);
+        CHECK(binding.resource == static_cast<std::int32_t>(expected->bindings[i].resource));
+        CHECK(binding.bytes == expected->bindings[i].bytes);
+        CHECK(binding.gl_internal_format == gl_format(expected->bindings[i].format).internal);
+        CHECK(binding.webgpu_format == std::string(webgpu_format(expected->bindings[i].format)));
+    }
+}
+
 Owned<lightbin_view> view_of(const Scene& scene) {
-    lightbin_view_options options = {};
-    options.size = sizeof options;
+    auto options = sized<lightbin_view_options>();
     options.width = scene.width, options.height = scene.height, options.tile_size = scene.tile_size;
     options.projection.floats = scene.projection;
     lightbin_view* view = nullptr;
@@ -266,8 +297,7 @@ View cpp_view_of(const Scene& scene) {
 lightbin_lights lights_of(const Scene& scene, std::size_t first_spot, bool in_world, std::size_t first_box,
                           bool cut) {
     const auto floats = [](const auto& member) { return lightbin_floats{&member, sizeof(Lamp)}; };
-    lightbin_lights lights = {};
-    lights.size = sizeof lights;
+    auto lights = sized<lightbin_lights>();
     if (in_world) lights.view_matrix.floats = scene.view_matrix;
     if (first_spot > 0) {
         const Lamp& first = scene.lamps[0];
@@ -293,6 +323,14 @@ lightbin_lights lights_of(const Scene& scene, std::size_t first_spot, bool in_wo
     return lights_of(scene, first_spot, in_world, scene.lamps.size(), false);
 }
 
+/// Returns a binner with options; null: the defaults.
+Owned<lightbin_binner> binner_of(const lightbin_binner_options* options) {
+    lightbin_binner* made = nullptr;
+    const lightbin_result created = lightbin_binner_create(options, nullptr, &made);
+    REQUIRE_MESSAGE(created.error == LIGHTBIN_OK, text(created));
+    return Owned<lightbin_binner>(made);
+}
+
 /// One set of options on both sides, for several scenes.
 template <Options options> void compare_sides() {
     using Read = typename Binner<options>::Inputs;
@@ -305,10 +343,7 @@ template <Options options> void compare_sides() {
                                            static_cast<std::int32_t>(options.depth_test),
                                            static_cast<std::int32_t>(options.slicing),
                                            options.coverage};
-    lightbin_binner* made = nullptr;
-    const lightbin_result created = lightbin_binner_create(&asked, nullptr, &made);
-    REQUIRE_MESSAGE(created.error == LIGHTBIN_OK, text(created));
-    const Owned<lightbin_binner> binner(made);
+    const auto binner = binner_of(&asked);
     for (int round = 0; round < 8; ++round) {
         CAPTURE(round);
         const Scene scene(random);
@@ -321,8 +356,7 @@ template <Options options> void compare_sides() {
                     .error == LIGHTBIN_OK);
         const Owned<lightbin_slices> slices(slices_made);
         const Slices cpp_slices = Slices::from_boundaries(scene.boundaries)->with_margin(margin);
-        lightbin_z_bounds bounds = {};
-        bounds.size = sizeof bounds;
+        auto bounds = sized<lightbin_z_bounds>();
         bounds.min = scene.min.data(), bounds.max = scene.max.data();
         bounds.gap_min = scene.gap_min.data(), bounds.gap_max = scene.gap_max.data();
         bounds.transparent_max = scene.transparent_max.data();
@@ -331,8 +365,7 @@ template <Options options> void compare_sides() {
                                     scene.transparent_max};
         int calls = 0;
         lightbin_threads threads = {sizeof threads, 3, run_tasks, &calls, -1};
-        lightbin_inputs inputs = {};
-        inputs.size = sizeof inputs;
+        auto inputs = sized<lightbin_inputs>();
         if (Read::reads_slices) inputs.slices = slices.get();
         if (Read::reads_bounds) inputs.bounds = &bounds;
         if (round % 2 == 1) inputs.threads = &threads;
@@ -346,8 +379,7 @@ template <Options options> void compare_sides() {
             const bool cut = round % 3 != 1;
             const lightbin_lights lights = lights_of(scene, first_spot, in_world, first_box, cut);
             const auto check = [&](const auto& cpp_lights) {
-                lightbin_grid grid = {};
-                grid.size = sizeof grid;
+                auto grid = sized<lightbin_grid>();
                 const lightbin_result result =
                     lightbin_bin(binner.get(), view.get(), &lights, &inputs, &grid);
                 REQUIRE_MESSAGE(result.error == LIGHTBIN_OK, text(result));
@@ -375,8 +407,7 @@ template <Options options> void compare_sides() {
                     const auto most = static_cast<std::uint32_t>(scene.lamps.size());
                     const std::size_t words = cpp_view.tile_count() * ((most + 31) / 32);
                     std::vector<std::uint32_t> bits(words, 7), cpp_bits(words);
-                    lightbin_bits counts = {};
-                    counts.size = sizeof counts;
+                    auto counts = sized<lightbin_bits>();
                     const lightbin_result masks = lightbin_bin_bits(
                         binner.get(), view.get(), &lights, &inputs, most, bits.data(), bits.size(), &counts);
                     REQUIRE_MESSAGE(masks.error == LIGHTBIN_OK, text(masks));
@@ -452,44 +483,38 @@ TEST_CASE("C: arrays of vec4s and separate arrays give the same lists") {
     Random random(5);
     const Scene scene(random);
     const auto view = view_of(scene);
-    std::vector<float> packed, radii;
-    std::vector<float> centres;
+    std::vector<float> packed, spaced, centres, radii;
     for (const Lamp& lamp : scene.lamps) {
         const Sphere ball = scene.sphere(lamp);
         packed.insert(packed.end(), {ball.x, ball.y, ball.z, ball.radius});
+        spaced.insert(spaced.end(), {ball.x, ball.y, ball.z, ball.radius, 9});
         centres.insert(centres.end(), {ball.x, ball.y, ball.z});
         radii.push_back(ball.radius);
     }
-    lightbin_binner* made = nullptr;
-    REQUIRE(lightbin_binner_create(nullptr, nullptr, &made).error == LIGHTBIN_OK);
-    const Owned<lightbin_binner> binner(made);
+    const auto binner = binner_of(nullptr);
     Binner<> expected;
     const auto grid_of_cpp = *expected.bin(
         cpp_view_of(scene), view_space(scene.lamps, [&](const Lamp& lamp) { return scene.sphere(lamp); }));
-    lightbin_lights lights = {};
-    lights.size = sizeof lights;
+    auto lights = sized<lightbin_lights>();
     const lightbin_spheres ways[] = {{radii.size(), {packed.data(), 16}, {packed.data() + 3, 16}},
+                                     {radii.size(), {spaced.data(), 20}, {spaced.data() + 3, 20}},
                                      {radii.size(), {centres.data(), 12}, {radii.data(), 4}}};
     for (const lightbin_spheres& way : ways) {
         lights.spheres = way;
-        lightbin_grid grid = {};
-        grid.size = sizeof grid;
+        auto grid = sized<lightbin_grid>();
         REQUIRE(lightbin_bin(binner.get(), view.get(), &lights, nullptr, &grid).error == LIGHTBIN_OK);
         compare(grid_of_cpp, grid);
     }
 }
 
-TEST_CASE("C: encodings, list lengths and copies are those of C++") {
+TEST_CASE("C: encodings and list lengths are those of C++") {
     Random random(6);
     for (int round = 0; round < 6; ++round) {
         const Scene scene(random);
         const auto view = view_of(scene);
         const lightbin_lights lights = lights_of(scene, scene.lamps.size(), false);
-        lightbin_binner* made = nullptr;
-        REQUIRE(lightbin_binner_create(nullptr, nullptr, &made).error == LIGHTBIN_OK);
-        const Owned<lightbin_binner> binner(made);
-        lightbin_grid grid = {};
-        grid.size = sizeof grid;
+        const auto binner = binner_of(nullptr);
+        auto grid = sized<lightbin_grid>();
         REQUIRE(lightbin_bin(binner.get(), view.get(), &lights, nullptr, &grid).error == LIGHTBIN_OK);
         Binner<> cpp_binner;
         const auto cpp_grid =
@@ -508,8 +533,7 @@ TEST_CASE("C: encodings, list lengths and copies are those of C++") {
                     LIGHTBIN_OK);
             CHECK(bytes == encoded_bytes(cpp_format, cpp_grid.ranges().size(), cpp_grid.ids().size()));
             std::vector<std::byte> out(bytes), cpp_out(bytes);
-            lightbin_encoded encoded = {};
-            encoded.size = sizeof encoded;
+            auto encoded = sized<lightbin_encoded>();
             REQUIRE(lightbin_encode(&grid, &format, out.data(), out.size(), &encoded).error == LIGHTBIN_OK);
             const Encoded cpp_encoded = *encode(cpp_grid, cpp_format, cpp_out);
             CHECK(out == cpp_out);
@@ -523,12 +547,6 @@ TEST_CASE("C: encodings, list lengths and copies are those of C++") {
         REQUIRE(lightbin_list_lengths(&grid, &longest, histogram).error == LIGHTBIN_OK);
         CHECK(longest == cpp_lengths.longest);
         CHECK(std::memcmp(histogram, cpp_lengths.histogram.data(), sizeof histogram) == 0);
-        std::vector<lightbin_range> ranges(grid.range_count);
-        std::vector<std::uint32_t> ids(grid.id_count);
-        REQUIRE(lightbin_copy_grid(&grid, ranges.data(), ranges.size(), ids.data(), ids.size()).error ==
-                LIGHTBIN_OK);
-        CHECK(grid.ranges == ranges.data());
-        compare(cpp_grid, grid);
     }
 }
 
@@ -553,8 +571,7 @@ TEST_CASE("C: depth buffers are reduced as in C++") {
                                                made.data() + 3 * tiles,
                                                made.data() + 4 * tiles,
                                                tiles};
-        lightbin_z_bounds bounds = {};
-        bounds.size = sizeof bounds;
+        auto bounds = sized<lightbin_z_bounds>();
         const lightbin_result result = lightbin_reduce_depth(view.get(), &buffer, &out, &bounds);
         REQUIRE_MESSAGE(result.error == LIGHTBIN_OK, text(result));
         const auto part = [&](std::size_t i) { return std::span<float>(expected.data() + i * tiles, tiles); };
@@ -576,8 +593,7 @@ TEST_CASE("C: a view knows what it knows in C++") {
     const Scene scene(random);
     const auto view = view_of(scene);
     const View cpp_view = cpp_view_of(scene);
-    lightbin_view_info info = {};
-    info.size = sizeof info;
+    auto info = sized<lightbin_view_info>();
     REQUIRE(lightbin_view_describe(view.get(), &info).error == LIGHTBIN_OK);
     CHECK(info.tiles_x == cpp_view.tiles_x());
     CHECK(info.near_depth == cpp_view.near_depth());
@@ -604,8 +620,7 @@ TEST_CASE("C: shader texts and their data are those of C++") {
             for (int slicing = LIGHTBIN_NO_SLICING; slicing <= LIGHTBIN_Z_BINS; ++slicing) {
                 CAPTURE(language);
                 CAPTURE(storage);
-                lightbin_snippet_options options = {};
-                options.size = sizeof options;
+                auto options = sized<lightbin_snippet_options>();
                 options.language = language, options.storage = storage, options.slicing = slicing;
                 options.heat_map = 1, options.max_tiles = 64, options.max_entries = 512,
                 options.max_slices = 8;
@@ -633,23 +648,7 @@ TEST_CASE("C: shader texts and their data are those of C++") {
                 const lightbin_result result = lightbin_shader_snippet(&options, nullptr, &made);
                 const Owned<lightbin_shader> shader(made);
                 const auto expected = shader_snippet(cpp_options);
-                REQUIRE((result.error == LIGHTBIN_OK) == expected.has_value());
-                if (!expected) {
-                    CHECK(text(result) == expected.error().message().c_str());
-                    continue;
-                }
-                CHECK(lightbin_shader_text(made) == expected->text);
-                REQUIRE(lightbin_shader_binding_count(made) == expected->bindings.size());
-                for (std::size_t i = 0; i < expected->bindings.size(); ++i) {
-                    lightbin_binding binding = {};
-                    binding.size = sizeof binding;
-                    REQUIRE(lightbin_shader_binding(made, i, &binding).error == LIGHTBIN_OK);
-                    CHECK(binding.name == expected->bindings[i].name);
-                    CHECK(binding.slot.binding == expected->bindings[i].slot.binding);
-                    CHECK(binding.resource == static_cast<std::int32_t>(expected->bindings[i].resource));
-                    CHECK(binding.gl_internal_format == gl_format(expected->bindings[i].format).internal);
-                    CHECK(binding.webgpu_format == std::string(webgpu_format(expected->bindings[i].format)));
-                }
+                compare_shaders(expected, result, made);
             }
     Random random(9);
     const Scene scene(random);
@@ -694,15 +693,13 @@ TEST_CASE("C: shader texts and their data are those of C++") {
         CHECK(
             (count == 0 || std::memcmp(footprints.data(), expected.data(), count * sizeof expected[0]) == 0));
     }
-    lightbin_reduce_options reduce_options = {};
-    reduce_options.size = sizeof reduce_options;
+    auto reduce_options = sized<lightbin_reduce_options>();
     reduce_options.language = LIGHTBIN_GLSL_430;
     lightbin_shader* made = nullptr;
     REQUIRE(lightbin_reduce_shader(&reduce_options, nullptr, &made).error == LIGHTBIN_OK);
     CHECK(lightbin_shader_text(made) == reduce_shader()->text);
     lightbin_shader_destroy(made);
-    lightbin_build_options build_options = {};
-    build_options.size = sizeof build_options;
+    auto build_options = sized<lightbin_build_options>();
     build_options.language = LIGHTBIN_GLSL_430;
     for (int pass = LIGHTBIN_COUNT; pass <= LIGHTBIN_FILL; ++pass) {
         build_options.pass = pass;
@@ -730,14 +727,137 @@ TEST_CASE("C: shader texts and their data are those of C++") {
     CHECK(std::memcmp(edges.data(), shader_slabs(cpp_slices).data(), count * sizeof edges[0]) == 0);
 }
 
+namespace {
+
+/// Random options of cull_shader() for both sides, among them those that are refused.
+struct CullOptions {
+    lightbin_cull_options c = sized<lightbin_cull_options>();
+    CullShaderOptions cpp;
+
+    explicit CullOptions(Random& random) {
+        const auto both = [&](std::int32_t& to, auto& cpp_to, int least, int greatest) {
+            to = random.integer(least, greatest);
+            cpp_to = static_cast<std::remove_reference_t<decltype(cpp_to)>>(to);
+        };
+        // In a quarter of the cases any value, so that most are not refused.
+        const bool any = random.integer(0, 3) == 0;
+        both(c.language, cpp.language, LIGHTBIN_GLSL_330, LIGHTBIN_WGSL);
+        if (!any && !detail::Dialect{cpp.language}.storage_buffers)
+            c.language = LIGHTBIN_WGSL, cpp.language = ShaderLanguage::wgsl;
+        both(c.kind, cpp.kind, LIGHTBIN_CULL_SPHERE, any ? LIGHTBIN_CULL_BOX : LIGHTBIN_CULL_SPOT);
+        both(c.world_space, cpp.world_space, 0, 1);
+        both(c.count_in_buffer, cpp.count_in_buffer, 0, 1);
+        both(c.depth_test, cpp.depth_test, LIGHTBIN_NO_DEPTH_TEST, any ? LIGHTBIN_SPLIT_BOX : LIGHTBIN_BOX);
+        both(c.slicing, cpp.slicing, LIGHTBIN_NO_SLICING, LIGHTBIN_Z_BINS);
+        both(c.max_only, cpp.max_only, 0, 1);
+        both(c.orthographic, cpp.orthographic, 0, 1);
+        c.ids = any ? random.integer(LIGHTBIN_U32, LIGHTBIN_U16) : 2 * random.integer(0, 1);
+        cpp.ids = c.ids == LIGHTBIN_U8 ? IdWidth::u8 : c.ids == LIGHTBIN_U16 ? IdWidth::u16 : IdWidth::u32;
+        c.count_at = cpp.count_at = static_cast<std::uint32_t>(random.integer(0, 9));
+        if (random.integer(0, 1) == 1) {
+            cpp.lights_at = {20, 3, 9, 11, 17};
+            c.stride = 20, c.centre = 3, c.radius = 9, c.axis = 11, c.cosine = 17;
+        } else {
+            c.centre = 7;  // which is not read without a stride
+            if (cpp.kind == CullKind::spot) cpp.lights_at.stride = 8;
+        }
+        if (random.integer(0, 1) == 1) {
+            c.prefix = "mine_", cpp.prefix = "mine_";
+            const bool sets = detail::Dialect{cpp.language}.spaces;
+            auto move = [&, next = 20](lightbin_slot& slot, ShaderSlot& cpp_slot) mutable {
+                slot = {--next, sets ? next % 3 : 0};
+                cpp_slot = {slot.binding, slot.set};
+            };
+            c.slots_given = 1;
+            move(c.lights, cpp.lights), move(c.z_bounds, cpp.z_bounds), move(c.scratch, cpp.scratch);
+            move(c.slices, cpp.slices), move(c.bins, cpp.bins), move(c.tiles, cpp.tiles);
+            move(c.light_count, cpp.light_count), move(c.order, cpp.order), move(c.lists, cpp.lists);
+            move(c.grid, cpp.grid);
+        }
+    }
+};
+
+}  // namespace
+
+TEST_CASE("C: the shaders that make light grids on the GPU, and their plans, are those of C++") {
+    for (int slicing = LIGHTBIN_NO_SLICING; slicing <= LIGHTBIN_Z_BINS; ++slicing) {
+        const auto expected = cull_passes(static_cast<Slicing>(slicing));
+        std::size_t count = 0;
+        const std::int32_t* const passes = lightbin_cull_passes(slicing, &count);
+        REQUIRE(count == expected.size());
+        for (std::size_t i = 0; i < count; ++i)
+            CHECK(passes[i] == static_cast<std::int32_t>(expected[i]));
+    }
+    Random random(11);
+    int texts = 0, plans = 0, refused = 0;
+    for (int round = 0; round < 200; ++round) {
+        CAPTURE(round);
+        CullOptions options(random);
+        for (int pass = LIGHTBIN_CULL_PROJECT; pass <= LIGHTBIN_CULL_FILL; ++pass) {
+            lightbin_shader* made = nullptr;
+            options.c.pass = pass;
+            const lightbin_result result = lightbin_cull_shader(&options.c, nullptr, &made);
+            const Owned<lightbin_shader> shader(made);
+            const auto expected = cull_shader(static_cast<CullPass>(pass), options.cpp);
+            compare_shaders(expected, result, made);
+            texts += expected.has_value();
+        }
+
+        const Scene scene(random);
+        const auto view = view_of(scene);
+        lightbin_slices* slices_made = nullptr;
+        const int slice_count = random.integer(1, 1100);
+        const float margin = round % 3 == 0 ? 0.01f : 0;
+        REQUIRE(lightbin_slices_linear(slice_count, 1, 900, margin, nullptr, &slices_made).error ==
+                LIGHTBIN_OK);
+        const Owned<lightbin_slices> slices(slices_made);
+        const Slices cpp_slices = Slices::linear(slice_count, 1, 900)->with_margin(margin);
+        auto matrix_given = lightbin_matrix{scene.view_matrix, nullptr, LIGHTBIN_COLUMN_MAJOR, 0};
+        const Matrix cpp_matrix = matrix(scene.view_matrix, MatrixLayout::column_major);
+        const CullRoom room = {static_cast<std::uint32_t>(random.integer(0, 90'000)),
+                               static_cast<std::uint32_t>(random.integer(0, 1 << 20))};
+        const bool sliced = options.cpp.slicing != Slicing::none, in_world = options.cpp.world_space;
+        auto plan = sized<lightbin_cull_plan>();
+        const lightbin_result result =
+            lightbin_plan_cull(view.get(), &options.c, room.lights, room.entries,
+                               sliced ? slices.get() : nullptr, in_world ? &matrix_given : nullptr, &plan);
+        const auto expected = plan_cull(cpp_view_of(scene), options.cpp, room, sliced ? &cpp_slices : nullptr,
+                                        in_world ? &cpp_matrix : nullptr);
+        REQUIRE((result.error == LIGHTBIN_OK) == expected.has_value());
+        if (!expected) {
+            CHECK(text(result) == expected.error().message().c_str());
+            CHECK(plan.scratch_bytes == 0);
+            ++refused;
+            continue;
+        }
+        ++plans;
+        CHECK(plan.scratch_bytes == expected->bytes.scratch);
+        CHECK(plan.tile_bytes == expected->bytes.tiles);
+        CHECK(plan.list_bytes == expected->bytes.lists);
+        CHECK(plan.order_bytes == expected->bytes.order);
+        CHECK(plan.bin_bytes == expected->bytes.bins);
+        for (int pass = LIGHTBIN_CULL_PROJECT; pass <= LIGHTBIN_CULL_FILL; ++pass) {
+            CHECK(plan.groups[pass].x == expected->groups_of(static_cast<CullPass>(pass)).x);
+            CHECK(plan.groups[pass].y == expected->groups_of(static_cast<CullPass>(pass)).y);
+        }
+        std::uint32_t words[64] = {};
+        std::memcpy(words, &expected->constants, sizeof expected->constants);
+        CHECK(std::memcmp(words, plan.constants, sizeof words) == 0);
+    }
+    CHECK(texts > 500);
+    CHECK(plans > 50);
+    CHECK(refused > 20);
+    static_assert(sizeof(lightbin_cull_totals) == sizeof(CullTotals));
+    static_assert(offsetof(lightbin_cull_totals, visible) == offsetof(CullTotals, visible));
+}
+
 TEST_CASE("C: advice weighs the plans of C++, with their entries") {
     Random random(10);
     Scene scene(random);
     scene.lamps.resize(60);
     const auto view = view_of(scene);
     const lightbin_lights lights = lights_of(scene, 30, true);
-    lightbin_z_bounds bounds = {};
-    bounds.size = sizeof bounds;
+    auto bounds = sized<lightbin_z_bounds>();
     bounds.min = scene.min.data(), bounds.max = scene.max.data(), bounds.tiles = scene.min.size();
     lightbin_advice* advice = nullptr;
     const lightbin_result result = lightbin_advise(view.get(), &lights, nullptr, &bounds, nullptr, &advice);
@@ -753,8 +873,7 @@ TEST_CASE("C: advice weighs the plans of C++, with their entries") {
                 {}, {scene.min, scene.max});
     REQUIRE(lightbin_advice_count(advice) == expected.plans().size());
     for (std::size_t i = 0; i < expected.plans().size(); ++i) {  // the order is that of times, which differ
-        lightbin_plan plan = {};
-        plan.size = sizeof plan;
+        auto plan = sized<lightbin_plan>();
         REQUIRE(lightbin_advice_plan(advice, i, &plan).error == LIGHTBIN_OK);
         int found = 0;
         for (const Plan& other : expected.plans())

@@ -136,5 +136,6 @@
 #include <lightbin/grid_union.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader_build.hpp>
+#include <lightbin/shader_cull.hpp>
 
 lightbin::Binner<> binner;

@@ -27,6 +27,21 @@ for function in tiles_met arrange_cells store_box tile_edges find_edges mask_lig
     fi
 done
 
+# Kernels of the scalar tier, which LIGHTBIN_NO_SCALAR leaves out where the compiler may use vectors everywhere.
+if [ "$(uname -m)" = x86_64 ]; then
+    for define in SIMD SCALAR; do
+        compile -O0 -march=x86-64-v2 -DALL_OPTIONS -DLIGHTBIN_NO_$define -o "$work/no_$define.o"
+        nm -C "$work/no_$define.o" >"$work/no_$define"
+    done
+    for kernel in project_lights row_spans count_entries bin_blocks write_bits find_depth_buckets; do
+        grep -q "::scalar::$kernel\>" "$work/no_SIMD" || { echo "there is no scalar $kernel" >&2; exit 1; }
+        if grep "::scalar::$kernel\>" "$work/no_SCALAR"; then
+            echo "a scalar $kernel is there with LIGHTBIN_NO_SCALAR" >&2
+            exit 1
+        fi
+    done
+fi
+
 text() { size "$1" | awk 'NR == 2 { print $1 }'; }
 off=$(text "$work/off.o")
 on=$(text "$work/on.o")

@@ -1,6 +1,7 @@
 // Mistakes that must not compile, a number each. The comment behind a case is what the compiler must say, in one error.
 #include <lightbin/budget.hpp>
 #include <lightbin/lightbin.hpp>
+#include <lightbin/spot.hpp>
 
 #include <array>
 #include <list>
@@ -132,5 +133,11 @@ void mistake() {
 #elif MISTAKE == 37  // these lights are gone after the expression
     const std::vector<lightbin::Spot> spots;
     (void)binner.bin(*view, lightbin::lights(lightbin::view_space(std::vector<lightbin::Sphere>()), spots));
+#elif MISTAKE == 38  // to bin Spots include <lightbin/spot.hpp>, and to bin Boxes <lightbin/box.hpp>
+    const std::vector<lightbin::Box> boxes;
+    (void)tested.bin(*view, boxes, {.bounds = {}});
+#elif MISTAKE == 39  // to bin Spots include <lightbin/spot.hpp>, and to bin Boxes <lightbin/box.hpp>
+    const auto to_box = [](const Lamp&) { return lightbin::Box(); };
+    (void)binner.bin(*view, lightbin::world_space(lamps, projection, to_box));
 #endif
 }

@@ -7,6 +7,7 @@
 #include <lightbin/grid_union.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader_build.hpp>
+#include <lightbin/spot.hpp>
 
 #include <glm/glm.hpp>
 

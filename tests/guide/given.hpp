@@ -5,6 +5,7 @@
 
 #include <lightbin/advise.hpp>
 #include <lightbin/shader.hpp>
+#include <lightbin/shader_cull.hpp>
 
 #include <epoxy/gl.h>
 #include <glm/glm.hpp>
@@ -23,6 +24,11 @@ struct Lamp {
     std::uint32_t mask;
 };
 
+struct Camera {
+    glm::mat4 projection, world_to_view;
+    lightbin::Extent size;
+};
+
 struct Decal {
     glm::mat4 to_world;
 };
@@ -34,9 +40,14 @@ struct ThreadPool {
 
 int fail(const std::string& message);
 int grow(std::size_t ranges, std::size_t ids);
-void warn(const char* message);
+void warn(const std::string& message);
 void allot_shadow_map(std::uint32_t id, float pixels);
 template <class... Arguments> void upload(Arguments&&... arguments);
+void bind_buffers(int ranges, int ids);
+template <class... Arguments> void allocate(Arguments&&... arguments);
+void compile_compute(const std::string& text);
+void dispatch(std::uint32_t x, std::uint32_t y);
+void storage_barrier();
 
 extern const glm::mat4 projection, view_matrix;
 extern const float numbers[16];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Every block of GLSL and HLSL in pages compiles below the text of shader_snippet():  shaders PAGE.md...
+// Blocks with a #version of their own are run by tests/renderers/glsl_120.cpp.
 #include "vulkan/compile.hpp"
 
 #include <lightbin/shader.hpp>
@@ -56,9 +57,12 @@ int compile_blocks(const char* page, const std::string& text, lightbin::ShaderLa
     const bool hlsl = language == lightbin::ShaderLanguage::hlsl_5_0;
     int blocks = 0;
     const std::string begin = "```" + name + "\n";
-    for (std::size_t at = 0; (at = text.find(begin, at)) != std::string::npos; ++blocks) {
+    for (std::size_t at = 0; (at = text.find(begin, at)) != std::string::npos;) {
         at += begin.size();
-        const std::string shader = whole(language, text.substr(at, text.find("```", at) - at));
+        const std::string block = text.substr(at, text.find("```", at) - at);
+        if (block.rfind("#version", 0) == 0) continue;
+        ++blocks;
+        const std::string shader = whole(language, block);
         try {
             hlsl ? (void)compile_spirv(shader, EShLangFragment, hlsl) : compile_opengl(shader);
         } catch (const std::runtime_error& error) {

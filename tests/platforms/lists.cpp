@@ -11,10 +11,12 @@
 #include "tests/platforms/environments.hpp"
 #include "tests/split_mix.hpp"
 
+#include <lightbin/box.hpp>
 #include <lightbin/budget.hpp>
 #include <lightbin/encode.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader.hpp>
+#include <lightbin/spot.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -54,18 +54,6 @@ std::vector<Box> random_boxes(std::size_t count, std::uint32_t seed) {
     return boxes;
 }
 
-/// Calls visit with every rung that boxes have kernels of their own for.
-template <class Visit> void on_box_rungs(Visit visit) {
-    visit.template operator()<Options{}>();
-    visit.template operator()<Options{.footprint = Footprint::silhouette}>();
-    visit.template operator()<Options{.depth_test = DepthTest::interval}>();
-    visit.template operator()<Options{.depth_test = DepthTest::box}>();
-    visit.template operator()<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>();
-    visit.template operator()<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
-    visit.template operator()<Options{
-        .footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::z_bins}>();
-}
-
 /// Whether a point is in the sphere and the box of a Box, give or take a thousandth of its size.
 bool contains(const Box& box, const glm::vec3& p) {
     const glm::vec3 ball(box.x, box.y, box.z), from = p - glm::vec3(box.box_x, box.box_y, box.box_z);
@@ -79,20 +67,8 @@ bool contains(const Box& box, const glm::vec3& p) {
 }  // namespace
 
 TEST_CASE("each rung lists fewer boxes than their spheres, and none that a lower one leaves out") {
-    const View view = test::view({1283, 721}, 16);
     const std::vector<Box> boxes = random_boxes(400, 5);
-    const std::vector<Sphere> spheres(boxes.begin(), boxes.end());
-    const auto in_rectangles = test::id_lists<Options{}>(view, boxes);
-    on_box_rungs([&]<Options options> {
-        const auto here = test::id_lists<options>(view, boxes), of_spheres = test::id_lists<options>(view, spheres);
-        if constexpr (options.slicing != Slicing::clusters) CHECK(test::is_superset(in_rectangles, here));
-        CHECK(4 * test::entries(here) < 3 * test::entries(of_spheres));
-        CHECK(test::entries(here) > 0);
-        const auto alone = test::id_lists<options>(view, std::vector<Box>{boxes[1]});
-        for (std::size_t cell = 0; cell < here.size(); ++cell)
-            REQUIRE(alone[cell].size() ==
-                    static_cast<std::size_t>(std::count(here[cell].begin(), here[cell].end(), 1u)));
-    });
+    test::check_rungs(boxes, {boxes.begin(), boxes.end()});
 }
 
 TEST_CASE("an affine matrix makes of a box the box of the transformed half axes") {
@@ -110,7 +86,7 @@ TEST_CASE("an affine matrix makes of a box the box of the transformed half axes"
             h[0] = axis.x, h[1] = axis.y, h[2] = axis.z;
         }
     }
-    on_box_rungs([&]<Options options> {
+    test::on_rungs([&]<Options options> {
         const double before = static_cast<double>(test::entries(test::id_lists<options>(view, world_space(boxes, m)))),
                      after = static_cast<double>(test::entries(test::id_lists<options>(view, moved)));
         CHECK(before == doctest::Approx(after).epsilon(0.002));

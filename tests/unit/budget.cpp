@@ -130,16 +130,15 @@ TEST_CASE("a budget of many lights, whose weights lie close together or far apar
     const View view = test::view({640, 360}, 64);
     const auto lights = test::random_lights(3000, 7);
     Binner<> binner;
-    const auto grid = binner.bin(view, lights);
-    REQUIRE(grid);
+    const auto grid = *binner.bin(view, lights);
     Budget<> budget;
     for (const int kind : {0, 2, 3}) {
         auto weights = weights_of(lights.size(), kind, 3);
         for (std::size_t i = 0; kind == 2 && i < weights.size(); ++i)  // one float apart
             weights[i] = std::nextafter(1.0f, i % 3 == 0 ? 2.0f : 0.0f);
-        check_limit(budget, *grid, weights, {.per_cell = 40});
-        check_limit(budget, *grid, weights, {.per_frame = 5000});
-        check_limit(budget, *grid, weights, {.per_cell = 64, .per_frame = 2000});
+        check_limit(budget, grid, weights, {.per_cell = 40});
+        check_limit(budget, grid, weights, {.per_frame = 5000});
+        check_limit(budget, grid, weights, {.per_cell = 64, .per_frame = 2000});
     }
 }
 
@@ -147,16 +146,15 @@ TEST_CASE("a budget refuses too few weights, and takes more") {
     const View view = test::view({64, 64}, 32);
     const auto lights = test::random_lights(9, 1);
     Binner<> binner;
-    const auto grid = binner.bin(view, lights);
-    REQUIRE(grid);
+    const auto grid = *binner.bin(view, lights);
     Budget<> budget;
-    const auto refused = budget.limit(*grid, std::vector<float>(8), {.per_cell = 1});
+    const auto refused = budget.limit(grid, std::vector<float>(8), {.per_cell = 1});
     REQUIRE(!refused);
     CHECK(refused.error().code == ErrorCode::too_few_weights);
     CHECK(std::string(refused.error().message()).find("9 lights that were binned, and was given 8") !=
           std::string::npos);
-    CHECK(!budget.limit(*grid, {}, {}));
-    CHECK(budget.limit(*grid, std::vector<float>(10), {.per_cell = 1}));
+    CHECK(!budget.limit(grid, {}, {}));
+    CHECK(budget.limit(grid, std::vector<float>(10), {.per_cell = 1}));
     const View empty = test::view({0, 64}, 32);
     const auto nothing =
         budget.limit(*binner.bin(empty, lights), std::vector<float>(9), {.per_cell = 0, .per_frame = 0});

@@ -3,6 +3,7 @@
 
 #include <lightbin/box.hpp>
 #include <lightbin/lightbin.hpp>
+#include <lightbin/spot.hpp>
 
 #include <doctest/doctest.h>
 
@@ -199,6 +200,37 @@ Lists id_lists(const lightbin::View& view, const LightRange& lights, const light
             std::sort(list.begin(), list.end());
         }
     return lists;
+}
+
+/// Calls visit with every rung that spots and boxes have kernels of their own for.
+template <class Visit> void on_rungs(Visit visit) {
+    using namespace lightbin;
+    visit.template operator()<Options{}>();
+    visit.template operator()<Options{.footprint = Footprint::silhouette}>();
+    visit.template operator()<Options{.depth_test = DepthTest::interval}>();
+    visit.template operator()<Options{.depth_test = DepthTest::box}>();
+    visit.template operator()<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::split_box}>();
+    visit.template operator()<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
+    visit.template operator()<Options{
+        .footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::z_bins}>();
+}
+
+/// Checks that each rung lists less than three quarters of the entries of the spheres that lights are parts of, no light
+/// that rectangles leave out, and each light where it is listed alone.
+template <class Light>
+void check_rungs(const std::vector<Light>& lights, const std::vector<lightbin::Sphere>& spheres) {
+    const lightbin::View view = test::view({1283, 721}, 16);
+    const auto in_rectangles = id_lists<lightbin::Options{}>(view, lights);
+    on_rungs([&]<lightbin::Options options> {
+        const auto here = id_lists<options>(view, lights), of_spheres = id_lists<options>(view, spheres);
+        if constexpr (options.slicing != lightbin::Slicing::clusters) CHECK(is_superset(in_rectangles, here));
+        CHECK(4 * entries(here) < 3 * entries(of_spheres));
+        CHECK(entries(here) > 0);
+        const auto alone = id_lists<options>(view, std::vector<Light>{lights[1]});
+        for (std::size_t cell = 0; cell < here.size(); ++cell)
+            REQUIRE(alone[cell].size() ==
+                    static_cast<std::size_t>(std::count(here[cell].begin(), here[cell].end(), 1u)));
+    });
 }
 
 }  // namespace test

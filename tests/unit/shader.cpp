@@ -65,6 +65,18 @@ TEST_CASE("each option brings its own lines and no others") {
     CHECK(has(refusal({.language = ShaderLanguage::hlsl_5_0, .wave_loop = true}), "HLSL 6"));
     CHECK(has(text_of({.heat_map = true}), "lightbin_heat"));
     CHECK(!has(text_of({.tile_size = 16}), "/ lightbin_grid.x"));
+    // The words of a block's vectors are picked in a function alone: see ShaderWriter::declare(const ShaderBuffer&).
+    const std::string blocks = text_of({.storage = ListStorage::uniform_block,
+                                        .slicing = Slicing::clusters,
+                                        .max_tiles = 9,
+                                        .max_entries = 9,
+                                        .max_slices = 9});
+    std::size_t picks = 0;
+    for (std::size_t at = 0; (at = blocks.find(" & 3u]", at)) != blocks.npos; ++at)
+        ++picks;
+    CHECK(picks == 3);
+    for (const char* words : {"lightbin_tiles_word(uint", "lightbin_lists_word(uint", "lightbin_slices_word(uint"})
+        CHECK(has(blocks, words));
     const std::string bound = text_of({.tiles = {5}, .lists = {9}});
     CHECK(has(bound, "binding = 5"));
     CHECK(has(bound, "binding = 9"));
