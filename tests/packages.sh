@@ -51,6 +51,20 @@ install_packages() {
     rm -f "$log"
 }
 
+# fetch_npm FOLDER PACKAGE@VERSION...: npm packages in FOLDER/node_modules, fetched unless these versions are there.
+fetch_npm() {
+    fetched=$1
+    shift
+    mkdir -p "$fetched"
+    for package; do
+        # The prefix keeps it here: npm otherwise looks for a project in the folders above.
+        grep -qs '"version": "'"${package##*@}"'"' "$fetched/node_modules/${package%@*}/package.json" ||
+            npm install --prefix "$fetched" --cache "$fetched/npm.cache" --no-save --ignore-scripts --no-audit \
+                --no-fund "$@" >"$fetched/npm.log" 2>&1 ||
+            { cat "$fetched/npm.log"; fail "npm could not install $package"; }
+    done
+}
+
 # unpack_packages FOLDER PACKAGE...: the files of Debian packages, but not what they depend on, unpacked in FOLDER.
 unpack_packages() {
     unpacked=$1

@@ -16,16 +16,8 @@ command -v npm >/dev/null || install_packages npm
 make_build_folder
 sh packaging/npm/build.sh
 
-# The prefix keeps it here: npm otherwise looks for a project in the folders above.
 tests=build/playcanvas-tests
-mkdir -p $tests
-for package in playcanvas@2.23.0 playwright-core@1.65.1; do
-    grep -qs '"version": "'${package#*@}'"' $tests/node_modules/${package%@*}/package.json ||
-        npm install --prefix $tests --cache $tests/npm.cache --no-save --ignore-scripts --no-audit --no-fund \
-            playcanvas@2.23.0 playwright-core@1.65.1 >$tests/npm.log 2>&1 ||
-            { cat $tests/npm.log; fail "npm could not install $package"; }
-done
-
+fetch_npm $tests playcanvas@2.23.0 playwright-core@1.65.1
 modules=$PWD/$tests/node_modules
 export PLAYCANVAS="$modules/playcanvas" PLAYWRIGHT="$modules/playwright-core" LIGHTBIN="$PWD/build/npm/lightbin"
 case ${1-} in

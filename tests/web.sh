@@ -12,13 +12,9 @@ install_packages chromium fonts-dejavu-core nodejs g++ libtinygltf-dev
 command -v npm >/dev/null || install_packages npm
 sh examples/web.sh --build
 
-# The prefix keeps it here: npm otherwise looks for a project in the folders above.
 playwright=playwright-core@1.65.1
 tests=build/web-tests
-mkdir -p $tests
-grep -qs '"version": "'${playwright#*@}'"' $tests/node_modules/playwright-core/package.json ||
-    npm install --prefix $tests --cache $tests/npm.cache --no-save --ignore-scripts --no-audit --no-fund \
-        $playwright >$tests/npm.log 2>&1 || { cat $tests/npm.log; fail "npm could not install $playwright"; }
+fetch_npm $tests $playwright
 
 echo "$me: the lists against this machine's program"
 make -f examples/web/web.mk build/web.objects/lists >$tests/lists.log 2>&1 ||

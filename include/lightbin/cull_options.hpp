@@ -74,7 +74,7 @@ struct CullShaderOptions {
     /// same default.
     ShaderSlot lights = {0}, z_bounds = {0}, scratch = {1}, slices = {2}, bins = {2}, tiles = {2}, light_count = {3},
                order = {3}, lists = {3};
-    ShaderSlot grid = {4};                  ///< the uniform block of the constants, a ShaderCull
+    ShaderSlot grid = {4};                  ///< the uniform block with the constants, laid out as ShaderCull
     std::string_view prefix = "lightbin_";  ///< every name in the generated shader text begins with it
 };
 

@@ -255,7 +255,7 @@ void project_lights(const Camera& camera, const LightSource& source, std::uint32
             const std::uint32_t used = min_of(lanes, here - i);
             const unsigned valid = (1u << used) - 1;
             const Box* const from = whole_vector(given_boxes + i, used, padded);
-            // Sixteen boxes take 17 lines of the cache, more than processors load ahead on their own.
+            // Sixteen boxes of 68 bytes lie in 17 cache lines, more than the processor prefetches by itself.
             if constexpr (lanes == 16)
                 for (std::size_t k = 0; k < lanes * sizeof *from; k += 64)
                     LIGHTBIN_PREFETCH(reinterpret_cast<const char*>(from) + 2 * lanes * sizeof *from + k);

@@ -12,7 +12,7 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG { namespace detail {
 /// several kinds.
 enum class LightKind : std::uint8_t { sphere, spot, box, mixed };
 
-/// Whether a program has included the kernels of a kind: spot.hpp and box.hpp say so of Spots and of Boxes.
+/// Whether the kernels of a kind of lights are included. spot.hpp and box.hpp specialise it for Spots and for Boxes.
 template <LightKind kind> inline constexpr bool kernels_included = kind == LightKind::sphere;
 
 /// Whether mixed kinds can have spots, and boxes. The file that implements lightbin.h may leave out the code for either.

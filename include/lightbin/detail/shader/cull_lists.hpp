@@ -212,7 +212,7 @@ void $run(uvec2 group, uint thread) {
     writer.add("}\n");
 }
 
-/// Adds a prefix sum over the 128 numbers of a group, in `$sums` (Hillis, Steele, "Data Parallel Algorithms", 1986).
+/// Adds a prefix sum over the 128 numbers of a group, in `partial` (Hillis, Steele, "Data Parallel Algorithms", 1986).
 inline void add_scan(ShaderWriter& writer) {
     writer.declare_shared("partial", 128, false);
     add_saturated_sum(writer);
@@ -262,8 +262,8 @@ void $run(uvec2 group, uint thread) {
 )");
 }
 
-/// Adds the pass offsets: one group adds up the sums of all groups of the pass sums, and writes CullTotals. A word
-/// of each group of lights holds how many of them were rejected, and how many are in view.
+/// Adds the pass `offsets`: one work group adds up what the groups of the pass `sums` wrote, and writes CullTotals. For
+/// each 64 lights, the pass `project` left a word with the number of rejected ones and the number of those in view.
 inline void add_offsets(ShaderWriter& writer, const CullShaderOptions& options) {
     declare_scratch(writer, options);
     add_scan(writer);

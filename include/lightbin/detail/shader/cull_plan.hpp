@@ -81,7 +81,7 @@ inline void plan_transform(const FloatTransform& from, ShaderCull& to) {
     to.max_distance = from.max_distance;
 }
 
-/// Places the arrays in `scratch`, and returns their number of words.
+/// Sets where in the buffer `scratch` each of its arrays begins, and returns how many words they take in all.
 inline std::uint64_t plan_scratch(const CullShaderOptions& options, std::uint64_t cells, ShaderCull& to) {
     const std::uint64_t groups = max_of(divided_up(to.lights, 64), 1u),
                         record_words = cull_record_words(options) * 64 * groups,
