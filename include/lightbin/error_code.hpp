@@ -82,24 +82,25 @@ enum class ErrorCode : std::uint8_t {
 
 namespace detail {
 
-/// A sentence for each ErrorCode, in the order of their values.
+/// A sentence for each ErrorCode, in the order of their values. Users of C and of JavaScript read them, too: an option
+/// is called by its bare name, and no function is named.
 inline constexpr const char* error_sentences[] = {
     // View::from_projection
     "the projection matrix has a NaN or infinite entry",
     ("the matrix is neither a perspective nor an orthographic projection: its w row must read z alone, or be a "
-     "positive constant alone. Pass the projection alone, not projection times view (lights in world space go "
-     "through world_space()), and not the view matrix"),
-    ("the matrix is a projection when it is transposed: pass lightbin::matrix(numbers, layout) with the other "
-     "layout, row_major or column_major, or your type as it is where matrix.hpp lists it"),
+     "positive constant alone. Pass the projection alone, not projection times view (the view matrix goes with lights "
+     "that are in world space)"),
+    ("the matrix is a projection when it is transposed: give the layout that its numbers have in memory, row major or "
+     "column major"),
     ("the perspective matrix does not have its eye at the origin of view space: pass the projection alone, not "
-     "projection times view (lights in world space go through world_space())"),
+     "projection times view (the view matrix goes with lights that are in world space)"),
     ("the projection rotates or shears the image (its x row reads y, its y row reads x, or an orthographic row "
      "reads z). Pass the projection alone, not projection times view, and not the view matrix; where the projection "
      "itself turns the image, apply that to the pixels"),
     ("the projection has an oblique near plane (its z row reads x or y): pass the projection without it; its tiles "
      "are the same and its near plane misses no light"),
     ("the perspective projection has no near plane in front of the eye: was it made with a near distance of 0 or "
-     "less? Check the matrix's z row and ViewOptions::clip_depth"),
+     "less? Check the matrix's z row and the option clip_depth"),
     "the near plane is closer to the eye than 2^-126, the least normal float: move it away, or use smaller units",
     ("the orthographic projection's near and far plane must be at depths that floats hold: check the matrix's z "
      "row, which must read z"),
@@ -111,9 +112,10 @@ inline constexpr const char* error_sentences[] = {
     // lights
     ("the world-to-view matrix is not affine: its entries must be finite and its last row 0 0 0 1. Pass the view "
      "matrix alone, not projection times view"),
-    ("the world-to-view matrix is transposed, its last column is 0 0 0 1: pass lightbin::matrix(numbers, layout) "
-     "with the other layout, row_major or column_major, or your type as it is where matrix.hpp lists it"),
-    "{needed} lights are too many for the id type, which counts to {available}: use wider Options::ids or fewer lights",
+    ("the world-to-view matrix is transposed, its last column is 0 0 0 1: give the layout that its numbers have in "
+     "memory, row major or column major"),
+    ("{needed} lights are too many for the id type, which counts to {available}: choose a wider type by the option "
+     "ids, or use fewer lights"),
     // light grid
     ("the light index list would need {needed} entries, and 32-bit offsets reach {available}: use larger tiles, "
      "fewer slices, or Z bounds"),
@@ -122,7 +124,7 @@ inline constexpr const char* error_sentences[] = {
     "the buffer for list ranges holds {available} ranges, and {needed} are needed",
     "the buffer for light ids holds {available} ids and {needed} are needed",
     ("grids that share buffers, or that are united, must have the same numbers of columns and rows of tiles and of "
-     "slices: give their views the same viewport and tile size, and the same Slices"),
+     "slices: give their views the same viewport and tile size, and bin with the same slices"),
     ("grids with z-bins cannot be united, as each numbers the lights in its own order of depth: use tiles or clusters, "
      "or give each view a grid of its own"),
     // Z bounds
@@ -130,13 +132,14 @@ inline constexpr const char* error_sentences[] = {
     "the depth buffer holds {available} samples and {needed} are needed",
     "a depth buffer has 1 to 8 samples a pixel, not {given}",
     "the depth buffer's row pitch is {available} samples and a row of pixels has {needed}",
-    ("the Z bounds leave out the background, in front of which transparent geometry is seen, too: have "
-     "reduce_depth() write ZBoundsBuffers::transparent_max, or count the background"),
+    ("the Z bounds leave out the background, in front of which transparent geometry is seen, too: give a "
+     "buffer transparent_max when depth is reduced, or count the background"),
     // slices
     "there must be at least 1 slice, not {given}",
-    "two or more slices need a range of finite depths: 0 < first < last for exponential(), begin < end for linear()",
-    ("the boundaries of slices must be finite and ascend, and boundary {needed}, counted from 0, does not (of "
-     "exponential() and linear(): too few floats in their range for so many slices)"),
+    ("two or more slices need a range of finite depths: 0 < first < last if they are exponential, begin < end if they "
+     "are linear"),
+    ("the boundaries of slices must be finite and ascend, and boundary {needed}, counted from 0, does not (if they "
+     "are exponential or linear: too few floats lie in their range for so many slices)"),
     ("tiles times slices (of all views) are {needed} cells, and 32-bit numbers reach {available}: use larger tiles or "
      "fewer slices"),
     // arrays with one element per light
@@ -144,38 +147,36 @@ inline constexpr const char* error_sentences[] = {
     "the buffer with one element per light has {available}, and {needed} lights were binned",
     // encodings and shader text
     "the lists' format numbers {available} lights and {needed} are needed: use wider ids, or a larger max_lights",
-    ("with z-bins ids are ranks, in order of depth, so a list is not ordered by kind: look each id up in ranks().order, and "
-     "compare that with LightCounts::first_spot and first_box"),
-    ("only lists of ListEncoding::offset_count have a KindRange: set ShaderOptions::split_kinds to false, and compare "
-     "ids with LightCounts::first_spot and first_box"),
+    ("with z-bins ids are ranks, in order of depth, so a list is not ordered by kind: look each id up in the array "
+     "order, and compare what is there with first_spot and first_box"),
+    ("only lists with offsets and counts can be split into kinds: leave the option split_kinds off, and compare ids "
+     "with first_spot and first_box"),
     "the buffer for the encoded lists holds {available} bytes and {needed} are needed",
     "the buffer for bitmasks holds {available} words of 32 bits and {needed} are needed",
-    "sentinel lists need ListFormat::capacity, the lights a tile can hold",
-    "bitmasks need ListFormat::max_lights, which fixes the words a tile",
-    ("uniform blocks have a fixed size: ShaderOptions::max_tiles must be given, max_entries for offsets and counts, "
-     "and max_slices for slicing"),
+    "sentinel lists need the option capacity, the lights a tile can hold",
+    "bitmasks need the option max_lights, which fixes the words a tile",
+    ("uniform blocks have a fixed size: give the option max_tiles, for lists with offsets and counts max_entries, and "
+     "for slicing max_slices"),
     ("a uniform block would need {needed} bytes and holds {available}: use larger tiles, narrower ids or another "
-     "storage, or raise uniform_block_bytes to what the device has"),
-    ("GLSL 3.30 and GLSL ES 3.00 have no storage buffers and no compute shaders: read the lists from texel_buffer "
-     "(not ES), texture_2d or uniform_block, reduce depth in a fragment shader, and build grids with a Binner"),
-    "GLSL ES and WGSL have no buffer textures: use texture_2d, uniform_block or (not ES 3.00) storage_buffer",
-    "byte_address buffers are HLSL's: use storage_buffer",
-    "ShaderSlot::binding and set must be 0 or more, and one is {given}",
-    "ShaderOptions::views must be 1 to {available}, and is {given}",
-    "this language has no descriptor sets, register spaces or groups: ShaderSlot::set must be 0 and is {given}",
-    "push constants are Vulkan GLSL's: set ShaderOptions::push_constants to false",
+     "storage, or raise the option uniform_block_bytes to what the device has"),
+    ("GLSL 3.30 and GLSL ES 3.00 have no storage buffers and no compute shaders: read the lists from a buffer "
+     "texture (not ES), a 2D texture or a uniform block, reduce depth in a fragment shader, and bin lights on the CPU"),
+    "GLSL ES and WGSL have no buffer textures: use a 2D texture, a uniform block or (not ES 3.00) a storage buffer",
+    "byte address buffers are HLSL's: use a storage buffer",
+    "a binding and a set must be 0 or more, and one is {given}",
+    "the option views must be 1 to {available}, and is {given}",
+    "this language has no descriptor sets, register spaces or groups: each set must be 0, and one is {given}",
+    "push constants are Vulkan GLSL's: leave the option push_constants off",
     "GLSL ES 3.00 has no multisample textures: resolve the depth buffer first",
-    "grids that are built on the GPU have the depth tests none, interval and box, but not split_box",
-    ("on the GPU clusters are built with DepthTest::none or DepthTest::box, and z-bins by cull_shader(), not "
-     "build_shader()"),
-    "wave loops need GLSL 4.30, ES 3.10, Vulkan, HLSL 6 (hlsl_5_1) or WGSL",
-    "ShaderOptions::texture_width must be 1 to {available} texels, and is {needed}",
+    "grids that are built on the GPU can test depth by intervals and boxes, but not by split boxes",
+    "clusters that are built on the GPU can test depth by boxes, but not by intervals",
+    "wave loops need GLSL 4.30, ES 3.10, Vulkan, HLSL 6 (the language hlsl_5_1) or WGSL",
+    "the option texture_width must be 1 to {available} texels, and is {needed}",
     "two resources of the shader are bound to binding {needed} of set {available}",
-    ("ShaderOptions::prefix must begin a name in every language: a letter, then letters, digits and single "
+    ("the option prefix must begin a name in every language: a letter, then letters, digits and single "
      "underscores, 1000 at most, not gl_ or GL_, and not vola, which would make volatile"),
     // light grids made on the GPU
-    ("cull_shader() projects spheres and spots, not boxes: pass the boxes' bounding spheres, or bin them with a "
-     "Binner"),
+    "on the GPU spheres and spots are projected, but not boxes: pass their bounding spheres, or bin them on the CPU",
     "a grid that is built on the GPU has at most {available} slices (z-bins: 1024), not {given}",
     ("the world-to-view matrix distorts lengths by more than 32, or scales them by more than 2^20 or less than 2^-20: "
      "transform the lights to view space before they are culled"),

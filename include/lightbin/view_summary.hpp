@@ -52,12 +52,12 @@ inline Text to_string(const ViewSummary& view) {
     if (view.reversed_z) line.append(", reversed Z");
     if (view.x_flipped) line.append(", x flipped");
     if (view.y_flipped) line.append(", y flipped");
-    if (view.looks_transposed) line.append("; is it transposed? See MatrixLayout");
+    if (view.looks_transposed) line.append("; is it transposed: is its layout right?");
     if (view.looks_like_view_matrix)
         line.append("; is this the view matrix, or an identity, in place of the projection?");
     if (view.looks_turned) line.append("; upside down: degrees where radians are wanted?");
-    if (view.looks_behind) line.append("; all of it is behind the eye: is ViewOptions::reversed_z right?");
-    if (view.looks_zero_to_one) line.append("; no depth reaches -1: is ViewOptions::clip_depth right?");
+    if (view.looks_behind) line.append("; all of it is behind the eye: is the option reversed_z right?");
+    if (view.looks_zero_to_one) line.append("; no depth reaches -1: is the option clip_depth right?");
     if (view.pixels_not_square)
         line.append("; pixels are not square: is the viewport's size stale, or the aspect inverted?");
     return line;
