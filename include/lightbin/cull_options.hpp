@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The options of cull_shader(), and what plan_cull() returns: both are in shader_cull.hpp, which includes this header.
+// The options of cull_shader(), and what plan_cull() and shader_edges() return: all three are in shader_cull.hpp, which
+// includes this header.
 #pragma once
 
 #include <lightbin/options.hpp>
@@ -148,6 +149,12 @@ struct CullPlan {
     CullGroups groups[cull_pass_count] = {};  ///< by CullPass
 
     CullGroups groups_of(CullPass pass) const { return groups[static_cast<std::size_t>(pass)]; }
+};
+
+/// Two ends of an interval: the sides of a tile column or row as slopes (perspective) or view-space coordinates
+/// (orthographic), or the view depths of a slice.
+struct ShaderEdges {
+    float low, high;
 };
 
 }}  // namespace lightbin

@@ -35,7 +35,8 @@
 //   encode.hpp        the lists in other formats: 8-bit ids, sentinel-terminated lists, bitmasks
 //   budget.hpp        lists limited to a number of lights per cell or per frame, by weights
 //   grid_union.hpp    one grid for two views, such as two eyes
-//   shader_build.hpp  shader text that does steps 2 and 3 on the GPU
+//   shader_reduce.hpp  shader text that does step 2 on the GPU
+//   shader_cull.hpp   shader text that does step 3 on the GPU, of lights there
 //   advise.hpp        advise(view, lights, costs[, bounds]) measures which tile size and options are best
 //
 // Building. No compiler flags are needed. The kernels for the widest instruction set (isa.hpp) that the machine has are

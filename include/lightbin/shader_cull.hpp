@@ -7,6 +7,8 @@
 #include <lightbin/lights.hpp>
 #include <lightbin/shader.hpp>
 
+#include <vector>
+
 namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 
 /// Returns the text of one pass, a whole compute shader except for `#version`, with the buffers to bind; or an
@@ -14,8 +16,9 @@ namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
 /// CullShaderOptions and, in GLSL, `_block`; that of the constants ends in `grid_block`.
 ///
 /// After all passes, the buffers hold what a Binner's LightGrid has in ranges() and ids(), and with z-bins in
-/// ranks(): the shader text of shader_snippet() reads them. No light that the Binner lists is missing in a list,
-/// and ids ascend in each; few lists have more, see docs/gpu.md. The same input gives the same bytes on every run.
+/// ranks(): the shader text of shader_snippet() reads them. No light that reaches a cell is missing in its list, on
+/// the conditions of docs/limits.md, and ids ascend. The lists have what the Binner lists, and few have more;
+/// docs/gpu.md names the exceptions. The same input gives the same bytes on every run.
 ///
 /// If the lists have more entries than there is room for (CullRoom::entries), those that do not fit are left out:
 /// the list of the first tile that does not fit is cut, and the lists after it are empty. CullTotals::entries is
@@ -27,16 +30,23 @@ inline Result<ShaderText> cull_shader(CullPass pass, const CullShaderOptions& op
 ///
 /// options   of the texts; language, slots and prefix are not read
 /// slices    with clusters or z-bins, else null. The buffer `slices` holds shader_slices(*slices). With clusters and
-///           DepthTest::box, `z_bounds` holds shader_slabs(*slices) and behind it shader_edges(view): shader_build.hpp
+///           DepthTest::box, `z_bounds` holds shader_slabs(*slices) and behind it shader_edges(view)
 /// to_view   with options.world_space the matrix from world space to view space, else null
 ///
-/// Without clusters, `z_bounds` holds the minimum and maximum of each tile, as reduce_shader() writes them, and with
-/// DepthTest::box behind them shader_edges(view).
+/// Without clusters, `z_bounds` holds the minimum and maximum of each tile, as reduce_shader() (shader_reduce.hpp)
+/// writes them, and with DepthTest::box behind them shader_edges(view).
 ///
 /// Errors: what the options refuse; the matrix is not close enough to a rotation with a uniform scale; more than 65,535
 /// slices or 1,024 z-bins; too many lights for the ids; `scratch` would have more than 2^32 - 1 words.
 inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& options, const CullRoom& room,
                                   const Slices* slices = nullptr, const Matrix* to_view = nullptr);
+
+/// Returns the two sides of each tile column and then of each tile row, which the passes read with DepthTest::box.
+inline std::vector<ShaderEdges> shader_edges(const View& view);
+
+/// Returns the depths of the slices, which the passes read with clusters and DepthTest::box. They include the slices'
+/// margin (see Slices::with_margin()).
+inline std::vector<ShaderEdges> shader_slabs(const Slices& slices);
 
 }}  // namespace lightbin
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What shader_snippet(), reduce_shader() and build_shader() return: shader text in one of eight languages, and the list
+// What shader_snippet(), reduce_shader() and cull_shader() return: shader text in one of eight languages, and the list
 // of resources to bind for it.
 #pragma once
 

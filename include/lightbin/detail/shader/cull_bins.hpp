@@ -33,7 +33,7 @@ uint $bin_batches() {
 )");
 }
 
-/// Adds the pass bin_counts.
+/// Adds the pass bin_counts. Its loops over bins have different variables, as fxc warns if a name is declared twice.
 inline void add_bin_counts(ShaderWriter& writer, const CullShaderOptions& options) {
     declare_scratch(writer, options);
     writer.add("\n");
@@ -51,7 +51,7 @@ void $run(uvec2 group, uint thread) {
     }
     sync_group();
     uint begin = $more.w + group.x * bins;
-    for (uint counted = thread; counted < bins; counted += 64u) { $scratch[begin + counted] = atomicLoad(&$begun[counted]); }
+    for (uint done = thread; done < bins; done += 64u) { $scratch[begin + done] = atomicLoad(&$begun[done]); }
 }
 )");
 }
@@ -89,88 +89,109 @@ void $run(uvec2 group, uint thread) {
 }
 
 /// Adds the pass rank. Batch by batch, a light's rank is the next one of its bin, counted up by the lights before it in
-/// the batch that begin in the same bin. Minimum and maximum don't depend on their order, so nor do the bins.
+/// the batch that begin in the same bin. `beginning` has a bit for each light of the batch that begins in a bin: two
+/// words a bin, which are 0 between batches.
 inline void add_rank(ShaderWriter& writer, const CullShaderOptions& options) {
     const std::uint32_t words = cull_record_words(options);
     declare_scratch(writer, options);
-    writer.declare_storage("bins", writer.dialect.webgpu ? "atomic<uint>" : "uint", "", options.bins, 4);
     writer.declare_storage("order", "uint", "writeonly", options.order, 4);
     writer.add("\n");
     writer.declare_shared("next_rank", cull_max_bins, false);
-    writer.declare_shared("least", cull_max_bins, true);
-    writer.declare_shared("greatest", cull_max_bins, true);
-    writer.declare_shared("keys", 64, false);
+    writer.declare_shared("beginning", 2 * cull_max_bins, true);
     add_key_of(writer, options);
     writer.add(R"(
 void $run(uvec2 group, uint thread) {
     uint bins = $grid.z;
     for (uint bin = thread; bin < bins; bin += 64u) {
         $next_rank[bin] = $scratch[$more.w + group.x * bins + bin] + $scratch[$more.w + $segments.w * bins + bin];
-        atomicStore(&$least[bin], 0xffffffffu);
-        atomicStore(&$greatest[bin], 0u);
+        atomicStore(&$beginning[2u * bin], 0u);
+        atomicStore(&$beginning[2u * bin + 1u], 0u);
     }
+    sync_group();
     uint batches = $bin_batches();
     for (uint batch = 0u; batch < batches; batch += 1u) {
         uint id = (group.x * batches + batch) * 64u + thread;
         uint key = $key_of(id);
         uint first = key & 0xffffu;
-        $keys[thread] = first;
+        bool seen = key != 0xffffffffu;
+        if (seen) { atomicOr(&$beginning[2u * first + (thread >> 5u)], 1u << (thread & 31u)); }
         sync_group();
         uint before = 0u;
         uint same = 0u;
-        for (uint i = 0u; i < 64u; i += 1u) {
-            if ($keys[i] == first) {
-                same += 1u;
-                if (i < thread) { before += 1u; }
-            }
+        uint rank = 0u;
+        if (seen) {
+            uint low = atomicLoad(&$beginning[2u * first]);
+            uint high = atomicLoad(&$beginning[2u * first + 1u]);
+            uint bits_below = (1u << (thread & 31u)) - 1u;
+            same = uint(bitCount(low)) + uint(bitCount(high));
+            before = uint(bitCount(low & bits_below));
+            if (thread >= 32u) { before = uint(bitCount(low)) + uint(bitCount(high & bits_below)); }
+            rank = $next_rank[first] + before;
         }
-        uint rank = before;
-        if (key != 0xffffffffu) { rank += $next_rank[first]; }
         sync_group();
-        if (key != 0xffffffffu) {
-            if (before == 0u) { $next_rank[first] += same; }
+        if (seen) {
+            if (before == 0u) {
+                $next_rank[first] += same;
+                atomicStore(&$beginning[2u * first], 0u);
+                atomicStore(&$beginning[2u * first + 1u], 0u);
+            }
             $order[rank] = id;
             uint record = $places.x + id * )" + std::to_string(words) + R"(u;
             uint ranked = $places.y + rank * )" + std::to_string(words) + R"(u;
             for (uint word = 0u; word < )" + std::to_string(words) + R"(u; word += 1u) {
                 $scratch[ranked + word] = $scratch[record + word];
             }
-            for (uint met = first; met <= key >> 16u; met += 1u) {
-                atomicMin(&$least[met], rank);
-                atomicMax(&$greatest[met], rank);
-            }
         }
         sync_group();
-    }
-    for (uint used = thread; used < bins; used += 64u) {
-        uint least = atomicLoad(&$least[used]);
-        if (least != 0xffffffffu) {
-            atomicMin(&$bins[2u * used], least);
-            atomicMax(&$bins[2u * used + 1u], atomicLoad(&$greatest[used]));
-        }
     }
 }
 )");
 }
 
-/// Adds the pass masks: marks the mask blocks of the lights by rank.
+/// Adds the pass masks: marks the mask blocks of the lights by rank, and finds the range of ranks of each bin. A group
+/// has 64 ranks, which begin in ascending bins, so few bins meet them. Minimum and maximum don't depend on which group
+/// comes first, so nor do the bins.
 inline void add_masks(ShaderWriter& writer, const CullShaderOptions& options) {
     declare_scratch(writer, options);
+    writer.declare_storage("bins", writer.dialect.webgpu ? "atomic<uint>" : "uint", "", options.bins, 4);
     writer.add("\n");
+    writer.declare_shared("met_bins", 64, false);
+    writer.declare_shared("last_bin", 1, true);
     add_masks_of_group(writer, options);
     writer.add(R"(
 void $run(uvec2 group, uint thread) {
     uint number = group.y * 32768u + group.x;
     uint rank = number * 64u + thread;
+    if (thread == 0u) { atomicStore(&$last_bin[0], 0u); }
     $clear_masks(thread);
     sync_group();
+    uint met = 0xffffu;
     if (rank < $scratch[2]) {
         uint record = $places.y + rank * )" + std::to_string(cull_record_words(options)) + R"(u;
         uint first = $scratch[record];
         uint last = $scratch[record + 1u];
         $mark(thread, uvec2(first & 0xffffu, last & 0xffffu), uvec2(first >> 16u, last >> 16u), uvec2(0u, 0u));
+        met = $scratch[record + 2u];
+        atomicMax(&$last_bin[0], met >> 16u);
     }
+    $met_bins[thread] = met;
     sync_group();
+    uint last_bin = atomicLoad(&$last_bin[0]);
+    for (uint bin = ($met_bins[0] & 0xffffu) + thread; bin <= last_bin; bin += 64u) {
+        uint least = 64u;
+        uint greatest = 0u;
+        for (uint i = 0u; i < 64u; i += 1u) {
+            uint ends = $met_bins[i];
+            if ((ends & 0xffffu) <= bin && bin <= ends >> 16u) {
+                least = min(least, i);
+                greatest = i;
+            }
+        }
+        if (least < 64u) {
+            atomicMin(&$bins[2u * bin], number * 64u + least);
+            atomicMax(&$bins[2u * bin + 1u], number * 64u + greatest);
+        }
+    }
     uint groups = max(($segments.x + 63u) >> 6u, 1u);
     if (number < groups) { $write_masks(number, thread); }
 }

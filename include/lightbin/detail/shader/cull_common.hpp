@@ -34,8 +34,10 @@ constexpr unsigned cull_threads(CullPass pass) {
 
 /// How many words of `scratch` a light takes: its rectangle, its slices, and what the depth test reads.
 inline std::uint32_t cull_record_words(const CullShaderOptions& options) {
-    return 2u + (options.slicing == Slicing::none ? 0u : 1u) +
-           (options.depth_test == DepthTest::none ? 0u : options.depth_test == DepthTest::box ? 4u : 2u);
+    const std::uint32_t words = options.slicing == Slicing::none ? 2u : 3u;
+    if (options.depth_test == DepthTest::none) return words;
+    if (options.depth_test != DepthTest::box) return words + 2;
+    return words + (options.kind == CullKind::spot ? 20u : 4u);
 }
 
 /// Declares the members of ShaderCull, without those that lights in view space don't need.

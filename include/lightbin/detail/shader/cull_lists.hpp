@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The passes count, sums, offsets and fill: they make the lists of all cells from the lights' rectangles and masks.
 //
-// A group of 64 invocations has the cells of 8x8 tiles, one each. All go through the lights of the mask block that the
-// cells lie in together, by ascending id, so the lists ascend, and which invocation is faster makes no difference. The
+// A group of 64 invocations has the cells of 8x8 tiles, one each. The lights of the mask block that these lie in are
+// staged in shared memory by ascending id, those of 1,024 at a time: an invocation reads the records of those in half a
+// word of the mask, and keeps which of the 8x8 tiles each covers. For each column and each row of tiles, a word has the
+// bits of those of 32 staged lights that cover it: a tile's lights are its column's word AND its row's. An invocation
+// takes them from the lowest bit on, so the lists ascend, and which invocation is faster makes no difference. The
 // lights are divided into segments, so that there are enough groups where there are few cells: the counts of a cell's
 // segments are added up to where each segment's part of the list begins.
 #pragma once
@@ -34,6 +37,26 @@ vec2 $depths_of(uint place) {
     return vec2()") + (max_only ? "-1e30" : "$finite(z.x, -1e30)") + ", $finite(z.y, 1e30));\n}\n");
 }
 
+/// Adds `meets_half_space`, which tells whether a box has a point p with  n.p <= most:  whether its least n.p is one.
+/// The Binner compares with the cell in place of the box around it, which lists fewer lights, but never one more. Its n
+/// differs from this one by less than 2^-14 in each coordinate, see add_half_spaces(), for which a part of the box's
+/// size makes up.
+inline void add_half_space(ShaderWriter& writer) {
+    writer.add(R"(
+float $least(float n, vec2 ends) {
+    vec2 far = clamp(ends, vec2(-1e18, -1e18), vec2(1e18, 1e18));
+    return min(n * far.x, n * far.y) - max(abs(far.x), abs(far.y)) * 6.1035156e-5;
+}
+
+bool $meets_half_space(uint at, vec2 columns, vec2 rows, vec2 z) {
+    float least = $least(uintBitsToFloat($scratch[at]), columns);
+    least += $least(uintBitsToFloat($scratch[at + 1u]), rows);
+    least += $least(uintBitsToFloat($scratch[at + 2u]), z);
+    return least <= uintBitsToFloat($scratch[at + 3u]);
+}
+)");
+}
+
 /// Adds the functions with which DepthTest::box finds a cell's view-space box, as engine/cell_boxes.hpp does, and the
 /// function `meets_box`. In perspective the sides of a cell are slopes, which a depth multiplies.
 ///
@@ -53,6 +76,7 @@ vec2 $across(vec2 sides, vec2 z) {
 }
 )");
     }
+    if (options.kind == CullKind::spot) add_half_space(writer);
     writer.add(R"(
 float $apart(float at, vec2 ends) {
     return max(max(ends.x - at, at - ends.y), 0.0);
@@ -63,32 +87,122 @@ bool $meets_box(uint at, vec2 columns, vec2 rows, vec2 z) {
     float x = $apart(uintBitsToFloat($scratch[at]), columns);
     float y = $apart(uintBitsToFloat($scratch[at + 1u]), rows);
     float d = $apart(uintBitsToFloat($scratch[at + 2u]), z);
-    return radius < 0.0 || x * x + y * y + d * d <= radius * radius * 1.0000038 + 8.2718061e-25;
-}
-)");
+    bool met = radius < 0.0 || x * x + y * y + d * d <= radius * radius * 1.0000038 + 8.2718061e-25;
+)" + std::string(options.kind == CullKind::spot ? R"(    if (met && radius >= 0.0) {
+        for (uint i = 4u; i < 20u; i += 4u) { met = met && $meets_half_space(at + i, columns, rows, z); }
+    }
+)" : "") + "    return met;\n}\n");
 }
 
-/// Adds `meets`, which tells whether the cell of a tile, in a slice, has the light whose record begins at `at`.
+/// Adds `tiles_met` by the light whose record begins at `at`, among the 8x8 tiles from `corner` on: a bit for each
+/// column and, from bit 8 on, for each row of its rectangle; 0 where the slice is none of the light's. And for depth
+/// tests `meets`, which tells whether a cell between the depths z, in a tile of the rectangle, has the light.
 inline void add_meets(ShaderWriter& writer, const CullShaderOptions& options) {
-    const bool clusters = options.slicing == Slicing::clusters, box = options.depth_test == DepthTest::box,
-               interval = options.depth_test == DepthTest::interval;
+    const bool clusters = options.slicing == Slicing::clusters, box = options.depth_test == DepthTest::box;
     const std::string depths = options.slicing == Slicing::none ? "2u" : "3u";
-    writer.add(std::string("\nbool $meets(uint at, uvec2 tile") + (clusters ? ", uint slice" : "") +
-               (box ? ", vec2 columns, vec2 rows" : "") + (box || interval ? ", vec2 z" : "") + R"() {
+    writer.add(std::string(R"(
+// The bits from the tile `first` to the tile `last`, of 8 tiles from `begin` on.
+uint $bits_of(uint first, uint last, uint begin) {
+    uint low = max(first, begin) - begin;
+    uint end = min(last + 1u, begin + 8u) - min(last + 1u, begin);
+    uint result = 0u;
+    if (low < end) { result = (1u << end) - (1u << low); }
+    return result;
+}
+
+uint $tiles_met(uint at, uvec2 corner, uint slice) {
     uint first = $scratch[at];
     uint last = $scratch[at + 1u];
-    bool met = tile.x >= (first & 0xffffu) && tile.y >= (first >> 16u) && tile.x <= (last & 0xffffu) &&
-               tile.y <= (last >> 16u);
+    uint bits = $bits_of(first & 0xffffu, last & 0xffffu, corner.x) |
+                ($bits_of(first >> 16u, last >> 16u, corner.y) << 8u);
+)") + (clusters ? R"(    uint slices = $scratch[at + 2u];
+    if (slice < (slices & 0xffffu) || slice > slices >> 16u) { bits = 0u; }
+)" : "") + "    return bits;\n}\n");
+    if (options.depth_test == DepthTest::none) return;
+    writer.add(std::string("\nbool $meets(uint at, ") + (box ? "vec2 columns, vec2 rows, " : "") + "vec2 z) {\n" +
+               (box ? "    return $meets_box(at + " + depths + ", columns, rows, z);\n}\n"
+                    : "    return uintBitsToFloat($scratch[at + " + depths +
+                          "]) <= z.y && uintBitsToFloat($scratch[at + " + depths + " + 1u]) >= z.x;\n}\n"));
+}
+
+/// The place of a light's record in `scratch`; `id` is an expression of its id, with z-bins of its rank.
+inline std::string cull_record_of(const CullShaderOptions& options, const std::string& id) {
+    return (options.slicing == Slicing::z_bins ? "$places.y + " : "$places.x + ") + id + " * " +
+           std::to_string(cull_record_words(options)) + "u";
+}
+
+inline void declare_stage(ShaderWriter& writer) {
+    writer.declare_shared("words", 32, false);         // of the mask
+    writer.declare_shared("lights_in", 8, false);      // how many lights each word has; a byte each
+    writer.declare_shared("staged", 1024, false);      // lights, and in the upper half the result of tiles_met
+    writer.declare_shared("column_bits", 256, false);  // of each 32 staged lights, those in each of 8 columns
+    writer.declare_shared("row_bits", 256, false);
+}
+
+/// Adds `stage`: a group stages the lights of 32 words of a mask block, from word `first` on, and finds those
+/// of each column and row of the 8x8 tiles from `corner` on. It returns how many words of 32 lights they fill; bits
+/// beyond the last light are 0. What is staged stays until the next call.
+inline void add_stage(ShaderWriter& writer, const CullShaderOptions& options) {
+    writer.add(R"(
+uint $stage(uint first, uint mask_block, uvec2 corner, uint slice, uint thread) {
+    if (thread < 8u) {
+        uint mask_blocks = $blocks.x * $blocks.y * )" + std::string(cull_layers(options)) + R"(;
+        uint word_count = (($segments.x + 63u) >> 6u) * 2u;
+        uint counts = 0u;
+        for (uint i = 0u; i < 4u; i += 1u) {
+            uint own = 0u;
+            uint word = first + thread * 4u + i;
+            if (word < word_count) { own = $scratch[$places.z + word * mask_blocks + mask_block]; }
+            $words[thread * 4u + i] = own;
+            counts |= uint(bitCount(own)) << (i * 8u);
+        }
+        $lights_in[thread] = counts;
+    }
+    sync_group();
+    uint word = thread >> 1u;
+    uint bits = $words[word];
+    uint at = 0u;
+    if ((thread & 1u) == 0u) { bits &= 0xffffu; }
+    else {
+        at = uint(bitCount(bits & 0xffffu));
+        bits &= 0xffff0000u;
+    }
+    // The product with 0x1010101 has the sum of the four bytes in its upper byte.
+    uint lights = 0u;
+    for (uint i = 0u; i < 8u; i += 1u) {
+        uint counts = $lights_in[i];
+        uint before = 0u;
+        if (i < (word >> 2u)) { before = counts; }
+        if (i == word >> 2u) { before = counts & ((1u << ((word & 3u) * 8u)) - 1u); }
+        lights += (counts * 0x1010101u) >> 24u;
+        at += (before * 0x1010101u) >> 24u;
+    }
+    while (bits != 0u) {
+        uint light = word * 32u + uint(findLSB(bits));
+        bits &= bits - 1u;
+        uint record = )" + cull_record_of(options, "(first * 32u + light)") + R"(;
+        $staged[at] = light | ($tiles_met(record, corner, slice) << 16u);
+        at += 1u;
+    }
+    sync_group();
+    uint filled = (lights + 31u) >> 5u;
+    for (uint i = thread; i < filled * 8u; i += 64u) {
+        uint begin = (i >> 3u) * 32u;
+        uint end = min(begin + 32u, lights);
+        uint in_column = 0u;
+        uint in_row = 0u;
+        for (uint next = begin; next < end; next += 1u) {
+            uint tiles = $staged[next] >> (16u + (i & 7u));
+            in_column |= (tiles & 1u) << (next & 31u);
+            in_row |= ((tiles >> 8u) & 1u) << (next & 31u);
+        }
+        $column_bits[i] = in_column;
+        $row_bits[i] = in_row;
+    }
+    sync_group();
+    return filled;
+}
 )");
-    if (clusters)
-        writer.add(R"(    uint slices = $scratch[at + 2u];
-    met = met && slice >= (slices & 0xffffu) && slice <= (slices >> 16u);
-)");
-    if (interval)
-        writer.add("    met = met && uintBitsToFloat($scratch[at + " + depths +
-                   "]) <= z.y && uintBitsToFloat($scratch[at + " + depths + " + 1u]) >= z.x;\n");
-    if (box) writer.add("    if (met) { met = $meets_box(at + " + depths + ", columns, rows, z); }\n");
-    writer.add("    return met;\n}\n");
 }
 
 /// The lines that find the cell's depths and box. `lit` is false where the cell has no depth at all.
@@ -141,16 +255,16 @@ inline void add_lists(ShaderWriter& writer, const CullShaderOptions& options, bo
                                narrow ? "" : "writeonly", options.lists, 4);
     }
     writer.add("\n");
-    writer.declare_shared("words", 32, false);
+    declare_stage(writer);
     if (depths) add_cell_depths(writer, options);
     if (box) add_cell_box(writer, options);
     add_meets(writer, options);
+    add_stage(writer, options);
     if (fill) {
         add_saturated_sum(writer);
         add_store_id(writer, options);
     }
-    const std::string records = options.slicing == Slicing::z_bins ? "$places.y" : "$places.x",
-                      layer_count = clusters ? "$grid.z" : "1u";
+    const std::string layer_count = clusters ? "$grid.z" : "1u";
     writer.add(R"(
 void $run(uvec2 group, uint thread) {
     uint number = group.y * 32768u + group.x;
@@ -165,7 +279,6 @@ void $run(uvec2 group, uint thread) {
     bool inside = segment < $segments.y && tile.x < $grid.x && tile.y < $grid.y;
     uint cells = $grid.x * $grid.y * )" + layer_count + R"(;
     uint place = (slice * $grid.y + tile.y) * $grid.x + tile.x;
-    uint mask_blocks = $blocks.x * $blocks.y * )" + cull_layers(options) + R"(;
     uint mask_block = ((slice >> $blocks.w) * $blocks.y + (corner.y >> $blocks.z)) * $blocks.x;
     mask_block += corner.x >> $blocks.z;
 )" + cull_cell(options));
@@ -182,32 +295,21 @@ void $run(uvec2 group, uint thread) {
 )");
     else
         writer.add("    uint count = 0u;\n");
-    writer.add(R"(    uint word_count = (($segments.x + 63u) >> 6u) * 2u;
-    for (uint step = 0u; step < $segments.z; step += 1u) {
+    writer.add(R"(    for (uint step = 0u; step < $segments.z; step += 1u) {
         uint first = (segment * $segments.z + step) * 32u;
-        if (thread < 32u) {
-            uint own = 0u;
-            uint word = first + thread;
-            if (word < word_count) { own = $scratch[$places.z + word * mask_blocks + mask_block]; }
-            $words[thread] = own;
-        }
-        sync_group();
-        for (uint i = 0u; i < 32u; i += 1u) {
-            uint bits = $words[i];
-            while (bits != 0u) {
-                uint id = (first + i) * 32u + uint(findLSB(bits));
-                bits &= bits - 1u;
-                bool met = lit && $meets()" + records + " + id * " + std::to_string(cull_record_words(options)) +
-               "u, tile" + (clusters ? ", slice" : "") + (box ? ", columns, rows" : "") + (depths ? ", z" : "") +
-               ");\n" +
-               (fill ? "                if (met) {\n                    $store_id(at, id);\n"
-                       "                    at = $sum(at, 1u);\n                }\n"
-                     : "                if (met) { count += 1u; }\n") +
-               R"(            }
-        }
-        sync_group();
-    }
-)");
+        uint staged_words = $stage(first, mask_block, corner, slice, thread);
+        for (uint i = 0u; i < staged_words; i += 1u) {
+            uint met = $column_bits[i * 8u + (thread & 7u)] & $row_bits[i * 8u + (thread >> 3u)];
+            if (!lit) { met = 0u; }
+)" + (fill || depths ? R"(            while (met != 0u) {
+                uint id = first * 32u + ($staged[i * 32u + uint(findLSB(met))] & 0xffffu);
+                met &= met - 1u;
+)" + (depths ? "                if (!$meets(" + cull_record_of(options, "id") + (box ? ", columns, rows" : "") +
+                   ", z)) { continue; }\n" : std::string()) +
+               (fill ? "                $store_id(at, id);\n                at = $sum(at, 1u);\n"
+                     : "                count += 1u;\n") + "            }\n"
+                             : std::string("            count += uint(bitCount(met));\n")) +
+               "        }\n    }\n");
     if (!fill) writer.add("    if (inside) { $scratch[$places.w + segment * cells + place] = count; }\n");
     writer.add("}\n");
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// plan_cull(): the constants, sizes and group counts of the passes that make a light grid on the GPU.
+// The data of the passes that make a light grid on the GPU: plan_cull() has the constants, sizes and group counts, and
+// shader_edges() and shader_slabs() what a buffer holds.
 #pragma once
 
 #include <lightbin/detail/base/float_environment.hpp>
 #include <lightbin/detail/base/rounding.hpp>
+#include <lightbin/detail/engine/cell_boxes.hpp>
 #include <lightbin/detail/shader/cull_common.hpp>
 #include <lightbin/cull_options.hpp>
 #include <lightbin/lights.hpp>
@@ -39,12 +41,14 @@ inline void plan_blocks(ShaderCull& to, bool clusters) {
     }
 }
 
-/// Sets an image axis. The margin covers, with u = 2^-24, what the GPU's arithmetic and the Binner's are apart; see
-/// cull_project.hpp. As in ImageAxis::margin the last term is for denormal numbers that are flushed to zero.
+/// Sets an image axis. The margin, derived at `span` in cull_project.hpp, is the Binner's and what the GPU's arithmetic
+/// and the Binner's are apart. As in ImageAxis::margin the last term is for denormal numbers that are flushed to zero.
 inline void plan_axis(const ImageAxis& axis, float& scale, float& offset, float& margin, float& limit) {
     scale = static_cast<float>(axis.scale);
     offset = static_cast<float>(axis.offset);
-    margin = float_above(0x1.4p-18 * (abs_of(axis.offset) + axis.tiles) + 0x1p-60 * axis.scale);
+    const double tiles = axis.tiles, farthest = max_of(abs_of(axis.offset), abs_of(tiles - axis.offset));
+    margin = float_above(static_cast<double>(axis.margin) + 0x1.7p-19 * farthest +
+                         0x1p-21 * (abs_of(axis.offset) + tiles) + 0x1p-60 * axis.scale);
     limit = axis.limit;
 }
 
@@ -173,6 +177,30 @@ inline Result<CullPlan> plan_cull(const View& view, const CullShaderOptions& opt
     set(CullPass::offsets, 1);
     set(CullPass::fill, blocks * to.segments);
     return plan;
+}
+
+inline std::vector<ShaderEdges> shader_edges(const View& view) {
+    const detail::DefaultFloatEnvironment environment;
+    std::vector<ShaderEdges> edges;
+    const detail::Camera& camera = detail::camera_of(view);
+    for (const detail::ImageAxis* axis : {&camera.x, &camera.y})
+        for (int tile = 0; tile < axis->tiles; ++tile) {
+            edges.emplace_back();
+            detail::tile_edges(*axis, tile, edges.back().low, edges.back().high);
+        }
+    return edges;
+}
+
+inline std::vector<ShaderEdges> shader_slabs(const Slices& slices) {
+    const detail::SliceTable& table = table_of(slices);
+    std::vector<ShaderEdges> slabs;
+    float low = -detail::infinity;
+    for (const float boundary : table.boundaries()) {
+        slabs.push_back({low, table.farther(boundary)});
+        low = table.nearer(boundary);
+    }
+    slabs.push_back({low, detail::infinity});
+    return slabs;
 }
 
 }}  // namespace lightbin

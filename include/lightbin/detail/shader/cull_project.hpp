@@ -136,9 +136,14 @@ vec2 $clipped(float c, float z, float r, float n) {
 }
 
 /// Adds `bounds_of` a sphere along an image axis, and `span`, the first and last tile of bounds; first > last if
-/// there is none. A slope is off by 28u; the scale, rounded, and two operations add 5u, the offset, rounded, u and
-/// the sums 2u each: in the viewport, where |scale slope| <= |offset| + tiles, 38u of that. The Binner's own edge
-/// lies within 30u of the exact one, its margin included. The margin, 80u, is more than both together.
+/// there is none.
+///
+/// An edge at x = p + offset tiles in the viewport, where p = scale slope, has a |p| of at most F, the greater one of
+/// |offset| and |tiles - offset|. The GPU's slope is off by 28u of itself, the rounded scale by u and the product by
+/// 2u, together 31u F; the rounded offset by u |offset|, and the two sums by 2u tiles each. The Binner's slope is off
+/// by 10u, scale and product by u each, together 12u F; its offset by u |offset|, its two sums by u tiles each. So
+/// beyond the Binner's own margin, by which it moves its edges outward, the GPU's must be 43u F + 2u |offset| + 6u
+/// tiles. It is 46u F + 8u (|offset| + tiles), see plan_axis(); the rest is for products of errors.
 inline void add_span(ShaderWriter& writer, const CullShaderOptions& options) {
     if (options.orthographic) {
         writer.add("\nvec2 $bounds_of(float c, float z, float r) {\n    return vec2(c - r, c + r);\n}\n");
@@ -196,8 +201,9 @@ uvec2 $slices_of(vec2 z) {
 }
 
 /// The lines that store what the depth test compares, from word `word` of the record on: the light's view depths,
-/// moved outward by more than the Binner's and the GPU's are apart, or for boxes its sphere. A radius of -1 stands
-/// for a light that counts as everywhere.
+/// moved outward by more than the Binner's and the GPU's are apart, or for boxes its sphere, behind which `project`
+/// has put a spot's half spaces. A radius of -1 stands for a light that boxes don't exclude: one that counts as
+/// everywhere, or a spot that is not sound.
 inline std::string cull_depth_record(const CullShaderOptions& options, const std::string& word) {
     const auto put = [&](const char* index, const char* value) {
         return "    $scratch[record + " + word + " + " + index + "u] = floatBitsToUint(" + value + ");\n";
@@ -205,8 +211,8 @@ inline std::string cull_depth_record(const CullShaderOptions& options, const std
     if (options.depth_test == DepthTest::interval)
         return put("0", "z.x - abs(z.x) * 4.7683716e-7 - 1e-37") + put("1", "z.y + abs(z.y) * 4.7683716e-7 + 1e-37");
     if (options.depth_test == DepthTest::box)
-        return "    if (state == 1u) { tested.w = -1.0; }\n" + put("0", "tested.x") + put("1", "tested.y") +
-               put("2", "tested.z") + put("3", "tested.w");
+        return "    if (!bounded) { s.w = -1.0; }\n" + put("0", "s.x") + put("1", "s.y") + put("2", "s.z") +
+               put("3", "s.w");
     return "";
 }
 
@@ -215,6 +221,7 @@ inline void add_project(ShaderWriter& writer, const CullShaderOptions& options) 
     const bool sliced = options.slicing != Slicing::none,
                marks = options.slicing != Slicing::z_bins, box = options.depth_test == DepthTest::box,
                spots = options.kind == CullKind::spot;
+    const std::string depths = sliced ? "3u" : "2u";  // where in a record what the depth test reads begins
     writer.declare_storage("lights", "uint", "readonly", options.lights, 4);
     declare_scratch(writer, options);
     if (sliced) writer.declare_storage("slices", "uint", "readonly", options.slices, 4);
@@ -233,23 +240,25 @@ inline void add_project(ShaderWriter& writer, const CullShaderOptions& options) 
 // Projects a light, writes its record, and returns what it adds to the tally.
 uint $project(uint id, uint thread) {
     uint at = id * )" + std::to_string(options.lights_at.stride) + R"(u;
+    uint record = $places.x + id * )" + std::to_string(cull_record_words(options)) + R"(u;
     uint state = $state_of(at);
     vec4 s = vec4(0.0, 0.0, 0.0, 1.0);
     if (state == 2u) {
         s = $sphere_at(at);
         if (max(max(abs(s.x), abs(s.y)), max(abs(s.z), s.w)) > 1.0995116e12) { state = 1u; }
     }
-)" + (box ? "    vec4 tested = s;\n" : "") + R"(    bool seen = state == 1u;
+)" + (box ? "    bool bounded = state == 2u;\n" : "") + R"(    bool seen = state == 1u;
     vec2 x = vec2(-1e30, 1e30);
     vec2 y = x;
     vec2 z = x;
     if (state == 2u) {
         z = vec2(s.z - s.w, s.z + s.w);
 )" + std::string(spots ? "        $spot spot = $spot_at(at, s);\n        z = spot.depths;\n" : "") +
-               (spots && box ? "        tested = spot.least;\n" : "") +
+               (spots && box ? "        bounded = spot.sound;\n" : "") +
                R"(        seen = z.y >= $planes.y && z.x <= $planes.z;
         if (seen) {
-)" + (spots ? R"(            vec4 bounds = $bounds_of_spot(spot);
+)" + (spots && box ? "            $store_half_spaces(record + " + depths + " + 4u, spot);\n" : "") +
+               (spots ? R"(            vec4 bounds = $bounds_of_spot(spot);
             x = bounds.xy;
             y = bounds.zw;
 )" : R"(            x = $bounds_of(s.x, s.z, s.w);
@@ -263,13 +272,12 @@ uint $project(uint id, uint thread) {
         columns = uvec2(1u, 0u);
         rows = columns;
     }
-    uint record = $places.x + id * )" + std::to_string(cull_record_words(options)) + R"(u;
     $scratch[record] = columns.x | (rows.x << 16u);
     $scratch[record + 1u] = columns.y | (rows.y << 16u);
 )" + (sliced ? "    uvec2 layers = $slices_of(z);\n    if (state == 1u) { layers = uvec2(0u, $slices[3]); }\n"
                        "    $scratch[record + 2u] = layers.x | (layers.y << 16u);\n"
              : "    uvec2 layers = uvec2(0u, 0u);\n") +
-               cull_depth_record(options, sliced ? "3u" : "2u") +
+               cull_depth_record(options, depths) +
                (marks ? "    if (seen) { $mark(thread, columns, rows, layers); }\n" : "") + R"(    uint result = 0u;
     if (seen) { result = 0x10000u; }
     if (state == 0u) { result = 1u; }

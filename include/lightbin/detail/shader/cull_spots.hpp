@@ -21,7 +21,8 @@ inline void add_spot_state(ShaderWriter& writer, const CullLayout& layout) {
 
 /// Adds the struct of a spot and the function `spot_at`, which reads one whose ball is given. A spot that counts as
 /// its ball has the axis 0, the cosine 0, the sine 1 and the tolerance 0. `least` is the least sphere around the
-/// spot, or its ball where that is hardly larger; `depths` are the spot's view depths.
+/// spot, or its ball where that is hardly larger; `depths` are the spot's view depths. Where `sound` is false, the
+/// Binner may have the least sphere in place of the spot.
 inline void add_spot_at(ShaderWriter& writer, const CullShaderOptions& options) {
     const auto number = [&](std::uint32_t offset) {
         return "uintBitsToFloat($lights[at + " + std::to_string(offset) + "u])";
@@ -37,6 +38,7 @@ struct $spot {
     float tolerance;
     float size;
     vec2 depths;
+    bool sound;
 };
 
 // How far a spot reaches from its apex in a direction; the lengths of its unit axis along the direction and across it.
@@ -50,11 +52,11 @@ $spot $spot_at(uint at, vec4 ball) {
     vec3 axis = vec3()" + number(axis) + ", " + number(axis + 1) + ", " + number(axis + 2) + R"();
     float cosine = )" + number(options.lights_at.cosine) + R"(;
     float length1 = abs(axis.x) + abs(axis.y) + abs(axis.z);
-    bool cone = cosine > -0.75 && length1 >= 9.5367432e-7 && length1 <= 1048576.0;
+    bool sound = length1 >= 9.5367432e-7 && length1 <= 1048576.0;
     float tolerance = ball.w * 1.5258789e-5;
 )" + (options.world_space ? "    tolerance += ball.w * min($column_z.w, 2.0) + max(ball.w - " +
                                 number(options.lights_at.radius) + " * $origin.w, 0.0);\n"
-                                "    if ($column_z.w > 1.0) { cone = false; }\n"
+                                "    if ($column_z.w > 1.0) { sound = false; }\n"
                                 "    axis = $column_x.xyz * axis.x + $column_y.xyz * axis.y + $column_z.xyz * axis.z;\n"
                           : std::string()) +
                R"(    $spot s;
@@ -65,7 +67,8 @@ $spot $spot_at(uint at, vec4 ball) {
     s.sine = 1.0;
     s.tolerance = 0.0;
     s.size = abs(ball.x) + abs(ball.y) + abs(ball.z) + ball.w;
-    if (cone) {
+    s.sound = sound && s.size <= 1.0995116e12 && )" + number(options.lights_at.radius) + R"( >= 9.094947e-13;
+    if (sound && cosine > -0.75) {
         s.axis = axis * $signs.xyz * $quotient(1.0, $root(axis.x * axis.x + axis.y * axis.y + axis.z * axis.z));
         s.cosine = cosine;
         s.sine = $root((1.0 - cosine) * (1.0 + cosine) + 1e-37);
@@ -82,6 +85,45 @@ $spot $spot_at(uint at, vec4 ball) {
     float across = $root(s.axis.x * s.axis.x + s.axis.y * s.axis.y + 1e-37);
     s.depths = vec2(ball.z - $reach(s, -s.axis.z, across), ball.z + $reach(s, s.axis.z, across));
     return s;
+}
+)");
+}
+
+/// Adds `store_half_spaces`, which writes the four half spaces around a spot's cone, as store_planes() of
+/// project/spot_vectors.inl does, where they are derived. Each is a vec4 (n, most) of the points p with  n.p <= most.
+///
+/// Rounding, u = 2^-24. The Binner's axis is off by at most 18u of what exact arithmetic has, and this one by 32u: the
+/// root's sum 3u, the root 9u, the quotient 5u, two products 4u, and the transform, of which six operations of 2u each
+/// add 11u. So both axes are at most 50u apart; e and f, whose derivatives are at most 4, are at most 200u apart and
+/// their own 30u, and n at most 270u. With the box's size in meets_half_space(), 2^-14 = 1024u of the spot's size is
+/// more than that and what the Binner adds. `tolerance` is four times the Binner's, which is for the apex.
+///
+/// Both choose e and f by the sign of the axis' z. After a transform, that may not be the same where z is nearly 0:
+/// there the half spaces are others than the Binner's, and as good.
+inline void add_half_spaces(ShaderWriter& writer) {
+    writer.add(R"(
+void $store_half_spaces(uint at, $spot s) {
+    float side = 1.0;
+    if (s.axis.z < 0.0) { side = -1.0; }
+    float p = $quotient(-1.0, side + s.axis.z);
+    float q = s.axis.x * s.axis.y * p;
+    vec3 e = vec3(1.0 + side * s.axis.x * s.axis.x * p, side * q, -side * s.axis.x);
+    vec3 f = vec3(q, side + s.axis.y * s.axis.y * p, -s.axis.y);
+    float across = max(s.cosine, 0.0);
+    float along = s.sine;
+    if (s.cosine <= 0.0) { along = 1.0; }
+    float slack = s.tolerance + s.size * 6.1035156e-5 - s.ball.w * min(s.cosine, 0.0);
+    for (uint i = 0u; i < 4u; i += 1u) {
+        vec3 n = e;
+        if (i >= 2u) { n = f; }
+        if ((i & 1u) != 0u) { n = n * -1.0; }
+        n = n * across - s.axis * along;
+        float most = slack + n.x * s.ball.x + n.y * s.ball.y + n.z * s.ball.z;
+        $scratch[at + 4u * i] = floatBitsToUint(n.x);
+        $scratch[at + 4u * i + 1u] = floatBitsToUint(n.y);
+        $scratch[at + 4u * i + 2u] = floatBitsToUint(n.z);
+        $scratch[at + 4u * i + 3u] = floatBitsToUint(most);
+    }
 }
 )");
 }
@@ -132,6 +174,7 @@ vec2 $narrowed($spot s, vec2 bounds, float c, float axis, float other) {
 /// does, and they are the ball's.
 inline void add_spots(ShaderWriter& writer, const CullShaderOptions& options) {
     add_spot_at(writer, options);
+    if (options.depth_test == DepthTest::box) add_half_spaces(writer);
     if (options.orthographic) {
         writer.add(R"(
 vec2 $bounds_across($spot s, float c, float axis, float other) {

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// A compute or fragment shader that reduces a depth buffer on the GPU to Z bounds. Its text is a whole shader except
+// for `#version`.
+#pragma once
+
+#include <lightbin/shader.hpp>
+#include <lightbin/z_bounds.hpp>
+
+namespace lightbin { inline namespace LIGHTBIN_ABI_TAG {
+
+enum class ShaderStage : std::uint8_t { compute, fragment };
+
+constexpr const char* to_string(ShaderStage value) {
+    return detail::name_at(value, {"compute", "fragment"});
+}
+
+/// What reduce_shader() generates.
+struct ReduceShaderOptions {
+    ShaderLanguage language = ShaderLanguage::glsl_430;
+    ShaderStage stage = ShaderStage::compute;
+    int samples = 1;            ///< samples per pixel of the depth texture, 1 to 8
+    bool reversed_z = false;    ///< View::reversed_z()
+    bool orthographic = false;  ///< View::orthographic()
+    DepthFormat format = DepthFormat::float32;
+    bool skip_background = false;  ///< ignores samples at the far plane: see DepthBuffer::skip_background
+    bool flip_y = false;           ///< the texture's row 0 is at the image's opposite end to the view's WindowOrigin
+    bool viewport_corner = false;  ///< the viewport begins at the texel `corner`, not at the texture's first one
+
+    ShaderSlot depth = {0}, z_bounds = {1}, grid = {2};
+    bool push_constants = false;            ///< Vulkan: the constants are push constants
+    std::string_view prefix = "lightbin_";  ///< every name in the generated shader text begins with it
+};
+
+/// The values of the constants `grid`, `planes` and `corner` of reduce_shader(). A uniform block has this layout;
+/// without viewport_corner, its first 32 bytes.
+struct ShaderReduce {
+    std::uint32_t tile_size, tiles_x, width, height;  ///< grid
+    float far_end, slope, margin, unused;             ///< planes
+    std::int32_t corner_x, corner_y;                  ///< corner
+    std::int32_t unused_corner[2] = {};
+};
+static_assert(sizeof(ShaderReduce) == 48);
+
+/// Returns the values of the constants of reduce_shader() for a view. The corner is the texel of the depth texture at
+/// the viewport's first column and row; only shaders with ReduceShaderOptions::viewport_corner read it.
+inline ShaderReduce shader_reduce(const View& view, int corner_x = 0, int corner_y = 0) {
+    const ShaderGrid grid = shader_grid(view);
+    // Let e be the distance of a window depth from the far plane's: 1 - depth, or with reversed Z the depth itself. A
+    // perspective view depth is  1 / (far_end + slope e)  with far_end = 1 / far and slope = 1 / near - 1 / far:
+    // positive terms, so nothing cancels. With far_end = far and slope = far - near, an orthographic one is
+    // far_end - slope e;  `margin` covers its rounding.
+    const double from = static_cast<double>(view.near_depth()), to = static_cast<double>(view.far_depth());
+    const bool flat = view.orthographic();
+    const float far_end = static_cast<float>(flat ? to : 1 / to),
+                slope = static_cast<float>(flat ? to - from : 1 / from - 1 / to),
+                margin = static_cast<float>(0x1p-20 * (std::fabs(from) + std::fabs(to)));
+    return {grid.tile_size, grid.tiles_x, grid.width, grid.height, far_end,
+            slope,          margin,       0,          corner_x,    corner_y};
+}
+
+/// Returns a shader that reduces a depth texture to the minimum and maximum Z bounds of each tile, or an Error that
+/// names the limit that the options exceed. The bounds enclose all depths of the tile, as those of reduce_depth() do,
+/// and are wider by the rounding of 32-bit floats.
+///
+/// compute   one group of 64 threads per tile writes a vec2 to the storage buffer `z_bounds`: dispatch
+///           (tiles_x, tiles_y, 1)
+/// fragment  one fragment per tile loops over the tile's pixels: draw a triangle over a target of tiles_x by tiles_y
+///           texels of two 32-bit floats, row 0 of which is row 0 of the tiles
+///
+/// Source: Tiled Shading, section 6.3.
+inline Result<ShaderText> reduce_shader(const ReduceShaderOptions& options = {});
+
+}}  // namespace lightbin
+
+// The definitions.
+#include <lightbin/detail/shader/reduce.hpp>
