@@ -93,6 +93,7 @@ typedef enum lightbin_error {
     LIGHTBIN_COVERAGE_IS_OFF = 14, /* the binner's options do not ask for coverage */
     /* A grid is not at the beginning of the memory that another is copied behind it in */
     LIGHTBIN_OTHER_MEMORY = 15,
+    LIGHTBIN_NO_SUCH_ISA = 16, /* an instruction set that this machine, or the library as it is compiled, lacks */
 
     LIGHTBIN_MATRIX_NOT_FINITE = 100,
     LIGHTBIN_NOT_A_PROJECTION = 101,
@@ -177,6 +178,18 @@ LIGHTBIN_API size_t lightbin_error_text(lightbin_result result, char* text, size
 
 /* Returns the version of the library that implements these functions, as 10000 * major + 100 * minor + patch. */
 LIGHTBIN_API uint32_t lightbin_version(void);
+
+/* Instruction sets: the kernels of all of them give the same bytes. */
+typedef enum lightbin_isa {
+    LIGHTBIN_WIDEST = 0,  /* as an option: what lightbin_machine_isa() returns */
+    LIGHTBIN_SCALAR = 1,  /* no vectors, one number at a time */
+    LIGHTBIN_SIMD128 = 2, /* vectors of 128 bits: SSE4.1 on x86-64, NEON on 64-bit ARM, simd128 of WebAssembly */
+    LIGHTBIN_AVX2 = 3,
+    LIGHTBIN_AVX512 = 4 /* with VBMI2 and BITALG: Ice Lake, Zen 4 and later */
+} lightbin_isa;
+
+/* Returns the widest instruction set that the library is compiled for and this machine runs. */
+LIGHTBIN_API lightbin_isa lightbin_machine_isa(void);
 
 /* ---- Memory and threads of the caller ---- */
 
@@ -311,6 +324,9 @@ LIGHTBIN_API lightbin_result lightbin_view_unproject(const lightbin_view* view, 
  * least of them, depths[1] the greatest. */
 LIGHTBIN_API lightbin_result lightbin_view_depths(const lightbin_view* view, double lower, double upper,
                                                   float depths[2]);
+
+/* Returns the window depth of a view depth, up to rounding. NaN for an infinite view depth, or if view is null. */
+LIGHTBIN_API double lightbin_view_window_depth(const lightbin_view* view, double view_depth);
 
 /* ---- Lights ---- */
 
@@ -457,13 +473,14 @@ typedef struct lightbin_z_bounds {
  * both their arrays are given. */
 typedef struct lightbin_z_bounds_buffers {
     uint32_t size;
-    uint32_t unused;
+    int32_t isa; /* a lightbin_isa: use no wider instructions than these; the result is the same */
     float *min, *max, *gap_min, *gap_max, *transparent_max;
     size_t tiles;
 } lightbin_z_bounds_buffers;
 
 /* Reduces a depth buffer to Z bounds in the memory of `out`. On success *bounds refers to that memory. Errors: a sample
- * count outside 1 to 8; a row pitch shorter than a row; too few samples or tiles; overlapping memory. */
+ * count outside 1 to 8; a row pitch shorter than a row; too few samples or tiles; overlapping memory;
+ * LIGHTBIN_NO_SUCH_ISA. */
 LIGHTBIN_API lightbin_result lightbin_reduce_depth(const lightbin_view* view,
                                                    const lightbin_depth_buffer* buffer,
                                                    const lightbin_z_bounds_buffers* out,
@@ -508,6 +525,7 @@ typedef struct lightbin_binner_options {
     int32_t depth_test; /* a lightbin_depth_test; with clusters NO_DEPTH_TEST or BOX */
     int32_t slicing;    /* a lightbin_slicing */
     int32_t coverage;   /* not 0: find what each light covers, for lightbin_binner_coverage() */
+    int32_t isa;        /* a lightbin_isa: use no wider instructions than these; the lists are the same */
 } lightbin_binner_options;
 
 /* Bins lights into tiles, and keeps the memory that this takes. */
@@ -518,7 +536,8 @@ typedef struct lightbin_binner lightbin_binner;
  * options    null: the defaults, all 0
  * allocator  null: malloc() and free(). It is copied.
  *
- * Errors: an option that the program was compiled without; a value or a combination that there is not. */
+ * Errors: an option that the program was compiled without; a value or a combination that there is not;
+ * LIGHTBIN_NO_SUCH_ISA. */
 LIGHTBIN_API lightbin_result lightbin_binner_create(const lightbin_binner_options* options,
                                                     const lightbin_allocator* allocator,
                                                     lightbin_binner** binner);
@@ -898,7 +917,7 @@ LIGHTBIN_API lightbin_result lightbin_shader_view(const lightbin_view* view, flo
 LIGHTBIN_API lightbin_result lightbin_shader_slices(const lightbin_slices* slices, uint32_t* words,
                                                     size_t capacity);
 
-/* ---- Shaders that reduce depth and build grids on the GPU ---- */
+/* ---- Shaders that reduce depth on the GPU ---- */
 
 /* What lightbin_reduce_shader() generates: a shader that reduces a depth texture to the least and greatest view depth
  * of each tile, as lightbin_reduce_depth() does. As a compute shader it is dispatched with one work group for each
@@ -934,80 +953,6 @@ typedef struct lightbin_reduce_constants {
 } lightbin_reduce_constants;
 LIGHTBIN_API lightbin_result lightbin_shader_reduce(const lightbin_view* view, int32_t corner_x,
                                                     int32_t corner_y, lightbin_reduce_constants* constants);
-
-/* The three compute shaders that build a light grid on the GPU, in the order of their dispatches. */
-typedef enum lightbin_build_pass {
-    /* Counts the lights of each tile; tiles_x by tiles_y work groups, with clusters slices * tiles_y */
-    LIGHTBIN_COUNT = 0,
-    LIGHTBIN_OFFSETS = 1, /* makes offsets and the total of the counts; one work group */
-    LIGHTBIN_FILL = 2     /* writes the lists; as many work groups as COUNT */
-} lightbin_build_pass;
-
-/* What lightbin_build_shader() generates. The three passes need the same options except for `pass`. */
-typedef struct lightbin_build_options {
-    uint32_t size;
-    int32_t language;   /* a lightbin_shader_language */
-    const char* prefix; /* null: "lightbin_" */
-    int32_t pass;       /* a lightbin_build_pass */
-    int32_t depth_test; /* a lightbin_depth_test; SPLIT_BOX is an error */
-    int32_t slicing;    /* a lightbin_slicing; Z_BINS is an error */
-    /* Not 0: test with the maximum Z bound alone, for transparent geometry; not with clusters */
-    int32_t max_only;
-    int32_t orthographic;   /* that of lightbin_view_info; read with BOX */
-    int32_t push_constants; /* not 0: Vulkan: the constants are push constants */
-    int32_t slots_given;    /* 0: bindings 0, 1, 2, 3, 3 and 4 of set 0 in the order below */
-    lightbin_slot footprints, z_bounds, tiles, lists, total, grid;
-    int32_t unused;
-} lightbin_build_options;
-
-/* On success *shader is to be freed with lightbin_shader_destroy(). Errors name the option that the language or the
- * device does not allow. */
-LIGHTBIN_API lightbin_result lightbin_build_shader(const lightbin_build_options* options,
-                                                   const lightbin_allocator* allocator,
-                                                   lightbin_shader** shader);
-
-/* The constants `grid` and `planes` of lightbin_build_shader(), with the layout of its uniform block. */
-typedef struct lightbin_build_constants {
-    uint32_t tiles_x, rows, footprints, capacity;
-    float near_depth, far_depth, tiles_y, unused;
-} lightbin_build_constants;
-
-/* Writes the constants of lightbin_build_shader() for a view.
- *
- * footprints  how many footprints lightbin_shader_footprints() wrote
- * capacity    how many ids fit in the buffer `lists`
- * slices      the number of slices with clusters, otherwise 1 */
-LIGHTBIN_API lightbin_result lightbin_shader_build(const lightbin_view* view, uint32_t footprints,
-                                                   uint32_t capacity, int32_t slices,
-                                                   lightbin_build_constants* constants);
-
-/* A light in view, as the build shaders read it: its id, its tiles x0 to x1 and y0 to y1, ends included, and a sphere
- * around it: x and y are in view space, negated where tile indices fall as they grow, z is the view depth, and reach2
- * is the squared radius, rounded up. */
-typedef struct lightbin_shader_footprint {
-    uint32_t id;
-    uint16_t x0, y0, x1, y1;
-    float reach2, x, y, z, radius;
-} lightbin_shader_footprint;
-
-/* Writes the footprints of the lights in view, by ascending id, the input of the build shaders, and their number to
- * *count. If the memory is too small, *count is the number that is needed and the error LIGHTBIN_BUFFER_TOO_SMALL. */
-LIGHTBIN_API lightbin_result lightbin_shader_footprints(const lightbin_view* view,
-                                                        const lightbin_lights* lights,
-                                                        lightbin_shader_footprint* footprints,
-                                                        size_t capacity, size_t* count);
-
-/* The ends of an interval: the sides of a tile column or row, or the view depths of a slice. */
-typedef struct lightbin_edges {
-    float low, high;
-} lightbin_edges;
-
-/* Write what the build shaders read in the buffer `z_bounds`: the two sides of each tile column and then of each tile
- * row; the depths of the slices. *count is their number; errors are those of lightbin_shader_footprints(). */
-LIGHTBIN_API lightbin_result lightbin_shader_edges(const lightbin_view* view, lightbin_edges* edges,
-                                                   size_t capacity, size_t* count);
-LIGHTBIN_API lightbin_result lightbin_shader_slabs(const lightbin_slices* slices, lightbin_edges* slabs,
-                                                   size_t capacity, size_t* count);
 
 /* ---- Shaders that make light grids on the GPU of lights there ---- */
 
@@ -1131,6 +1076,19 @@ LIGHTBIN_API lightbin_result lightbin_plan_cull(const lightbin_view* view,
                                                 uint32_t entries, const lightbin_slices* slices,
                                                 const lightbin_matrix* to_view, lightbin_cull_plan* plan);
 
+/* The ends of an interval: the sides of a tile column or row, or the view depths of a slice. */
+typedef struct lightbin_edges {
+    float low, high;
+} lightbin_edges;
+
+/* Write what the passes read in the buffer `z_bounds` with BOX: the two sides of each tile column and then of each tile
+ * row; the depths of the slices. *count is their number. If the memory is too small, the error is
+ * LIGHTBIN_BUFFER_TOO_SMALL, and *count the number that is needed. */
+LIGHTBIN_API lightbin_result lightbin_shader_edges(const lightbin_view* view, lightbin_edges* edges,
+                                                   size_t capacity, size_t* count);
+LIGHTBIN_API lightbin_result lightbin_shader_slabs(const lightbin_slices* slices, lightbin_edges* slabs,
+                                                   size_t capacity, size_t* count);
+
 /* ---- Advice ---- */
 
 /* Costs that depend on the renderer and the GPU and so can't be measured here, in nanoseconds. */
@@ -1196,6 +1154,76 @@ LIGHTBIN_API lightbin_result lightbin_advice_plan(const lightbin_advice* advice,
 LIGHTBIN_API const char* lightbin_advice_text(const lightbin_advice* advice);
 LIGHTBIN_API const char* lightbin_advice_table(const lightbin_advice* advice);
 
+/* ---- Shapes ----
+ *
+ * These functions make lights of shapes that engines have. Bad input, such as NaN, gives a light with a negative
+ * radius, which is skipped and counted, and not an error. Each result is rounded outward: it contains the whole shape.
+ */
+
+/* A light of each kind. In arrays of these structs, or in structs that hold them, lightbin_floats refer to their
+ * members. They are what lightbin_spheres, lightbin_spots and lightbin_boxes describe. */
+typedef struct lightbin_sphere {
+    float centre[3], radius;
+} lightbin_sphere;
+typedef struct lightbin_spot {
+    float centre[3], radius, axis[3], cosine;
+} lightbin_spot;
+/* To cut a box by a light's sphere, as where the walls of a room stop the light, set centre and radius to the light's.
+ */
+typedef struct lightbin_box {
+    float centre[3], radius, box_centre[3], half_axes[9], taper;
+} lightbin_box;
+
+/* Computes the least sphere that contains a spot. With half angles of 90 degrees or more it is the spot's own. */
+LIGHTBIN_API lightbin_result lightbin_spot_sphere(const lightbin_spot* spot, lightbin_sphere* sphere);
+
+/* Computes a sphere that contains a box: the box's own or, if smaller, one around its corners. */
+LIGHTBIN_API lightbin_result lightbin_box_sphere(const lightbin_box* box, lightbin_sphere* sphere);
+
+/* Computes the least sphere that contains all points within `radius` of the line from a to b. */
+LIGHTBIN_API lightbin_result lightbin_tube_sphere(const float a[3], const float b[3], float radius,
+                                                  lightbin_sphere* sphere);
+
+/* Computes the least sphere that contains all points within `range` of a rectangle, such as an area light. The half
+ * axes are vectors from its centre to the middles of two adjacent sides. */
+LIGHTBIN_API lightbin_result lightbin_rectangle_sphere(const float centre[3], const float half_x[3],
+                                                       const float half_y[3], float range,
+                                                       lightbin_sphere* sphere);
+
+/* Makes a whole box, such as a decal's or a reflection probe's, with a sphere around its corners.
+ *
+ * half_axes  three vectors, one after another, from the centre to the middles of three faces */
+LIGHTBIN_API lightbin_result lightbin_whole_box(const float centre[3], const float half_axes[9],
+                                                lightbin_box* box);
+
+/* Makes a whole box of the image of a cube under an affine transform, as engines keep decals and probes.
+ *
+ * transform  from the cube's space to that of the lights
+ * half_side  half of the cube's side: 1 for the cube from -1 to 1, 0.5 for the cube from -0.5 to 0.5 */
+LIGHTBIN_API lightbin_result lightbin_cube_box(const lightbin_matrix* transform, double half_side,
+                                               lightbin_box* box);
+
+/* Makes a box of the half of a sphere where an area light shines.
+ *
+ * direction  towards the half that is kept, of any length but zero */
+LIGHTBIN_API lightbin_result lightbin_half_sphere(const lightbin_sphere* sphere, const float direction[3],
+                                                  lightbin_box* box);
+
+/* Makes a box of the frustum that a projector lights.
+ *
+ * eye             where the projector's rays meet
+ * forward         vector from the eye to the middle of the far face
+ * half_x, half_y  vectors from there to the middles of two sides of the far face
+ * begin           where the frustum begins, as a fraction of `forward`: 0 for the whole pyramid, below 1 */
+LIGHTBIN_API lightbin_result lightbin_projector_box(const float eye[3], const float forward[3],
+                                                    const float half_x[3], const float half_y[3],
+                                                    double begin, lightbin_box* box);
+
+/* Makes a box, cut by lightbin_tube_sphere(), that contains all points within `radius` of the line from a to b. It is
+ * listed in fewer tiles than that sphere. */
+LIGHTBIN_API lightbin_result lightbin_tube_box(const float a[3], const float b[3], float radius,
+                                               lightbin_box* box);
+
 /* ---- Lights' ranges ---- */
 
 /* Returns the distance at which a point light has fallen to a cutoff, sqrt(intensity / cutoff), rounded up: in metres
@@ -1214,5 +1242,9 @@ LIGHTBIN_API float lightbin_light_window(float distance, float range);
 #endif /* LIGHTBIN_LIGHTBIN_H */
 
 #if defined(LIGHTBIN_IMPLEMENTATION)
+#if !defined(__cplusplus)
+#error "lightbin: the file that defines LIGHTBIN_IMPLEMENTATION is C++20, not C: give it a name such as lightbin.cpp"
+#else
 #include <lightbin/detail/c/implementation.hpp>
+#endif
 #endif

@@ -7,6 +7,7 @@
 #include <lightbin/detail/base/algorithms.hpp>
 #include <lightbin/detail/base/checked_sizes.hpp>
 #include <lightbin/detail/base/platform.hpp>
+#include <lightbin/isa.hpp>
 #include <lightbin/matrix.hpp>
 #include <lightbin/result.hpp>
 
@@ -122,12 +123,9 @@ inline const char* sentence_of(std::int32_t error) {
         return "a light's floats are {needed} bytes, and the stride from one light to the next is "
                "{available}";
     case LIGHTBIN_NO_SLICES_GIVEN:
-        return "this binner slices depth: give lightbin_inputs::slices";
+        return "this binner slices depth: give the input `slices`";
     case LIGHTBIN_NO_BOUNDS_GIVEN:
-        return "this binner's depth test needs Z bounds: give lightbin_inputs::bounds, as "
-               "lightbin_reduce_depth() "
-               "makes "
-               "them";
+        return "this binner's depth test needs Z bounds: give the input `bounds`";
     case LIGHTBIN_NOT_READ:
         return "the options do not read this input: bounds want a depth test, and slices a slicing; "
                "clusters read no bounds, and lights in view space no matrix";
@@ -138,10 +136,12 @@ inline const char* sentence_of(std::int32_t error) {
     case LIGHTBIN_BUFFER_TOO_SMALL:
         return "this memory holds {available} elements, and {needed} are needed";
     case LIGHTBIN_COVERAGE_IS_OFF:
-        return "this binner finds no coverage: make it with lightbin_binner_options::coverage";
+        return "this binner finds no coverage: make it with the option `coverage`";
     case LIGHTBIN_OTHER_MEMORY:
         return "this grid must be in the memory that the next view's lists are to be copied to, at its "
                "beginning";
+    case LIGHTBIN_NO_SUCH_ISA:
+        return "this machine does not run these vectors, or the library was compiled without them";
     case LIGHTBIN_CALLBACK_THREW:
         return "a callback of the program threw a C++ exception";
     }
@@ -210,6 +210,14 @@ inline lightbin_result check_value(std::int32_t value, std::int32_t greatest, co
     if (0 <= value && value <= greatest) return succeeded();
     return refused(LIGHTBIN_NOT_A_VALUE, name, static_cast<std::uint64_t>(std::int64_t{value}),
                    static_cast<std::uint64_t>(greatest));
+}
+
+/// Reads the instruction set that a caller asks for, which this build must have and this machine must run.
+inline lightbin_result read_isa(std::int32_t value, Isa& isa, const char* name) {
+    const lightbin_result result = check_value(value, LIGHTBIN_AVX512, name);
+    if (result.error != LIGHTBIN_OK || value == LIGHTBIN_WIDEST) return result;
+    isa = static_cast<Isa>(value - LIGHTBIN_SCALAR);
+    return machine_isa(isa) == isa ? result : refused(LIGHTBIN_NO_SUCH_ISA, name);
 }
 
 /// Returns the first of several results that is an error, or a success.

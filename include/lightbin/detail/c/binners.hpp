@@ -148,6 +148,8 @@ inline lightbin_result read_options(const lightbin_binner_options* given, Option
                .depth_test = static_cast<DepthTest>(known.depth_test),
                .slicing = static_cast<Slicing>(known.slicing),
                .coverage = known.coverage != 0};
+    result = read_isa(known.isa, options.isa, "options.isa");
+    if (result.error != LIGHTBIN_OK) return result;
     if (!go_together(options)) return refused(LIGHTBIN_OPTIONS_NOT_TOGETHER, "options");
     const char* const define = left_out(options);
     return define != nullptr ? refused(LIGHTBIN_LEFT_OUT, define) : result;

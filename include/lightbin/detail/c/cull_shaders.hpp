@@ -126,4 +126,26 @@ lightbin_result lightbin_plan_cull(const lightbin_view* view, const lightbin_cul
     });
 }
 
+lightbin_result lightbin_shader_edges(const lightbin_view* view, lightbin_edges* edges, std::size_t capacity,
+                                      std::size_t* count) {
+    using namespace lightbin::c;
+    if (view == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "view");
+    if (count == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "count");
+    return guarded(view->memory, [&] {
+        const auto made = lightbin::shader_edges(view->value);
+        return write_items(made.data(), made.size(), edges, capacity, count, "edges");
+    });
+}
+
+lightbin_result lightbin_shader_slabs(const lightbin_slices* slices, lightbin_edges* slabs,
+                                      std::size_t capacity, std::size_t* count) {
+    using namespace lightbin::c;
+    if (slices == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "slices");
+    if (count == nullptr) return refused(LIGHTBIN_NULL_ARGUMENT, "count");
+    return guarded(slices->memory, [&] {
+        const auto made = lightbin::shader_slabs(slices->value);
+        return write_items(made.data(), made.size(), slabs, capacity, count, "slabs");
+    });
+}
+
 }  // extern "C"

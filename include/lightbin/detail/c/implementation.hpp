@@ -2,7 +2,7 @@
 // The functions of lightbin.h, for the file that defines LIGHTBIN_IMPLEMENTATION. Defines leave out what the program
 // never asks for; docs/c.md says what each saves:
 //
-//   LIGHTBIN_NO_SPOTS, LIGHTBIN_NO_BOXES                            kinds of lights
+//   LIGHTBIN_NO_SPOTS, LIGHTBIN_NO_BOXES                            kinds of lights; the functions that make boxes
 //   LIGHTBIN_NO_U16, LIGHTBIN_NO_SILHOUETTES                        ids and footprints
 //   LIGHTBIN_NO_INTERVAL, LIGHTBIN_NO_BOX, LIGHTBIN_NO_SPLIT_BOX    depth tests
 //   LIGHTBIN_NO_CLUSTERS, LIGHTBIN_NO_Z_BINS                        slicings
@@ -11,7 +11,7 @@
 //   LIGHTBIN_NO_BUDGETS                                             lightbin_limit_grid()
 //   LIGHTBIN_NO_THREADS                                             lightbin_inputs::threads
 //   LIGHTBIN_NO_SHADERS                                             all shader text
-//   LIGHTBIN_NO_BUILD_SHADERS                                       lightbin_reduce_shader(), lightbin_build_shader()
+//   LIGHTBIN_NO_REDUCE_SHADERS                                      lightbin_reduce_shader()
 //   LIGHTBIN_NO_CULL_SHADERS                                        lightbin_cull_shader(), lightbin_plan_cull()
 //   LIGHTBIN_NO_ADVICE                                              lightbin_advise(), lightbin_advise_slices()
 //   LIGHTBIN_NO_SIMD, LIGHTBIN_NO_SCALAR                            the vector kernels; the scalar ones (docs/install.md)
@@ -19,19 +19,20 @@
 
 #include <lightbin/detail/c/memory.hpp>
 
-#if defined(LIGHTBIN_NO_SHADERS) && !defined(LIGHTBIN_NO_BUILD_SHADERS)
-#define LIGHTBIN_NO_BUILD_SHADERS 1
+#if defined(LIGHTBIN_NO_SHADERS) && !defined(LIGHTBIN_NO_REDUCE_SHADERS)
+#define LIGHTBIN_NO_REDUCE_SHADERS 1
 #endif
 #if defined(LIGHTBIN_NO_SHADERS) && !defined(LIGHTBIN_NO_CULL_SHADERS)
 #define LIGHTBIN_NO_CULL_SHADERS 1
 #endif
 
 #include <lightbin/detail/c/grids.hpp>
+#include <lightbin/detail/c/shapes.hpp>
 #if !defined(LIGHTBIN_NO_SHADERS)
 #include <lightbin/detail/c/shaders.hpp>
 #endif
-#if !defined(LIGHTBIN_NO_BUILD_SHADERS)
-#include <lightbin/detail/c/build_shaders.hpp>
+#if !defined(LIGHTBIN_NO_REDUCE_SHADERS)
+#include <lightbin/detail/c/reduce_shaders.hpp>
 #endif
 #if !defined(LIGHTBIN_NO_CULL_SHADERS)
 #include <lightbin/detail/c/cull_shaders.hpp>

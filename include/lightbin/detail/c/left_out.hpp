@@ -12,6 +12,16 @@
 
 extern "C" {
 
+#if defined(LIGHTBIN_NO_BOXES)
+LIGHTBIN_WITHOUT("LIGHTBIN_NO_BOXES", lightbin_box_sphere(const lightbin_box*, lightbin_sphere*))
+LIGHTBIN_WITHOUT("LIGHTBIN_NO_BOXES", lightbin_whole_box(const float*, const float*, lightbin_box*))
+LIGHTBIN_WITHOUT("LIGHTBIN_NO_BOXES", lightbin_cube_box(const lightbin_matrix*, double, lightbin_box*))
+LIGHTBIN_WITHOUT("LIGHTBIN_NO_BOXES", lightbin_half_sphere(const lightbin_sphere*, const float*, lightbin_box*))
+LIGHTBIN_WITHOUT("LIGHTBIN_NO_BOXES", lightbin_projector_box(const float*, const float*, const float*,
+                                                             const float*, double, lightbin_box*))
+LIGHTBIN_WITHOUT("LIGHTBIN_NO_BOXES", lightbin_tube_box(const float*, const float*, float, lightbin_box*))
+#endif
+
 #if defined(LIGHTBIN_NO_BUDGETS)
 LIGHTBIN_WITHOUT("LIGHTBIN_NO_BUDGETS", lightbin_budget_create(const lightbin_allocator*, lightbin_budget**))
 void lightbin_budget_destroy(lightbin_budget*) {}
@@ -40,26 +50,13 @@ LIGHTBIN_WITHOUT("LIGHTBIN_NO_SHADERS",
                  lightbin_shader_slices(const lightbin_slices*, std::uint32_t*, std::size_t))
 #endif
 
-#if defined(LIGHTBIN_NO_BUILD_SHADERS)
-LIGHTBIN_WITHOUT("LIGHTBIN_NO_BUILD_SHADERS",
+#if defined(LIGHTBIN_NO_REDUCE_SHADERS)
+LIGHTBIN_WITHOUT("LIGHTBIN_NO_REDUCE_SHADERS",
                  lightbin_reduce_shader(const lightbin_reduce_options*, const lightbin_allocator*,
                                         lightbin_shader**))
-LIGHTBIN_WITHOUT("LIGHTBIN_NO_BUILD_SHADERS",
+LIGHTBIN_WITHOUT("LIGHTBIN_NO_REDUCE_SHADERS",
                  lightbin_shader_reduce(const lightbin_view*, std::int32_t, std::int32_t,
                                         lightbin_reduce_constants*))
-LIGHTBIN_WITHOUT("LIGHTBIN_NO_BUILD_SHADERS",
-                 lightbin_build_shader(const lightbin_build_options*, const lightbin_allocator*,
-                                       lightbin_shader**))
-LIGHTBIN_WITHOUT("LIGHTBIN_NO_BUILD_SHADERS",
-                 lightbin_shader_build(const lightbin_view*, std::uint32_t, std::uint32_t, std::int32_t,
-                                       lightbin_build_constants*))
-LIGHTBIN_WITHOUT("LIGHTBIN_NO_BUILD_SHADERS",
-                 lightbin_shader_footprints(const lightbin_view*, const lightbin_lights*,
-                                            lightbin_shader_footprint*, std::size_t, std::size_t*))
-LIGHTBIN_WITHOUT("LIGHTBIN_NO_BUILD_SHADERS",
-                 lightbin_shader_edges(const lightbin_view*, lightbin_edges*, std::size_t, std::size_t*))
-LIGHTBIN_WITHOUT("LIGHTBIN_NO_BUILD_SHADERS",
-                 lightbin_shader_slabs(const lightbin_slices*, lightbin_edges*, std::size_t, std::size_t*))
 #endif
 
 #if defined(LIGHTBIN_NO_CULL_SHADERS)
@@ -74,6 +71,10 @@ LIGHTBIN_WITHOUT("LIGHTBIN_NO_CULL_SHADERS",
                  lightbin_plan_cull(const lightbin_view*, const lightbin_cull_options*, std::uint32_t,
                                     std::uint32_t, const lightbin_slices*, const lightbin_matrix*,
                                     lightbin_cull_plan*))
+LIGHTBIN_WITHOUT("LIGHTBIN_NO_CULL_SHADERS",
+                 lightbin_shader_edges(const lightbin_view*, lightbin_edges*, std::size_t, std::size_t*))
+LIGHTBIN_WITHOUT("LIGHTBIN_NO_CULL_SHADERS",
+                 lightbin_shader_slabs(const lightbin_slices*, lightbin_edges*, std::size_t, std::size_t*))
 #endif
 
 #if defined(LIGHTBIN_NO_ADVICE)

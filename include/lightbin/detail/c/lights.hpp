@@ -23,49 +23,62 @@ struct LightCount {
 /// lightbin_spots or lightbin_boxes.
 template <class Given> struct InPlace { const Given& from; };
 
-/// Reads `each` floats of each of the lights first..first + count - 1 into the lights at `to`, from byte `offset` on.
-template <std::size_t each, class Light>
-void read_floats(lightbin_floats floats, std::size_t first, std::size_t count, Light* to,
-                 std::size_t offset) {
-    const char* const from = static_cast<const char*>(floats.first) + first * floats.stride;
-    char* const into = reinterpret_cast<char*>(to) + offset;
-    for (std::size_t i = 0; i < count; ++i)
-        std::memcpy(into + i * sizeof *to, from + i * floats.stride, each * sizeof(float));
+/// A member of the caller's lights, with `each` floats, and the byte of a Sphere, Spot or Box that it goes to.
+template <std::size_t each> struct Member {
+    lightbin_floats floats;
+    std::size_t offset;
+};
+
+/// Reads members of the lights first..first + count - 1 into the lights at `to`. It is one loop for all members, as
+/// those of a light mostly lie side by side, in one line of the cache or two.
+template <class Light, std::size_t... each>
+void read_members(std::size_t first, std::size_t count, Light* to, Member<each>... members) {
+    for (std::size_t i = 0; i < count; ++i) {
+        char* const light = reinterpret_cast<char*>(to + i);
+        (std::memcpy(light + members.offset,
+                     static_cast<const char*>(members.floats.first) + (first + i) * members.floats.stride,
+                     each * sizeof(float)),
+         ...);
+    }
 }
 
-/// Reads three floats and one of each of the lights, which are read at once where they lie side by side.
-template <class Light>
-void read_fours(const lightbin_floats& three, const lightbin_floats& one, std::size_t first,
-                std::size_t count, Light* to, std::size_t offset) {
+/// Whether one float of each light lies behind three others, so that the four can be read at once.
+inline bool side_by_side(const lightbin_floats& three, const lightbin_floats& one) {
     const std::uintptr_t end = reinterpret_cast<std::uintptr_t>(three.first) + 3 * sizeof(float);
-    if (three.stride == one.stride && reinterpret_cast<std::uintptr_t>(one.first) == end) {
-        read_floats<4>(three, first, count, to, offset);
-    } else {
-        read_floats<3>(three, first, count, to, offset);
-        read_floats<1>(one, first, count, to, offset + 3 * sizeof(float));
-    }
+    return three.stride == one.stride && reinterpret_cast<std::uintptr_t>(one.first) == end;
 }
 
 /// Read the lights first..first + count - 1 of the caller's array.
 inline void read_lights(const lightbin_spheres& from, std::size_t first, std::size_t count, Sphere* to) {
-    read_fours(from.centre, from.radius, first, count, to, 0);
+    if (side_by_side(from.centre, from.radius))
+        read_members(first, count, to, Member<4>{from.centre, 0});
+    else
+        read_members(first, count, to, Member<3>{from.centre, 0},
+                     Member<1>{from.radius, offsetof(Sphere, radius)});
 }
 inline void read_lights(const lightbin_spots& from, std::size_t first, std::size_t count, Spot* to) {
-    read_fours(from.centre, from.radius, first, count, to, 0);
-    read_fours(from.axis, from.cosine, first, count, to, offsetof(Spot, axis_x));
+    if (side_by_side(from.centre, from.radius) && side_by_side(from.axis, from.cosine))
+        read_members(first, count, to, Member<4>{from.centre, 0},
+                     Member<4>{from.axis, offsetof(Spot, axis_x)});
+    else
+        read_members(first, count, to, Member<3>{from.centre, 0},
+                     Member<1>{from.radius, offsetof(Spot, radius)},
+                     Member<3>{from.axis, offsetof(Spot, axis_x)},
+                     Member<1>{from.cosine, offsetof(Spot, cos_half_angle)});
 }
 inline void read_lights(const lightbin_boxes& from, std::size_t first, std::size_t count, Box* to) {
+    read_members(first, count, to, Member<3>{from.box_centre, offsetof(Box, box_x)},
+                 Member<9>{from.half_axes, offsetof(Box, half_axes)});
     if (from.radius.first != nullptr) {
-        read_fours(from.centre, from.radius, first, count, to, 0);
+        read_members(first, count, to, Member<3>{from.centre, 0},
+                     Member<1>{from.radius, offsetof(Box, radius)});
     } else {
-        read_floats<3>(from.box_centre, first, count, to, 0);
+        read_members(first, count, to, Member<3>{from.box_centre, 0});
         for (std::size_t i = 0; i < count; ++i)
             to[i].radius = std::numeric_limits<float>::infinity();
     }
-    read_floats<3>(from.box_centre, first, count, to, offsetof(Box, box_x));
-    read_floats<9>(from.half_axes, first, count, to, offsetof(Box, half_axes));
     if (from.taper.first != nullptr) {
-        read_floats<1>(from.taper, first, count, to, offsetof(Box, taper));
+        read_members(first, count, to, Member<1>{from.taper, offsetof(Box, taper)});
     } else {
         for (std::size_t i = 0; i < count; ++i)
             to[i].taper = 1;
@@ -131,12 +144,6 @@ template <class Given> struct Lights<c::LightCount, c::InPlace<Given>> {
         Made light;
         make(i, 1, &light);
         return light;
-    }
-
-    /// Returns a sphere, in view space, that contains the light with an index in the caller's array.
-    Sphere view_sphere(std::size_t i) const {
-        const Sphere sphere = made(i);
-        return to_view != nullptr ? (*to_view)(sphere) : sphere;
     }
 };
 

@@ -90,6 +90,10 @@ std::size_t lightbin_error_text(lightbin_result result, char* text, std::size_t 
     return lightbin::c::write_text(whole.c_str(), whole.size(), text, capacity);
 }
 
+lightbin_isa lightbin_machine_isa(void) {
+    return static_cast<lightbin_isa>(LIGHTBIN_SCALAR + static_cast<int>(lightbin::machine_isa()));
+}
+
 std::uint32_t lightbin_version(void) {
     return 10000 * LIGHTBIN_VERSION_MAJOR + 100 * LIGHTBIN_VERSION_MINOR + LIGHTBIN_VERSION_PATCH;
 }
@@ -186,6 +190,10 @@ lightbin_result lightbin_view_depths(const lightbin_view* view, double lower, do
     return succeeded();
 }
 
+double lightbin_view_window_depth(const lightbin_view* view, double view_depth) {
+    return view != nullptr ? view->value.window_depth(view_depth) : std::numeric_limits<double>::quiet_NaN();
+}
+
 lightbin_result lightbin_slices_exponential(std::int32_t count, float first, float last, float margin,
                                             const lightbin_allocator* allocator, lightbin_slices** slices) {
     return lightbin::c::make_slices(margin, allocator, slices,
@@ -232,6 +240,8 @@ lightbin_result lightbin_reduce_depth(const lightbin_view* view, const lightbin_
     lightbin_result result =
         first_error(read(buffer, from, "buffer"), read(out, to, "out"), check_size(bounds, "bounds"));
     if (result.error == LIGHTBIN_OK) result = check_value(from.format, LIGHTBIN_UNORM16, "buffer.format");
+    lightbin::Isa isa = lightbin::compiled_isa;
+    if (result.error == LIGHTBIN_OK) result = read_isa(to.isa, isa, "out.isa");
     if (result.error != LIGHTBIN_OK) return result;
     if (from.depth == nullptr && from.count > 0) return refused(LIGHTBIN_NULL_ARGUMENT, "buffer.depth");
     const std::uint64_t bytes = to.tiles * std::uint64_t{sizeof(float)};
@@ -259,7 +269,7 @@ lightbin_result lightbin_reduce_depth(const lightbin_view* view, const lightbin_
              from.row_pitch,
              static_cast<lightbin::DepthFormat>(from.format),
              from.skip_background != 0},
-            {side(to.min), side(to.max), side(to.gap_min), side(to.gap_max), side(to.transparent_max)});
+            {side(to.min), side(to.max), side(to.gap_min), side(to.gap_max), side(to.transparent_max)}, isa);
         if (!reduced) return refused(reduced.error());
         lightbin_z_bounds known = {};
         const auto first = [](std::span<const float> bound) {
