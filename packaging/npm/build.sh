@@ -40,17 +40,19 @@ module() {
 }
 # Modules with vectors are only loaded where there are vectors. Shader text and advice, which few programs ask for, and
 # not in each frame, have modules of their own.
-left_out=$(printf -- '-DLIGHTBIN_NO_%s ' SCALAR THREADS SPLIT_BOX TRANSPARENCY)
+left_out=$(printf -- '-DLIGHTBIN_NO_%s ' SCALAR THREADS SPLIT_BOX TRANSPARENCY COVERAGE)
 small='-mllvm -inline-threshold=0 -fno-vectorize -fno-slp-vectorize -fno-unroll-loops'
 vectors='-msimd128 -msign-ext -mnontrapping-fptoint'
-text='lightbin_(shader_(snippet|text|destroy|binding)|(reduce|build|cull)_shader|cull_passes|plan_cull)'
-planned='view_(create|update|describe|destroy)|slices_(from_boundaries|count|destroy)' # what plan_cull() takes
+text='lightbin_(shader_(snippet|text|destroy|binding)|(reduce|cull)_shader|cull_passes|plan_cull)'
+advice='advi[sc]e|view_text'
+# What plan_cull() and the functions of advice take.
+planned='view_(create|update|describe|destroy)|slices_(from_boundaries|count|destroy)'
 # shellcheck disable=SC2086  # a word a flag
 {
-    module lightbin "^(?!.*($text|advi[sc]e))" $small -DLIGHTBIN_NO_ADVICE &
-    module lightbin_simd "^(?!.*($text|advi[sc]e))" $small $vectors -DLIGHTBIN_NO_ADVICE
+    module lightbin "^(?!.*($text|$advice))" $small -DLIGHTBIN_NO_ADVICE &
+    module lightbin_simd "^(?!.*($text|$advice))" $small $vectors -DLIGHTBIN_NO_ADVICE
     wait $!
-    module advice 'advi[sc]e|view|slices' $small $vectors &
+    module advice "$advice|$planned" $small $vectors &
     module shaders "$text|$planned" -Oz -DLIGHTBIN_NO_ADVICE
     wait $!
 }

@@ -17,7 +17,7 @@ export interface LoadOptions {
     wasm?: Wasm | Promise<Wasm> | (() => Wasm | Promise<Wasm>);
     /** The module shaders.wasm, which the first call that makes shader text loads, or where it is. */
     shaders?: Wasm | Promise<Wasm> | (() => Wasm | Promise<Wasm>);
-    /** The module advice.wasm, which each call of advise() and adviseSlices() loads, or where it is. */
+    /** The module advice.wasm, which each call of advise(), adviseSlices() and viewText() loads, or where it is. */
     advice?: Wasm | Promise<Wasm> | (() => Wasm | Promise<Wasm>);
 }
 
@@ -67,19 +67,23 @@ export interface View extends Disposable {
     readonly info: ViewInfo;
     /** Changes the given options, as when the camera or the window changes. After an error the view is as before. */
     update(options: Partial<ViewOptions>): void;
+    /** Returns where in the image a point of view space lies: x and y in pixels from the corner of the origin, and its
+     * view depth. Where the depth of a perspective view is 0 or less, x and y mean nothing. */
+    project(point: Numbers): [x: number, y: number, depth: number];
+    /** The inverse of project(). The viewport must not be empty. */
+    unproject(image: Numbers): [x: number, y: number, z: number];
+    /** Returns the least and the greatest view depth that window depths from `lower` to `upper`, numbers from 0 to 1 as
+     * a depth buffer holds them, stand for; rounded outward. */
+    depths(lower: number, upper: number): [least: number, greatest: number];
+    /** Returns the window depth of a view depth, up to rounding; NaN for an infinite view depth. */
+    windowDepth(depth: number): number;
     /** The constants `grid` (four numbers) and `corner` (two) of the shader text, as in its uniform block. */
     shaderGrid(cornerX?: number, cornerY?: number): Uint32Array;
     /** The constants `image` and `depths` of the shader text's view check. */
     shaderView(tolerance?: number): Float32Array;
     /** The constants of reduceShader(): the words of its uniform block, of which the second four are floats (`planes`). */
     shaderReduce(cornerX?: number, cornerY?: number): Uint32Array;
-    /** The constants of buildShader(). footprints: their number; capacity: the ids that the buffer `lists` holds; slices:
-     * their number with clusters. */
-    shaderBuild(constants: {footprints: number, capacity: number, slices?: number}): Uint32Array;
-    /** The input of buildShader(), eight words for each light in view: docs/shader.md. An array over the module's memory,
-     * until the next call of anything. */
-    shaderFootprints(lights: Lights): Uint32Array;
-    /** What buildShader() reads with `box`, after the Z bounds: the sides of columns and rows of tiles. */
+    /** What cullShader() reads with `box`, after the Z bounds: the sides of columns and rows of tiles. */
     shaderEdges(): Float32Array;
 }
 
@@ -148,9 +152,12 @@ export interface Slices extends Disposable {
     readonly count: number;
     /** In ascending order, one less than there are slices. */
     readonly boundaries: Float32Array;
+    /** Returns the index of the slice that contains a view depth, which must not be NaN. A boundary belongs to the
+     * slice behind it. */
+    at(depth: number): number;
     /** The content of the shader text's buffer `slices`. */
     shaderWords(): Uint32Array;
-    /** What buildShader() reads with clusters in place of Z bounds. */
+    /** What cullShader() reads with clusters and `box` in place of Z bounds. */
     shaderSlabs(): Float32Array;
 }
 
@@ -194,8 +201,28 @@ export interface Grid extends Counts {
     readonly ranges: Uint32Array;
     readonly ids: Uint32Array | Uint16Array;
     readonly idBytes: number;
-    /** Writes the lists in another format. The data hold until the binner's next encode(). */
+    /** Ids below firstSpot are spheres, from there to firstBox spots, others boxes. */
+    readonly firstSpot: number, firstBox: number;
+    /** Writes the lists in another format. The data hold until the next encode(), append() or splitKinds() of the
+     * binner. */
     encode(format: ListFormat): {data: Uint8Array, tilesCut: number, entriesCut: number, capacityNeeded: number};
+    /**
+     * Writes the lists of several views, this grid's first, one view after another, for shaders made with
+     * ShaderOptions.views: offsets count from the beginning of `ids`. The grids have the same numbers of tiles and
+     * slices and ids of the same width, and each is of a binner of its own, as a binner's next call ends its lists.
+     * Order and bins of z-bins are not appended. The arrays hold as the data of encode() do.
+     */
+    append(...others: Grid[]): {ranges: Uint32Array, ids: Uint32Array | Uint16Array};
+    /**
+     * Returns {offset, spheres, spots, boxes}, four numbers a list, which shaders made with ShaderOptions.splitKinds
+     * read in place of `ranges`. Not with z-bins. They hold as the data of encode() do.
+     */
+    splitKinds(): Uint32Array;
+    /** Returns how many lights the longest list has. histogram[0] counts the lists without lights, histogram[k] those
+     * with 2 ** (k - 1) to 2 ** k - 1 lights, up to k = 32. */
+    listLengths(): {longest: number, histogram: number[]};
+    /** Returns in how many lists each light is, by its id, with z-bins, too: an array of the program's own. */
+    countEntries(): Uint32Array;
 }
 
 /** Bitmasks, which hold as the arrays of a Grid do. */
@@ -250,7 +277,9 @@ export interface ShaderOptions {
     heatMap?: boolean;
     waveLoop?: boolean;
     viewCheck?: boolean;
+    /** The number of views whose lists Grid.append() wrote one after another. */
     views?: number;
+    /** The ranges are what Grid.splitKinds() returns. */
     splitKinds?: boolean;
     listCheck?: boolean;
     window?: boolean;
@@ -279,20 +308,6 @@ export interface ReduceShaderOptions {
     prefix?: string;
     /** Default: the bindings 0 to 2 of set 0 in this order. */
     slots?: {depth?: Slot, zBounds?: Slot, grid?: Slot};
-}
-
-/** One of the three compute shaders that build the lists on the GPU. */
-export interface BuildShaderOptions {
-    language: Language;
-    pass: 'count' | 'offsets' | 'fill';
-    depthTest?: 'no-depth-test' | 'interval' | 'box';
-    slicing?: 'no-slicing' | 'clusters';
-    maxOnly?: boolean;
-    orthographic?: boolean;
-    pushConstants?: boolean;
-    prefix?: string;
-    /** Default: the bindings 0, 1, 2, 3, 3 and 4 of set 0 in this order. */
-    slots?: {footprints?: Slot, zBounds?: Slot, tiles?: Slot, lists?: Slot, total?: Slot, grid?: Slot};
 }
 
 /** The compute shaders that make the lists on the GPU of lights in a buffer there. */
@@ -416,7 +431,6 @@ export interface Lightbin {
     shader(options: ShaderOptions): Promise<ShaderText>;
     /** Makes a whole shader, but for `#version`: docs/shader.md says what its buffers hold, and how to dispatch it. */
     reduceShader(options: ReduceShaderOptions): Promise<ShaderText>;
-    buildShader(options: BuildShaderOptions): Promise<ShaderText>;
     cullShader(options: CullShaderOptions): Promise<ShaderText>;
     /** Returns the constants, buffer sizes and dispatches of cullShader() for a view. Where only the camera moves, only
      * the constants change. The first call loads shaders.wasm. */
@@ -432,8 +446,14 @@ export interface Lightbin {
     adviseSlices(view: View, lights: Lights, options: Costs & {
         clusters: Slices, zBins: Slices, depths: Numbers, columns: number, rows: number,
     }): Promise<Plan[]>;
+    /** Returns what was read from a view's matrix as one line of text, with a question for each likely mistake. For
+     * development: it loads advice.wasm. */
+    viewText(view: View): Promise<string>;
     /** Returns the distance at which a light of an intensity falls below `cutoff` by the inverse square law. */
     lightRange(intensity: number, cutoff: number): number;
+    /** Returns the factor that fades a light smoothly to nothing at its range, as the shader text's `window` does:
+     * (1 - (distance / range) ** 4) ** 2, and 0 from the range on. */
+    lightWindow(distance: number, range: number): number;
     /** How many blocks of the module's memory views, slices, binners and floats hold: 0 when all were disposed of. */
     readonly allocations: number;
 }

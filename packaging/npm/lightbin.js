@@ -32,7 +32,7 @@ const kinds = {
 class Core {
     constructor(exports) {
         this.c = exports;
-        this.data = new DataView(exports.memory.buffer);
+        this.heap();
         this.staging = new Block(this);
         this.staged = [];  // arrays of JavaScript that the call reads, and where their address is to be written
     }
@@ -68,7 +68,11 @@ class Core {
 
     /// The module's memory, which is another buffer each time it grows.
     heap() {
-        if (this.data.buffer !== this.c.memory.buffer) this.data = new DataView(this.c.memory.buffer);
+        const {buffer} = this.c.memory;
+        if (this.data?.buffer !== buffer) {
+            this.data = new DataView(buffer);
+            this.bytes = new Uint8Array(buffer);
+        }
         return this.data;
     }
 
@@ -86,9 +90,10 @@ class Core {
 
     /// Takes memory for a struct from the stack, and writes an object's properties to the members of their names.
     place(name, given, what) {
-        const {bytes} = structs[name], at = this.c.stackAlloc(bytes);
-        new Uint8Array(this.c.memory.buffer, at, bytes).fill(0);
-        this.write(name, at, 'size' in structs[name].members ? {...given, size: bytes} : given, what);
+        const {bytes, members} = structs[name], at = this.c.stackAlloc(bytes), heap = this.heap();
+        this.bytes.fill(0, at, at + bytes);
+        if (members.size !== undefined) heap.setUint32(at, bytes, true);
+        this.write(name, at, given, what);
         return at;
     }
 
@@ -117,10 +122,11 @@ class Core {
         }
     }
 
-    read(name, from) {
-        const heap = this.heap(), values = {};
-        for (const [key, [kind, offset, more]] of Object.entries(structs[name].members)) {
-            const at = from + offset;
+    /// Adds the members of a struct to an object, and returns it.
+    read(name, from, values = {}) {
+        const heap = this.heap(), {members} = structs[name];
+        for (const key in members) {
+            const [kind, offset, more] = members[key], at = from + offset;
             values[key] = kind === 'float' ? heap.getFloat32(at, true) : kind === 'double' ? heap.getFloat64(at, true)
                 : kind === 'struct' ? this.read(more, at) : kind === 'int32_t' ? heap.getInt32(at, true)
                 : heap.getUint32(at, true);
@@ -160,37 +166,41 @@ class Core {
             true);
     }
 
-    /// A lightbin_matrix as an object to write. JavaScript's numbers are doubles, so it is one of doubles.
-    matrix(numbers, layout, what) {
-        if (!(numbers?.length >= 16)) refuse(`${what} must be an array of sixteen numbers`);
-        const doubles = this.c.stackAlloc(128), heap = this.heap();
-        for (let i = 0; i < 16; ++i) heap.setFloat64(doubles + 8 * i, numbers[i], true);
-        return {doubles, layout};
+    /// Copies numbers to the stack as doubles, which JavaScript's numbers are.
+    doubles(numbers, count, what) {
+        if (!(numbers?.length >= count)) refuse(`${what} must be an array of ${count} numbers`);
+        const at = this.c.stackAlloc(8 * count), heap = this.heap();
+        for (let i = 0; i < count; ++i) heap.setFloat64(at + 8 * i, numbers[i], true);
+        return at;
     }
 
+    /// A lightbin_matrix as an object to write.
+    matrix(numbers, layout, what) { return {doubles: this.doubles(numbers, 16, what), layout}; }
+
     lights(given, what = 'lights') {
-        const {viewMatrix, layout, ...arrays} = given ?? refuse(`${what} must be an object of spheres, spots or boxes`);
-        for (const kind in arrays)
-            if (!Object.hasOwn(kinds, kind))
-                refuse(`${what}: there is no '${kind}', but viewMatrix, layout, spheres, spots, boxes`);
+        const {viewMatrix, layout} = given ?? refuse(`${what} must be an object of spheres, spots or boxes`);
         const at = this.place('lights', viewMatrix != null && {viewMatrix: this.matrix(viewMatrix, layout,
             `${what}.viewMatrix`)});
-        for (const kind in arrays)
-            if (arrays[kind] != null)
-                this.kind(kind, arrays[kind], at + structs.lights.members[kind][1], `${what}.${kind}`);
+        for (const kind in given)
+            if (Object.hasOwn(kinds, kind)) {
+                if (given[kind] != null)
+                    this.kind(kind, given[kind], at + structs.lights.members[kind][1], `${what}.${kind}`);
+            } else if (kind !== 'viewMatrix' && kind !== 'layout') {
+                refuse(`${what}: there is no '${kind}', but viewMatrix, layout, spheres, spots, boxes`);
+            }
         return at;
     }
 
     kind(kind, given, to, what) {
         const {attributes, stride: usual} = kinds[kind], {members} = structs[kind];
-        const {array: shared, stride = usual, count = this.countOf(kind, given, stride), ...own} = given;
-        const heap = this.heap();
-        for (const key in own)
-            if (!Object.hasOwn(attributes, key))
+        const {array: shared, stride = usual, count = this.countOf(kind, given, stride)} = given, heap = this.heap();
+        for (const key in given)
+            if (!Object.hasOwn(attributes, key) && key !== 'array' && key !== 'stride' && key !== 'count')
                 refuse(`${what}: there is no '${key}', but count, array, stride, ${Object.keys(attributes).join(', ')}`);
         if (!(Number.isInteger(count) && count >= 0)) refuse(`${what}.count: ${String(count)} is no number of lights`);
         heap.setUint32(to, count, true);
-        for (const [key, [floats, usual_offset]] of Object.entries(attributes)) {
+        for (const key in attributes) {
+            const [floats, usual_offset] = attributes[key];
             const value = given[key] === undefined && shared !== undefined ? usual_offset : given[key];
             if (value == null) continue;
             const by_offset = typeof value === 'number', from = by_offset ? shared : value;
@@ -222,12 +232,14 @@ class Core {
         return object?.[address] ?? 0;
     }
 
-    inputs({slices, bounds, ...others} = {}) {
-        for (const key in others) refuse(`inputs: there is no '${key}', but slices, bounds`);
-        const given = {};
-        if (slices != null) given.slices = this.addressOf(slices, 'inputs.slices');
-        if (bounds != null) given.bounds = this.bounds(bounds, 'inputs.bounds');
-        return this.place('inputs', given, 'inputs');
+    inputs(given = {}) {
+        const {slices, bounds} = given;
+        for (const key in given)
+            if (key !== 'slices' && key !== 'bounds') refuse(`inputs: there is no '${key}', but slices, bounds`);
+        return this.place('inputs', {
+            slices: slices == null ? 0 : this.addressOf(slices, 'inputs.slices'),
+            bounds: bounds == null ? 0 : this.bounds(bounds, 'inputs.bounds'),
+        }, 'inputs');
     }
 
     bounds(given, what) {
@@ -305,10 +317,8 @@ class Floats {
 class View {
     #core;
     #options = {};
-    #footprints;
     constructor(core, options) {
         this.#core = this[owner] = core;
-        this.#footprints = new Block(core);
         this[address] = 0;
         this.update(options);
     }
@@ -333,6 +343,25 @@ class View {
         });
         this.#options = merged;
     }
+    project(point) { return this.#moved(this.#core.c.lightbin_view_project, point, 'point'); }
+    unproject(image) { return this.#moved(this.#core.c.lightbin_view_unproject, image, 'image'); }
+    #moved(called, from, what) {
+        const core = this.#core;
+        return core.scope(c => {
+            const given = core.doubles(from, 3, what), to = c.stackAlloc(24);
+            core.check(called, this[address], given, to);
+            return [...core.copy(Float64Array, to, 24)];
+        });
+    }
+    depths(lower, upper) {
+        const core = this.#core;
+        return core.scope(c => {
+            const to = c.stackAlloc(8);
+            core.check(c.lightbin_view_depths, this[address], lower, upper, to);
+            return [...core.copy(Float32Array, to, 8)];
+        });
+    }
+    windowDepth(depth) { return this.#core.c.lightbin_view_window_depth(this[address], depth); }
     shaderGrid(corner_x = 0, corner_y = 0) {
         return this.#constants(Uint32Array, 'gridConstants', this.#core.c.lightbin_shader_grid,
                                whole(corner_x, 'cornerX'), whole(corner_y, 'cornerY'));
@@ -343,20 +372,6 @@ class View {
     shaderReduce(corner_x = 0, corner_y = 0) {
         return this.#constants(Uint32Array, 'reduceConstants', this.#core.c.lightbin_shader_reduce,
                                whole(corner_x, 'cornerX'), whole(corner_y, 'cornerY'));
-    }
-    shaderBuild({footprints, capacity, slices = 1}) {
-        return this.#constants(Uint32Array, 'buildConstants', this.#core.c.lightbin_shader_build,
-                               whole(footprints, 'footprints'), whole(capacity, 'capacity'), whole(slices, 'slices'));
-    }
-    shaderFootprints(lights) {
-        const core = this.#core;
-        return core.scope(c => {
-            const placed = core.lights(lights);
-            core.flush();
-            const {spheres, spots, boxes} = core.read('lights', placed);
-            return core.items(Uint32Array, this.#footprints, 8, spheres.count + spots.count + boxes.count,
-                              c.lightbin_shader_footprints, this[address], placed);
-        });
     }
     shaderEdges() {
         const core = this.#core, {tilesX = 0, tilesY = 0} = this.info;
@@ -374,7 +389,6 @@ class View {
     dispose() {
         this.#core.c.lightbin_view_destroy(this[address]);
         this[address] = 0;
-        this.#footprints.free();
         this.#options = {};
     }
 }
@@ -398,6 +412,7 @@ class Slices {
         const core = this.#core, at = core.c.lightbin_slices_boundaries(this[address]);
         return at === 0 ? new Float32Array(0) : core.copy(Float32Array, at, 4 * (this.count - 1));
     }
+    at(depth) { return this.#core.c.lightbin_slices_at(this[address], depth); }
     shaderWords() {
         const core = this.#core, count = this.count + 3;
         return core.copied(words => {
@@ -434,8 +449,11 @@ const array_of = {
 };
 const nothing = {
     tilesX: 0, tilesY: 0, slices: 0, lights: 0, rejected: 0, culled: 0, ranges: 0, ids: 0, rangeCount: 0, idCount: 0,
-    idBytes: 4, order: 0, bins: 0, orderCount: 0, binCount: 0, words: 0, wordCount: 0, wordsPerTile: 0,
+    idBytes: 4, firstSpot: 0, firstBox: 0, order: 0, bins: 0, orderCount: 0, binCount: 0, words: 0, wordCount: 0,
+    wordsPerTile: 0,
 };
+const own_members = ['tilesX', 'tilesY', 'slices', 'lights', 'rejected', 'culled', 'idBytes', 'firstSpot', 'firstBox',
+                     'wordsPerTile'];
 
 /// The lists of a binner's call, read from the module's memory.
 class Lists {
@@ -448,10 +466,11 @@ class Lists {
         this.#encoded = encoded;
         this.set(nothing);
     }
+    /// Takes what a Binner read: all members of `nothing`.
     set(raw) {
-        this.#raw = {...nothing, ...raw};
-        for (const key of ['tilesX', 'tilesY', 'slices', 'lights', 'rejected', 'culled', 'idBytes', 'wordsPerTile'])
-            this[key] = this.#raw[key];
+        if (raw === this.#raw) return this;
+        this.#raw = raw;
+        for (const key of own_members) this[key] = raw[key];
         return this;
     }
     #array(key) {
@@ -463,18 +482,76 @@ class Lists {
     get order() { return this.#array('order'); }
     get bins() { return this.#array('bins'); }
     get words() { return this.#array('words'); }
+    /// Takes memory for the lightbin_grid from the stack.
+    #placed() {
+        const {wordsPerTile, words, wordCount, ...members} = this.#raw;
+        return this.#core.place('grid', members, 'grid');
+    }
     encode(format) {
-        const core = this.#core, {wordsPerTile, words, wordCount, ...members} = this.#raw;
+        const core = this.#core, {rangeCount, idCount} = this.#raw;
         return core.scope(c => {
-            const from = core.place('format', format, 'format'), grid = core.place('grid', members, 'grid');
+            const from = core.place('format', format, 'format'), grid = this.#placed();
             const bytes_at = c.stackAlloc(8);
-            core.check(c.lightbin_encoded_bytes, from, BigInt(members.rangeCount), BigInt(members.idCount), bytes_at);
+            core.check(c.lightbin_encoded_bytes, from, BigInt(rangeCount), BigInt(idCount), bytes_at);
             const bytes = Number(core.heap().getBigUint64(bytes_at, true));
             if (bytes > 0x7fffffff) out_of_memory();
             const to = this.#encoded.reserve(bytes), encoded = core.place('encoded');
             core.check(c.lightbin_encode, grid, from, to, BigInt(bytes), encoded);
             const {tilesCut, entriesCut, capacityNeeded} = core.read('encoded', encoded);
             return {data: new Uint8Array(c.memory.buffer, to, bytes), tilesCut, entriesCut, capacityNeeded};
+        });
+    }
+    splitKinds() {
+        const core = this.#core, {rangeCount} = this.#raw;
+        return core.scope(c => {
+            const grid = this.#placed(), to = this.#encoded.reserve(16 * Math.max(rangeCount, 1));
+            core.check(c.lightbin_split_kinds, grid, to, BigInt(rangeCount));
+            return new Uint32Array(c.memory.buffer, to, 4 * rangeCount);
+        });
+    }
+    append(...others) {
+        const core = this.#core, grids = [this, ...others];
+        for (const grid of others) {
+            if (!(grid instanceof Lists && grid.#core === core)) refuse('append: a grid was not made by this module');
+            if (grid.idBytes !== this.idBytes)
+                refuse(`append: the ids of one grid have ${this.idBytes} bytes, those of another ${grid.idBytes}`);
+        }
+        if (new Set(grids).size < grids.length)
+            refuse('append: a grid is given twice; each view needs the grid of a binner of its own');
+        const [ranges, ids] = ['rangeCount', 'idCount']
+            .map(key => grids.reduce((sum, grid) => sum + grid.#raw[key], 0));
+        const bytes = 8 * ranges + this.idBytes * ids;
+        if (bytes > 0x7fffffff) out_of_memory();
+        return core.scope(c => {
+            const to = this.#encoded.reserve(bytes), ids_at = to + 8 * ranges;
+            const room = [to, BigInt(ranges), ids_at, BigInt(ids)];
+            let before = 0;
+            for (const grid of grids) {
+                const at = grid.#placed();
+                if (before === 0) core.check(c.lightbin_copy_grid, at, ...room);
+                else core.check(c.lightbin_append_grid, at, before, ...room);
+                before = at;
+            }
+            const Type = this.idBytes === 2 ? Uint16Array : Uint32Array;
+            return {ranges: new Uint32Array(c.memory.buffer, to, 2 * ranges),
+                    ids: new Type(c.memory.buffer, ids_at, ids)};
+        });
+    }
+    listLengths() {
+        const core = this.#core;
+        return core.scope(c => {
+            const longest = c.stackAlloc(4), histogram = c.stackAlloc(8 * 33);
+            core.check(c.lightbin_list_lengths, this.#placed(), longest, histogram);
+            return {longest: core.heap().getUint32(longest, true),
+                    histogram: Array.from(core.copy(BigUint64Array, histogram, 8 * 33), Number)};
+        });
+    }
+    countEntries() {
+        const core = this.#core;
+        return core.copied(block => {
+            const to = block.reserve(4 * Math.max(this.lights, 1)), listed = core.c.stackAlloc(4);
+            core.check(core.c.lightbin_count_entries, this.#placed(), to, this.lights, listed);
+            return new Uint32Array(core.c.memory.buffer, to, this.lights);
         });
     }
 }
@@ -499,7 +576,7 @@ class Binner {
         return this.#call(view, lights, inputs, (c, ...given) => {
             const grid = core.place('grid');
             core.check(c.lightbin_bin, ...given, grid);
-            return this.#grid.set(core.read('grid', grid));
+            return this.#grid.set(core.read('grid', grid, {...nothing}));
         });
     }
     bits(view, lights, max_lights, inputs) {
@@ -512,7 +589,8 @@ class Binner {
             if (count > 0x1fffffff) out_of_memory();
             const bits = core.place('bits'), words = this.#words.reserve(4 * Math.max(count, 1));
             core.check(c.lightbin_bin_bits, ...given, max_lights, words, BigInt(count), bits);
-            return this.#bits.set({...core.read('bits', bits), tilesX, tilesY, words, wordCount: count, wordsPerTile});
+            return this.#bits.set(core.read('bits', bits,
+                {...nothing, tilesX, tilesY, words, wordCount: count, wordsPerTile}));
         });
     }
     #call(view, lights, inputs, body) {
@@ -542,8 +620,6 @@ const snippet = {make: c => c.lightbin_shader_snippet, options: 'snippetOptions'
                  bindings: {tiles: 0, lists: 1, grid: 2, slices: 3, bins: 4, view: 5}};
 const reduce = {make: c => c.lightbin_reduce_shader, options: 'reduceOptions',
                 bindings: {depth: 0, zBounds: 1, grid: 2}};
-const build = {make: c => c.lightbin_build_shader, options: 'buildOptions',
-               bindings: {footprints: 0, zBounds: 1, tiles: 2, lists: 3, total: 3, grid: 4}};
 const cull = {make: c => c.lightbin_cull_shader, options: 'cullOptions',
               bindings: {lights: 0, zBounds: 0, scratch: 1, slices: 2, bins: 2, tiles: 2, lightCount: 3, order: 3,
                          lists: 3, grid: 4}};
@@ -655,7 +731,6 @@ class Lightbin {
     }
     shader(options) { return this.#text(snippet, options); }
     reduceShader(options) { return this.#text(reduce, options); }
-    buildShader(options) { return this.#text(build, options); }
     cullShader(options) { return this.#text(cull, options); }
     async planCull(view, options, room) {
         return cull_plan(await this.#shader_core(), view, options, room);
@@ -687,7 +762,16 @@ class Lightbin {
                 whole(columns, 'columns'), whole(rows, 'rows'), costs, 0);
         });
     }
+    async viewText(view) {
+        const core = await this.#load_advice(), copy = View.copy(core, view)[address];
+        return core.scope(c => {
+            const size = c.lightbin_view_text(copy, 0, 0) + 1, text = c.stackAlloc(size);
+            c.lightbin_view_text(copy, text, size);
+            return core.text(text);
+        });
+    }
     lightRange(intensity, cutoff) { return this.#core.c.lightbin_light_range(intensity, cutoff); }
+    lightWindow(distance, range) { return this.#core.c.lightbin_light_window(distance, range); }
     get allocations() {
         const live = ({c, staging}) => c.live_allocations() - (staging.at !== 0 ? 1 : 0);
         return this.#cores.reduce((sum, core) => sum + live(core), 0);

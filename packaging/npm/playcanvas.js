@@ -2,55 +2,62 @@
 // Clustered lights for PlayCanvas: its grid of cells in world space, with lists that lightbin makes.
 // playcanvas.d.ts describes what is exported.
 import {
-    LIGHTTYPE_SPOT, PIXELFORMAT_R32U, PIXELFORMAT_RG32U, PIXELFORMAT_RGBA32F, SHADERLANGUAGE_GLSL, SHADERLANGUAGE_WGSL,
+    LIGHTTYPE_SPOT, PIXELFORMAT_R32U, PIXELFORMAT_RGBA32F, SHADERLANGUAGE_GLSL, SHADERLANGUAGE_WGSL,
     ShaderChunks, WorldClusters,
 } from 'playcanvas';
 
 // PlayCanvas has one light in each row of its texture of lights, which limits their number. Here a row has this many.
-const lights_per_row = 64, ids_per_row = 2048;
+const lights_per_row = 64, words_per_row = 2048;
 
 // What PlayCanvas' shader does, and what it does here, in each language: the place of a light in the texture, and the
-// loop over a cell's lights. PlayCanvas gives each cell room for the same number of lights, up to 255, and numbers the
-// lights from 1.
+// loop over a cell's lights. PlayCanvas gives each cell room in its texture for the same number of lights, up to 255,
+// and numbers the lights from 1. Here a cell has room for two words, which are where its list begins and how long it
+// is; the lists follow after the last cell. One texture holds both, as each upload has its own cost.
 const changes = {
     [SHADERLANGUAGE_GLSL]: [
         ['uniform highp usampler2D clusterWorldTexture;', text => `${text}
-    uniform highp usampler2D lightbin_lists;`],
+    uint lightbin_word(uint at) {
+        return texelFetch(clusterWorldTexture, ivec2(at % ${words_per_row}u, at / ${words_per_row}u), 0).x;
+    }`],
         ['ivec2(index, lightIndex)', `ivec2(lightIndex % ${lights_per_row} * {CLUSTER_TEXTURE_COUNT} + index,
         lightIndex / ${lights_per_row})`],
         [/for \(int lightCellIndex = 0;[^{]*\{[^;]*;\s*if \(lightIndex == 0u\)\s*break;/, `
-        uvec2 lightbin_list = texelFetch(clusterWorldTexture, ivec2(clusterU, clusterV), 0).xy;
-        for (uint lightbin_at = lightbin_list.x; lightbin_at < lightbin_list.x + lightbin_list.y; ++lightbin_at) {
-            uint lightIndex = 1u + texelFetch(lightbin_lists,
-                ivec2(lightbin_at % ${ids_per_row}u, lightbin_at / ${ids_per_row}u), 0).x;`],
+        uint lightbin_cell = uint(cellIndex), lightbin_begin = lightbin_word(lightbin_cell)
+            + uint(2 * clusterCellsMax.x * clusterCellsMax.y * clusterCellsMax.z);
+        uint lightbin_end = lightbin_begin + lightbin_word(lightbin_cell + 1u);
+        for (uint lightbin_at = lightbin_begin; lightbin_at < lightbin_end; ++lightbin_at) {
+            uint lightIndex = 1u + lightbin_word(lightbin_at);`],
     ],
     [SHADERLANGUAGE_WGSL]: [
         ['var clusterWorldTexture: texture_2d<u32>;', text => `${text}
-    var lightbin_lists: texture_2d<u32>;`],
+    fn lightbin_word(at: u32) -> u32 {
+        return textureLoad(clusterWorldTexture, vec2<u32>(at % ${words_per_row}u, at / ${words_per_row}u), 0).r;
+    }`],
         ['vec2<i32>(index, lightIndex)', `vec2<i32>(lightIndex % ${lights_per_row} * {CLUSTER_TEXTURE_COUNT} + index,
         lightIndex / ${lights_per_row})`],
         [/for \(var lightCellIndex: i32 = 0;[^{]*\{[^;]*;\s*if \(lightIndex == 0u\) \{\s*break;\s*\}/, `
-        let lightbin_list: vec2<u32> = textureLoad(clusterWorldTexture, vec2<i32>(clusterU, clusterV), 0).rg;
-        for (var lightbin_at: u32 = lightbin_list.x; lightbin_at < lightbin_list.x + lightbin_list.y; lightbin_at++) {
-            let lightIndex: u32 = 1u + textureLoad(lightbin_lists,
-                vec2<u32>(lightbin_at % ${ids_per_row}u, lightbin_at / ${ids_per_row}u), 0).r;`],
+        let lightbin_cells: vec3i = uniform.clusterCellsMax;
+        let lightbin_begin: u32 = lightbin_word(u32(cellIndex))
+            + u32(2 * lightbin_cells.x * lightbin_cells.y * lightbin_cells.z);
+        let lightbin_end: u32 = lightbin_begin + lightbin_word(u32(cellIndex) + 1u);
+        for (var lightbin_at: u32 = lightbin_begin; lightbin_at < lightbin_end; lightbin_at++) {
+            let lightIndex: u32 = 1u + lightbin_word(lightbin_at);`],
     ],
 };
 
-const handlers = new WeakMap();  // of graphics devices: what stands in for the methods of WorldClusters
-const ids = Symbol("the texture of a WorldClusters' lists");
+const updates = new WeakMap();  // of graphics devices: what stands in for WorldClusters.update()
 
-/// Makes the clusters of devices that have handlers call these.
+/// Makes the clusters of devices that have an update call it.
 let patch = () => {
     patch = () => {};
-    for (const method of ['update', 'activate', 'destroy']) {
-        const own = WorldClusters.prototype[method];
-        WorldClusters.prototype[method] = function(...given) {
-            const handler = handlers.get(this.device);
-            if (handler !== undefined) handler[method](this, ...given);
-            if (handler === undefined || method !== 'update') own.apply(this, given);
-        };
-    }
+    const own = WorldClusters.prototype.update;
+    WorldClusters.prototype.update = function(lights, params) {
+        const update = updates.get(this.device);
+        if (update !== undefined)
+            update(this, lights, params ?? {});
+        else
+            own.call(this, lights, params);
+    };
 };
 
 export class ClusteredLights {
@@ -64,17 +71,13 @@ export class ClusteredLights {
 
     constructor(lightbin, app, {depthTest = 'no-depth-test'} = {}) {
         const device = app.graphicsDevice, {empty} = app.renderer.worldClustersAllocator;
-        if (handlers.has(device)) throw new Error('this application has ClusteredLights');
+        if (updates.has(device)) throw new Error('this application has ClusteredLights');
         if (app.frame > 0) throw new Error('ClusteredLights must be made before the first frame, which makes shaders');
         this.#binner = lightbin.binner({slicing: 'clusters', depthTest});
         this.#floats = lightbin.floats(1024);
         this.#lightbin = lightbin;
         for (const language in changes) this.#change(ShaderChunks.get(device, language), changes[language]);
-        handlers.set(device, {
-            update: (clusters, lights, params) => this.#update(clusters, lights, params ?? {}),
-            activate: clusters => device.scope.resolve('lightbin_lists').setValue(clusters[ids]),
-            destroy: clusters => clusters[ids]?.destroy(),
-        });
+        updates.set(device, this.#update.bind(this));
         patch();
         empty.update([]);  // what layers without lights read
     }
@@ -97,8 +100,10 @@ export class ClusteredLights {
     /// bounds of the cells, and what the texture says of a light.
     #update(clusters, lights, params) {
         const buffer = clusters.lightsBuffer;
-        Object.defineProperty(buffer, 'maxLights', {value: Infinity});
-        for (const what of ['cookiesEnabled', 'shadowsEnabled', 'areaLightsEnabled']) buffer[what] = params[what];
+        if (buffer.maxLights !== Infinity) Object.defineProperty(buffer, 'maxLights', {value: Infinity});
+        buffer.cookiesEnabled = params.cookiesEnabled;
+        buffer.shadowsEnabled = params.shadowsEnabled;
+        buffer.areaLightsEnabled = params.areaLightsEnabled;
         clusters.cells = params.cells ?? clusters.cells;
         clusters.collectLights(lights);
         this.#leaveOut(clusters.usedLights);
@@ -181,10 +186,13 @@ export class ClusteredLights {
     /// margin on all sides.
     #write({usedLights, lightsBuffer: buffer}, points, margin) {
         const count = usedLights.length - 1, texels = this.#texels, needed = 8 * count - 4 * points;
-        buffer.lightsTexture = fit(buffer.lightsTexture, buffer, PIXELFORMAT_RGBA32F, texels * lights_per_row,
-                                   Math.ceil(usedLights.length / lights_per_row));
-        const rows = buffer.lightsFloat = buffer.lightsTexture.lock();
-        buffer.lightsUint = new Uint32Array(rows.buffer);
+        const texture = fit(buffer.lightsTexture, buffer, PIXELFORMAT_RGBA32F, texels * lights_per_row,
+                            Math.ceil(usedLights.length / lights_per_row));
+        const rows = texture.lock();
+        if (rows !== buffer.lightsFloat) {
+            buffer.lightsFloat = rows;
+            buffer.lightsUint = new Uint32Array(rows.buffer);
+        }
         if (this.#floats.length < needed) this.#floats.resize(2 * needed);
         const {array} = this.#floats;
         let at = 0;
@@ -195,9 +203,10 @@ export class ClusteredLights {
             array[at++] = -y;
             array[at++] = last;
         };
+        buffer.lightsTexture = {width: texels};  // for addLightData(), which puts each light in a row of its own
         for (let i = 1, row = 4 * texels; i <= count; ++i, row += 4 * texels) {
             const {light} = usedLights[i];
-            buffer.addLightData(light, i / lights_per_row);  // which it multiplies by the width of the texture
+            buffer.addLightData(light, i);
             const x = rows[row], y = rows[row + 1], z = rows[row + 2], radius = rows[row + 3] + margin;
             if (i <= points) {
                 write(x, y, z, radius);
@@ -211,6 +220,7 @@ export class ClusteredLights {
             write(x - behind * axis_x, y - behind * axis_y, z - behind * axis_z, radius + behind);
             write(axis_x, axis_y, axis_z, is_wide ? -1 : Math.cos(angle));
         }
+        buffer.lightsTexture = texture;
     }
 
     #bin({usedLights}, points) {
@@ -221,25 +231,24 @@ export class ClusteredLights {
     }
 
     #upload(clusters, {ranges, ids: list}, debugLayer) {
-        const {device, lightsBuffer: buffer} = clusters;
-        clusters.maxCellLightCount = 1;  // so that the texture of cells has a texel for each
+        const {lightsBuffer: buffer} = clusters;
+        clusters.maxCellLightCount = 2;  // words of a cell
         clusters.updateCells();
-        const {width, height, format} = clusters.clusterTexture;
-        if (format !== PIXELFORMAT_RG32U) {
-            clusters.releaseClusterTexture();
-            clusters.clusterTexture = buffer.createTexture(device, width, height, PIXELFORMAT_RG32U, 'lightbin cells');
-        }
-        clusters[ids] = fit(clusters[ids], buffer, PIXELFORMAT_R32U, ids_per_row, Math.ceil(list.length / ids_per_row));
-        clusters.clusterTexture.lock().set(ranges);
-        clusters[ids].lock().set(list);
-        for (const texture of [clusters.clusterTexture, clusters[ids], buffer.lightsTexture]) texture.unlock();
+        clusters.clusterTexture = fit(clusters.clusterTexture, buffer, PIXELFORMAT_R32U, words_per_row,
+                                      Math.ceil((ranges.length + list.length) / words_per_row));
+        const words = clusters.clusterTexture.lock();
+        words.set(ranges);
+        words.set(list, ranges.length);
+        clusters.clusterTexture.unlock();
+        buffer.lightsTexture.unlock();
         if (debugLayer !== undefined) clusters.counts.forEach((_, i, counts) => counts[i] = ranges[2 * i + 1]);
     }
 }
 
-/// A texture of at least this many rows, and at most three times as many: the one that there is, or else another.
+/// A texture of at least this many rows, and at most twice as many: the one that there is, or else another.
 function fit(texture, buffer, format, width, rows) {
-    if (texture?.width === width && texture.height >= rows && texture.height <= 3 * Math.max(rows, 1)) return texture;
-    texture?.destroy();
-    return buffer.createTexture(buffer.device, width, Math.max(rows + (rows >> 1), 1), format, 'lightbin lights');
+    const {height} = texture;
+    if (texture.format === format && texture.width === width && height >= rows && height <= 2 * rows) return texture;
+    texture.destroy();
+    return buffer.createTexture(buffer.device, width, rows + (rows >> 2), format, 'lightbin');
 }

@@ -77,19 +77,13 @@ test('both modules make the bytes of this machine\'s library', async () => {
         }
         assert.equal(grids, 64);
 
-        const all = {viewMatrix: camera, spheres: {array: spheres}, spots: {array: cones, stride: 12},
-                     boxes: {array: rooms}};
-        for (const lights of [{spheres: {array: spheres}}, all])
-            same(view.shaderFootprints(lights), `footprints of ${Object.keys(lights)}`);
+        assert.equal(await lightbin.viewText(view), Buffer.from(block()).toString());
         same(view.shaderEdges(), 'edges');
         same(slices.shaderSlabs(), 'slabs');
         same(view.shaderReduce(3, 5), 'constants of a reduction');
-        same(view.shaderBuild({footprints: 70, capacity: 9000, slices: 17}), 'constants of a build');
         const text = () => Buffer.from(block()).toString();
         for (const options of [{language: 'wgsl'}, {language: 'essl-300', fragment: true}])
             assert.equal((await lightbin.reduceShader({...options, skipBackground: true})).text, text());
-        for (const pass of ['count', 'offsets', 'fill'])
-            assert.equal((await lightbin.buildShader({language: 'wgsl', pass, depthTest: 'box'})).text, text());
         const wide = lightbin.exponentialSlices({count: 17, first: 1.5, last: 120, margin: 0.02});
         for (const slicing of ['no-slicing', 'clusters', 'z-bins']) {
             const worldSpace = slicing !== 'clusters';
@@ -232,6 +226,7 @@ test('what is wrong is a sentence, the next call is right, and nothing stays all
             [() => view.update({tileSize: -3}), 'tile-size-out-of-range', /-3/],
             [() => lightbin.binner({slicing: 'toString'}), 'not-a-value', /is none of no-slicing, clusters, z-bins$/],
             [() => lightbin.binner({depthTest: 'split-box'}), 'left-out', /LIGHTBIN_NO_SPLIT_BOX/],
+            [() => lightbin.binner({coverage: true}), 'left-out', /LIGHTBIN_NO_COVERAGE/],
             [() => lightbin.binner({depthTest: 'interval', slicing: 'clusters'}), 'options-not-together', /./],
             [() => lightbin.linearSlices({count: 0, begin: 1, end: 2}), 'no-slices', /./],
             [() => lightbin.slicesFromBoundaries({boundaries: [3, 2]}), 'slices-do-not-ascend', /./],
@@ -356,6 +351,121 @@ test('bits, encodings and views agree with the lists', () => {
     }
 });
 
+test('points and depths are where a pinhole camera of 90 degrees has them', () => {
+    for (const lightbin of modules)
+        for (const [origin, clipDepth] of [['lower-left', 'minus-one-to-one'], ['upper-left', 'zero-to-one']]) {
+            const half = clipDepth === 'zero-to-one', [near, far] = [0.5, 200], projection = perspective(near, far);
+            if (half) [projection[10], projection[14]] = [-far / (far - near), -far * near / (far - near)];
+            const view = lightbin.view({...square, projection, origin, clipDepth});
+            const close = (got, wanted) => got.forEach((number, i) =>
+                assert.ok(Math.abs(number - wanted[i]) <= 1e-4 * (1 + Math.abs(wanted[i])), `${got}, not ${wanted}`));
+            for (const [x, y, z] of [[0, 0, -1], [0.3, -0.7, -2], [-40, 25, -100]]) {
+                const up = origin === 'lower-left' ? 1 : -1;
+                const image = view.project([x, y, z]);
+                close(image, [160 * (x / -z + 1), 160 * (up * y / -z + 1), -z]);
+                close(view.unproject(new Float64Array(image)), [x, y, z]);
+                const window = far / (far - near) * (1 - near / -z);  // in both ranges of clip depth
+                close([view.windowDepth(-z)], [window]);
+                const [least, greatest] = view.depths(window, window + 1e-4);
+                assert.ok(least <= -z && -z <= greatest);
+                const deeper = near / (1 - (window + 1e-4) * (far - near) / far);
+                close([least / -z, greatest / deeper], [1, 1]);
+            }
+            assert.throws(() => view.project([1, 2]), {code: 'not-a-value', message: /^point must be an array of 3/});
+            view.dispose();
+            assert.throws(() => view.unproject([1, 2, 3]), {code: 'null-argument', message: /^view: /});
+            assert.equal(lightbin.allocations, 0);
+        }
+});
+
+test('slices and lists are counted as their arrays say', () => {
+    for (const lightbin of modules) {
+        const boundaries = [1, 2, 4], slices = lightbin.slicesFromBoundaries({boundaries});
+        for (const depth of [-3, 0.99, 1, 1.5, 2, 3.99, 4, Infinity])
+            assert.equal(slices.at(depth), boundaries.filter(boundary => boundary <= depth).length);
+        for (const [distance, range] of [[0, 3], [1, 3], [2.9, 3], [3, 3], [5, 3], [5, Infinity]]) {
+            const expected = Math.max(0, 1 - (distance / range) ** 4) ** 2;
+            assert.ok(Math.abs(lightbin.lightWindow(distance, range) - expected) < 1e-6);
+        }
+        const view = lightbin.view(square), spheres = {array: random_spheres(90)};
+        for (const slicing of ['no-slicing', 'z-bins']) {
+            const binner = lightbin.binner({slicing});
+            const grid = binner.bin(view, {spheres}, slicing === 'z-bins' ? {slices} : {});
+            const lists = lists_of(grid), lengths = lists.map(list => list.length);
+            const histogram = new Array(33).fill(0), entries = new Array(90).fill(0);
+            for (const length of lengths) ++histogram[length === 0 ? 0 : Math.floor(Math.log2(length)) + 1];
+            for (const id of lists.flat()) ++entries[slicing === 'z-bins' ? grid.order[id] : id];
+            assert.deepEqual(grid.listLengths(), {longest: Math.max(...lengths), histogram});
+            assert.deepEqual([...grid.countEntries()], entries);
+            assert.ok(entries.includes(0) && Math.max(...entries) > 1);
+            binner.dispose();
+            assert.equal(grid.countEntries().length, 0);
+        }
+        for (const made of [view, slices]) made.dispose();
+        assert.equal(lightbin.allocations, 0);
+    }
+});
+
+test('the lists of several views, one view after another', async () => {
+    const other = await load(), strange = other.binner();
+    for (const lightbin of modules)
+        for (const [options, type] of [[{}, Uint32Array], [{ids: 'u16', slicing: 'clusters'}, Uint16Array]]) {
+            const slices = lightbin.linearSlices({count: 3, begin: 5, end: 40});
+            const binners = Array.from({length: 3}, () => lightbin.binner(options)), view = lightbin.view(square);
+            const inputs = options.slicing && {slices};
+            const grids = binners.map((binner, i) =>
+                binner.bin(view, {spheres: {array: i === 1 ? [] : random_spheres(60)}}, inputs));
+            const all = grids[0].append(grids[1], grids[2]);
+            assert.ok(all.ids instanceof type && all.ids.length > 100);
+            assert.deepEqual(lists_of(all), grids.flatMap(lists_of));
+            assert.equal(all.ids.length, grids[0].ids.length + grids[2].ids.length);
+            assert.deepEqual(lists_of(grids[2].append()), lists_of(grids[2]));
+
+            const small = lightbin.view({...square, width: 160}), wide = lightbin.binner(options);
+            const narrow = lightbin.binner({...options, ids: options.ids ? 'u32' : 'u16'});
+            const away = strange.bin(other.view(square), {spheres: {array: []}});
+            for (const [given, code, message] of [
+                [[narrow.bin(view, {}, inputs)], 'not-a-value', /^append: the ids of one grid have [24] bytes/],
+                [[wide.bin(small, {}, inputs)], 'grids-differ', /./],
+                [[grids[1], grids[1]], 'not-a-value', /^append: a grid is given twice/],
+                [[grids[0]], 'not-a-value', /^append: a grid is given twice/],
+                [[away], 'not-a-value', /^append: a grid was not made by this module$/],
+                [[null], 'not-a-value', /^append: a grid was not made by this module$/],
+            ]) assert.throws(() => grids[0].append(...given), {name: 'LightbinError', code, message});
+            assert.deepEqual(lists_of(grids[0].append(grids[1], grids[2])), grids.flatMap(lists_of));
+            for (const made of [...binners, slices, view, small, wide, narrow]) made.dispose();
+            assert.equal(grids[0].append().ids.length, 0);
+            assert.equal(lightbin.allocations, 0);
+        }
+    const {text} = await other.shader({language: 'essl-300', storage: 'texture-2d', views: 2});
+    assert.match(text, /lightbin_begin\(highp uvec2 pixel, highp float view_depth, highp uint view\)/);
+});
+
+test('kinds are counted in each list', () => {
+    for (const lightbin of modules) {
+        const view = lightbin.view(square), binner = lightbin.binner(), spheres = random_spheres(90);
+        const spots = Float32Array.from({length: 8 * 60},
+            (_, i) => i % 8 < 4 ? spheres[4 * (i >> 3) + i % 8] : [0.1, -1, 0.2, 0.8][i % 4]);
+        const grid = binner.bin(view, {spheres: {array: spheres}, spots: {array: spots}});
+        assert.deepEqual([grid.firstSpot, grid.firstBox], [90, 150]);
+        const kinds = grid.splitKinds();
+        let seen = 0;
+        for (const [tile, list] of lists_of(grid).entries()) {
+            const count = list.filter(id => id < 90).length;
+            seen += list.length - count;
+            assert.deepEqual([...kinds.subarray(4 * tile, 4 * tile + 4)],
+                [grid.ranges[2 * tile], count, list.length - count, 0]);
+        }
+        assert.ok(seen > 0 && kinds.length === 2 * grid.ranges.length);
+        const sorted = lightbin.binner({slicing: 'z-bins'});
+        const slices = lightbin.linearSlices({count: 4, begin: 1, end: 9});
+        const ranks = sorted.bin(view, {spheres: {array: spheres}}, {slices});
+        assert.throws(() => ranks.splitKinds(), {name: 'LightbinError', code: 'kinds-of-ranks'});
+        for (const made of [view, binner, sorted, slices]) made.dispose();
+        assert.equal(lightbin.allocations, 0);
+    }
+});
+
 test('shader text for WebGL 2 and WebGPU, with what to bind', async () => {
     for (const lightbin of modules) {
         const webgl = await lightbin.shader({language: 'essl-300', storage: 'texture-2d', slicing: 'clusters',
@@ -373,7 +483,7 @@ test('shader text for WebGL 2 and WebGPU, with what to bind', async () => {
     }
 });
 
-test('shaders that build lists say what to bind', async () => {
+test('shaders that reduce depth and make lists say what to bind', async () => {
     const bound = ({bindings}) => bindings.map(({name, resource, slot}) => [name, resource, slot.binding]);
     const [lightbin] = modules, language = 'wgsl';
     const expected = [['lightbin_grid_block', 'uniform-block'], ['lightbin_depth', 'texture-2d'],
@@ -383,12 +493,13 @@ test('shaders that build lists say what to bind', async () => {
     const [, , before] = reduce.find(([name]) => name === 'lightbin_depth');
     const moved = bound(await lightbin.reduceShader({language, slots: {depth: {binding: before + 7}}}));
     assert.deepEqual(moved, reduce.map(([name, resource, at]) => [name, resource, name === 'lightbin_depth' ? at + 7 : at]));
-    const fill = options => lightbin.buildShader({language, pass: 'fill', ...options});
-    const slots = {footprints: 0, zBounds: 1, tiles: 2, lists: 3, total: 3, grid: 4};
+    const fill = options => lightbin.cullShader({language, pass: 'fill', ...options});
+    const slots = {lights: 0, zBounds: 0, scratch: 1, slices: 2, bins: 2, tiles: 2, lightCount: 3, order: 3, lists: 3,
+                   grid: 4};
     const given = Object.fromEntries(Object.entries(slots).map(([name, binding]) => [name, {binding}]));
     assert.deepEqual(await fill({}), await fill({slots: given}));
     assert.deepEqual(await fill({}), await fill({slots: {}}));
-    await assert.rejects(fill({slicing: 'z-bins'}), {code: 'no-such-slicing-shader'});
+    await assert.rejects(fill({slicing: 'clusters', depthTest: 'interval'}), {code: 'no-such-slicing-shader'});
     await assert.rejects(fill({depthTest: 'split-box'}), {code: 'no-split-box-shader'});
     await assert.rejects(lightbin.reduceShader({language: 'essl-300'}), {code: /^no-/});
     assert.equal(lightbin.allocations, 0);

@@ -163,24 +163,19 @@ int main(int count, char** names) {
 
     // What shaders read that reduce depth and build the lists on the GPU.
     {
-        static lightbin_shader_footprint footprints[SPHERES + SPOTS + BOXES];
         lightbin_edges edges[WIDTH];
         lightbin_reduce_constants reduce = {};
-        lightbin_build_constants build = {};
         size_t written = 0;
-        for (const double* each : {(const double*)nullptr, camera}) {
-            const lightbin_lights lights = lights_of(each);
-            succeed(lightbin_shader_footprints(view, &lights, footprints, SPHERES + SPOTS + BOXES, &written));
-            write_block(footprints, written * sizeof *footprints);
-        }
+        char text[1024];
+        const size_t length = lightbin_view_text(view, text, sizeof text);
+        if (length >= sizeof text) return EXIT_FAILURE;
+        write_block(text, length);
         succeed(lightbin_shader_edges(view, edges, WIDTH, &written));
         write_block(edges, written * sizeof *edges);
         succeed(lightbin_shader_slabs(slices, edges, WIDTH, &written));
         write_block(edges, written * sizeof *edges);
         succeed(lightbin_shader_reduce(view, 3, 5, &reduce));
         write_block(&reduce, sizeof reduce);
-        succeed(lightbin_shader_build(view, 70, 9000, 17, &build));
-        write_block(&build, sizeof build);
     }
     for (const int fragment : {0, 1}) {
         lightbin_reduce_options options = {};
@@ -190,17 +185,6 @@ int main(int count, char** names) {
         options.fragment = fragment;
         options.skip_background = 1;
         succeed(lightbin_reduce_shader(&options, nullptr, &shader));
-        write_block(lightbin_shader_text(shader), std::strlen(lightbin_shader_text(shader)));
-        lightbin_shader_destroy(shader);
-    }
-    for (const int pass : {LIGHTBIN_COUNT, LIGHTBIN_OFFSETS, LIGHTBIN_FILL}) {
-        lightbin_build_options options = {};
-        lightbin_shader* shader = nullptr;
-        options.size = sizeof options;
-        options.language = LIGHTBIN_WGSL;
-        options.pass = pass;
-        options.depth_test = LIGHTBIN_BOX;
-        succeed(lightbin_build_shader(&options, nullptr, &shader));
         write_block(lightbin_shader_text(shader), std::strlen(lightbin_shader_text(shader)));
         lightbin_shader_destroy(shader);
     }

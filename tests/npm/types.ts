@@ -11,13 +11,20 @@ export async function use(gl: WebGL2RenderingContext) {
     const spheres = {array: lamps, stride: 16, centre: 0, radius: [1, 2, 3]};
     const grid = binner.bin(view, {viewMatrix: [1], spheres, boxes: {centre: null}}, {slices});
     gl.bufferData(gl.ARRAY_BUFFER, grid.ids, gl.STREAM_DRAW);
+    gl.bufferData(gl.ARRAY_BUFFER, grid.splitKinds(), gl.STREAM_DRAW);
+    const [x, y, depth] = view.project([1, 2, 3]), {longest, histogram} = grid.listLengths();
+    gl.bufferData(gl.ARRAY_BUFFER, grid.append(grid).ids, x + y + slices.at(depth) + histogram[longest]);
+    gl.bufferData(gl.ARRAY_BUFFER, grid.countEntries(), view.unproject([x, y, depth])[2] + view.depths(0, 1)[1]);
+    console.log(await lightbin.viewText(view), view.windowDepth(depth), lightbin.lightWindow(1, 2));
+    // @ts-expect-error
+    grid.append([grid]);
     const {text, bindings} = await lightbin.shader({language: 'essl-300', slots: {lists: {binding: 1}}});
-    gl.bufferData(gl.ARRAY_BUFFER, view.shaderFootprints({spheres}), gl.STREAM_DRAW);
+    gl.bufferData(gl.ARRAY_BUFFER, view.shaderEdges(), gl.STREAM_DRAW);
     const [plan] = await lightbin.advise(view, {spheres}, {bounds: {max: [1]}, overdraw: 2});
     binner.bin(view, {spheres}, {bounds: {max: [plan.entries]}});
-    await lightbin.buildShader({language: 'wgsl', pass: 'fill', slots: {lists: {binding: 1}}});
+    await lightbin.cullShader({language: 'wgsl', pass: 'fill', slots: {lists: {binding: 1}}});
     // @ts-expect-error
-    await lightbin.buildShader({language: 'wgsl', pass: 'draw'});
+    await lightbin.cullShader({language: 'wgsl', pass: 'draw'});
     const room = {lights: 1, entries: 2, slices};
     const {passes} = await lightbin.planCull(view, {language: 'wgsl', slicing: 'z-bins'}, room);
     for (const {pass} of passes) await lightbin.cullShader({language: 'wgsl', pass, slicing: 'z-bins'});

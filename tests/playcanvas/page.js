@@ -107,8 +107,8 @@ class Stage {
             const chunks = pc.ShaderChunks.get(this.app.graphicsDevice, language);
             const is_glsl = language === pc.SHADERLANGUAGE_GLSL, text = chunks.get('clusteredLightPS');
             const count = is_glsl ? 'uint(numClusteredLights)' : 'u32(uniform.numClusteredLights)';
-            const all = text.replace(/= lightbin_list.x;[^;]*;/, `= 0u; lightbin_at + 1u < ${count};`)
-                .replace(/(?:texelFetch|textureLoad)\(lightbin_lists,[^;]*;/, 'lightbin_at;');
+            const all = text.replace(/= lightbin_begin;[^;]*;/, `= 0u; lightbin_at + 1u < ${count};`)
+                .replace('lightbin_word(lightbin_at)', 'lightbin_at');
             if (all === text) throw new Error('there is no loop over the lists');
             chunks.set('clusteredLightPS', all);
         }
