@@ -22,7 +22,7 @@ make -f examples/web/web.mk build/web.objects/lists >$tests/lists.log 2>&1 ||
 build/web.objects/lists tests/fixtures/nova.glb tests/fixtures/darkness.glb >$tests/lists.txt
 failed=
 node --no-warnings tests/web/lists.mjs build/web $tests/lists.txt || failed=yes
-for part in page controls pictures; do
+for part in page controls pictures culled; do
     echo "$me: $part"
     node --test-reporter=spec tests/web/$part.mjs >$tests/$part.log 2>&1 || failed=yes
     grep -E '^(✔|✖|[0-9a-z]+ .*(bytes|ms)|    at |  [A-Z])' $tests/$part.log || true

@@ -3,7 +3,7 @@
 import {load} from './lightbin/lightbin.js';
 import {load_scenes} from './scenes.js';
 
-// A binner for each method: what the page's settings call it, and lightbin's options.
+// By what the page's settings call a depth method: lightbin's options.
 const options = {
     none: {},
     interval: {depthTest: 'interval'},
@@ -17,6 +17,14 @@ export const wants_bounds = method => method === 'interval' || method === 'box';
 
 // How lightbin's shader text calls the slicing of a method.
 export const slicing_of = method => options[method].slicing ?? 'no-slicing';
+
+// The options of lightbin.cullShader(), which lists on the GPU what lights() has as shapes. for_glass: it may stand
+// anywhere before what is opaque.
+export function cull_options(method, orthographic, has_spots, for_glass) {
+    // A sphere's numbers are the first of a spot's.
+    const kind = has_spots ? {kind: 'spot'} : {kind: 'sphere', stride: 8, radius: 3};
+    return {language: 'wgsl', ...options[method], ...kind, orthographic, maxOnly: for_glass};
+}
 
 // How long the lists in a table of offsets and counts are.
 export function list_sizes(ranges) {
@@ -61,18 +69,39 @@ export class Lighting {
         };
     }
 
-    // The same, and the lights and their lists. z_bounds: {min, max}, and where there is glass glass_max. on_gpu: no
-    // lists, but what the shaders of lightbin.buildShader() make them of.
+    // The same, and the lights and their lists. z_bounds: {min, max}, and where there is glass glass_max.
     frame(settings, z_bounds = null) {
         const begin = performance.now(), view = this.view(settings), placed = this.#place(settings);
-        const placed_at = performance.now(), made = settings.on_gpu ? this.#footprints(placed.shapes)
-            : this.#lists(settings, placed, z_bounds);
+        const placed_at = performance.now(), made = this.#lists(settings, placed, z_bounds);
         const binned_at = performance.now(), lights = made.order ? in_order(placed.lights, made.order, placed.count)
             : placed.lights;
         return {
-            ...view, ...made, lights, light_count: placed.count, sun_count: lights.length / 12 - placed.count,
+            ...view, ...made, lights, ...counts(placed),
             ms: {lights: placed_at - begin + performance.now() - binned_at, bin: binned_at - placed_at},
         };
+    }
+
+    // The same for lists that the GPU makes: what lightbin's passes read, and `plans` of them, the first for lists with
+    // room for `room` entries. Where glass has lists of its own, glass_room is theirs, and the second plan.
+    async gpu_frame(settings, room, glass_room = null) {
+        const {method, camera: {orthographic}} = settings, clusters = slicing_of(method) === 'clusters';
+        const begin = performance.now(), view = this.view(settings), placed = this.#place(settings);
+        const placed_at = performance.now(), slices = this.#slices(method, settings, placed.reach);
+        const plan = (entries, for_glass) => this.lightbin.planCull(this.#view,
+            cull_options(method, orthographic, placed.has_spots, for_glass), {lights: placed.count, entries, slices});
+        try {
+            const plans = [await plan(room, false)];
+            if (glass_room !== null) plans.push(await plan(glass_room, true));
+            return {
+                ...view, lights: placed.lights, shapes: placed.array, ...counts(placed), plans,
+                slices: slices?.shaderWords() ?? new Uint32Array(0), edges: this.#view.shaderEdges(),
+                slabs: clusters ? slices.shaderSlabs() : null,
+                cells: view.tiles_x * view.tiles_y * (clusters ? slices.count : 1),
+                ms: {lights: placed_at - begin, bin: performance.now() - placed_at},
+            };
+        } finally {
+            slices?.dispose();
+        }
     }
 
     // What the ways to light this view cost here, the cheapest first; with z_bounds those with depth, too, and
@@ -98,7 +127,7 @@ export class Lighting {
     #place({camera, seconds = 0, drop = -1}) {
         const {lights, shapes: array, has_spots, reach} = this.scenes.lights(camera, seconds, drop);
         const shapes = has_spots ? {spots: {array}} : {spheres: {array, stride: 8}};
-        return {lights, shapes, reach, count: array.length / 8};
+        return {lights, array, shapes, has_spots, reach, count: array.length / 8};
     }
 
     #binner(method, of_glass) {
@@ -107,8 +136,9 @@ export class Lighting {
         return this.#binners.get(name);
     }
 
-    // The slices of the depths that lights reach; of z-bins a thousand.
+    // The slices of the depths that lights reach, of z-bins a thousand; null for a method that has none.
     #slices(method, {camera, slices: count = 24}, reach) {
+        if (slicing_of(method) === 'no-slicing') return null;
         const last = reach < 1e30 ? reach || 1 : 1e30;  // 0: all lights are behind the eye
         if (method === 'z_bins') return this.lightbin.linearSlices({count: 1024, begin: 0, end: last});
         return camera.orthographic ? this.lightbin.linearSlices({count, begin: 0, end: last})
@@ -117,7 +147,7 @@ export class Lighting {
 
     #lists({method, ...settings}, {shapes, reach}, z_bounds) {
         if (!options[method]) throw new Error(`there is no method '${method}'`);
-        const slices = slicing_of(method) === 'no-slicing' ? null : this.#slices(method, settings, reach);
+        const slices = this.#slices(method, settings, reach);
         const bounds = wants_bounds(method) ? {min: z_bounds?.min, max: z_bounds?.max, backgroundSkipped: true} : null;
         try {
             const grid = this.#binner(method, false).bin(this.#view, shapes, {slices, bounds});
@@ -134,22 +164,10 @@ export class Lighting {
             slices?.dispose();
         }
     }
-
-    #footprints(shapes) {
-        const edges = this.#view.shaderEdges(), footprints = this.#view.shaderFootprints(shapes);
-        const tiles = new Uint16Array(footprints.buffer, footprints.byteOffset, 2 * footprints.length);
-        let room = 0;  // for all tiles of the lights' rectangles
-        for (let at = 2; at < tiles.length; at += 16)
-            room += (tiles[at + 2] - tiles[at] + 1) * (tiles[at + 3] - tiles[at + 1] + 1);
-        if (room > 0xffffffff) throw new Error(`the lists would have ${room} entries: take larger tiles`);
-        const count = footprints.length / 8;
-        const build = this.#view.shaderBuild({footprints: count, capacity: room});
-        const [ranges, ids, slices, bins] = Array(4).fill(new Uint32Array(0));
-        return {
-            footprints, edges, build, ranges, ids, slices, bins, in_view: count, rejected: 0, ...list_sizes(ranges),
-        };
-    }
 }
+
+// The numbers of lights, and of the suns that follow them.
+const counts = ({lights, count}) => ({light_count: count, sun_count: lights.length / 12 - count});
 
 // Twelve floats of each light in the order of ids, which are ranks with z-bins; those out of view follow, then the suns.
 function in_order(lights, order, count) {

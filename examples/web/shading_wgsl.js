@@ -29,11 +29,13 @@ export const frame_bindings = [
     {name: 'lights', resource: 'storage-buffer', slot: {binding: 1}},
 ];
 
-// Returns what makes the words of `frame`, given the length of the longest list.
-export function frame_constants({projection, view, moon, light_count, sun_count}, exposure, width, height) {
-    const floats = new Float32Array([...projection, ...view, ...moon, exposure, width, height, 1, 0, 0, 0, 0, 0]);
+// The words of `frame`.
+export function frame_constants(frame, {exposure = 1, width, height}, longest_list) {
+    const {projection, view, moon, light_count, sun_count} = frame;
+    const floats = new Float32Array(
+        [...projection, ...view, ...moon, exposure, width, height, Math.max(longest_list, 1), 0, 0, 0, 0, 0]);
     new Uint32Array(floats.buffer).set([light_count, sun_count], 40);
-    return longest_list => floats.fill(Math.max(longest_list, 1), 38, 39);
+    return floats;
 }
 
 // `invariant`: the same bits in the depth pre-pass and in the shading pass.

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The WebGPU renderer: draw() has the frame from top to bottom.
-import {list_sizes, wants_bounds} from './lighting.js';
+import {list_sizes} from './lighting.js';
 import {frame_constants} from './shading_wgsl.js';
-import {BuiltLists} from './webgpu_lists.js';
+import {CulledLists, RankedLights} from './webgpu_lists.js';
 import {Store, usages} from './webgpu_parts.js';
 import {Programs, depth_format, picture_format} from './webgpu_programs.js';
 
-// What is read back of a frame: six times in nanoseconds, and the table of the tiles built here.
-const tiles_at = 48;
+// What is read back of a frame: six times in nanoseconds; four words each of what the lists and those of glass came to;
+// and the table of tiles.
+const totals_at = 48, glass_totals_at = 64, tiles_at = 80;
 
 // Cuts a picture into bands of rows that no device takes long for: [first row, rows].
 function cut(width, height, lights) {
@@ -40,8 +41,10 @@ export class WebGpu {
     #depth = null;
     #stores = new Map();
     #programs;
-    #lists;  // of interval and box
-    #glass_lists;
+    #lists;
+    #glass_lists;  // with Z bounds
+    #ranked;       // with z-bins
+    #longest = 0;  // of the lists last made: what the heat map's colours are relative to
     #opaque = 0;  // vertices of what is opaque; those of glass follow
     #glass = 0;
     #spots = false;
@@ -53,8 +56,9 @@ export class WebGpu {
         this.#context.configure({device, format: picture_format, usage: GPUTextureUsage.COPY_DST, alphaMode: 'opaque'});
         if (device.features.has('timestamp-query')) this.#clock = device.createQuerySet({type: 'timestamp', count: 6});
         this.#programs = new Programs(device);
-        this.#lists = new BuiltLists(device);
-        this.#glass_lists = new BuiltLists(device);
+        this.#lists = new CulledLists(device);
+        this.#glass_lists = new CulledLists(device);
+        this.#ranked = new RankedLights(device);
         device.lost.then(({message}) => this.lost ??= `The graphics device was lost. ${message}`);
         device.addEventListener('uncapturederror', ({error}) => this.lost ??= `WebGPU reports: ${error.message}`);
     }
@@ -83,56 +87,62 @@ export class WebGpu {
     }
 
     async #draw(lighting, settings) {
-        const {width, height, method, exposure} = settings;
+        const {width, height, method} = settings;
         const look = settings.every_light ? 'every_light' : settings.look;
         const scene = {has_spots: this.#spots, has_glass: this.#glass > 0};
         const programs = await this.#programs.that_draw(lighting, look, settings, scene);
+        const all_lists = programs.glass_lists ? [this.#lists, this.#glass_lists] : [this.#lists];
         this.#resize(width, height);
+        for (;;) {
+            // 1. The lights, and the plan of the passes that make the lists: which lights can reach which tile.
+            const frame = await lighting.gpu_frame({...settings, clip: 'webgpu'}, ...all_lists.map(({room}) => room));
+            const {tiles_x, tiles_y, light_count} = frame;
 
-        // 1. The lists: which lights can reach which tile. With Z bounds: what they are built of.
-        const frame = lighting.frame({...settings, clip: 'webgpu', on_gpu: wants_bounds(method)});
-        const {in_view, rejected, entries, longest, tiles_x, tiles_y, light_count} = frame;
-        const report = {ms: {...frame.ms}, in_view, rejected, entries, longest, tiles_x, tiles_y,
-            timed: this.#clock ? 'gpu' : 'wall'};
+            // 2. To the GPU.
+            const start = performance.now(), of_heat = this.#longest;
+            this.#upload(frame, settings);
+            this.#store('lights').write(frame.lights);
+            this.#store('shapes').write(frame.shapes);
+            this.#store('slices').write(frame.slices);
+            all_lists.forEach((lists, i) => lists.upload(frame.plans[i], frame));
+            if (programs.ranked) this.#ranked.upload(frame);
+            const upload = performance.now() - start;
 
-        // 2. To the GPU.
-        const start = performance.now(), constants = frame_constants(frame, exposure, width, height);
-        this.#upload(frame, programs);
-        report.ms.upload = performance.now() - start;
+            // 3. Depth, lists and picture.
+            const bands = cut(width, height, look === 'every_light' || look === 'check' ? light_count : 1);
+            const {times, totals, longest} = await this.#submit(programs, frame, bands, settings.wanted);
+            this.#longest = longest;
 
-        // 3. Depth, lists and picture: of the heat map once more, where its colours were not relative to the longest
-        // list.
-        const bands = cut(width, height, look === 'every_light' || look === 'check' ? light_count : 1);
-        for (let right = false; !right;) {
-            this.#store('frame', usages.uniform).write(constants(report.longest));
-            const {times, built} = await this.#submit(programs, report, bands, settings.wanted);
-            Object.assign(report.ms, {pre_pass: times[0], bin: frame.ms.bin + times[1], draw: times[2]});
-            right = !built || look !== 'heat' || built.longest === report.longest;
-            Object.assign(report, built);
+            // 4. Once more, before it is shown, where a list was cut, or colours are relative to another list.
+            const had_room = all_lists.map((lists, i) => lists.has_room(totals[i].entries));
+            if (had_room.includes(false) || (look === 'heat' && longest !== of_heat)) continue;
+            if (settings.show !== false) this.#show();
+            const {lights, bin} = frame.ms;
+            return {
+                ms: {pre_pass: times[0], lights, bin: bin + times[1], upload, draw: times[2]},
+                ...totals[0], longest, tiles_x, tiles_y, timed: this.#clock ? 'gpu' : 'wall',
+            };
         }
-        if (settings.show !== false) this.#show();
-        return report;
     }
 
     // The Z bounds of a view's tiles, and what they took.
     async bounds(lighting, settings) {
-        const with_box = {...settings, method: 'box', look: 'lit', clip: 'webgpu', on_gpu: true};
-        const scene = {has_spots: this.#spots, has_glass: false};
-        const programs = await this.#programs.that_draw(lighting, 'lit', with_box, scene);
+        const view = lighting.view({...settings, clip: 'webgpu'}), {tiles_x, tiles_y} = view;
+        const programs = await this.#programs.that_bound(lighting, settings);
+        const bytes = 8 * tiles_x * tiles_y, pairs = this.#store('bounds', usages.results);
+        const {z_bounds} = this.#lists;
         this.#resize(settings.width, settings.height);
-        const frame = lighting.frame(with_box), {tiles_x, tiles_y} = frame;
-        this.#upload(frame, programs);
-        this.#store('frame', usages.uniform).write(frame_constants(frame, 1, settings.width, settings.height)(0));
-        const {times} = await this.#submit(programs, {tiles_x, tiles_y}, []);
-
-        const encoder = this.#device.createCommandEncoder(), pairs = this.#store('bounds', usages.results);
-        const bytes = 8 * tiles_x * tiles_y;
+        this.#upload({...view, light_count: 0, sun_count: 0}, settings);
+        z_bounds.reserve(bytes);
         pairs.reserve(bytes);
-        encoder.copyBufferToBuffer(this.#lists.z_bounds.buffer, 0, pairs.buffer, 0, bytes);
+
+        const encoder = this.#device.createCommandEncoder(), start = performance.now();
+        this.#find_bounds(encoder, programs, view);
+        encoder.copyBufferToBuffer(z_bounds.buffer, 0, pairs.buffer, 0, bytes);
         this.#device.queue.submit([encoder.finish()]);
         const words = new Float32Array(await pairs.read(bytes));
         const side = first => words.filter((_, i) => i % 2 === first);
-        return {min: side(0), max: side(1), milliseconds: times[0]};
+        return {min: side(0), max: side(1), milliseconds: performance.now() - start};
     }
 
     #resize(width, height) {
@@ -150,29 +160,21 @@ export class WebGpu {
         return this.#stores.get(name);
     }
 
-    #upload(frame, programs) {
-        this.#store('grid', usages.uniform).write(frame.grid);
-        this.#store('view', usages.uniform).write(frame.shader_view);
-        this.#store('lights').write(frame.lights);
-        if (programs.lists) {
-            this.#store('footprints').write(frame.footprints);
-            this.#lists.upload(frame);
-            this.#glass_lists.upload(frame);
-        } else {
-            this.#store('tiles').write(frame.ranges);
-            this.#store('lists').write(frame.ids);
-            this.#store('slices').write(frame.slices);
-            this.#store('bins').write(frame.bins);
-        }
+    // What places the triangles.
+    #upload(view, settings) {
+        this.#store('frame', usages.uniform).write(frame_constants(view, settings, this.#longest));
+        this.#store('grid', usages.uniform).write(view.grid);
+        this.#store('view', usages.uniform).write(view.shader_view);
+        this.#store('reduce', usages.uniform).write(view.reduce);
     }
 
-    // Draws, band by band, as long as that is wanted. Returns the milliseconds of pre-pass, lists and picture, and of
-    // the lists that were built here how long they are.
-    async #submit(programs, {tiles_x, tiles_y}, bands, wanted = () => true) {
+    // Draws, band by band, as long as that is wanted. Returns the milliseconds of pre-pass, lists and picture; what the
+    // lists came to, {entries, rejected, in_view} each; and how long the longest is.
+    async #submit(programs, frame, bands, wanted = () => true) {
         const {queue} = this.#device, start = performance.now();
         let encoder = this.#device.createCommandEncoder();
-        if (programs.depth) this.#draw_depth(encoder, programs.depth);
-        if (programs.lists) this.#build_lists(encoder, programs, tiles_x, tiles_y);
+        if (programs.depth) this.#find_bounds(encoder, programs, frame);
+        this.#make_lists(encoder, programs, frame);
         for (const [i, band] of bands.entries()) {
             const first = i === 0, last = i === bands.length - 1;
             if (!first && !last && !wanted()) continue;
@@ -183,51 +185,71 @@ export class WebGpu {
             encoder = this.#device.createCommandEncoder();
         }
 
-        const tiles = programs.lists ? tiles_x * tiles_y : 0, results = this.#store('results', usages.results);
-        results.reserve(tiles_at + 8 * tiles);
-        this.#copy_results(encoder, results.buffer, tiles);
+        const results = this.#store('results', usages.results), end = tiles_at + 8 * frame.cells;
+        results.reserve(end);
+        this.#copy_results(encoder, programs, results.buffer, end);
         queue.submit([encoder.finish()]);
-        const bytes = await results.read(tiles_at + 8 * tiles), wall = performance.now() - start;
+        const bytes = await results.read(end), wall = performance.now() - start;
         const at = Array.from(new BigUint64Array(bytes, 0, 6), nanoseconds => Number(nanoseconds) / 1e6);
-        const taken = (there, first) => (there ? at[first + 1] - at[first] : 0);
+        const taken = first => at[first + 1] - at[first];
         return {
-            times: this.#clock ? [taken(programs.depth, 0), taken(programs.lists, 2), taken(true, 4)] : [0, 0, wall],
-            built: tiles > 0 ? list_sizes(new Uint32Array(bytes, tiles_at, 2 * tiles)) : null,
+            times: this.#clock ? [programs.depth ? taken(0) : 0, taken(2), taken(4)] : [0, 0, wall],
+            totals: [totals_at, glass_totals_at].map(from => {
+                const [entries, rejected, in_view] = new Uint32Array(bytes, from, 3);
+                return {entries, rejected, in_view};
+            }),
+            longest: list_sizes(new Uint32Array(bytes, tiles_at)).longest,
         };
+    }
+
+    // Depth alone, and from it the depths between which each tile has anything to light.
+    #find_bounds(encoder, {depth, reduce, glass_reduce}, {tiles_x, tiles_y}) {
+        this.#draw_depth(encoder, depth);
+        const pass = encoder.beginComputePass({timestampWrites: this.#times(undefined, 1)});
+        const reduce_to = (program, {z_bounds}) => {
+            program.use(pass, {
+                lightbin_depth: this.#depth.createView(), lightbin_grid_block: this.#store('reduce'),
+                lightbin_z_bounds: z_bounds,
+            });
+            pass.dispatchWorkgroups(tiles_x, tiles_y);
+        };
+        reduce_to(reduce, this.#lists);
+        if (glass_reduce) reduce_to(glass_reduce, this.#glass_lists);
+        pass.end();
     }
 
     #draw_depth(encoder, program) {
         const pass = encoder.beginRenderPass({
             colorAttachments: [],
             depthStencilAttachment: this.#depth_attachment(true),
-            timestampWrites: this.#times(0, 1),
+            timestampWrites: this.#times(0, undefined),
         });
-        this.#draw_vertices(pass, program, this.#resources(), 0, this.#opaque);
+        this.#draw_vertices(pass, program, {frame: this.#store('frame')}, 0, this.#opaque);
         pass.end();
     }
 
-    #build_lists(encoder, programs, tiles_x, tiles_y) {
-        const inputs = {
-            lightbin_depth: this.#depth.createView(),
-            lightbin_footprints: this.#store('footprints'),
-        };
+    #make_lists(encoder, {lists, glass_lists, ranked}, {plans, light_count}) {
+        const shared = {lightbin_lights: this.#store('shapes'), lightbin_slices: this.#store('slices')};
+        if (ranked) this.#ranked.clear(encoder);
         const pass = encoder.beginComputePass({timestampWrites: this.#times(2, 3)});
-        this.#lists.encode(pass, programs.lists, inputs, tiles_x, tiles_y);
-        if (programs.glass_lists) this.#glass_lists.encode(pass, programs.glass_lists, inputs, tiles_x, tiles_y);
+        this.#lists.encode(pass, lists, plans[0], shared);
+        if (glass_lists) this.#glass_lists.encode(pass, glass_lists, plans[1], shared);
+        if (ranked) this.#ranked.encode(pass, ranked, this.#store('lights'), this.#lists, light_count);
         pass.end();
     }
 
-    #draw_band(encoder, {surface, glass, depth, lists, glass_lists}, [top, rows], first, last) {
+    #draw_band(encoder, {surface, glass, depth, glass_lists, ranked}, [top, rows], first, last) {
         const pass = encoder.beginRenderPass({
             colorAttachments: [{view: this.#picture.createView(), loadOp: first ? 'clear' : 'load', storeOp: 'store'}],
             depthStencilAttachment: this.#depth_attachment(first && !depth),
             timestampWrites: this.#times(first ? 4 : undefined, last ? 5 : undefined),
         });
         pass.setScissorRect(0, top, this.#picture.width, rows);
-        this.#draw_vertices(pass, surface, this.#resources(lists && this.#lists), 0, this.#opaque);
+        const lights = ranked ? this.#ranked.ranked : this.#store('lights');
+        this.#draw_vertices(pass, surface, this.#resources(lights, this.#lists), 0, this.#opaque);
         if (glass) {
-            const resources = this.#resources(glass_lists && this.#glass_lists);
-            this.#draw_vertices(pass, glass, resources, this.#opaque, this.#glass);
+            const lists = glass_lists ? this.#glass_lists : this.#lists;
+            this.#draw_vertices(pass, glass, this.#resources(lights, lists), this.#opaque, this.#glass);
         }
         pass.end();
     }
@@ -242,17 +264,12 @@ export class WebGpu {
         return wanted ? {querySet: this.#clock, beginningOfPassWriteIndex, endOfPassWriteIndex} : undefined;
     }
 
-    // What the names in the shaders of surfaces stand for. `built`: lists that were built here.
-    #resources(built = null) {
+    // What the names in the shaders of surfaces stand for.
+    #resources(lights, {tiles, lists, bins}) {
         return {
-            frame: this.#store('frame'),
-            lights: this.#store('lights'),
-            lightbin_grid_block: this.#store('grid'),
-            lightbin_image_block: this.#store('view'),
-            lightbin_tiles: built?.tiles ?? this.#store('tiles'),
-            lightbin_lists: built?.lists ?? this.#store('lists'),
-            lightbin_slices: this.#store('slices'),
-            lightbin_bins: this.#store('bins'),
+            frame: this.#store('frame'), lights,
+            lightbin_grid_block: this.#store('grid'), lightbin_image_block: this.#store('view'),
+            lightbin_tiles: tiles, lightbin_lists: lists, lightbin_slices: this.#store('slices'), lightbin_bins: bins,
         };
     }
 
@@ -262,14 +279,16 @@ export class WebGpu {
         pass.draw(count, 1, first);
     }
 
-    #copy_results(encoder, results, tiles) {
+    #copy_results(encoder, {glass_lists}, results, end) {
         if (this.#clock) {
             const times = this.#store('times', GPUBufferUsage.QUERY_RESOLVE | GPUBufferUsage.COPY_SRC);
             times.reserve(48);
             encoder.resolveQuerySet(this.#clock, 0, 6, times.buffer, 0);
             encoder.copyBufferToBuffer(times.buffer, 0, results, 0, 48);
         }
-        if (tiles > 0) encoder.copyBufferToBuffer(this.#lists.tiles.buffer, 0, results, tiles_at, 8 * tiles);
+        this.#lists.copy_totals(encoder, results, totals_at);
+        if (glass_lists) this.#glass_lists.copy_totals(encoder, results, glass_totals_at);
+        encoder.copyBufferToBuffer(this.#lists.tiles.buffer, 0, results, tiles_at, end - tiles_at);
     }
 
     #show() {

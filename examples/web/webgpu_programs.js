@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: MIT
 // The programs of the WebGPU renderer, each compiled when it is first wanted.
-import {slicing_of, wants_bounds} from './lighting.js';
+import {cull_options, slicing_of, wants_bounds} from './lighting.js';
 import {depth_shader, frame_bindings, surface_shader} from './shading_wgsl.js';
-import {BuiltLists} from './webgpu_lists.js';
+import {CulledLists, RankedLights} from './webgpu_lists.js';
 import {Program} from './webgpu_parts.js';
 
 export const picture_format = 'rgba8unorm', depth_format = 'depth32float';
+
+// Waits for each property that is a promise.
+async function all(promises) {
+    const made = await Promise.all(Object.values(promises));
+    return Object.fromEntries(Object.keys(promises).map((name, i) => [name, made[i]]));
+}
 
 export class Programs {
     #device;
@@ -15,20 +21,41 @@ export class Programs {
         this.#device = device;
     }
 
-    // Returns those of a frame: surface; glass, where the scene has some; depth and lists, glass_lists, with Z bounds.
-    async that_draw(lighting, look, {method, camera: {orthographic}}, {has_spots, has_glass}) {
+    // Returns those of a frame: surface; glass, where the scene has some; lists; with Z bounds depth, reduce and
+    // glass_reduce, glass_lists; with z-bins ranked.
+    that_draw(lighting, look, {method, camera: {orthographic}}, {has_spots, has_glass}) {
         const bounded = wants_bounds(method), glass = has_glass && look !== 'heat';
-        const wanted = {surface: this.#surface(lighting, look, method, has_spots, false)};
-        if (glass) wanted.glass = this.#surface(lighting, look, method, has_spots, true);
-        if (bounded) wanted.depth = this.#once('depth', () => this.#program([[], frame_bindings], depth_shader));
-        if (bounded && look !== 'every_light') {
-            const kernels = for_glass => this.#once(`${method} ${orthographic} ${for_glass}`,
-                () => BuiltLists.kernels(this.#device, lighting, method, orthographic, for_glass));
-            wanted.lists = kernels(false);
-            if (glass) wanted.glass_lists = kernels(true);
-        }
-        const names = Object.keys(wanted), made = await Promise.all(Object.values(wanted));
-        return Object.fromEntries(names.map((name, i) => [name, made[i]]));
+        const lists = for_glass => this.#lists(lighting, cull_options(method, orthographic, has_spots, for_glass));
+        return all({
+            surface: this.#surface(lighting, look, method, has_spots, false),
+            glass: glass && this.#surface(lighting, look, method, has_spots, true),
+            lists: lists(false),
+            depth: bounded && this.#depth(),
+            reduce: bounded && this.#reduce(lighting, orthographic, false),
+            glass_reduce: bounded && glass && this.#reduce(lighting, orthographic, true),
+            glass_lists: bounded && glass && lists(true),
+            ranked: slicing_of(method) === 'z-bins' && this.#once('ranked', () => RankedLights.kernels(this.#device)),
+        });
+    }
+
+    // Returns depth and reduce, which find Z bounds.
+    that_bound(lighting, {camera: {orthographic}}) {
+        return all({depth: this.#depth(), reduce: this.#reduce(lighting, orthographic, false)});
+    }
+
+    #lists(lighting, options) {
+        return this.#once(JSON.stringify(options), () => CulledLists.kernels(this.#device, lighting, options));
+    }
+
+    #depth() {
+        return this.#once('depth', () => this.#program([[], frame_bindings.slice(0, 1)], depth_shader));
+    }
+
+    // Glass may stand before the sky, too: its bounds count the background.
+    #reduce({lightbin}, orthographic, for_glass) {
+        const options = {language: 'wgsl', orthographic, skipBackground: !for_glass};
+        return this.#once(`reduce ${orthographic} ${for_glass}`,
+            async () => Program.for_compute(this.#device, await lightbin.reduceShader(options)));
     }
 
     #once(name, make) {

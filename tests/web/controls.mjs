@@ -81,11 +81,14 @@ test('the list check is magenta where a list lacks a light, and nowhere else', a
         const seen = await picture(page);
         let found = 0;
         for (let i = 0; i < seen.length; i += 3) found += seen[i] > 200 && seen[i + 1] < 50 && seen[i + 2] > 200;
+        await page.close();
         return found;
     };
-    const few = 'lights=16&view=2&size=20&tile=16&look=check';
-    assert.equal(await magenta(await browser.open(t, few)), 0);
-    assert.ok(await magenta(await browser.open(t, few + '&drop=3')) > 10);
+    for (const lists of ['', '&renderer=webgpu', '&renderer=webgpu&method=z_bins']) {
+        const few = 'lights=16&view=2&size=20&tile=16&look=check&move=0' + lists;
+        assert.equal(await magenta(await browser.open(t, few)), 0, few);
+        assert.ok(await magenta(await browser.open(t, few + '&drop=3')) > 10, few);
+    }
 });
 
 test('lights move until they are stopped', async t => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // node tests/web/lists.mjs FOLDER LISTS: what the page in FOLDER makes of its scenes with the npm package: the lists that
-// this machine's renderer makes, whose output LISTS is; room for those that the GPU makes; advice; sentences where
+// this machine's renderer makes, whose output LISTS is; what the GPU makes them of; advice; sentences where
 // something is wrong; and all files together are small enough for a page.
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
@@ -11,7 +11,8 @@ const [folder, lists] = process.argv.slice(2);
 const of_page = name => import(pathToFileURL(path.resolve(folder, name)));
 const bytes = name => fs.readFileSync(path.join(folder, name));
 const [{load}, {Lighting}, {start}] = await Promise.all(['lightbin/lightbin.js', 'lighting.js', 'scenes.js'].map(of_page));
-const lightbin = await load({wasm: bytes('lightbin/lightbin_simd.wasm'), advice: bytes('lightbin/advice.wasm')});
+const [wasm, advice_module, shaders] = ['lightbin_simd', 'advice', 'shaders'].map(name => bytes(`lightbin/${name}.wasm`));
+const lightbin = await load({wasm, advice: advice_module, shaders});
 const scenes = await start(bytes('scenes.wasm')), lighting = new Lighting(lightbin, scenes);
 const settings = {width: 640, height: 360, tile_size: 16, clip: 'webgl', method: 'none'};
 
@@ -91,15 +92,22 @@ function sentences() {
     return `${new Set(asked).size} mistakes are sentences, and the scene lives on`;
 }
 
-// The most that the GPU can list are all tiles of the lights' rectangles.
-function room_on_gpu() {
-    const seen = {...settings, camera: scenes.make('city', 1500).cameras[0]}, {entries} = lighting.frame(seen);
-    const {footprints, build, edges, lights, in_view} = lighting.frame({...seen, on_gpu: true});
-    const numbers = new Float32Array(footprints.buffer, footprints.byteOffset, footprints.length);
-    assert.deepEqual([build[2], build[3], footprints.length], [in_view, entries, 8 * in_view]);
-    assert.equal(edges.length, 2 * (40 + 23));
-    for (let at = 0; at < footprints.length; at += 8) assert.equal(numbers[at + 7], lights[12 * footprints[at] + 3]);
-    return `the GPU has room for ${build[3]} entries`;
+// What the GPU lists lights by: as many cells as the CPU's table has ranges, and memory for each buffer.
+async function plans_for_gpu() {
+    const seen = {...settings, camera: scenes.make('city', 1500).cameras[0]};
+    for (const method of ['none', 'interval', 'box', 'z_bins', 'clusters']) {
+        const frame = await lighting.gpu_frame({...seen, method}, 5000, 7000), {plans, lights, shapes, edges} = frame;
+        const bounds = {min: new Float32Array(920), max: new Float32Array(920).fill(60)};
+        const {ranges, slices} = lighting.frame({...seen, method}, bounds);
+        assert.equal(frame.cells, ranges.length / 2, method);
+        assert.deepEqual(frame.slices, slices);
+        assert.deepEqual([edges.length, shapes.length], [2 * (40 + 23), 8 * 1500]);
+        for (let i = 0; i < 1500; ++i)
+            assert.deepEqual(shapes.subarray(8 * i, 8 * i + 4), lights.subarray(12 * i, 12 * i + 4));
+        assert.deepEqual(plans.map(({bytes: {tiles, lists}}) => [tiles, lists]),
+            [[4 * ranges.length, 20000], [4 * ranges.length, 28000]]);
+    }
+    return 'the GPU gets the same lights and slices';
 }
 
 async function advice() {
@@ -146,5 +154,5 @@ function frees() {
     return `${live} blocks of memory are kept`;
 }
 
-for (const test of [no_scene, same_lists, sentences, room_on_gpu, advice, small, frees])
+for (const test of [no_scene, same_lists, sentences, plans_for_gpu, advice, small, frees])
     console.log(`lists: ${await test()}`);
