@@ -8,8 +8,6 @@
 
 #include <gl_context.hpp>
 
-#include <lightbin/shader_build.hpp>
-
 #include <doctest/doctest.h>
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
@@ -403,7 +401,7 @@ TEST_CASE("evaluations without a pre-pass, and a light at a time") {
     const auto tiles = value_of(binner.bin(view, stage.lights()));
     const auto clusters = value_of(cluster_binner.bin(view, stage.lights(), {.slices = slices}));
     const auto bins = value_of(bin_binner.bin(view, stage.lights(), {.slices = fine_slices}));
-    const auto rectangles = value_of(lightbin::shader_footprints(stage.view(1), stage.lights()));
+    const auto rectangles = stage.footprints(1);
     std::uint64_t of_tiles = 0, of_clusters = 0, of_bins = 0, of_rectangles = 0;
     for (int y = 0; y < settings.height; ++y)
         for (int x = 0; x < settings.width; ++x) {
@@ -416,7 +414,7 @@ TEST_CASE("evaluations without a pre-pass, and a light at a time") {
             const auto bin = bins.ranks().bins[static_cast<std::size_t>(fine_slices.slice_at(depth))];
             of_bins += lightbin::lights_of_bin(bins.lights_in(column, row), bin).size();
             of_rectangles += static_cast<std::uint64_t>(
-                std::ranges::count_if(rectangles, [&](const lightbin::ShaderFootprint& f) {
+                std::ranges::count_if(rectangles, [&](const LightFootprint& f) {
                     return x >= f.x0 && x <= f.x1 && y >= f.y0 && y <= f.y1;
                 }));
         }
@@ -446,7 +444,7 @@ TEST_CASE("all lights are seen from above") {
         Stage stage(scene, context.glsl());
         const Camera camera = camera_from_above(scene, {});
         stage.begin(camera, small_frame(1));
-        const auto footprints = value_of(lightbin::shader_footprints(stage.view(), stage.lights()));
+        const auto footprints = stage.footprints();
         CHECK(footprints.size() == scene.lights.size());
         CHECK(std::ranges::all_of(stage.lights(), [&](const lightbin::Sphere& light) {
             const double depth = -static_cast<double>(light.z);

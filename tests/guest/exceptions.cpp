@@ -4,7 +4,8 @@
 
 #include <lightbin/advise.hpp>
 #include <lightbin/lightbin.hpp>
-#include <lightbin/shader_build.hpp>
+#include <lightbin/shader_cull.hpp>
+#include <lightbin/shader_reduce.hpp>
 
 #include <doctest/doctest.h>
 #include <glm/glm.hpp>
@@ -239,9 +240,9 @@ TEST_CASE("what keeps nothing from call to call loses nothing, either") {
     });
     check_function([&] { return shader_snippet()->text; });
     check_function([&] { return reduce_shader()->text; });
-    check_function([&] { return build_shader()->text; });
+    check_function([&] { return cull_shader(CullPass::project)->text; });
     check_function([&] {
-        const auto footprints = shader_footprints(scene.view, scene.lights);
-        return std::to_string(footprints->size() + shader_edges(scene.view).size());
+        const auto plan = plan_cull(scene.view, {}, {9, 9});
+        return std::to_string(plan->bytes.scratch + shader_edges(scene.view).size());
     });
 }

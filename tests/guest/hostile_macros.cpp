@@ -135,7 +135,7 @@
 #include <lightbin/encode.hpp>
 #include <lightbin/grid_union.hpp>
 #include <lightbin/lightbin.hpp>
-#include <lightbin/shader_build.hpp>
 #include <lightbin/shader_cull.hpp>
+#include <lightbin/shader_reduce.hpp>
 
 lightbin::Binner<> binner;

@@ -6,7 +6,8 @@
 #include <lightbin/encode.hpp>
 #include <lightbin/grid_union.hpp>
 #include <lightbin/lightbin.hpp>
-#include <lightbin/shader_build.hpp>
+#include <lightbin/shader_cull.hpp>
+#include <lightbin/shader_reduce.hpp>
 #include <lightbin/spot.hpp>
 
 #include <glm/glm.hpp>
@@ -136,12 +137,9 @@ void use_coverage(Hash& hash, const View& view, const auto& lights, const std::v
 }
 
 void use_shader_data(Hash& hash, const View& view, const std::vector<Sphere>& lights) {
-    const auto footprints = value_of(shader_footprints(view, lights));
-    for (const ShaderFootprint& footprint : footprints)
-        hash.add(footprint.id * 65536ull + footprint.x1);
     hash.add(shader_edges(view).size());
     hash.add(shader_reduce(view).height);
-    hash.add(shader_build(view, static_cast<std::uint32_t>(footprints.size()), 9).footprints);
+    hash.add(value_of(plan_cull(view, {}, {static_cast<std::uint32_t>(lights.size()), 9})).bytes.scratch);
 }
 
 /// of_plan(plan) returns a number that its options make.
@@ -288,6 +286,6 @@ std::uint64_t UNIT() {
                 hash.add(static_cast<unsigned char>(letter));
         }
     hash.add(value_of(reduce_shader()).text.size());
-    hash.add(value_of(build_shader()).text.size());
+    hash.add(value_of(cull_shader(CullPass::project)).text.size());
     return hash.value;
 }

@@ -9,8 +9,6 @@
 // again.
 #include "scene.hpp"
 
-#include <lightbin/shader_build.hpp>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -263,12 +261,12 @@ private:
     /// Shrinks lights, and in the end drops some, while their rectangles cover more tiles than a round has time for.
     void keep_small(std::uint32_t large) {
         for (int tries = 0; large < scene_.lights.size(); ++tries) {
-            const auto rectangles =
-                with_lights(scene_, [&](const auto& lights) { return lightbin::shader_footprints(*view_, lights); });
-            double entries = 0;
-            for (const lightbin::ShaderFootprint& f : *rectangles)
-                entries += (f.x1 - f.x0 + 1.0) * (f.y1 - f.y0 + 1.0);
-            if (entries < 2e6) return;
+            const std::uint64_t entries = with_lights(scene_, [&](const auto& lights) {
+                lightbin::Footprints<lightbin::Footprint::rectangle, false> rectangles;
+                rectangles.project(lightbin::machine_isa(), *view_, lightbin::detail::as_lights(lights), {});
+                return rectangles.area();
+            });
+            if (entries < 2'000'000) return;
             for (Sphere& light : scene_.lights)
                 if (random_.coin() && light.radius > 0) light.radius *= 0.01f;
             if (tries > 3) scene_.lights.resize(std::max<std::size_t>(large, scene_.lights.size() / 8));

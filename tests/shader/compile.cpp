@@ -110,8 +110,6 @@ void compile_language(Compiler& compiler, ShaderLanguage language) {
     for (const lightbin::ReduceShaderOptions& options : every_reduction(language))
         compile(options.stage == lightbin::ShaderStage::compute ? EShLangCompute : EShLangFragment,
                 version_line(language) + reduce_shader(options)->text);
-    for (const lightbin::BuildShaderOptions& options : every_build(language))
-        compile(EShLangCompute, version_line(language) + build_shader(options)->text);
     for (const CullText& text : every_cull(language))
         compile(EShLangCompute, version_line(language) + text.shader().text);
 }
@@ -142,29 +140,20 @@ struct PrefixedTexts {
         }
         if (const auto made = reduce_shader(reduction)) reduce = version_line(language) + made->text;
         reduce_stage = reduction.stage == lightbin::ShaderStage::compute ? EShLangCompute : EShLangFragment;
-        using enum lightbin::BuildPass;
-        for (const lightbin::BuildPass pass : {count, offsets, fill}) {
-            lightbin::BuildShaderOptions build;
-            build.language = language;
-            build.pass = pass;
-            build.depth_test = lightbin::DepthTest::box;
-            build.prefix = prefix;
-            if (const auto made = build_shader(build)) builds.push_back(version_line(language) + made->text);
-        }
         for (const lightbin::CullPass pass : lightbin::cull_passes(lightbin::Slicing::z_bins)) {
             lightbin::CullShaderOptions cull;
             cull.language = language;
             cull.kind = lightbin::CullKind::spot;
             cull.slicing = lightbin::Slicing::z_bins;
             cull.prefix = prefix;
-            if (const auto made = cull_shader(pass, cull)) builds.push_back(version_line(language) + made->text);
+            if (const auto made = cull_shader(pass, cull)) passes.push_back(version_line(language) + made->text);
         }
     }
 
     bool taken = false;
     std::string snippet, reduce;
     EShLanguage reduce_stage;
-    std::vector<std::string> builds;
+    std::vector<std::string> passes;
 };
 
 /// The names of a text that begin with a prefix, without it.
@@ -194,7 +183,7 @@ std::string problem_of_prefixes(Compiler& compiler) {
             if (!texts.taken) return prefix + " is refused as a prefix";
             compiler.compile(language, EShLangFragment, texts.snippet);
             compiler.compile(language, texts.reduce_stage, texts.reduce);
-            for (const std::string& text : texts.builds)
+            for (const std::string& text : texts.passes)
                 compiler.compile(language, EShLangCompute, text);
         }
     // What is refused would not, in one at least.
@@ -221,10 +210,6 @@ std::string problem_of_prefixes(Compiler& compiler) {
         for (lightbin::ReduceShaderOptions options : every_reduction(language)) {
             options.prefix = "zzq_";
             take_names(names, reduce_shader(options)->text, "zzq_");
-        }
-        for (lightbin::BuildShaderOptions options : every_build(language)) {
-            options.prefix = "zzq_";
-            take_names(names, build_shader(options)->text, "zzq_");
         }
         for (CullText text : every_cull(language)) {
             text.options.prefix = "zzq_";

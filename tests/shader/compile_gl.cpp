@@ -53,8 +53,6 @@ int main(int count, char** arguments) {
         for (const lightbin::ReduceShaderOptions& options : every_reduction(language))
             compile(options.stage == lightbin::ShaderStage::compute ? Stage::compute : Stage::fragment,
                     version_line(language) + reduce_shader(options)->text);
-        for (const lightbin::BuildShaderOptions& options : every_build(language))
-            compile(Stage::compute, version_line(language) + build_shader(options)->text);
         for (const CullText& text : every_cull(language))
             compile(Stage::compute, version_line(language) + text.shader().text);
     } catch (const std::exception& problem) {

@@ -56,7 +56,7 @@ struct CullCase {
     std::vector<float> z_bounds = {};
     std::optional<lightbin::Slices> slices = {};
     std::optional<lightbin::Matrix> to_view = {};
-    float margin = 0;  // where not 0: the margins of the image axes, as a multiple of those of the plan
+    bool binners_margin = false;  // the margins of the image axes are the Binner's
 };
 
 /// What the passes left. Words of buffers that they did not write are 0xeeeeeeee.
@@ -106,9 +106,9 @@ inline lightbin::CullPlan plan_of(const CullCase& scene) {
     lightbin::CullPlan plan = *lightbin::plan_cull(scene.view, scene.options, {scene.count, scene.room},
                                                    scene.slices ? &*scene.slices : nullptr,
                                                    scene.to_view ? &*scene.to_view : nullptr);
-    if (scene.margin != 0) {
-        plan.constants.margin_x *= scene.margin;
-        plan.constants.margin_y *= scene.margin;
+    if (scene.binners_margin) {
+        plan.constants.margin_x = lightbin::detail::camera_of(scene.view).x.margin;
+        plan.constants.margin_y = lightbin::detail::camera_of(scene.view).y.margin;
     }
     return plan;
 }
@@ -162,6 +162,7 @@ void run_passes(Device& device, const CullCase& scene, const lightbin::CullPlan&
 }
 
 /// How often the passes count and fill compare a light with a tile: for each tile, the lights in the masks of its block.
+/// That one operation compares 32 lights makes no difference to the number.
 inline std::uint64_t count_tests(const lightbin::ShaderCull& plan, const std::vector<std::uint32_t>& scratch) {
     const std::size_t blocks = std::size_t{plan.blocks_x} * plan.blocks_y, words = (plan.lights + 63) / 64 * 2;
     std::vector<std::uint64_t> lights(blocks);

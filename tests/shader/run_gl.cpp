@@ -15,7 +15,7 @@ int main(int count, char** arguments) {
         GlDevice device(glsl);
         Tally tally;
         run_readers(device, glsl_language(glsl), share, tally, false);
-        run_builders(device, glsl_language(glsl), true, share, tally);
+        run_reductions(device, glsl_language(glsl), true, share, tally);
         std::printf("%s\n", tally.text().c_str());
         return !tally.good();
     } catch (const std::exception& problem) {

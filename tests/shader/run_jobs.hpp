@@ -60,16 +60,11 @@ void run_multiview(Device& device, lightbin::ShaderLanguage language, const Shar
         tally.run(device, runs[i].job());
 }
 
-/// The build of the grid and the reduction of depth buffers; of multisample ones if the device has them.
+/// The reduction of depth buffers; of multisample ones if the device has them.
 template <class Device>
-void run_builders(Device& device, lightbin::ShaderLanguage language, bool multisample, const Share& share,
-                  Tally& tally) {
+void run_reductions(Device& device, lightbin::ShaderLanguage language, bool multisample, const Share& share,
+                    Tally& tally) {
     std::size_t turn = 0;
-    const auto run = [&](const Job& job) {
-        if (turn++ % share.count == share.first) tally.run(device, job);
-    };
-    for (const Job& job : build_jobs(language))
-        run(job);
     for (const Job& job : reduce_jobs(language, multisample))
-        run(job);
+        if (turn++ % share.count == share.first) tally.run(device, job);
 }

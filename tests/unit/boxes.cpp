@@ -2,7 +2,6 @@
 #include "scene.hpp"
 
 #include <lightbin/box.hpp>
-#include <lightbin/shader_build.hpp>
 
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
@@ -91,21 +90,6 @@ TEST_CASE("an affine matrix makes of a box the box of the transformed half axes"
                      after = static_cast<double>(test::entries(test::id_lists<options>(view, moved)));
         CHECK(before == doctest::Approx(after).epsilon(0.002));
     });
-}
-
-TEST_CASE("footprints for shaders have the boxes' rectangles and spheres around the boxes") {
-    const View view = test::view({641, 361}, 16);
-    const std::vector<Box> boxes = random_boxes(300, 10);
-    const auto in_rectangles = test::id_lists<Options{}>(view, boxes);
-    const auto footprints = shader_footprints(view, boxes);
-    REQUIRE(footprints);
-    std::size_t area = 0;
-    for (const ShaderFootprint& light : *footprints) {
-        area += (light.x1 - light.x0 + std::size_t{1}) * (light.y1 - light.y0 + 1);
-        const Sphere sphere = boxes[light.id];
-        CHECK(light.radius == sphere.radius);
-    }
-    CHECK(area == test::entries(in_rectangles));
 }
 
 TEST_CASE("bad boxes are skipped and counted") {

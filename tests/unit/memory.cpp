@@ -2,7 +2,6 @@
 #include "scene.hpp"
 
 #include <lightbin/advise.hpp>
-#include <lightbin/shader_build.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -125,7 +124,6 @@ TEST_CASE("more lights than 32 bits number") {
         Binner<> binner;
         refused(binner.bin(view, lights));
         refused(advise(view, lights));
-        refused(shader_footprints(view, lights));
     }
 }
 

@@ -3,7 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <lightbin/shader.hpp>
-#include <lightbin/shader_build.hpp>
+#include <lightbin/shader_cull.hpp>
+#include <lightbin/shader_reduce.hpp>
 
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/mat4x4.hpp>
@@ -104,7 +105,7 @@ TEST_CASE("a wrong option set is refused with a sentence that names the limit") 
               "uniform block"));
     CHECK(has(refusal({.language = ShaderLanguage::essl_300}), "storage"));
     CHECK(has(refusal({.language = ShaderLanguage::essl_310, .storage = ListStorage::texel_buffer}),
-              "texture_2d"));
+              "2D texture"));
     CHECK(has(refusal({.storage = ListStorage::byte_address}), "HLSL"));
     CHECK(has(refusal({.format = {.encoding = ListEncoding::sentinel}}), "capacity"));
     CHECK(has(refusal({.format = {.encoding = ListEncoding::bitmask}}), "max_lights"));
@@ -199,7 +200,7 @@ TEST_CASE("split_kinds: tiles are KindRanges, there is a loop over one kind, and
 
     CHECK(has(refusal({.slicing = Slicing::z_bins, .split_kinds = true}), "ranks"));
     CHECK(has(refusal({.format = {.encoding = ListEncoding::sentinel, .capacity = 4}, .split_kinds = true}),
-              "offset_count"));
+              "offsets and counts"));
 }
 
 TEST_CASE("a negative slot is refused with its sign, in every language and by every generator") {
@@ -211,7 +212,7 @@ TEST_CASE("a negative slot is refused with its sign, in every language and by ev
         CHECK(has(sentence(shader_snippet({.language = language, .tiles = {-1}})), "is -1"));
         CHECK(has(sentence(shader_snippet({.language = language, .view = {1, -3}})), "is -3"));
         CHECK(has(sentence(reduce_shader({.language = language, .grid = {-2147483647 - 1}})), "is -2147483648"));
-        CHECK(has(sentence(build_shader({.language = language, .total = {3, -2}})), "is -2"));
+        CHECK(has(sentence(cull_shader(CullPass::offsets, {.language = language, .bins = {2, -2}})), "is -2"));
     }
 }
 
@@ -238,8 +239,8 @@ TEST_CASE("WGSL: constants in a block, sets are groups, what the language lacks 
         options.language = ShaderLanguage::wgsl;
         return refusal(options);
     };
-    CHECK(has(refused({.storage = ListStorage::texel_buffer}), "texture_2d"));
-    CHECK(has(refused({.storage = ListStorage::byte_address}), "storage_buffer"));
+    CHECK(has(refused({.storage = ListStorage::texel_buffer}), "2D texture"));
+    CHECK(has(refused({.storage = ListStorage::byte_address}), "storage buffer"));
     CHECK(has(refused({.push_constants = true}), "Vulkan"));
     CHECK(has(refused({.lists = {2}}), "binding 2"));  // a buffer's, and the block's
 }
@@ -283,7 +284,7 @@ TEST_CASE("shader_slices: the guess of a law is right but beside its boundaries"
     }
 }
 
-TEST_CASE("reduction and build shaders: what is off leaves no line, what can't be is refused") {
+TEST_CASE("reduction and cull shaders: what is off leaves no line, what can't be is refused") {
     const auto reduction = [](const ReduceShaderOptions& options) { return reduce_shader(options); };
     const std::string plain = reduction({})->text;
     for (const char* absent : {"corner", "pixel.y =", "sampler2DMS", "== 0x3f800000u) { return", "#version"})
@@ -298,21 +299,31 @@ TEST_CASE("reduction and build shaders: what is off leaves no line, what can't b
                   .message(),
               "multisample"));
 
-    const std::string none = build_shader({})->text, fill = build_shader({.pass = BuildPass::fill})->text;
-    for (const char* absent : {"z_bounds", "edges", "planes", "lists", "reach2 *"})
-        CHECK(!has(none, absent));
-    CHECK(has(fill, "lightbin_lists[list.x"));
-    CHECK(has(build_shader({.depth_test = DepthTest::interval})->text, "z_bounds"));
-    CHECK(!has(build_shader({.depth_test = DepthTest::interval})->text, "edges"));
-    CHECK(has(build_shader({.depth_test = DepthTest::box})->text, "edges"));
-    CHECK(has(build_shader({.depth_test = DepthTest::split_box}).error().message(), "split_box"));
-    CHECK(has(build_shader({.slicing = Slicing::clusters})->text, "z_bounds[slice]"));
-    CHECK(has(build_shader({.slicing = Slicing::z_bins}).error().message(), "z-bins"));
-    CHECK(has(build_shader({.language = ShaderLanguage::essl_300}).error().message(), "compute"));
-    CHECK(has(build_shader({.pass = BuildPass::fill, .lists = {0}}).error().message(), "binding 0"));
+    const auto cull = [](CullPass pass, const CullShaderOptions& options) { return cull_shader(pass, options); };
+    const auto refused = [&](const CullShaderOptions& options) {
+        return cull(CullPass::fill, options).error().message();
+    };
+    const std::string project = cull(CullPass::project, {})->text, count = cull(CullPass::count, {})->text,
+                      fill = cull(CullPass::fill, {})->text;
+    for (const char* absent : {"column_x", "light_count", "slices", "#version"})
+        CHECK(!has(project, absent));
+    for (const char* absent : {"z_bounds", "lists", "slices"})
+        CHECK(!has(count, absent));
+    CHECK(has(fill, "lightbin_lists["));
+    CHECK(has(cull(CullPass::project, {.world_space = true})->text, "column_x"));
+    CHECK(has(cull(CullPass::project, {.count_in_buffer = true})->text, "light_count"));
+    CHECK(has(cull(CullPass::count, {.depth_test = DepthTest::interval})->text, "z_bounds"));
+    CHECK(has(cull(CullPass::project, {.slicing = Slicing::clusters})->text, "slices"));
+    CHECK(has(refused({.depth_test = DepthTest::split_box}), "split boxes"));
+    CHECK(has(refused({.depth_test = DepthTest::interval, .slicing = Slicing::clusters}), "interval"));
+    CHECK(has(refused({.kind = CullKind::box}), "box"));
+    CHECK(has(refused({.ids = IdWidth::u8}), "wider ids"));
+    CHECK(has(refused({.language = ShaderLanguage::essl_300}), "compute"));
+    CHECK(has(refused({.lists = {1}}), "binding 1"));
+    CHECK(has(refused({.prefix = "1a"}), "prefix"));
 }
 
-TEST_CASE("reduction and build shaders need no more than every device has") {
+TEST_CASE("reduction and cull shaders need no more than every device has") {
     // Vulkan's and OpenGL ES 3.1's least limits: 128 invocations, 4 storage buffers; ES also has but bindings 0 to 3.
     int texts = 0;
     const auto check = [&](const Result<ShaderText>& made, ShaderLanguage language) {
@@ -336,14 +347,17 @@ TEST_CASE("reduction and build shaders need no more than every device has") {
     for (int i = 0; i <= static_cast<int>(ShaderLanguage::wgsl); ++i) {
         const auto language = static_cast<ShaderLanguage>(i);
         check(reduce_shader({.language = language}), language);
-        for (const BuildPass pass : {BuildPass::count, BuildPass::offsets, BuildPass::fill})
+        for (const Slicing slicing : {Slicing::none, Slicing::clusters, Slicing::z_bins})
             for (const DepthTest test : {DepthTest::none, DepthTest::interval, DepthTest::box})
-                for (const Slicing slicing : {Slicing::none, Slicing::clusters})
-                    check(build_shader(
-                              {.language = language, .pass = pass, .depth_test = test, .slicing = slicing}),
+                for (const CullPass pass : cull_passes(slicing))
+                    check(cull_shader(pass, {.language = language,
+                                             .world_space = true,
+                                             .count_in_buffer = true,
+                                             .depth_test = test,
+                                             .slicing = slicing}),
                           language);
     }
-    CHECK(texts == 6 * (1 + 3 * 5));
+    CHECK(texts == 6 * (1 + 3 * 5 + 2 * 5 + 3 * 9));
 }
 
 TEST_CASE("checks and window: a block of their own, and nothing of them in a text without") {

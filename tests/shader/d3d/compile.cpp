@@ -51,9 +51,6 @@ template <class Compiler> int compile_all(const std::string& model, const Share&
             compiles("a reduction", shader->text,
                      options.stage == lightbin::ShaderStage::compute ? Stage::compute : Stage::fragment);
         }
-    for (std::size_t i = share.first; const auto& options : every_build(language))
-        if (i++ % share.count == 0)
-            compiles("a build", lightbin::build_shader(options)->text, Stage::compute);
     for (std::size_t i = share.first; const CullText& text : every_cull(language))
         if (i++ % share.count == 0)
             compiles(std::string("the pass ") + to_string(text.pass), text.shader().text, Stage::compute);

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -89,8 +90,7 @@ struct InLayer {
     /// Returns what the job's shader wrote: the words of its result buffer, or four words a pixel of its
     /// picture. Throws std::runtime_error where fxc refuses the text.
     std::vector<std::uint32_t> run(const Job& job) {
-        const std::vector<char> code = fxc_(job.views > 1 ? with_layers(job.text) : job.text,
-                                            job.stage == Stage::compute ? "cs_5_0" : "ps_5_0");
+        const std::vector<char>& code = code_of(job);
         context_->ClearState();
         std::vector<Com<ID3D11Buffer>> buffers(job.inputs.size());
         for (std::size_t i = 0; i < job.inputs.size(); ++i)
@@ -105,15 +105,32 @@ struct InLayer {
     }
 
 private:
+    // A text is compiled once, however often it runs: fxc takes longer than most runs.
+    const std::vector<char>& code_of(const Job& job) {
+        const bool compute = job.stage == Stage::compute;
+        const std::string text = job.views > 1 ? with_layers(job.text) : job.text;
+        std::vector<char>& code = (compute ? compute_codes_ : pixel_codes_)[text];
+        if (code.empty()) code = fxc_(text, compute ? "cs_5_0" : "ps_5_0");
+        return code;
+    }
+
     void bind(const Input& input, Com<ID3D11Buffer>& buffer) {
         using lightbin::ShaderResource;
         const auto slot = static_cast<UINT>(input.binding.slot.binding);
-        const auto bytes = static_cast<UINT>(input.bytes.size());
-        D3D11_SUBRESOURCE_DATA data{input.bytes.data(), 0, 0};
         if (input.binding.resource == ShaderResource::texture_2d) {
             bind_texture(input, slot);
             return;
         }
+        const bool structured = input.binding.resource == ShaderResource::writable_buffer ||
+                                input.binding.resource == ShaderResource::storage_buffer;
+        // Direct3D wants whole elements, and whole vectors of constants.
+        const std::size_t unit = structured ? input.binding.stride
+                                 : input.binding.resource == ShaderResource::uniform_block ? 16
+                                                                                           : 1;
+        std::vector<std::byte> content = input.bytes;
+        content.resize((content.size() + unit - 1) / unit * unit, std::byte{0xee});
+        const auto bytes = static_cast<UINT>(content.size());
+        const D3D11_SUBRESOURCE_DATA data{content.data(), 0, 0};
         D3D11_BUFFER_DESC info{};
         info.ByteWidth = bytes;
         D3D11_SHADER_RESOURCE_VIEW_DESC view{};
@@ -124,11 +141,9 @@ private:
             break;
         case ShaderResource::writable_buffer:
             info.BindFlags = D3D11_BIND_UNORDERED_ACCESS;
-            info.MiscFlags = D3D11_RESOURCE_MISC_BUFFER_STRUCTURED;
             break;
         case ShaderResource::storage_buffer:
             info.BindFlags = D3D11_BIND_SHADER_RESOURCE;
-            info.MiscFlags = D3D11_RESOURCE_MISC_BUFFER_STRUCTURED;
             break;
         case ShaderResource::byte_address:
             info.BindFlags = D3D11_BIND_SHADER_RESOURCE;
@@ -143,7 +158,8 @@ private:
             view.ViewDimension = D3D11_SRV_DIMENSION_BUFFER;
             view.Buffer.NumElements = bytes / input.binding.stride;
         }
-        if (info.MiscFlags & D3D11_RESOURCE_MISC_BUFFER_STRUCTURED) {
+        if (structured) {
+            info.MiscFlags = D3D11_RESOURCE_MISC_BUFFER_STRUCTURED;
             info.StructureByteStride = input.binding.stride;
             view.BufferEx.NumElements = bytes / input.binding.stride;
         }
@@ -185,7 +201,8 @@ private:
 
     std::vector<std::uint32_t> read(ID3D11Buffer* buffer, std::size_t bytes) {
         D3D11_BUFFER_DESC info{};
-        info.ByteWidth = static_cast<UINT>(bytes);
+        buffer->GetDesc(&info);
+        info.BindFlags = info.MiscFlags = info.StructureByteStride = 0;
         info.Usage = D3D11_USAGE_STAGING;
         info.CPUAccessFlags = D3D11_CPU_ACCESS_READ;
         Com<ID3D11Buffer> copy;
@@ -259,6 +276,7 @@ private:
     }
 
     Fxc fxc_;
+    std::map<std::string, std::vector<char>> compute_codes_, pixel_codes_;
     std::vector<char> vertex_, layered_vertex_, layers_;
     Com<ID3D11Device> device_;
     Com<ID3D11DeviceContext> context_;

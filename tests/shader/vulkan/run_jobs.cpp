@@ -23,7 +23,7 @@ int main(int count, char** arguments) {
     else
         for (const auto language : {glsl_vulkan, hlsl_5_1}) {
             run_readers(device, language, share, tally, true, true);
-            run_builders(device, language, false, share, tally);
+            run_reductions(device, language, false, share, tally);
             culls = CullTests(language, share).run(device) && culls;
         }
     std::printf("%s on %s, %d validation messages\n", tally.text().c_str(), device.name().c_str(),

@@ -57,14 +57,10 @@ int main(int count, char** arguments) {
         write(compiles, [&] { return reader_text_job(options); });
     for (const auto& options : every_reduction(language))
         write(compiles, [&] { return reduction_text_job(options); });
-    for (const auto& options : every_build(language))
-        write(compiles, [&] { return text_job("build", *build_shader(options), Stage::compute); });
     for (const CullText& text : every_cull(language))
         write(compiles, [&] { return text_job(to_string(text.pass), text.shader(), Stage::compute); });
     for (const ReaderRun& run : reader_runs(language, true, true))
         write(runs, [&] { return run.job(); });
-    for (const Job& job : build_jobs(language))
-        write(runs, [&] { return job; });
     for (const Job& job : reduce_jobs(language, true))
         write(runs, [&] { return job; });
     PipedDevice device;  // it takes long, so every fifth case must do
