@@ -20,7 +20,7 @@ compile() {
 for source in oracle/judge oracle/engine fuzz/binning fuzz/shader; do
     compile tests/$source.cpp
 done
-compile tests/fuzz/c.cpp -DLIGHTBIN_NO_SIMD -DLIGHTBIN_NO_SHADERS -DLIGHTBIN_NO_ADVICE
+compile tests/fuzz/c.cpp -DLIGHTBIN_NO_SIMD -DLIGHTBIN_NO_ADVICE
 clang++-14 -fsanitize=fuzzer,address,undefined $work/binning.o $work/judge.o $work/engine.o -lgmp -o $work/fuzz_binning
 clang++-14 -fsanitize=fuzzer,address,undefined $work/shader.o -o $work/fuzz_shader
 clang++-14 -fsanitize=fuzzer,address,undefined $work/c.o -o $work/fuzz_c
@@ -41,7 +41,7 @@ fuzz() {
     "$work/pack" --pack "$work/$1_small" "$work/$1.corpus"
 }
 fuzz binning 700
-fuzz shader 160
+fuzz shader 260
 fuzz c 900
 [ -z "$failed" ] || fail "failed:$failed; the inputs and logs are in $work"
 echo "$me: nothing found; $work/*.corpus are the minimised corpora"

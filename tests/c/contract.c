@@ -244,6 +244,9 @@ static void test_views(void) {
     CHECK(refuses(lightbin_view_project(view, NULL, point), LIGHTBIN_NULL_ARGUMENT, "point"));
     CHECK(refuses(lightbin_view_unproject(view, point, NULL), LIGHTBIN_NULL_ARGUMENT, "point"));
     CHECK(refuses(lightbin_view_depths(NULL, 0, 1, depths), LIGHTBIN_NULL_ARGUMENT, "view"));
+    CHECK(isnan(lightbin_view_window_depth(NULL, 1)));
+    CHECK(fabs(lightbin_view_window_depth(view, 0.5)) < 1e-6); /* the near plane */
+    CHECK(fabs(lightbin_view_window_depth(view, 100) - 1) < 1e-6);
     lightbin_view_destroy(view);
     lightbin_view_destroy(NULL);
 }
@@ -427,6 +430,54 @@ static void test_binners(void) {
     lightbin_binner_destroy(NULL);
     lightbin_view_destroy(view);
     lightbin_slices_destroy(slices);
+}
+
+/* Lights that are made of shapes. */
+static void test_shapes(void) {
+    const float a[3] = {0, 0, -5}, b[3] = {4, 0, -5};
+    const float half_axes[9] = {1, 0, 0, 0, 2, 0, 0, 0, 3};
+    const float transform[16] = {2, 0, 0, 0, 0, 4, 0, 0, 0, 0, 6, 0, 0, 0, -5, 1};
+    lightbin_matrix cube;
+    lightbin_sphere sphere;
+    lightbin_spot spot;
+    lightbin_box box, other;
+    memset(&cube, 0, sizeof cube);
+    memset(&sphere, 0, sizeof sphere);
+    memset(&spot, 0, sizeof spot);
+
+    CHECK(lightbin_tube_sphere(a, b, 1, &sphere).error == LIGHTBIN_OK);
+    CHECK(sphere.centre[0] == 2 && sphere.centre[2] == -5 && sphere.radius >= 3 && sphere.radius < 3.0001f);
+    CHECK(lightbin_rectangle_sphere(a, half_axes, half_axes + 3, 1, &sphere).error == LIGHTBIN_OK);
+    CHECK(sphere.radius > 3.236f && sphere.radius < 3.2362f); /* 1 + sqrt(5) */
+    spot.radius = 2;
+    spot.axis[2] = -1;
+    spot.cosine = 1;
+    CHECK(lightbin_spot_sphere(&spot, &sphere).error == LIGHTBIN_OK);
+    CHECK(sphere.centre[2] == -1 && sphere.radius >= 1 && sphere.radius < 1.0001f);
+    CHECK(lightbin_whole_box(a, half_axes, &box).error == LIGHTBIN_OK);
+    CHECK(memcmp(box.half_axes, half_axes, sizeof half_axes) == 0 && box.taper == 1);
+    CHECK(refuses(lightbin_cube_box(&cube, 0.5, &other), LIGHTBIN_NULL_ARGUMENT, "transform"));
+    cube.floats = transform;
+    CHECK(lightbin_cube_box(&cube, 0.5, &other).error == LIGHTBIN_OK);
+    CHECK(memcmp(&box, &other, sizeof box) == 0);
+    box.radius = 1; /* a light in a room */
+    CHECK(lightbin_box_sphere(&box, &sphere).error == LIGHTBIN_OK && sphere.radius == 1);
+    CHECK(lightbin_half_sphere(&sphere, half_axes, &box).error == LIGHTBIN_OK);
+    CHECK(box.radius == 1 && box.box_centre[0] == 0.5f);
+    CHECK(lightbin_projector_box(a, half_axes + 6, half_axes, half_axes + 3, 0.25, &box).error == LIGHTBIN_OK);
+    CHECK(box.taper == 0.25f && box.box_centre[2] == -5 + 0.625f * 3);
+    CHECK(lightbin_tube_box(a, b, -1, &box).error == LIGHTBIN_OK && box.radius < 0); /* a bad light, no error */
+
+    CHECK(refuses(lightbin_spot_sphere(NULL, &sphere), LIGHTBIN_NULL_ARGUMENT, "spot"));
+    CHECK(refuses(lightbin_box_sphere(&box, NULL), LIGHTBIN_NULL_ARGUMENT, "sphere"));
+    CHECK(refuses(lightbin_tube_sphere(a, NULL, 1, &sphere), LIGHTBIN_NULL_ARGUMENT, "b"));
+    CHECK(refuses(lightbin_rectangle_sphere(a, b, NULL, 1, &sphere), LIGHTBIN_NULL_ARGUMENT, "half_y"));
+    CHECK(refuses(lightbin_whole_box(a, NULL, &box), LIGHTBIN_NULL_ARGUMENT, "half_axes"));
+    CHECK(refuses(lightbin_cube_box(&cube, 1, NULL), LIGHTBIN_NULL_ARGUMENT, "box"));
+    CHECK(refuses(lightbin_cube_box(NULL, 1, &box), LIGHTBIN_NULL_ARGUMENT, "transform"));
+    CHECK(refuses(lightbin_half_sphere(&sphere, NULL, &box), LIGHTBIN_NULL_ARGUMENT, "direction"));
+    CHECK(refuses(lightbin_projector_box(a, b, a, NULL, 0, &box), LIGHTBIN_NULL_ARGUMENT, "half_y"));
+    CHECK(refuses(lightbin_tube_box(NULL, b, 1, &box), LIGHTBIN_NULL_ARGUMENT, "a"));
 }
 
 /* What is made of finished grids: coverage, counts, kinds, budgets, unions, several views. */
@@ -839,6 +890,7 @@ int main(int count, char** words) {
     test_views();
     test_slices();
     test_binners();
+    test_shapes();
     test_grids();
     test_depth();
     test_cull();

@@ -31,6 +31,16 @@ for compiler in g++ clang++-14 clang++-19; do
     done
 done
 
+# The file of the code, if it is compiled as C, is refused by one sentence.
+if gcc -std=c99 -DLIGHTBIN_IMPLEMENTATION -I "$here/../../include" -fsyntax-only -x c - 2>"$work/said" <<END
+#include <lightbin/lightbin.h>
+END
+then
+    exit 1
+fi
+[ "$(grep -c ' error: ' "$work/said")" -eq 1 ]
+grep -q 'is C++20, not C' "$work/said"
+
 # blocks PAGE: its blocks of C
 blocks() {
     awk '/^```c$/ { inside = 1; next } /^```/ { inside = 0 } inside' "$here/../../docs/$1.md"

@@ -107,15 +107,22 @@ int main(void) {
     given.boxes.box_centre.first = lights;
     given.boxes.half_axes.first = half_axes;
     refuses(lightbin_bin(binner, view, &given, NULL, &grid), "LIGHTBIN_NO_BOXES");
+    {
+        lightbin_sphere sphere;
+        lightbin_box box;
+        works(lightbin_tube_sphere(lights, lights + 4, 1, &sphere));
+        refuses(lightbin_tube_box(lights, lights + 4, 1, &box), "LIGHTBIN_NO_BOXES");
+        refuses(lightbin_cube_box(NULL, 1, &box), "LIGHTBIN_NO_BOXES");
+    }
     refuses(create(0, 0, 0, 0, 1), "LIGHTBIN_NO_COVERAGE");
     refuses(lightbin_budget_create(NULL, &budget), "LIGHTBIN_NO_BUDGETS");
     refuses(lightbin_limit_grid(NULL, &grid, NULL, 0, 1, 1, &grid, NULL), "LIGHTBIN_NO_BUDGETS");
     refuses(lightbin_shader_snippet(NULL, NULL, &shader), "LIGHTBIN_NO_SHADERS");
     refuses(lightbin_shader_grid(view, 0, 0, &constants), "LIGHTBIN_NO_SHADERS");
-    refuses(lightbin_build_shader(NULL, NULL, &shader), "LIGHTBIN_NO_BUILD_SHADERS");
-    refuses(lightbin_shader_edges(view, NULL, 0, &count), "LIGHTBIN_NO_BUILD_SHADERS");
+    refuses(lightbin_reduce_shader(NULL, NULL, &shader), "LIGHTBIN_NO_REDUCE_SHADERS");
     refuses(lightbin_cull_shader(NULL, NULL, &shader), "LIGHTBIN_NO_CULL_SHADERS");
     refuses(lightbin_plan_cull(view, NULL, 0, 0, NULL, NULL, NULL), "LIGHTBIN_NO_CULL_SHADERS");
+    refuses(lightbin_shader_edges(view, NULL, 0, &count), "LIGHTBIN_NO_CULL_SHADERS");
     if (lightbin_cull_passes(LIGHTBIN_NO_SLICING, &count) != NULL || count != 0) return EXIT_FAILURE;
     refuses(lightbin_advise(view, &given, NULL, NULL, NULL, &advice), "LIGHTBIN_NO_ADVICE");
     lightbin_binner_destroy(binner);

@@ -10,7 +10,7 @@
 #include <lightbin/grid_union.hpp>
 #include <lightbin/lightbin.hpp>
 #include <lightbin/shader.hpp>
-#include <lightbin/shader_build.hpp>
+#include <lightbin/shader_reduce.hpp>
 #include <lightbin/shader_cull.hpp>
 #include <lightbin/spot.hpp>
 
@@ -337,15 +337,17 @@ template <Options options> void compare_sides() {
     Random random(1000 * static_cast<unsigned>(options.ids) + 100 * static_cast<unsigned>(options.footprint) +
                   10 * static_cast<unsigned>(options.depth_test) + static_cast<unsigned>(options.slicing));
     Binner<options> expected;
-    const lightbin_binner_options asked = {sizeof asked,
-                                           options.ids == IdWidth::u16 ? LIGHTBIN_U16 : LIGHTBIN_U32,
-                                           static_cast<std::int32_t>(options.footprint),
-                                           static_cast<std::int32_t>(options.depth_test),
-                                           static_cast<std::int32_t>(options.slicing),
-                                           options.coverage};
-    const auto binner = binner_of(&asked);
+    lightbin_binner_options asked = {sizeof asked,
+                                     options.ids == IdWidth::u16 ? LIGHTBIN_U16 : LIGHTBIN_U32,
+                                     static_cast<std::int32_t>(options.footprint),
+                                     static_cast<std::int32_t>(options.depth_test),
+                                     static_cast<std::int32_t>(options.slicing),
+                                     options.coverage,
+                                     LIGHTBIN_WIDEST};
     for (int round = 0; round < 8; ++round) {
         CAPTURE(round);
+        asked.isa = round % (lightbin_machine_isa() + 1);  // each instruction set in turn
+        const auto binner = binner_of(&asked);
         const Scene scene(random);
         const auto view = view_of(scene);
         const View cpp_view = cpp_view_of(scene);
@@ -483,27 +485,47 @@ TEST_CASE("C: arrays of vec4s and separate arrays give the same lists") {
     Random random(5);
     const Scene scene(random);
     const auto view = view_of(scene);
-    std::vector<float> packed, spaced, centres, radii;
+    std::vector<float> packed, spaced, centres, radii, axes, cosines;
     for (const Lamp& lamp : scene.lamps) {
-        const Sphere ball = scene.sphere(lamp);
-        packed.insert(packed.end(), {ball.x, ball.y, ball.z, ball.radius});
-        spaced.insert(spaced.end(), {ball.x, ball.y, ball.z, ball.radius, 9});
-        centres.insert(centres.end(), {ball.x, ball.y, ball.z});
-        radii.push_back(ball.radius);
+        const Spot spot = scene.spot(lamp);
+        packed.insert(packed.end(), {spot.x, spot.y, spot.z, spot.radius});
+        spaced.insert(spaced.end(), {spot.x, spot.y, spot.z, spot.radius, 9, spot.axis_x, spot.axis_y,
+                                     spot.axis_z, spot.cos_half_angle});
+        centres.insert(centres.end(), {spot.x, spot.y, spot.z});
+        radii.push_back(spot.radius);
+        axes.insert(axes.end(), {spot.axis_x, spot.axis_y, spot.axis_z});
+        cosines.push_back(spot.cos_half_angle);
     }
     const auto binner = binner_of(nullptr);
-    Binner<> expected;
-    const auto grid_of_cpp = *expected.bin(
-        cpp_view_of(scene), view_space(scene.lamps, [&](const Lamp& lamp) { return scene.sphere(lamp); }));
-    auto lights = sized<lightbin_lights>();
-    const lightbin_spheres ways[] = {{radii.size(), {packed.data(), 16}, {packed.data() + 3, 16}},
-                                     {radii.size(), {spaced.data(), 20}, {spaced.data() + 3, 20}},
-                                     {radii.size(), {centres.data(), 12}, {radii.data(), 4}}};
-    for (const lightbin_spheres& way : ways) {
-        lights.spheres = way;
+    const auto lists_are = [&](const LightGrid<std::uint32_t>& expected, const lightbin_lights& lights) {
         auto grid = sized<lightbin_grid>();
         REQUIRE(lightbin_bin(binner.get(), view.get(), &lights, nullptr, &grid).error == LIGHTBIN_OK);
-        compare(grid_of_cpp, grid);
+        compare(expected, grid);
+    };
+    Binner<> expected;
+    const auto of_spheres = *expected.bin(
+        cpp_view_of(scene), view_space(scene.lamps, [&](const Lamp& lamp) { return scene.sphere(lamp); }));
+    const std::size_t count = scene.lamps.size(), stride = 9 * sizeof(float);
+    const lightbin_floats far_centres = {spaced.data(), stride}, far_radii = {spaced.data() + 3, stride},
+                          far_axes = {spaced.data() + 5, stride}, far_cosines = {spaced.data() + 8, stride};
+    const lightbin_spheres ways[] = {{count, {packed.data(), 16}, {packed.data() + 3, 16}},
+                                     {count, far_centres, far_radii},
+                                     {count, {centres.data(), 12}, {radii.data(), 4}}};
+    for (const lightbin_spheres& way : ways) {
+        auto lights = sized<lightbin_lights>();
+        lights.spheres = way;
+        lists_are(of_spheres, lights);
+    }
+    const auto of_spots = *expected.bin(
+        cpp_view_of(scene), view_space(scene.lamps, [&](const Lamp& lamp) { return scene.spot(lamp); }));
+    const lightbin_spots spot_ways[] = {
+        {count, far_centres, far_radii, far_axes, far_cosines},
+        {count, far_centres, far_radii, far_axes, {cosines.data(), 4}},
+        {count, {centres.data(), 12}, {radii.data(), 4}, {axes.data(), 12}, {cosines.data(), 4}}};
+    for (const lightbin_spots& way : spot_ways) {
+        auto lights = sized<lightbin_lights>();
+        lights.spots = way;
+        lists_are(of_spots, lights);
     }
 }
 
@@ -564,7 +586,7 @@ TEST_CASE("C: depth buffers are reduced as in C++") {
         const lightbin_depth_buffer buffer = {sizeof buffer, samples,  depth.data(), depth.size(), 0,
                                               round % 3,     round % 2};
         const lightbin_z_bounds_buffers out = {sizeof out,
-                                               0,
+                                               round % (lightbin_machine_isa() + 1),
                                                made.data(),
                                                made.data() + tiles,
                                                made.data() + 2 * tiles,
@@ -585,6 +607,23 @@ TEST_CASE("C: depth buffers are reduced as in C++") {
         CHECK(std::memcmp(made.data(), expected.data(), made.size() * sizeof(float)) == 0);
         CHECK(bounds.transparent_max == made.data() + 4 * tiles);
         CHECK((bounds.background_skipped != 0) == reduced->background_skipped);
+    }
+}
+
+TEST_CASE("C: instruction sets are those of C++, and one that is not there is refused") {
+    CHECK(lightbin_machine_isa() == 1 + static_cast<int>(machine_isa()));
+    auto options = sized<lightbin_binner_options>();
+    lightbin_binner* binner = nullptr;
+    for (options.isa = -1; options.isa <= LIGHTBIN_AVX512 + 1; ++options.isa) {
+        const lightbin_result made = lightbin_binner_create(&options, nullptr, &binner);
+        const bool is_value = 0 <= options.isa && options.isa <= LIGHTBIN_AVX512;
+        CHECK(made.error == (!is_value                                 ? LIGHTBIN_NOT_A_VALUE
+                             : options.isa > lightbin_machine_isa() ? LIGHTBIN_NO_SUCH_ISA
+                                                                    : LIGHTBIN_OK));
+        if (made.error == LIGHTBIN_OK)
+            lightbin_binner_destroy(binner);
+        else
+            CHECK(text(made).starts_with("options.isa: "));
     }
 }
 
@@ -666,47 +705,12 @@ TEST_CASE("C: shader texts and their data are those of C++") {
     lightbin_reduce_constants reduce;
     REQUIRE(lightbin_shader_reduce(view.get(), 3, 4, &reduce).error == LIGHTBIN_OK);
     CHECK(same(reduce, shader_reduce(cpp_view, 3, 4)));
-    lightbin_build_constants build;
-    REQUIRE(lightbin_shader_build(view.get(), 10, 20, 3, &build).error == LIGHTBIN_OK);
-    CHECK(same(build, shader_build(cpp_view, 10, 20, 3)));
-
-    for (const std::size_t first_spot : {scene.lamps.size(), scene.lamps.size() / 2}) {
-        const lightbin_lights lights = lights_of(scene, first_spot, true);
-        const auto to_spot = [&](const Lamp& lamp) {
-            const bool is_spot = static_cast<std::size_t>(&lamp - scene.lamps.data()) >= first_spot;
-            return is_spot ? scene.spot(lamp) : Spot::whole(scene.sphere(lamp));
-        };
-        const auto world = matrix(scene.view_matrix, MatrixLayout::column_major);
-        const auto expected =
-            first_spot == scene.lamps.size()
-                ? *shader_footprints(
-                      cpp_view,
-                      world_space(scene.lamps, world, [&](const Lamp& lamp) { return scene.sphere(lamp); }))
-                : *shader_footprints(cpp_view, world_space(scene.lamps, world, to_spot));
-        std::size_t count = 0;
-        const lightbin_result too_small = lightbin_shader_footprints(view.get(), &lights, nullptr, 0, &count);
-        CHECK(too_small.error == (expected.empty() ? LIGHTBIN_OK : LIGHTBIN_BUFFER_TOO_SMALL));
-        REQUIRE(count == expected.size());
-        std::vector<lightbin_shader_footprint> footprints(count);
-        REQUIRE(lightbin_shader_footprints(view.get(), &lights, footprints.data(), count, &count).error ==
-                LIGHTBIN_OK);
-        CHECK(
-            (count == 0 || std::memcmp(footprints.data(), expected.data(), count * sizeof expected[0]) == 0));
-    }
     auto reduce_options = sized<lightbin_reduce_options>();
     reduce_options.language = LIGHTBIN_GLSL_430;
     lightbin_shader* made = nullptr;
     REQUIRE(lightbin_reduce_shader(&reduce_options, nullptr, &made).error == LIGHTBIN_OK);
     CHECK(lightbin_shader_text(made) == reduce_shader()->text);
     lightbin_shader_destroy(made);
-    auto build_options = sized<lightbin_build_options>();
-    build_options.language = LIGHTBIN_GLSL_430;
-    for (int pass = LIGHTBIN_COUNT; pass <= LIGHTBIN_FILL; ++pass) {
-        build_options.pass = pass;
-        REQUIRE(lightbin_build_shader(&build_options, nullptr, &made).error == LIGHTBIN_OK);
-        CHECK(lightbin_shader_text(made) == build_shader({.pass = static_cast<BuildPass>(pass)})->text);
-        lightbin_shader_destroy(made);
-    }
     lightbin_slices* slices = nullptr;
     REQUIRE(lightbin_slices_exponential(24, 5, 200, 0, nullptr, &slices).error == LIGHTBIN_OK);
     const Owned<lightbin_slices> owned(slices);
@@ -897,6 +901,54 @@ TEST_CASE("C: advice weighs the plans of C++, with their entries") {
     lightbin_advice_destroy(sliced);
     lightbin_slices_destroy(clusters);
     lightbin_slices_destroy(z_bins);
+}
+
+TEST_CASE("C: shapes are the lights of C++") {
+    struct Point {
+        float x, y, z;
+    };
+    Random random(11);
+    const auto same = [](lightbin_result result, const auto& made, const auto& expected) {
+        static_assert(sizeof made == sizeof expected);
+        CHECK_MESSAGE(result.error == LIGHTBIN_OK, text(result));
+        CHECK(std::memcmp(&made, &expected, sizeof made) == 0);
+    };
+    for (int i = 0; i < 300; ++i) {
+        float v[4][3], transform[16];
+        Point p[4];
+        for (int k = 0; k < 4; ++k) {
+            for (float& number : v[k])
+                number = i % 50 == 0 && random.integer(0, 9) == 0 ? std::nanf("") : random.real(-5, 5);
+            p[k] = {v[k][0], v[k][1], v[k][2]};
+        }
+        for (float& number : transform)
+            number = random.real(-2, 2);
+        const float size = random.real(-0.1f, 4), cosine = random.real(-1, 1), begin = random.real(0, 0.9f);
+        const lightbin_sphere ball = {{p[0].x, p[0].y, p[0].z}, size};
+        const Sphere cpp_ball = {p[0].x, p[0].y, p[0].z, size};
+        const lightbin_spot spot = {{p[0].x, p[0].y, p[0].z}, size, {p[1].x, p[1].y, p[1].z}, cosine};
+        lightbin_sphere sphere;
+        lightbin_box box;
+        same(lightbin_spot_sphere(&spot, &sphere), sphere,
+             least_sphere(Spot{p[0].x, p[0].y, p[0].z, size, p[1].x, p[1].y, p[1].z, cosine}));
+        same(lightbin_tube_sphere(v[0], v[1], size, &sphere), sphere, tube_sphere(p[0], p[1], size));
+        same(lightbin_rectangle_sphere(v[0], v[1], v[2], size, &sphere), sphere,
+             rectangle_sphere(p[0], p[1], p[2], size));
+        same(lightbin_tube_box(v[0], v[1], size, &box), box, tube_box(p[0], p[1], size));
+        same(lightbin_half_sphere(&ball, v[1], &box), box, half_sphere(cpp_ball, p[1]));
+        const double fraction = static_cast<double>(begin);
+        same(lightbin_projector_box(v[0], v[1], v[2], v[3], fraction, &box), box,
+             projector_box(p[0], p[1], p[2], p[3], fraction));
+        lightbin_matrix numbers = {transform, nullptr, i % 3, 0};
+        same(lightbin_cube_box(&numbers, 0.5, &box), box,
+             whole_box(matrix(transform, static_cast<MatrixLayout>(i % 3)), 0.5));
+        const Box whole = whole_box(p[0], p[1], p[2], p[3]);
+        same(lightbin_whole_box(v[0], v[1], &box), box, whole);
+        std::memcpy(box.centre, v[2], sizeof box.centre);
+        box.radius = size;
+        same(lightbin_box_sphere(&box, &sphere), sphere,
+             bounding_sphere(clipped_sphere({p[2].x, p[2].y, p[2].z, size}, whole)));
+    }
 }
 
 TEST_CASE("C: each error of the C++ side has its number and its sentence") {

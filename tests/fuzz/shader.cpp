@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Bytes to the options of one of the shader generators: refused for a reason that the options have, and only
 // then, or a text that is sound as far as can be told without a compiler (tests/shader has those): brackets
-// pair, every name that others see has the prefix, and what is to be bound is what the options ask for.
+// pair, every name that others see has the prefix, and what is to be bound is what the options ask for. And to the plan
+// of the passes that make light grids: refused in the same way, or numbers within the limits that are documented.
 #include "bytes.hpp"
 
 #include <lightbin/shader.hpp>
-#include <lightbin/shader_build.hpp>
+#include <lightbin/shader_cull.hpp>
+#include <lightbin/shader_reduce.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -87,7 +89,8 @@ struct Question {
     std::vector<Wanted> wanted;     ///< in the order of the text, but for the constants before them
     std::vector<std::string> constants = {"grid"};
     ShaderSlot constants_slot;
-    bool view_check = false;  ///< constants of its own
+    bool constants_in_block = false;  ///< in OpenGL, too
+    bool view_check = false;          ///< constants of its own
     ShaderSlot view_slot;
     std::uint32_t block_bytes = 0;   ///< the most of a block of other things than constants
     std::vector<std::string> names;  ///< in the text, without the prefix
@@ -103,7 +106,7 @@ void take_rest(Bytes& bytes, Options& options, std::initializer_list<ShaderSlot*
     question.prefix = take_prefix(bytes);
     options.prefix = question.prefix;
     question.language = options.language;
-    question.push_constants = options.push_constants;
+    if constexpr (requires { options.push_constants; }) question.push_constants = options.push_constants;
     question.constants_slot = options.grid;
 }
 
@@ -177,7 +180,7 @@ void check_bindings(const ShaderText& made, const Question& question) {
     const std::string& text = made.text;
     std::vector<Wanted> wanted;
     const auto bytes = static_cast<std::uint32_t>(16 * question.constants.size());
-    const bool block = language.hlsl || language.vulkan || language.wgsl;
+    const bool block = language.hlsl || language.vulkan || language.wgsl || question.constants_in_block;
     if (block) wanted.push_back({question.constants.front(), question.constants_slot, bytes});
     for (std::size_t i = 0; i < question.constants.size() && !block; ++i)
         wanted.push_back({question.constants[i], {}, question.constants[i] == "corner" ? 8u : 16u});
@@ -383,45 +386,167 @@ void fuzz_reduction(Bytes& bytes) {
     check(reduce_shader(options), question);
 }
 
-void fuzz_build(Bytes& bytes) {
-    BuildShaderOptions options;
+/// The buffers of a pass, in the order of its text.
+std::vector<Wanted> buffers_of(CullPass pass, const CullShaderOptions& options) {
+    std::vector<Wanted> wanted;
+    const auto want = [&](bool condition, const char* name, ShaderSlot slot) {
+        if (condition) wanted.push_back({name, slot});
+    };
+    const bool project = pass == CullPass::project, fill = pass == CullPass::fill,
+               bins = pass == CullPass::bin_offsets || pass == CullPass::masks;
+    want(project, "lights", options.lights);
+    want((pass == CullPass::count || fill) && options.depth_test != DepthTest::none, "z_bounds",
+         options.z_bounds);
+    want(true, "scratch", options.scratch);
+    want(project && options.slicing != Slicing::none, "slices", options.slices);
+    want(project && options.count_in_buffer, "light_count", options.light_count);
+    want(bins, "bins", options.bins);
+    want(pass == CullPass::rank, "order", options.order);
+    want(fill, "tiles", options.tiles);
+    want(fill, "lists", options.lists);
+    return wanted;
+}
+
+/// The numbers of a plan are those asked for, and its sizes and groups within the limits that its comments state.
+void check_plan(const CullPlan& plan, const View& view, const CullShaderOptions& options,
+                const CullRoom& room, std::uint32_t slices) {
+    const auto holds = [](bool condition, const char* what) { require(condition, what, ""); };
+    const ShaderCull& made = plan.constants;
+    const auto columns = static_cast<std::uint32_t>(view.tiles_x()),
+               rows = static_cast<std::uint32_t>(view.tiles_y());
+    holds(made.tiles_x == columns && made.tiles_y == rows && made.slices == slices &&
+              made.lights == room.lights && made.entries == room.entries,
+          "a plan of something else");
+    const bool clusters = options.slicing == Slicing::clusters, binned = options.slicing == Slicing::z_bins;
+    const std::uint64_t cells = std::uint64_t{columns} * rows * (clusters ? slices : 1), lights = room.lights;
+    const auto sized = [&](std::uint64_t bytes, std::uint64_t least) {
+        holds(bytes % 4 == 0 && bytes >= 16 && bytes >= least && bytes < least + 20,
+              "a buffer of another size");
+    };
+    sized(plan.bytes.tiles, 8 * cells);
+    sized(plan.bytes.lists, std::uint64_t{room.entries} * static_cast<unsigned>(options.ids));
+    if (binned) {
+        sized(plan.bytes.order, 4 * lights);
+        sized(plan.bytes.bins, 8 * std::uint64_t{slices});
+    }
+    holds(binned || (plan.bytes.order == 0 && plan.bytes.bins == 0), "buffers of no use");
+
+    // Arrays in `scratch` lie behind each other, with room for what docs/gpu.md says.
+    const std::uint64_t words = plan.bytes.scratch / 4;
+    const std::uint64_t places[] = {4,           made.records, made.ranked, made.masks,      made.counts,
+                                    made.ranges, made.sums,    made.groups, made.bin_counts, words};
+    holds(words < std::uint64_t{1} << 32, "more words than numbers");
+    holds(std::is_sorted(std::begin(places), std::end(places)), "arrays that overlap");
+    holds(made.ranked - made.records >= 2 * lights && (!binned || made.masks - made.ranked >= 2 * lights),
+          "too little room for lights");
+    holds(made.ranges - made.counts >= cells * made.segments && made.sums - made.ranges >= 2 * cells,
+          "too little room for cells");
+    const std::uint64_t blocks = std::uint64_t{made.blocks_x} * made.blocks_y *
+                                 (clusters ? ((slices - 1) >> made.slice_shift) + 1 : 1);
+    holds(blocks >= 1 && blocks <= 1024 && std::uint64_t{made.blocks_x} << made.block_shift >= columns &&
+              std::uint64_t{made.blocks_y} << made.block_shift >= rows,
+          "blocks that don't cover the tiles, or too many");
+    holds((made.counts - made.masks) * std::uint64_t{32} >= lights * blocks, "too little room for masks");
+    holds(made.segments >= 1 && made.segments <= 32 &&
+              std::uint64_t{made.segments} * made.steps * 1024 >= lights,
+          "segments that don't hold the lights");
+    for (const CullPass pass : cull_passes(options.slicing)) {
+        const CullGroups groups = plan.groups_of(pass);
+        holds(groups.x >= 1 && groups.y >= 1 && groups.x <= 65535 && groups.y <= 65535,
+              "more work groups than devices have");
+        const std::uint64_t needed = pass == CullPass::project ? (lights + 63) / 64
+                                     : pass == CullPass::sums  ? (cells + 127) / 128
+                                                               : 1;
+        holds(std::uint64_t{groups.x} * groups.y >= needed, "too few work groups");
+    }
+}
+
+/// Bytes to a view, slices and the rest of what plan_cull() takes.
+void fuzz_plan(Bytes& bytes, CullShaderOptions options) {
+    constexpr float perspective[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, -1}, {0, 0, -0.2f, 0}},
+                    flat[4][4] = {{0.1f, 0, 0, 0}, {0, 0.1f, 0, 0}, {0, 0, -0.01f, 0}, {0, 0, -1, 1}};
+    options.orthographic = bytes.flag();
+    const int width = static_cast<int>(bytes.below(32769)), height = static_cast<int>(bytes.below(32769));
+    const auto view = View::from_projection(options.orthographic ? flat : perspective, {width, height},
+                                            {.tile_size = static_cast<int>(1 + bytes.byte())});
+    if (!view) return;
+    const CullRoom room = {take_size(bytes), take_size(bytes)};
+    const bool sliced = options.slicing != Slicing::none;
+    std::uint32_t count = 1;
+    if (sliced) count = 1 + take_size(bytes) % 70'000;
+    const auto slices = Slices::linear(static_cast<int>(count), 0, 1e6f);
+    require(bool(slices), "no slices", "");
+    Matrix to_view = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+    const bool any = bytes.flag();
+    if (any)
+        for (double(&column)[4] : to_view.columns)
+            for (double& entry : column)
+                entry = static_cast<double>(bytes.take<float>());
+
+    std::set<ErrorCode> reasons;
+    if (sliced && count > (options.slicing == Slicing::z_bins ? 1024u : 65535u))
+        reasons.insert(ErrorCode::too_many_slices);
+    if (options.ids == IdWidth::u16 && room.lights > 65536) reasons.insert(ErrorCode::too_many_lights);
+    const auto plan = plan_cull(*view, options, room, sliced ? &*slices : nullptr,
+                                options.world_space ? &to_view : nullptr);
+    if (plan) {
+        require(reasons.empty(), "a plan that is not refused", "");
+        check_plan(*plan, *view, options, room, count);
+        return;
+    }
+    const Error& error = plan.error();
+    if (any && options.world_space)
+        for (const ErrorCode code : {ErrorCode::view_matrix_not_affine, ErrorCode::view_matrix_transposed,
+                                     ErrorCode::view_matrix_distorts})
+            reasons.insert(code);
+    if (error.code == ErrorCode::scratch_too_large)
+        require(error.needed > error.available, "a plan that would fit", error.message());
+    else
+        require(reasons.contains(error.code), "a plan is refused without reason", error.message());
+}
+
+void fuzz_cull(Bytes& bytes) {
+    CullShaderOptions options;
     Question question;
     options.language = take_enum(bytes, ShaderLanguage::wgsl);
-    options.pass = take_enum(bytes, BuildPass::fill);
+    const CullPass pass = take_enum(bytes, CullPass::fill);
     options.depth_test = take_enum(bytes, DepthTest::split_box);
     const unsigned flags = bytes.byte();
     options.max_only = (flags & 1) != 0;
     options.orthographic = (flags & 2) != 0;
-    options.push_constants = (flags & 4) != 0;
+    options.world_space = (flags & 4) != 0;
     options.slicing = static_cast<Slicing>((flags >> 3) % 3);
+    options.count_in_buffer = (flags & 32) != 0;
     take_rest(bytes, options,
-              {&options.footprints, &options.z_bounds, &options.tiles, &options.lists, &options.total,
-               &options.grid},
+              {&options.lights, &options.z_bounds, &options.scratch, &options.slices, &options.bins,
+               &options.tiles, &options.light_count, &options.order, &options.lists, &options.grid},
               question);
+    options.kind = take_enum(bytes, CullKind::box);
+    options.ids = static_cast<IdWidth>(4u >> bytes.byte() % 3);
+    options.lights_at = {take_size(bytes), take_size(bytes), take_size(bytes), take_size(bytes),
+                         take_size(bytes)};
+    options.count_at = take_size(bytes);
 
     if (Language(options.language).old) question.reasons.insert(ErrorCode::no_storage_buffers);
+    if (options.kind == CullKind::box) question.reasons.insert(ErrorCode::no_cull_of_boxes);
+    if (options.ids == IdWidth::u8) question.reasons.insert(ErrorCode::ids_too_narrow);
     if (options.depth_test == DepthTest::split_box) question.reasons.insert(ErrorCode::no_split_box_shader);
-    const bool clusters = options.slicing == Slicing::clusters;
-    if (options.slicing == Slicing::z_bins || (clusters && options.depth_test == DepthTest::interval))
+    if (options.slicing == Slicing::clusters && options.depth_test == DepthTest::interval)
         question.reasons.insert(ErrorCode::no_such_slicing_shader);
-    const bool offsets = options.pass == BuildPass::offsets,
-               box = !offsets && options.depth_test == DepthTest::box;
-    if (box || (clusters && !offsets)) question.constants.push_back("planes");
-    if (!offsets) question.wanted.push_back({"footprints", options.footprints});
-    if (!offsets && (clusters || options.depth_test != DepthTest::none))
-        question.wanted.push_back({"z_bounds", options.z_bounds});
-    question.wanted.push_back({"tiles", options.tiles});
-    if (offsets) question.wanted.push_back({"total", options.total});
-    if (options.pass == BuildPass::fill) question.wanted.push_back({"lists", options.lists});
-    question.names = {"run", offsets ? "sums" : "meets"};
-    check(build_shader(options), question);
+    question.constants_in_block = true;
+    question.constants.resize(options.world_space ? 14 : 9);
+    question.wanted = buffers_of(pass, options);
+    question.names = {"run"};
+    const Result<ShaderText> made = cull_shader(pass, options);
+    check(made, question);
+    if (made || made.error().code == ErrorCode::bindings_overlap) fuzz_plan(bytes, options);
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Bytes bytes(data, size);
-    void (*const generators[])(Bytes&) = {fuzz_snippet, fuzz_reduction, fuzz_build};
+    void (*const generators[])(Bytes&) = {fuzz_snippet, fuzz_reduction, fuzz_cull};
     generators[bytes.byte() % 3](bytes);
     return 0;
 }
