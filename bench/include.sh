@@ -27,7 +27,7 @@ esac
 compiler=${CXX:-g++}
 flags=${CXXFLAGS:--O0}
 headers="view.hpp light_grid.hpp lights.hpp lightbin.hpp list_format.hpp encode.hpp budget.hpp grid_union.hpp shader.hpp
-    shader_build.hpp advise.hpp"
+    shader_reduce.hpp shader_cull.hpp advise.hpp"
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

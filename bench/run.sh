@@ -46,7 +46,8 @@
 #   gpu [--quick] [--gl | --vulkan]
 #       Builds on the GPU by shader_cull beside builds on the CPU with their upload, of 1,000 to 100,000 lights and of
 #       Bevy's many_lights: milliseconds by the GPU's clock, bytes, tests of a light against a cell, and how many entries the
-#       GPU lists beyond the Binner's; lists that lack one, or are out of order, are an error. In OpenGL and in Vulkan,
+#       GPU lists beyond the Binner's; lists that lack one, or are out of order, are an error. Up to 10,000 lights in plain
+#       tiles also beside a build that tests every light in every tile. In OpenGL and in Vulkan,
 #       or in the one that is named. Some minutes where they draw on the CPU, --quick one. Writes build/bench/gpu.csv.
 set -eu
 me=bench/run.sh

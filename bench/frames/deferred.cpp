@@ -5,8 +5,6 @@
 
 #include "technique.hpp"
 
-#include <lightbin/shader_build.hpp>
-
 void begin_radiance(Stage& stage, GLuint surface_depth, GLuint test_depth) {
     read_g_buffer(stage, surface_depth);
     stage.memory.draw_to({surface_target(stage, "radiance")}, test_depth);
@@ -32,8 +30,7 @@ Technique deferred(int g_buffer_bits) {
             .draw =
                 [](Stage& stage) {
                     fill_g_buffer(stage, stage.depth());
-                    const auto footprints =  // of tiles that are pixels
-                        value_of(lightbin::shader_footprints(stage.view(1), stage.lights()));
+                    const auto footprints = stage.footprints(1);  // of tiles that are pixels
                     stage.lap("project");
                     stage.memory.read_texels(unit_footprints, GL_RGBA32UI,
                                              stage.memory.buffer("footprints", footprints));

@@ -4,8 +4,6 @@
 #include "deferred.hpp"
 #include "technique.hpp"
 
-#include <lightbin/shader_build.hpp>
-
 #include <gl_program.hpp>
 
 #include <string>
@@ -57,8 +55,7 @@ Technique deferred_stencil(int g_buffer_bits) {
                     const GLuint depth = stage.target("surface depth", GL_DEPTH32F_STENCIL8);
                     fill_g_buffer(stage, depth);
                     const GLuint tested = copy_depth(stage, depth);
-                    const auto footprints =
-                        value_of(lightbin::shader_footprints(stage.view(), stage.lights()));
+                    const auto footprints = stage.footprints();
                     stage.lap("project");
                     begin_radiance(stage, depth, tested);
                     glEnable(GL_STENCIL_TEST);
@@ -68,7 +65,7 @@ Technique deferred_stencil(int g_buffer_bits) {
                                  lighting = stage.use(vertex, stage.shaders().one_light_fragment());
                     const GLint marking_number = uniform(marking, "number"),
                                 lighting_number = uniform(lighting, "number");
-                    for (const lightbin::ShaderFootprint& f : footprints) {
+                    for (const LightFootprint& f : footprints) {
                         glUseProgram(marking);
                         glUniform1i(marking_number, static_cast<GLint>(f.id));
                         mark(stage);

@@ -4,7 +4,7 @@
 #include <gl_program.hpp>
 
 #include <lightbin/shader.hpp>
-#include <lightbin/shader_build.hpp>
+#include <lightbin/shader_reduce.hpp>
 
 #include <algorithm>
 #include <cstddef>

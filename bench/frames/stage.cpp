@@ -150,6 +150,20 @@ lightbin::View Stage::view(int tile_size) const {
                                         {.tile_size = tile_size == 0 ? settings_.tile_size : tile_size}));
 }
 
+std::vector<LightFootprint> Stage::footprints(int tile_size) const {
+    lightbin::Footprints<lightbin::Footprint::rectangle, false> projected;
+    projected.project(lightbin::machine_isa(), view(tile_size), lightbin::detail::as_lights(spheres_),
+                      lightbin::Parallel{});
+    const lightbin::detail::FootprintArrays& of = projected.arrays();
+    std::vector<LightFootprint> footprints;
+    for (std::uint32_t i = 0; i < projected.visible(); ++i) {
+        const lightbin::Sphere& light = spheres_[of.ids[i]];
+        footprints.push_back({of.ids[i], of.x0[i], of.y0[i], of.x1[i], of.y1[i], -light.z - light.radius,
+                              -light.z + light.radius});
+    }
+    return footprints;
+}
+
 void Stage::order_lights(std::span<const std::uint32_t> order) {
     std::vector<glm::vec4> ordered;
     for (const std::uint32_t light : order)

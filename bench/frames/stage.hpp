@@ -30,6 +30,15 @@ struct Pass {
 /// Whether OpenGL draws on the CPU. Its times say little about a GPU's.
 bool is_software_renderer();
 
+/// A light in view: its tiles, ends included, and its least and greatest view depth. Shaders read it as two uvec4.
+struct LightFootprint {
+    std::uint32_t id;
+    std::uint16_t x0, y0, x1, y1;
+    float nearest, farthest;
+    std::uint32_t unused[3] = {};
+};
+static_assert(sizeof(LightFootprint) == 32);
+
 /// Throws std::runtime_error with one line on everything that this OpenGL can't do.
 class Stage {
 public:
@@ -55,6 +64,8 @@ public:
     lightbin::View view(int tile_size = 0) const;  ///< 0: that of the settings
     /// In view space, in the order in which they begin in depth: so ids and ranks in depth ascend together.
     const std::vector<lightbin::Sphere>& lights() const { return spheres_; }
+    /// Of the lights in view, by ascending id. Tile size 0: that of the settings
+    std::vector<LightFootprint> footprints(int tile_size = 0) const;
     /// Hands the shaders these lights in this order: for lists of ranks.
     void order_lights(std::span<const std::uint32_t> order);
 

@@ -4,14 +4,12 @@
 #include "technique.hpp"
 #include "tile_kernel.hpp"
 
-#include <lightbin/shader_build.hpp>
-
 namespace {
 
 // The lights that passed are bits, and not a list made with an atomic counter, so that every picture is the same: sums
 // are in the order of the lights. And there is room for all.
 const char* const lights_by_footprints = R"(
-struct Footprint { uint id, low, high; float reach2; vec4 sphere; };
+struct Footprint { uint id, low, high; float nearest, farthest; uint unused[3]; };
 layout(std430, binding = 0) readonly buffer Footprints { Footprint footprints[]; };
 uniform uint footprint_count;
 
@@ -42,7 +40,7 @@ void list_lights(uint thread, uvec2 tile, float z_min, float z_max) {
         Footprint f = footprints[i];
         uvec2 low = uvec2(f.low & 0xffffu, f.low >> 16u), high = uvec2(f.high & 0xffffu, f.high >> 16u);
         if (all(greaterThanEqual(tile, low)) && all(lessThanEqual(tile, high)) &&
-            f.sphere.z - f.sphere.w <= z_max && f.sphere.z + f.sphere.w >= z_min)
+            f.nearest <= z_max && f.farthest >= z_min)
             atomicOr(passed[i >> 5u], 1u << (i & 31u));
     }
 }
@@ -55,7 +53,7 @@ Technique tiled_deferred_kernel(int g_buffer_bits) {
         .name = "TiledDeferred in one kernel",
         .draw =
             [](Stage& stage) {
-                const auto footprints = value_of(lightbin::shader_footprints(stage.view(), stage.lights()));
+                const auto footprints = stage.footprints();
                 stage.lap("project");
                 glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, stage.memory.buffer("footprints", footprints));
                 stage.lap("upload");

@@ -4,7 +4,7 @@
 #include "passes.hpp"
 #include "technique.hpp"
 
-#include <lightbin/shader_build.hpp>
+#include <lightbin/shader_reduce.hpp>
 
 #include <memory>
 #include <string>

@@ -27,11 +27,11 @@ struct LightSource {
     std::vector<GpuFrame> frames;
 };
 
-/// Lights that cover 20 tiles of 32 pixels in the mean, met in turn.
-inline LightSource field_source(std::size_t count) {
-    LightSource source = {"field, 20 tiles a light", 200, {}};
+/// A field set, met in turn; see field().
+inline LightSource field_source(std::size_t count, float median_radius, const std::string& name) {
+    LightSource source = {name, 200, {}};
     for (std::uint32_t seed = 0; seed < (count < 100000 ? 8 : 2); ++seed)
-        source.frames.push_back({{}, field(count, field20_median, seed), {}});
+        source.frames.push_back({{}, field(count, median_radius, seed), {}});
     return source;
 }
 

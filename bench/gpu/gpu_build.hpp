@@ -6,7 +6,6 @@
 #include "frames.hpp"
 
 #include <lightbin/lightbin.hpp>
-#include <lightbin/shader_build.hpp>
 #include <lightbin/shader_cull.hpp>
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // gpu [--quick] [--vulkan | --gl]: builds by shader_cull on this machine's GPU beside builds on the CPU with their
-// upload, of 1,000 to 100,000 lights; their lists are compared.
+// upload, of 1,000 to 100,000 lights, and beside every light in every tile; their lists are compared.
 #include "measure.hpp"
 
 #include "../arguments.hpp"
@@ -37,10 +37,12 @@ public:
         std::fflush(stdout);
     }
 
+    void measure_tiles(const LightSource& source) { measure_one<Options{}>(source, "tiles, 32 px", 32); }
+
     void measure_source(LightSource source, bool with_bounds) {
         // Where a build takes seconds, one of each will do.
         if (device_.is_software() && source.frames.front().lights.size() >= 100000) source.frames.resize(1);
-        measure_one<Options{}>(source, "tiles, 32 px", 32);
+        measure_tiles(source);
         if (with_bounds) {
             measure_one<Options{.depth_test = DepthTest::interval}>(source, "interval, 16 px", 16);
             measure_one<Options{.depth_test = DepthTest::box}>(source, "box, 16 px", 16);
@@ -62,8 +64,10 @@ private:
             const lightbin::Slices slices = options.slicing == Slicing::clusters
                                                 ? cluster_slices(source.reach)
                                                 : z_bin_slices(source.reach);
-            GpuRow row = measure<options>(device_, source, tile_size, turns_, slices,
-                                          made ? made->bounds : lightbin::ZBounds{});
+            const bool plain = options.depth_test == DepthTest::none && options.slicing == Slicing::none;
+            GpuRow row =
+                measure<options>(device_, source, tile_size, turns_, slices,
+                                 made ? made->bounds : lightbin::ZBounds{}, plain && lights <= 10000);
             row.method = method;
             rows_.push_back(row);
         } catch (const std::exception& problem) {
@@ -109,7 +113,7 @@ void print_rows(const std::vector<GpuRow>& rows) {
     const auto print = [&] {
         if (table.size() > 1) print_table(table);
         table = {{"", "lights", "CPU ms", "its upload", "GPU ms", "its upload", "sent MB", "GPU's",
-                  "tests a light", "bytes a light", "more"}};
+                  "tests a light", "bytes a light", "more", "brute force ms", "times"}};
     };
     for (const GpuRow& row : rows) {
         if (const std::string now = row.device + ": " + row.source; now != said) {
@@ -120,7 +124,9 @@ void print_rows(const std::vector<GpuRow>& rows) {
                          text("%.3f", row.cpu_upload_ms), text("%.3f", row.gpu_ms),
                          text("%.3f", row.gpu_upload_ms), text("%.3f", 1e-6 * double(row.cpu_bytes)),
                          text("%.3f", 1e-6 * double(row.gpu_bytes)), text("%.0f", tests_a_light(row)),
-                         text("%.0f", bytes_a_light(row)), text("%.3f %%", excess_percent(row))});
+                         text("%.0f", bytes_a_light(row)), text("%.3f %%", excess_percent(row)),
+                         row.brute_ms > 0 ? text("%.3f", row.brute_ms) : "-",
+                         row.brute_ms > 0 ? text("%.1f", row.brute_ms / row.gpu_ms) : "-"});
     }
     print();
 }
@@ -128,14 +134,17 @@ void print_rows(const std::vector<GpuRow>& rows) {
 void write_csv(const std::vector<GpuRow>& rows) {
     std::FILE* const csv = open_report(
         "gpu.csv", "device,source,method,lights,in_view,cpu_ms,cpu_upload_ms,cpu_bytes,gpu_ms,gpu_upload_ms,"
-                   "gpu_bytes,scratch_bytes,tests,entries,missed,more,unordered,passes");
+                   "gpu_bytes,scratch_bytes,tests,entries,missed,more,unordered,brute_ms,brute_tests,brute_"
+                   "wrong,passes");
     for (const GpuRow& row : rows) {
         std::fprintf(csv,
-                     "\"%s\",\"%s\",\"%s\",%zu,%zu,%.4f,%.4f,%zu,%.4f,%.4f,%zu,%zu,%.0f,%zu,%zu,%zu,%zu,%s\n",
+                     "\"%s\",\"%s\",\"%s\",%zu,%zu,%.4f,%.4f,%zu,%.4f,%.4f,%zu,%zu,%.0f,%zu,%zu,%zu,%zu,%.4f,"
+                     "%.0f,%zu,%s\n",
                      row.device.c_str(), row.source.c_str(), row.method.c_str(), row.lights, row.in_view,
                      row.cpu_ms, row.cpu_upload_ms, row.cpu_bytes, row.gpu_ms, row.gpu_upload_ms,
                      row.gpu_bytes, row.scratch, row.tests, row.difference.entries, row.difference.missed,
-                     row.difference.more, row.difference.unordered, passes_of(row).c_str());
+                     row.difference.more, row.difference.unordered, row.brute_ms, row.brute_tests,
+                     row.brute_wrong, passes_of(row).c_str());
     }
     std::fclose(csv);
 }
@@ -143,8 +152,10 @@ void write_csv(const std::vector<GpuRow>& rows) {
 std::vector<std::string> verdicts(const std::vector<GpuRow>& rows) {
     std::vector<std::string> said;
     Difference all;
+    std::size_t brute_wrong = 0;
     for (const GpuRow& row : rows) {
         all += row.difference;
+        brute_wrong += row.brute_wrong;
         if (row.difference.missed > 0 || row.difference.unordered > 0)
             said.push_back(text("%s, %s, %s, %zu lights: WRONG, %zu missed, %zu out of order",
                                 row.device.c_str(), row.source.c_str(), row.method.c_str(), row.lights,
@@ -154,11 +165,15 @@ std::vector<std::string> verdicts(const std::vector<GpuRow>& rows) {
                         "order, %.3f %% are more.",
                         all.missed, all.entries, all.unordered,
                         100 * double(all.more) / double(std::max<std::size_t>(all.entries, 1))));
+    if (brute_wrong > 0) said.push_back(text("Brute force: WRONG in %zu entries", brute_wrong));
     for (const GpuRow& row : rows)
         if (row.lights == 10000 && row.method.starts_with("tiles")) {
             said.push_back(
-                text("%s, 10,000 lights of 20 tiles: the GPU takes %.3f ms, the CPU %.3f and %.3f of upload.",
-                     row.device.c_str(), row.gpu_ms, row.cpu_ms, row.cpu_upload_ms));
+                text("%s, 10,000 lights, %s: the GPU takes %.3f ms, the CPU %.3f and %.3f of upload; every "
+                     "light in "
+                     "every tile takes the GPU %.3f ms, %.0f times as long, and %.0f times as many tests.",
+                     row.device.c_str(), row.source.c_str(), row.gpu_ms, row.cpu_ms, row.cpu_upload_ms,
+                     row.brute_ms, row.brute_ms / row.gpu_ms, row.brute_tests / row.tests));
             said.push_back("  pass by pass: " + passes_of(row));
         } else if (row.source == "many_lights" && row.method.starts_with("clusters,")) {
             said.push_back(
@@ -187,7 +202,10 @@ int run(Arguments arguments) {
         Measuring measuring(*device, quick, rows);
         for (const std::size_t lights : {1000u, 10000u, 100000u})
             if (!quick || lights < 100000 || !device->is_software())
-                measuring.measure_source(field_source(lights), true);
+                measuring.measure_source(field_source(lights, field20_median, "field, 20 tiles a light"),
+                                         true);
+        measuring.measure_tiles(field_source(10000, field11_median, "field, 11 tiles a light"));
+        measuring.measure_tiles(field_source(10000, 0.01f, "field, a tile or two a light"));
         measuring.measure_source(many_lights_source(), false);
     };
     if (!only_vulkan) with(open_gl_device);
@@ -200,7 +218,7 @@ int run(Arguments arguments) {
     write_csv(rows);
     conclude(said, {"gpu.csv"});
     const auto right = [](const GpuRow& row) {
-        return row.difference.missed == 0 && row.difference.unordered == 0;
+        return row.difference.missed == 0 && row.difference.unordered == 0 && row.brute_wrong == 0;
     };
     return !rows.empty() && std::ranges::all_of(rows, right) ? EXIT_SUCCESS : EXIT_FAILURE;
 }

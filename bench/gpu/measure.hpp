@@ -2,6 +2,7 @@
 // Builds on the CPU and on the GPU in turns.
 #pragma once
 
+#include "brute_force.hpp"
 #include "compare.hpp"
 #include "device.hpp"
 #include "frames.hpp"
@@ -30,6 +31,8 @@ struct GpuRow {
     std::size_t scratch = 0;                             ///< bytes
     double tests = 0;  ///< of a light against a cell on the GPU, in count and fill together
     Difference difference;
+    double brute_ms = 0, brute_tests = 0;  ///< of BruteForce; 0 where it was not run
+    std::size_t brute_wrong = 0;           ///< entries that BruteForce has too many, too few or out of order
 };
 
 /// How many turns are timed, and how many are made before them: a GPU that was idle takes its time to get fast.
@@ -73,10 +76,31 @@ private:
     lightbin::Binner<options> binner_;
 };
 
+using CoveringBuild = CpuBuild<lightbin::Options{.coverage = true}>;
+
+/// Lists the plain tiles of `turns` frames by BruteForce, and compares each list.
+inline void measure_brute_force(GpuDevice& device, const LightSource& source, const lightbin::View& view,
+                                std::size_t room, const TurnsOf& turns, GpuRow& row) {
+    CoveringBuild cpu(cluster_slices(), {});
+    BruteForce brute(device, view, row.lights, std::uint32_t(room));
+    std::vector<double> runs;
+    for (int turn = 0; turn < turns.timed; ++turn) {
+        const auto grid = cpu(source.frames[std::size_t(turn) % source.frames.size()], view);
+        brute.upload(cpu.binner().coverage());
+        runs.push_back(brute.run());
+        const Difference d = compare(brute.read(), grid.ranges(), grid.ids(), {});
+        row.brute_wrong += d.missed + d.more + d.unordered;
+    }
+    row.brute_ms = median(runs);
+    row.brute_tests = 2 * double(view.tile_count()) * double(row.in_view);
+}
+
+/// brute_force  whether to run BruteForce, too; only for options without depth test and slices
+///
 /// Throws std::runtime_error with one line where the device can't do it.
 template <lightbin::Options options>
 GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, const TurnsOf& turns,
-               const lightbin::Slices& slices, const lightbin::ZBounds& bounds) {
+               const lightbin::Slices& slices, const lightbin::ZBounds& bounds, bool brute_force) {
     constexpr bool z_bins = options.slicing == lightbin::Slicing::z_bins;
     constexpr bool sliced = options.slicing != lightbin::Slicing::none;
     const GpuFrame& first = source.frames.front();
@@ -149,5 +173,6 @@ GpuRow measure(GpuDevice& device, const LightSource& source, int tile_size, cons
     const auto names = lightbin::cull_passes(options.slicing);
     for (std::size_t i = 0; i < passes.size(); ++i)
         row.passes.emplace_back(to_string(names[i]), median(passes[i]));
+    if (brute_force) measure_brute_force(device, source, view, room, turns, row);
     return row;
 }
