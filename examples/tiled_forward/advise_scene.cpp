@@ -211,9 +211,9 @@ std::string code(const Found& found, WayCosts& costs) {
             lines += "  // as lightbin::reduce_shader() writes them\n";
             inputs = "{.bounds = {" + spans + ", .background_skipped = true}}";
         } else {
-            lines += "\nauto bounds = lightbin::reduce_depth(*view, {.depth = depth_buffer, .skip_background "
-                     "= true},\n"
-                     "                                     {" +
+            lines += "\nauto bounds = lightbin::reduce_depth(\n"
+                     "    *view, {.depth = depth_buffer, .skip_background = true},\n"
+                     "    {" +
                      spans + "});\n";
         }
     }

@@ -5,7 +5,7 @@
 #include "shaders.hpp"
 #include "value_of.hpp"
 
-#include <lightbin/shader_build.hpp>
+#include <lightbin/shader_reduce.hpp>
 
 #include <algorithm>
 #include <stdexcept>

@@ -2,7 +2,7 @@
 // The texts of the shaders, for GLSL 330 or 430, or GLSL ES 300 or 310.
 #pragma once
 
-#include <lightbin/shader_build.hpp>
+#include <lightbin/shader_reduce.hpp>
 
 #include <compare>
 #include <string>
