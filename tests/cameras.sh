@@ -8,15 +8,9 @@ cd "$(dirname "$0")/.."
 . tests/packages.sh
 takes "" "" "$@"
 
-install_packages nodejs emscripten node-acorn binaryen
-command -v npm >/dev/null || install_packages npm
-make_build_folder
-sh packaging/npm/build.sh
+build_npm_package
 
 tests=build/camera-tests
 fetch_npm $tests gl-matrix@3.4.3 @babylonjs/core@9.35.0
 export MODULES="$PWD/$tests/node_modules" LIGHTBIN="$PWD/build/npm/lightbin"
-node --test-reporter=spec tests/npm/cameras.mjs >$tests/cameras.log 2>&1 || failed=yes
-grep -E '^(✔|✖|    at |  [A-Z])' $tests/cameras.log || true
-[ -z "${failed-}" ] || fail "not every test passed; the log is $tests/cameras.log"
-echo "$me: every test passed"
+run_node_tests tests/npm/cameras.mjs $tests/cameras.log

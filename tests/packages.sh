@@ -90,3 +90,20 @@ last_error() {
 make_build_folder() {
     mkdir -p build && [ -w build ] || fail "cannot write to $(pwd)/build"
 }
+
+# build_npm_package [PACKAGE...]: makes build/npm/lightbin, and installs what that takes and the packages.
+build_npm_package() {
+    install_packages nodejs emscripten node-acorn binaryen "$@"
+    command -v npm >/dev/null || install_packages npm
+    make_build_folder
+    sh packaging/npm/build.sh
+}
+
+# run_node_tests FILE LOG: runs tests of node, and says which passed. Where one fails, so does the script.
+run_node_tests() {
+    node_failed=
+    node --test-reporter=spec "$1" >"$2" 2>&1 || node_failed=yes
+    grep -E '^(✔|✖|    at |  [A-Z])' "$2" || true
+    [ -z "$node_failed" ] || fail "not every test passed; the log is $2"
+    echo "$me: every test passed"
+}

@@ -11,10 +11,7 @@ cd "$(dirname "$0")/.."
 . tests/packages.sh
 takes "nothing, --serve, --bench" "--serve|--bench" "$@"
 
-install_packages chromium nodejs emscripten node-acorn binaryen
-command -v npm >/dev/null || install_packages npm
-make_build_folder
-sh packaging/npm/build.sh
+build_npm_package chromium
 
 tests=build/playcanvas-tests
 fetch_npm $tests playcanvas@2.23.0 playwright-core@1.65.1
@@ -24,7 +21,4 @@ case ${1-} in
 --serve) exec node tests/three/server.mjs 8000 tests/playcanvas ;;
 --bench) exec node tests/playcanvas/bench.mjs ;;
 esac
-node --test-reporter=spec tests/playcanvas/pictures.mjs >$tests/pictures.log 2>&1 || failed=yes
-grep -E '^(✔|✖|    at |  [A-Z])' $tests/pictures.log || true
-[ -z "${failed-}" ] || fail "not every test passed; the log is $tests/pictures.log"
-echo "$me: every test passed"
+run_node_tests tests/playcanvas/pictures.mjs $tests/pictures.log

@@ -12,10 +12,7 @@ cd "$(dirname "$0")/.."
 takes "nothing, --serve, --bench" "--serve|--bench" "$@"
 [ $# -le 1 ] || fail "takes one option"
 
-install_packages chromium nodejs emscripten node-acorn binaryen
-command -v npm >/dev/null || install_packages npm
-make_build_folder
-sh packaging/npm/build.sh
+build_npm_package chromium
 
 tests=build/three-tests
 fetch_npm $tests three@0.187.0 playwright-core@1.65.1
@@ -25,7 +22,4 @@ case ${1-} in
 --serve) exec node tests/three/server.mjs 8000 ;;
 --bench) exec node tests/three/bench.mjs ;;
 esac
-node --test-reporter=spec tests/three/pictures.mjs >$tests/pictures.log 2>&1 || failed=yes
-grep -E '^(✔|✖|    at |  [A-Z])' $tests/pictures.log || true
-[ -z "${failed-}" ] || fail "not every test passed; the log is $tests/pictures.log"
-echo "$me: every test passed"
+run_node_tests tests/three/pictures.mjs $tests/pictures.log

@@ -135,7 +135,7 @@ void $store_half_spaces(uint at, $spot s) {
 /// axis, other  the coordinates of the cone's axis along this and the other image axis
 inline void add_narrowed(ShaderWriter& writer) {
     writer.add(R"(
-// Whether a plane that touches the ball touches it in the cap, the ball's surface in the cone; true in doubt.
+// Whether a plane that touches the ball touches it inside of the cone; true where rounding leaves that open.
 bool $touches_cap($spot s, float slope, float across) {
     float sure = across + (1.0 + abs(slope)) * 1.5258789e-5;
     return (s.cosine * abs(s.cosine) - 3.8146973e-6) * (1.0 + slope * slope) <= sure * abs(sure);
