@@ -28,8 +28,9 @@
 #       advise_slices(), and how long asking takes beside a plain build; on the machine's widest instruction set or the
 #       named one. Writes build/bench/advise.csv.
 #   c_side [SECONDS]
-#       Whole builds through lightbin.h over the same in C++, in turns, on lights in structs of the caller's; two
-#       seconds, or so many, a line.
+#       Whole builds through lightbin.h over the same in C++, in turns, on lights in structs of the caller's. Each line is
+#       the median of five programs that differ in the order of their functions, with the least and the greatest; each
+#       program takes half a second, or so many, for it. Three minutes.
 #   stability [--quick]
 #       How far off the screen bounds of lights are under stiff and extreme conditions, by decade, in pixels: ours and the
 #       textbooks', in float and in double, against exact ones; what that misses, lists too much and takes. A miss by ours is
@@ -77,6 +78,7 @@ takes "$program, $options${options:+${words:+, }}$words" "$forms${forms:+${patte
 packages="g++ cmake ninja-build gnuplot-nox libglm-dev libboost-dev libgmp-dev libtbb-dev libtinygltf-dev"
 targets=$program
 [ $program != report ] || targets="report evaluation"
+[ $program != c_side ] || packages="$packages lld"
 case $program in
 frames | gpu | report) packages="$packages libstb-dev libepoxy-dev libegl-dev libgl-dev libgl1-mesa-dri" ;;
 esac
@@ -126,5 +128,12 @@ frames)
     exit
     ;;
 gpu) ./bench/gpu/gpu "$@" ;;
+c_side)
+    for order in 1 2 3 4 5; do
+        "./bench/c_side_$order" "$@" >c_side_$order.csv
+        echo "$me: measured with the functions in order $order of 5"
+    done
+    awk -F, -f ../../bench/c_side.awk c_side_*.csv
+    ;;
 *) "./bench/$program" "$@" ;;
 esac

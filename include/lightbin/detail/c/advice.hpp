@@ -88,10 +88,11 @@ public:
     Result<LightGrid<std::uint32_t>> bin(const View& view, const c::CopiedLights& lights,
                                          const Inputs& inputs) {
         const c::CallLights in_place = c::in_call(lights);
-        c::Call call = {view, in_place, nullptr, {}, {}};
-        if constexpr (Inputs::reads_slices) call.slices = &static_cast<const Slices&>(inputs.slices);
-        if constexpr (Inputs::reads_bounds) call.bounds = inputs.bounds;
-        return binner_.bin<std::uint32_t>(call);
+        const Slices* slices = nullptr;
+        const ZBounds* bounds = &c::no_bounds;
+        if constexpr (Inputs::reads_slices) slices = &static_cast<const Slices&>(inputs.slices);
+        if constexpr (Inputs::reads_bounds) bounds = &inputs.bounds;
+        return binner_.bin<std::uint32_t>({view, in_place, slices, *bounds, {}});
     }
 
 private:

@@ -94,10 +94,11 @@ constexpr bool go_together(const Options& options) {
 struct Call {
     const View& view;
     const CallLights& lights;
-    const Slices* slices;  ///< null if the options read none
-    ZBounds bounds;
+    const Slices* slices;   ///< null if the options read none
+    const ZBounds& bounds;  ///< no_bounds if the options read none
     Threads threads;
 };
+inline constexpr ZBounds no_bounds;
 
 // ---- Projection: lights to footprints, in the slices that they meet ----
 
@@ -111,6 +112,13 @@ struct AnyFootprints {
     detail::FootprintSlice slice(std::size_t i) const { return slice_of(from, i); }
 };
 
+/// What a Projection has found of the lights of a call.
+struct Projected {
+    AnyFootprints footprints;
+    LightRanks ranks;
+    LightCounts counts;
+};
+
 /// The stages before the lists, for one footprint and slicing.
 class Projection {
 public:
@@ -121,9 +129,7 @@ public:
     /// for_boxes  whether the depth test is against boxes
     virtual std::optional<Error> project(Isa isa, const Call& call, bool shared, bool for_boxes) = 0;
     virtual void find_coverage(const Call& call, detail::CoverageList& coverage) = 0;
-    virtual AnyFootprints footprints() const = 0;
-    virtual LightRanks ranks() const = 0;
-    virtual LightCounts counts() const = 0;
+    virtual Projected projected() const = 0;
 
 protected:
     ~Projection() = default;
@@ -161,17 +167,11 @@ public:
 #endif
     }
 
-    AnyFootprints footprints() const override {
+    Projected projected() const override {
         const auto slice_of = [](const void* from, std::size_t i) {
             return static_cast<const Visible*>(from)->slice(i);
         };
-        return {&visible(), visible().slices(), slice_of};
-    }
-    LightRanks ranks() const override {
-        return visible().ranks();
-    }
-    LightCounts counts() const override {
-        return footprints_.counts();
+        return {{&visible(), visible().slices(), slice_of}, visible().ranks(), footprints_.counts()};
     }
 
 private:
@@ -318,13 +318,13 @@ public:
     const Options& options() const { return options_; }
     std::span<const LightCoverage> coverage() const { return coverage_.all(); }
 
-    template <class Id> LIGHTBIN_ONCE Result<LightGrid<Id>> bin(const Call& call) {
+    template <class Id> Result<LightGrid<Id>> bin(const Call& call) {
         const detail::DefaultFloatEnvironment environment;
         if (const auto error = project(call)) return *error;
         return build<Id>(lists<Id>()[0], call, call.bounds);
     }
 
-    template <class Id> LIGHTBIN_ONCE Result<TransparencyGrids<Id>> bin_transparency(const Call& call) {
+    template <class Id> Result<TransparencyGrids<Id>> bin_transparency(const Call& call) {
         const detail::DefaultFloatEnvironment environment;
         const Result<ZBounds> in_front = detail::transparent_bounds(call.bounds);
         if (!in_front) return in_front.error();
@@ -336,27 +336,26 @@ public:
         return TransparencyGrids<Id>{*opaque, *transparent};
     }
 
-    LIGHTBIN_ONCE Result<LightBits> bin_bits(const Call& call, std::uint32_t max_lights,
-                                             std::span<std::uint32_t> bits) {
+    Result<LightBits> bin_bits(const Call& call, std::uint32_t max_lights, std::span<std::uint32_t> bits) {
         const detail::DefaultFloatEnvironment environment;
         const std::uint64_t each = (max_lights + std::uint64_t{31}) / 32,
                             words = detail::product_of_sizes(call.view.tile_count(), each);
         if (bits.size() < words) return Error{ErrorCode::bit_buffer_too_small, words, bits.size()};
         if (const auto error = project(call)) return *error;
-        const LightCounts counts = projection_->counts();
+        const Projected projected = projection_->projected();
+        const LightCounts& counts = projected.counts;
         const std::uint64_t numbered = options_.slicing == Slicing::z_bins
                                            ? counts.lights - counts.rejected - counts.culled
                                            : counts.lights;
         if (numbered > max_lights) return Error{ErrorCode::ids_too_narrow, numbered, max_lights};
         const std::size_t number = kernel_number(options_);
-        const BitsKernelOf kernel = with_kind(call.lights.kind(), [number]<detail::LightKind kind>() {
-            return bits_kernels_of<kind>[number];
-        });
-        if (const auto error = wide_[0].write_bits(isa_, call.view, projection_->footprints(), call.bounds,
+        const BitsKernelOf kernel = with_kind(
+            call.lights.kind(), [number]<detail::LightKind kind>() { return bits_kernels_of<kind>[number]; });
+        if (const auto error = wide_[0].write_bits(isa_, call.view, projected.footprints, call.bounds,
                                                    scratch_, call.threads, how_, kernel(isa_), bits.data(),
                                                    static_cast<std::size_t>(each)))
             return *error;
-        return LightBits{counts, projection_->ranks()};
+        return LightBits{counts, projected.ranks};
     }
 
 private:
@@ -386,15 +385,14 @@ private:
     template <class Id>
     LIGHTBIN_ONCE Result<LightGrid<Id>> build(Lists<Id>& lists, const Call& call, const ZBounds& bounds) {
         const std::size_t number = kernel_number(options_);
-        const Kernels<Id> kernels = with_kind(call.lights.kind(), [number]<detail::LightKind kind>() {
-            return kernels_of<Id, kind>[number];
-        });
-        const AnyFootprints visible = projection_->footprints();
-        if (const auto error = lists.build(isa_, call.view, visible, bounds, scratch_, call.threads, how_,
-                                           kernels.choose, kernels.count))
+        const Kernels<Id> kernels = with_kind(
+            call.lights.kind(), [number]<detail::LightKind kind>() { return kernels_of<Id, kind>[number]; });
+        const Projected projected = projection_->projected();
+        if (const auto error = lists.build(isa_, call.view, projected.footprints, bounds, scratch_,
+                                           call.threads, how_, kernels.choose, kernels.count))
             return *error;
         return LightGrid<Id>(call.view.tiles_x(), call.view.tiles_y(), lists.tiles(), lists.indices(),
-                             projection_->counts(), visible.slices(), projection_->ranks());
+                             projected.counts, projected.footprints.slices(), projected.ranks);
     }
 
     Options options_;

@@ -110,8 +110,9 @@ lightbin_result with_call(lightbin_binner* binner, const lightbin_view* view,
     if (with_bounds && inputs.bounds == nullptr) return refused(LIGHTBIN_NO_BOUNDS_GIVEN, "inputs.bounds");
     if (!with_slices && inputs.slices != nullptr) return refused(LIGHTBIN_NOT_READ, "inputs.slices");
     if (!with_bounds && inputs.bounds != nullptr) return refused(LIGHTBIN_NOT_READ, "inputs.bounds");
-    ZBounds bounds;
-    if (with_bounds) result = read_bounds(inputs.bounds, view->value, bounds);
+    std::optional<ZBounds> given_bounds;
+    if (with_bounds) result = read_bounds(inputs.bounds, view->value, given_bounds.emplace());
+    const ZBounds& bounds = with_bounds ? *given_bounds : no_bounds;
     lightbin_threads threads = {};
     if (result.error == LIGHTBIN_OK && inputs.threads != nullptr) {
         result = read(inputs.threads, threads, "inputs.threads");
