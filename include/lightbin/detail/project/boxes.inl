@@ -256,9 +256,11 @@ void project_lights(const Camera& camera, const LightSource& source, std::uint32
             const unsigned valid = (1u << used) - 1;
             const Box* const from = whole_vector(given_boxes + i, used, padded);
             // Sixteen boxes of 68 bytes lie in 17 cache lines, more than the processor prefetches by itself.
+            // They may lie beyond the array's end, where a pointer must not be formed, but an address may be.
             if constexpr (lanes == 16)
                 for (std::size_t k = 0; k < lanes * sizeof *from; k += 64)
-                    LIGHTBIN_PREFETCH(reinterpret_cast<const char*>(from) + 2 * lanes * sizeof *from + k);
+                    LIGHTBIN_PREFETCH(reinterpret_cast<const void*>(reinterpret_cast<std::uintptr_t>(from) +
+                                                                    2 * lanes * sizeof *from + k));
             Floats given[17];  // the numbers of each Box in their order in memory
             static_assert(sizeof(Box) == sizeof(float) * 17);
             LIGHTBIN_UNROLL for (unsigned k = 0; k < 16; k += 4)
