@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The files of verdicts on spots and on boxes, read as an engine's tests would read them: each file is whole, every
-// verdict is proven again, and lightbin lists every box in every cell that the box meets. That lightbin misses no spot
-// is proven in tests/oracle/spots.cpp, of other spots in each run.
+// The files of verdicts on spots and on boxes, read as an engine's tests would read them: each file is whole, and every
+// verdict is proven again. That lightbin misses no spot and no box is proven in tests/oracle, of other ones.
 #include "../../bench/exact/box.hpp"
 #include "../../bench/exact/spot.hpp"
 #include "../../bench/exact/truth.hpp"
 
-#include <lightbin/binner.hpp>
-#include <lightbin/box.hpp>
-
-#include "../oracle/library_view.hpp"
-
 #include <doctest/doctest.h>
-#include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -270,40 +262,6 @@ template <class Exact, class Light> Proof proof_of(const std::vector<Part<Light>
     return proof;
 }
 
-/// The pairs of a cell and a box that meet, those that a list lacks, and the entries of all lists.
-struct Listed {
-    std::size_t met = 0, missed = 0, entries = 0;
-};
-
-/// Lists boxes with each layer as the Z bounds of all tiles.
-template <lightbin::Options options>
-void count_listed(const Part<Box>& p, const std::vector<lightbin::Box>& boxes, Listed& listed) {
-    const auto view = oracle::library_view(camera_of(p));
-    REQUIRE(view.has_value());
-    lightbin::Binner<options> binner;
-    for (std::size_t layer = 0; layer < p.layers.size(); ++layer) {
-        const std::vector<float> min(p.tiles(), p.layers[layer].min), max(p.tiles(), p.layers[layer].max);
-        const auto grid =
-            *binner.bin(*view, lightbin::view_space(boxes), {.bounds = {.min = min, .max = max}});
-        listed.entries += grid.ids().size();
-        for (std::size_t tile = 0; tile < p.tiles(); ++tile) {
-            const auto list = grid.ids().subspan(grid.ranges()[tile].offset, grid.ranges()[tile].count);
-            for (std::size_t box = 0; box < boxes.size(); ++box) {
-                if (!p.meets(box, layer, tile)) continue;
-                ++listed.met;
-                if (std::find(list.begin(), list.end(), box) == list.end() && ++listed.missed <= 5)
-                    MESSAGE("MISS: " << p.name << ", box " << box << ", layer " << layer << ", tile "
-                                     << tile);
-            }
-        }
-    }
-}
-
-const std::vector<Part<Box>>& box_parts() {
-    static const std::vector<Part<Box>> parts = Reader<Box>(VERDICTS "/boxes.txt").parts();
-    return parts;
-}
-
 }  // namespace
 
 TEST_CASE("spot verdicts: proven again") {
@@ -314,59 +272,8 @@ TEST_CASE("spot verdicts: proven again") {
 }
 
 TEST_CASE("box verdicts: proven again") {
-    const Proof proof = proof_of<ExactBox>(box_parts());
+    const Proof proof = proof_of<ExactBox>(Reader<Box>(VERDICTS "/boxes.txt").parts());
     CHECK(proof.wrong == 0);
     CHECK(proof.verdicts > 200000);
     CHECK(proof.met > 5000);
-}
-
-TEST_CASE("box verdicts: a box is listed in every cell that it meets") {
-    using lightbin::DepthTest, lightbin::Footprint, lightbin::Options;
-    Listed listed;
-    for (const Part<Box>& p : box_parts()) {
-        // As they are, and with the sphere of their corners in place of an infinite one.
-        std::vector<lightbin::Box> given, bounded;
-        for (const Box& b : p.lights) {
-            lightbin::Box& box = given.emplace_back(
-                lightbin::Box{b.x, b.y, b.z, b.radius, b.centre[0], b.centre[1], b.centre[2], {}, b.taper});
-            std::copy(&b.half_axes[0][0], &b.half_axes[0][0] + 9, &box.half_axes[0][0]);
-            bounded.push_back(std::isinf(b.radius) ? clipped_sphere(bounding_sphere(box), box) : box);
-        }
-        for (const auto& boxes : {given, bounded}) {
-            count_listed<Options{.depth_test = DepthTest::box}>(p, boxes, listed);
-            count_listed<Options{.footprint = Footprint::silhouette, .depth_test = DepthTest::box}>(p, boxes,
-                                                                                                    listed);
-        }
-    }
-    MESSAGE(listed.met << " pairs that meet, " << listed.missed << " not listed, " << listed.entries
-                       << " listed");
-    CHECK(listed.missed == 0);
-    CHECK(listed.met > 20000);
-    CHECK(listed.entries < 2 * listed.met);
-}
-
-TEST_CASE("box verdicts: every shape is among the boxes") {
-    std::size_t whole = 0, cut = 0, zero_axis = 0, tapered = 0, mirrored = 0, sheared = 0, around_eye = 0;
-    for (const Part<Box>& p : box_parts())
-        for (const Box& b : p.lights) {
-            const auto axis = [&](int i) {
-                const float(&h)[3] = b.half_axes[i];
-                return glm::dvec3(h[0], h[1], h[2]);
-            };
-            const glm::dvec3 x = axis(0), y = axis(1), z = axis(2);
-            const double lengths = glm::length(x) * glm::length(y) * glm::length(z);
-            const std::vector<oracle::HalfSpace> faces = oracle::ExactBox(b).faces;
-            ++(std::isinf(b.radius) ? whole : cut);
-            zero_axis += !(lengths > 0);
-            tapered += b.taper < 1;
-            mirrored += glm::dot(glm::cross(x, y), z) < -0.01 * lengths;
-            sheared += std::abs(glm::dot(x, y)) * glm::length(z) > 0.1 * lengths;
-            around_eye +=
-                std::all_of(faces.begin(), faces.end(), [](const auto& face) { return face.at({}) >= 0; });
-        }
-    for (const std::size_t count : {whole, cut, zero_axis, tapered, mirrored, sheared, around_eye})
-        CHECK(count >= 10);
-    MESSAGE("whole " << whole << ", cut " << cut << ", a zero axis " << zero_axis << ", tapered " << tapered
-                     << ", mirrored " << mirrored << ", sheared " << sheared << ", around the eye "
-                     << around_eye);
 }

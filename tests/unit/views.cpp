@@ -127,18 +127,25 @@ TEST_CASE("views that do not fit into buffers, or not together, are an error and
     const std::size_t ranges = grid->ranges().size(), ids = grid->ids().size();
     REQUIRE(ids > 100);
     Buffers<std::uint32_t> buffers;
-    const auto first = grid->copy_to(buffers.ranges, buffers.ids);
+    const auto check_too_small = [&](std::size_t views, const auto&... before) {
+        const auto few_ranges =
+            grid->copy_to(std::span(buffers.ranges).first(views * ranges - 1), buffers.ids, before...);
+        CHECK(code_of(few_ranges) == ErrorCode::range_buffer_too_small);
+        CHECK(few_ranges.error().needed == views * ranges);
+        CHECK(few_ranges.error().available == views * ranges - 1);
+        const auto few_ids =
+            grid->copy_to(buffers.ranges, std::span(buffers.ids).first(views * ids - 1), before...);
+        CHECK(code_of(few_ids) == ErrorCode::id_buffer_too_small);
+        CHECK(few_ids.error().needed == views * ids);
+        CHECK(few_ids.error().available == views * ids - 1);
+    };
+    check_too_small(1);
+    CHECK(buffers.unset_from(0, 0));
+    const auto first =
+        grid->copy_to(std::span(buffers.ranges).first(ranges), std::span(buffers.ids).first(ids));
     REQUIRE(first);
-
-    const auto few_ranges =
-        grid->copy_to(std::span(buffers.ranges).first(2 * ranges - 1), buffers.ids, *first);
-    CHECK(code_of(few_ranges) == ErrorCode::range_buffer_too_small);
-    CHECK(few_ranges.error().needed == 2 * ranges);
-    CHECK(few_ranges.error().available == 2 * ranges - 1);
-    const auto few_ids = grid->copy_to(buffers.ranges, std::span(buffers.ids).first(2 * ids - 1), *first);
-    CHECK(code_of(few_ids) == ErrorCode::id_buffer_too_small);
-    CHECK(few_ids.error().needed == 2 * ids);
-    CHECK(few_ids.error().available == 2 * ids - 1);
+    CHECK(buffers.unset_from(ranges, ids));
+    check_too_small(2, *first);
 
     // As many tiles, in other columns and rows; and as many cells, in slices.
     Binner<> other;
