@@ -1,4 +1,5 @@
-// Clusters against the tile lists of each slice by itself, and against what others publish of their own.
+// Slices, and clusters as shaders look them up. That clusters miss no light, and what they list beyond it, is proven in
+// tests/oracle/clusters.cpp.
 #include "scene.hpp"
 
 #include <glm/ext/matrix_transform.hpp>
@@ -8,73 +9,8 @@
 using namespace lightbin;
 
 namespace {
-
 constexpr float endless = std::numeric_limits<float>::infinity();
-
-/// The lists of a slice as a Binner of tiles makes them: of the lights whose depths meet it, with the slice as Z bounds.
-template <Options options>
-std::vector<std::vector<std::uint32_t>> lists_of_slice(const View& view, const std::vector<glm::vec4>& lights,
-                                                       float begin, float end) {
-    std::vector<glm::vec4> there;
-    std::vector<std::uint32_t> ids;
-    for (std::uint32_t i = 0; i < lights.size(); ++i) {
-        const float z = -lights[i].z;
-        if (!(z + lights[i].w < begin || end < z - lights[i].w)) {
-            there.push_back(lights[i]);
-            ids.push_back(i);
-        }
-    }
-    const std::vector<float> min(view.tile_count(), begin), max(view.tile_count(), end);
-    constexpr Options of_tiles = {.footprint = options.footprint, .depth_test = options.depth_test};
-    Binner<of_tiles> binner;
-    auto lists = test::to_lists(*binner.bin(view, there, inputs_for<of_tiles>({.min = min, .max = max})));
-    for (auto& list : lists)
-        for (std::uint32_t& id : list)
-            id = ids[id];
-    return lists;
-}
-
-template <Options options>
-void compare(const View& view, const std::vector<glm::vec4>& lights, const Slices& slices) {
-    Binner<options> binner;
-    const auto grid = binner.bin(view, lights, {.slices = slices});
-    REQUIRE(grid);
-    REQUIRE(grid->slices() == slices.count());
-    const auto lists = test::to_lists(*grid);
-    REQUIRE(lists.size() == view.tile_count() * static_cast<std::size_t>(slices.count()));
-    for (int slice = 0; slice < slices.count(); ++slice) {
-        const auto at = [&](int i) { return slices.boundaries()[static_cast<std::size_t>(i)]; };
-        const float begin = slice == 0 ? -endless : at(slice - 1),
-                    end = slice + 1 == slices.count() ? endless : at(slice);
-        const auto expected = lists_of_slice<options>(view, lights, begin, end);
-        const auto first = lists.begin() + static_cast<std::ptrdiff_t>(view.tile_count()) * slice;
-        CHECK((std::equal(expected.begin(), expected.end(), first)));
-    }
-}
-
-template <Options options> void compare_all() {
-    const auto lights = test::random_lights(1500, 31);
-    for (const int tile : {32, 64, 200}) {
-        const View view = test::view({800, 600}, tile);
-        compare<options>(view, lights, *Slices::exponential(24, 5, 60));
-        compare<options>(view, lights, *Slices::linear(7, -3, 40));
-        compare<options>(view, lights, *Slices::from_boundaries({}));
-        compare<options>(view, lights, *Slices::from_boundaries(std::vector<float>{-2, 1e-30f, 10, 1e30f}));
-    }
-    compare<options>(test::view({640, 480}, 100), lights, *Slices::linear(120, -2, 50));  // by a table
-    compare<options>(test::view({64, 64}, 64), {}, *Slices::linear(3, 0, 10));
-    compare<options>(test::view({0, 0}, 64), lights, *Slices::linear(3, 0, 10));
-}
-
 }  // namespace
-
-TEST_CASE("a slice of clusters holds what tile lists of the slice alone do") {
-    compare_all<Options{.slicing = Slicing::clusters}>();
-    compare_all<Options{.depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
-    compare_all<Options{.footprint = Footprint::silhouette, .slicing = Slicing::clusters}>();
-    compare_all<Options{
-        .footprint = Footprint::silhouette, .depth_test = DepthTest::box, .slicing = Slicing::clusters}>();
-}
 
 TEST_CASE("slices of exponential and linear depth end where they should") {
     const Slices law = *Slices::exponential(16, 5, 100);
