@@ -3,9 +3,7 @@
 
 #include <lightbin/advise.hpp>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <new>
 #include <string>
 #include <vector>
