@@ -193,11 +193,12 @@ LIGHTBIN_API lightbin_isa lightbin_machine_isa(void);
 
 /* ---- Memory and threads of the caller ---- */
 
-/* The caller's memory for a handle and all that it keeps. Null pointers for both functions mean malloc() and free().
- * The functions may be called on any thread that runs tasks of lightbin_threads, several at a time.
+/* The caller's memory for a handle and all that it keeps. Null pointers for both functions mean malloc() and free(),
+ * and one that is null beside one that is not is refused. The functions may be called on any thread that runs tasks of
+ * lightbin_threads, several at a time.
  *
- * While a shader text or advice is made, parts of it are in memory of the C++ library's operator new. All of that
- * memory is freed before the call returns. */
+ * While a shader text, the content of a shader's buffers or advice is made, parts of it are in memory of the C++
+ * library's operator new. All of that memory is freed before the call returns. */
 typedef struct lightbin_allocator {
     void* (*allocate)(void* user,
                       size_t bytes); /* memory aligned as that of malloc(), or null if there is none */
@@ -232,7 +233,8 @@ typedef enum lightbin_matrix_layout {
     LIGHTBIN_ROW_VECTORS = 2 /* the rows of a matrix for v M, one after another: Direct3D's */
 } lightbin_matrix_layout;
 
-/* Sixteen numbers: either floats or doubles are given, and the other pointer is null. */
+/* Sixteen numbers: either floats or doubles are given, and the other pointer is null. If both are given, the floats are
+ * read. */
 typedef struct lightbin_matrix {
     const float* floats;
     const double* doubles;
@@ -569,7 +571,8 @@ typedef struct lightbin_grid {
     uint32_t size;
     int32_t tiles_x, tiles_y;
     int32_t slices; /* 1 unless made with clusters */
-    /* tiles_x * tiles_y ranges, row-major; with clusters as many for each slice */
+    /* tiles_x * tiles_y ranges, row-major; with clusters as many for each slice: the range of tile (x, y) in slice s is
+     * ranges[(s * tiles_y + y) * tiles_x + x] */
     const lightbin_range* ranges;
     const void* ids; /* the light index list: uint16_t or uint32_t, as id_bytes says */
     uint64_t range_count, id_count;
@@ -882,7 +885,7 @@ typedef struct lightbin_binding {
     const char* name; /* the name in the text; valid as long as the shader */
     lightbin_slot slot;
     uint32_t stride; /* bytes of an element of a buffer */
-    uint32_t bytes;  /* the size of a uniform block or of push constants; 0 for others */
+    uint32_t bytes;  /* the size of a uniform vector, a uniform block or push constants; 0 for others */
     uint32_t width;  /* texels in a row of a 2D texture; 0 for others */
     /* The format of texels in each graphics API's numbers: glTexImage2D()'s three arguments, of which glTexBuffer()
      * needs the first; VkFormat; DXGI_FORMAT. 0 if there are no texels. */

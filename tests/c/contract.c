@@ -865,6 +865,16 @@ static void test_memory(int failures_too) {
     }
     heap.fails_at = -1;
 
+    /* One of the two functions alone is refused by each kind of call that makes a handle. */
+    allocator.release = NULL;
+    CHECK(refuses(lightbin_view_create(&view_given, &allocator, &view), LIGHTBIN_NULL_ARGUMENT, "allocator"));
+    CHECK(refuses(lightbin_binner_create(NULL, &allocator, &binner), LIGHTBIN_NULL_ARGUMENT, "allocator"));
+    allocator.release = release;
+    allocator.allocate = NULL;
+    CHECK(refuses(lightbin_view_create(&view_given, &allocator, &view), LIGHTBIN_NULL_ARGUMENT, "allocator"));
+    allocator.allocate = allocate;
+    CHECK(view == NULL && binner == NULL && heap.blocks == 0);
+
     /* No allocation once warm. */
     CHECK(lightbin_view_create(&view_given, &allocator, &view).error == LIGHTBIN_OK);
     CHECK(lightbin_binner_create(NULL, &allocator, &binner).error == LIGHTBIN_OK);

@@ -255,6 +255,7 @@ inline lightbin_result read_matrix(const lightbin_matrix& given, Matrix& matrix,
 
 /// Calls body(), which returns a lightbin_result, with the memory of a handle. No exception leaves.
 template <class Body> lightbin_result guarded(const Memory& memory, const Body& body) {
+    if (!memory.complete()) return refused(LIGHTBIN_NULL_ARGUMENT, "allocator");
     const MemoryOfCall scope(memory);
 #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
     try {
@@ -275,6 +276,7 @@ template <class Body> lightbin_result guarded(const Memory& memory, const Body& 
 template <class Handle, class... Arguments>
 lightbin_result make_handle(const Memory& memory, Handle** handle, Arguments&&... arguments) {
     static_assert(alignof(Handle) <= alignof(std::max_align_t));
+    if (!memory.complete()) return refused(LIGHTBIN_NULL_ARGUMENT, "allocator");
     void* const place = memory.allocate(sizeof(Handle));
     if (place == nullptr) return refused(LIGHTBIN_OUT_OF_MEMORY, "");
 #if defined(__cpp_exceptions) || defined(_CPPUNWIND)

@@ -27,8 +27,10 @@ class Memory {
 public:
     /// allocator  null, or with null functions: malloc() and free()
     explicit Memory(const lightbin_allocator* allocator = nullptr) {
-        if (allocator != nullptr && allocator->allocate != nullptr) caller_ = *allocator;
+        if (allocator != nullptr) caller_ = *allocator;
     }
+    /// Whether the caller gave both functions or neither.
+    bool complete() const { return (caller_.allocate != nullptr) == (caller_.release != nullptr); }
     void* allocate(std::size_t bytes) const {
         return caller_.allocate != nullptr ? caller_.allocate(caller_.user, bytes) : std::malloc(bytes);
     }
